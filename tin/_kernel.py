@@ -1,0 +1,56 @@
+"""The only door to the compiled core: its arrays, its types, its faults as our errors."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from . import _core
+from .errors import PointsError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+__all__ = ["EXACT_RANGE", "Growth", "Locator", "grow", "in_circle", "orientation", "snap"]
+
+EXACT_RANGE: tuple[float, float] = (_core.SMALLEST_COORDINATE, _core.LARGEST_COORDINATE)
+"""Smallest (but 0) and largest magnitude of a coordinate for which the predicates are exact."""
+
+Locator = _core.Locator
+orientation = _core.orientation
+in_circle = _core.in_circle
+snap = _core.snap
+
+
+class Growth(NamedTuple):
+    """Triangles in canonical order: by first vertex in the sweep, then by angle.
+
+    ``kept_row`` is None when no two points share a place; otherwise it holds for each row the
+    first row at the same place, and vertices are numbered by kept rows.
+    """
+
+    triangles: NDArray[np.int32]
+    neighbors: NDArray[np.int32]
+    kept_row: NDArray[np.int32] | None
+
+
+def grow(points: NDArray[np.float64]) -> Growth:
+    """Grow the Delaunay triangulation of (n, 3) float64 points, n >= 1; z is not looked at.
+
+    Raises
+    ------
+    PointsError
+        If fewer than three places are distinct, or all are collinear.
+    """
+    triangles, neighbors, kept_row, n_distinct = _core.grow(points)
+    if len(triangles) == 0:
+        raise PointsError(_why_no_triangle(len(points), n_distinct))
+    return Growth(triangles, neighbors, kept_row)
+
+
+def _why_no_triangle(n_rows: int, n_distinct: int) -> str:
+    need = "a TIN needs at least three points that are not collinear"
+    if n_distinct < 3:
+        places = "one place" if n_distinct == 1 else "two places"
+        return f"All {n_rows} points lie at {places}: {need}."
+    return f"All {n_rows} points are collinear in the plane: {need}."

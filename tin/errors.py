@@ -1,0 +1,42 @@
+"""Errors of the toolkit: one root, and each also the built-in that it resembles."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+__all__ = ["MissingExtraError", "PointsError", "TinsmithError"]
+
+
+class TinsmithError(Exception):
+    """Root of every error that tinsmith raises on purpose; its text is one clear sentence."""
+
+
+class PointsError(TinsmithError, ValueError):
+    """Points, or options for them, that cannot make a TIN.
+
+    Attributes
+    ----------
+    rows : tuple of int
+        The first few row numbers (0-based, in the caller's own input) at fault; may be empty.
+    """
+
+    def __init__(self, message: str, *, rows: Sequence[int] = ()) -> None:
+        super().__init__(message)
+        self.rows = tuple(int(row) for row in rows)
+
+
+class MissingExtraError(TinsmithError, ImportError):
+    """An optional library is not installed; the sentence names the extra that brings it.
+
+    Attributes
+    ----------
+    extra : str
+        Name of the extra, as in ``pip install "tinsmith[extra]"``.
+    """
+
+    def __init__(self, library: str, *, extra: str, purpose: str) -> None:
+        super().__init__(
+            f"{purpose} needs {library}, which is not installed: "
+            f'run pip install "tinsmith[{extra}]".'
+        )
+        self.extra = extra

@@ -1,0 +1,273 @@
+"""TIN: the triangulated surface, with its measures and queries."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from . import _kernel, topology
+from .errors import PointsError
+from .points import as_points, as_xy
+from .report import Report
+from .types import Bounds
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["TIN"]
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class TIN:
+    """A triangulated irregular network: one height for every place inside its hull.
+
+    Built by :func:`tinsmith.triangulate`, or from existing triangles by
+    :meth:`TIN.from_triangles`. All arrays are read-only.
+
+    Attributes
+    ----------
+    points : (n, 3) float64 array
+        Easting, northing, elevation of the vertices, in the order given.
+    triangles : (m, 3) int32 array
+        Vertices of each triangle, counter-clockwise seen from above.
+    neighbors : (m, 3) int32 array
+        The triangle across the edge opposite each corner; -1 outside.
+    constrained : (m, 3) bool array
+        Whether that edge is a breakline, boundary or hole.
+    vertex_of : (n_input,) int32 array
+        The vertex that stands for each input row.
+    report : Report
+        What became of every input row.
+    crs : str or None
+        Coordinate reference system, as authority code or WKT.
+    """
+
+    points: NDArray[np.float64]
+    triangles: NDArray[np.int32]
+    neighbors: NDArray[np.int32]
+    constrained: NDArray[np.bool_]
+    vertex_of: NDArray[np.int32]
+    report: Report = field(repr=False)
+    crs: str | None = None
+
+    def __post_init__(self) -> None:
+        for array in (
+            self.points,
+            self.triangles,
+            self.neighbors,
+            self.constrained,
+            self.vertex_of,
+        ):
+            array.flags.writeable = False
+
+    @classmethod
+    def from_triangles(
+        cls,
+        points: ArrayLike,
+        triangles: ArrayLike,
+        *,
+        constrained: ArrayLike | None = None,
+        crs: str | None = None,
+    ) -> TIN:
+        """Make a TIN of triangles that exist already, for example those of a file.
+
+        Parameters
+        ----------
+        points : (n, 3) array, CRS units
+        triangles : (m, 3) int array
+            Vertex numbers; clockwise triangles are turned round.
+        constrained : (m, 3) bool array, optional
+            Flags of the edge opposite each corner as given; default none.
+        crs : str, optional
+
+        Raises
+        ------
+        PointsError
+            If a vertex number is out of range, a triangle has no area, or triangles overlap
+            along an edge.
+
+        Examples
+        --------
+        >>> tin = TIN.from_triangles([[0, 0, 1], [1, 0, 2], [0, 1, 3]], [[0, 1, 2]])
+        >>> tin
+        <TIN: 3 vertices, 1 triangle, z 1 to 3, crs unknown>
+        """
+        xyz = as_points(points)
+        corners = _as_triangles(triangles, len(xyz))
+        flags = _as_flags(constrained, len(corners))
+        corners, flags = _turned_counter_clockwise(xyz, corners, flags)
+        return cls(
+            points=xyz,
+            triangles=corners,
+            neighbors=topology.neighbors_of(corners, len(xyz)),
+            constrained=flags,
+            vertex_of=np.arange(len(xyz), dtype=np.int32),
+            report=Report(n_rows=len(xyz), n_vertices=len(xyz), n_triangles=len(corners)),
+            crs=crs,
+        )
+
+    # ---------------------------------------------------------------- measures
+
+    @cached_property
+    def bounds(self) -> Bounds:
+        """Bounds of the vertices."""
+        return Bounds.of(self.points)
+
+    @cached_property
+    def edges(self) -> NDArray[np.int32]:
+        """Every edge once, (k, 2) vertex pairs."""
+        return _read_only(topology.edges(self.triangles, self.neighbors))
+
+    @cached_property
+    def rings(self) -> list[NDArray[np.int32]]:
+        """Boundary rings as vertex numbers, the surface on the left; the outer one first."""
+        rings = topology.boundary_rings(self.triangles, self.neighbors)
+        west = [self.points[ring, 0].min() for ring in rings]
+        return [_read_only(rings[i]) for i in np.argsort(west, kind="stable")]
+
+    @property
+    def hull(self) -> NDArray[np.int32]:
+        """Vertices of the outer boundary, counter-clockwise, each once."""
+        return self.rings[0]
+
+    @cached_property
+    def triangle_areas(self) -> NDArray[np.float64]:
+        """Area of each triangle in the plane, (m,) array, CRS units squared."""
+        first, second = self._edge_vectors()
+        return _read_only(0.5 * (first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]))
+
+    @cached_property
+    def triangle_surface_areas(self) -> NDArray[np.float64]:
+        """Area of each triangle in space, (m,) array, CRS units squared."""
+        first, second = self._edge_vectors()
+        return _read_only(0.5 * np.linalg.norm(np.cross(first, second), axis=1))
+
+    @property
+    def area(self) -> float:
+        """Area in the plane, CRS units squared."""
+        return float(self.triangle_areas.sum())
+
+    @property
+    def surface_area(self) -> float:
+        """Area in space, CRS units squared."""
+        return float(self.triangle_surface_areas.sum())
+
+    def _edge_vectors(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        origin = self.points[self.triangles[:, 0]]
+        return (
+            self.points[self.triangles[:, 1]] - origin,
+            self.points[self.triangles[:, 2]] - origin,
+        )
+
+    # ---------------------------------------------------------------- queries
+
+    def locate(self, xy: ArrayLike) -> NDArray[np.int32]:
+        """Find the triangle that holds each place.
+
+        Parameters
+        ----------
+        xy : (k, 2) array, CRS units
+
+        Returns
+        -------
+        (k,) int32 array
+            Triangle number, -1 outside the surface; on an edge or a vertex the smallest number
+            of the triangles that meet there. Decided by exact predicates.
+
+        Raises
+        ------
+        PointsError
+            If ``xy`` has another shape, or a coordinate is infinite or too large. NaN is outside.
+        """
+        return self._locator.locate(as_xy(xy))
+
+    def interpolate(self, xy: ArrayLike) -> NDArray[np.float64]:
+        """Interpolate the elevation linearly at each place.
+
+        Parameters
+        ----------
+        xy : (k, 2) array, CRS units
+
+        Returns
+        -------
+        (k,) float64 array
+            Elevation, NaN outside the surface; at a vertex exactly the vertex's own.
+
+        Raises
+        ------
+        PointsError
+            As :meth:`locate`.
+        """
+        return self._locator.interpolate(as_xy(xy))
+
+    @cached_property
+    def _locator(self) -> _kernel.Locator:
+        return _kernel.Locator(self.points, self.triangles, self.neighbors)
+
+    def __repr__(self) -> str:
+        count = len(self.triangles)
+        z = self.points[:, 2]
+        crs = "unknown" if self.crs is None else self.crs
+        return (
+            f"<TIN: {len(self.points)} vertices, {count} triangle{'s' * (count != 1)}, "
+            f"z {z.min():g} to {z.max():g}, crs {crs if len(crs) <= 24 else crs[:21] + '...'}>"
+        )
+
+
+def _read_only(array: NDArray[np.generic]) -> NDArray[np.generic]:
+    array.flags.writeable = False
+    return array
+
+
+def _as_triangles(triangles: ArrayLike, n_vertices: int) -> NDArray[np.int32]:
+    given = np.asarray(triangles)
+    if given.ndim != 2 or given.shape[1] != 3 or len(given) == 0:
+        raise PointsError(
+            f"Triangles have shape {given.shape}: they must be (m, 3) vertex numbers, m >= 1."
+        )
+    if given.dtype.kind not in "iu":
+        raise PointsError(f"Triangles are {given.dtype}: vertex numbers must be integers.")
+    wrong = ((given < 0) | (given >= n_vertices)).any(axis=1)
+    if wrong.any():
+        row = int(np.argmax(wrong))
+        raise PointsError(
+            f"Triangle {row} has the vertices {given[row].tolist()}: "
+            f"numbers 0 to {n_vertices - 1} are allowed.",
+            rows=np.flatnonzero(wrong)[:5],
+        )
+    return np.ascontiguousarray(given, np.int32)
+
+
+def _as_flags(constrained: ArrayLike | None, n_triangles: int) -> NDArray[np.bool_]:
+    if constrained is None:
+        return np.zeros((n_triangles, 3), np.bool_)
+    flags = np.array(constrained, np.bool_)
+    if flags.shape != (n_triangles, 3):
+        raise PointsError(
+            f"Edge flags have shape {flags.shape}: one row of three a triangle is needed, "
+            f"({n_triangles}, 3)."
+        )
+    return flags
+
+
+def _turned_counter_clockwise(
+    points: NDArray[np.float64], triangles: NDArray[np.int32], flags: NDArray[np.bool_]
+) -> tuple[NDArray[np.int32], NDArray[np.bool_]]:
+    xy = points[:, :2]
+    turn = _kernel.orientation(*(np.ascontiguousarray(xy[triangles[:, k]]) for k in range(3)))
+    flat = turn == 0
+    if flat.any():
+        row = int(np.argmax(flat))
+        raise PointsError(
+            f"{int(flat.sum())} triangles have no area in the plane (first: triangle {row}, "
+            f"vertices {triangles[row].tolist()}): a TIN needs triangles seen from above.",
+            rows=np.flatnonzero(flat)[:5],
+        )
+    clockwise = turn < 0
+    triangles, flags = triangles.copy(), flags.copy()
+    triangles[clockwise] = triangles[clockwise][:, [0, 2, 1]]
+    flags[clockwise] = flags[clockwise][:, [0, 2, 1]]
+    return triangles, flags

@@ -1,0 +1,70 @@
+"""Survey: elevation points as they were read, before triangulation."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .types import Bounds
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["Survey"]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Survey:
+    """Elevation points with what is known about them.
+
+    Attributes
+    ----------
+    points : (n, 3) float64 array
+        Easting, northing, elevation; CRS units, elevation in metres unless the CRS says otherwise.
+    breaklines : sequence of (k, 3) float64 arrays
+        Polylines that must be edges of the surface.
+    boundary : (k, 3) float64 array, optional
+        Outer ring of the surface.
+    holes : sequence of (k, 3) float64 arrays
+        Rings without surface.
+    attributes : mapping of str to (n,) array
+        Further columns, one value a point (for example ``"number"`` and ``"description"``).
+    crs : str, optional
+        Coordinate reference system: an authority code ("EPSG:32616") or WKT.
+    source : str, optional
+        Name of the file that the points come from.
+    skipped : mapping of str to int
+        What the reader left out and how often, for example ``{"nodata cells": 12}``.
+    """
+
+    points: NDArray[np.float64]
+    breaklines: Sequence[NDArray[np.float64]] = ()
+    boundary: NDArray[np.float64] | None = None
+    holes: Sequence[NDArray[np.float64]] = ()
+    attributes: Mapping[str, NDArray[Any]] = field(default_factory=dict)
+    crs: str | None = None
+    source: str | None = None
+    skipped: Mapping[str, int] = field(default_factory=dict)
+
+    @property
+    def bounds(self) -> Bounds:
+        """Bounds of the points (at least one point)."""
+        return Bounds.of(self.points)
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+    def __repr__(self) -> str:
+        origin = f" from {self.source}" if self.source else ""
+        names = f", attributes {', '.join(self.attributes)}" if self.attributes else ""
+        return f"<Survey: {len(self)} points{origin}{names}, crs {_short(self.crs)}>"
+
+
+def _short(crs: str | None) -> str:
+    """Shorten a CRS text to fit a one-line repr."""
+    if crs is None:
+        return "unknown"
+    return crs if len(crs) <= 24 else crs[:21] + "..."

@@ -1,0 +1,139 @@
+"""Connections of a triangle list: who is whose neighbour, which edges, which hull.
+
+Numbering, used everywhere::
+
+            corner 2
+            /      \\
+    edge 1 /        \\ edge 0        edge k lies opposite corner k,
+          /          \\              and neighbors[t, k] is the triangle
+    corner 0 -------- corner 1       across it, NO_NEIGHBOR outside.
+             edge 2
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .errors import PointsError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["NO_NEIGHBOR", "boundary_rings", "edges", "neighbors_of"]
+
+NO_NEIGHBOR = -1
+
+
+def directed_edges(triangles: NDArray[np.int32]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return start and end vertex, (m, 3) each, of the edge opposite every corner."""
+    return (
+        triangles[:, [1, 2, 0]].astype(np.int64),
+        triangles[:, [2, 0, 1]].astype(np.int64),
+    )
+
+
+def neighbors_of(triangles: NDArray[np.int32], n_vertices: int) -> NDArray[np.int32]:
+    """Match the edges of counter-clockwise triangles.
+
+    Parameters
+    ----------
+    triangles : (m, 3) int32 array
+    n_vertices : int
+
+    Returns
+    -------
+    (m, 3) int32 array
+        The triangle across the edge opposite each corner, ``NO_NEIGHBOR`` outside.
+
+    Raises
+    ------
+    PointsError
+        If an edge is used by more than two triangles or twice in the same direction.
+    """
+    start, end = directed_edges(triangles)
+    keys = (np.minimum(start, end) * n_vertices + np.maximum(start, end)).ravel()
+    forward = (start < end).ravel()
+    order = np.argsort(keys, kind="stable")
+    sorted_keys = keys[order]
+    same = sorted_keys[1:] == sorted_keys[:-1]
+    _require_manifold(triangles, order, same, forward)
+    first, second = order[:-1][same], order[1:][same]
+    neighbors = np.full(triangles.size, NO_NEIGHBOR, np.int32)
+    neighbors[first] = second // 3
+    neighbors[second] = first // 3
+    return neighbors.reshape(-1, 3)
+
+
+def _require_manifold(
+    triangles: NDArray[np.int32],
+    order: NDArray[np.int64],
+    same: NDArray[np.bool_],
+    forward: NDArray[np.bool_],
+) -> None:
+    thrice = same[1:] & same[:-1]
+    if thrice.any():
+        start, end = _edge_at(triangles, int(order[np.argmax(thrice)]))
+        raise PointsError(
+            f"Edge {start}-{end} belongs to more than two triangles: a TIN allows two at most."
+        )
+    clash = same & (forward[order[1:]] == forward[order[:-1]])
+    if clash.any():
+        start, end = _edge_at(triangles, int(order[np.argmax(clash)]))
+        raise PointsError(
+            f"The two triangles at edge {start}-{end} lie on the same side of it: "
+            "triangles of a TIN must not overlap."
+        )
+
+
+def _edge_at(triangles: NDArray[np.int32], slot: int) -> tuple[int, int]:
+    triangle, corner = divmod(slot, 3)
+    return int(triangles[triangle, (corner + 1) % 3]), int(triangles[triangle, (corner + 2) % 3])
+
+
+def edges(triangles: NDArray[np.int32], neighbors: NDArray[np.int32]) -> NDArray[np.int32]:
+    """Return every edge once, as a (k, 2) int32 array of vertex pairs."""
+    across = np.arange(len(triangles), dtype=np.int32)[:, None]
+    once = (neighbors == NO_NEIGHBOR) | (neighbors > across)
+    return np.stack(
+        [triangles[:, [1, 2, 0]][once], triangles[:, [2, 0, 1]][once]], axis=1
+    )
+
+
+def boundary_rings(
+    triangles: NDArray[np.int32], neighbors: NDArray[np.int32]
+) -> list[NDArray[np.int32]]:
+    """Return the boundary as closed vertex rings (first vertex not repeated), interior on the left.
+
+    At a vertex where two rings touch, they are kept apart by turning about the vertex through
+    the triangles inside, so that every ring is one walk along the surface's rim.
+    """
+    outer_triangle, outer_corner = np.nonzero(neighbors == NO_NEIGHBOR)
+    following = {
+        (int(t), int(k)): _next_on_rim(triangles, neighbors, int(t), int(k))
+        for t, k in zip(outer_triangle, outer_corner, strict=True)
+    }
+    rings: list[NDArray[np.int32]] = []
+    while following:
+        slot, _ = next(iter(following.items()))
+        ring = []
+        while slot in following:
+            triangle, corner = slot
+            ring.append(triangles[triangle, (corner + 1) % 3])
+            slot = following.pop(slot)
+        rings.append(np.array(ring, np.int32))
+    return rings
+
+
+def _next_on_rim(
+    triangles: NDArray[np.int32], neighbors: NDArray[np.int32], triangle: int, corner: int
+) -> tuple[int, int]:
+    """Turn about the end of a rim edge, through the triangles inside, to the next rim edge."""
+    pivot = triangles[triangle, (corner + 2) % 3]
+    edge = (corner + 1) % 3
+    while neighbors[triangle, edge] != NO_NEIGHBOR:
+        triangle = int(neighbors[triangle, edge])
+        here = int(np.flatnonzero(triangles[triangle] == pivot)[0])
+        edge = (here + 2) % 3
+    return triangle, edge
