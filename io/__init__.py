@@ -1,0 +1,1 @@
+"""The world room: readers, writers and the format registry."""

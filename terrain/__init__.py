@@ -1,0 +1,1 @@
+"""The meaning room: what a terrain surface says. Knows no files."""

@@ -1,0 +1,21 @@
+"""The shape room: points become triangles. Knows no files, no CRS, no pictures."""
+
+from .errors import MissingExtraError, PointsError, TinsmithError
+from .report import Merge, Report
+from .surface import TIN
+from .survey import Survey
+from .triangulate import triangulate
+from .types import Bounds, Grid
+
+__all__ = [
+    "TIN",
+    "Bounds",
+    "Grid",
+    "Merge",
+    "MissingExtraError",
+    "PointsError",
+    "Report",
+    "Survey",
+    "TinsmithError",
+    "triangulate",
+]

@@ -1,0 +1,136 @@
+// The border to Python: converts and names, nothing else.
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/tuple.h>
+
+#include <cstring>
+#include <optional>
+#include <stdexcept>
+#include <tuple>
+
+#include "predicates.hpp"
+#include "snapping.hpp"
+#include "triangulation.hpp"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+namespace {
+
+using Points = nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
+using Places = nb::ndarray<const double, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
+using Corners = nb::ndarray<nb::numpy, std::int32_t, nb::shape<-1, 3>>;
+using Numbers = nb::ndarray<nb::numpy, std::int32_t, nb::shape<-1>>;
+using Signs = nb::ndarray<nb::numpy, std::int8_t, nb::shape<-1>>;
+
+template <typename Array, typename T>
+Array hand_over(std::unique_ptr<T[]> data, std::initializer_list<std::size_t> shape) {
+  T* raw = data.release();
+  nb::capsule owner(raw, [](void* p) noexcept { delete[] static_cast<T*>(p); });
+  return Array(raw, shape, owner);
+}
+
+Numbers hand_over(const std::vector<std::int32_t>& values) {
+  std::unique_ptr<std::int32_t[]> data(new std::int32_t[values.size()]);
+  std::memcpy(data.get(), values.data(), values.size() * sizeof(std::int32_t));
+  return hand_over<Numbers>(std::move(data), {values.size()});
+}
+
+tinsmith::PointRows rows_of(const Points& points) {
+  const auto count = static_cast<std::int64_t>(points.shape(0));
+  if (count == 0) throw std::invalid_argument("at least one point is needed");
+  if (count > tinsmith::kMostPoints) {
+    throw std::invalid_argument("more points than 32-bit indices can number");
+  }
+  return {points.data(), count, 3};
+}
+
+// Ask Python whether Ctrl-C was pressed.
+bool no_signal() {
+  nb::gil_scoped_acquire gil;
+  return PyErr_CheckSignals() == 0;
+}
+
+auto grow(const Points& points) {
+  const tinsmith::PointRows rows = rows_of(points);
+  tinsmith::Triangulation made = [&] {
+    nb::gil_scoped_release release;
+    return tinsmith::triangulate(rows, no_signal);
+  }();
+  if (!made.is_complete) throw nb::python_error();
+  const auto size = static_cast<std::size_t>(made.triangle_count);
+  std::optional<Numbers> kept_row;
+  if (!made.kept_row.empty()) kept_row = hand_over(made.kept_row);
+  return std::make_tuple(hand_over<Corners>(std::move(made.corners), {size, 3}),
+                         hand_over<Corners>(std::move(made.neighbors), {size, 3}), kept_row,
+                         made.distinct_count);
+}
+
+nb::dict count_work(const Points& points) {
+  const tinsmith::PointRows rows = rows_of(points);
+  const tinsmith::Triangulation made = tinsmith::triangulate(rows, [] { return true; });
+  nb::dict counts;
+  counts["triangles"] = made.triangle_count;
+  counts["searches"] = made.counts.searches;
+  counts["candidates"] = made.counts.candidates;
+  counts["exact_decisions"] = made.counts.exact_decisions;
+  return counts;
+}
+
+Numbers snap(const Points& points, double distance) {
+  const tinsmith::PointRows rows = rows_of(points);
+  std::vector<std::int32_t> kept_row;
+  {
+    nb::gil_scoped_release release;
+    kept_row = tinsmith::snap_rows(rows, distance);
+  }
+  return hand_over(kept_row);
+}
+
+tinsmith::Point place(const Places& places, std::size_t row) {
+  return {places.data()[2 * row], places.data()[2 * row + 1]};
+}
+
+template <typename Decide>
+Signs signs(const Places& a, const Places& b, const Places& c, const Places& d, Decide decide) {
+  const std::size_t n = a.shape(0);
+  if (b.shape(0) != n || c.shape(0) != n || d.shape(0) != n) {
+    throw std::invalid_argument("the arrays must have the same number of rows");
+  }
+  std::unique_ptr<std::int8_t[]> result(new std::int8_t[n]);
+  for (std::size_t i = 0; i < n; ++i) {
+    result[i] = static_cast<std::int8_t>(decide(place(a, i), place(b, i), place(c, i), place(d, i)));
+  }
+  return hand_over<Signs>(std::move(result), {n});
+}
+
+Signs orientation(const Places& a, const Places& b, const Places& c) {
+  using tinsmith::Point;
+  return signs(a, b, c, c, [](Point p, Point q, Point r, Point) {
+    return tinsmith::orientation(p, q, r);
+  });
+}
+
+Signs in_circle(const Places& a, const Places& b, const Places& c, const Places& d) {
+  return signs(a, b, c, d, tinsmith::in_circle);
+}
+
+}  // namespace
+
+NB_MODULE(_core, m) {
+  m.doc() = "Compiled core of tinsmith.tin: exact predicates and growth.";
+  m.attr("SMALLEST_COORDINATE") = tinsmith::kSmallestCoordinate;
+  m.attr("LARGEST_COORDINATE") = tinsmith::kLargestCoordinate;
+  m.def("grow", &grow, "points"_a.noconvert(),
+        "Triangles, neighbours, kept row of each row (or None) and the number of distinct places.");
+  m.def("count_work", &count_work, "points"_a.noconvert(),
+        "Triangulate and return how much the searches did.");
+  m.def("snap", &snap, "points"_a.noconvert(), "distance"_a,
+        "For each row the row that it is merged into.");
+  m.def("orientation", &orientation, "a"_a.noconvert(), "b"_a.noconvert(), "c"_a.noconvert(),
+        "+1 where c lies left of the line from a to b, -1 right, 0 on it.");
+  m.def("in_circle", &in_circle, "a"_a.noconvert(), "b"_a.noconvert(), "c"_a.noconvert(),
+        "d"_a.noconvert(),
+        "+1 where d lies inside the circle through counter-clockwise a, b, c, -1 outside, 0 on it.");
+}

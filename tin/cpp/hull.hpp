@@ -1,0 +1,101 @@
+// Convex hull, exact, with the points that lie on its edges kept.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "grid.hpp"
+#include "ids.hpp"
+#include "predicates.hpp"
+
+namespace tinsmith {
+
+// Finds the hull among few points: those inside a polygon of extreme points are left out first.
+class HullFinder {
+ public:
+  explicit HullFinder(const PointGrid& grid) : grid_(grid) {}
+
+  // Counter-clockwise vertices; empty if all points are collinear.
+  std::vector<Vertex> find() {
+    find_extremes();
+    collect_candidates();
+    std::sort(candidates_.begin(), candidates_.end(), [this](Vertex a, Vertex b) {
+      return lexicographically_before(grid_.point(a), grid_.point(b));
+    });
+    const std::vector<Vertex> lower = chain(candidates_);
+    std::reverse(candidates_.begin(), candidates_.end());
+    const std::vector<Vertex> upper = chain(candidates_);
+    const bool is_flat = upper.size() < 2 || lower[1] == upper[upper.size() - 2];
+    if (is_flat) return {};
+    std::vector<Vertex> hull(lower.begin(), lower.end() - 1);
+    hull.insert(hull.end(), upper.begin(), upper.end() - 1);
+    return hull;
+  }
+
+ private:
+  // Extreme points counter-clockwise from the west: W, SW, S, SE, E, NE, N, NW.
+  void find_extremes() {
+    const double* x = grid_.x();
+    const double* y = grid_.y();
+    std::array<double, 8> best;
+    best.fill(-HUGE_VAL);
+    for (std::int32_t i = 0; i < grid_.count(); ++i) {
+      const double towards[8] = {-x[i],        -x[i] - y[i], -y[i],       x[i] - y[i],
+                                 x[i],         x[i] + y[i],  y[i],        y[i] - x[i]};
+      for (int k = 0; k < 8; ++k) {
+        if (towards[k] > best[k]) {
+          best[k] = towards[k];
+          extreme_[k] = {x[i], y[i]};
+        }
+      }
+    }
+  }
+
+  void collect_candidates() {
+    // The box between the diagonal extremes lies inside their quadrilateral: its south side is
+    // above both SW and SE, and so on. No arithmetic, so no rounding.
+    const Point sw = extreme_[1], se = extreme_[3], ne = extreme_[5], nw = extreme_[7];
+    const double west = std::max(sw.x, nw.x), east = std::min(se.x, ne.x);
+    const double south = std::max(sw.y, se.y), north = std::min(nw.y, ne.y);
+    const double* x = grid_.x();
+    const double* y = grid_.y();
+    for (std::int32_t i = 0; i < grid_.count(); ++i) {
+      if (x[i] > west && x[i] < east && y[i] > south && y[i] < north) continue;
+      if (!is_surely_inside({x[i], y[i]})) candidates_.push_back(static_cast<Vertex>(i));
+    }
+  }
+
+  bool is_surely_inside(Point p) const {
+    for (int k = 0; k < 8; ++k) {
+      const Point a = extreme_[k], b = extreme_[(k + 1) % 8];
+      if (a == b) continue;
+      const double left = (a.x - p.x) * (b.y - p.y);
+      const double right = (a.y - p.y) * (b.x - p.x);
+      const double bound = detail::kOrientationBound * (std::fabs(left) + std::fabs(right));
+      if (!(left - right > bound)) return false;
+    }
+    return true;
+  }
+
+  // Andrew's monotone chain: pop only at right turns, so that collinear points stay.
+  std::vector<Vertex> chain(const std::vector<Vertex>& sorted) const {
+    std::vector<Vertex> kept;
+    for (Vertex v : sorted) {
+      while (kept.size() >= 2 &&
+             orientation(grid_.point(kept[kept.size() - 2]), grid_.point(kept.back()),
+                         grid_.point(v)) < 0) {
+        kept.pop_back();
+      }
+      kept.push_back(v);
+    }
+    return kept;
+  }
+
+  const PointGrid& grid_;
+  std::array<Point, 8> extreme_;
+  std::vector<Vertex> candidates_;
+};
+
+}  // namespace tinsmith
