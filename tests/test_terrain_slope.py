@@ -1,0 +1,109 @@
+"""Slope and aspect against planes of known dip, and against a least-squares plane."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tinsmith import TIN, triangulate
+from tinsmith.terrain import aspect, slope
+
+UTM = np.array([742_000.0, 4_030_000.0])
+
+
+def plane(gradient_east, gradient_north, *, origin=(0.0, 0.0)):
+    """A 5 x 5 grid on the plane z = gradient_east * x + gradient_north * y."""
+    x, y = (axis.ravel().astype(float) for axis in np.meshgrid(np.arange(5), np.arange(5)))
+    z = gradient_east * x + gradient_north * y
+    return triangulate(np.column_stack([x + origin[0], y + origin[1], z]))
+
+
+def rough(n=500, seed=7):
+    """Random points on UTM coordinates, of every steepness."""
+    random = np.random.default_rng(seed)
+    xy = random.uniform(0, 100, (n, 2)) + UTM
+    return triangulate(np.column_stack([xy, random.uniform(0, 40, n)]))
+
+
+def plane_fit(corners):
+    """Gradient (dz/dx, dz/dy) of the plane through three corners, by a linear solve."""
+    system = np.column_stack([corners[:, :2] - corners[0, :2], np.ones(3)])
+    return np.linalg.solve(system, corners[:, 2] - corners[0, 2])[:2]
+
+
+@pytest.mark.parametrize(
+    ("gradient", "azimuth"),
+    [
+        ((0.0, -1.0), 0.0),
+        ((-1.0, -1.0), 45.0),
+        ((-1.0, 0.0), 90.0),
+        ((-1.0, 1.0), 135.0),
+        ((0.0, 1.0), 180.0),
+        ((1.0, 1.0), 225.0),
+        ((1.0, 0.0), 270.0),
+        ((1.0, -1.0), 315.0),
+    ],
+)
+def test_a_plane_falls_to_the_side_it_was_tilted_to(gradient, azimuth):
+    tin = plane(*gradient)
+    np.testing.assert_allclose(aspect(tin), azimuth, atol=1e-12)
+    steepness = math.degrees(math.atan(math.hypot(*gradient)))
+    np.testing.assert_allclose(slope(tin), steepness, atol=1e-12)
+
+
+def test_level_ground_has_slope_zero_and_no_aspect():
+    tin = plane(0.0, 0.0, origin=UTM)
+    assert (slope(tin) == 0.0).all()
+    assert np.isnan(aspect(tin)).all()
+
+
+def test_a_cliff_stays_below_ninety_degrees():
+    tin = TIN.from_triangles([[0, 0, 0], [1e-6, 0, 1000], [0, 1, 0]], [[0, 1, 2]])
+    assert 89.99 < slope(tin)[0] <= 90.0
+    assert aspect(tin)[0] == 270.0
+
+
+def test_a_hair_west_of_north_is_within_the_circle():
+    tin = plane(1e-17, -1.0)
+    assert (aspect(tin) >= 0.0).all()
+    assert (aspect(tin) < 360.0).all()
+
+
+def test_slope_and_aspect_agree_with_a_plane_fit_of_every_triangle():
+    tin = rough()
+    gradients = np.array([plane_fit(tin.points[corners]) for corners in tin.triangles])
+    expected_slope = [math.degrees(math.atan(math.hypot(*g))) for g in gradients]
+    np.testing.assert_allclose(slope(tin), expected_slope, atol=1e-6)
+    downhill = -gradients / np.linalg.norm(gradients, axis=1, keepdims=True)
+    azimuth = np.radians(aspect(tin))
+    np.testing.assert_allclose(np.sin(azimuth), downhill[:, 0], atol=1e-6)
+    np.testing.assert_allclose(np.cos(azimuth), downhill[:, 1], atol=1e-6)
+
+
+def test_slope_is_the_angle_between_the_areas():
+    tin = rough(seed=8)
+    cosine = tin.triangle_areas / tin.triangle_surface_areas
+    np.testing.assert_allclose(np.cos(np.radians(slope(tin))), cosine, atol=1e-12)
+
+
+def test_results_are_one_float_a_triangle():
+    tin = rough(n=3)
+    for values in (slope(tin), aspect(tin)):
+        assert values.shape == (1,)
+        assert values.dtype == np.float64
+
+
+@given(
+    st.integers(-8, 8),
+    st.integers(-8, 8),
+    st.sampled_from([0.25, 1.0, 1024.0]),
+)
+def test_scaling_a_plane_leaves_its_angles(east, north, scale):
+    tin = plane(east / 4, north / 4)
+    scaled = TIN.from_triangles(tin.points * scale, tin.triangles)
+    np.testing.assert_array_equal(slope(scaled), slope(tin))
+    np.testing.assert_array_equal(aspect(scaled), aspect(tin))
