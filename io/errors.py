@@ -1,0 +1,79 @@
+"""Errors of the world room: files, formats, coordinate reference systems."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ..tin import TinsmithError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+__all__ = ["CrsError", "FormatError", "ReadError", "WriteError"]
+
+
+class ReadError(TinsmithError, ValueError):
+    """A file that cannot be read, or whose content is not what it should be.
+
+    Attributes
+    ----------
+    path : Path or None
+        The file.
+    lines : tuple of int
+        The first few line numbers at fault, counted from 1 as an editor does; may be empty.
+    """
+
+    def __init__(
+        self, message: str, *, path: Path | None = None, lines: Sequence[int] = ()
+    ) -> None:
+        super().__init__(message)
+        self.path = path
+        self.lines = tuple(int(line) for line in lines)
+
+    @property
+    def line(self) -> int | None:
+        """The first line at fault, None if the fault is not in one line."""
+        return self.lines[0] if self.lines else None
+
+
+class WriteError(TinsmithError, OSError):
+    """A file that cannot be written; a file that was there before is left whole.
+
+    Attributes
+    ----------
+    path : Path or None
+        The file.
+    """
+
+    def __init__(self, message: str, *, path: Path | None = None) -> None:
+        super().__init__(message)
+        self.path = path
+
+
+class FormatError(TinsmithError, ValueError):
+    """No format fits, or an option that the format does not have.
+
+    Attributes
+    ----------
+    known : tuple of str
+        The names, suffixes or options that would be accepted.
+    """
+
+    def __init__(self, message: str, *, known: Sequence[str] = ()) -> None:
+        super().__init__(message)
+        self.known = tuple(known)
+
+
+class CrsError(TinsmithError, ValueError):
+    """A coordinate reference system that is unknown, or that does not fit the purpose.
+
+    Attributes
+    ----------
+    crs : str or None
+        The text at fault.
+    """
+
+    def __init__(self, message: str, *, crs: str | None = None) -> None:
+        super().__init__(message)
+        self.crs = crs

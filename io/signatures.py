@@ -1,0 +1,112 @@
+"""What the first bytes of a file say about its format."""
+
+from __future__ import annotations
+
+import re
+
+__all__ = [
+    "HEAD_BYTES",
+    "foreign_kind",
+    "is_geojson",
+    "is_obj",
+    "is_ply",
+    "is_raster",
+    "is_stl",
+    "is_vtk_xml",
+]
+
+HEAD_BYTES = 65536
+
+_NUMBER = rb"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?"
+_RASTER_STARTS = (
+    b"II*\x00",  # TIFF and BigTIFF in both byte orders
+    b"MM\x00*",
+    b"II+\x00",
+    b"MM\x00+",
+    b"\x89PNG\r\n\x1a\n",
+    b"\xff\xd8\xff",  # JPEG
+    b"\x00\x00\x00\x0cjP  ",  # JPEG 2000
+    b"EHFA_HEADER_TAG",  # Erdas Imagine
+    b"DSAA",  # Surfer grids
+    b"DSBB",
+    b"DSRB",
+    b"CDF\x01",  # netCDF, and HDF5 which netCDF 4 is
+    b"CDF\x02",
+    b"CDF\x05",
+    b"\x89HDF\r\n\x1a\n",
+    b"RUU CROSS SYSTEM MAP FORMAT",  # PCRaster
+    b"<VRTDataset",
+    b"binterr1.",
+    b"GRIB",
+    b"NITF0",
+    b"UHL1",  # DTED
+)
+_GRID_HEADER = re.compile(rb"\s*(?:ncols|nrows|xll(?:corner|center)|north:)\s*[-+.\d]", re.I)
+_OBJ_LINE = re.compile(rb"(?:v|vn|vt|f|o|g|s|usemtl|mtllib)[ \t]")
+_OBJ_VERTEX = re.compile(rb"^v(?:[ \t]+" + _NUMBER + rb"){3}", re.M)
+_GEOJSON_TYPE = re.compile(
+    rb'"type"\s*:\s*"(?:FeatureCollection|Feature|GeometryCollection|(?:Multi)?'
+    rb'(?:Point|LineString|Polygon))"'
+)
+_FOREIGN_STARTS = {
+    b"PK\x03\x04": "a ZIP archive (such as an Excel workbook or KMZ)",
+    b"\x1f\x8b": "a gzip archive",
+    b"%PDF": "a PDF document",
+    b"LASF": "a LAS/LAZ point cloud",
+    b"SQLite format 3": "an SQLite database (such as a GeoPackage)",
+    b"\xd0\xcf\x11\xe0": "an old Office document (such as .xls)",
+    b"\x00\x00\x27\x0a": "a shapefile",
+    b"AC10": "a DWG drawing",
+    b"{\\rtf": "an RTF document",
+}
+_FOREIGN_TEXTS = (
+    (re.compile(rb"\s*<(?:!doctype )?html", re.I), "an HTML page"),
+    (re.compile(rb"\s*(?:<\?xml[^>]*>\s*)?(?:<!--.*?-->\s*)*<LandXML", re.S), "a LandXML file"),
+    (re.compile(rb"\s*<\?xml"), "an XML document"),
+    (re.compile(rb"(?:\s*999\r?\n[^\n]*\n)*\s*0\r?\n\s*SECTION\r?\n"), "a DXF drawing"),
+)
+
+
+def is_raster(head: bytes) -> bool:
+    """Whether the file is certainly a raster: a binary signature or the header of a text grid."""
+    return head.startswith(_RASTER_STARTS) or _GRID_HEADER.match(head) is not None
+
+
+def is_ply(head: bytes) -> bool:
+    """Whether the file is a PLY mesh."""
+    return re.match(rb"ply\s*\n|ply\r", head) is not None
+
+
+def is_obj(head: bytes) -> bool:
+    """Whether the file is a Wavefront OBJ mesh: its first statement, and a vertex."""
+    lines = (line.strip() for line in head.splitlines())
+    first = next((line for line in lines if line and not line.startswith(b"#")), b"")
+    return _OBJ_LINE.match(first) is not None and _OBJ_VERTEX.search(head) is not None
+
+
+def is_stl(head: bytes) -> bool:
+    """Whether the file is a text STL mesh; a binary one has no signature."""
+    return head.startswith(b"solid") and re.search(rb"\n\s*facet\s+normal\s", head) is not None
+
+
+def is_vtk_xml(head: bytes) -> bool:
+    """Whether the file is a VTK XML file."""
+    return b"<VTKFile" in head[:1024]
+
+
+def is_geojson(head: bytes) -> bool:
+    """Whether the file is GeoJSON."""
+    return head.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"{") and (
+        _GEOJSON_TYPE.search(head) is not None
+    )
+
+
+def foreign_kind(head: bytes) -> str | None:
+    """Name a kind of file that no format here reads, for a sentence; None if none is recognised."""
+    for start, kind in _FOREIGN_STARTS.items():
+        if head.startswith(start):
+            return kind
+    for pattern, kind in _FOREIGN_TEXTS:
+        if pattern.match(head):
+            return kind
+    return None
