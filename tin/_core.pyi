@@ -1,15 +1,22 @@
 """Types of the compiled core."""
 
+import enum
+
 import numpy as np
 from numpy.typing import NDArray
 
 SMALLEST_COORDINATE: float
 LARGEST_COORDINATE: float
 
+class Method(enum.Enum):
+    AUTOMATIC = 0
+    GROWTH = 1
+    INSERTION = 2
+
 def grow(
-    points: NDArray[np.float64],
+    points: NDArray[np.float64], method: Method = ...
 ) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int32] | None, int]: ...
-def count_work(points: NDArray[np.float64]) -> dict[str, int]: ...
+def count_work(points: NDArray[np.float64], method: Method = ...) -> dict[str, int]: ...
 def snap(points: NDArray[np.float64], distance: float) -> NDArray[np.int32]: ...
 def orientation(
     a: NDArray[np.float64], b: NDArray[np.float64], c: NDArray[np.float64]

@@ -11,7 +11,17 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-__all__ = ["EXACT_RANGE", "Growth", "Locator", "grow", "in_circle", "orientation", "snap"]
+__all__ = [
+    "EXACT_RANGE",
+    "Growth",
+    "Locator",
+    "Method",
+    "count_work",
+    "grow",
+    "in_circle",
+    "orientation",
+    "snap",
+]
 
 EXACT_RANGE: tuple[float, float] = (_core.SMALLEST_COORDINATE, _core.LARGEST_COORDINATE)
 """Smallest (but 0) and largest magnitude of a coordinate for which the predicates are exact."""
@@ -20,6 +30,8 @@ Locator = getattr(_core, "Locator", None)
 orientation = _core.orientation
 in_circle = _core.in_circle
 snap = _core.snap
+count_work = _core.count_work
+Method = _core.Method
 
 
 class Growth(NamedTuple):
@@ -34,15 +46,18 @@ class Growth(NamedTuple):
     kept_row: NDArray[np.int32] | None
 
 
-def grow(points: NDArray[np.float64]) -> Growth:
+def grow(points: NDArray[np.float64], *, method: Method = Method.AUTOMATIC) -> Growth:
     """Grow the Delaunay triangulation of (n, 3) float64 points, n >= 1; z is not looked at.
+
+    Every method gives the same arrays; ``Method.AUTOMATIC`` grows, and inserts where points are
+    so uneven that growing would be slow.
 
     Raises
     ------
     PointsError
         If fewer than three places are distinct, or all are collinear.
     """
-    triangles, neighbors, kept_row, n_distinct = _core.grow(points)
+    triangles, neighbors, kept_row, n_distinct = _core.grow(points, method)
     if len(triangles) == 0:
         raise PointsError(_why_no_triangle(len(points), n_distinct))
     return Growth(triangles, neighbors, kept_row)

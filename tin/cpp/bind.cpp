@@ -52,11 +52,11 @@ bool no_signal() {
   return PyErr_CheckSignals() == 0;
 }
 
-auto grow(const Points& points) {
+auto grow(const Points& points, tinsmith::Method method) {
   const tinsmith::PointRows rows = rows_of(points);
   tinsmith::Triangulation made = [&] {
     nb::gil_scoped_release release;
-    return tinsmith::triangulate(rows, no_signal);
+    return tinsmith::triangulate(rows, method, no_signal);
   }();
   if (!made.is_complete) throw nb::python_error();
   const auto size = static_cast<std::size_t>(made.triangle_count);
@@ -67,13 +67,14 @@ auto grow(const Points& points) {
                          made.distinct_count);
 }
 
-nb::dict count_work(const Points& points) {
+nb::dict count_work(const Points& points, tinsmith::Method method) {
   const tinsmith::PointRows rows = rows_of(points);
-  const tinsmith::Triangulation made = tinsmith::triangulate(rows, [] { return true; });
+  const tinsmith::Triangulation made = tinsmith::triangulate(rows, method, [] { return true; });
   nb::dict counts;
   counts["triangles"] = made.triangle_count;
   counts["searches"] = made.counts.searches;
   counts["candidates"] = made.counts.candidates;
+  counts["cell_rows"] = made.counts.cell_rows;
   counts["exact_decisions"] = made.counts.exact_decisions;
   return counts;
 }
@@ -122,9 +123,14 @@ NB_MODULE(_core, m) {
   m.doc() = "Compiled core of tinsmith.tin: exact predicates and growth.";
   m.attr("SMALLEST_COORDINATE") = tinsmith::kSmallestCoordinate;
   m.attr("LARGEST_COORDINATE") = tinsmith::kLargestCoordinate;
-  m.def("grow", &grow, "points"_a.noconvert(),
+  nb::enum_<tinsmith::Method>(m, "Method", "How to build; the result is the same.")
+      .value("AUTOMATIC", tinsmith::Method::kAutomatic)
+      .value("GROWTH", tinsmith::Method::kGrowth)
+      .value("INSERTION", tinsmith::Method::kInsertion);
+  m.def("grow", &grow, "points"_a.noconvert(), "method"_a = tinsmith::Method::kAutomatic,
         "Triangles, neighbours, kept row of each row (or None) and the number of distinct places.");
   m.def("count_work", &count_work, "points"_a.noconvert(),
+        "method"_a = tinsmith::Method::kAutomatic,
         "Triangulate and return how much the searches did.");
   m.def("snap", &snap, "points"_a.noconvert(), "distance"_a,
         "For each row the row that it is merged into.");

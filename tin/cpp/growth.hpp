@@ -46,20 +46,30 @@ class Growth {
     return 2 * points - 2 - on_hull;
   }
 
-  // Returns false if `keep_going` did.
+  enum class Outcome { kComplete, kStopped, kTooCostly };
+
+  // Stops when `keep_going` returns false, or, if bounded, when the searches have cost more than
+  // another way of building the triangulation would.
   template <typename KeepGoing>
-  bool run(KeepGoing&& keep_going) {
+  Outcome run(KeepGoing&& keep_going, bool is_bounded) {
     constexpr std::int32_t kVerticesPerQuestion = 4096;
+    const std::int64_t budget = kLeastBudget + kBudgetPerPoint * count_;
     for (std::int32_t i = 0; i < count_; ++i) {
-      if (i % kVerticesPerQuestion == 0 && !keep_going()) return false;
+      if (i % kVerticesPerQuestion == 0 && !keep_going()) return Outcome::kStopped;
+      if (is_bounded && search_.counts().work() > budget) return Outcome::kTooCostly;
       finish(static_cast<Vertex>(i));
     }
-    return true;
+    return Outcome::kComplete;
   }
 
   const SearchCounts& counts() const { return search_.counts(); }
 
  private:
+  // Candidates and cell rows looked at; even data need about 30 a point, and from about 100 on
+  // insertion is quicker.
+  static constexpr std::int64_t kBudgetPerPoint = 100;
+  static constexpr std::int64_t kLeastBudget = 20000;
+
   void finish(Vertex v) {
     if (waiting_.is_untouched(v)) {
       const Vertex w = search_.nearest(v);

@@ -41,6 +41,8 @@ inline int sign_of(double value) { return (value > 0.0) - (value < 0.0); }
 // Shewchuk's bounds for the first stage of each predicate.
 constexpr double kOrientationBound = (3.0 + 16.0 * kUnitRoundoff) * kUnitRoundoff;
 constexpr double kInCircleBound = (10.0 + 96.0 * kUnitRoundoff) * kUnitRoundoff;
+// Each square carries four roundings, with room for the difference itself.
+constexpr double kDistanceBound = 8.0 * kUnitRoundoff;
 
 // Sign of (a1 - a2)(b1 - b2) - (c1 - c2)(d1 - d2), exactly.
 inline int sign_of_product_difference(double a1, double a2, double b1, double b2, double c1,
@@ -140,10 +142,16 @@ inline int orientation(Point a, Point b, Point c) {
   return detail::sign_of_product_difference(a.x, c.x, b.y, c.y, a.y, c.y, b.x, c.x);
 }
 
-// +1 if the angle at p from a to b is acute (p outside the circle on diameter ab), -1 if obtuse
-// (inside), 0 if right (on it).
-inline int dot_sign(Point p, Point a, Point b) {
-  return detail::sign_of_product_difference(a.x, p.x, b.x, p.x, p.y, a.y, b.y, p.y);
+// +1 if p is further from v than q is, -1 nearer, 0 equally far.
+inline int compare_distances(Point v, Point p, Point q) {
+  const double px = p.x - v.x, py = p.y - v.y, qx = q.x - v.x, qy = q.y - v.y;
+  const double p_square = px * px + py * py, q_square = qx * qx + qy * qy;
+  const double bound = detail::kDistanceBound * (p_square + q_square);
+  const double difference = p_square - q_square;
+  if (difference > bound || -difference > bound) return detail::sign_of(difference);
+  const auto ax = expand(exact_difference(p.x, v.x)), ay = expand(exact_difference(p.y, v.y));
+  const auto bx = expand(exact_difference(q.x, v.x)), by = expand(exact_difference(q.y, v.y));
+  return ((ax * ax + ay * ay) - (bx * bx + by * by)).sign();
 }
 
 // +1 if d lies inside the circle through the counter-clockwise a, b, c, -1 outside, 0 on it.

@@ -28,7 +28,10 @@ namespace tinsmith {
 struct SearchCounts {
   std::int64_t searches = 0;
   std::int64_t candidates = 0;
+  std::int64_t cell_rows = 0;
   std::int64_t exact_decisions = 0;
+
+  std::int64_t work() const { return candidates + cell_rows; }
 };
 
 class ThirdPointSearch {
@@ -63,28 +66,19 @@ class ThirdPointSearch {
   }
 
   // The point nearest to a vertex that has no triangle yet: the two are always an edge. All its
-  // neighbours come after it in the sweep, so only those are looked at.
+  // neighbours come after it in the sweep, so only those are looked at; of equally near ones the
+  // first in the sweep is taken.
   Vertex nearest(Vertex v) {
     a_ = number(v);
     ax_ = x_[a_];
     ay_ = y_[a_];
     double radius = cell_;
-    std::int32_t found = -1;
     while (true) {
-      double least = HUGE_VAL;
-      for_each_run(disc_cells(radius), [&](std::int32_t begin, std::int32_t end) {
-        for (std::int32_t i = begin; i < end; ++i) {
-          const double distance = std::hypot(x_[i] - ax_, y_[i] - ay_);
-          if (distance < least) {
-            least = distance;
-            found = i;
-          }
-        }
-      });
-      if (least <= radius) break;
-      radius = found < 0 ? 2.0 * radius : least;
+      const std::int32_t found = nearest_in(disc_cells(radius));
+      const double distance = found < 0 ? HUGE_VAL : distance_to(found);
+      if (distance <= radius) return static_cast<Vertex>(found);
+      radius = found < 0 ? 2.0 * radius : distance;
     }
-    return make_exactly_nearest(found);
   }
 
   const SearchCounts& counts() const { return counts_; }
@@ -261,7 +255,8 @@ class ThirdPointSearch {
 
   // Contiguous runs of stored points in the cells, those after a only.
   template <typename Visit>
-  void for_each_run(const Cells& cells, Visit&& visit) const {
+  void for_each_run(const Cells& cells, Visit&& visit) {
+    counts_.cell_rows += cells.last_row - cells.first_row + 1;
     for (std::int32_t row = cells.first_row; row <= cells.last_row; ++row) {
       const std::int32_t begin = std::max(grid_.begin_of(row, cells.first_column), a_ + 1);
       const std::int32_t end = grid_.begin_of(row, cells.last_column + 1);
@@ -271,24 +266,19 @@ class ThirdPointSearch {
 
   // ------------------------------------------------------------- nearest
 
-  // The nearest by rounded distances may lose to a near-tie; the true nearest lies inside the
-  // circle on the diameter from v to any other, which the exact test decides.
-  Vertex make_exactly_nearest(std::int32_t found) const {
-    const Cells cells =
-        disc_cells(std::hypot(x_[found] - ax_, y_[found] - ay_) * (1.0 + kSlack));
-    bool changed = true;
-    while (changed) {
-      changed = false;
-      for_each_run(cells, [&](std::int32_t begin, std::int32_t end) {
-        for (std::int32_t i = begin; i < end; ++i) {
-          if (i == found || dot_sign(here(i), here(a_), here(found)) > 0) continue;
-          found = i;
-          changed = true;
-        }
-      });
-    }
-    return static_cast<Vertex>(found);
+  std::int32_t nearest_in(const Cells& cells) {
+    std::int32_t found = -1;
+    for_each_run(cells, [&](std::int32_t begin, std::int32_t end) {
+      for (std::int32_t i = begin; i < end; ++i) {
+        const bool is_nearer =
+            found < 0 || compare_distances(here(a_), here(i), here(found)) < 0;
+        if (is_nearer) found = i;
+      }
+    });
+    return found;
   }
+
+  double distance_to(std::int32_t i) const { return std::hypot(x_[i] - ax_, y_[i] - ay_); }
 
   const PointGrid& grid_;
   const double* x_;

@@ -5,10 +5,12 @@
 #include <memory>
 #include <vector>
 
+#include "canonical.hpp"
 #include "grid.hpp"
 #include "growth.hpp"
 #include "hull.hpp"
 #include "ids.hpp"
+#include "insertion.hpp"
 
 namespace tinsmith {
 
@@ -43,26 +45,49 @@ inline void number_by_rows(Triangulation& result, const PointGrid& grid) {
   }
 }
 
+enum class Method { kAutomatic, kGrowth, kInsertion };
+
+template <typename KeepGoing>
+bool insert_all(Triangulation& result, const PointGrid& grid, KeepGoing&& keep_going) {
+  Insertion insertion(grid);
+  if (!insertion.run(keep_going)) return false;
+  CanonicalOrder(grid, insertion.mesh()).write({result.corners.get(), result.neighbors.get()});
+  return true;
+}
+
+// Growth, or insertion where points are too crowded for the grid; the result is the same.
+template <typename KeepGoing>
+bool build(Triangulation& result, const PointGrid& grid, const std::vector<Vertex>& hull,
+           Method method, KeepGoing&& keep_going) {
+  // Growth's cost a point grows with the crowding; here the two ways cost the same.
+  constexpr double kTooCrowded = 16.0;
+  const bool try_growth = method == Method::kGrowth ||
+                          (method == Method::kAutomatic && grid.crowding() < kTooCrowded);
+  if (try_growth) {
+    Growth growth(grid, hull, {result.corners.get(), result.neighbors.get()});
+    const bool is_bounded = method == Method::kAutomatic;
+    const Growth::Outcome outcome = growth.run(keep_going, is_bounded);
+    result.counts = growth.counts();
+    if (outcome != Growth::Outcome::kTooCostly) return outcome == Growth::Outcome::kComplete;
+  }
+  return insert_all(result, grid, keep_going);
+}
+
 // Delaunay triangulation of one or more rows. No triangles if all points are collinear.
 template <typename KeepGoing>
-Triangulation triangulate(const PointRows& rows, KeepGoing&& keep_going) {
+Triangulation triangulate(const PointRows& rows, Method method, KeepGoing&& keep_going) {
   Triangulation result;
   const PointGrid grid(rows);
   result.kept_row = grid.kept_row();
   result.distinct_count = grid.count();
-  if (grid.count() < 3 || !keep_going()) {
-    result.is_complete = grid.count() < 3;
-    return result;
-  }
+  if (grid.count() < 3) return result;
   const std::vector<Vertex> hull = HullFinder(grid).find();
   if (hull.empty()) return result;
   const auto on_hull = static_cast<std::int64_t>(hull.size());
   result.triangle_count = Growth::triangle_count(grid.count(), on_hull);
   result.corners.reset(new std::int32_t[3 * result.triangle_count]);
   result.neighbors.reset(new std::int32_t[3 * result.triangle_count]);
-  Growth growth(grid, hull, {result.corners.get(), result.neighbors.get()});
-  result.is_complete = growth.run(keep_going);
-  result.counts = growth.counts();
+  result.is_complete = build(result, grid, hull, method, keep_going);
   if (result.is_complete) number_by_rows(result, grid);
   return result;
 }
