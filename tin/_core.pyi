@@ -1,5 +1,3 @@
-"""Types of the compiled core."""
-
 import enum
 
 import numpy as np

@@ -97,12 +97,11 @@ def _chosen_heights(
     group = np.repeat(np.arange(len(counts)), counts)
     ascending = heights[np.lexsort((heights, group))]
     lowest = ascending[starts]
-    return lowest + np.add.reduceat(ascending - lowest[group], starts) / counts
+    excess = np.add.reduceat(ascending - lowest[group], starts) / counts
+    return np.asarray(lowest + excess, np.float64)
 
 
-def _refuse(
-    xyz: NDArray[np.float64], rows: NDArray[np.int32], offsets: NDArray[np.int32]
-) -> None:
+def _refuse(xyz: NDArray[np.float64], rows: NDArray[np.int32], offsets: NDArray[np.int32]) -> None:
     surplus = len(rows) - (len(offsets) - 1)
     group = rows[offsets[0] : offsets[1]]
     x, y, _ = xyz[group[0]]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 
 __all__ = ["MissingExtraError", "PointsError", "TinsmithError"]
 
@@ -20,7 +20,7 @@ class PointsError(TinsmithError, ValueError):
         The first few row numbers (0-based, in the caller's own input) at fault; may be empty.
     """
 
-    def __init__(self, message: str, *, rows: Sequence[int] = ()) -> None:
+    def __init__(self, message: str, *, rows: Iterable[int] = ()) -> None:
         super().__init__(message)
         self.rows = tuple(int(row) for row in rows)
 

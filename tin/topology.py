@@ -1,11 +1,11 @@
-"""Connections of a triangle list: who is whose neighbour, which edges, which hull.
+r"""Connections of a triangle list: who is whose neighbour, which edges, which hull.
 
 Numbering, used everywhere::
 
             corner 2
-            /      \\
-    edge 1 /        \\ edge 0        edge k lies opposite corner k,
-          /          \\              and neighbors[t, k] is the triangle
+            /      \
+    edge 1 /        \ edge 0        edge k lies opposite corner k,
+          /          \              and neighbors[t, k] is the triangle
     corner 0 -------- corner 1       across it, NO_NEIGHBOR outside.
              edge 2
 """
@@ -96,9 +96,7 @@ def edges(triangles: NDArray[np.int32], neighbors: NDArray[np.int32]) -> NDArray
     """Return every edge once, as a (k, 2) int32 array of vertex pairs."""
     across = np.arange(len(triangles), dtype=np.int32)[:, None]
     once = (neighbors == NO_NEIGHBOR) | (neighbors > across)
-    return np.stack(
-        [triangles[:, [1, 2, 0]][once], triangles[:, [2, 0, 1]][once]], axis=1
-    )
+    return np.stack([triangles[:, [1, 2, 0]][once], triangles[:, [2, 0, 1]][once]], axis=1)
 
 
 def boundary_rings(

@@ -74,7 +74,7 @@ def triangulate(
     xyz = as_points(survey.points)
     if len(xyz) < 3:
         raise PointsError(
-            f"{len(xyz)} points cannot make a TIN: at least three that are not collinear are needed."
+            f"{len(xyz)} points cannot make a TIN: at least three not collinear ones are needed."
         )
     kept_row = _kernel.snap(xyz, float(snap)) if snap > 0 else None
     growth = _kernel.grow(xyz if kept_row is None else _kept(xyz, kept_row))
@@ -99,7 +99,8 @@ def triangulate(
 
 
 def _kept(xyz: NDArray[np.float64], kept_row: NDArray[np.int32]) -> NDArray[np.float64]:
-    return xyz[kept_row == np.arange(len(xyz), dtype=np.int32)]
+    kept: NDArray[np.float64] = xyz[kept_row == np.arange(len(xyz), dtype=np.int32)]
+    return kept
 
 
 def _require_options(duplicates: str, snap: float) -> None:

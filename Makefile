@@ -1,0 +1,58 @@
+# Everything lives in .venv; `make help` lists the commands.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+READY := $(VENV)/.ready
+CORE := $(wildcard tin/cpp/*)
+TREE := build/typing
+
+# Pins reach the isolated build of the core too.
+export PIP_CONSTRAINT := $(CURDIR)/constraints.txt
+export PIP_DISABLE_PIP_VERSION_CHECK := 1
+
+.DEFAULT_GOAL := help
+.PHONY: help setup demo test check bench proof format clean
+
+help: ## List the commands
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-8s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+
+setup: $(READY) ## Build the core and install everything into .venv
+
+$(READY): pyproject.toml constraints.txt CMakeLists.txt $(CORE)
+	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --upgrade pip
+	$(BIN)/python -m pip install --quiet --editable ".[all]" --group dev
+	@touch $(READY)
+
+demo: $(READY) ## Build TINs from both samples: GeoJSON, PLY and a picture in demo/
+	@PATH="$(CURDIR)/$(BIN):$$PATH" sh sample_data/demo.sh demo
+
+test: $(READY) ## Run the tests
+	$(BIN)/python -m pytest -q -n auto
+
+check: $(READY) $(TREE) ## Lint, formatting, types, import contract
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	cd $(TREE) && ../../$(BIN)/mypy --config-file ../../pyproject.toml
+	cd $(TREE) && PYTHONPATH=. ../../$(BIN)/lint-imports --config ../../pyproject.toml
+
+# The rooms as the one package that they are once installed. Tools that look for modules on disk
+# must see this instead of the root, where io/ would pass for Python's own io.
+.PHONY: $(TREE)
+$(TREE):
+	@rm -rf $(TREE) && mkdir -p $(TREE)/tinsmith
+	@cd $(TREE)/tinsmith && ln -s ../../../src/tinsmith/* . && ln -s ../../../tin ../../../io ../../../terrain .
+
+bench: $(READY) ## Time kernel, queries, readers and writers beside their peers
+	$(BIN)/python -m pip install --quiet --group bench
+	$(BIN)/python -m benchmarks
+
+proof: $(READY) ## Run the long proofs
+	$(BIN)/python -m pytest -q -m proof
+
+format: $(READY) ## Format the code
+	$(BIN)/ruff format .
+	$(BIN)/ruff check --fix .
+
+clean: ## Remove what was built
+	rm -rf $(VENV) build demo
