@@ -1,6 +1,7 @@
 """The shape room: points become triangles. Knows no files, no CRS, no pictures."""
 
-from .errors import MissingExtraError, PointsError, TinsmithError
+from .check import CheckResult, check
+from .errors import CheckError, MissingExtraError, PointsError, TinsmithError
 from .report import Merge, Report
 from .surface import TIN
 from .survey import Survey
@@ -10,6 +11,8 @@ from .types import Bounds, Grid
 __all__ = [
     "TIN",
     "Bounds",
+    "CheckError",
+    "CheckResult",
     "Grid",
     "Merge",
     "MissingExtraError",
@@ -17,5 +20,6 @@ __all__ = [
     "Report",
     "Survey",
     "TinsmithError",
+    "check",
     "triangulate",
 ]

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
 
-__all__ = ["MissingExtraError", "PointsError", "TinsmithError"]
+if TYPE_CHECKING:
+    from .findings import Problem
+
+__all__ = ["CheckError", "MissingExtraError", "PointsError", "TinsmithError"]
 
 
 class TinsmithError(Exception):
@@ -23,6 +27,20 @@ class PointsError(TinsmithError, ValueError):
     def __init__(self, message: str, *, rows: Iterable[int] = ()) -> None:
         super().__init__(message)
         self.rows = tuple(int(row) for row in rows)
+
+
+class CheckError(TinsmithError, ValueError):
+    """A TIN that is not what it should be; the text is one sentence for each kind of problem.
+
+    Attributes
+    ----------
+    problems : tuple of Problem
+        As in :class:`tinsmith.tin.CheckResult`.
+    """
+
+    def __init__(self, message: str, *, problems: Sequence[Problem] = ()) -> None:
+        super().__init__(message)
+        self.problems = tuple(problems)
 
 
 class MissingExtraError(TinsmithError, ImportError):

@@ -21,7 +21,7 @@ from .errors import PointsError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["NO_NEIGHBOR", "boundary_rings", "edges", "neighbors_of"]
+__all__ = ["NO_NEIGHBOR", "boundary_rings", "edges", "ends", "neighbors_of"]
 
 NO_NEIGHBOR = -1
 
@@ -31,6 +31,16 @@ def directed_edges(triangles: NDArray[np.int32]) -> tuple[NDArray[np.int64], NDA
     return (
         triangles[:, [1, 2, 0]].astype(np.int64),
         triangles[:, [2, 0, 1]].astype(np.int64),
+    )
+
+
+def ends(
+    triangles: NDArray[np.int32], triangle: NDArray[np.int64], corner: NDArray[np.int64]
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return start and end vertex of the edges opposite some corners of some triangles."""
+    return (
+        triangles[triangle, (corner + 1) % 3].astype(np.int64),
+        triangles[triangle, (corner + 2) % 3].astype(np.int64),
     )
 
 

@@ -1,0 +1,179 @@
+"""Level 1 of a check: arrays, neighbours, edges and flags fit together."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from . import topology
+from .exact import EXACT_RANGE, blocks
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .findings import Findings
+    from .surface import TIN
+
+__all__ = ["check_arrays", "check_connections"]
+
+_NEXT, _AFTER_NEXT = (1, 2, 0), (2, 0, 1)
+
+
+def check_arrays(tin: TIN, found: Findings) -> bool:
+    """Check shapes, types and ranges, without which nothing else can be looked at."""
+    _check_shapes(tin, found)
+    if found.problems:
+        return False
+    found.counts.update(
+        rows=len(tin.vertex_of), vertices=len(tin.points), triangles=len(tin.triangles)
+    )
+    _check_coordinates(tin.points, found)
+    _check_ranges(tin, found)
+    return not found.problems
+
+
+def _check_shapes(tin: TIN, found: Findings) -> None:
+    n_triangles = len(tin.triangles) if np.ndim(tin.triangles) else 0
+    wanted = (
+        ("points", "f", (None, 3)),
+        ("triangles", "iu", (n_triangles, 3)),
+        ("neighbors", "iu", (n_triangles, 3)),
+        ("constrained", "b", (n_triangles, 3)),
+        ("vertex_of", "iu", (None,)),
+    )
+    for name, kinds, shape in wanted:
+        array = np.asarray(getattr(tin, name))
+        if array.dtype.kind not in kinds or not _fits(array.shape, shape):
+            found.fail("shape", f"{name} is a {array.dtype} array of shape {array.shape}.")
+    if n_triangles == 0:
+        found.fail("shape", "There is no triangle: a TIN needs at least one.")
+
+
+def _fits(shape: tuple[int, ...], wanted: tuple[int | None, ...]) -> bool:
+    return len(shape) == len(wanted) and all(
+        size is None or size == given for given, size in zip(shape, wanted, strict=True)
+    )
+
+
+def _check_coordinates(points: NDArray[np.float64], found: Findings) -> None:
+    found.report(
+        "coordinates",
+        np.flatnonzero(~np.isfinite(points).all(axis=1)),
+        "{count} vertices have a coordinate that is not finite (first: vertices {first}).",
+    )
+    smallest, largest = EXACT_RANGE
+    size = np.abs(points[:, :2])
+    found.report(
+        "coordinates",
+        np.flatnonzero(
+            (((size > largest) & np.isfinite(size)) | ((size < smallest) & (size > 0))).any(axis=1)
+        ),
+        "{count} vertices lie outside the range of exact arithmetic, magnitudes "
+        f"{smallest:.0e} to {largest:.0e} (first: vertices {{first}}).",
+    )
+
+
+def _check_ranges(tin: TIN, found: Findings) -> None:
+    n_vertices, n_triangles = len(tin.points), len(tin.triangles)
+    ranges = (
+        ("triangles", "triangles", tin.triangles, 0, n_vertices),
+        ("neighbors", "triangles", tin.neighbors, topology.NO_NEIGHBOR, n_triangles),
+        ("vertex_of", "rows", tin.vertex_of[:, None], 0, n_vertices),
+    )
+    for name, things, array, lowest, end in ranges:
+        wrong = ((array < lowest) | (array >= end)).any(axis=1)
+        found.report(
+            "index",
+            np.flatnonzero(wrong),
+            f"{{count}} {things} have an entry of {name} outside {lowest} to {end - 1} "
+            f"(first: {things} {{first}}).",
+        )
+
+
+def check_connections(tin: TIN, found: Findings) -> bool:
+    """Check neighbours, edges and flags; return whether the neighbours can be relied on."""
+    a, b, c = tin.triangles.T
+    found.report(
+        "corners",
+        np.flatnonzero((a == b) | (b == c) | (c == a)),
+        "{count} triangles use a vertex twice (first: triangles {first}).",
+    )
+    lonely, unequal = _one_sided(tin)
+    found.report(
+        "neighbors",
+        np.flatnonzero(lonely),
+        "{count} triangles have a neighbour that does not have them across the same edge, "
+        "walked the other way (first: triangles {first}).",
+    )
+    if not found.problems:
+        _count_edges(tin, found)
+    is_reliable = not found.problems
+    found.report(
+        "constrained",
+        np.flatnonzero(unequal),
+        "{count} triangles have an edge that is constrained on one side only "
+        "(first: triangles {first}).",
+    )
+    is_used = np.zeros(len(tin.points), np.bool_)
+    is_used[tin.triangles] = True
+    found.report(
+        "unused",
+        np.flatnonzero(~is_used),
+        "{count} vertices belong to no triangle (first: vertices {first}).",
+    )
+    return is_reliable
+
+
+def _one_sided(tin: TIN) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Find triangles with a neighbour that is not one in return, and with flags that differ."""
+    count = len(tin.triangles)
+    lonely, unequal = np.zeros(count, np.bool_), np.zeros(count, np.bool_)
+    for block in blocks(count):
+        own = np.arange(block.start, block.stop)
+        for corner in range(3):
+            across = tin.neighbors[block, corner]
+            is_met, is_flagged = _seen_from_across(tin, own, across, corner)
+            is_inner = across != topology.NO_NEIGHBOR
+            lonely[block] |= is_inner & ~is_met
+            unequal[block] |= is_inner & is_met & (is_flagged != tin.constrained[block, corner])
+    return lonely, unequal
+
+
+def _seen_from_across(
+    tin: TIN, own: NDArray[np.int64], across: NDArray[np.int32], corner: int
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Look back over the edge opposite ``corner``: tell if it is met, and if flagged, there."""
+    start = tin.triangles[own, _NEXT[corner]]
+    end = tin.triangles[own, _AFTER_NEXT[corner]]
+    triangles, neighbors = tin.triangles[across], tin.neighbors[across]
+    flags = tin.constrained[across]
+    is_met, is_flagged = np.zeros(len(own), np.bool_), np.zeros(len(own), np.bool_)
+    for twin in range(3):
+        here = (
+            (triangles[:, _NEXT[twin]] == end)
+            & (triangles[:, _AFTER_NEXT[twin]] == start)
+            & (neighbors[:, twin] == own)
+        )
+        is_met |= here
+        is_flagged |= here & flags[:, twin]
+    return is_met, is_flagged
+
+
+def _count_edges(tin: TIN, found: Findings) -> None:
+    """Count edges; two pairs of triangles at one edge show as an edge that comes twice."""
+    first = np.arange(len(tin.triangles))[:, None]
+    is_rim = tin.neighbors == topology.NO_NEIGHBOR
+    triangle, corner = np.nonzero(is_rim | (tin.neighbors > first))
+    start, end = topology.ends(tin.triangles, triangle, corner)
+    keys = np.minimum(start, end) * len(tin.points) + np.maximum(start, end)
+    keys.sort()
+    found.counts["edges"] = len(keys)
+    found.counts["boundary_edges"] = int(np.count_nonzero(is_rim))
+    inner = np.count_nonzero(tin.constrained & ~is_rim)
+    found.counts["constrained_edges"] = int(inner // 2 + np.count_nonzero(tin.constrained & is_rim))
+    found.report(
+        "edge",
+        np.unique(keys[1:][keys[1:] == keys[:-1]] // len(tin.points)),
+        "Edges at {count} vertices belong to more triangles than two (first: vertices {first}).",
+    )

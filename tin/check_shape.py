@@ -1,0 +1,121 @@
+"""Level 2 of a check: turns, boundary, Euler count and areas."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from . import topology
+from .exact import Columns, columns, is_last, orientation
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .findings import Findings
+    from .surface import TIN
+
+__all__ = ["check_shape"]
+
+_UNIT_ROUNDOFF = 2.0**-53
+
+
+def check_shape(tin: TIN, found: Findings) -> None:
+    """Check turns, rim, Euler count and areas."""
+    xy = columns(tin.points)
+    found.report(
+        "orientation",
+        np.flatnonzero(orientation(xy, *tin.triangles.T) <= 0),
+        "{count} triangles are not counter-clockwise (first: triangles {first}).",
+    )
+    rings = topology.boundary_rings(tin.triangles, tin.neighbors)
+    found.counts["rings"] = len(rings)
+    if not rings:
+        found.fail("boundary", "The surface has no boundary: it closes upon itself.")
+        return
+    is_free = _check_rim(tin, xy, rings, found)
+    if is_free and len(rings) > 1:
+        found.fail(
+            "boundary",
+            f"The boundary has {len(rings)} rings: one is allowed if it is not constrained.",
+        )
+    _check_euler(len(rings), found)
+    _check_areas(tin, rings, found)
+
+
+def _check_rim(tin: TIN, xy: Columns, rings: list[NDArray[np.int32]], found: Findings) -> bool:
+    """Check that the boundary is convex where it is not constrained.
+
+    Returns whether any of it is not constrained.
+    """
+    here = np.concatenate(rings)
+    before = np.concatenate([np.roll(ring, 1) for ring in rings])
+    after = np.concatenate([np.roll(ring, -1) for ring in rings])
+    is_constrained = _flags_on_rim(tin, here, after)
+    came_constrained = _flags_on_rim(tin, before, here)
+    is_reflex = orientation(xy, before, here, after) < 0
+    is_allowed = is_constrained & came_constrained
+    found.report(
+        "hull",
+        np.unique(here[is_reflex & ~is_allowed]),
+        "The boundary turns inwards at {count} vertices (first: vertices {first}).",
+    )
+    is_start = is_last(xy, before, here) & is_last(xy, after, here)
+    if not is_reflex.any() and np.count_nonzero(is_start) != len(rings):
+        found.fail("hull", "The boundary winds about itself: a convex ring turns round once.")
+    return not is_constrained.all()
+
+
+def _flags_on_rim(tin: TIN, start: NDArray[np.int32], end: NDArray[np.int32]) -> NDArray[np.bool_]:
+    """Return whether the boundary edges from ``start`` to ``end`` are constrained."""
+    triangle, corner = np.nonzero(tin.neighbors == topology.NO_NEIGHBOR)
+    rim_start, rim_end = topology.ends(tin.triangles, triangle, corner)
+    keys = rim_start * len(tin.points) + rim_end
+    order = np.argsort(keys)
+    wanted = start.astype(np.int64) * len(tin.points) + end
+    slot = order[np.searchsorted(keys, wanted, sorter=order)]
+    flags: NDArray[np.bool_] = tin.constrained[triangle[slot], corner[slot]]
+    return flags
+
+
+def _check_euler(n_rings: int, found: Findings) -> None:
+    """Check V - E + F (outer face not counted), which is 2 - rings for a connected surface."""
+    counts = found.counts
+    used = counts["vertices"] - sum(p.count for p in found.problems if p.kind == "unused")
+    euler = used - counts["edges"] + counts["triangles"]
+    if euler != 2 - n_rings:
+        found.fail(
+            "euler",
+            f"Vertices - edges + triangles is {euler}: a surface in one piece with {n_rings} "
+            f"boundary rings has {2 - n_rings}.",
+        )
+
+
+def _check_areas(tin: TIN, rings: list[NDArray[np.int32]], found: Findings) -> None:
+    """Compare the areas of all triangles with what the boundary encloses, rounding bounded."""
+    corners = [tin.triangles[:, k] for k in range(3)]
+    inside, inside_error = _doubled_area(tin.points, *corners)
+    start = np.concatenate(rings)
+    end = np.concatenate([np.roll(ring, -1) for ring in rings])
+    enclosed, enclosed_error = _doubled_area(tin.points, np.full_like(start, start[0]), start, end)
+    if not abs(inside - enclosed) <= inside_error + enclosed_error:
+        found.fail(
+            "area",
+            f"The areas of the triangles add up to {inside / 2:.17g}, "
+            f"but the boundary encloses {enclosed / 2:.17g}.",
+        )
+
+
+def _doubled_area(
+    points: NDArray[np.float64], a: NDArray[np.int32], b: NDArray[np.int32], c: NDArray[np.int32]
+) -> tuple[float, float]:
+    """Return twice the signed area of triangles, and a bound for its error.
+
+    A term suffers four roundings; numpy's pairwise sum of n of them 16 + log2(n) more.
+    """
+    x, y = points[:, 0], points[:, 1]
+    left = (x[b] - x[a]) * (y[c] - y[a])
+    right = (y[b] - y[a]) * (x[c] - x[a])
+    roundings = 4 + 16 + np.log2(len(a) + 1.0)
+    size = np.abs(left).sum() + np.abs(right).sum()
+    return float((left - right).sum()), float(2 * roundings * _UNIT_ROUNDOFF * size)
