@@ -1,0 +1,200 @@
+"""What the mesh formats share: a file's bytes, polygons cut into triangles, errors of the file."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ..tin import TIN, PointsError, Survey
+from .crs import as_crs, normalised
+from .errors import FormatError, ReadError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+__all__ = [
+    "Fans",
+    "chosen_crs",
+    "fans",
+    "file_content",
+    "one_line",
+    "require_tin",
+    "require_writable",
+    "survey_of",
+    "tin_of",
+]
+
+
+class Fans(NamedTuple):
+    """Triangles of polygons.
+
+    Attributes
+    ----------
+    triangles : (m, 3) int64 array
+    polygon : (m,) int64 array
+        The polygon that each triangle comes from.
+    """
+
+    triangles: NDArray[np.int64]
+    polygon: NDArray[np.int64]
+
+
+def file_content(path: Path) -> bytes:
+    """Return the bytes of a file, or raise a ReadError that says why not."""
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise ReadError(f"Cannot read '{path}': {error.strerror or error}.", path=path) from error
+
+
+def require_writable(surface: object, path: Path) -> TIN | Survey:
+    """Return a TIN or a survey; refuse anything else."""
+    if isinstance(surface, TIN | Survey):
+        return surface
+    raise FormatError(
+        f"Cannot write '{path}': a {type(surface).__name__} is neither a TIN nor a Survey."
+    )
+
+
+def require_tin(surface: object, path: Path, *, format_name: str) -> TIN:
+    """Return a TIN; refuse a survey, which has no faces, and anything else."""
+    writable = require_writable(surface, path)
+    if isinstance(writable, TIN):
+        return writable
+    raise FormatError(
+        f"Cannot write '{path}': {format_name} holds triangles, and a survey has none; "
+        "triangulate it first."
+    )
+
+
+def one_line(crs: str) -> str:
+    """Return a CRS text without line breaks, for a comment."""
+    return " ".join(part.strip() for part in crs.splitlines())
+
+
+def chosen_crs(declared: str | None, found: str | None) -> str | None:
+    """Return the CRS that the caller declares, else the one found in the file.
+
+    Raises
+    ------
+    CrsError
+        If PROJ does not know it.
+    """
+    if declared is not None:
+        return normalised(declared)
+    if found is not None:
+        as_crs(found)
+    return found
+
+
+def tin_of(
+    points: NDArray[Any],
+    triangles: NDArray[Any],
+    path: Path,
+    *,
+    constrained: NDArray[np.bool_] | None = None,
+    crs: str | None = None,
+) -> TIN:
+    """Make a TIN of what a file holds; what makes no TIN is a fault of the file.
+
+    Raises
+    ------
+    ReadError
+        As ``TIN.from_triangles`` raises PointsError.
+    """
+    try:
+        return TIN.from_triangles(points, triangles, constrained=constrained, crs=crs)
+    except PointsError as error:
+        raise ReadError(f"'{path}' holds no TIN. {error}", path=path) from error
+
+
+def survey_of(
+    points: NDArray[np.float64],
+    path: Path,
+    *,
+    attributes: dict[str, NDArray[Any]] | None = None,
+    crs: str | None = None,
+) -> Survey:
+    """Make a survey of the points of a file.
+
+    Raises
+    ------
+    ReadError
+        If there are none, or one is not finite.
+    """
+    if len(points) == 0:
+        raise ReadError(f"'{path}' holds no points.", path=path)
+    wrong = ~np.isfinite(points).all(axis=1)
+    if wrong.any():
+        row = int(np.argmax(wrong))
+        raise ReadError(
+            f"'{path}': {int(wrong.sum())} points are not finite (first: point {row}, "
+            f"{points[row].tolist()}).",
+            path=path,
+        )
+    return Survey(points=points, attributes=attributes or {}, crs=crs, source=path.name)
+
+
+def fans(
+    corners: NDArray[np.int64], offsets: NDArray[np.int64], points: NDArray[np.float64], path: Path
+) -> Fans:
+    """Cut polygons into triangles about their first corner, quadrilaterals along an inner diagonal.
+
+    Parameters
+    ----------
+    corners : (k,) int array
+        Vertex numbers of all polygons, one after the other.
+    offsets : (n_polygons + 1,) int array
+    points : (n, 3) float64 array
+
+    Raises
+    ------
+    ReadError
+        If a polygon has fewer than three corners, or a vertex number is out of range.
+    """
+    lengths = np.diff(offsets)
+    if (lengths < 3).any():
+        row = int(np.argmax(lengths < 3))
+        raise ReadError(
+            f"'{path}': face {row} has {lengths[row]} corners: 3 or more are needed.", path=path
+        )
+    wrong = (corners < 0) | (corners >= len(points))
+    if wrong.any():
+        first = int(np.argmax(wrong))
+        row = int(np.searchsorted(offsets, first, side="right")) - 1
+        raise ReadError(
+            f"'{path}': face {row} names vertex {corners[first]}, and the file has the vertices "
+            f"0 to {len(points) - 1}.",
+            path=path,
+        )
+    if (lengths == 3).all():
+        return Fans(corners.reshape(-1, 3), np.arange(len(lengths)))
+    corners = _quads_from_inner_diagonal(corners, offsets, points)
+    polygon = np.repeat(np.arange(len(lengths)), lengths - 2)
+    within = np.arange(len(polygon)) - np.repeat(
+        np.cumsum(lengths - 2) - (lengths - 2), lengths - 2
+    )
+    start = offsets[:-1][polygon]
+    triangles = [corners[start], corners[start + within + 1], corners[start + within + 2]]
+    return Fans(np.stack(triangles, axis=1), polygon)
+
+
+def _quads_from_inner_diagonal(
+    corners: NDArray[np.int64], offsets: NDArray[np.int64], points: NDArray[np.float64]
+) -> NDArray[np.int64]:
+    """Begin a quadrilateral one corner later where its first diagonal runs outside of it."""
+    starts = offsets[:-1][np.diff(offsets) == 4]
+    slots = starts[:, None] + np.arange(4)
+    quads = corners[slots]
+    a, b, c, d = (points[quads[:, k], :2] for k in range(4))
+    outside = _cross(b - a, c - a) * _cross(c - a, d - a) < 0
+    corners = corners.copy()
+    corners[slots[outside]] = np.roll(quads[outside], -1, axis=1)
+    return corners
+
+
+def _cross(u: NDArray[np.float64], v: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.asarray(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
