@@ -1,0 +1,5 @@
+"""The command line: one module per command; heavy libraries are loaded by the command that runs."""
+
+from .group import main
+
+__all__ = ["main"]

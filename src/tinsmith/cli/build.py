@@ -1,0 +1,129 @@
+"""``tinsmith build``: points in, TIN out."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from .console import plain
+from .options import (
+    console_options,
+    input_file,
+    output_files,
+    reading_options,
+    triangulating_options,
+    writing_options,
+)
+
+if TYPE_CHECKING:
+    from ..tin import TIN, Survey
+    from .console import Console, Field
+    from .files import Output
+    from .options import Reading, Triangulating, Writing
+
+__all__ = ["build"]
+
+
+@click.command(short_help="Build a TIN from elevation points.")
+@input_file("points")
+@output_files
+@reading_options
+@triangulating_options
+@writing_options
+@click.option(
+    "--report",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    help="JSON file that accounts for every row that was merged or skipped.",
+)
+@console_options
+def build(
+    points: Path,
+    outputs: tuple[Path, ...],
+    reading: Reading,
+    how: Triangulating,
+    writing: Writing,
+    report: Path | None,
+    console: Console,
+) -> None:
+    """Build the exact Delaunay TIN of the elevation points in POINTS.
+
+    POINTS is a text file of survey points (CSV, TXT, XYZ) or an elevation raster (DEM).
+    'tinsmith formats' lists what can be read and written.
+
+    \b
+    Example:
+      tinsmith build sample_data/site_survey.csv --crs EPSG:32616 -o site.geojson
+      tinsmith build sample_data/jacksboro.tif --stride 4 -o hills.ply -o hills.stl
+    """  # noqa: D301 - click reads the control character
+    from .facts import report_facts
+    from .files import plan_outputs, read_input, triangulated, write_outputs
+
+    started = perf_counter()
+    planned = plan_outputs(outputs, writing, source=points)
+    survey = _as_survey(read_input(points, reading, console), points)
+    tin = triangulated(survey, how, console)
+    write_outputs(tin, planned, console)
+    if report is not None:
+        _write_text(report, plain(report_facts(tin.report, survey)) + "\n")
+    seconds = perf_counter() - started
+    console.summarise(_fields(points, survey, tin, planned, seconds))
+    if console.as_json:
+        console.emit(plain(_facts(points, survey, tin, planned, seconds)))
+
+
+def _as_survey(found: Survey | TIN, path: Path) -> Survey:
+    from ..tin import TIN
+    from .failures import Failure
+
+    if isinstance(found, TIN):
+        raise Failure(
+            f"'{path}' holds a TIN already: use 'tinsmith convert' to write it in another format."
+        )
+    return found
+
+
+def _write_text(path: Path, text: str) -> None:
+    from ..io.atomic import replacing
+
+    with replacing(path, binary=False) as file:
+        file.write(text)
+
+
+def _fields(
+    points: Path, survey: Survey, tin: TIN, outputs: list[Output], seconds: float
+) -> list[Field]:
+    from .facts import crs_field, extent_fields, file_size, merge_field, skipped_field
+
+    sizes = "\n".join(f"{one.path} ({file_size(one.path)})" for one in outputs)
+    return [
+        ("Points", f"{len(survey):,} from {points}"),
+        *skipped_field(survey.skipped),
+        *merge_field(tin.report, survey),
+        ("TIN", f"{len(tin.points):,} vertices, {len(tin.triangles):,} triangles"),
+        *extent_fields(tin.points, tin.crs),
+        crs_field(tin.crs),
+        ("Written", sizes),
+        ("Time", f"{seconds:.2f} s"),
+    ]
+
+
+def _facts(
+    points: Path, survey: Survey, tin: TIN, outputs: list[Output], seconds: float
+) -> dict[str, Any]:
+    from .facts import report_facts, survey_facts, tin_facts
+
+    return {
+        "input": str(points),
+        "survey": survey_facts(survey),
+        "tin": tin_facts(tin),
+        "report": report_facts(tin.report, survey),
+        "outputs": [
+            {"path": str(one.path), "format": one.format.name, "bytes": one.path.stat().st_size}
+            for one in outputs
+        ],
+        "seconds": round(seconds, 3),
+    }

@@ -1,0 +1,136 @@
+"""Files in and out: what was asked for on the command line, handed to the io room."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from inspect import signature
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from .failures import note_written
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from ..io import Format
+    from ..tin import TIN, Survey
+    from .console import Console
+    from .options import Reading, Triangulating, Writing
+
+__all__ = ["Output", "plan_outputs", "read_input", "read_tin", "triangulated", "write_outputs"]
+
+
+@dataclass(frozen=True)
+class Output:
+    """A file to write: where, as what, and how."""
+
+    path: Path
+    format: Format
+    options: dict[str, Any]
+
+
+def read_input(path: Path, reading: Reading, console: Console) -> Survey | TIN:
+    """Read points or a TIN, showing progress."""
+    from ..io import read
+
+    options = {name: value for name, value in asdict(reading).items() if value is not None}
+    with console.steps() as steps, steps.step(f"Reading {path.name}"):
+        return read(path, **options)
+
+
+def triangulated(survey: Survey, how: Triangulating, console: Console) -> TIN:
+    """Build the TIN of a survey, showing progress."""
+    from ..tin import triangulate
+
+    with console.steps() as steps, steps.step(f"Triangulating {len(survey):,} points"):
+        return triangulate(survey, **asdict(how))
+
+
+def read_tin(
+    path: Path, reading: Reading, how: Triangulating, console: Console
+) -> tuple[TIN, Survey | None]:
+    """Read a TIN, or points and build theirs; the points are None for a file that holds a TIN."""
+    from ..tin import TIN
+
+    found = read_input(path, reading, console)
+    if isinstance(found, TIN):
+        return found, None
+    return triangulated(found, how, console), found
+
+
+def plan_outputs(paths: Sequence[Path], writing: Writing, *, source: Path) -> list[Output]:
+    """Choose the format of every output before any work is done.
+
+    Raises
+    ------
+    FormatError
+        If a suffix is unknown, a format cannot be written, or none takes an option given.
+    click.UsageError
+        If an output is named twice, or is the input.
+    """
+    _require_distinct([*paths, source])
+    formats = [_output_format(path, writing.output_format) for path in paths]
+    given: dict[str, Any] = {} if writing.kind is None else {"kind": writing.kind}
+    if writing.projected:
+        given["projected"] = True
+    taken = [set(given).intersection(one.options("write")) for one in formats]
+    _require_taken(set(given).difference(*taken) if taken else set(given))
+    return [
+        Output(path, one, {name: given[name] for name in names})
+        for path, one, names in zip(paths, formats, taken, strict=True)
+    ]
+
+
+def _require_distinct(paths: Sequence[Path]) -> None:
+    places = [path.resolve() for path in paths]
+    for place, path in zip(places[:-1], paths[:-1], strict=True):
+        if place == places[-1]:
+            raise click.UsageError(f"'{path}' is the input: it cannot be the output too.")
+        if places.count(place) > 1:
+            raise click.UsageError(f"'{path}' is named twice as output.")
+
+
+def _require_taken(left_over: set[str]) -> None:
+    if left_over:
+        raise click.UsageError(f"No output takes the option --{min(left_over)}: GeoJSON does.")
+
+
+def _output_format(path: Path, name: str | None) -> Format:
+    from ..io import FormatError, find_format, known_formats
+
+    if name is not None:
+        return find_format(name)
+    able = [one for one in known_formats() if one.write is not None]
+    for one in able:
+        if path.suffix.lower() in one.suffixes:
+            return one
+    suffixes = tuple(suffix for one in able for suffix in one.suffixes)
+    what = f"the suffix '{path.suffix}'" if path.suffix else "no suffix"
+    raise FormatError(
+        f"Cannot write '{path}': no format that can be written has {what}; "
+        f"{', '.join(suffixes)} can be written.",
+        known=suffixes,
+    )
+
+
+def write_outputs(obj: TIN | Survey, outputs: Sequence[Output], console: Console) -> None:
+    """Write every output, showing progress."""
+    from ..io import write
+
+    with console.steps() as steps:
+        for output in outputs:
+            with steps.step(f"Writing {output.path.name}") as progress:
+                options = dict(output.options)
+                if _shows_progress(output.format):
+                    options["progress"] = progress
+                write(obj, output.path, format=output.format.name, **options)
+            note_written(output.path)
+
+
+def _shows_progress(one: Format) -> bool:
+    from importlib import import_module
+
+    module, _, function = (one.write or "").partition(":")
+    return "progress" in signature(getattr(import_module(module), function)).parameters

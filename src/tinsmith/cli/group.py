@@ -1,0 +1,90 @@
+"""The group of commands: those of the package, then those of installed plug-ins.
+
+Another package adds a command through the entry-point group ``tinsmith.commands``: each entry
+names a :class:`click.Command`.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib import import_module
+from importlib.metadata import EntryPoint, entry_points
+from typing import Any
+
+import click
+
+from .. import __version__
+from .failures import Failure, failures_as_sentences
+
+__all__ = ["main"]
+
+_BUILT_IN = ("build", "info", "check", "view", "convert", "formats")
+_ENTRY_POINTS = "tinsmith.commands"
+
+
+class _Commands(click.Group):
+    """Loads a command when it is asked for, and turns every failure into a sentence."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002 - click's signature
+        return [*_BUILT_IN, *_plug_ins()]
+
+    def get_command(
+        self,
+        ctx: click.Context,  # noqa: ARG002 - click's signature
+        cmd_name: str,
+    ) -> click.Command | None:
+        if cmd_name in _BUILT_IN:
+            module = import_module(f".{cmd_name}", __package__)
+            built_in: click.Command = getattr(module, cmd_name)
+            return built_in
+        entry = _plug_ins().get(cmd_name)
+        return None if entry is None else _plugged_in(entry)
+
+    def invoke(self, ctx: click.Context) -> Any:
+        with failures_as_sentences(ctx):
+            return super().invoke(ctx)
+
+
+@cache
+def _plug_ins() -> dict[str, EntryPoint]:
+    found = sorted(entry_points(group=_ENTRY_POINTS), key=lambda entry: entry.name)
+    return {entry.name: entry for entry in found if entry.name not in _BUILT_IN}
+
+
+def _plugged_in(entry: EntryPoint) -> click.Command:
+    """Load a plug-in's command; a broken one stays in the list and says what is wrong."""
+    try:
+        command = entry.load()
+    except Exception as error:
+        return _broken(entry.name, f"{type(error).__name__}: {error}")
+    if not isinstance(command, click.Command):
+        return _broken(entry.name, f"it is a {type(command).__name__}, not a click command")
+    return command
+
+
+def _broken(name: str, reason: str) -> click.Command:
+    def fail(**_: object) -> None:
+        raise Failure(f"The plug-in '{name}' cannot be loaded ({reason}): mend or uninstall it.")
+
+    return click.Command(
+        name,
+        callback=fail,
+        short_help="(plug-in that cannot be loaded)",
+        context_settings={"ignore_unknown_options": True},
+        params=[click.Argument(["arguments"], nargs=-1)],
+    )
+
+
+@click.command(
+    cls=_Commands,
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+)
+@click.version_option(__version__, message="tinsmith %(version)s")
+def main() -> None:
+    """Turn elevation points into exact terrain surfaces (TINs).
+
+    \b
+    Example:
+      tinsmith build sample_data/site_survey.csv --crs EPSG:32616 -o site.geojson
+      tinsmith view sample_data/site_survey.csv --crs EPSG:32616 -o site.png
+    """  # noqa: D301 - click reads the control character

@@ -1,0 +1,167 @@
+"""Options that commands share, gathered into one value for each purpose."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from functools import wraps
+from pathlib import Path
+from typing import Any, TypeVar
+
+import click
+
+from .console import Console
+
+__all__ = [
+    "Reading",
+    "Triangulating",
+    "Writing",
+    "console_options",
+    "input_file",
+    "output_files",
+    "reading_options",
+    "triangulating_options",
+    "writing_options",
+]
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
+
+DUPLICATES = ("mean", "first", "last", "lowest", "highest", "error")
+KINDS = ("triangles", "points", "edges", "hull")
+
+
+@dataclass(frozen=True)
+class Reading:
+    """How the input is read; None leaves it to the reader."""
+
+    crs: str | None = None
+    format: str | None = None
+    columns: str | None = None
+    delimiter: str | None = None
+    decimal: str | None = None
+    band: int | None = None
+    window: tuple[float, float, float, float] | None = None
+    stride: int | None = None
+
+
+@dataclass(frozen=True)
+class Triangulating:
+    """How points become a TIN."""
+
+    duplicates: str = "mean"
+    snap: float = 0.0
+
+
+@dataclass(frozen=True)
+class Writing:
+    """How the output is written; None leaves it to the writer."""
+
+    output_format: str | None = None
+    kind: str | None = None
+    projected: bool = False
+
+
+def _gathered(name: str, factory: type, *options: Decorator) -> Callable[[Function], Function]:
+    """Return a decorator that adds options and hands them over as one value called ``name``."""
+    names = [one.name for one in fields(factory)]
+
+    def decorate(function: Function) -> Function:
+        @wraps(function)
+        def gathering(**given: Any) -> Any:
+            value = factory(**{key: given.pop(key) for key in names})
+            return function(**given, **{name: value})
+
+        decorated: Any = gathering
+        for option in reversed(options):
+            decorated = option(decorated)
+        return decorated  # type: ignore[no-any-return]
+
+    return decorate
+
+
+def input_file(name: str) -> Decorator:
+    """Return the argument for the file to read."""
+    return click.argument(name, type=click.Path(path_type=Path))
+
+
+output_files: Decorator = click.option(
+    "-o",
+    "--output",
+    "outputs",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    multiple=True,
+    required=True,
+    help="File to write; its suffix chooses the format. May be given several times.",
+)
+
+reading_options = _gathered(
+    "reading",
+    Reading,
+    click.option(
+        "--crs",
+        metavar="CRS",
+        help="Coordinate reference system of points that name none, such as EPSG:32616; "
+        "a raster in another one is reprojected to it.",
+    ),
+    click.option("--format", metavar="NAME", help="Format of the input, whatever it looks like."),
+    click.option(
+        "--columns",
+        metavar="LAYOUT",
+        help="Columns of a text file, such as PNEZD, PENZD, XYZ, ENZ, or a list of names.",
+    ),
+    click.option("--delimiter", metavar="TEXT", help="What separates the columns of a text file."),
+    click.option(
+        "--decimal", type=click.Choice([".", ","]), help="Decimal mark of the numbers in it."
+    ),
+    click.option("--band", metavar="N", type=int, help="Band of a raster, counted from 1."),
+    click.option(
+        "--window",
+        metavar="XMIN YMIN XMAX YMAX",
+        type=(float, float, float, float),
+        help="Part of a raster to read, in the units of its own CRS.",
+    ),
+    click.option("--stride", metavar="N", type=int, help="Take every Nth cell of a raster."),
+)
+
+triangulating_options = _gathered(
+    "how",
+    Triangulating,
+    click.option(
+        "--duplicates",
+        type=click.Choice(DUPLICATES),
+        default="mean",
+        show_default=True,
+        help="Elevation where several points share one place.",
+    ),
+    click.option(
+        "--snap",
+        metavar="DISTANCE",
+        type=float,
+        default=0.0,
+        show_default=True,
+        help="Merge points no further apart than this, in CRS units.",
+    ),
+)
+
+writing_options = _gathered(
+    "writing",
+    Writing,
+    click.option(
+        "--output-format", metavar="NAME", help="Format of the output, whatever its suffix."
+    ),
+    click.option("--kind", type=click.Choice(KINDS), help="What a GeoJSON file shows."),
+    click.option(
+        "--projected",
+        is_flag=True,
+        help="Leave the coordinates of a GeoJSON file in the CRS of the points.",
+    ),
+)
+
+console_options = _gathered(
+    "console",
+    Console,
+    click.option("--json", "as_json", is_flag=True, help="Write the result as JSON to stdout."),
+    click.option("-q", "--quiet", is_flag=True, help="No summary, no progress."),
+)

@@ -1,0 +1,315 @@
+"""What the commands do: answers, files, options, help."""
+
+import json
+import re
+from pathlib import Path
+from typing import get_args
+
+import click
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import tinsmith as ts
+from tinsmith.cli import group, main
+from tinsmith.cli.options import DUPLICATES, KINDS
+
+SAMPLES = Path(__file__).parents[1] / "sample_data"
+SURVEY = str(SAMPLES / "site_survey.csv")
+UTM = ("--crs", "EPSG:32616")
+COMMANDS = ("build", "info", "check", "view", "convert", "formats")
+
+
+def run(*arguments, code=0):
+    result = CliRunner().invoke(main, [str(one) for one in arguments])
+    assert result.exit_code == code, result.output
+    return result
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """Be in an empty folder that holds the samples, as after a download."""
+    (tmp_path / "sample_data").symlink_to(SAMPLES)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.fixture(scope="module")
+def pyramid(tmp_path_factory):
+    path = tmp_path_factory.mktemp("pyramid") / "pyramid.ply"
+    points = [[0, 0, 0], [4, 0, 0], [4, 4, 0], [0, 4, 0], [2, 2, 2]]
+    ts.io.write(ts.triangulate(points, crs="EPSG:32616"), path)
+    return path
+
+
+# ------------------------------------------------------------------ help
+
+
+def examples():
+    found = []
+    for name in (None, *COMMANDS):
+        command = main if name is None else main.get_command(click.Context(main), name)
+        lines = [line.strip() for line in command.help.splitlines()]
+        found += [pytest.param(line, id=line) for line in lines if line.startswith("tinsmith ")]
+    return found
+
+
+@pytest.mark.parametrize("line", examples())
+def test_example_of_the_help_runs_as_written(line, folder):
+    run(*line.split()[1:])
+    for name in re.findall(r"-o (\S+)", line):
+        assert (folder / name).stat().st_size > 0
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_command_has_help_with_an_example(name):
+    shown = run(name, "--help").output
+    assert "Example:" in shown
+    assert f"tinsmith {name}" in shown
+
+
+def test_help_lists_every_command_with_a_sentence():
+    shown = run("--help").output
+    for name in COMMANDS:
+        assert re.search(rf"^  {name} +[A-Z].*\.$", shown, re.MULTILINE)
+
+
+def test_version_is_the_package_version():
+    assert run("--version").output == f"tinsmith {ts.__version__}\n"
+
+
+def test_choices_are_those_of_the_library():
+    from tinsmith.io.geojson import Kind
+    from tinsmith.tin.duplicates import DuplicatePolicy
+
+    assert get_args(DuplicatePolicy) == DUPLICATES
+    assert get_args(Kind) == KINDS
+
+
+# ------------------------------------------------------------------ build
+
+
+def test_build_writes_rfc_7946_that_tiles_the_hull(folder):
+    pyogrio = pytest.importorskip("pyogrio")
+    shapely = pytest.importorskip("shapely")
+    run("build", "sample_data/site_survey.csv", *UTM, "-o", "out.geojson")
+    meta, _, shapes, _ = pyogrio.raw.read("out.geojson")
+    polygons = shapely.from_wkb(shapes)
+    assert meta["crs"] == "EPSG:4326"
+    assert shapely.is_valid(polygons).all()
+    assert shapely.has_z(polygons).all()
+    assert shapely.is_ccw(shapely.get_exterior_ring(polygons)).all()
+    union = shapely.union_all(shapely.set_precision(shapely.force_2d(polygons), 1e-9))
+    hull = shapely.convex_hull(shapely.multipoints(shapely.get_coordinates(polygons)))
+    assert shapely.area(polygons).sum() == pytest.approx(hull.area, rel=1e-6)
+    assert union.area == pytest.approx(hull.area, rel=1e-6)
+
+
+def test_build_makes_every_point_a_vertex(folder):
+    pyproj = pytest.importorskip("pyproj")
+    run("build", "sample_data/site_survey.csv", *UTM, "-o", "out.geojson")
+    features = json.loads(Path("out.geojson").read_text())["features"]
+    corners = np.array([one["geometry"]["coordinates"][0] for one in features])
+    built = {tuple(place) for place in corners[..., :2].reshape(-1, 2)}
+    table = np.loadtxt(SURVEY, delimiter=",", skiprows=1, usecols=(1, 2), encoding="utf-8")
+    to_globe = pyproj.Transformer.from_crs(32616, 4326, always_xy=True)
+    lon, lat = to_globe.transform(table[:, 1], table[:, 0])
+    wanted = set(zip(np.round(lon, 9).tolist(), np.round(lat, 9).tolist(), strict=True))
+    assert built == wanted
+    assert len(built) == 2121
+
+
+def test_build_summary_accounts_for_the_duplicates(folder):
+    result = run("build", "sample_data/site_survey.csv", *UTM, "-o", "out.ply")
+    assert result.stdout == ""
+    assert "2,123 from sample_data/site_survey.csv" in result.stderr
+    assert "2 rows at 2 places" in result.stderr
+    assert "0.034 m: points 1407 (327.766), 3583 (327.800)" in result.stderr
+    assert "2,121 vertices, 4,222 triangles" in result.stderr
+
+
+def test_build_json_is_the_only_thing_on_stdout(folder):
+    result = run("build", "sample_data/site_survey.csv", *UTM, "-o", "out.ply", "--json")
+    facts = json.loads(result.stdout)
+    assert facts["survey"]["points"] == 2123
+    assert facts["tin"]["vertices"] == 2121
+    assert facts["report"]["merges"][0]["numbers"] == [1407, 3583]
+    assert facts["report"]["merges"][0]["rows"] == [562, 2122]
+    assert facts["outputs"][0]["bytes"] == Path("out.ply").stat().st_size
+
+
+def test_build_quiet_says_nothing(folder):
+    result = run("build", "sample_data/site_survey.csv", "-o", "out.ply", "--quiet")
+    assert result.output == ""
+
+
+def test_build_report_file_equals_the_report(folder):
+    arguments = ("build", "sample_data/site_survey.csv", "-o", "out.ply", "--report", "r.json")
+    run(*arguments)
+    kept = json.loads(Path("r.json").read_text())
+    expected = ts.triangulate(ts.read(SURVEY)).report.to_dict()
+    for merge in kept["merges"]:
+        merge.pop("numbers")
+    assert kept == json.loads(json.dumps(expected))
+
+
+def test_build_duplicates_and_snap_are_passed_on(folder):
+    arguments = ("build", "sample_data/site_survey.csv", "--json", "-q", "-o", "out.ply")
+    lowest = json.loads(run(*arguments, "--duplicates", "lowest").stdout)
+    assert lowest["report"]["merges"][0]["height"] == 327.766
+    snapped = json.loads(run(*arguments, "--snap", "3").stdout)
+    assert snapped["tin"]["vertices"] == len(ts.triangulate(ts.read(SURVEY), snap=3).points)
+    assert snapped["tin"]["vertices"] < 2121
+
+
+def test_build_writes_several_files_of_one_tin(folder):
+    outputs = ("-o", "out.ply", "-o", "out.obj", "-o", "hull.geojson")
+    run("build", "sample_data/site_survey.csv", *UTM, *outputs, "--kind", "hull")
+    assert len(json.loads(Path("hull.geojson").read_text())["features"]) == 1
+    np.testing.assert_array_equal(ts.read("out.ply").triangles, ts.read("out.obj").triangles)
+
+
+def test_build_of_a_dem_keeps_its_crs(folder):
+    pytest.importorskip("rasterio")
+    run("build", "sample_data/jacksboro.tif", "--stride", "8", "-o", "out.ply")
+    tin = ts.read("out.ply")
+    assert tin.crs == "EPSG:32616"
+    assert len(tin.points) == pytest.approx(169_777 / 64, rel=0.02)
+
+
+def test_build_of_a_tin_names_convert(pyramid, folder):
+    result = run("build", pyramid, "-o", "out.ply", code=1)
+    assert "tinsmith convert" in result.stderr
+
+
+# ------------------------------------------------------------------ info, check, convert, view
+
+
+def test_info_of_a_tin_has_its_measures(pyramid):
+    facts = json.loads(run("info", pyramid, "--json").stdout)
+    assert (facts["vertices"], facts["triangles"], facts["edges"]) == (5, 4, 8)
+    assert facts["area"] == pytest.approx(16.0)
+    assert facts["surface_area"] == pytest.approx(16.0 * np.sqrt(2))
+    for key in ("min", "mean", "max"):
+        assert facts["slope"][key] == pytest.approx(45.0)
+
+
+def test_info_slope_minds_feet(tmp_path):
+    """Elevations of a CRS in feet are metres unless it says otherwise."""
+    foot = 0.30480060960121924
+    points = np.array([[0, 0, 0], [4, 0, 0], [4, 4, 0], [0, 4, 0], [2, 2, 2 * foot]])
+    ts.io.write(ts.triangulate(points, crs="EPSG:2274"), tmp_path / "feet.ply")
+    facts = json.loads(run("info", tmp_path / "feet.ply", "--json").stdout)
+    assert facts["slope"]["mean"] == pytest.approx(45.0)
+    assert facts["units"] == {"horizontal": "US survey foot", "vertical": "metre"}
+
+
+def test_info_in_degrees_claims_no_areas(tmp_path):
+    points = [[-84.2, 36.3, 0], [-84.1, 36.3, 0], [-84.2, 36.4, 9]]
+    ts.io.write(ts.triangulate(points, crs="EPSG:4326"), tmp_path / "degrees.ply")
+    facts = json.loads(run("info", tmp_path / "degrees.ply", "--json").stdout)
+    assert facts["slope"] is facts["area"] is None
+    assert "longitude -84.2" in run("info", tmp_path / "degrees.ply").stdout
+
+
+def test_info_of_points_has_columns_and_extent(folder):
+    facts = json.loads(run("info", "sample_data/site_survey.csv", *UTM, "--json").stdout)
+    assert facts["kind"] == "points"
+    assert facts["points"] == 2123
+    assert facts["crs_name"] == "WGS 84 / UTM zone 16N"
+    assert facts["elevation"]["min"] == pytest.approx(316.501)
+    assert "description" in facts["attributes"]
+
+
+def test_info_of_points_without_crs_says_how_to_name_it(folder):
+    assert "--crs" in run("info", "sample_data/site_survey.csv").stdout
+
+
+def test_check_passes_points_and_tin(pyramid, folder):
+    assert "exactly Delaunay" in run("check", "sample_data/site_survey.csv").stdout
+    assert json.loads(run("check", pyramid, "--json").stdout)["ok"] is True
+
+
+def test_check_fails_a_tin_that_is_not_delaunay(tmp_path):
+    points = [[0, 0, 0], [4, -1, 0], [8, 0, 0], [4, 1, 0]]
+    flat = ts.TIN.from_triangles(points, [[0, 1, 2], [0, 2, 3]])
+    ts.io.write(flat, tmp_path / "flat.ply")
+    result = run("check", tmp_path / "flat.ply", code=1)
+    assert "delaunay" in result.stderr
+    assert "Problem" in result.stdout
+    assert json.loads(run("check", tmp_path / "flat.ply", "--json", code=1).stdout)["ok"] is False
+    run("check", tmp_path / "flat.ply", "--level", "2")
+
+
+@pytest.mark.parametrize("suffix", [".obj", ".stl", ".ply", ".vtp", ".vtu"])
+def test_convert_keeps_the_surface(pyramid, tmp_path, suffix):
+    if suffix in {".vtp", ".vtu"}:
+        pytest.importorskip("pyvista")
+    run("convert", pyramid, "-o", tmp_path / f"out{suffix}")
+    again = ts.read(tmp_path / f"out{suffix}")
+    assert again.surface_area == pytest.approx(ts.read(pyramid).surface_area, rel=1e-6)
+
+
+def test_convert_keeps_points_as_points(folder):
+    run("convert", "sample_data/site_survey.csv", "-o", "out.xyz")
+    np.testing.assert_array_equal(ts.read("out.xyz").points, ts.read(SURVEY).points)
+
+
+def test_view_writes_a_picture(pyramid, tmp_path):
+    pytest.importorskip("pyvista")
+    picture = tmp_path / "out.png"
+    result = run("view", pyramid, "-o", picture, "--edges", "--top", "--exaggeration", "2")
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    assert "out.png" in result.stderr
+
+
+# ------------------------------------------------------------------ formats, plug-ins
+
+
+def test_formats_lists_every_known_format():
+    known = ts.io.known_formats()
+    table = run("formats").stdout
+    listed = json.loads(run("formats", "--json").stdout)["formats"]
+    assert [one["name"] for one in listed] == [one.name for one in known]
+    assert all(re.search(rf"^ ?{one.name} ", table, re.MULTILINE) for one in known)
+
+
+class Entry:
+    """An entry point, as an installed package declares it."""
+
+    def __init__(self, name, value):
+        self.name, self.value = name, value
+
+    def load(self):
+        if isinstance(self.value, Exception):
+            raise self.value
+        return self.value
+
+
+@pytest.fixture
+def plug_in(monkeypatch):
+    def install(*entries):
+        monkeypatch.setattr(group, "entry_points", lambda group: entries)
+        group._plug_ins.cache_clear()
+
+    yield install
+    group._plug_ins.cache_clear()
+
+
+def test_plug_in_adds_a_command(plug_in):
+    plug_in(Entry("hello", click.Command("hello", callback=lambda: click.echo("hi"))))
+    assert run("hello").stdout == "hi\n"
+    assert "hello" in run("--help").output
+
+
+@pytest.mark.parametrize("value", [ImportError("no module 'x'"), "a text"])
+def test_broken_plug_in_says_so_and_harms_no_other(plug_in, value):
+    plug_in(Entry("broken", value))
+    assert "build" in run("--help").output
+    result = run("broken", "--option", "x", code=1)
+    assert "plug-in 'broken' cannot be loaded" in result.stderr
+
+
+def test_plug_in_cannot_replace_a_built_in_command(plug_in):
+    plug_in(Entry("formats", click.Command("formats", callback=lambda: click.echo("mine"))))
+    assert "mine" not in run("formats").stdout

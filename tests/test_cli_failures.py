@@ -1,0 +1,400 @@
+"""Whatever goes wrong: one sentence, the right exit code, no traceback, nothing half-written."""
+
+import json
+import os
+import resource
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import tinsmith as ts
+from tinsmith.cli import main
+
+SQUARE = "x,y,z\n0,0,1\n4,0,2\n4,3,3\n0,3,4\n"
+PROGRAM = (sys.executable, "-m", "tinsmith")
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def build(text, *options):
+    """Build a file of this text; return exit code, stdout, stderr."""
+    Path("in.csv").write_text(text)
+    result = CliRunner().invoke(main, ["build", "in.csv", "-o", "out.ply", *options])
+    assert "Traceback" not in result.output
+    return result.exit_code, result.stdout, result.stderr
+
+
+def assert_sentence(code, stdout, stderr, *words):
+    assert code == 1, stderr
+    assert stdout == ""
+    assert stderr.startswith("Error: ")
+    assert stderr.count("\n") == 1
+    assert stderr.endswith(".\n")
+    assert not stderr.endswith("..\n")
+    for word in words:
+        assert word in stderr
+    assert not any(name.endswith(".ply") for name in os.listdir())
+
+
+def program(*arguments, **options):
+    return subprocess.run(
+        [*PROGRAM, *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=60,
+        **options,
+    )
+
+
+# ------------------------------------------------------------------ points that make no TIN
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("x,y,z\n0,0,1\n4,0,nan\n4,3,3\n0,3,4\n", ["line 3"]),
+        ("x,y,z\n0,0,1\n4,0,2\n4,inf,3\n0,3,4\n", ["line 4"]),
+        ("x,y,z\n0,0,1\n-Infinity,0,2\n4,1,3\n0,3,4\n", ["line 3"]),
+        ("", ["empty"]),
+        ("x,y,z\n", ["point"]),
+        ("x,y,z\n0,0,1\n4,0,2\n", ["2 points", "three"]),
+        ("x,y,z\n0,0,1\n1,1,2\n2,2,3\n3,3,4\n", ["collinear"]),
+        ("x,y,z\n5,5,1\n5,5,2\n5,5,3\n", ["one place"]),
+        ("x,y,z\n0,0,1\n1e200,0,2\n4,1,3\n", ["range"]),
+        ("x,y,z\n0,0,1\n4,0,two\n4,3,3\n0,3,4\n", ["line 3", "two"]),
+        ("x,y,z\n0,0,1\n4,0,2\n4,3\n0,3,4\n", ["line 4"]),
+        ("one,two\n1,2\n3,4\n5,6\n", ["column"]),
+        ("%PDF-1.7 no table at all\n", ["PDF"]),
+    ],
+    ids=[
+        "nan",
+        "infinity",
+        "minus infinity",
+        "empty file",
+        "header only",
+        "two points",
+        "collinear",
+        "all duplicates",
+        "beyond the exact range",
+        "text for a number",
+        "truncated row",
+        "two columns",
+        "another kind of file",
+    ],
+)
+def test_points_that_make_no_tin(folder, text, words):
+    assert_sentence(*build(text), *words)
+
+
+def test_duplicates_refused_on_request(folder):
+    text = SQUARE + "4,3,3.5\n"
+    assert_sentence(*build(text, "--duplicates", "error"), "3.5")
+
+
+def test_duplicates_of_different_height_are_told(folder):
+    code, _, stderr = build(SQUARE + "4,3,3.5\n")
+    assert code == 0
+    assert "1 row at 1 place" in stderr
+    assert "0.500" in stderr
+
+
+def test_decimal_commas_are_understood(folder):
+    text = "x;y;z\n0,5;0,25;1,125\n4,5;0,25;2,5\n4,5;3,75;3\n"
+    assert build(text)[0] == 0
+    np.testing.assert_array_equal(
+        ts.read("out.ply").points, [[0.5, 0.25, 1.125], [4.5, 0.25, 2.5], [4.5, 3.75, 3]]
+    )
+
+
+def test_columns_that_the_file_does_not_have(folder):
+    assert_sentence(*build(SQUARE, "--columns", "x,y,height"), "height")
+
+
+def test_unknown_crs(folder):
+    assert_sentence(*build(SQUARE, "--crs", "EPSG:999999"), "EPSG:999999")
+
+
+def test_bad_snap(folder):
+    assert_sentence(*build(SQUARE, "--snap", "-1"), "-1")
+
+
+def test_raster_option_on_a_text_file(folder):
+    assert_sentence(*build(SQUARE, "--band", "2"), "band")
+
+
+# ------------------------------------------------------------------ files that are not right
+
+
+@pytest.mark.parametrize("command", ["build", "info", "check", "view", "convert"])
+@pytest.mark.parametrize(("name", "word"), [("none.csv", "no file"), ("sub", "folder")])
+def test_missing_input_and_folder_as_input(folder, command, name, word):
+    Path("sub").mkdir()
+    output = [] if command in {"info", "check"} else ["-o", "out.png"]
+    if command in {"build", "convert"}:
+        output = ["-o", "out.ply"]
+    result = CliRunner().invoke(main, [command, name, *output])
+    assert_sentence(result.exit_code, result.stdout, result.stderr, name, word)
+
+
+@pytest.mark.parametrize(
+    ("output", "words"),
+    [
+        ("none/out.ply", ["none"]),
+        ("out.zzz", [".zzz", ".ply"]),
+        ("out", ["no suffix"]),
+        ("out.tif", [".tif"]),
+        ("sub.ply", ["folder"]),
+    ],
+)
+def test_output_that_cannot_be(folder, output, words):
+    (folder / "sub.ply").mkdir()
+    (folder / "in.csv").write_text(SQUARE)
+    result = CliRunner().invoke(main, ["build", "in.csv", "-o", output])
+    (folder / "sub.ply").rmdir()
+    assert_sentence(result.exit_code, result.stdout, result.stderr, *words)
+    assert os.listdir() == ["in.csv"]
+
+
+def test_truncated_tin_and_raster(folder):
+    points = np.random.default_rng(7).random((50, 3))
+    ts.io.write(ts.triangulate(points), "whole.ply")
+    whole = Path("whole.ply").read_bytes()
+    Path("whole.ply").unlink()
+    Path("cut.dat").write_bytes(whole[: len(whole) // 2])
+    result = CliRunner().invoke(main, ["info", "cut.dat"])
+    assert_sentence(result.exit_code, result.stdout, result.stderr, "cut.dat")
+
+
+def test_truncated_raster(folder):
+    pytest.importorskip("rasterio")
+    whole = (Path(__file__).parents[1] / "sample_data" / "jacksboro.tif").read_bytes()
+    Path("cut.tif").write_bytes(whole[: len(whole) // 2])
+    result = CliRunner().invoke(main, ["info", "cut.tif"])
+    assert_sentence(result.exit_code, result.stdout, result.stderr, "cut.tif")
+
+
+def test_failed_write_leaves_the_old_file_and_no_other(folder):
+    """A limit on the size of files stands for a disk that is full."""
+    Path("in.csv").write_text(SQUARE + "".join(f"{i % 70},{i // 70},1\n" for i in range(5000)))
+    Path("out.ply").write_text("old")
+    limit = 20_000
+    result = program(
+        *("build", "in.csv", "-o", "out.ply"),
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)),
+    )
+    assert (result.returncode, result.stdout) == (1, "")
+    assert result.stderr == "Error: Cannot write 'out.ply': File too large.\n"
+    assert Path("out.ply").read_text() == "old"
+    assert sorted(os.listdir()) == ["in.csv", "out.ply"]
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
+def test_standard_output_on_a_full_disk(folder):
+    with Path("/dev/full").open("w") as full:
+        result = subprocess.run(
+            [*PROGRAM, "formats"], stdout=full, stderr=subprocess.PIPE, text=True, check=False
+        )
+    assert result.returncode == 1
+    assert result.stderr == "Error: Cannot write to standard output: No space left on device.\n"
+
+
+def test_closed_pipe_is_quiet(folder):
+    reader, writer = os.pipe()
+    os.close(reader)
+    result = subprocess.run(
+        [*PROGRAM, "formats"], stdout=writer, stderr=subprocess.PIPE, text=True, check=False
+    )
+    os.close(writer)
+    assert result.stderr == ""
+
+
+# ------------------------------------------------------------------ wrong usage
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        [],
+        ["nonsense"],
+        ["build"],
+        ["build", "in.csv"],
+        ["build", "in.csv", "-o", "in.csv"],
+        ["build", "in.csv", "-o", "a.ply", "-o", "a.ply"],
+        ["build", "in.csv", "-o", "a.ply", "--kind", "hull"],
+        ["build", "in.csv", "-o", "a.ply", "--duplicates", "most"],
+        ["build", "in.csv", "-o", "a.ply", "--snap", "wide"],
+        ["check", "in.csv", "--level", "4"],
+    ],
+)
+def test_wrong_usage_exits_with_two(folder, arguments):
+    Path("in.csv").write_text(SQUARE)
+    result = CliRunner().invoke(main, arguments)
+    assert result.exit_code == 2
+    assert "Usage:" in result.stderr
+    assert result.stdout == ""
+    assert Path("in.csv").read_text() == SQUARE
+
+
+# ------------------------------------------------------------------ interruption and bugs
+
+
+def test_interrupt_while_writing_leaves_nothing(folder):
+    points = np.random.default_rng(1).random((150_000, 3)) * [500_000, 500_000, 100]
+    np.savetxt("in.csv", points, delimiter=",", fmt="%.3f")
+    run = subprocess.Popen(
+        [*PROGRAM, "build", "in.csv", "--crs", "EPSG:32616", "-o", "out.geojson"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    deadline = time.monotonic() + 50
+    while len(os.listdir()) < 2 and run.poll() is None and time.monotonic() < deadline:
+        time.sleep(0.01)
+    run.send_signal(signal.SIGINT)
+    stdout, stderr = run.communicate(timeout=30)
+    assert (run.returncode, stdout) == (130, "")
+    assert stderr == "Interrupted; nothing was written.\n"
+    assert os.listdir() == ["in.csv"]
+
+
+def test_interrupt_after_the_first_file_names_it(folder, monkeypatch):
+    from tinsmith import io
+
+    write = io.write
+
+    def interrupted(obj, path, **options):
+        if path.name == "second.ply":
+            raise KeyboardInterrupt
+        return write(obj, path, **options)
+
+    monkeypatch.setattr(io, "write", interrupted)
+    Path("in.csv").write_text(SQUARE)
+    arguments = ["build", "in.csv", "-o", "first.ply", "-o", "second.ply"]
+    result = CliRunner().invoke(main, arguments)
+    assert result.exit_code == 130
+    assert result.stderr == "Interrupted; already written: first.ply.\n"
+
+
+def test_bug_is_one_sentence_that_tells_how_to_see_more(folder, monkeypatch):
+    monkeypatch.setattr("tinsmith.io.read", lambda *_, **__: {}["nothing"])
+    result = CliRunner().invoke(main, ["info", "in.csv"])
+    assert result.exit_code == 1
+    assert result.stderr.startswith("Error: A bug in tinsmith: KeyError: 'nothing'")
+    assert "TINSMITH_DEBUG=1" in result.stderr
+    monkeypatch.setenv("TINSMITH_DEBUG", "1")
+    assert isinstance(CliRunner().invoke(main, ["info", "in.csv"]).exception, KeyError)
+
+
+@pytest.mark.parametrize(
+    ("error", "sentence"),
+    [
+        (MemoryError(), "not enough memory"),
+        (OSError(28, "No space left on device", "x.ply"), "'x.ply': No space left on device"),
+    ],
+)
+def test_system_errors_are_sentences(folder, monkeypatch, error, sentence):
+    def fail(*_, **__):
+        raise error
+
+    monkeypatch.setattr("tinsmith.io.read", fail)
+    result = CliRunner().invoke(main, ["info", "in.csv"])
+    assert_sentence(result.exit_code, result.stdout, result.stderr, sentence)
+
+
+def test_warning_of_a_library_is_one_line(folder, monkeypatch):
+    import warnings
+
+    from tinsmith import io
+
+    read = io.read
+
+    def warned(*arguments, **options):
+        with warnings.catch_warnings():
+            warnings.simplefilter("always")
+            warnings.warn("the datum\nis old", UserWarning, stacklevel=1)
+        return read(*arguments, **options)
+
+    monkeypatch.setattr(io, "read", warned)
+    Path("in.csv").write_text(SQUARE)
+    result = CliRunner().invoke(main, ["info", "in.csv"])
+    assert result.stderr == "Warning: the datum is old\n"
+
+
+# ------------------------------------------------------------------ as a program
+
+
+def test_program_separates_stdout_from_stderr(folder):
+    Path("in.csv").write_text(SQUARE)
+    result = program("build", "in.csv", "-o", "out.ply", "--json")
+    assert result.returncode == 0
+    assert json.loads(result.stdout)["tin"]["triangles"] == 2
+    assert "2 triangles" in result.stderr
+    assert "\x1b" not in result.stderr
+
+
+def test_program_fails_with_a_sentence(folder):
+    result = program("info", "none.csv")
+    assert (result.returncode, result.stdout) == (1, "")
+    assert result.stderr == "Error: There is no file 'none.csv'.\n"
+
+
+def test_help_loads_no_heavy_library(folder):
+    code = (
+        "import sys; from tinsmith.cli import main\n"
+        "try: main(['--help'])\n"
+        "except SystemExit: pass\n"
+        "print(sorted({'numpy', 'pandas', 'rich', 'pyproj', 'pyvista'} & set(sys.modules)))"
+    )
+    result = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    )
+    assert result.stdout.splitlines()[-1] == "[]"
+
+
+STEPS = """
+import time
+from tinsmith.cli import steps
+steps.PATIENCE = 0.0
+with steps.Steps(quiet={quiet}) as shown, shown.step("Growing") as progress:
+    for fraction in (0.2, 0.9):
+        progress(fraction)
+        time.sleep(0.2)
+"""
+
+
+@pytest.mark.parametrize(("quiet", "is_shown"), [(False, True), (True, False)])
+def test_progress_is_shown_on_a_terminal_unless_quiet(quiet, is_shown):
+    pty = pytest.importorskip("pty")
+    terminal, other_end = pty.openpty()
+    environment = {**os.environ, "TERM": "xterm", "COLUMNS": "100"}
+    subprocess.run(
+        [sys.executable, "-c", STEPS.format(quiet=quiet)],
+        stderr=other_end,
+        env=environment,
+        check=True,
+    )
+    os.write(other_end, b".")
+    assert (b"Growing" in os.read(terminal, 65536)) is is_shown
+    os.close(terminal)
+    os.close(other_end)
+
+
+def test_progress_is_silent_in_a_pipe():
+    result = subprocess.run(
+        [sys.executable, "-c", STEPS.format(quiet=False)],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert result.stderr == ""
