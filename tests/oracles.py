@@ -6,6 +6,8 @@ import itertools
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
 
+import numpy as np
+
 Number = Fraction | int
 Place = tuple[Number, Number]
 
@@ -103,3 +105,29 @@ def hull_points(points: Sequence[Sequence[float]]) -> set[int]:
         if min(turns) >= 0:
             on_hull.update(v for v, turn in enumerate(turns) if turn == 0)
     return on_hull
+
+
+def hull_size(points: Iterable[Sequence[float]]) -> int:
+    """Number of distinct points on the convex hull's boundary, by Andrew's monotone chain."""
+    places = sorted({place(p) for p in points})
+    lower, upper = _chain(places), _chain(places[::-1])
+    return len(set(lower) | set(upper))
+
+
+def _chain(places: Sequence[Place]) -> list[Place]:
+    kept: list[Place] = []
+    for p in places:
+        while len(kept) >= 2 and orientation(kept[-2], kept[-1], p) < 0:
+            kept.pop()
+        kept.append(p)
+    return kept
+
+
+def ranked_triangles(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """Triangles by the lexicographic ranks of their vertices, in one order for every numbering."""
+    rank = np.empty(len(points), np.int64)
+    rank[np.lexsort((points[:, 1], points[:, 0]))] = np.arange(len(points))
+    ranks = rank[triangles]
+    first = ranks.argmin(axis=1)[:, None]
+    ranks = np.take_along_axis(ranks, (first + np.arange(3)) % 3, axis=1)
+    return ranks[np.lexsort(ranks.T[::-1])]
