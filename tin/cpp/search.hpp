@@ -49,19 +49,24 @@ class ThirdPointSearch {
   Vertex third_point(Vertex a, Vertex b, Vertex hint) {
     ++counts_.searches;
     set_edge(a, b);
-    double disc_cotangent = first_disc();
-    if (hint != kNoVertex && is_promising(hint, disc_cotangent)) offer(number(hint));
-    Cells searched = cap_cells(has_best() ? ceiling_ : disc_cotangent);
+    Circle circle = first_disc();
+    if (hint != kNoVertex && is_promising(hint, circle)) offer(number(hint));
+    const std::int32_t offered = best_;
+    if (has_best()) circle = best_circle();
+    Cells searched = cap_cells(circle);
     scan(searched);
     while (!has_best()) {
-      if (all_cells().within(searched)) throw std::logic_error("an edge inside the hull found no third point");
-      disc_radius_ *= 2.0;
-      disc_cotangent = cotangent_of_radius(disc_radius_);
-      searched = cap_cells(disc_cotangent);
+      if (all_cells().within(searched)) {
+        throw std::logic_error("an edge inside the hull found no third point");
+      }
+      circle = circle_of_radius(2.0 * circle.radius);
+      searched = cap_cells(circle);
       scan(searched);
     }
-    const Cells needed = cap_cells(ceiling_);
-    if (!needed.within(searched)) scan(needed);
+    if (best_ != offered) {
+      const Cells needed = cap_cells(best_circle());
+      if (!needed.within(searched)) scan(needed);
+    }
     return static_cast<Vertex>(best_);
   }
 
@@ -89,7 +94,14 @@ class ThirdPointSearch {
   // First disc: radius over half the edge, and over the cell.
   static constexpr double kDiscPerHalfEdge = 1.15;
   static constexpr double kDiscPerCell = 0.8;
-  static constexpr double kNoCeiling = 1e300;
+  static constexpr double kDiscCotangent = 0.56789083458002739;  // sqrt(1.15^2 - 1)
+  static constexpr double kUnbounded = 1e300;
+
+  // A circle on the edge, by the cotangent under which its left side sees the edge.
+  struct Circle {
+    double cotangent;
+    double radius;
+  };
 
   struct Cells {
     std::int32_t first_column, last_column, first_row, last_row;
@@ -109,42 +121,59 @@ class ThirdPointSearch {
     ay_ = y_[a_];
     ex_ = x_[b_] - ax_;
     ey_ = y_[b_] - ay_;
-    half_ = 0.5 * std::sqrt(ex_ * ex_ + ey_ * ey_);
+    edge_square_ = ex_ * ex_ + ey_ * ey_;
+    edge_sum_ = std::fabs(ex_) + std::fabs(ey_);
     best_ = -1;
-    ceiling_ = floor_ = kNoCeiling;
-    set_reach(half_ * 4.0 + cell_);
+    is_best_flat_ = true;
+    best_dot_ = kUnbounded;
+    best_cross_ = 0.0;
+    set_reach(2.0 * edge_sum_ + cell_);
   }
 
-  double first_disc() {
-    disc_radius_ = std::max(kDiscPerHalfEdge * half_, kDiscPerCell * cell_);
-    return cotangent_of_radius(disc_radius_);
+  Circle first_disc() const {
+    const double least = kDiscPerCell * cell_;
+    const double radius_square = kDiscPerHalfEdge * kDiscPerHalfEdge * 0.25 * edge_square_;
+    if (radius_square > least * least) return {kDiscCotangent, std::sqrt(radius_square)};
+    return circle_of_radius(least);
   }
 
-  double cotangent_of_radius(double radius) const {
-    const double ratio = radius / half_;
-    return ratio > 1.0 ? std::sqrt((ratio - 1.0) * (ratio + 1.0)) : 0.0;
+  // Not smaller than the circle on the edge as its diameter.
+  Circle circle_of_radius(double radius) const {
+    const double square = 4.0 * radius * radius / edge_square_ - 1.0;
+    return {square > 0.0 ? std::sqrt(square) : 0.0, radius};
+  }
+
+  // The circle through the best candidate, or one a little larger for what rounding may have done.
+  Circle best_circle() const {
+    if (is_best_flat_ || !(best_cross_ > 2.0 * cross_error_)) return {kUnbounded, kUnbounded};
+    const double per_cross = 1.0 / best_cross_;
+    const double rounded = best_dot_ * per_cross;
+    const double error = 2.0 * (dot_error_ + std::fabs(rounded) * cross_error_) * per_cross;
+    const double cotangent = rounded + error + 4.0 * kUnitRoundoff * std::fabs(rounded);
+    return {cotangent, 0.5 * std::sqrt(edge_square_ * (1.0 + cotangent * cotangent))};
   }
 
   // Error bounds for candidates whose coordinates differ from a's by at most `reach`: of the
   // cross product e x p, and of the dot product p . q (q is taken as p - e).
   void set_reach(double reach) {
     reach_ = reach;
-    cross_error_ = 8.0 * kUnitRoundoff * (std::fabs(ex_) + std::fabs(ey_)) * reach;
+    cross_error_ = 8.0 * kUnitRoundoff * edge_sum_ * reach;
     dot_error_ = 24.0 * kUnitRoundoff * reach * reach;
     update_tolerance();
   }
 
+  // Bound on the error of dot * best_cross - cross * best_dot for candidates within reach.
   void update_tolerance() {
-    tolerance_ = dot_error_ + std::fabs(ceiling_) * cross_error_;
+    const double most_cross = best_cross_ + 2.0 * edge_sum_ * reach_;
+    const double most_dot = std::fabs(best_dot_) + 4.0 * reach_ * reach_;
+    tolerance_ = 2.0 * (dot_error_ * most_cross + cross_error_ * most_dot);
   }
 
-  bool is_promising(Vertex hint, double disc_cotangent) {
+  bool is_promising(Vertex hint, const Circle& disc) const {
     const double px = x_[number(hint)] - ax_, py = y_[number(hint)] - ay_;
-    const double reach = std::max(std::fabs(px), std::fabs(py));
-    if (reach > reach_) return false;
+    if (std::max(std::fabs(px), std::fabs(py)) > reach_) return false;
     const double cross = ex_ * py - ey_ * px;
-    if (!(cross > cross_error_)) return false;
-    return px * (px - ex_) + py * (py - ey_) < disc_cotangent * cross;
+    return cross > cross_error_ && px * (px - ex_) + py * (py - ey_) < disc.cotangent * cross;
   }
 
   // ------------------------------------------------------------- candidates
@@ -158,58 +187,50 @@ class ThirdPointSearch {
         const double cross = ex_ * py - ey_ * px;
         const double dot = px * (px - ex_) + py * (py - ey_);
         const bool is_left = cross > -cross_error_;
-        const bool is_rival = !(dot - cross * ceiling_ > tolerance_);
-        if (is_left & is_rival) offer(i);
+        if (is_left & beats_best(dot, cross, 1.0)) offer(i, dot, cross);
       }
     });
   }
 
-  // A candidate that may be left of the edge and may beat the best so far.
   void offer(std::int32_t i) {
-    if (i == best_ || i == b_ || i == a_) return;
     const double px = x_[i] - ax_, py = y_[i] - ay_;
-    const double cross = ex_ * py - ey_ * px;
-    const double dot = px * (px - ex_) + py * (py - ey_);
-    const bool is_surely_left = cross > cross_error_;
-    if (!is_surely_left) {
-      ++counts_.exact_decisions;
-      if (orientation(here(a_), here(b_), here(i)) <= 0) return;
-    }
-    if (has_best()) {
-      const double certain = dot_error_ + std::fabs(floor_) * cross_error_;
-      const bool is_surely_better = is_surely_left && dot - cross * floor_ < -certain;
-      if (!is_surely_better) {
-        ++counts_.exact_decisions;
-        if (!is_in_circle(here(a_), here(b_), here(best_), here(i))) return;
-      }
-    }
-    accept(i, dot, cross);
+    offer(i, px * (px - ex_) + py * (py - ey_), ex_ * py - ey_ * px);
   }
 
-  // Bracket the best's cotangent by what rounding may have done to it.
-  void accept(std::int32_t i, double dot, double cross) {
+  // A candidate that may be left of the edge and may beat the best so far.
+  void offer(std::int32_t i, double dot, double cross) {
+    const bool is_surely_left = cross > cross_error_;
+    const bool is_surely_better = is_best_flat_ ? !has_best() : beats_best(dot, cross, -1.0);
+    if (!(is_surely_left && is_surely_better) && !wins_exactly(i, is_surely_left)) return;
     best_ = i;
-    ceiling_ = kNoCeiling;
-    floor_ = -kNoCeiling;
-    if (cross > 2.0 * cross_error_) {
-      const double cotangent = dot / cross;
-      const double error = 2.0 * (dot_error_ + std::fabs(cotangent) * cross_error_) / cross +
-                           4.0 * kUnitRoundoff * std::fabs(cotangent);
-      ceiling_ = std::min(cotangent + error, kNoCeiling);
-      floor_ = std::max(cotangent - error, -kNoCeiling);
-    }
+    is_best_flat_ = !is_surely_left;
+    best_dot_ = is_best_flat_ ? kUnbounded : dot;
+    best_cross_ = is_best_flat_ ? 0.0 : cross;
     update_tolerance();
+  }
+
+  // Whether the candidate's cotangent is below the best's, by a margin of tolerances.
+  bool beats_best(double dot, double cross, double margin) const {
+    return dot * best_cross_ - cross * best_dot_ < margin * tolerance_;
+  }
+
+  bool wins_exactly(std::int32_t i, bool is_surely_left) {
+    if (i == best_ || i == b_ || i == a_) return false;
+    ++counts_.exact_decisions;
+    if (!is_surely_left && orientation(here(a_), here(b_), here(i)) <= 0) return false;
+    return !has_best() || is_in_circle(here(a_), here(b_), here(best_), here(i));
   }
 
   Point here(std::int32_t i) const { return {x_[i], y_[i]}; }
 
   // ------------------------------------------------------------- boxes
 
-  // Cells that meet the left cap of the circle with this cotangent.
-  Cells cap_cells(double cotangent) const {
-    const double radius = half_ * std::sqrt(1.0 + cotangent * cotangent);
-    if (!(radius < kNoCeiling)) return all_cells();
-    const double cx = 0.5 * (ex_ - ey_ * cotangent), cy = 0.5 * (ey_ + ex_ * cotangent);
+  // Cells that meet the circle's cap left of the edge.
+  Cells cap_cells(const Circle& circle) const {
+    const double radius = circle.radius;
+    if (!(radius < kUnbounded)) return all_cells();
+    const double cx = 0.5 * (ex_ - ey_ * circle.cotangent);
+    const double cy = 0.5 * (ey_ + ex_ * circle.cotangent);
     double west = std::min(0.0, ex_), east = std::max(0.0, ex_);
     double south = std::min(0.0, ey_), north = std::max(0.0, ey_);
     // The circle's extreme points count where they are left of the edge.
@@ -242,15 +263,7 @@ class ThirdPointSearch {
     const double east = grid_.west() + cell_ * (cells.last_column + 1) - ax_;
     const double north = grid_.south() + cell_ * (cells.last_row + 1) - ay_;
     const double reach = std::max({std::fabs(west), std::fabs(east), north}) + cell_;
-    if (reach > reach_) {
-      set_reach(reach);
-      if (has_best()) rebracket();
-    }
-  }
-
-  void rebracket() {
-    const double px = x_[best_] - ax_, py = y_[best_] - ay_;
-    accept(best_, px * (px - ex_) + py * (py - ey_), ex_ * py - ey_ * px);
+    if (reach > reach_) set_reach(reach);
   }
 
   // Contiguous runs of stored points in the cells, those after a only.
@@ -289,12 +302,15 @@ class ThirdPointSearch {
   // The edge at hand, relative to a.
   std::int32_t a_ = 0, b_ = 0;
   double ax_ = 0.0, ay_ = 0.0, ex_ = 0.0, ey_ = 0.0;
-  double half_ = 0.0, disc_radius_ = 0.0;
+  double edge_square_ = 0.0, edge_sum_ = 0.0;
   double reach_ = 0.0, cross_error_ = 0.0, dot_error_ = 0.0, tolerance_ = 0.0;
 
-  // The best candidate so far and the bracket of its cotangent.
+  // The best candidate so far; its cotangent is best_dot_ / best_cross_. Flat: there is none yet,
+  // or it is so nearly on the edge's line that its cotangent says nothing; then every point that
+  // may be left of the edge is a rival.
   std::int32_t best_ = -1;
-  double ceiling_ = 0.0, floor_ = 0.0;
+  bool is_best_flat_ = true;
+  double best_dot_ = 0.0, best_cross_ = 0.0;
 
   SearchCounts counts_;
 };
