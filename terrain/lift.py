@@ -1,0 +1,118 @@
+"""Lift: a TIN becomes a 3D mesh, near enough to its origin for single precision."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from . import extras
+from .errors import OptionError
+from .slope import aspect, slope
+
+if TYPE_CHECKING:
+    import pyvista
+    from numpy.typing import ArrayLike, NDArray
+
+    from ..tin import TIN
+
+__all__ = ["default_origin", "lift"]
+
+
+def lift(
+    tin: TIN, *, origin: ArrayLike | None = None, exaggeration: float = 1.0
+) -> pyvista.PolyData:
+    """Turn a TIN into a mesh for 3D work, shifted by an origin that is recorded.
+
+    Graphics cards compute in single precision, which is wrong by decimetres at the size of map
+    coordinates. The origin is therefore subtracted in double precision first:
+    ``points = (tin.points - origin) * (1, 1, exaggeration)``.
+
+    Parameters
+    ----------
+    tin : TIN
+    origin : (3,) array, CRS units, optional
+        Easting, northing and elevation that become (0, 0, 0); default :func:`default_origin`.
+    exaggeration : float, optional
+        Factor on heights above the origin, above 0; default 1, true to scale.
+
+    Returns
+    -------
+    pyvista.PolyData
+        Double-precision points and triangles in the TIN's order. Point data ``elevation`` (true
+        elevation, CRS units); cell data ``slope`` and ``aspect`` of the true surface (degrees,
+        aspect NaN where level); field data ``origin``, ``exaggeration`` and ``crs`` ("" if
+        unknown).
+
+    Raises
+    ------
+    MissingExtraError
+        If pyvista is not installed.
+    OptionError
+        If the origin is not three finite numbers, or the exaggeration is not above 0.
+
+    Examples
+    --------
+    >>> from tinsmith import triangulate
+    >>> tin = triangulate([[500_000, 4e6, 81], [500_040, 4e6, 83], [500_000, 4_000_030, 85]])
+    >>> mesh = lift(tin, origin=(500_000, 4_000_000, 80), exaggeration=2)
+    >>> mesh.points.tolist()
+    [[0.0, 0.0, 2.0], [40.0, 0.0, 6.0], [0.0, 30.0, 10.0]]
+    >>> mesh.field_data["origin"].tolist()
+    [500000.0, 4000000.0, 80.0]
+    """
+    pv = extras.pyvista("Lifting a TIN into 3D")
+    shift = default_origin(tin) if origin is None else _as_origin(origin)
+    factor = as_exaggeration(exaggeration)
+    mesh = pv.PolyData.from_regular_faces(
+        (tin.points - shift) * (1.0, 1.0, factor), np.array(tin.triangles)
+    )
+    mesh.point_data["elevation"] = tin.points[:, 2].copy()
+    mesh.cell_data["slope"] = slope(tin)
+    mesh.cell_data["aspect"] = aspect(tin)
+    mesh.field_data["origin"] = shift
+    mesh.field_data["exaggeration"] = [factor]
+    mesh.field_data["crs"] = ["" if tin.crs is None else tin.crs]
+    mesh.set_active_scalars("elevation")
+    return mesh
+
+
+def default_origin(tin: TIN) -> NDArray[np.float64]:
+    """Return the middle of a TIN, rounded to a tenth of its extent or finer.
+
+    Parameters
+    ----------
+    tin : TIN
+
+    Returns
+    -------
+    (3,) float64 array, CRS units
+        Multiples of a power of ten: short to write down, and no point is further away than the
+        extent.
+    """
+    low, high = tin.points.min(axis=0), tin.points.max(axis=0)
+    extents = (max(high[0] - low[0], high[1] - low[1]), high[2] - low[2])
+    steps = [_power_of_ten_below(extent) for extent in (extents[0], extents[0], extents[1])]
+    return np.round((low + high) / 2 / steps) * steps
+
+
+def as_exaggeration(exaggeration: float) -> float:
+    """Return a vertical exaggeration as a float, or raise OptionError."""
+    factor = float(exaggeration)
+    if not (math.isfinite(factor) and factor > 0):
+        raise OptionError("exaggeration", exaggeration, allowed="a finite number above 0")
+    return factor
+
+
+def _power_of_ten_below(extent: float) -> float:
+    return 10.0 ** math.floor(math.log10(extent)) if extent > 0 else 1.0
+
+
+def _as_origin(origin: ArrayLike) -> NDArray[np.float64]:
+    shift = np.array(origin, np.float64)
+    if shift.shape != (3,) or not np.isfinite(shift).all():
+        raise OptionError(
+            "origin", origin, allowed="three finite numbers: easting, northing, elevation"
+        )
+    return shift

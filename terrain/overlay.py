@@ -1,0 +1,119 @@
+"""Overlay: flat shapes and words over a 3D picture, in pixels from the lower left."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+__all__ = ["Color", "Overlay"]
+
+Color = tuple[int, int, int]
+"""Red, green and blue, 0 to 255."""
+
+_RESOLUTION = 72
+"""Dots per inch at which VTK's font sizes are pixels."""
+
+
+class Overlay:
+    """Draws over one renderer; lengths are in design pixels, times ``factor``.
+
+    Parameters
+    ----------
+    renderer : pyvista.Renderer
+    factor : float, optional
+        Window pixels for one design pixel; may be set anew before drawing.
+    """
+
+    def __init__(self, renderer: Any, *, factor: float = 1.0) -> None:
+        self._renderer = renderer
+        self.factor = factor
+        self._actors: list[Any] = []
+
+    def clear(self) -> None:
+        """Remove all that was drawn."""
+        for actor in self._actors:
+            self._renderer.RemoveViewProp(actor)
+        self._actors.clear()
+
+    def polygon(self, corners: ArrayLike, color: Color) -> None:
+        """Fill a polygon, (k, 2) corners."""
+        mesh = self._mesh(corners)
+        mesh.faces = [mesh.n_points, *range(mesh.n_points)]
+        self._add(mesh, color)
+
+    def line(self, places: ArrayLike, color: Color, *, width: float = 1.0) -> None:
+        """Draw a polyline through (k, 2) places."""
+        mesh = self._mesh(places)
+        mesh.lines = [mesh.n_points, *range(mesh.n_points)]
+        self._add(mesh, color, width=width)
+
+    def rectangle(
+        self, corner: tuple[float, float], size: tuple[float, float], color: Color
+    ) -> None:
+        """Fill a rectangle, given its lower left corner."""
+        (x, y), (w, h) = corner, size
+        self.polygon([(x, y), (x + w, y), (x + w, y + h), (x, y + h)], color)
+
+    def text(
+        self,
+        place: tuple[float, float],
+        words: str,
+        color: Color,
+        *,
+        size: float,
+        bold: bool = False,
+        align: str = "left",
+    ) -> None:
+        """Write one line, its baseline at ``place``; ``align`` is left, center or right."""
+        from vtkmodules.vtkRenderingCore import vtkTextActor
+
+        actor = vtkTextActor()
+        actor.SetInput(words)
+        style = actor.GetTextProperty()
+        self._set_font(style, size=size, bold=bold)
+        style.SetColor(*(part / 255 for part in color))
+        style.SetJustification(("left", "center", "right").index(align))
+        actor.SetPosition(place[0] * self.factor, place[1] * self.factor)
+        self._keep(actor)
+
+    def text_width(self, words: str, *, size: float, bold: bool = False) -> float:
+        """Return how wide a line would be, design pixels."""
+        from vtkmodules.vtkRenderingCore import vtkTextProperty
+        from vtkmodules.vtkRenderingFreeType import vtkMathTextFreeTypeTextRenderer
+
+        style, box = vtkTextProperty(), [0, 0, 0, 0]
+        self._set_font(style, size=size, bold=bold)
+        vtkMathTextFreeTypeTextRenderer.GetInstance().GetBoundingBox(style, words, box, _RESOLUTION)
+        return (box[1] - box[0] + 1) / self.factor
+
+    def _set_font(self, style: Any, *, size: float, bold: bool) -> None:
+        style.SetFontFamilyToArial()
+        style.SetFontSize(max(1, round(size * self.factor)))
+        style.SetBold(bold)
+
+    def _mesh(self, places: ArrayLike) -> Any:
+        import pyvista as pv
+
+        flat = np.asarray(places, np.float64) * self.factor
+        return pv.PolyData(np.column_stack([flat, np.zeros(len(flat))]))
+
+    def _add(self, mesh: Any, color: Color, *, width: float = 1.0) -> None:
+        from vtkmodules.vtkRenderingCore import vtkActor2D, vtkPolyDataMapper2D
+
+        # A mesh made from points comes with a vertex cell for each, drawn as dots.
+        mesh.verts = np.empty(0, np.int64)
+        mapper = vtkPolyDataMapper2D()
+        mapper.SetInputData(mesh)
+        actor = vtkActor2D()
+        actor.SetMapper(mapper)
+        actor.GetProperty().SetColor(*(part / 255 for part in color))
+        actor.GetProperty().SetLineWidth(width * self.factor)
+        self._keep(actor)
+
+    def _keep(self, actor: Any) -> None:
+        self._actors.append(actor)
+        self._renderer.AddViewProp(actor)

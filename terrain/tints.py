@@ -1,0 +1,73 @@
+"""Hypsometric tints: a colour for each elevation, lighter with every step up."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["lightness", "tints"]
+
+# Rungs of the ramp from low to high: hue (degrees) and chroma in Oklch. Moss green, sage,
+# straw, sand, limestone: no blue, which a reader takes for water, and no rainbow.
+_HUES = (158.0, 138.0, 108.0, 80.0, 70.0)
+_CHROMAS = (0.055, 0.080, 0.085, 0.065, 0.018)
+_LIGHTNESS = (0.52, 0.94)
+
+# Bjoern Ottosson, "A perceptual color space for image processing" (2020): Oklab to cone
+# responses, and cone responses to linear sRGB.
+_OKLAB_TO_CONES = np.array(
+    [
+        [1.0, 0.3963377774, 0.2158037573],
+        [1.0, -0.1055613458, -0.0638541728],
+        [1.0, -0.0894841775, -1.2914855480],
+    ]
+)
+_CONES_TO_LINEAR = np.array(
+    [
+        [4.0767416621, -3.3077115913, 0.2309699292],
+        [-1.2684380046, 2.6097574011, -0.3413193965],
+        [-0.0041960863, -0.7034186147, 1.7076147010],
+    ]
+)
+
+
+def tints(count: int = 256) -> NDArray[np.uint8]:
+    """Return the ramp of hypsometric tints, low to high.
+
+    Parameters
+    ----------
+    count : int, optional
+        Number of colours, at least 2.
+
+    Returns
+    -------
+    (count, 3) uint8 array
+        sRGB. Perceived lightness (Oklab L) rises evenly, so that equal steps of elevation look
+        equal, also in grey and to colour-blind eyes.
+    """
+    position = np.linspace(0.0, 1.0, count)
+    rungs = np.linspace(0.0, 1.0, len(_HUES))
+    hue = np.radians(np.interp(position, rungs, _HUES))
+    chroma = np.interp(position, rungs, _CHROMAS)
+    light = np.interp(position, (0.0, 1.0), _LIGHTNESS)
+    lab = np.column_stack([light, chroma * np.cos(hue), chroma * np.sin(hue)])
+    linear = (lab @ _OKLAB_TO_CONES.T) ** 3 @ _CONES_TO_LINEAR.T
+    return np.round(255 * _gamma(np.clip(linear, 0.0, 1.0))).astype(np.uint8)
+
+
+def lightness(colors: NDArray[np.uint8]) -> NDArray[np.float64]:
+    """Return the perceived lightness (Oklab L, 0 black to 1 white) of (k, 3) sRGB colours."""
+    encoded = colors / 255.0
+    linear = np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
+    cones = np.cbrt(linear @ np.linalg.inv(_CONES_TO_LINEAR).T)
+    light: NDArray[np.float64] = (cones @ np.linalg.inv(_OKLAB_TO_CONES).T)[:, 0]
+    return light
+
+
+def _gamma(linear: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Encode linear light as sRGB."""
+    return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
