@@ -381,6 +381,8 @@ def _head(path: Path) -> bytes:
             raise ReadError(f"'{path}' is a folder: name a file in it.", path=path)
         with path.open("rb") as file:
             head = file.read(signatures.HEAD_BYTES)
+    except ReadError:
+        raise
     except FileNotFoundError as error:
         raise ReadError(f"There is no file '{path}'.", path=path) from error
     except PermissionError as error:

@@ -43,7 +43,11 @@ def assert_sentence(code, stdout, stderr, *words):
     assert not stderr.endswith("..\n")
     for word in words:
         assert word in stderr
-    assert not any(name.endswith(".ply") for name in os.listdir())
+    assert not any(path.is_file() for path in Path().glob("*.ply"))
+
+
+def names():
+    return sorted(path.name for path in Path().iterdir())
 
 
 def program(*arguments, **options):
@@ -99,7 +103,13 @@ def test_points_that_make_no_tin(folder, text, words):
 
 def test_duplicates_refused_on_request(folder):
     text = SQUARE + "4,3,3.5\n"
-    assert_sentence(*build(text, "--duplicates", "error"), "3.5")
+    assert_sentence(*build(text, "--duplicates", "error"), "3.5", "rows 2, 4", "counted from 0")
+
+
+def test_rows_at_fault_are_named_by_point_number(folder):
+    rows = ["101,0,0,1,GS", "102,0,4,2,GS", "107,3,4,3,GS", "109,3,0,4,GS", "120,3,4,3.5,GS"]
+    text = "Point,Northing,Easting,Elevation,Description\n" + "\n".join(rows) + "\n"
+    assert_sentence(*build(text, "--duplicates", "error"), "point numbers: 107, 120")
 
 
 def test_duplicates_of_different_height_are_told(folder):
@@ -113,7 +123,7 @@ def test_decimal_commas_are_understood(folder):
     text = "x;y;z\n0,5;0,25;1,125\n4,5;0,25;2,5\n4,5;3,75;3\n"
     assert build(text)[0] == 0
     np.testing.assert_array_equal(
-        ts.read("out.ply").points, [[0.5, 0.25, 1.125], [4.5, 0.25, 2.5], [4.5, 3.75, 3]]
+        ts.io.read("out.ply").points, [[0.5, 0.25, 1.125], [4.5, 0.25, 2.5], [4.5, 3.75, 3]]
     )
 
 
@@ -158,12 +168,11 @@ def test_missing_input_and_folder_as_input(folder, command, name, word):
     ],
 )
 def test_output_that_cannot_be(folder, output, words):
-    (folder / "sub.ply").mkdir()
-    (folder / "in.csv").write_text(SQUARE)
+    Path("sub.ply").mkdir()
+    Path("in.csv").write_text(SQUARE)
     result = CliRunner().invoke(main, ["build", "in.csv", "-o", output])
-    (folder / "sub.ply").rmdir()
     assert_sentence(result.exit_code, result.stdout, result.stderr, *words)
-    assert os.listdir() == ["in.csv"]
+    assert names() == ["in.csv", "sub.ply"]
 
 
 def test_truncated_tin_and_raster(folder):
@@ -196,7 +205,7 @@ def test_failed_write_leaves_the_old_file_and_no_other(folder):
     assert (result.returncode, result.stdout) == (1, "")
     assert result.stderr == "Error: Cannot write 'out.ply': File too large.\n"
     assert Path("out.ply").read_text() == "old"
-    assert sorted(os.listdir()) == ["in.csv", "out.ply"]
+    assert names() == ["in.csv", "out.ply"]
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
@@ -259,13 +268,13 @@ def test_interrupt_while_writing_leaves_nothing(folder):
         text=True,
     )
     deadline = time.monotonic() + 50
-    while len(os.listdir()) < 2 and run.poll() is None and time.monotonic() < deadline:
+    while len(names()) < 2 and run.poll() is None and time.monotonic() < deadline:
         time.sleep(0.01)
     run.send_signal(signal.SIGINT)
     stdout, stderr = run.communicate(timeout=30)
     assert (run.returncode, stdout) == (130, "")
     assert stderr == "Interrupted; nothing was written.\n"
-    assert os.listdir() == ["in.csv"]
+    assert names() == ["in.csv"]
 
 
 def test_interrupt_after_the_first_file_names_it(folder, monkeypatch):

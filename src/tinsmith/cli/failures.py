@@ -21,24 +21,25 @@ __all__ = ["Failure", "failures_as_sentences", "note_written"]
 DEBUG = "TINSMITH_DEBUG"
 """Environment variable that, when set, lets every traceback through."""
 
-_INTERRUPTED = 130
-"""128 + SIGINT, as shells count."""
-
 _WRITTEN = "tinsmith.written"
 
 
 class Failure(click.ClickException):
-    """A sentence on stderr and an exit code."""
+    """A sentence on stderr and exit code 1."""
 
-    def __init__(self, message: str, *, exit_code: int = 1, label: str = "Error: ") -> None:
-        super().__init__(message)
-        self.exit_code = exit_code
-        self._label = label
+    label = "Error: "
 
     def show(self, file: IO[Any] | None = None) -> None:
         """Write the sentence to stderr, or to ``file``."""
-        label = click.style(self._label, fg="red", bold=True) if self._label else ""
+        label = click.style(self.label, fg="red", bold=True) if self.label else ""
         click.echo(f"{label}{self.format_message()}", file=file, err=file is None)
+
+
+class Interruption(Failure):
+    """The user pressed Ctrl-C; the exit code is 128 + SIGINT, as shells count."""
+
+    exit_code = 130
+    label = ""
 
 
 def note_written(path: Path) -> None:
@@ -64,10 +65,10 @@ def failures_as_sentences(ctx: click.Context) -> Iterator[None]:
             raise _failure(error) from error
 
 
-def _interruption(ctx: click.Context) -> Failure:
+def _interruption(ctx: click.Context) -> Interruption:
     written = ctx.find_root().meta.get(_WRITTEN, [])
     outcome = f"already written: {', '.join(written)}" if written else "nothing was written"
-    return Failure(f"Interrupted; {outcome}.", exit_code=_INTERRUPTED, label="")
+    return Interruption(f"Interrupted; {outcome}.")
 
 
 def _failure(error: Exception) -> Failure:

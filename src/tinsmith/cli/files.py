@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .failures import note_written
+from .failures import Failure, note_written
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -41,11 +41,23 @@ def read_input(path: Path, reading: Reading, console: Console) -> Survey | TIN:
 
 
 def triangulated(survey: Survey, how: Triangulating, console: Console) -> TIN:
-    """Build the TIN of a survey, showing progress."""
-    from ..tin import triangulate
+    """Build the TIN of a survey, showing progress; rows at fault are named by point number too."""
+    from ..tin import PointsError, triangulate
 
-    with console.steps() as steps, steps.step(f"Triangulating {len(survey):,} points"):
-        return triangulate(survey, **asdict(how))
+    try:
+        with console.steps() as steps, steps.step(f"Triangulating {len(survey):,} points"):
+            return triangulate(survey, **asdict(how))
+    except PointsError as error:
+        raise Failure(f"{error}{_row_names(survey, error.rows)}") from error
+
+
+def _row_names(survey: Survey, rows: Sequence[int]) -> str:
+    if not rows:
+        return ""
+    numbers = survey.attributes.get("number")
+    if numbers is None:
+        return " Rows are points of the file, counted from 0."
+    return f" Their point numbers: {', '.join(str(numbers[row]) for row in rows)}."
 
 
 def read_tin(

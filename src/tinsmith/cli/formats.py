@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -45,6 +46,9 @@ def _facts(one: Format) -> dict[str, Any]:
 
 
 def _table(known: tuple[Format, ...]) -> str:
+    from io import StringIO
+    from shutil import get_terminal_size
+
     from rich import box
     from rich.console import Console as RichConsole
     from rich.table import Table
@@ -60,7 +64,8 @@ def _table(known: tuple[Format, ...]) -> str:
             one.description + (f" (needs tinsmith[{one.extra}])" if one.extra else ""),
             " ".join(one.suffixes),
         )
-    screen = RichConsole()
-    with screen.capture() as captured:
-        screen.print(table, markup=False)
-    return "\n".join(line.rstrip() for line in captured.get().strip("\n").splitlines())
+    text = StringIO()
+    RichConsole(
+        file=text, width=get_terminal_size().columns, force_terminal=sys.stdout.isatty()
+    ).print(table)
+    return "\n".join(line.rstrip() for line in text.getvalue().strip("\n").splitlines())

@@ -37,7 +37,7 @@ class Reading:
 
     crs: str | None = None
     format: str | None = None
-    columns: str | None = None
+    columns: str | dict[str, str | int] | None = None
     delimiter: str | None = None
     decimal: str | None = None
     band: int | None = None
@@ -80,6 +80,23 @@ def _gathered(name: str, factory: type, *options: Decorator) -> Callable[[Functi
     return decorate
 
 
+def _as_columns(
+    ctx: click.Context,  # noqa: ARG001 - click's signature
+    param: click.Parameter,  # noqa: ARG001 - click's signature
+    value: str | None,
+) -> str | dict[str, str | int] | None:
+    """Return roles with the name or number of their columns if there are equals signs."""
+    if value is None or "=" not in value:
+        return value
+    pairs = [pair.partition("=") for pair in value.split(",")]
+    if not all(role.strip() and which.strip() for role, _, which in pairs):
+        raise click.BadParameter(f"'{value}' mixes roles with names: easting=X,northing=Y,...")
+    return {
+        role.strip(): int(which) if which.strip().isdecimal() else which.strip()
+        for role, _, which in pairs
+    }
+
+
 def input_file(name: str) -> Decorator:
     """Return the argument for the file to read."""
     return click.argument(name, type=click.Path(path_type=Path))
@@ -109,7 +126,9 @@ reading_options = _gathered(
     click.option(
         "--columns",
         metavar="LAYOUT",
-        help="Columns of a text file, such as PNEZD, PENZD, XYZ, ENZ, or a list of names.",
+        callback=_as_columns,
+        help="Columns of a text file: letters (PNEZD, PENZD, XYZ, ENZ; - skips one), names in "
+        "their order (x,y,z), or roles (easting=X,northing=Y,elevation=3).",
     ),
     click.option("--delimiter", metavar="TEXT", help="What separates the columns of a text file."),
     click.option(
