@@ -38,6 +38,8 @@ class Survey:
         Name of the file that the points come from.
     skipped : mapping of str to int
         What the reader left out and how often, for example ``{"nodata cells": 12}``.
+    notes : sequence of str
+        What the reader assumed, in sentences.
     """
 
     points: NDArray[np.float64]
@@ -48,6 +50,7 @@ class Survey:
     crs: str | None = None
     source: str | None = None
     skipped: Mapping[str, int] = field(default_factory=dict)
+    notes: Sequence[str] = ()
 
     @property
     def bounds(self) -> Bounds:

@@ -1,0 +1,530 @@
+"""The layout of a table, found by looking at some of its lines."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, field
+from itertools import pairwise
+from statistics import median_low
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .delimited_cells import BLANKS, is_number, is_number_like, split_line
+from .delimited_columns import Columns, columns_by_header, columns_by_word, numbered, role_of
+from .delimited_lines import COMMENT_PREFIXES, decoded
+from .errors import FormatError, ReadError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from .delimited_lines import TextLines
+
+__all__ = ["Layout", "find_layout", "looks_like_table"]
+
+_TOP_LINES = 100
+_SPREAD_LINES = 200
+_DELIMITERS = ("\t", ";", "|", ",", BLANKS)
+_SPOKEN = {
+    "comma": ",",
+    "semicolon": ";",
+    "tab": "\t",
+    "\\t": "\t",
+    "pipe": "|",
+    "space": BLANKS,
+    "spaces": BLANKS,
+    "whitespace": BLANKS,
+}
+_UNIT_WORDS = frozenset(
+    {*("m", "metre", "metres", "meter", "meters", "ft", "feet", "foot", "usft", "mm", "cm", "deg")}
+    | {*("degrees", "text", "unit", "units", "number", "string", "float", "int", "-", "")}
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """How to read the table of a text file.
+
+    Attributes
+    ----------
+    delimiter : str
+        One letter; ``BLANKS`` for runs of spaces and tabs.
+    decimal : str
+        Decimal mark, "." or ",".
+    columns : Columns
+    rows : (n,) int64 array
+        Line numbers (from 0) of the rows.
+    has_text_tail : bool
+        Whether the last column is text that may itself hold the delimiter.
+    text_columns : frozenset of int
+        Columns to be kept as text.
+    skipped : mapping of str to int
+        Lines that are no rows.
+    is_assumed : bool
+        Whether the meaning of the columns is neither told nor named.
+    """
+
+    delimiter: str
+    decimal: str
+    columns: Columns
+    rows: NDArray[np.int64]
+    has_text_tail: bool
+    text_columns: frozenset[int]
+    skipped: Mapping[str, int]
+    is_assumed: bool = False
+
+    @property
+    def count(self) -> int:
+        """Number of columns."""
+        return len(self.columns.names)
+
+
+@dataclass(frozen=True, slots=True)
+class _Wishes:
+    """What the caller says about the layout; None is found by looking."""
+
+    columns: str | Sequence[str] | Mapping[str, str | int] | None = None
+    delimiter: str | None = None
+    decimal: str | None = None
+    comment: str | None = None
+
+
+@dataclass(slots=True)
+class _Top:
+    """What stands above the first row of the table."""
+
+    header: list[str] | None = None
+    n_lines: int = 0
+    announced: int | None = None
+    counts: Counter[str] = field(default_factory=Counter)
+
+
+def find_layout(
+    lines: TextLines,
+    path: Path,
+    *,
+    columns: str | Sequence[str] | Mapping[str, str | int] | None = None,
+    delimiter: str | None = None,
+    decimal: str | None = None,
+    comment: str | None = None,
+) -> Layout:
+    """Find how to read a table.
+
+    Parameters
+    ----------
+    lines : TextLines
+    path : Path
+        For sentences.
+    columns : str, sequence of str, or mapping of str to str or int, optional
+        See :func:`columns_by_word`.
+    delimiter, decimal, comment : str, optional
+        As the caller knows them; found by looking otherwise.
+
+    Raises
+    ------
+    ReadError
+        If no table is there, or its columns cannot be told.
+    FormatError
+        If an option has a value that it cannot have.
+
+    Notes
+    -----
+    Some hundred lines are looked at: the first ones, and others spread over the file.
+
+    1. Lines that are blank or start with a comment prefix are set aside.
+    2. The delimiter is the one that gives the most numbers a line, and the same count of cells.
+    3. The lines above the first row are titles, the header, a line of units, or a point count.
+    4. Columns are found by the caller's word, else by the header, else by content.
+    """
+    wishes = _Wishes(columns, _as_delimiter(delimiter), _as_decimal(decimal), comment)
+    data, skipped = _data_lines(lines, wishes)
+    if len(data) == 0:
+        raise ReadError(f"'{path}' holds no points: only blank and comment lines.", path=path)
+    sample = lines.texts(_sampled(data))
+    found = wishes.delimiter or _delimiter_of(sample)
+    if found is None:
+        raise ReadError(
+            f"'{path}' holds no table of points: no delimiter (comma, semicolon, tab, pipe, spaces)"
+            f" gives three columns of numbers; its first line is '{sample[0][:60]}'.",
+            path=path,
+        )
+    data, skipped = _without_fillers(lines, data, skipped, found, wishes)
+    cells = [split_line(text, found) for text in lines.texts(_sampled(data))]
+    mark = wishes.decimal or _decimal_of(cells, found)
+    try:
+        return _table_layout(lines, data, skipped, cells, (found, mark), wishes)
+    except ReadError as error:
+        raise ReadError(f"'{path}': {error}", path=path, lines=error.lines) from None
+
+
+def _table_layout(
+    lines: TextLines,
+    data: NDArray[np.int64],
+    skipped: Counter[str],
+    cells: list[list[str]],
+    marks: tuple[str, str],
+    wishes: _Wishes,
+) -> Layout:
+    delimiter, decimal = marks
+    count, has_text_tail = _column_count(cells, delimiter, decimal, wishes)
+    top = _top(cells[:_TOP_LINES], count, decimal)
+    rows = data[top.n_lines :]
+    if len(rows) == 0:
+        raise ReadError("there is no row of numbers below the header.")
+    if top.announced not in (None, len(rows)):
+        raise ReadError(
+            f"the first line announces {top.announced} points, but {len(rows)} rows follow: "
+            "the file may be truncated."
+        )
+    header = top.header or _header_in_comment(lines, int(rows[0]), delimiter, count)
+    body = [row for row in cells[top.n_lines :] if len(row) == count]
+    named = _fitted_header(header, count, body, wishes)
+    columns, is_assumed = _columns(named, body, count, (delimiter, decimal), wishes)
+    return Layout(
+        delimiter=delimiter,
+        decimal=decimal,
+        columns=columns,
+        rows=rows,
+        has_text_tail=has_text_tail,
+        text_columns=_text_columns(columns, body, decimal),
+        skipped={what: many for what, many in (skipped + top.counts).items() if many},
+        is_assumed=is_assumed,
+    )
+
+
+def looks_like_table(head: bytes) -> bool:
+    """Whether the first bytes of a file are delimited rows with three numbers or more."""
+    text = decoded(head)
+    if text is None:
+        return False
+    stripped = (line.strip() for line in text.split("\n")[:_TOP_LINES])
+    sample = [line for line in stripped if line and not line.startswith(COMMENT_PREFIXES)]
+    delimiter = _delimiter_of(sample) if sample else None
+    if delimiter is None:
+        return False
+    numbers = [_count_numbers(split_line(line, delimiter), delimiter) for line in sample]
+    return 2 * sum(number >= 3 for number in numbers) >= len(numbers)
+
+
+# ------------------------------------------------------------------ lines
+
+
+def _data_lines(lines: TextLines, wishes: _Wishes) -> tuple[NDArray[np.int64], Counter[str]]:
+    """Set blank and comment lines aside; ``;`` is judged when the delimiter is known."""
+    is_blank = lines.is_blank
+    is_comment = np.zeros(len(lines), np.bool_)
+    prefixes = COMMENT_PREFIXES if wishes.comment is None else (wishes.comment,)
+    for prefix in prefixes:
+        if prefix and not (wishes.comment is None and prefix == ";"):
+            is_comment |= lines.starts_with(prefix)
+    data = np.flatnonzero(~is_blank & ~is_comment)
+    if len(data) == 0 and wishes.comment is None:
+        is_comment[:] = False
+        data = np.flatnonzero(~is_blank)
+    counts = {"blank lines": int(is_blank.sum()), "comment lines": int(is_comment.sum())}
+    return data, Counter(counts)
+
+
+def _without_fillers(
+    lines: TextLines,
+    data: NDArray[np.int64],
+    skipped: Counter[str],
+    delimiter: str,
+    wishes: _Wishes,
+) -> tuple[NDArray[np.int64], Counter[str]]:
+    """Set aside rows of nothing but delimiters, and comments that start with a semicolon."""
+    if delimiter != BLANKS:
+        starters = data[lines.starts_with(delimiter)[data]]
+        fillers = [i for i in starters if not lines.text(i).strip(f"{delimiter} \t")]
+        data = np.setdiff1d(data, fillers)
+        skipped = skipped + Counter({"blank lines": len(fillers)})
+    if wishes.comment is None and delimiter != ";":
+        is_comment = lines.starts_with(";")[data]
+        if not is_comment.all():
+            data = data[~is_comment]
+            skipped = skipped + Counter({"comment lines": int(is_comment.sum())})
+    return data, skipped
+
+
+def _sampled(data: NDArray[np.int64]) -> list[int]:
+    top, rest = data[:_TOP_LINES], data[_TOP_LINES:]
+    spread = rest[:: max(1, len(rest) // _SPREAD_LINES)]
+    return [*top.tolist(), *spread.tolist()]
+
+
+# ------------------------------------------------------------------ marks
+
+
+def _as_delimiter(word: str | None) -> str | None:
+    if word is None:
+        return None
+    delimiter = _SPOKEN.get(word.strip().lower(), word) if word != BLANKS else word
+    if len(delimiter) != 1 or delimiter.isalnum() or delimiter in '"\n\r.+-' or delimiter > "~":
+        raise FormatError(
+            f"Invalid delimiter '{word}': one letter such as ',' or one of {', '.join(_SPOKEN)}.",
+            known=tuple(_SPOKEN),
+        )
+    return delimiter
+
+
+def _as_decimal(word: str | None) -> str | None:
+    if word not in (None, ".", ","):
+        raise FormatError(
+            f"Invalid decimal mark '{word}': '.' or ',' is allowed.", known=(".", ",")
+        )
+    return word
+
+
+def _count_numbers(cells: Sequence[str], delimiter: str) -> int:
+    """Count the cells that are numbers with either decimal mark, or stand in place of one."""
+    marks = "." if delimiter == "," else ".,"
+    return sum(bool(cell) and any(is_number_like(cell, mark) for mark in marks) for cell in cells)
+
+
+def _delimiter_of(sample: Sequence[str]) -> str | None:
+    """Choose the delimiter that gives the most numbers and the most even rows."""
+    scores = {delimiter: _delimiter_score(sample, delimiter) for delimiter in _DELIMITERS}
+    best = max(scores, key=scores.__getitem__)
+    return best if scores[best] > (0, 0.0, 0) else None
+
+
+def _delimiter_score(sample: Sequence[str], delimiter: str) -> tuple[int, float, int]:
+    rows = [split_line(line, delimiter) for line in sample]
+    count, times = Counter(map(len, rows)).most_common(1)[0]
+    numbers = max(
+        median_low(_count_numbers(row, delimiter) for row in rows),
+        max(3 * (columns_by_header(row, strict=False) is not None) for row in rows[:_TOP_LINES]),
+    )
+    if numbers < 2 or max(map(len, rows)) < 3:
+        return 0, 0.0, 0
+    return min(numbers, 3), times / len(rows), count
+
+
+def _decimal_of(rows: Iterable[Sequence[str]], delimiter: str) -> str:
+    if delimiter == ",":
+        return "."
+    cells = [cell for row in rows for cell in row]
+    commas = sum("," in cell and is_number(cell, ",") for cell in cells)
+    points = sum("." in cell and is_number(cell, ".") for cell in cells)
+    return "," if commas > points else "."
+
+
+# ------------------------------------------------------------------ rows
+
+
+def _column_count(
+    rows: Sequence[Sequence[str]], delimiter: str, decimal: str, wishes: _Wishes
+) -> tuple[int, bool]:
+    """Return the number of columns, and whether the last is text that may hold blanks."""
+    body = [row for row in rows if sum(is_number(cell, decimal) for cell in row) >= 2] or rows
+    count = Counter(map(len, body)).most_common(1)[0][0]
+    if delimiter != BLANKS:
+        return count, False
+    told = _told_count(rows, wishes)
+    if told:
+        return told, True
+    tails = Counter(_text_tail(row, decimal) for row in body)
+    tail = tails.most_common(1)[0][0]
+    return (count, False) if tail is None else (tail + 1, True)
+
+
+def _told_count(rows: Sequence[Sequence[str]], wishes: _Wishes) -> int | None:
+    """Return the number of columns if caller or header say that the last is a description."""
+    if isinstance(wishes.columns, str) and wishes.columns.upper().endswith("D"):
+        given = wishes.columns
+        return len(given.split(",")) if "," in given else len(given)
+    for row in rows[:_TOP_LINES]:
+        known = columns_by_header(row, strict=False)
+        if known is not None and known.roles.get("description") == len(row) - 1:
+            return len(row)
+    return None
+
+
+def _text_tail(row: Sequence[str], decimal: str) -> int | None:
+    """Return where, behind the coordinates, nothing but text follows."""
+    texts = [not is_number_like(cell, decimal) for cell in row]
+    first = next((i for i in range(3, len(row)) if texts[i]), None)
+    return first if first is not None and texts[first] and not _resumes(texts, first) else None
+
+
+def _resumes(texts: Sequence[bool], first: int) -> bool:
+    """Whether the row ends in numbers behind a single word, so that the word is a column."""
+    return len(texts) - first > 2 and not any(texts[first + 1 :])
+
+
+def _top(rows: Sequence[Sequence[str]], count: int, decimal: str) -> _Top:
+    """Walk down to the first row of the table."""
+    top = _Top()
+    is_known = False
+    for row in rows:
+        kind = _kind(row, count, decimal, is_known)
+        if kind == "row":
+            break
+        if kind == "point count":
+            top.announced = int(row[0])
+        if kind == "header lines" and not is_known:
+            is_known = columns_by_header(row, strict=False) is not None
+            top.header = list(row)
+        top.counts[kind] += 1
+        top.n_lines += 1
+    return top
+
+
+def _kind(row: Sequence[str], count: int, decimal: str, is_header_known: bool) -> str:
+    """Tell what a line above the first row is, or that it is the first row."""
+    numbers = sum(is_number(cell, decimal) for cell in row)
+    if is_header_known:
+        is_units = all(cell.strip("()[]").lower() in _UNIT_WORDS for cell in row)
+        return "header lines" if is_units and numbers == 0 else "row"
+    if columns_by_header(row, strict=False) is not None:
+        return "header lines"
+    if len(row) == 1 and count > 1 and row[0].isdecimal():
+        return "point count"
+    if abs(len(row) - count) <= 1 and not any(
+        is_number_like(cell, decimal) for cell in row if cell
+    ):
+        return "header lines" if len(row) > 1 else "title lines"
+    if len(row) != count and numbers < 2 and not is_number_like(row[0], decimal):
+        return "title lines"
+    return "row"
+
+
+def _header_in_comment(
+    lines: TextLines, first_row: int, delimiter: str, count: int
+) -> list[str] | None:
+    """Return the names in the comment line right above the table, if it is a header."""
+    if first_row == 0:
+        return None
+    above = lines.text(first_row - 1).strip()
+    for prefix in ("", *COMMENT_PREFIXES):
+        if above.startswith(prefix):
+            names = split_line(above.removeprefix(prefix), delimiter)
+            if len(names) == count and columns_by_header(names, strict=False) is not None:
+                return names
+    return None
+
+
+# ------------------------------------------------------------------ columns
+
+
+def _fitted_header(
+    header: list[str] | None, count: int, body: Sequence[Sequence[str]], wishes: _Wishes
+) -> list[str]:
+    """Return one name a column; a delimiter at the end of rows or header makes no column."""
+    if header is None or len(header) == count:
+        return header or []
+    if len(header) == count - 1 and not any(row[-1] for row in body):
+        return [*header, ""]
+    if len(header) == count + 1 and not header[-1]:
+        return header[:-1]
+    if wishes.columns is not None and not isinstance(wishes.columns, dict):
+        return []
+    raise ReadError(
+        f"the header names {len(header)} columns ({', '.join(header)}), but rows have {count}: "
+        "say with the option columns what they are, and check delimiter and decimal mark."
+    )
+
+
+def _columns(
+    header: list[str],
+    body: Sequence[Sequence[str]],
+    count: int,
+    marks: tuple[str, str],
+    wishes: _Wishes,
+) -> tuple[Columns, bool]:
+    """Return the columns, and whether their meaning is an assumption."""
+    if wishes.columns is not None:
+        return columns_by_word(wishes.columns, header, count), False
+    if not header:
+        _require_no_split_decimals(body, marks, wishes)
+        return _columns_by_content(body, count, marks[1]), True
+    columns = columns_by_header(header)
+    if columns is None:
+        found = [f"{role_of(name)} '{name}'" for name in header if role_of(name)]
+        raise ReadError(
+            f"the header ({', '.join(header)}) does not name easting, northing and elevation "
+            f"(known: {', '.join(found) or 'none of it'}): say with the option columns which "
+            "columns they are."
+        )
+    return columns, False
+
+
+def _columns_by_content(body: Sequence[Sequence[str]], count: int, decimal: str) -> Columns:
+    """Tell the columns by what is in them: PNEZD, PNEZ, or XYZ and more."""
+    is_text = [
+        2 * sum(not is_number_like(row[i], decimal) for row in body) > len(body)
+        for i in range(count)
+    ]
+    if count < 3 or sum(not text for text in is_text) < 3:
+        raise ReadError(
+            f"its {count} columns do not hold three of numbers: easting, northing and elevation "
+            "are needed."
+        )
+    tail = next((i for i in range(3, count) if is_text[i]), None)
+    if count >= 4 and not any(is_text[1:4]) and _is_numbered(body, is_text, tail, decimal):
+        roles = {"number": 0, "northing": 1, "easting": 2, "elevation": 3}
+    elif not any(is_text[:3]):
+        roles = {"easting": 0, "northing": 1, "elevation": 2}
+    else:
+        raise ReadError(
+            "it has no header, and its columns are not those of a known layout: say with the "
+            'option columns what they are, for example "PNEZD".'
+        )
+    description = next((i for i in range(max(roles.values()) + 1, count) if is_text[i]), None)
+    if description is not None:
+        roles["description"] = description
+    names = {column: role for role, column in roles.items() if role in ("number", "description")}
+    return Columns(numbered([names.get(i, "") for i in range(count)], count), roles)
+
+
+def _is_numbered(
+    body: Sequence[Sequence[str]], is_text: Sequence[bool], tail: int | None, decimal: str
+) -> bool:
+    """Whether the first column is point numbers: names, or whole numbers that ascend."""
+    if is_text[0]:
+        return True
+    first = [row[0] for row in body]
+    if not all(cell.isdecimal() for cell in first):
+        return False
+    numbers = [int(cell) for cell in first]
+    if any(a >= b for a, b in pairwise(numbers)):
+        return False
+    if tail == 4 or any(decimal in cell for row in body for cell in row[1:4]):
+        return True
+    raise ReadError(
+        "it has no header, and its first column may be point numbers or eastings: say with the "
+        'option columns what they are, for example "PNEZ" or "XYZ".'
+    )
+
+
+def _require_no_split_decimals(
+    body: Sequence[Sequence[str]], marks: tuple[str, str], wishes: _Wishes
+) -> None:
+    """Refuse rows that may be decimal commas split at a comma: 4,25,7,50 for 4.25 and 7.50."""
+    if marks[0] != "," or wishes.decimal is not None or not body:
+        return
+    start = len(body[0]) - 6
+    if start not in (0, 1) or not all(
+        cell.lstrip("+-").isdecimal() for row in body for cell in row
+    ):
+        return
+    widths = [{len(row[start + i]) for row in body} for i in (1, 3, 5)]
+    if all(len(width) == 1 for width in widths) and widths[0] == widths[1] == widths[2]:
+        raise ReadError(
+            "its commas may be delimiters or decimal marks: say with the option columns what the "
+            "columns are, or write the table with another delimiter."
+        )
+
+
+def _text_columns(columns: Columns, body: Sequence[Sequence[str]], decimal: str) -> frozenset[int]:
+    """Return description, point numbers with leading zeros, and other columns of text."""
+    text = {columns.roles["description"]} if "description" in columns.roles else set()
+    for i in range(len(columns.names)):
+        cells = [row[i] for row in body]
+        padded = any(len(cell) > 1 and cell[0] == "0" and cell.isdecimal() for cell in cells)
+        if padded or any(cell and not is_number_like(cell, decimal) for cell in cells):
+            text.add(i)
+    return frozenset(text - set(columns.coordinates))
