@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import resource
 import signal
 import subprocess
@@ -71,7 +72,7 @@ def program(*arguments, **options):
         ("x,y,z\n0,0,1\n4,0,2\n4,inf,3\n0,3,4\n", ["line 4"]),
         ("x,y,z\n0,0,1\n-Infinity,0,2\n4,1,3\n0,3,4\n", ["line 3"]),
         ("", ["empty"]),
-        ("x,y,z\n", ["point"]),
+        ("x,y,z\n", ["no row"]),
         ("x,y,z\n0,0,1\n4,0,2\n", ["2 points", "three"]),
         ("x,y,z\n0,0,1\n1,1,2\n2,2,3\n3,3,4\n", ["collinear"]),
         ("x,y,z\n5,5,1\n5,5,2\n5,5,3\n", ["one place"]),
@@ -128,7 +129,22 @@ def test_decimal_commas_are_understood(folder):
 
 
 def test_columns_that_the_file_does_not_have(folder):
-    assert_sentence(*build(SQUARE, "--columns", "x,y,height"), "height")
+    wanted = "easting=x,northing=y,elevation=depth"
+    assert_sentence(*build(SQUARE, "--columns", wanted), "depth", "x, y, z")
+    assert_sentence(*build(SQUARE, "--columns", "PENZD"), "5 columns")
+
+
+def test_columns_by_role_take_names_and_numbers(folder):
+    assert build(SQUARE, "--columns", "easting=2,northing=x,elevation=z")[0] == 0
+    np.testing.assert_array_equal(ts.io.read("out.ply").bounds.height, 4.0)
+
+
+def test_assumed_layout_is_told(folder):
+    code, _, stderr = build("1,0,0,5,GS\n2,4,0,6,GS\n3,4,3,7,MH\n")
+    assert code == 0
+    assert re.search(
+        r"^Note +No header: the columns are taken as number, northing", stderr, re.MULTILINE
+    )
 
 
 def test_unknown_crs(folder):
@@ -243,6 +259,7 @@ def test_closed_pipe_is_quiet(folder):
         ["build", "in.csv", "-o", "a.ply", "--kind", "hull"],
         ["build", "in.csv", "-o", "a.ply", "--duplicates", "most"],
         ["build", "in.csv", "-o", "a.ply", "--snap", "wide"],
+        ["build", "in.csv", "-o", "a.ply", "--columns", "easting=x,northing"],
         ["check", "in.csv", "--level", "4"],
     ],
 )
@@ -266,6 +283,7 @@ def test_interrupt_while_writing_leaves_nothing(folder):
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
     deadline = time.monotonic() + 50
     while len(names()) < 2 and run.poll() is None and time.monotonic() < deadline:

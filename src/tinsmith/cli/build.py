@@ -96,12 +96,12 @@ def _write_text(path: Path, text: str) -> None:
 def _fields(
     points: Path, survey: Survey, tin: TIN, outputs: list[Output], seconds: float
 ) -> list[Field]:
-    from .facts import crs_field, extent_fields, file_size, merge_field, skipped_field
+    from .facts import crs_field, extent_fields, file_size, merge_field, reading_fields
 
     sizes = "\n".join(f"{one.path} ({file_size(one.path)})" for one in outputs)
     return [
         ("Points", f"{len(survey):,} from {points}"),
-        *skipped_field(survey.skipped),
+        *reading_fields(survey),
         *merge_field(tin.report, survey),
         ("TIN", f"{len(tin.points):,} vertices, {len(tin.triangles):,} triangles"),
         *extent_fields(tin.points, tin.crs),

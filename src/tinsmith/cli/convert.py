@@ -42,14 +42,16 @@ def convert(
     Example:
       tinsmith convert sample_data/site_survey.csv -o site.xyz
     """  # noqa: D301 - click reads the control character
-    from .facts import file_size
+    from ..tin import Survey
+    from .facts import file_size, reading_fields
     from .files import plan_outputs, read_input, write_outputs
 
     planned = plan_outputs(outputs, writing, source=file)
     found = read_input(file, reading, console)
     write_outputs(found, planned, console)
     sizes = "\n".join(f"{one.path} ({file_size(one.path)})" for one in planned)
-    console.summarise([("Read", f"{_what(found)} from {file}"), ("Written", sizes)])
+    notes = reading_fields(found) if isinstance(found, Survey) else []
+    console.summarise([("Read", f"{_what(found)} from {file}"), *notes, ("Written", sizes)])
     if console.as_json:
         console.emit(plain({"input": str(file), "outputs": [str(one.path) for one in planned]}))
 

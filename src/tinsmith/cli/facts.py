@@ -12,7 +12,6 @@ from ..terrain import slope
 from ..tin import TIN, Bounds, Survey
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -25,14 +24,17 @@ __all__ = [
     "extent_fields",
     "file_size",
     "merge_field",
+    "reading_fields",
     "report_facts",
-    "skipped_field",
     "survey_facts",
     "survey_fields",
     "tin_facts",
     "tin_fields",
     "units",
 ]
+
+_EXPECTED = "header lines"
+"""What every file may have, and nobody needs to be told of."""
 
 
 def survey_facts(survey: Survey) -> dict[str, Any]:
@@ -44,6 +46,7 @@ def survey_facts(survey: Survey) -> dict[str, Any]:
         "attributes": list(survey.attributes),
         "breaklines": len(survey.breaklines),
         "skipped": dict(survey.skipped),
+        "notes": list(survey.notes),
     }
 
 
@@ -127,7 +130,7 @@ def units(crs: str | None) -> tuple[str, str]:
 
 def survey_fields(survey: Survey) -> list[Field]:
     """Describe points."""
-    fields = [("Points", f"{len(survey):,}"), *skipped_field(survey.skipped)]
+    fields = [("Points", f"{len(survey):,}"), *reading_fields(survey)]
     if survey.attributes:
         fields.append(("Columns", ", ".join(survey.attributes)))
     return [*fields, *extent_fields(survey.points, survey.crs), crs_field(survey.crs)]
@@ -175,11 +178,11 @@ def crs_field(crs: str | None) -> Field:
     return ("CRS", f"{crs}, {name}" if len(crs) <= 24 else name)
 
 
-def skipped_field(skipped: Mapping[str, int]) -> list[Field]:
-    """Say what the reader left out, if anything."""
-    if not skipped:
-        return []
-    return [("Skipped", ", ".join(f"{count:,} {what}" for what, count in skipped.items()))]
+def reading_fields(survey: Survey) -> list[Field]:
+    """Say what the reader left out and what it assumed, if anything."""
+    skipped = [f"{count:,} {what}" for what, count in survey.skipped.items() if what != _EXPECTED]
+    fields = [("Skipped", ", ".join(skipped))] if skipped else []
+    return [*fields, *(("Note", note) for note in survey.notes)]
 
 
 def merge_field(report: Report, survey: Survey) -> list[Field]:

@@ -36,6 +36,7 @@ class Reading:
     """How the input is read; None leaves it to the reader."""
 
     crs: str | None = None
+    source_crs: str | None = None
     format: str | None = None
     columns: str | dict[str, str | int] | None = None
     delimiter: str | None = None
@@ -120,7 +121,10 @@ reading_options = _gathered(
         "--crs",
         metavar="CRS",
         help="Coordinate reference system of points that name none, such as EPSG:32616; "
-        "a raster in another one is reprojected to it.",
+        "points in another one are reprojected to it.",
+    ),
+    click.option(
+        "--source-crs", metavar="CRS", help="CRS that the points are in, if it is not --crs."
     ),
     click.option("--format", metavar="NAME", help="Format of the input, whatever it looks like."),
     click.option(
