@@ -85,7 +85,8 @@ class _Body:
     def picked(self, starts: NDArray[np.int64], type_name: str) -> NDArray[Any]:
         """Return the values that begin at these cells."""
         cells = self.cells[starts[:, None] + np.arange(self.width(type_name))]
-        return cells.view(self.dtype(type_name)).reshape(len(starts))
+        values: NDArray[Any] = cells.view(self.dtype(type_name)).reshape(len(starts))
+        return values
 
     def block(
         self, start: int, stride: int, shape: tuple[int, int], type_name: str

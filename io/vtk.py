@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from contextlib import contextmanager
+from importlib import import_module
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -81,26 +82,37 @@ class _Faces(NamedTuple):
 
 def _mesh(path: Path) -> Any:
     pv = extras.pyvista("Reading VTK files")
-    from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
-
+    readers = {
+        b"PolyData": "vtkXMLPolyDataReader",
+        b"UnstructuredGrid": "vtkXMLUnstructuredGridReader",
+    }
     content = file_content(path)
     if b"</VTKFile>" not in content[-200:]:
         raise ReadError(f"'{path}' is no whole VTK XML file: '</VTKFile>' is missing.", path=path)
     _require_likely_counts(content, path)
     kind = re.search(rb'<VTKFile\b[^>]*\btype="(\w+)"', content[:2000])
-    readers = {b"PolyData": vtkXMLPolyDataReader, b"UnstructuredGrid": vtkXMLUnstructuredGridReader}
     if kind is None or kind[1] not in readers:
         found = "of no type" if kind is None else f"of type {kind[1].decode()}"
         raise ReadError(
             f"'{path}' is a VTK file {found}: PolyData and UnstructuredGrid can be read.", path=path
         )
-    reader = readers[kind[1]]()
+    reader = _vtk_class(readers[kind[1]])()
     reader.SetFileName(str(path))
     with _errors_caught(pv) as errors:
         reader.Update()
     if errors or reader.GetErrorCode():
         raise ReadError(f"'{path}' is a damaged VTK XML file.", path=path)
     return pv.wrap(reader.GetOutput())
+
+
+def _vtk_class(name: str) -> Any:
+    return getattr(import_module("vtkmodules.vtkIOXML"), name)
+
+
+def _whole(array: Any) -> NDArray[np.int64]:
+    """Return a VTK array of numbers of points or cells."""
+    numbers: NDArray[np.int64] = import_module("pyvista").convert_array(array).astype(np.int64)
+    return numbers
 
 
 @contextmanager
@@ -155,7 +167,6 @@ def _text_field(mesh: Any, name: str) -> str | None:
 
 def _faces_of(mesh: Any, path: Path) -> _Faces:
     from pyvista import PolyData
-    from vtkmodules.util.numpy_support import vtk_to_numpy
 
     if isinstance(mesh, PolyData):
         if mesh.n_strips:
@@ -165,15 +176,13 @@ def _faces_of(mesh: Any, path: Path) -> _Faces:
         cells = np.arange(first, first + polys.GetNumberOfCells())
         if len(cells) == 0:
             return _Faces(np.empty(0, np.int64), np.zeros(1, np.int64), cells)
-        offsets = vtk_to_numpy(polys.GetOffsetsArray()).astype(np.int64)
-        corners = vtk_to_numpy(polys.GetConnectivityArray()).astype(np.int64)
+        offsets = _whole(polys.GetOffsetsArray())
+        corners = _whole(polys.GetConnectivityArray())
         return _Faces(corners, offsets, cells)
     return _faces_of_grid(mesh, path)
 
 
 def _faces_of_grid(mesh: Any, path: Path) -> _Faces:
-    from vtkmodules.util.numpy_support import vtk_to_numpy
-
     types = np.asarray(mesh.celltypes)
     odd = ~np.isin(types, list(_NO_FACES | _FACES))
     if odd.any():
@@ -184,12 +193,12 @@ def _faces_of_grid(mesh: Any, path: Path) -> _Faces:
             path=path,
         )
     cells = np.flatnonzero(np.isin(types, list(_FACES)))
-    every = vtk_to_numpy(mesh.GetCells().GetOffsetsArray()).astype(np.int64)
+    every = _whole(mesh.GetCells().GetOffsetsArray())
     starts, lengths = every[cells], np.diff(every)[cells]
     offsets = np.zeros(len(cells) + 1, np.int64)
     np.cumsum(lengths, out=offsets[1:])
     slots = np.repeat(starts - offsets[:-1], lengths) + np.arange(offsets[-1])
-    corners = vtk_to_numpy(mesh.GetCells().GetConnectivityArray()).astype(np.int64)
+    corners = _whole(mesh.GetCells().GetConnectivityArray())
     return _Faces(corners[slots], offsets, cells)
 
 
@@ -214,7 +223,7 @@ def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None 
     surface : TIN
     path : Path
     progress : callable, optional
-        Called with the fraction done.
+        Called with 1.0 at the end.
 
     Raises
     ------
@@ -227,17 +236,14 @@ def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None 
     """
     tin = require_tin(surface, path, format_name="VTK")
     pv = extras.pyvista("Writing VTK files")
-    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWriter
-
-    mesh, writer = _poly_data(tin, pv), vtkXMLPolyDataWriter()
+    mesh, class_name = _poly_data(tin, pv), "vtkXMLPolyDataWriter"
     if path.suffix.lower() == ".vtu":
-        mesh, writer = mesh.cast_to_unstructured_grid(), vtkXMLUnstructuredGridWriter()
+        mesh, class_name = mesh.cast_to_unstructured_grid(), "vtkXMLUnstructuredGridWriter"
+    writer = _vtk_class(class_name)()
     writer.SetInputData(mesh)
     writer.SetHeaderTypeToUInt64()  # arrays beyond 4 GB
     writer.SetByteOrderToLittleEndian()
     writer.SetCompressionLevel(1)  # twice as fast as the default, and 3 % larger
-    if progress is not None:
-        writer.AddObserver("ProgressEvent", lambda caller, _: progress(caller.GetProgress()))
     with replacing_path(path) as beside:
         writer.SetFileName(str(beside))
         with _errors_caught(pv) as errors:
@@ -247,6 +253,9 @@ def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None 
                 f"Cannot write '{path}': VTK could not finish the file; is the disk full?",
                 path=path,
             )
+    # Not while VTK writes: it ends the program when a callback of Python meets Ctrl-C.
+    if progress is not None:
+        progress(1.0)
 
 
 def _poly_data(tin: TIN, pv: Any) -> Any:
