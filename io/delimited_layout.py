@@ -239,7 +239,7 @@ def _without_fillers(
     if delimiter != BLANKS:
         starters = data[lines.starts_with(delimiter)[data]]
         fillers = [i for i in starters if not lines.text(i).strip(f"{delimiter} \t")]
-        data = np.setdiff1d(data, fillers)
+        data = np.delete(data, np.searchsorted(data, np.array(fillers, np.int64)))
         skipped = skipped + Counter({"blank lines": len(fillers)})
     if wishes.comment is None and delimiter != ";":
         is_comment = lines.starts_with(";")[data]

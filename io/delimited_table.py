@@ -115,7 +115,7 @@ def _is_regular(data: bytes, layout: Layout) -> bool:
         return b'"' not in data and _has_even_words(codes, starts, ends, layout.count)
     is_delimiter = codes == ord(layout.delimiter)
     if b'"' in data:
-        is_inside = _quoted(codes, is_delimiter, ends)
+        is_inside = _quoted(codes, ord(layout.delimiter), ends)
         if is_inside is None:
             return False
         is_delimiter &= ~is_inside
@@ -142,7 +142,7 @@ def _has_even_words(
 
 
 def _quoted(
-    codes: NDArray[np.uint8], is_delimiter: NDArray[np.bool_], ends: NDArray[np.int64]
+    codes: NDArray[np.uint8], edge: int, ends: NDArray[np.int64]
 ) -> NDArray[np.bool_] | None:
     """Return which bytes are inside quotes; None if a quote stands where only care can read it.
 
@@ -154,22 +154,10 @@ def _quoted(
     if is_inside[ends - 1].any():
         return None
     places = np.flatnonzero(is_quote)
-    opening, closing = places[0::2], places[1::2]
-    is_edge = is_delimiter | is_quote | (codes == _LINE_FEED)
-    before, behind = opening - 1, closing + 1
-    is_plain = is_edge[before[before >= 0]].all() and is_edge[behind[behind < len(codes)]].all()
-    return is_inside if is_plain and not _touches_text(codes, opening, closing) else None
-
-
-def _touches_text(
-    codes: NDArray[np.uint8], opening: NDArray[np.int64], closing: NDArray[np.int64]
-) -> bool:
-    """Whether a quote that follows another one at once does not belong to the same cell's text."""
-    is_doubled = np.zeros(len(opening), np.bool_)
-    is_doubled[1:] = opening[1:] == closing[:-1] + 1
-    has_quote_before = np.zeros(len(opening), np.bool_)
-    has_quote_before[opening > 0] = codes[opening[opening > 0] - 1] == _QUOTE
-    return bool((has_quote_before & ~is_doubled).any())
+    before, behind = places[0::2] - 1, places[1::2] + 1
+    beside = codes[np.concatenate([before[before >= 0], behind[behind < len(codes)]])]
+    is_plain = (beside == edge) | (beside == _QUOTE) | (beside == _LINE_FEED)
+    return is_inside if is_plain.all() else None
 
 
 def _rewritten(lines: TextLines, layout: Layout, path: Path) -> bytes:

@@ -52,12 +52,12 @@ class WriteError(TinsmithError, OSError):
 
 
 class FormatError(TinsmithError, ValueError):
-    """No format fits, or an option that the format does not have.
+    """No format fits, or an option, or its value, that the format does not have.
 
     Attributes
     ----------
     known : tuple of str
-        The names, suffixes or options that would be accepted.
+        The names, suffixes, options or values that would be accepted; may be empty.
     """
 
     def __init__(self, message: str, *, known: Sequence[str] = ()) -> None:

@@ -15,6 +15,7 @@ from importlib.metadata import entry_points
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..tin import MissingExtraError
 from . import signatures
 from .crs import normalised
 from .errors import FormatError, ReadError
@@ -335,11 +336,12 @@ def _is_table(head: bytes) -> bool:
 
 
 def _gdal_recognises(path: Path) -> bool:
+    from .raster import recognises
+
     try:
-        from .raster import recognises
-    except ImportError:
+        return recognises(path)
+    except MissingExtraError:
         return False
-    return recognises(path)
 
 
 def _with_suffix(suffix: str, action: str) -> Format | None:
@@ -420,6 +422,6 @@ def _require_options(
         return
     there_are = f"its options are {', '.join(allowed)}" if allowed else "it has no options"
     raise FormatError(
-        f"Unknown option '{unknown[0]}' to {action} {chosen.description}: {there_are}.",
+        f"Unknown option '{unknown[0]}' to {action} the format {chosen.name}: {there_are}.",
         known=allowed,
     )

@@ -1,0 +1,334 @@
+"""Elevation rasters of any format that GDAL reads, as points at the pixel centres."""
+
+from __future__ import annotations
+
+import warnings
+from contextlib import contextmanager
+from dataclasses import dataclass
+from numbers import Integral, Real
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..tin import Bounds, MissingExtraError, Survey
+from .crs import as_crs, crs_text
+from .errors import FormatError, ReadError
+from .placing import placed
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+__all__ = ["read", "recognises"]
+
+_STRIP_CELLS = 4_000_000
+"""Cells read at a time, so that memory holds little but the points."""
+
+_COLOURS = ("red", "green", "blue", "palette", "cyan", "magenta", "yellow", "black")
+
+
+@dataclass(frozen=True, slots=True)
+class _Cells:
+    """The cells to read: a window, every how many of its rows and columns, within which bounds."""
+
+    column: int
+    row: int
+    width: int
+    height: int
+    stride: int
+    bounds: Bounds | None = None
+
+    @property
+    def columns(self) -> NDArray[np.int64]:
+        return np.arange(self.column, self.column + self.width, self.stride)
+
+    def rows(self, start: int, stop: int) -> NDArray[np.int64]:
+        """Return the rows wanted among ``start`` to ``stop``."""
+        first = start + (self.row - start) % self.stride
+        return np.arange(first, stop, self.stride)
+
+
+def read(
+    path: Path,
+    *,
+    crs: str | None = None,
+    band: int | None = None,
+    window: Sequence[int] | Bounds | None = None,
+    stride: int = 1,
+) -> Survey:
+    """Read a raster as points, one at the centre of every cell that has an elevation.
+
+    Parameters
+    ----------
+    path : Path
+    crs : str, optional
+        CRS wanted. The points are transformed to it, nothing is resampled. It declares the CRS
+        of a raster that has none.
+    band : int, optional
+        Band to read, from 1; default the first.
+    window : (4,) sequence of int, or Bounds, optional
+        Part to read: column and row of the first cell (from 0), width and height in cells; or
+        bounds in the raster's own CRS, which hold the centres of the cells wanted.
+    stride : int
+        Read every ``stride``-th row and column only.
+
+    Returns
+    -------
+    Survey
+        Rows of the raster from north to south, as stored. ``skipped["nodata cells"]`` counts
+        cells that are nodata, masked, NaN or infinite.
+
+    Raises
+    ------
+    ReadError
+        If GDAL cannot read the file, it is a picture or has no georeference, its CRS is in
+        degrees and no other is wanted, or no cell has an elevation.
+    FormatError
+        If band, window or stride is not one that the raster has.
+    CrsError
+        If the points cannot be transformed.
+    MissingExtraError
+        If rasterio is not installed.
+
+    Notes
+    -----
+    Scale and offset of the band are applied. The raster is read in strips; memory is 48 bytes
+    for each valid cell at most, and a strip.
+    """
+    with _opened(path) as dataset:
+        number = _band(dataset, band, path)
+        _require_elevations(dataset, number, band is not None, path)
+        source = _crs_of(dataset)
+        cells = _cells(dataset, window, stride, path)
+        placed(_middle(dataset), source=source, target=crs, path=path)
+        points, n_nodata = _points(dataset, number, cells, path)
+    if len(points) == 0:
+        raise ReadError(
+            f"'{path}': none of the {n_nodata} cells of band {number} has an elevation, "
+            "all are nodata.",
+            path=path,
+        )
+    points, found = placed(points, source=source, target=crs, path=path)
+    skipped = {"nodata cells": n_nodata} if n_nodata else {}
+    return Survey(points=points, crs=found, source=path.name, skipped=skipped)
+
+
+def recognises(path: Path) -> bool:
+    """Whether GDAL takes a file for a raster.
+
+    Raises
+    ------
+    MissingExtraError
+        If rasterio is not installed.
+    """
+    try:
+        with _opened(path):
+            return True
+    except ReadError:
+        return False
+
+
+# ------------------------------------------------------------------ the dataset
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[Any]:
+    """Open a raster; every fault of GDAL inside the block becomes a ReadError."""
+    try:
+        import rasterio
+        from rasterio.errors import NotGeoreferencedWarning, RasterioError
+    except ImportError as error:
+        raise MissingExtraError("rasterio", extra="raster", purpose="Reading a raster") from error
+    try:
+        with warnings.catch_warnings(), rasterio.Env():
+            warnings.simplefilter("ignore", NotGeoreferencedWarning)
+            with rasterio.open(path) as dataset:
+                yield dataset
+    except RasterioError as error:
+        reason = str(error.__cause__ or error).rstrip(".").replace("\n", " ")
+        raise ReadError(
+            f"'{path}' cannot be read as a raster, it may be damaged or truncated: {reason}.",
+            path=path,
+        ) from error
+
+
+def _band(dataset: Any, band: int | None, path: Path) -> int:
+    if dataset.count == 0:
+        parts = ", ".join(dataset.subdatasets[:5])
+        raise ReadError(
+            f"'{path}' holds no band of its own"
+            + (f" but several rasters ({parts}): extract one of them first." if parts else "."),
+            path=path,
+        )
+    number = 1 if band is None else band
+    if not isinstance(number, Integral) or not 1 <= number <= dataset.count:
+        there_are = "only band 1 is" if dataset.count == 1 else f"bands 1 to {dataset.count} are"
+        raise FormatError(f"Invalid band {band!r}: {there_are} in '{path}'.")
+    return int(number)
+
+
+def _require_elevations(dataset: Any, band: int, is_told: bool, path: Path) -> None:
+    """Refuse pictures, complex numbers and rasters whose place is unknown."""
+    meaning = dataset.colorinterp[band - 1].name
+    if meaning in _COLOURS and not is_told:
+        raise ReadError(
+            f"'{path}' is a picture (band 1 is its {meaning}), not a raster of elevations: name "
+            "the band if one holds them.",
+            path=path,
+        )
+    if dataset.dtypes[band - 1].startswith("complex"):
+        raise ReadError(f"'{path}': band {band} holds complex numbers, no elevations.", path=path)
+    if dataset.transform.is_identity:
+        raise ReadError(
+            f"'{path}' has no georeference, so the coordinates of its cells are unknown: add a "
+            "world file or set the transform with a GIS.",
+            path=path,
+        )
+
+
+def _crs_of(dataset: Any) -> str | None:
+    if not dataset.crs:
+        return None
+    return crs_text(as_crs(dataset.crs.to_wkt()))
+
+
+def _middle(dataset: Any) -> NDArray[np.float64]:
+    x, y = dataset.transform * (dataset.width / 2, dataset.height / 2)
+    return np.array([[x, y, 0.0]])
+
+
+# ------------------------------------------------------------------ which cells
+
+
+def _cells(dataset: Any, window: Sequence[int] | Bounds | None, stride: int, path: Path) -> _Cells:
+    bounds = window if isinstance(window, Bounds) else None
+    if window is None:
+        part = (0, 0, dataset.width, dataset.height)
+    elif bounds is not None:
+        part = _part_of_bounds(dataset, bounds, path)
+    else:
+        part = _part_of_window(dataset, window, path)
+    smaller = min(part[2:])
+    if not isinstance(stride, Integral) or not (1 <= stride < smaller or stride == 1):
+        raise FormatError(
+            f"Invalid stride {stride!r}: a whole number from 1 to {max(1, smaller - 1)} is needed "
+            f"for the {part[2]} columns and {part[3]} rows to read."
+        )
+    return _Cells(*part, int(stride), bounds)
+
+
+def _part_of_window(dataset: Any, window: Sequence[int], path: Path) -> tuple[int, int, int, int]:
+    size = f"the raster has {dataset.width} columns and {dataset.height} rows"
+    try:
+        numbers = tuple(window)
+    except TypeError:
+        numbers = ()
+    if len(numbers) != 4 or not all(isinstance(one, Integral) for one in numbers):
+        raise FormatError(
+            f"Invalid window {window!r}: four whole numbers (first column, first row, width, "
+            f"height) or Bounds are needed; {size}."
+        )
+    column, row, width, height = (int(one) for one in numbers)
+    fits = 0 <= column < column + width <= dataset.width
+    if not (fits and 0 <= row < row + height <= dataset.height):
+        raise FormatError(f"Window {numbers} does not lie in '{path}': {size}.")
+    return column, row, width, height
+
+
+def _part_of_bounds(dataset: Any, bounds: Bounds, path: Path) -> tuple[int, int, int, int]:
+    """Return the cells of the smallest upright window that covers the bounds."""
+    limits = (bounds.xmin, bounds.ymin, bounds.xmax, bounds.ymax)
+    if not all(isinstance(one, Real) and np.isfinite(one) for one in limits):
+        raise FormatError(f"Invalid window {bounds}: four finite numbers are needed.")
+    corners = [(x, y) for x in (bounds.xmin, bounds.xmax) for y in (bounds.ymin, bounds.ymax)]
+    columns, rows = zip(*(~dataset.transform * corner for corner in corners), strict=True)
+    column, row = max(0, int(np.floor(min(columns)))), max(0, int(np.floor(min(rows))))
+    right = min(dataset.width, int(np.ceil(max(columns))))
+    bottom = min(dataset.height, int(np.ceil(max(rows))))
+    if column >= right or row >= bottom or bounds.width < 0 or bounds.height < 0:
+        left, low, east, high = dataset.bounds
+        raise FormatError(
+            f"Window {limits} does not meet '{path}', which spans easting {left:g} to {east:g} "
+            f"and northing {low:g} to {high:g}."
+        )
+    return column, row, right - column, bottom - row
+
+
+# ------------------------------------------------------------------ points
+
+
+def _points(dataset: Any, band: int, cells: _Cells, path: Path) -> tuple[NDArray[np.float64], int]:
+    """Return the points of valid cells, and how many cells had none."""
+    strips: list[NDArray[np.float64]] = []
+    n_nodata = 0
+    height = _strip_height(dataset, cells)
+    for start in range(cells.row, cells.row + cells.height, height):
+        stop = min(start + height, cells.row + cells.height)
+        rows = cells.rows(start, stop)
+        if len(rows):
+            points, missing = _strip(dataset, band, cells, rows)
+            strips.append(points)
+            n_nodata += missing
+    if not any(map(len, strips)) and n_nodata == 0:
+        raise FormatError(f"Window {cells.bounds} holds no cell centre of '{path}'.")
+    return np.concatenate(strips), n_nodata
+
+
+def _strip_height(dataset: Any, cells: _Cells) -> int:
+    """Return a number of rows that are whole blocks of the file, of some million cells."""
+    block = max(1, int(dataset.block_shapes[0][0]))
+    return max(1, _STRIP_CELLS // (block * cells.width)) * block
+
+
+def _strip(
+    dataset: Any, band: int, cells: _Cells, rows: NDArray[np.int64]
+) -> tuple[NDArray[np.float64], int]:
+    from rasterio.windows import Window
+
+    first, last = int(rows[0]), int(rows[-1])
+    window = Window(cells.column, first, cells.width, last - first + 1)
+    taken = (slice(None, None, cells.stride), slice(None, None, cells.stride))
+    values = dataset.read(band, window=window)[taken]
+    has_value = _has_value(dataset, band, window, values, taken)
+    x, y = _centres(dataset, cells.columns, rows)
+    wanted = _within(cells.bounds, x, y)
+    keep = has_value & wanted
+    elevation = values[keep].astype(np.float64)
+    scale, offset = dataset.scales[band - 1], dataset.offsets[band - 1]
+    if (scale, offset) != (1.0, 0.0):
+        elevation = elevation * scale + offset
+    points = np.stack([x[keep], y[keep], elevation], axis=1)
+    return points, int(np.count_nonzero(wanted & ~has_value))
+
+
+def _has_value(
+    dataset: Any, band: int, window: Any, values: NDArray[Any], taken: tuple[slice, slice]
+) -> NDArray[np.bool_]:
+    """Whether cells are valid: not masked, not nodata, finite."""
+    valid: NDArray[np.bool_] = dataset.read_masks(band, window=window)[taken] != 0
+    if values.dtype.kind == "f":
+        valid &= np.isfinite(values)
+    nodata = dataset.nodatavals[band - 1]
+    if nodata is not None and not np.isnan(nodata):
+        valid &= values != nodata
+    return valid
+
+
+def _centres(
+    dataset: Any, columns: NDArray[np.int64], rows: NDArray[np.int64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return easting and northing of the cell centres, (rows, columns) arrays."""
+    a, b, c, d, e, f = dataset.transform[:6]
+    column, row = columns[None, :] + 0.5, rows[:, None] + 0.5
+    return column * a + row * b + c, column * d + row * e + f
+
+
+def _within(
+    bounds: Bounds | None, x: NDArray[np.float64], y: NDArray[np.float64]
+) -> NDArray[np.bool_]:
+    if bounds is None:
+        return np.ones(x.shape, np.bool_)
+    inside: NDArray[np.bool_] = (x >= bounds.xmin) & (x <= bounds.xmax)
+    return inside & (y >= bounds.ymin) & (y <= bounds.ymax)
