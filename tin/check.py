@@ -121,7 +121,8 @@ def check(tin: TIN, *, level: int = 3, points: Survey | ArrayLike | None = None)
     Notes
     -----
     All signs are exact. Time is linear but for one sort of the edges: some 3 seconds for a
-    million vertices.
+    million vertices. Where a constrained boundary is not convex, that distant parts of the
+    surface do not overlap is not proved.
 
     Examples
     --------

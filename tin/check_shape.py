@@ -39,7 +39,7 @@ def check_shape(tin: TIN, found: Findings) -> None:
             "boundary",
             f"The boundary has {len(rings)} rings: one is allowed if it is not constrained.",
         )
-    _check_euler(len(rings), found)
+    _check_euler(rings, is_free, found)
     _check_areas(tin, rings, found)
 
 
@@ -78,16 +78,23 @@ def _flags_on_rim(tin: TIN, start: NDArray[np.int32], end: NDArray[np.int32]) ->
     return flags
 
 
-def _check_euler(n_rings: int, found: Findings) -> None:
-    """Check V - E + F (outer face not counted), which is 2 - rings for a connected surface."""
+def _check_euler(rings: list[NDArray[np.int32]], is_free: bool, found: Findings) -> None:
+    """Check V - E + F + rings, which is 2 for every piece of a surface in the plane.
+
+    The outer face is not counted; a vertex where the boundary touches itself counts each time.
+    A constrained boundary may cut the surface into pieces.
+    """
     counts = found.counts
-    used = counts["vertices"] - sum(p.count for p in found.problems if p.kind == "unused")
-    euler = used - counts["edges"] + counts["triangles"]
-    if euler != 2 - n_rings:
+    unused = sum(problem.count for problem in found.problems if problem.kind == "unused")
+    rim = np.concatenate(rings)
+    touches = len(rim) - len(np.unique(rim))
+    vertices = counts["vertices"] - unused + touches
+    total = vertices - counts["edges"] + counts["triangles"] + len(rings)
+    if total < 2 or total % 2 or (is_free and total > 2):
         found.fail(
             "euler",
-            f"Vertices - edges + triangles is {euler}: a surface in one piece with {n_rings} "
-            f"boundary rings has {2 - n_rings}.",
+            f"Vertices - edges + triangles + boundary rings is {total}: "
+            "a surface in one piece has 2.",
         )
 
 

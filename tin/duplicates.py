@@ -108,7 +108,8 @@ def _refuse(xyz: NDArray[np.float64], rows: NDArray[np.int32], offsets: NDArray[
     heights = ", ".join(f"{z:g}" for z in xyz[group[:SHOWN], 2])
     shown = ", ".join(str(row) for row in group[:SHOWN])
     raise PointsError(
-        f"{surplus} rows repeat the place of another (first: rows {shown} at x {x}, y {y} with "
+        f"{surplus} of {len(xyz)} rows repeat the place of another "
+        f"(first: rows {shown} at x {x}, y {y} with "
         f'elevations {heights}): duplicates="error" allows none.',
         rows=group[:SHOWN],
     )

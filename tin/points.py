@@ -62,11 +62,14 @@ def as_xy(xy: ArrayLike) -> NDArray[np.float64]:
 def _as_floats(values: ArrayLike, what: str) -> NDArray[np.float64]:
     try:
         array = np.asarray(values)
-        if array.dtype.kind in "cmM":
+        if array.dtype.kind not in "biufO":
             raise TypeError
         return np.asarray(array, np.float64)
-    except (TypeError, ValueError):
-        raise PointsError(f"{what} hold values that are no real numbers.") from None
+    except (TypeError, ValueError, OverflowError):
+        raise PointsError(
+            f"{what} are no table of real numbers: rows of equal length are needed, "
+            "without text, complex numbers or dates."
+        ) from None
 
 
 def _require_finite(xyz: NDArray[np.float64]) -> None:

@@ -113,5 +113,5 @@ class Report:
         merged = len(self.merged_rows) - len(self.merged_vertices)
         return (
             f"<Report: {self.n_rows} rows, {self.n_vertices} vertices, "
-            f"{self.n_triangles} triangles, {merged} rows merged away>"
+            f"{self.n_triangles} triangles, {merged} row{'s' * (merged != 1)} merged away>"
         )

@@ -225,7 +225,10 @@ def _read_only(array: NDArray[Scalar]) -> NDArray[Scalar]:
 
 
 def _as_triangles(triangles: ArrayLike, n_vertices: int) -> NDArray[np.int32]:
-    given = np.asarray(triangles)
+    try:
+        given = np.asarray(triangles)
+    except ValueError:
+        raise PointsError("Triangles have rows of unequal length: three integers a row.") from None
     if given.ndim != 2 or given.shape[1] != 3 or len(given) == 0:
         raise PointsError(
             f"Triangles have shape {given.shape}: they must be (m, 3) vertex numbers, m >= 1."
@@ -246,7 +249,10 @@ def _as_triangles(triangles: ArrayLike, n_vertices: int) -> NDArray[np.int32]:
 def _as_flags(constrained: ArrayLike | None, n_triangles: int) -> NDArray[np.bool_]:
     if constrained is None:
         return np.zeros((n_triangles, 3), np.bool_)
-    flags = np.array(constrained, np.bool_)
+    try:
+        flags = np.array(constrained, np.bool_)
+    except ValueError:
+        raise PointsError("Edge flags have rows of unequal length: three flags a row.") from None
     if flags.shape != (n_triangles, 3):
         raise PointsError(
             f"Edge flags have shape {flags.shape}: one row of three a triangle is needed, "
