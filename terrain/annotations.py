@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..tin import Bounds
-from .camera import ground_axes, pixels_per_unit
+from .camera import View, ground_axes, pixels_per_unit
 from .rounding import format_number, round_down, ticks
 from .tints import tints
 
@@ -25,7 +25,7 @@ PAPER: Color = (255, 255, 255)
 MARGIN = 44.0
 _COMPASS_RADIUS = 32.0
 _HEADER = 112.0
-_FOOTER = 128.0
+_FOOTER = 140.0
 _BAR_LEFT = MARGIN + 96.0
 _BAR_WIDTH = 260.0
 _LEGEND_WIDTH = 400.0
@@ -56,8 +56,7 @@ class Caption:
     Attributes
     ----------
     title, subtitle : str
-    exaggeration : str
-    view : str
+    exaggeration : float
     elevations : tuple of float
         Lowest and highest, in ``elevation_unit``.
     elevation_unit, unit : Unit
@@ -66,8 +65,7 @@ class Caption:
 
     title: str
     subtitle: str
-    exaggeration: str
-    view: str
+    exaggeration: float
     elevations: tuple[float, float]
     elevation_unit: Unit
     unit: Unit
@@ -85,10 +83,11 @@ def annotate(overlay: Overlay, sheet: Sheet, caption: Caption, camera: Any) -> N
         In parallel projection.
     """
     overlay.clear()
+    _draw_margins(overlay, sheet)
     _draw_title(overlay, sheet, caption)
     _draw_north_arrow(overlay, camera)
     _draw_scale_bar(overlay, caption.unit, pixels_per_unit(camera, sheet.height))
-    _draw_notes(overlay, caption)
+    _draw_notes(overlay, caption.exaggeration, View.of(camera))
     _draw_legend(overlay, sheet, caption)
 
 
@@ -115,6 +114,13 @@ def scale_bar_length(unit: Unit, pixels: float) -> tuple[float, float, str]:
     if unit.symbol == "m" and length >= 1000:
         return length, length / 1000, "km"
     return length, length, unit.symbol
+
+
+def _draw_margins(overlay: Overlay, sheet: Sheet) -> None:
+    """Keep the paper behind the words free, however far a user zooms into the terrain."""
+    frame = sheet.frame
+    overlay.rectangle((0.0, 0.0), (sheet.width, frame.ymin - 8.0), PAPER)
+    overlay.rectangle((0.0, frame.ymax + 8.0), (sheet.width, sheet.height - frame.ymax), PAPER)
 
 
 def _draw_title(overlay: Overlay, sheet: Sheet, caption: Caption) -> None:
@@ -171,10 +177,17 @@ def _draw_scale_bar(overlay: Overlay, unit: Unit, pixels: float) -> None:
     overlay.text((left, 38.0), "true from left to right", GREY, size=14)
 
 
-def _draw_notes(overlay: Overlay, caption: Caption) -> None:
+def _draw_notes(overlay: Overlay, exaggeration: float, view: View) -> None:
     left = _BAR_LEFT + _BAR_WIDTH + 100.0
-    overlay.text((left, 62.0), caption.exaggeration, INK, size=17)
-    overlay.text((left, 38.0), caption.view, GREY, size=14)
+    overlay.text((left, 62.0), _exaggeration_words(exaggeration, view), INK, size=17)
+    overlay.text((left, 38.0), view.caption, GREY, size=14)
+
+
+def _exaggeration_words(factor: float, view: View) -> str:
+    """Say how much heights are exaggerated; from above only the hillshade shows it."""
+    what = "Hillshade with vertical" if view.is_map else "Vertical"
+    true = " (true to scale)" if factor == 1 else ""
+    return f"{what} exaggeration {factor:g}\N{MULTIPLICATION SIGN}{true}"
 
 
 def _draw_legend(overlay: Overlay, sheet: Sheet, caption: Caption) -> None:
@@ -182,10 +195,10 @@ def _draw_legend(overlay: Overlay, sheet: Sheet, caption: Caption) -> None:
     symbol = caption.elevation_unit.symbol
     name = f"Elevation ({symbol})" if symbol else "Elevation"
     overlay.text((left, bottom + height + 8.0), name, INK, size=15)
-    colors = [tuple(int(part) for part in color) for color in tints(100)]
+    colors = tints(100).tolist()
     step = _LEGEND_WIDTH / len(colors)
-    for k, color in enumerate(colors):
-        overlay.rectangle((left + k * step, bottom), (step + 0.5, height), color)
+    for k, (red, green, blue) in enumerate(colors):
+        overlay.rectangle((left + k * step, bottom), (step + 0.5, height), (red, green, blue))
     _draw_legend_ticks(overlay, caption.elevations, (left, bottom))
 
 

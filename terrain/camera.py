@@ -15,6 +15,28 @@ if TYPE_CHECKING:
 
 __all__ = ["VIEWS", "View", "aim", "ground_axes", "pixels_per_unit"]
 
+_OVERHEAD = 89.5
+"""Height of the viewer, degrees, from which on a view is a map."""
+
+_POINTS = (
+    "north",
+    "north-northeast",
+    "northeast",
+    "east-northeast",
+    "east",
+    "east-southeast",
+    "southeast",
+    "south-southeast",
+    "south",
+    "south-southwest",
+    "southwest",
+    "west-southwest",
+    "west",
+    "west-northwest",
+    "northwest",
+    "north-northwest",
+)
+
 
 @dataclass(frozen=True, slots=True)
 class View:
@@ -26,12 +48,39 @@ class View:
         Where the viewer stands, degrees clockwise from north.
     height : float
         Of the viewer above the horizon, degrees.
-    caption : str
     """
 
     azimuth: float
     height: float
-    caption: str
+
+    @classmethod
+    def of(cls, camera: Any) -> View:
+        """Return the direction from which a camera looks now."""
+        _, up, toward = _axes(camera)
+        height = math.degrees(math.asin(min(1.0, max(-1.0, toward[2]))))
+        # From straight above, the foot of the picture is where the viewer stands.
+        east, north = -up[:2] if height > _OVERHEAD else toward[:2]
+        return cls(math.degrees(math.atan2(east, north)) % 360.0, height)
+
+    @property
+    def is_map(self) -> bool:
+        """Whether this is a view from straight above."""
+        return self.height > _OVERHEAD
+
+    @property
+    def caption(self) -> str:
+        """The view in words.
+
+        Examples
+        --------
+        >>> View(azimuth=88.0, height=20.0).caption
+        'Parallel view from the east, 20° above the horizon'
+        """
+        if self.is_map:
+            return "Map view, north up" if abs(self.azimuth - 180.0) < 0.5 else "Map view"
+        point = _POINTS[round(self.azimuth / 22.5) % 16]
+        side = "below" if self.height < -0.5 else "above"
+        return f"Parallel view from the {point}, {abs(self.height):.0f}° {side} the horizon"
 
     @property
     def axes(self) -> NDArray[np.float64]:
@@ -47,10 +96,7 @@ class View:
         )
 
 
-VIEWS = {
-    "oblique": View(202.5, 35.0, "Parallel view from the south-southwest, 35° above the horizon"),
-    "top": View(180.0, 90.0, "Map view, north up"),
-}
+VIEWS = {"oblique": View(202.5, 35.0), "top": View(180.0, 90.0)}
 
 
 def aim(
@@ -94,9 +140,13 @@ def pixels_per_unit(camera: Any, height: float) -> float:
 
 def ground_axes(camera: Any) -> NDArray[np.float64]:
     """Return where east and north point in the picture, (2, 2) rows, foreshortened."""
+    return _axes(camera)[:2, :2].T
+
+
+def _axes(camera: Any) -> NDArray[np.float64]:
+    """Return a camera's unit vectors to the right, up and towards the viewer, (3, 3) rows."""
     toward = np.subtract(camera.position, camera.focal_point)
     toward /= np.linalg.norm(toward)
     right = np.cross(camera.up, toward)
     right /= np.linalg.norm(right)
-    up = np.cross(toward, right)
-    return np.column_stack([right[:2], up[:2]])
+    return np.array([right, np.cross(toward, right), toward])

@@ -65,7 +65,7 @@ def lift(
     pv = extras.pyvista("Lifting a TIN into 3D")
     shift = default_origin(tin) if origin is None else _as_origin(origin)
     factor = as_exaggeration(exaggeration)
-    mesh = pv.PolyData.from_regular_faces(
+    mesh: pyvista.PolyData = pv.PolyData.from_regular_faces(
         (tin.points - shift) * (1.0, 1.0, factor), np.array(tin.triangles)
     )
     mesh.point_data["elevation"] = tin.points[:, 2].copy()
@@ -94,7 +94,8 @@ def default_origin(tin: TIN) -> NDArray[np.float64]:
     low, high = tin.points.min(axis=0), tin.points.max(axis=0)
     extents = (max(high[0] - low[0], high[1] - low[1]), high[2] - low[2])
     steps = [_power_of_ten_below(extent) for extent in (extents[0], extents[0], extents[1])]
-    return np.round((low + high) / 2 / steps) * steps
+    origin: NDArray[np.float64] = np.round((low + high) / 2 / steps) * steps
+    return origin
 
 
 def as_exaggeration(exaggeration: float) -> float:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from functools import cache
+from importlib.util import find_spec
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,6 +16,12 @@ __all__ = ["Color", "Overlay"]
 
 Color = tuple[int, int, int]
 """Red, green and blue, 0 to 255."""
+
+_LAST_LATIN = "\N{LATIN SMALL LETTER LONG S}"
+"""Last character that VTK's own font is sure to have."""
+
+_FONT_FROM_FILE = 4
+"""VTK_FONT_FILE, which VTK's Python face does not name."""
 
 _RESOLUTION = 72
 """Dots per inch at which VTK's font sizes are pixels."""
@@ -74,7 +83,7 @@ class Overlay:
         actor = vtkTextActor()
         actor.SetInput(words)
         style = actor.GetTextProperty()
-        self._set_font(style, size=size, bold=bold)
+        self._set_font(style, words, size=size, bold=bold)
         style.SetColor(*(part / 255 for part in color))
         style.SetJustification(("left", "center", "right").index(align))
         actor.SetPosition(place[0] * self.factor, place[1] * self.factor)
@@ -86,12 +95,17 @@ class Overlay:
         from vtkmodules.vtkRenderingFreeType import vtkMathTextFreeTypeTextRenderer
 
         style, box = vtkTextProperty(), [0, 0, 0, 0]
-        self._set_font(style, size=size, bold=bold)
+        self._set_font(style, words, size=size, bold=bold)
         vtkMathTextFreeTypeTextRenderer.GetInstance().GetBoundingBox(style, words, box, _RESOLUTION)
         return (box[1] - box[0] + 1) / self.factor
 
-    def _set_font(self, style: Any, *, size: float, bold: bool) -> None:
-        style.SetFontFamilyToArial()
+    def _set_font(self, style: Any, words: str, *, size: float, bold: bool) -> None:
+        wide = _wide_font(bold=bold) if max(words, default="") > _LAST_LATIN else None
+        if wide is None:
+            style.SetFontFamilyToArial()
+        else:
+            style.SetFontFamily(_FONT_FROM_FILE)
+            style.SetFontFile(str(wide))
         style.SetFontSize(max(1, round(size * self.factor)))
         style.SetBold(bold)
 
@@ -117,3 +131,14 @@ class Overlay:
     def _keep(self, actor: Any) -> None:
         self._actors.append(actor)
         self._renderer.AddViewProp(actor)
+
+
+@cache
+def _wide_font(*, bold: bool) -> Path | None:
+    """Find DejaVu Sans, which has more alphabets: matplotlib ships it, and pyvista needs that."""
+    spec = find_spec("matplotlib")
+    if spec is None or spec.origin is None:
+        return None
+    name = "DejaVuSans-Bold.ttf" if bold else "DejaVuSans.ttf"
+    font = Path(spec.origin).parent / "mpl-data" / "fonts" / "ttf" / name
+    return font if font.is_file() else None

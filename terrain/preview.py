@@ -5,8 +5,9 @@ from __future__ import annotations
 import secrets
 from contextlib import contextmanager
 from dataclasses import astuple, dataclass
+from numbers import Integral
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..tin import Bounds
 from . import extras, opengl
@@ -32,13 +33,16 @@ __all__ = ["PICTURE_SUFFIXES", "preview"]
 PICTURE_SUFFIXES = (".png", ".jpg", ".jpeg", ".tif", ".tiff")
 """File name endings of pictures that can be written."""
 
+_PURPOSE = "A preview"
+
 _SUPERSAMPLING = 2
 """Pictures are drawn this many times larger in each direction, then averaged down."""
 
 _DESIGN_SIZE = (1600.0, 1000.0)
 """Picture size for which the annotations are laid out, pixels."""
 
-_SIZE_RANGE = (200, 8000)
+_SIZE_RANGE = (200, 5000)
+_JPEG_QUALITY = 92
 
 
 def preview(
@@ -64,7 +68,7 @@ def preview(
     edges : bool, optional
         Draw the edges of the triangles, and breaklines heavier.
     size : tuple of int, optional
-        Width and height, pixels, 200 to 8000 each.
+        Width and height, pixels, 200 to 5000 each.
     title : str, optional
         Default "Terrain surface".
     view : {"oblique", "top"}, optional
@@ -95,11 +99,11 @@ def preview(
     path = None if output is None else _as_picture_path(output)
     _check_options(size, view)
     factor = None if exaggeration is None else as_exaggeration(exaggeration)
-    extras.pyvista("A preview")
+    extras.pyvista(_PURPOSE)
     (opengl.require_window if path is None else opengl.require_opengl)()
     ground = ground_of(tin)
     factor = choose_exaggeration(tin, ground) if factor is None else factor
-    caption = _caption(tin, ground, factor, title=title or "Terrain surface", view=VIEWS[view])
+    caption = _caption(tin, ground, factor, title or "Terrain surface")
     stage = _Stage(tin, ground, factor, edges, size, caption, VIEWS[view])
     with _plain_vtk():
         if path is None:
@@ -134,10 +138,11 @@ class _Show:
     """
 
     def __init__(self, stage: _Stage, window: tuple[int, int], *, off_screen: bool) -> None:
-        import pyvista as pv
-
+        pv = extras.pyvista(_PURPOSE)
         self.stage = stage
-        self.plotter = pv.Plotter(off_screen=off_screen, window_size=list(window), lighting="none")
+        self.plotter: Any = pv.Plotter(
+            off_screen=off_screen, window_size=list(window), lighting="none"
+        )
         self.plotter.set_background("white")
         points = scene_points(stage.tin, stage.ground, stage.exaggeration)
         self._surface, seen = add_terrain(self.plotter, stage.tin, points, edges=stage.edges)
@@ -191,15 +196,13 @@ def _layout(window: tuple[int, int]) -> tuple[Sheet, float]:
     return Sheet(window[0] / factor, window[1] / factor), factor
 
 
-def _caption(tin: TIN, ground: Ground, factor: float, *, title: str, view: View) -> Caption:
+def _caption(tin: TIN, ground: Ground, factor: float, title: str) -> Caption:
     counts = f"{len(tin.points):,} points, {len(tin.triangles):,} triangles"
-    true = " (true to scale)" if factor == 1 else ""
     low, high = float(tin.points[:, 2].min()), float(tin.points[:, 2].max())
     return Caption(
-        title=title,
-        subtitle=f"{counts}  ·  {ground.crs_name}",
-        exaggeration=f"Vertical exaggeration {factor:g}\N{MULTIPLICATION SIGN}{true}",
-        view=view.caption,
+        title=" ".join(title.split()),
+        subtitle=f"{counts}  \N{MIDDLE DOT}  {ground.crs_name}",
+        exaggeration=factor,
         elevations=(low, high),
         elevation_unit=ground.elevation_unit,
         unit=ground.unit,
@@ -210,7 +213,8 @@ def _check_options(size: tuple[int, int], view: str) -> None:
     if view not in VIEWS:
         raise OptionError("view", view, allowed=" or ".join(map(repr, VIEWS)))
     low, high = _SIZE_RANGE
-    if len(size) != 2 or not all(low <= side <= high for side in size):
+    whole = all(isinstance(side, Integral) for side in size)
+    if len(size) != 2 or not whole or not all(low <= side <= high for side in size):
         raise OptionError("size", size, allowed=f"width and height, {low} to {high} pixels each")
 
 
@@ -230,7 +234,7 @@ def _write(path: Path, picture: Image) -> None:
     """Write a picture whole or not at all."""
     temporary = path.with_name(f".{path.stem}-{secrets.token_hex(4)}{path.suffix}")
     try:
-        picture.save(temporary)
+        picture.save(temporary, quality=_JPEG_QUALITY)
         temporary.replace(path)
     except OSError as error:
         raise RenderError(f"Cannot write '{path}': {error.strerror or error}.") from error

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from . import extras
 from .lift import default_origin
 from .tints import tints
 
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
     from .units import Ground
 
 __all__ = ["add_lights", "add_terrain", "choose_exaggeration", "fade_edges", "scene_points"]
+
+_PURPOSE = "A preview"
 
 RELIEF_SHARE = 0.1
 """Least share of the extent that the relief takes in a picture; below, heights are exaggerated."""
@@ -89,7 +92,7 @@ def add_terrain(
     seen : (k, 3) float64 array
         All points that must be in the picture.
     """
-    import pyvista as pv
+    pv = extras.pyvista(_PURPOSE)
 
     surface = pv.PolyData.from_regular_faces(points, np.array(tin.triangles))
     surface.point_data["elevation"] = tin.points[:, 2].copy()
@@ -123,7 +126,7 @@ def fade_edges(actor: Any, tin: TIN, ground: Ground, pixels: float) -> None:
 
 def add_lights(plotter: Any) -> None:
     """Light the scene from northwest, 45 degrees high, wherever the camera stands."""
-    import pyvista as pv
+    pv = extras.pyvista(_PURPOSE)
 
     plotter.remove_all_lights()
     for azimuth, height, strength in _LIGHTS:
@@ -151,9 +154,14 @@ def _tinting(pv: Any, tin: TIN) -> dict[str, Any]:
 def _vertex_normals(
     points: NDArray[np.float64], triangles: NDArray[np.int32]
 ) -> NDArray[np.float32]:
-    """Average the normals of the triangles at each vertex, larger triangles counting more."""
+    """Average the unit normals of the triangles at each vertex, weighted by area in the plane.
+
+    So the steep slivers along a hull, which have hardly any area in the plane, do not darken
+    their neighbours.
+    """
     first, second, third = (points[triangles[:, k]] for k in range(3))
     faces = np.cross(second - first, third - first)
+    faces *= (faces[:, 2] / np.linalg.norm(faces, axis=1))[:, np.newaxis]
     corners = triangles.ravel()
     sums = [np.bincount(corners, np.repeat(part, 3), len(points)) for part in faces.T]
     normals = np.column_stack(sums)
@@ -177,7 +185,7 @@ def _block(pv: Any, tin: TIN, points: NDArray[np.float64]) -> Any:
 
 
 def _show_edges(plotter: Any, actor: Any, tin: TIN, points: NDArray[np.float64]) -> None:
-    import pyvista as pv
+    pv = extras.pyvista(_PURPOSE)
 
     actor.prop.show_edges = True
     actor.prop.edge_color = _EDGE_COLOR

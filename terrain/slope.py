@@ -35,7 +35,8 @@ def slope(tin: TIN) -> NDArray[np.float64]:
     array([45.])
     """
     east, north, up = normals(tin).T
-    return np.degrees(np.arctan2(np.hypot(east, north), up))
+    degrees: NDArray[np.float64] = np.degrees(np.arctan2(np.hypot(east, north), up))
+    return degrees
 
 
 def aspect(tin: TIN) -> NDArray[np.float64]:
@@ -60,7 +61,7 @@ def aspect(tin: TIN) -> NDArray[np.float64]:
     array([270.])
     """
     east, north, _ = normals(tin).T
-    azimuth = np.degrees(np.arctan2(east, north)) % 360.0
+    azimuth: NDArray[np.float64] = np.degrees(np.arctan2(east, north)) % 360.0
     # A hair west of north rounds up to the full circle, which is north.
     azimuth[azimuth == 360.0] = 0.0
     azimuth[(east == 0.0) & (north == 0.0)] = np.nan
@@ -80,4 +81,5 @@ def normals(tin: TIN) -> NDArray[np.float64]:
         Its horizontal part points downhill; the vertical part is positive.
     """
     corners = [tin.points[tin.triangles[:, k]] for k in range(3)]
-    return np.cross(corners[1] - corners[0], corners[2] - corners[0])
+    upward: NDArray[np.float64] = np.cross(corners[1] - corners[0], corners[2] - corners[0])
+    return upward

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import pyproj
@@ -117,7 +117,7 @@ def _degree_lengths(crs: pyproj.CRS, tin: TIN) -> tuple[float, float]:
     """Return metres per CRS unit along a parallel and along a meridian, mid-TIN."""
     to_radians = float(crs.axis_info[0].unit_conversion_factor)
     latitude = tin.bounds.center[1] * to_radians
-    ellipsoid = crs.ellipsoid
+    ellipsoid: Any = crs.ellipsoid  # every geographic CRS has one
     major, minor = ellipsoid.semi_major_metre, ellipsoid.semi_minor_metre
     squared = 1.0 - (minor / major) ** 2
     bulge = 1.0 - squared * math.sin(latitude) ** 2
