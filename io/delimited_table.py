@@ -83,24 +83,24 @@ def _parsed(data: bytes, delimiter: str, layout: Layout) -> pd.DataFrame:
     numbers = [i for i in range(layout.count) if i not in layout.text_columns]
     # From pandas 3.1 on every number is parsed exactly, and asking for it is deprecated.
     is_exact = tuple(int(part) for part in pd.__version__.split(".")[:2]) >= (3, 1)
-    exactness: dict[str, Any] = {} if is_exact else {"float_precision": "round_trip"}
-    return pd.read_csv(
-        BytesIO(data),
-        sep=r"\s+" if delimiter == BLANKS else delimiter,
-        header=None,
-        names=list(range(layout.count)),
-        index_col=False,
-        dtype=dict.fromkeys(sorted(layout.text_columns), object),
-        decimal=layout.decimal,
-        skipinitialspace=True,
-        skip_blank_lines=False,
-        keep_default_na=False,
-        na_values={i: [""] for i in numbers},
-        encoding="utf-8",
-        engine="c",
-        low_memory=False,
-        **exactness,
-    )
+    options: dict[str, Any] = {} if is_exact else {"float_precision": "round_trip"}
+    options |= {
+        "sep": r"\s+" if delimiter == BLANKS else delimiter,
+        "header": None,
+        "names": list(range(layout.count)),
+        "index_col": False,
+        "dtype": dict.fromkeys(sorted(layout.text_columns), object),
+        "decimal": layout.decimal,
+        "skipinitialspace": True,
+        "skip_blank_lines": False,
+        "keep_default_na": False,
+        "na_values": {i: [""] for i in numbers},
+        "encoding": "utf-8",
+        "engine": "c",
+        "low_memory": False,
+    }
+    frame: pd.DataFrame = pd.read_csv(BytesIO(data), **options)
+    return frame
 
 
 # ------------------------------------------------------------------ shape

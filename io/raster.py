@@ -195,18 +195,25 @@ def _crs_of(dataset: Any) -> str | None:
 
 
 def _middle(dataset: Any) -> NDArray[np.float64]:
-    x, y = dataset.transform * (dataset.width / 2, dataset.height / 2)
+    x, y = _applied(dataset.transform, dataset.width / 2, dataset.height / 2)
     return np.array([[x, y, 0.0]])
+
+
+def _applied(transform: Any, column: Any, row: Any) -> tuple[Any, Any]:
+    """Apply an affine transform; its own operator for that differs between versions."""
+    a, b, c, d, e, f = transform[:6]
+    return column * a + row * b + c, column * d + row * e + f
 
 
 # ------------------------------------------------------------------ which cells
 
 
 def _cells(dataset: Any, window: Sequence[int] | Bounds | None, stride: int, path: Path) -> _Cells:
-    bounds = window if isinstance(window, Bounds) else None
+    bounds = None
     if window is None:
         part = (0, 0, dataset.width, dataset.height)
-    elif bounds is not None:
+    elif isinstance(window, Bounds):
+        bounds = window
         part = _part_of_bounds(dataset, bounds, path)
     else:
         part = _part_of_window(dataset, window, path)
@@ -242,11 +249,12 @@ def _part_of_bounds(dataset: Any, bounds: Bounds, path: Path) -> tuple[int, int,
     limits = (bounds.xmin, bounds.ymin, bounds.xmax, bounds.ymax)
     if not all(isinstance(one, Real) and np.isfinite(one) for one in limits):
         raise FormatError(f"Invalid window {bounds}: four finite numbers are needed.")
-    corners = [(x, y) for x in (bounds.xmin, bounds.xmax) for y in (bounds.ymin, bounds.ymax)]
-    columns, rows = zip(*(~dataset.transform * corner for corner in corners), strict=True)
-    column, row = max(0, int(np.floor(min(columns)))), max(0, int(np.floor(min(rows))))
-    right = min(dataset.width, int(np.ceil(max(columns))))
-    bottom = min(dataset.height, int(np.ceil(max(rows))))
+    x = np.array([bounds.xmin, bounds.xmin, bounds.xmax, bounds.xmax])
+    y = np.array([bounds.ymin, bounds.ymax, bounds.ymin, bounds.ymax])
+    columns, rows = _applied(~dataset.transform, x, y)
+    column, row = max(0, int(np.floor(columns.min()))), max(0, int(np.floor(rows.min())))
+    right = min(dataset.width, int(np.ceil(columns.max())))
+    bottom = min(dataset.height, int(np.ceil(rows.max())))
     if column >= right or row >= bottom or bounds.width < 0 or bounds.height < 0:
         left, low, east, high = dataset.bounds
         raise FormatError(
@@ -320,9 +328,8 @@ def _centres(
     dataset: Any, columns: NDArray[np.int64], rows: NDArray[np.int64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return easting and northing of the cell centres, (rows, columns) arrays."""
-    a, b, c, d, e, f = dataset.transform[:6]
-    column, row = columns[None, :] + 0.5, rows[:, None] + 0.5
-    return column * a + row * b + c, column * d + row * e + f
+    x, y = _applied(dataset.transform, columns[None, :] + 0.5, rows[:, None] + 0.5)
+    return x, y
 
 
 def _within(
