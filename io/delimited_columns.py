@@ -208,17 +208,17 @@ def columns_by_word(
         roles = {_checked_role(role): _column(which, header, count) for role, which in word.items()}
         return Columns(numbered(header, count), _complete(roles, word))
     given = _meanings(word)
+    named = [meaning for meaning in given if meaning in _ROLES]
+    twice = next((one for one in named if named.count(one) > 1), None)
+    if twice:
+        raise FormatError(f"The option columns ({word}) names the {twice} twice.")
+    roles = _complete({one: i for i, one in enumerate(given) if one in _ROLES}, word)
     if len(given) > count:
         raise FormatError(
             f"The option columns names {len(given)} columns ({word}), but the file has {count}."
         )
-    named = [meaning for meaning in given if meaning]
-    twice = next((one for one in named if one in _ROLES and named.count(one) > 1), None)
-    if twice:
-        raise FormatError(f"The option columns ({word}) names the {twice} twice.")
-    roles = {meaning: i for i, meaning in enumerate(given) if meaning in _ROLES}
     names = [_own_name(given, header, i) for i in range(count)]
-    return Columns(numbered(names, count), _complete(roles, word))
+    return Columns(numbered(names, count), roles)
 
 
 def _own_name(given: Sequence[str], header: Sequence[str], column: int) -> str:

@@ -3,41 +3,31 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from itertools import pairwise
-from statistics import median_low
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .delimited_cells import BLANKS, is_number, is_number_like, split_line
-from .delimited_columns import Columns, columns_by_header, columns_by_word, numbered, role_of
-from .delimited_lines import COMMENT_PREFIXES, decoded
-from .errors import FormatError, ReadError
+from .delimited_columns import Columns, columns_by_header, columns_by_word, role_of
+from .delimited_content import columns_by_content, require_no_split_decimals
+from .delimited_lines import COMMENT_PREFIXES
+from .delimited_marks import as_decimal, as_delimiter, decimal_of, delimiter_of
+from .errors import ReadError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Sequence
     from pathlib import Path
 
     from numpy.typing import NDArray
 
     from .delimited_lines import TextLines
 
-__all__ = ["Layout", "find_layout", "looks_like_table"]
+__all__ = ["Layout", "find_layout"]
 
 _TOP_LINES = 100
 _SPREAD_LINES = 200
-_DELIMITERS = ("\t", ";", "|", ",", BLANKS)
-_SPOKEN = {
-    "comma": ",",
-    "semicolon": ";",
-    "tab": "\t",
-    "\\t": "\t",
-    "pipe": "|",
-    "space": BLANKS,
-    "spaces": BLANKS,
-    "whitespace": BLANKS,
-}
 _UNIT_WORDS = frozenset(
     {*("m", "metre", "metres", "meter", "meters", "ft", "feet", "foot", "usft", "mm", "cm", "deg")}
     | {*("degrees", "text", "unit", "units", "number", "string", "float", "int", "-", "")}
@@ -139,12 +129,14 @@ def find_layout(
     3. The lines above the first row are titles, the header, a line of units, or a point count.
     4. Columns are found by the caller's word, else by the header, else by content.
     """
-    wishes = _Wishes(columns, _as_delimiter(delimiter), _as_decimal(decimal), comment)
+    wishes = _Wishes(columns, as_delimiter(delimiter), as_decimal(decimal), comment)
     data, skipped = _data_lines(lines, wishes)
     if len(data) == 0:
         raise ReadError(f"'{path}' holds no points: only blank and comment lines.", path=path)
     sample = lines.texts(_sampled(data))
-    found = wishes.delimiter or _delimiter_of(sample)
+    found = wishes.delimiter or delimiter_of(sample)
+    if found is None and all(text.lstrip().startswith(COMMENT_PREFIXES) for text in sample):
+        raise ReadError(f"'{path}' holds no points: only blank and comment lines.", path=path)
     if found is None:
         raise ReadError(
             f"'{path}' holds no table of points: no delimiter (comma, semicolon, tab, pipe, spaces)"
@@ -153,7 +145,7 @@ def find_layout(
         )
     data, skipped = _without_fillers(lines, data, skipped, found, wishes)
     cells = [split_line(text, found) for text in lines.texts(_sampled(data))]
-    mark = wishes.decimal or _decimal_of(cells, found)
+    mark = wishes.decimal or decimal_of(cells, found)
     try:
         return _table_layout(lines, data, skipped, cells, (found, mark), wishes)
     except ReadError as error:
@@ -182,7 +174,13 @@ def _table_layout(
     header = top.header or _header_in_comment(lines, int(rows[0]), delimiter, count)
     body = [row for row in cells[top.n_lines :] if len(row) == count]
     named = _fitted_header(header, count, body, wishes)
-    columns, is_assumed = _columns(named, body, count, (delimiter, decimal), wishes)
+    if not named and wishes.columns is None:
+        if wishes.decimal is None:
+            require_no_split_decimals(body, delimiter)
+        is_scan = top.announced is not None
+        columns, is_assumed = columns_by_content(body, count, decimal, is_scan=is_scan), True
+    else:
+        columns, is_assumed = _columns_by_name(named, count, wishes), False
     return Layout(
         delimiter=delimiter,
         decimal=decimal,
@@ -193,20 +191,6 @@ def _table_layout(
         skipped={what: many for what, many in (skipped + top.counts).items() if many},
         is_assumed=is_assumed,
     )
-
-
-def looks_like_table(head: bytes) -> bool:
-    """Whether the first bytes of a file are delimited rows with three numbers or more."""
-    text = decoded(head)
-    if text is None:
-        return False
-    stripped = (line.strip() for line in text.split("\n")[:_TOP_LINES])
-    sample = [line for line in stripped if line and not line.startswith(COMMENT_PREFIXES)]
-    delimiter = _delimiter_of(sample) if sample else None
-    if delimiter is None:
-        return False
-    numbers = [_count_numbers(split_line(line, delimiter), delimiter) for line in sample]
-    return 2 * sum(number >= 3 for number in numbers) >= len(numbers)
 
 
 # ------------------------------------------------------------------ lines
@@ -253,63 +237,6 @@ def _sampled(data: NDArray[np.int64]) -> list[int]:
     top, rest = data[:_TOP_LINES], data[_TOP_LINES:]
     spread = rest[:: max(1, len(rest) // _SPREAD_LINES)]
     return [*top.tolist(), *spread.tolist()]
-
-
-# ------------------------------------------------------------------ marks
-
-
-def _as_delimiter(word: str | None) -> str | None:
-    if word is None:
-        return None
-    delimiter = _SPOKEN.get(word.strip().lower(), word) if word != BLANKS else word
-    if len(delimiter) != 1 or delimiter.isalnum() or delimiter in '"\n\r.+-' or delimiter > "~":
-        raise FormatError(
-            f"Invalid delimiter '{word}': one letter such as ',' or one of {', '.join(_SPOKEN)}.",
-            known=tuple(_SPOKEN),
-        )
-    return delimiter
-
-
-def _as_decimal(word: str | None) -> str | None:
-    if word not in (None, ".", ","):
-        raise FormatError(
-            f"Invalid decimal mark '{word}': '.' or ',' is allowed.", known=(".", ",")
-        )
-    return word
-
-
-def _count_numbers(cells: Sequence[str], delimiter: str) -> int:
-    """Count the cells that are numbers with either decimal mark, or stand in place of one."""
-    marks = "." if delimiter == "," else ".,"
-    return sum(bool(cell) and any(is_number_like(cell, mark) for mark in marks) for cell in cells)
-
-
-def _delimiter_of(sample: Sequence[str]) -> str | None:
-    """Choose the delimiter that gives the most numbers and the most even rows."""
-    scores = {delimiter: _delimiter_score(sample, delimiter) for delimiter in _DELIMITERS}
-    best = max(scores, key=scores.__getitem__)
-    return best if scores[best] > (0, 0.0, 0) else None
-
-
-def _delimiter_score(sample: Sequence[str], delimiter: str) -> tuple[int, float, int]:
-    rows = [split_line(line, delimiter) for line in sample]
-    count, times = Counter(map(len, rows)).most_common(1)[0]
-    numbers = max(
-        median_low(_count_numbers(row, delimiter) for row in rows),
-        max(3 * (columns_by_header(row, strict=False) is not None) for row in rows[:_TOP_LINES]),
-    )
-    if numbers < 2 or max(map(len, rows)) < 3:
-        return 0, 0.0, 0
-    return min(numbers, 3), times / len(rows), count
-
-
-def _decimal_of(rows: Iterable[Sequence[str]], delimiter: str) -> str:
-    if delimiter == ",":
-        return "."
-    cells = [cell for row in rows for cell in row]
-    commas = sum("," in cell and is_number(cell, ",") for cell in cells)
-    points = sum("." in cell and is_number(cell, ".") for cell in cells)
-    return "," if commas > points else "."
 
 
 # ------------------------------------------------------------------ rows
@@ -420,7 +347,7 @@ def _fitted_header(
         return [*header, ""]
     if len(header) == count + 1 and not header[-1]:
         return header[:-1]
-    if wishes.columns is not None and not isinstance(wishes.columns, dict):
+    if wishes.columns is not None and not isinstance(wishes.columns, Mapping):
         return []
     raise ReadError(
         f"the header names {len(header)} columns ({', '.join(header)}), but rows have {count}: "
@@ -428,19 +355,10 @@ def _fitted_header(
     )
 
 
-def _columns(
-    header: list[str],
-    body: Sequence[Sequence[str]],
-    count: int,
-    marks: tuple[str, str],
-    wishes: _Wishes,
-) -> tuple[Columns, bool]:
-    """Return the columns, and whether their meaning is an assumption."""
+def _columns_by_name(header: list[str], count: int, wishes: _Wishes) -> Columns:
+    """Find the columns by the caller's word, else by the header."""
     if wishes.columns is not None:
-        return columns_by_word(wishes.columns, header, count), False
-    if not header:
-        _require_no_split_decimals(body, marks, wishes)
-        return _columns_by_content(body, count, marks[1]), True
+        return columns_by_word(wishes.columns, header, count)
     columns = columns_by_header(header)
     if columns is None:
         found = [f"{role_of(name)} '{name}'" for name in header if role_of(name)]
@@ -449,74 +367,7 @@ def _columns(
             f"(known: {', '.join(found) or 'none of it'}): say with the option columns which "
             "columns they are."
         )
-    return columns, False
-
-
-def _columns_by_content(body: Sequence[Sequence[str]], count: int, decimal: str) -> Columns:
-    """Tell the columns by what is in them: PNEZD, PNEZ, or XYZ and more."""
-    is_text = [
-        2 * sum(not is_number_like(row[i], decimal) for row in body) > len(body)
-        for i in range(count)
-    ]
-    if count < 3 or sum(not text for text in is_text) < 3:
-        raise ReadError(
-            f"its {count} columns do not hold three of numbers: easting, northing and elevation "
-            "are needed."
-        )
-    tail = next((i for i in range(3, count) if is_text[i]), None)
-    if count >= 4 and not any(is_text[1:4]) and _is_numbered(body, is_text, tail, decimal):
-        roles = {"number": 0, "northing": 1, "easting": 2, "elevation": 3}
-    elif not any(is_text[:3]):
-        roles = {"easting": 0, "northing": 1, "elevation": 2}
-    else:
-        raise ReadError(
-            "it has no header, and its columns are not those of a known layout: say with the "
-            'option columns what they are, for example "PNEZD".'
-        )
-    description = next((i for i in range(max(roles.values()) + 1, count) if is_text[i]), None)
-    if description is not None:
-        roles["description"] = description
-    names = {column: role for role, column in roles.items() if role in ("number", "description")}
-    return Columns(numbered([names.get(i, "") for i in range(count)], count), roles)
-
-
-def _is_numbered(
-    body: Sequence[Sequence[str]], is_text: Sequence[bool], tail: int | None, decimal: str
-) -> bool:
-    """Whether the first column is point numbers: names, or whole numbers that ascend."""
-    if is_text[0]:
-        return True
-    first = [row[0] for row in body]
-    if not all(cell.isdecimal() for cell in first):
-        return False
-    numbers = [int(cell) for cell in first]
-    if any(a >= b for a, b in pairwise(numbers)):
-        return False
-    if tail == 4 or any(decimal in cell for row in body for cell in row[1:4]):
-        return True
-    raise ReadError(
-        "it has no header, and its first column may be point numbers or eastings: say with the "
-        'option columns what they are, for example "PNEZ" or "XYZ".'
-    )
-
-
-def _require_no_split_decimals(
-    body: Sequence[Sequence[str]], marks: tuple[str, str], wishes: _Wishes
-) -> None:
-    """Refuse rows that may be decimal commas split at a comma: 4,25,7,50 for 4.25 and 7.50."""
-    if marks[0] != "," or wishes.decimal is not None or not body:
-        return
-    start = len(body[0]) - 6
-    if start not in (0, 1) or not all(
-        cell.lstrip("+-").isdecimal() for row in body for cell in row
-    ):
-        return
-    widths = [{len(row[start + i]) for row in body} for i in (1, 3, 5)]
-    if all(len(width) == 1 for width in widths) and widths[0] == widths[1] == widths[2]:
-        raise ReadError(
-            "its commas may be delimiters or decimal marks: say with the option columns what the "
-            "columns are, or write the table with another delimiter."
-        )
+    return columns
 
 
 def _text_columns(columns: Columns, body: Sequence[Sequence[str]], decimal: str) -> frozenset[int]:

@@ -330,7 +330,7 @@ def _is_binary(head: bytes) -> bool:
 
 def _is_table(head: bytes) -> bool:
     """Whether the head reads as delimited rows of numbers."""
-    from .delimited_layout import looks_like_table
+    from .delimited_marks import looks_like_table
 
     return looks_like_table(head)
 

@@ -1,0 +1,623 @@
+"""Delimited text against Python's csv module and float() as the second opinion."""
+
+from __future__ import annotations
+
+import csv
+import io
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+import tinsmith as ts
+from tinsmith.io import CrsError, FormatError, ReadError, WriteError, read, write
+
+ROWS = [
+    (1, 4024238.125, 752646.5, 320.565, "CP1"),
+    (2, 4024259.25, 752883.75, 324.672, "EP"),
+    (3, 4024321.5, 752771.875, 329.146, "DITCH"),
+    (4, 4024204.0, 752828.0, 323.272, "TREE"),
+]
+EXPECTED = np.array([[e, n, z] for _, n, e, z, _ in ROWS])
+
+
+@pytest.fixture
+def survey(tmp_path):
+    """Return a function that writes a file and reads it."""
+
+    def of(content, name="survey.csv", **options):
+        path = tmp_path / name
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+        return read(path, **options)
+
+    return of
+
+
+def fault(survey, content, error=ReadError, **options):
+    with pytest.raises(error) as caught:
+        survey(content, **options)
+    message = str(caught.value)
+    assert "\n" not in message
+    assert message.endswith(".")
+    return caught.value
+
+
+# ------------------------------------------------------------------ any customary table
+
+DELIMITERS = {"comma": ",", "semicolon": ";", "tab": "\t", "pipe": "|", "spaces": " "}
+LAYOUTS = {
+    "PNEZD": ["Point", "Northing", "Easting", "Elevation", "Description"],
+    "PENZD": ["PtNo", "E (m)", "N (m)", "Höhe", "Code"],
+    "XYZ": ["x", "y", "z"],
+    "NEZ": ["North", "East", "RL"],
+    "ENZD": ["Rechtswert", "Hochwert", "H", "Bemerkung"],
+    "XYZ-": ["X", "Y", "Z", "intensity"],
+}
+FIELDS = {"E": 0, "X": 0, "N": 1, "Y": 1, "Z": 2, "P": 3, "D": 4, "-": 5}
+
+numbers = st.one_of(
+    st.floats(-1e7, 1e7).map(repr),
+    st.decimals(-9_999_999, 9_999_999, places=3).map(str),
+    st.integers(-(10**7), 10**7).map(str),
+    st.sampled_from(["+5.25", ".5", "5.", "1e5", "-1.5E+03", "0.1", "123456789012345678901234.5"]),
+)
+words = st.text(
+    st.characters(codec="utf-8", exclude_categories=["C", "Z"], exclude_characters="\x1a"),
+    min_size=1,
+    max_size=6,
+).filter(lambda word: any(map(str.isalpha, word)) and not any(map(str.isdecimal, word)))
+
+
+@st.composite
+def tables(draw):
+    """Draw a file, how it was made, and its cells."""
+    layout = draw(st.sampled_from(sorted(LAYOUTS)))
+    delimiter = draw(st.sampled_from(sorted(DELIMITERS)))
+    decimal = "." if delimiter == "comma" else draw(st.sampled_from(".,"))
+    point = st.tuples(numbers, numbers, numbers, st.just(""), words, st.integers(0, 255).map(str))
+    points = draw(st.lists(point, min_size=3, max_size=12))
+    points = [(*p[:3], str(i + 1), *p[4:]) for i, p in enumerate(points)]
+    rows = [[p[FIELDS[letter]] for letter in layout] for p in points]
+    return (
+        layout,
+        delimiter,
+        decimal,
+        rows,
+        draw(st.sampled_from(["\n", "\r\n"])),
+        draw(st.booleans()),
+    )
+
+
+def text_of(layout, delimiter, decimal, rows, line_end, is_quoted):
+    """Write a table by Python's csv module, numbers with the decimal mark wanted."""
+    buffer = io.StringIO(newline="")
+    writer = csv.writer(
+        buffer,
+        delimiter=DELIMITERS[delimiter],
+        lineterminator=line_end,
+        quoting=csv.QUOTE_ALL if is_quoted else csv.QUOTE_MINIMAL,
+    )
+    writer.writerow(LAYOUTS[layout])
+    for row in rows:
+        cells = [
+            cell if letter in "PD" else cell.replace(".", decimal)
+            for letter, cell in zip(layout, row, strict=True)
+        ]
+        writer.writerow(cells)
+    return buffer.getvalue()
+
+
+@settings(
+    max_examples=250, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
+@given(table=tables())
+def test_every_table_reads_as_csv_and_float_say(survey, table):
+    layout, _, _, rows, *_ = table
+    content = text_of(*table)
+    if "(" in content.split("\n")[0] and table[1] == "spaces" and not table[5]:
+        content = content.replace("E (m)", "E_m").replace("N (m)", "N_m")
+    found = survey(content)
+    places = [next(i for i, x in enumerate(layout) if FIELDS[x] == k) for k in range(3)]
+    expected = np.array([[float(row[i]) for i in places] for row in rows])
+    assert found.points.tobytes() == expected.tobytes()
+    assert found.skipped == {"header lines": 1}
+    if "D" in layout:
+        assert found.attributes["description"].tolist() == [row[-1] for row in rows]
+    if "P" in layout:
+        assert found.attributes["number"].tolist() == list(range(1, len(rows) + 1))
+    if layout == "XYZ-":
+        assert found.attributes["intensity"].tolist() == [int(row[-1]) for row in rows]
+
+
+@settings(
+    max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
+@given(
+    values=st.lists(
+        st.floats(allow_nan=False, allow_infinity=False, width=64), min_size=9, max_size=30
+    ),
+    style=st.sampled_from(["{!r}", "{:.17g}", "{:.25e}", "{:.3f}"]),
+    decimal=st.sampled_from(".,"),
+)
+def test_every_double_is_the_nearest_to_its_text(survey, values, style, decimal):
+    texts = [style.format(value) for value in values[: len(values) // 3 * 3]]
+    rows = [texts[i : i + 3] for i in range(0, len(texts), 3)]
+    content = "x;y;z\n" + "\n".join(";".join(row).replace(".", decimal) for row in rows)
+    found = survey(content, decimal=decimal)
+    expected = np.array([[float(text) for text in row] for row in rows])
+    assert found.points.tobytes() == expected.tobytes()
+
+
+@pytest.mark.parametrize("name", ["points.csv", "points.txt", "points.xyz", "points.asc", "p.PNT"])
+def test_no_header_of_three_columns_is_xyz(survey, name):
+    found = survey("1.5 2.5 3.5\n4 5 6\n7 8 9", name=name)
+    assert found.points.tolist() == [[1.5, 2.5, 3.5], [4, 5, 6], [7, 8, 9]]
+    assert found.notes == ["No header: the columns are taken as easting, northing, elevation."]
+    assert found.source == name
+
+
+def test_no_header_with_numbers_and_codes_is_pnezd(survey):
+    content = "\n".join(",".join(map(str, row)) for row in ROWS)
+    found = survey(content)
+    assert np.array_equal(found.points, EXPECTED)
+    assert found.attributes["number"].tolist() == [1, 2, 3, 4]
+    assert found.attributes["description"].tolist() == [row[-1] for row in ROWS]
+    assert "number, northing, easting, elevation, description" in found.notes[0]
+
+
+def test_no_header_with_point_names_is_pnez(survey):
+    found = survey("A1;10;20;1,5\nA2;11;21;1,7\nB1;12;20;1,9\n")
+    assert found.points.tolist() == [[20, 10, 1.5], [21, 11, 1.7], [20, 12, 1.9]]
+    assert found.attributes["number"].tolist() == ["A1", "A2", "B1"]
+
+
+def test_crs_decides_whether_northing_comes_first(survey):
+    """The State Plane zone of Tennessee has larger eastings, UTM larger northings."""
+    utm = "\n".join(f"{i},{e},{n},{z},{d}" for i, n, e, z, d in ROWS)
+    found = survey(utm, crs="EPSG:32616")
+    assert np.array_equal(found.points, EXPECTED)
+    assert "number, easting, northing" in found.notes[0]
+    assert "because" in found.notes[0]
+    plane = "1,600000.1,2500000.1,9,G\n2,600010.1,2500000.1,9,G\n3,600010.1,2500010.1,9,G\n"
+    found = survey(plane, crs="EPSG:2274")
+    assert found.points[0].tolist() == [2500000.1, 600000.1, 9]
+
+
+def test_named_columns_are_never_exchanged(survey):
+    found = survey("northing,easting,z\n752646,4024238,1\n752647,4024238,1\n", crs="EPSG:32616")
+    assert found.points[0].tolist() == [4024238, 752646, 1]
+
+
+@pytest.mark.parametrize(
+    ("columns", "order"),
+    [
+        ("PNEZD", [2, 1, 3]),
+        ("penzd", [1, 2, 3]),
+        ("-XYZ", [1, 2, 3]),
+        ("P-ENZ", [2, 3, 4]),
+        (["id", "north", "east", "height"], [2, 1, 3]),
+        ("no,easting,northing,elevation,code", [1, 2, 3]),
+        ({"easting": 3, "northing": 2, "elevation": 4}, [2, 1, 3]),
+        ({"x": 2, "y": 3, "z": 5}, [1, 2, 4]),
+    ],
+)
+def test_columns_by_the_callers_word(survey, columns, order):
+    cells = [["1", "10.5", "20.5", "5.25", "7"], ["2", "11.5", "21.5", "6.25", "8"]]
+    found = survey("\n".join(",".join(row) for row in cells), columns=columns)
+    assert found.points.tolist() == [[float(row[i]) for i in order] for row in cells]
+    assert found.notes == []
+
+
+def test_columns_by_names_in_a_header_that_says_nothing(survey):
+    content = "a;b;c;d\n1;2;3;4\n5;6;7;8\n"
+    found = survey(content, columns={"easting": "C", "northing": "b", "elevation": 1})
+    assert found.points.tolist() == [[3, 2, 1], [7, 6, 5]]
+    assert found.attributes["d"].tolist() == [4, 8]
+    assert "easting" in str(fault(survey, content))
+
+
+# ------------------------------------------------------------------ lines that are no rows
+
+
+def test_titles_units_comments_and_blank_lines_are_counted(survey):
+    content = (
+        "Survey of the mill\n# made by hand\n\nPoint,Northing,Easting,Elevation\n,m,m,m\n"
+        "1,10,20,30\n// gap\n2,11,21,31\n;off\n   \n,,,\n3,12,22,33\n"
+    )
+    found = survey(content)
+    assert found.points.tolist() == [[20, 10, 30], [21, 11, 31], [22, 12, 33]]
+    assert found.skipped == {
+        "title lines": 1,
+        "comment lines": 3,
+        "blank lines": 3,
+        "header lines": 2,
+    }
+
+
+@pytest.mark.parametrize("line", ["# N E Z", "//N E Z", "#N\tE\tZ", "; N  E  Z"])
+def test_header_in_a_comment(survey, line):
+    found = survey(f"{line}\n1 2 3\n4 5 6\n", name="a.xyz")
+    assert found.points.tolist() == [[2, 1, 3], [5, 4, 6]]
+    assert found.notes == []
+
+
+def test_number_sign_as_the_name_of_the_point_number(survey):
+    found = survey("#,Northing,Easting,Elev\n7,1,2,3\n8,4,5,6\n")
+    assert found.points.tolist() == [[2, 1, 3], [5, 4, 6]]
+    assert found.attributes["number"].tolist() == [7, 8]
+
+
+def test_a_comment_prefix_of_the_callers_own(survey):
+    found = survey("x,y,z\nREM 1,2,3\n4,5,6\n7,8,9\n", comment="REM")
+    assert found.points[:, 0].tolist() == [4, 7]
+    found = survey("p,n,e,z\n1,2,3,5\n#4,5,6,7\n", comment="")
+    assert found.attributes["number"].tolist() == ["1", "#4"]
+
+
+def test_number_sign_in_a_description_is_no_comment(survey):
+    found = survey("x,y,z,code\n1,2,3,MH#4\n4,5,6,! see note\n")
+    assert found.attributes["description"].tolist() == ["MH#4", "! see note"]
+
+
+def test_points_announced_in_the_first_line(survey):
+    found = survey("2\n1 2 3 90\n4 5 6 80\n", name="scan.pts")
+    assert len(found) == 2
+    assert found.skipped == {"point count": 1}
+    error = fault(survey, "3\n1 2 3 90\n4 5 6 80\n", name="scan.pts")
+    assert "announces 3 points, but 2" in str(error)
+
+
+def test_delimiters_at_the_line_end(survey):
+    for header in ("x;y;z;", "x;y;z"):
+        found = survey(f"{header}\n1;2;3;\n4;5;6;\n")
+        assert found.points.tolist() == [[1, 2, 3], [4, 5, 6]]
+        assert dict(found.attributes) == {}
+
+
+# ------------------------------------------------------------------ quotes, blanks, encodings
+
+
+def test_quotes_as_surveyors_write_them(survey):
+    content = (
+        'x,y,z,desc\n1,2,3,"DITCH, N side"\n4,5,6,6" PVC\n7,8,9,"say ""hi"""\n'
+        '10,11,12,12" and 6" pipes\n'
+    )
+    found = survey(content)
+    oracle = list(csv.reader(io.StringIO(content)))[1:]
+    assert found.attributes["description"].tolist() == [row[3] for row in oracle]
+    assert found.points.tolist() == [[float(cell) for cell in row[:3]] for row in oracle]
+
+
+@settings(
+    max_examples=200, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
+@given(tails=st.lists(st.text('a",b ', max_size=7), min_size=1, max_size=4))
+def test_every_pile_of_quotes_reads_as_csv_says_or_is_refused(survey, tails):
+    lines = [f"{i},2.5,3.5,{tail}" for i, tail in enumerate(tails)]
+    oracle = [next(csv.reader([line], skipinitialspace=True)) for line in lines]
+    top = "x,y,z,desc\n1,2.5,3.5,first\n9,2.5,3.5,second\n"
+    content = top + "\n".join(lines) + "\n"
+    try:
+        found = survey(content)
+    except ReadError:
+        is_open = any(
+            next(csv.reader([line, "\x01"], skipinitialspace=True))[-1].endswith("\x01")
+            for line in lines
+        )
+        assert is_open or any(len(row) != 4 for row in oracle)
+    else:
+        assert all(len(row) == 4 for row in oracle)
+        texts = found.attributes["description"].tolist()[2:]
+        assert [text.strip() for text in texts] == [row[3].strip() for row in oracle]
+
+
+def test_a_quote_that_stays_open_is_refused_with_its_line(survey):
+    error = fault(survey, 'x,y,z,d\n1,2,3,a\n4,5,6,"\n7,8,9,"\n')
+    assert error.line == 3
+    assert "quote" in str(error)
+
+
+def test_words_of_a_description_between_blanks(survey):
+    content = (
+        "1  10.0  20.0 30.0 EDGE OF PAVEMENT\n2\t10.0 21.0 30.0 TREE\n"
+        "3  11.0  20.0 30.0\n   4  11.0 21.0 30.0 MH  LID  \n"
+    )
+    found = survey(content, name="a.txt", columns="PNEZD")
+    words = ["EDGE OF PAVEMENT", "TREE", "", "MH LID"]
+    assert found.attributes["description"].tolist() == words
+    assert found.points[:, 0].tolist() == [20, 21, 20, 21]
+    error = fault(survey, content + "5 11.0 22.0 30", name="a.txt", columns="PNEZD")
+    assert "truncated" in str(error)
+
+
+@pytest.mark.parametrize(
+    "encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-16-le", "utf-16-be", "cp1252", "utf-32"]
+)
+@pytest.mark.parametrize("line_end", ["\n", "\r\n", "\r", "\r\r\n"])
+def test_encodings_and_line_ends(survey, encoding, line_end):
+    content = line_end.join(["Punkt;Ost;Nord;Höhe;Code", "1;2;3;4,5;Gebäude", "2;3;4;5,5;Zaun", ""])
+    found = survey(content.encode(encoding))
+    assert found.points.tolist() == [[2, 3, 4.5], [3, 4, 5.5]]
+    assert found.attributes["description"].tolist() == ["Gebäude", "Zaun"]
+
+
+def test_encoding_by_name(survey):
+    content = "x,y,z,code\n1,2,3,房子\n4,5,6,树\n".encode("gbk")
+    assert survey(content, encoding="gbk").attributes["description"].tolist() == ["房子", "树"]
+    assert "encoding" in str(fault(survey, content, encoding="utf-8"))
+    assert "encoding" in str(fault(survey, content, encoding="nonsense"))
+
+
+def test_attributes_keep_their_kind(survey):
+    content = "id,x,y,z,r,share,code,empty\n007,1,2,3,255,0.5,12,\n008,4,5,6,0,,NA,\n"
+    found = survey(content)
+    assert found.attributes["number"].tolist() == ["007", "008"]
+    assert found.attributes["r"].tolist() == [255, 0]
+    assert found.attributes["share"][0] == 0.5
+    assert np.isnan(found.attributes["share"][1])
+    assert found.attributes["description"].tolist() == ["12", "NA"]
+    assert np.isnan(found.attributes["empty"]).all()
+
+
+def test_names_that_say_it_best_win(survey):
+    found = survey("Height,Northing,Easting,Elevation,X\n1,2,3,4,5\n6,7,8,9,10\n")
+    assert found.points.tolist() == [[3, 2, 4], [8, 7, 9]]
+    assert "2 columns named 'x'" in str(fault(survey, "x,y,z,x\n1,2,3,4\n5,6,7,8\n"))
+
+
+# ------------------------------------------------------------------ decimal commas
+
+
+def test_commas_that_may_be_marks_or_delimiters_are_not_guessed(survey):
+    error = fault(survey, "4000123,45,750000,12,300,50\n4000124,45,750001,12,300,61\n")
+    assert "decimal" in str(error)
+    found = survey("7,2,3,255,0,12\n4,5,6,31,7,1\n")
+    assert found.points.tolist() == [[7, 2, 3], [4, 5, 6]]
+
+
+def test_header_and_rows_of_decimal_commas_split(survey):
+    error = fault(survey, "x,y,z\n1,25,2,50,3,75\n4,25,5,50,6,75\n")
+    assert "3 columns" in str(error)
+    assert "decimal mark" in str(error)
+
+
+def test_decimal_comma_with_semicolon_and_mixed_marks(survey):
+    assert survey("x;y;z\n1,234;2;3\n4,5;5;6\n").points[0].tolist() == [1.234, 2, 3]
+    error = fault(survey, "x;y;z\n1,5;2,5;3,5\n4,5;5.5;6,5\n")
+    assert "line 3: northing in column 2 ('y') is '5.5'" in str(error)
+    assert "decimal comma" in str(error)
+
+
+# ------------------------------------------------------------------ bad input
+
+
+@pytest.mark.parametrize(
+    ("cell", "shown"),
+    [
+        ("abc", "is 'abc'"),
+        ("", "is empty"),
+        ("NaN", "is 'NaN'"),
+        ("inf", "is 'inf'"),
+        ("1e999", "is '1e999'"),
+        ("1_000", "is '1_000'"),
+        ("0x10", "is '0x10'"),
+        ("True", "is 'True'"),
+        ("12.5m", "is '12.5m'"),
+        ('"1,234.5"', "is '1,234.5'"),
+        ("١٢", "is '١٢'"),
+    ],
+)
+def test_bad_value_is_named_by_line_and_column(survey, cell, shown):
+    content = f"# top\n\nPoint,Northing,Easting,Elevation\n1,2,3,4\n# gap\n2,3,{cell},5\n3,4,5,6\n"
+    error = fault(survey, content)
+    assert error.lines == (6,)
+    assert f"line 6: easting in column 3 ('Easting') {shown}" in str(error)
+    assert "1 of 3 rows" in str(error)
+    assert "survey.csv" in str(error)
+
+
+def test_all_bad_values_are_counted_and_the_first_shown(survey):
+    content = "x,y,z\n" + "".join(f"{i},?,{i}\n" if i % 3 else f"{i},1,2\n" for i in range(30))
+    error = fault(survey, content)
+    assert "20 of 30 rows" in str(error)
+    assert error.lines == (3, 4, 6, 7, 9)
+
+
+def test_a_bad_value_in_the_first_row(survey):
+    assert fault(survey, "x,y,z\nabc,2,3\n4,5,6\n7,8,9").line == 2
+    assert fault(survey, "abc,2,3\n4,5,6\n7,8,9").line == 1
+
+
+def test_a_whole_column_that_is_no_number(survey):
+    assert "2 of 2 rows" in str(fault(survey, "x,y,z\n1,2,True\n3,4,False\n"))
+    assert "2 of 2 rows" in str(fault(survey, "x,y,z\n1,2,\n3,4,\n"))
+
+
+def test_rows_of_another_length(survey):
+    error = fault(survey, "x,y,z\n1,2,3\n4,5\n6,7,8\n9,10,11,12\n")
+    assert error.lines == (3, 5)
+    assert "line 3 has 2, line 5 has 4" in str(error)
+    assert "2 of 4 rows do not have 3 columns" in str(error)
+
+
+def test_rows_whose_lengths_make_up_for_each_other(survey):
+    assert fault(survey, "x,y,z,c\n1,2,3,4\n4,5,6\n7,8,9,1,2\n6,7,8,1\n").lines == (3, 4)
+
+
+def test_truncated_file(survey):
+    error = fault(survey, "x,y,z,code\n1,2,3,A\n4,5,6,B\n7,8")
+    assert error.line == 4
+    assert "truncated" in str(error)
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        ("# only\n\n", "no points"),
+        ("x,y,z\n", "no row"),
+        ("hello\nworld\n", "no table"),
+        ("1,2\n3,4\n", "no table"),
+        ("x;y\n1;2\n", "no table"),
+        (b"\x01\x00\x02\x03" * 50, "binary"),
+        (" \n\n", "no points"),
+        ("a,b,c\n1,2,3\n", "does not name"),
+        ("code,x,y\nA,1,2\nB,3,4\n", "does not name"),
+        ("1,4,7,3\n2,5,8,3\n", "may be point numbers"),
+        ("1,a,2,3\n2,b,5,6\n3,c,4,4\n", "known layout"),
+    ],
+)
+def test_no_table_of_points(survey, content, words):
+    assert words in str(fault(survey, content))
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"columns": "PNED"}, "elevation"),
+        ({"columns": "XYZZ"}, "twice"),
+        ({"columns": "PNEZD"}, "5 columns"),
+        ({"columns": ["a", "b"]}, "easting"),
+        ({"columns": {"easting": 9, "northing": 1, "elevation": 2}}, "1 to 3"),
+        ({"columns": {"easting": "q", "northing": 1, "elevation": 2}}, "'q'"),
+        ({"columns": {"colour": 1}}, "colour"),
+        ({"delimiter": "ab"}, "delimiter"),
+        ({"delimiter": "."}, "delimiter"),
+        ({"decimal": ";"}, "decimal"),
+        ({"stride": 2}, "columns, delimiter, decimal"),
+    ],
+)
+def test_bad_options(survey, options, words):
+    assert words in str(fault(survey, "1,2.5,3\n4,5.5,6\n", FormatError, **options))
+
+
+@pytest.mark.parametrize("word", ["semicolon", ";"])
+def test_delimiter_by_the_callers_word(survey, word):
+    assert len(survey("1;2;3\n4;5;6\n", delimiter=word)) == 2
+
+
+# ------------------------------------------------------------------ CRS
+
+
+def test_crs_is_declared_in_its_usual_form(survey):
+    assert survey("x,y,z\n1,2,3\n4,5,6\n", crs="epsg:32616").crs == "EPSG:32616"
+    fault(survey, "x,y,z\n1,2,3\n", CrsError, crs="EPSG:99999")
+    fault(survey, "x,y,z\n1,2,3\n", CrsError, source_crs="nonsense")
+
+
+def test_longitude_and_latitude_are_projected(survey):
+    pyproj = pytest.importorskip("pyproj")
+    content = "lat,lon,z\n36.4,-84.2,300\n36.5,-84.3,310\n36.4,-84.3,305\n"
+    found = survey(content, crs="EPSG:32616")
+    x, y = pyproj.Proj("EPSG:32616")([-84.2, -84.3, -84.3], [36.4, 36.5, 36.4])
+    assert np.allclose(found.points[:, :2], np.stack([x, y], axis=1), rtol=0, atol=1e-6)
+    assert found.points[:, 2].tolist() == [300, 310, 305]
+    for crs in (None, "EPSG:4326"):
+        assert "crs='EPSG:32616'" in str(fault(survey, content, crs=crs))
+
+
+def test_source_crs_is_left_for_another(survey):
+    pyproj = pytest.importorskip("pyproj")
+    content = "x,y,z\n-84.2,36.4,300\n-84.3,36.5,310\n"
+    found = survey(content, crs="EPSG:2274", source_crs="EPSG:4269")
+    move = pyproj.Transformer.from_crs("EPSG:4269", "EPSG:2274", always_xy=True)
+    assert np.allclose(found.points[0, :2], move.transform(-84.2, 36.4), rtol=0, atol=1e-6)
+    fault(survey, "lon,lat,z\n5000,95,1\n", CrsError, crs="EPSG:32616")
+    assert survey(content, source_crs="EPSG:32616").crs == "EPSG:32616"
+
+
+# ------------------------------------------------------------------ writing
+
+
+values = st.floats(allow_nan=False, allow_infinity=False)
+
+
+@settings(
+    max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
+@given(
+    points=st.lists(st.tuples(values, values, values), min_size=1, max_size=8),
+    words=st.data(),
+    suffix=st.sampled_from([".csv", ".txt", ".tsv"]),
+)
+def test_what_is_written_reads_back(tmp_path, points, words, suffix):
+    texts = words.draw(
+        st.lists(st.text('ab",;\t é|', max_size=5), min_size=len(points), max_size=len(points))
+    )
+    survey = ts.Survey(
+        points=np.array(points),
+        attributes={
+            "number": np.arange(len(points)),
+            "description": np.array(texts, object),
+            "share": np.linspace(0.1, 0.7, len(points)),
+        },
+    )
+    back = read(write(survey, tmp_path / f"out{suffix}"))
+    assert back.points.tobytes() == survey.points.tobytes()
+    assert [t.strip() for t in back.attributes["description"]] == [
+        " ".join(t.split(" ")).strip() for t in texts
+    ]
+    assert back.attributes["number"].tolist() == list(range(len(points)))
+    assert back.attributes["share"].tobytes() == survey.attributes["share"].tobytes()
+
+
+def test_tin_is_written_as_its_vertices(tmp_path):
+    tin = ts.triangulate(EXPECTED)
+    path = write(tin, tmp_path / "vertices.csv")
+    assert path.read_bytes().splitlines()[0] == b"easting,northing,elevation"
+    assert np.array_equal(read(path).points, tin.points)
+    path = write(tin, tmp_path / "vertices.xyz")
+    assert path.read_text().splitlines()[0] == "752646.5 4024238.125 320.565"
+    assert np.array_equal(read(path).points, tin.points)
+
+
+def test_letters_choose_what_is_written(tmp_path):
+    survey = ts.Survey(points=EXPECTED, attributes={"number": np.arange(4)})
+    path = write(survey, tmp_path / "a.csv", columns="PENZ", delimiter=";", header=False)
+    assert path.read_text().splitlines()[0] == "0;752646.5;4024238.125;320.565"
+    for letters in ("PNEZD", "XX", "Q"):
+        with pytest.raises(WriteError):
+            write(survey, tmp_path / "b.csv", columns=letters)
+    with pytest.raises(WriteError):
+        write(survey, tmp_path / "b.csv", delimiter="..")
+    assert not (tmp_path / "b.csv").exists()
+
+
+def test_lines_are_not_lost_silently(tmp_path):
+    survey = ts.Survey(points=EXPECTED, breaklines=[EXPECTED[:2]])
+    with pytest.raises(WriteError, match="1 breaklines"):
+        write(survey, tmp_path / "a.csv")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_progress_ends_at_one(tmp_path):
+    seen = []
+    write(ts.Survey(points=np.zeros((250_000, 3))), tmp_path / "a.csv", progress=seen.append)
+    assert seen == sorted(seen)
+    assert seen[-1] == 1.0
+
+
+def test_large_file_reads_whole(tmp_path):
+    """Rows far below those looked at, plain and in need of care, are found with their line."""
+    n = 60_000
+    path = tmp_path / "large.csv"
+    rows = [f"{i},{i * 0.5},{-i},{i % 7},code\n" for i in range(n)]
+    path.write_text("P,N,E,Z,D\n" + "".join(rows))
+    plain = read(path)
+    assert plain.points[:, 0].tolist() == [-float(i) for i in range(n)]
+    rows[40_000] = '40000,1,2,3,6" pipe\n'
+    path.write_text("P,N,E,Z,D\n" + "".join(rows))
+    assert read(path).attributes["description"][40_000] == '6" pipe'
+    rows[50_000] = "50000,1,2,x,code\n"
+    path.write_text("P,N,E,Z,D\n" + "".join(rows))
+    with pytest.raises(ReadError) as caught:
+        read(path)
+    assert caught.value.line == 50_002
+
+
+def test_importing_the_room_loads_no_heavy_library():
+    heavy = "{'pandas', 'pyproj', 'rasterio', 'pyvista', 'scipy'}"
+    code = f"import sys, tinsmith.io; sys.exit(len({heavy} & set(sys.modules)))"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
