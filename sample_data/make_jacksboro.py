@@ -15,7 +15,7 @@ import rasterio
 from matplotlib.cbook import get_sample_data
 from rasterio.crs import CRS
 from rasterio.transform import Affine, from_origin
-from rasterio.warp import transform, transform_bounds
+from rasterio.warp import transform
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -67,10 +67,8 @@ def warp(source: Raster) -> Raster:
     Every cell's centre is projected exactly; GDAL's warper would interpolate positions between
     projected ones and let cells slip by up to an eighth of their size.
     """
-    rows, columns = source.elevation.shape
-    limits = rasterio.transform.array_bounds(rows, columns, source.transform)
-    west, south, east, north = transform_bounds(SOURCE_CRS, TARGET_CRS, *limits, densify_pts=101)
-    west, north = np.floor(west / SPACING) * SPACING, np.ceil(north / SPACING) * SPACING
+    west, south, east, north = full_rectangle(source)
+    west, north = np.ceil(west / SPACING) * SPACING, np.floor(north / SPACING) * SPACING
     x = np.arange(west + SPACING / 2, east, SPACING)
     y = np.arange(north - SPACING / 2, south, -SPACING)
     lon, lat = transform(TARGET_CRS, SOURCE_CRS, *(part.ravel() for part in np.meshgrid(x, y)))
@@ -81,18 +79,34 @@ def warp(source: Raster) -> Raster:
     return Raster(np.round(elevation, 1), from_origin(west, north, SPACING, SPACING))
 
 
+def full_rectangle(source: Raster) -> tuple[float, float, float, float]:
+    """Return the UTM rectangle inside the source's outermost cell centres: no cell stays empty.
+
+    Meridian convergence turns the source by 1.6 degrees; the four edges are projected, and the
+    rectangle touches each from within.
+    """
+    rows, columns = source.elevation.shape
+    place = source.transform
+    lon = place.c + place.a * (np.arange(columns) + 0.5)
+    lat = place.f + place.e * (np.arange(rows) + 0.5)
+    west, _ = transform(SOURCE_CRS, TARGET_CRS, np.full(rows, lon[0]), lat)
+    east, _ = transform(SOURCE_CRS, TARGET_CRS, np.full(rows, lon[-1]), lat)
+    _, north = transform(SOURCE_CRS, TARGET_CRS, lon, np.full(columns, lat[0]))
+    _, south = transform(SOURCE_CRS, TARGET_CRS, lon, np.full(columns, lat[-1]))
+    return max(west), max(south), min(east), min(north)
+
+
 def bilinear(
     values: NDArray[np.float32], row: NDArray[np.float64], column: NDArray[np.float64]
 ) -> NDArray[np.float32]:
-    """Interpolate between the four cell centres around each place; ``NODATA`` outside them."""
+    """Interpolate between the four cell centres around each place."""
     last_row, last_column = values.shape[0] - 1, values.shape[1] - 1
-    inside = (row >= 0) & (row <= last_row) & (column >= 0) & (column <= last_column)
     top = np.clip(np.floor(row), 0, last_row - 1).astype(int)
     left = np.clip(np.floor(column), 0, last_column - 1).astype(int)
     down, right = row - top, column - left
     upper = values[top, left] * (1 - right) + values[top, left + 1] * right
     lower = values[top + 1, left] * (1 - right) + values[top + 1, left + 1] * right
-    return np.where(inside, upper * (1 - down) + lower * down, NODATA).astype(np.float32)
+    return (upper * (1 - down) + lower * down).astype(np.float32)
 
 
 def write(raster: Raster, path: Path) -> None:

@@ -174,7 +174,18 @@ def test_build_of_a_dem_keeps_its_crs(folder):
     run("build", "sample_data/jacksboro.tif", "--stride", "8", "-o", "out.ply")
     tin = ts.io.read("out.ply")
     assert tin.crs == "EPSG:32616"
-    assert len(tin.points) == pytest.approx(169_777 / 64, rel=0.02)
+    assert len(tin.points) == 52 * 49
+
+
+def test_build_of_a_window_of_a_dem(folder):
+    pytest.importorskip("rasterio")
+    window = ("--window", 745_000, 4_010_000, 747_000, 4_011_000)
+    run("build", "sample_data/jacksboro.tif", *window, "-o", "out.ply")
+    box = ts.io.read("out.ply").bounds
+    assert 745_000 <= box.xmin < 745_075
+    assert 746_925 < box.xmax <= 747_000
+    assert 4_010_000 <= box.ymin < 4_010_075
+    assert 4_010_925 < box.ymax <= 4_011_000
 
 
 def test_build_of_a_tin_names_convert(pyramid, folder):

@@ -78,9 +78,9 @@ def test_dem_opens_with_crs_spacing_and_nodata():
         assert file.res == (75.0, 75.0)
         assert file.nodata == -9999.0
         assert "SRTM" in file.tags()["SOURCE"]
-    assert elevation.shape == (436, 415)
+    assert elevation.shape == (411, 388)
     assert 240 < elevation.min() < elevation.max() < 1077
-    assert elevation.count() == 169_777
+    assert elevation.count() == elevation.size
 
 
 @pytest.mark.parametrize(("place", "tolerance"), [(CROSS_MOUNTAIN, 10), (JACKSBORO, 10)])
@@ -114,8 +114,8 @@ def test_dem_equals_the_source_interpolated_at_independently_projected_centres()
         lon, lat = to_globe.transform(*file.xy(rows, columns))
     expected = source(np.stack([lat, lon], axis=1))
     difference = np.abs(elevation.compressed() - expected)
-    assert np.isfinite(difference).mean() > 0.999
-    assert np.nanmax(difference) < 0.051
+    assert np.isfinite(difference).all()
+    assert difference.max() < 0.051
 
 
 def source_grid():

@@ -34,8 +34,11 @@ class Output:
 def read_input(path: Path, reading: Reading, console: Console) -> Survey | TIN:
     """Read points or a TIN, showing progress."""
     from ..io import read
+    from ..tin import Bounds
 
     options = {name: value for name, value in asdict(reading).items() if value is not None}
+    if reading.window is not None:
+        options["window"] = Bounds(*reading.window)
     with console.steps() as steps, steps.step(f"Reading {path.name}"):
         return read(path, **options)
 
