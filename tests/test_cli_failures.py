@@ -376,6 +376,15 @@ def test_program_fails_with_a_sentence(folder):
     assert result.stderr == "Error: There is no file 'none.csv'.\n"
 
 
+def test_terminal_without_the_letters_gets_escapes(folder):
+    environment = {**os.environ, "PYTHONIOENCODING": "iso8859-5"}
+    Path("höhe.csv").write_text(SQUARE)
+    assert program("build", "höhe.csv", "-o", "höhe.ply", env=environment).returncode == 0
+    result = program("info", "höhe.ply", env=environment)
+    assert (result.returncode, result.stderr) == (0, "")
+    assert "h\\xf6he.ply" in result.stdout
+
+
 def test_help_loads_no_heavy_library(folder):
     code = (
         "import sys; from tinsmith.cli import main\n"

@@ -7,6 +7,7 @@ import math
 import os
 import sys
 from dataclasses import dataclass
+from io import TextIOWrapper
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -17,7 +18,7 @@ from .steps import Steps
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-__all__ = ["Console", "Field", "plain"]
+__all__ = ["Console", "Field", "accept_any_text", "plain"]
 
 Field = tuple[str, str]
 """A label and what it says; further lines stand under the first."""
@@ -85,9 +86,16 @@ def _lines(fields: Iterable[Field]) -> str:
     )
 
 
+def accept_any_text() -> None:
+    """Let stdout and stderr escape letters that the terminal's encoding does not have."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+
+
 def plain(facts: Mapping[str, Any]) -> str:
     """Return facts as strict JSON: a number that is not finite becomes null."""
-    return json.dumps(_finite(facts), indent=2, ensure_ascii=False, allow_nan=False)
+    return json.dumps(_finite(facts), indent=2, allow_nan=False)
 
 
 def _finite(value: Any) -> Any:

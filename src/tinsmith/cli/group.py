@@ -14,6 +14,7 @@ from typing import Any
 import click
 
 from .. import __version__
+from .console import accept_any_text
 from .failures import Failure, failures_as_sentences
 
 __all__ = ["main"]
@@ -41,6 +42,7 @@ class _Commands(click.Group):
         return None if entry is None else _plugged_in(entry)
 
     def invoke(self, ctx: click.Context) -> Any:
+        accept_any_text()
         with failures_as_sentences(ctx):
             return super().invoke(ctx)
 
