@@ -13,7 +13,7 @@ from .errors import FormatError, ReadError
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-__all__ = ["COORDINATES", "Columns", "columns_by_header", "columns_by_word", "role_of"]
+__all__ = ["COORDINATES", "Columns", "columns_by_header", "columns_by_word", "meanings", "role_of"]
 
 COORDINATES = ("easting", "northing", "elevation")
 _ROLES = (*COORDINATES, "number", "description")
@@ -207,7 +207,7 @@ def columns_by_word(
     if isinstance(word, Mapping):
         roles = {_checked_role(role): _column(which, header, count) for role, which in word.items()}
         return Columns(numbered(header, count), _complete(roles, word))
-    given = _meanings(word)
+    given = meanings(word)
     named = [meaning for meaning in given if meaning in _ROLES]
     twice = next((one for one in named if named.count(one) > 1), None)
     if twice:
@@ -228,8 +228,8 @@ def _own_name(given: Sequence[str], header: Sequence[str], column: int) -> str:
     return given[column] if column < len(given) else ""
 
 
-def _meanings(word: str | Sequence[str]) -> list[str]:
-    """Return the role, or else the name, that the caller gives each column."""
+def meanings(word: str | Sequence[str]) -> list[str]:
+    """Return the role, or else the name, that letters or names give each column."""
     if isinstance(word, str):
         if "," not in word and all(letter in _LETTERS for letter in word.upper()):
             return [_LETTERS[letter] for letter in word.upper()]

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .delimited_cells import BLANKS, is_number, is_number_like, split_line
-from .delimited_columns import Columns, columns_by_header, columns_by_word, role_of
+from .delimited_columns import Columns, columns_by_header, columns_by_word, meanings, role_of
 from .delimited_content import columns_by_content, require_no_split_decimals
 from .delimited_lines import COMMENT_PREFIXES
 from .delimited_marks import as_decimal, as_delimiter, decimal_of, delimiter_of
@@ -260,9 +260,9 @@ def _column_count(
 
 def _told_count(rows: Sequence[Sequence[str]], wishes: _Wishes) -> int | None:
     """Return the number of columns if caller or header say that the last is a description."""
-    if isinstance(wishes.columns, str) and wishes.columns.upper().endswith("D"):
-        given = wishes.columns
-        return len(given.split(",")) if "," in given else len(given)
+    if wishes.columns is not None and not isinstance(wishes.columns, Mapping):
+        given = meanings(wishes.columns)
+        return len(given) if given[-1:] == ["description"] else None
     for row in rows[:_TOP_LINES]:
         known = columns_by_header(row, strict=False)
         if known is not None and known.roles.get("description") == len(row) - 1:

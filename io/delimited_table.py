@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["Table", "read_table"]
 
 _SHOWN = 5
+_CHUNK_ROWS = 100_000
 _QUOTE, _SPACE, _TAB, _LINE_FEED = b'" \t\n'
 _REWRITTEN_DELIMITER = "\t"
 
@@ -113,13 +114,13 @@ def _is_regular(data: bytes, layout: Layout) -> bool:
     starts = np.append(0, ends[:-1] + 1)
     if layout.delimiter == BLANKS:
         return b'"' not in data and _has_even_words(codes, starts, ends, layout.count)
-    is_delimiter = codes == ord(layout.delimiter)
+    places = np.flatnonzero(codes == ord(layout.delimiter))
     if b'"' in data:
-        is_inside = _quoted(codes, ord(layout.delimiter), ends)
-        if is_inside is None:
+        quotes = np.flatnonzero(codes == _QUOTE)
+        if not _are_plain(quotes, codes, ord(layout.delimiter), ends):
             return False
-        is_delimiter &= ~is_inside
-    return _has_even(np.flatnonzero(is_delimiter), starts, ends, layout.count - 1)
+        places = _outside(places, quotes)
+    return _has_even(places, starts, ends, layout.count - 1)
 
 
 def _has_even(
@@ -141,23 +142,31 @@ def _has_even_words(
     return _has_even(np.flatnonzero(is_word_start), starts, ends, count)
 
 
-def _quoted(
-    codes: NDArray[np.uint8], edge: int, ends: NDArray[np.int64]
-) -> NDArray[np.bool_] | None:
-    """Return which bytes are inside quotes; None if a quote stands where only care can read it.
+def _are_plain(
+    quotes: NDArray[np.int64], codes: NDArray[np.uint8], delimiter: int, ends: NDArray[np.int64]
+) -> bool:
+    """Whether no quote stands where only care can read it.
 
     Quotes are plain if they are closed on their line, open at the start of a cell, and close at
     the end of one or are doubled.
     """
-    is_quote = codes == _QUOTE
-    is_inside = (np.add.accumulate(is_quote, dtype=np.uint8) & 1).view(np.bool_)
-    if is_inside[ends - 1].any():
-        return None
-    places = np.flatnonzero(is_quote)
-    before, behind = places[0::2] - 1, places[1::2] + 1
+    if len(quotes) % 2:
+        return False
+    opening, closing = quotes[0::2], quotes[1::2]
+    if (np.searchsorted(ends, opening) != np.searchsorted(ends, closing)).any():
+        return False
+    before, behind = opening - 1, closing + 1
     beside = codes[np.concatenate([before[before >= 0], behind[behind < len(codes)]])]
-    is_plain = (beside == edge) | (beside == _QUOTE) | (beside == _LINE_FEED)
-    return is_inside if is_plain.all() else None
+    return bool(np.isin(beside, [delimiter, _QUOTE, _LINE_FEED]).all())
+
+
+def _outside(places: NDArray[np.int64], quotes: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the places (ascending) that do not lie between an opening and its closing quote."""
+    first = np.searchsorted(places, quotes[0::2])
+    counts = np.searchsorted(places, quotes[1::2]) - first
+    running = np.cumsum(counts)
+    total = int(running[-1])
+    return np.delete(places, np.repeat(first - running + counts, counts) + np.arange(total))
 
 
 def _rewritten(lines: TextLines, layout: Layout, path: Path) -> bytes:
@@ -183,28 +192,35 @@ def _rewritten(lines: TextLines, layout: Layout, path: Path) -> bytes:
 
 def _rows(lines: TextLines, layout: Layout, path: Path) -> Iterator[tuple[int, list[str]]]:
     """Walk the rows: line number (from 0) and cells, a tail of text as one cell."""
-    for line in layout.rows.tolist():
-        text = lines.text(line)
-        cells = split_line(text, layout.delimiter)
-        if '"' in text and _has_open_quote(text, layout.delimiter):
+    delimiter = layout.delimiter
+    reader = csv.reader(_texts(lines, layout), delimiter=delimiter, skipinitialspace=True)
+    last = -1 if lines.is_whole else len(lines) - 1
+    for number, line in enumerate(layout.rows.tolist(), 1):
+        try:
+            cells = next(reader)
+        except csv.Error as error:
+            raise ReadError(
+                f"'{path}', line {line + 1}: {error}.", path=path, lines=[line + 1]
+            ) from error
+        if reader.line_num != number:
             raise ReadError(
                 f"'{path}', line {line + 1}: a quote opens a cell and is not closed on the line; "
                 'a quote at the start of a cell must be doubled ("").',
                 path=path,
                 lines=[line + 1],
             )
-        if layout.has_text_tail:
-            cells = _with_tail(cells, layout.count, line == len(lines) - 1 and not lines.is_whole)
-        yield line, cells
+        yield line, _with_tail(cells, layout.count, line == last) if layout.has_text_tail else cells
 
 
-def _has_open_quote(text: str, delimiter: str) -> bool:
-    """Whether the line ends inside quotes: then a further line would be part of the cell."""
-    if delimiter == BLANKS:
-        text = text.replace("\t", " ").strip(" ")
-    reader = csv.reader([text + "\n", "\n"], delimiter=delimiter, skipinitialspace=True)
-    next(reader, None)
-    return reader.line_num > 1
+def _texts(lines: TextLines, layout: Layout) -> Iterator[str]:
+    """Walk the texts of the rows, and an empty one that a quote left open would swallow."""
+    for start in range(0, len(layout.rows), _CHUNK_ROWS):
+        text = lines.joined(layout.rows[start : start + _CHUNK_ROWS]).decode()
+        if layout.delimiter == BLANKS:
+            yield from (line.strip(" ") for line in text.replace("\t", " ").split("\n"))
+        else:
+            yield from text.split("\n")
+    yield ""
 
 
 def _with_tail(cells: list[str], count: int, is_cut: bool) -> list[str]:

@@ -55,7 +55,7 @@ def test_label_is_short():
     ("text", "expected"),
     [
         ("EPSG:32616", LengthUnit("metre", "m", 1.0)),
-        ("EPSG:2274", LengthUnit("US survey foot", "US ft", 1200 / 3937)),
+        ("EPSG:2274", LengthUnit("US survey foot", "US ft", 0.30480060960121924)),
         ("EPSG:2222", LengthUnit("foot", "ft", 0.3048)),
         ("EPSG:4326", LengthUnit("degree", "°", None)),
         (None, LengthUnit("unit", "units", None)),

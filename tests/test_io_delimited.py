@@ -320,6 +320,13 @@ def test_a_quote_that_stays_open_is_refused_with_its_line(survey):
     assert "quote" in str(error)
 
 
+def test_a_cell_of_endless_text(survey):
+    long = "x" * 200_000
+    assert survey(f"x,y,z,d\n1,2,3,{long}\n4,5,6,b\n").attributes["description"][0] == long
+    assert fault(survey, f'x,y,z,d\n1,2,3,{long}\n4,5,6,6" pipe, "\n').line == 2
+    assert "no table" in str(fault(survey, f'{{"a": "{long}", {long}}}'))
+
+
 def test_words_of_a_description_between_blanks(survey):
     content = (
         "1  10.0  20.0 30.0 EDGE OF PAVEMENT\n2\t10.0 21.0 30.0 TREE\n"
