@@ -26,7 +26,7 @@ __all__ = [
 EXACT_RANGE: tuple[float, float] = (_core.SMALLEST_COORDINATE, _core.LARGEST_COORDINATE)
 """Smallest (but 0) and largest magnitude of a coordinate for which the predicates are exact."""
 
-Locator = getattr(_core, "Locator", None)
+Locator = _core.Locator
 orientation = _core.orientation
 in_circle = _core.in_circle
 snap = _core.snap

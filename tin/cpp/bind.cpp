@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "locate.hpp"
 #include "predicates.hpp"
 #include "snapping.hpp"
 #include "triangulation.hpp"
@@ -22,6 +23,7 @@ using Points = nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::dev
 using Places = nb::ndarray<const double, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
 using Corners = nb::ndarray<nb::numpy, std::int32_t, nb::shape<-1, 3>>;
 using Numbers = nb::ndarray<nb::numpy, std::int32_t, nb::shape<-1>>;
+using Heights = nb::ndarray<nb::numpy, double, nb::shape<-1>>;
 using Signs = nb::ndarray<nb::numpy, std::int8_t, nb::shape<-1>>;
 
 template <typename Array, typename T>
@@ -117,10 +119,74 @@ Signs in_circle(const Places& a, const Places& b, const Places& c, const Places&
   return signs(a, b, c, d, tinsmith::in_circle);
 }
 
+// A locator with the arrays that it reads.
+class HeldLocator {
+ public:
+  using Triangles = nb::ndarray<const std::int32_t, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
+
+  HeldLocator(const Points& points, const Triangles& triangles, const Triangles& neighbors)
+      : points_(points), triangles_(triangles), neighbors_(neighbors), locator_(index()) {}
+
+  Numbers locate(const Places& xy) const {
+    return answer<Numbers, std::int32_t>(xy, [&](std::int64_t count, std::int32_t* result) {
+      return locator_.locate(places_of(xy), count, result, no_signal);
+    });
+  }
+
+  Heights interpolate(const Places& xy) const {
+    return answer<Heights, double>(xy, [&](std::int64_t count, double* result) {
+      return locator_.interpolate(places_of(xy), count, result, no_signal);
+    });
+  }
+
+ private:
+  tinsmith::Locator index() const {
+    if (triangles_.shape(0) != neighbors_.shape(0)) {
+      throw std::invalid_argument("triangles and neighbors must have the same number of rows");
+    }
+    if (triangles_.shape(0) > INT32_MAX / 3 || points_.shape(0) > INT32_MAX / 3) {
+      throw std::invalid_argument("more triangles or points than 32-bit indices can number");
+    }
+    const tinsmith::Surface surface{points_.data(), triangles_.data(), neighbors_.data(),
+                                    static_cast<std::int32_t>(points_.shape(0)),
+                                    static_cast<std::int32_t>(triangles_.shape(0))};
+    nb::gil_scoped_release release;
+    if (!surface.has_sound_points()) {
+      throw std::invalid_argument("points must be finite and within the exact range");
+    }
+    if (!surface.has_sound_corners()) {
+      throw std::invalid_argument("triangles must hold vertex numbers from 0 to n - 1");
+    }
+    return tinsmith::Locator(surface);
+  }
+
+  static const tinsmith::Point* places_of(const Places& xy) {
+    static_assert(sizeof(tinsmith::Point) == 2 * sizeof(double), "a row is a point");
+    return reinterpret_cast<const tinsmith::Point*>(xy.data());
+  }
+
+  template <typename Array, typename T, typename Run>
+  static Array answer(const Places& xy, Run run) {
+    const std::size_t count = xy.shape(0);
+    std::unique_ptr<T[]> result(new T[count]);
+    bool is_complete = false;
+    {
+      nb::gil_scoped_release release;
+      is_complete = run(static_cast<std::int64_t>(count), result.get());
+    }
+    if (!is_complete) throw nb::python_error();
+    return hand_over<Array>(std::move(result), {count});
+  }
+
+  Points points_;
+  Triangles triangles_, neighbors_;
+  tinsmith::Locator locator_;
+};
+
 }  // namespace
 
 NB_MODULE(_core, m) {
-  m.doc() = "Compiled core of tinsmith.tin: exact predicates and growth.";
+  m.doc() = "Compiled core of tinsmith.tin: exact predicates, growth, point location.";
   m.attr("SMALLEST_COORDINATE") = tinsmith::kSmallestCoordinate;
   m.attr("LARGEST_COORDINATE") = tinsmith::kLargestCoordinate;
   nb::enum_<tinsmith::Method>(m, "Method", "How to build; the result is the same.")
@@ -139,4 +205,11 @@ NB_MODULE(_core, m) {
   m.def("in_circle", &in_circle, "a"_a.noconvert(), "b"_a.noconvert(), "c"_a.noconvert(),
         "d"_a.noconvert(),
         "+1 where d lies inside the circle through counter-clockwise a, b, c, -1 outside, 0 on it.");
+  nb::class_<HeldLocator>(m, "Locator", "Finds the triangle and the height at any place.")
+      .def(nb::init<const Points&, const HeldLocator::Triangles&, const HeldLocator::Triangles&>(),
+           "points"_a.noconvert(), "triangles"_a.noconvert(), "neighbors"_a.noconvert())
+      .def("locate", &HeldLocator::locate, "xy"_a.noconvert(),
+           "The triangle at each place, -1 outside; the smallest one where several meet.")
+      .def("interpolate", &HeldLocator::interpolate, "xy"_a.noconvert(),
+           "The height at each place, NaN outside.");
 }

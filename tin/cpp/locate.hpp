@@ -1,0 +1,247 @@
+// Point location: which triangle holds a place, and how high is the surface there?
+//
+// A short walk over neighbours, from the triangle of the place before, guesses; a tree of boxes
+// proves. The walk is believed only where floating point is certain that the place lies strictly
+// inside a triangle. All else - on an edge or a vertex, outside, across a gap, too far away - is
+// decided by testing every triangle whose box holds the place, exactly. So the answer needs no
+// convex boundary, no Delaunay triangles and no sound neighbours.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "box_tree.hpp"
+#include "expansion.hpp"
+#include "ids.hpp"
+#include "predicates.hpp"
+#include "spatial_order.hpp"
+
+namespace tinsmith {
+
+constexpr std::int32_t kNowhere = -1;
+
+// Triangles by number, as the caller holds them.
+struct Surface {
+  const double* points;  // x, y, z
+  const std::int32_t* corners;
+  const std::int32_t* neighbors;
+  std::int32_t point_count;
+  std::int32_t triangle_count;
+
+  Point corner(std::int32_t triangle, int k) const {
+    const double* row = points + 3 * static_cast<std::size_t>(vertex(triangle, k));
+    return {row[0], row[1]};
+  }
+  double height(std::int32_t triangle, int k) const {
+    return points[3 * static_cast<std::size_t>(vertex(triangle, k)) + 2];
+  }
+  std::int32_t vertex(std::int32_t triangle, int k) const {
+    return corners[3 * static_cast<std::size_t>(triangle) + k];
+  }
+  std::int32_t neighbor(std::int32_t triangle, int k) const {
+    return neighbors[3 * static_cast<std::size_t>(triangle) + k];
+  }
+  bool is_triangle(std::int32_t number) const { return number >= 0 && number < triangle_count; }
+
+  bool has_sound_corners() const {
+    bool sound = true;
+    for (std::int64_t i = 0; i < std::int64_t{3} * triangle_count; ++i) {
+      sound &= corners[i] >= 0 && corners[i] < point_count;
+    }
+    return sound;
+  }
+
+  // The predicates must not be given what they cannot compute with.
+  bool has_sound_points() const {
+    bool sound = true;
+    for (std::int64_t i = 0; i < std::int64_t{3} * point_count; i += 3) {
+      sound &= std::fabs(points[i]) <= kLargestCoordinate;
+      sound &= std::fabs(points[i + 1]) <= kLargestCoordinate;
+    }
+    return sound;
+  }
+
+  Box box_of(std::int32_t triangle) const {
+    Box box;
+    for (int k = 0; k < 3; ++k) box.include(corner(triangle, k));
+    return box;
+  }
+};
+
+namespace detail {
+
+// Twice the signed area of a, b, c; the sign is exact and the value good to about 12 digits.
+inline double twice_area(Point a, Point b, Point c) {
+  constexpr double kCancelled = 0x1p-12;  // fewer than 12 of 53 bits lost is good enough
+  const double left = (a.x - c.x) * (b.y - c.y);
+  const double right = (a.y - c.y) * (b.x - c.x);
+  const double value = left - right;
+  if (std::fabs(value) > kCancelled * (std::fabs(left) + std::fabs(right))) return value;
+  const auto exact =
+      expand(exact_difference(a.x, c.x)) * expand(exact_difference(b.y, c.y)) -
+      expand(exact_difference(a.y, c.y)) * expand(exact_difference(b.x, c.x));
+  double sum = 0.0;
+  for (std::size_t i = 0; i < exact.size; ++i) sum += exact.part[i];
+  return sum;
+}
+
+}  // namespace detail
+
+class Locator {
+ public:
+  // The surface's arrays must outlive the locator, and its points and corners be sound.
+  explicit Locator(const Surface& surface) : surface_(surface) {
+    std::vector<Point> centers(surface.triangle_count);
+    for (std::int32_t t = 0; t < surface.triangle_count; ++t) {
+      centers[t] = surface.box_of(t).center();
+    }
+    triangles_ = SpatialOrder(centers.data(), surface.triangle_count).take();
+    tree_ = BoxTree(surface.triangle_count,
+                    [&](std::int32_t i) { return surface.box_of(triangles_[i]); });
+  }
+
+  // Triangle of each place, kNowhere outside. False if asked to stop.
+  template <typename KeepGoing>
+  bool locate(const Point* places, std::int64_t count, std::int32_t* result,
+              KeepGoing&& keep_going) const {
+    return visit_places(places, count, keep_going, [&](std::int64_t i, Point, std::int32_t triangle) {
+      result[i] = triangle;
+    });
+  }
+
+  // Height at each place, NaN outside. False if asked to stop.
+  template <typename KeepGoing>
+  bool interpolate(const Point* places, std::int64_t count, double* result,
+                   KeepGoing&& keep_going) const {
+    return visit_places(places, count, keep_going, [&](std::int64_t i, Point p, std::int32_t triangle) {
+      result[i] = triangle == kNowhere ? std::numeric_limits<double>::quiet_NaN()
+                                       : height_at(p, triangle);
+    });
+  }
+
+ private:
+  static constexpr std::int64_t kPlacesAtATime = std::int64_t{1} << 22;  // bounds the memory
+  static constexpr std::int32_t kBlock = 4096;  // fits the first-level cache
+  static constexpr int kLongestWalk = 24;       // as costly as a search
+
+  // Places in spatial order, so that walks are short and memory is near.
+  template <typename KeepGoing, typename Visit>
+  bool visit_places(const Point* all_places, std::int64_t count, KeepGoing&& keep_going,
+                    Visit&& visit) const {
+    std::int32_t last = kNowhere;
+    for (std::int64_t begin = 0; begin < count; begin += kPlacesAtATime) {
+      const auto size = static_cast<std::int32_t>(std::min(kPlacesAtATime, count - begin));
+      const Point* places = all_places + begin;
+      const std::vector<std::int32_t> order = SpatialOrder(places, size).take();
+      for (std::int32_t first = 0; first < size; first += kBlock) {
+        if (!keep_going()) return false;
+        const std::int32_t end = std::min(first + kBlock, size);
+        std::array<Point, kBlock> block;
+        for (std::int32_t i = first; i < end; ++i) block[i - first] = places[order[i]];
+        for (std::int32_t i = first; i < end; ++i) {
+          const Point p = block[i - first];
+          const std::int32_t triangle = find(p, last);
+          if (triangle != kNowhere) last = triangle;
+          visit(begin + order[i], p, triangle);
+        }
+      }
+    }
+    return true;
+  }
+
+  std::int32_t find(Point p, std::int32_t start) const {
+    const std::int32_t guess = start == kNowhere ? kNowhere : walk(p, start);
+    return guess == kNowhere ? search(p) : guess;
+  }
+
+  // The triangle that certainly holds p strictly inside, or kNowhere for "cannot say".
+  std::int32_t walk(Point p, std::int32_t triangle) const {
+    for (int step = 0; step < kLongestWalk && surface_.is_triangle(triangle); ++step) {
+      const Point a = surface_.corner(triangle, 0);
+      const Point b = surface_.corner(triangle, 1);
+      const Point c = surface_.corner(triangle, 2);
+      const double ax = a.x - p.x, ay = a.y - p.y;
+      const double bx = b.x - p.x, by = b.y - p.y;
+      const double cx = c.x - p.x, cy = c.y - p.y;
+      const double bxcy = bx * cy, bycx = by * cx;
+      const double cxay = cx * ay, cyax = cy * ax;
+      const double axby = ax * by, aybx = ay * bx;
+      const double side[3] = {bxcy - bycx, cxay - cyax, axby - aybx};
+      const double bound =
+          detail::kOrientationBound * (std::fabs(bxcy) + std::fabs(bycx) + std::fabs(cxay) +
+                                       std::fabs(cyax) + std::fabs(axby) + std::fabs(aybx));
+      int outermost = side[1] < side[0];
+      outermost = side[2] < side[outermost] ? 2 : outermost;
+      if (side[outermost] > bound) return triangle;
+      if (!(side[outermost] < -bound)) return kNowhere;
+      triangle = surface_.neighbor(triangle, outermost);
+    }
+    return kNowhere;
+  }
+
+  // The smallest triangle that holds p, boundary included; exact and complete.
+  std::int32_t search(Point p) const {
+    std::int32_t best = kNowhere;
+    tree_.visit_leaves(p, [&](std::int32_t begin, std::int32_t end) {
+      for (std::int32_t i = begin; i < end; ++i) {
+        const std::int32_t triangle = triangles_[i];
+        if (best != kNowhere && triangle > best) continue;
+        const Within within = position(p, triangle);
+        if (within == Within::kOutside) continue;
+        best = triangle;
+        if (within == Within::kInside) return true;  // then no other triangle holds p
+      }
+      return false;
+    });
+    return best;
+  }
+
+  enum class Within { kOutside, kBoundary, kInside };
+
+  Within position(Point p, std::int32_t triangle) const {
+    const Point a = surface_.corner(triangle, 0);
+    const Point b = surface_.corner(triangle, 1);
+    const int side_ab = orientation(a, b, p);
+    if (side_ab < 0) return Within::kOutside;
+    const Point c = surface_.corner(triangle, 2);
+    const int side_bc = orientation(b, c, p);
+    if (side_bc < 0) return Within::kOutside;
+    const int side_ca = orientation(c, a, p);
+    if (side_ca < 0) return Within::kOutside;
+    const int positive = side_ab + side_bc + side_ca;
+    if (positive == 0) return Within::kOutside;  // a triangle without area holds nothing
+    return positive == 3 ? Within::kInside : Within::kBoundary;
+  }
+
+  // Differences from the corner of largest weight keep the digits that the heights share, and
+  // give a vertex exactly its own height; differences of halves cannot overflow.
+  double height_at(Point p, std::int32_t triangle) const {
+    const Point a = surface_.corner(triangle, 0);
+    const Point b = surface_.corner(triangle, 1);
+    const Point c = surface_.corner(triangle, 2);
+    const double weight[3] = {detail::twice_area(b, c, p), detail::twice_area(c, a, p),
+                              detail::twice_area(a, b, p)};
+    const double total = weight[0] + weight[1] + weight[2];
+    int main = weight[1] > weight[0];
+    main = weight[2] > weight[main] ? 2 : main;
+    const int next = (main + 1) % 3, last = (main + 2) % 3;
+    const double z = surface_.height(triangle, main);
+    const double z_next = surface_.height(triangle, next);
+    const double z_last = surface_.height(triangle, last);
+    const double half_rise = weight[next] / total * (0.5 * z_next - 0.5 * z) +
+                             weight[last] / total * (0.5 * z_last - 0.5 * z);
+    const double lowest = std::min({z, z_next, z_last});
+    const double highest = std::max({z, z_next, z_last});
+    return std::min(std::max(z + 2.0 * half_rise, lowest), highest);
+  }
+
+  Surface surface_;
+  std::vector<std::int32_t> triangles_;  // in spatial order
+  BoxTree tree_;
+};
+
+}  // namespace tinsmith
