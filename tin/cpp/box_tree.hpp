@@ -14,15 +14,15 @@
 
 namespace tinsmith {
 
-struct Box {
+struct Rectangle {
   double xmin = std::numeric_limits<double>::infinity();
   double ymin = std::numeric_limits<double>::infinity();
   double xmax = -std::numeric_limits<double>::infinity();
   double ymax = -std::numeric_limits<double>::infinity();
 
-  void include(Point p) { include(Box{p.x, p.y, p.x, p.y}); }
+  void include(Point p) { include(Rectangle{p.x, p.y, p.x, p.y}); }
 
-  void include(const Box& other) {
+  void include(const Rectangle& other) {
     xmin = std::min(xmin, other.xmin);
     ymin = std::min(ymin, other.ymin);
     xmax = std::max(xmax, other.xmax);
@@ -48,7 +48,7 @@ class BoxTree {
   BoxTree(std::int32_t item_count, BoxOf&& box_of) : item_count_(item_count) {
     lay_out_levels();
     for (std::int32_t leaf = 0; leaf < level_[1]; ++leaf) {
-      Box box;
+      Rectangle box;
       for (std::int32_t i = first_item(leaf); i < first_item(leaf + 1); ++i) {
         box.include(box_of(i));
       }
@@ -117,7 +117,7 @@ class BoxTree {
 
   std::int32_t item_count_ = 0;
   std::vector<std::int32_t> level_;  // where the boxes of each level begin, and the end
-  std::vector<Box> boxes_;
+  std::vector<Rectangle> boxes_;
 };
 
 }  // namespace tinsmith

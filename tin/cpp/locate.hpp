@@ -65,8 +65,8 @@ struct Surface {
     return sound;
   }
 
-  Box box_of(std::int32_t triangle) const {
-    Box box;
+  Rectangle box_of(std::int32_t triangle) const {
+    Rectangle box;
     for (int k = 0; k < 3; ++k) box.include(corner(triangle, k));
     return box;
   }
