@@ -3,7 +3,7 @@
 >>> import tinsmith as ts
 >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8]])
 >>> tin.interpolate([[2.0, 1.0]]).round(3)
-array([5.833])
+array([6.5])
 """
 
 from importlib import import_module
