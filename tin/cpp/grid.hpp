@@ -1,7 +1,17 @@
 // Index: points bucketed into square cells of about two, stored row of cells by row of cells.
 //
-// The storage order is the sweep order. Within a cell points are sorted by easting, then
-// northing, so the order is a function of the point set, and rows at one place stand together.
+// The storage order is the sweep order. A cell that is crowded holds a grid of its own, fitted to
+// its points, and so on: the index adapts to clusters, tracks and contour lines, and is a plain
+// grid where the points are even. Within a cell points are sorted by easting, then northing, so
+// the order is a function of the point set, and rows at one place stand together.
+//
+//      +----+----+----+----+        a level: columns x rows of square cells
+//      | .  |. . |  . | .  |
+//      +----+----+----+----+        the points of cell (r, c) are stored from
+//      |  . |::::| .  |  . |        start(r, c) to start(r, c + 1); a row is one run
+//      +----+----+----+----+
+//      | .  | .  | .  |.  .|        ::::  a crowded cell: a level of its own inside
+//      +----+----+----+----+
 #pragma once
 
 #include <algorithm>
@@ -25,14 +35,65 @@ struct PointRows {
   }
 };
 
+struct Box {
+  double west, east, south, north;
+
+  bool within(const Box& outer) const {
+    return west >= outer.west && east <= outer.east && south >= outer.south &&
+           north <= outer.north;
+  }
+  bool meets(const Box& other) const {
+    return west <= other.east && other.west <= east && south <= other.north &&
+           other.south <= north;
+  }
+};
+
+// One grid of the index. The cell of a point is monotone in x and in y, so the cells of a box's
+// corners bound the cells of all points in it.
+struct Level {
+  Box box;  // fits the points
+  double cell_size, per_cell;
+  std::int32_t columns, rows;
+  std::int32_t begin, end;   // positions of its points
+  std::int64_t first_start;  // its (rows * columns + 1) starts in the common list
+  std::int64_t first_child_row = kNoChildren;
+
+  static constexpr std::int64_t kNoChildren = -1;
+
+  // Square cells, `points_per_cell` on average, never more columns or rows than cells.
+  static Level fitted(const Box& box, std::int32_t begin, std::int32_t end,
+                      double points_per_cell) {
+    Level level{};
+    level.box = box;
+    level.begin = begin;
+    level.end = end;
+    const double width = box.east - box.west, height = box.north - box.south;
+    const double cells = std::max(1.0, (end - begin) / points_per_cell);
+    level.cell_size = std::max(
+        {std::sqrt(width / cells) * std::sqrt(height), width / cells, height / cells});
+    if (!(level.cell_size > 0.0)) level.cell_size = 1.0;
+    level.per_cell = 1.0 / level.cell_size;
+    level.columns = 1 + static_cast<std::int32_t>(width * level.per_cell);
+    level.rows = 1 + static_cast<std::int32_t>(height * level.per_cell);
+    level.first_child_row = kNoChildren;
+    return level;
+  }
+
+  std::int32_t column_at(double x) const { return clamped((x - box.west) * per_cell, columns); }
+  std::int32_t row_at(double y) const { return clamped((y - box.south) * per_cell, rows); }
+  std::int32_t cell_at(Point p) const { return row_at(p.y) * columns + column_at(p.x); }
+  std::int64_t cell_count() const { return static_cast<std::int64_t>(columns) * rows; }
+
+ private:
+  static std::int32_t clamped(double cell, std::int32_t count) {
+    if (!(cell > 0.0)) return 0;
+    return cell < count ? static_cast<std::int32_t>(cell) : count - 1;
+  }
+};
+
 class PointGrid {
  public:
-  explicit PointGrid(const PointRows& rows) {
-    measure(rows);
-    bucket(rows);
-    sort_cells();
-    drop_repeated(rows.count);
-  }
+  explicit PointGrid(const PointRows& rows);
 
   std::int32_t count() const { return static_cast<std::int32_t>(x_.size()); }
   Point point(Vertex v) const { return {x_[number(v)], y_[number(v)]}; }
@@ -43,169 +104,114 @@ class PointGrid {
   // For each input row the first row at its place; empty if no two rows share a place.
   const std::vector<std::int32_t>& kept_row() const { return kept_row_; }
 
-  // Points that share the cell of a point, on average: about 3 for even data.
-  double crowding() const {
-    double squares = 0.0;
-    for (std::size_t cell = 0; cell + 1 < start_.size(); ++cell) {
-      const double held = start_[cell + 1] - start_[cell];
-      squares += held * held;
-    }
-    return squares / count();
+  const Level& top() const { return levels_.front(); }
+  bool is_plain() const { return levels_.size() == 1; }
+
+  // Size of the cells around a position: those of the innermost level that holds it.
+  double cell_size_at(std::int32_t position) const {
+    const auto after = std::upper_bound(
+        spans_.begin(), spans_.end(), position,
+        [](std::int32_t sought, const Span& span) { return sought < span.begin; });
+    return (after - 1)->cell_size;
   }
 
-  double cell_size() const { return cell_size_; }
-  std::int32_t columns() const { return columns_; }
-  std::int32_t cell_rows() const { return cell_rows_; }
-  double west() const { return west_; }
-  double south() const { return south_; }
-
-  // Monotone in x and y, so the cells of a box's corners bound the cells of its points.
-  std::int32_t column_at(double x) const { return clamped((x - west_) * per_cell_, columns_); }
-  std::int32_t cell_row_at(double y) const { return clamped((y - south_) * per_cell_, cell_rows_); }
-
-  // First stored position of a cell; the cell after the last one of a row begins the next row.
-  std::int32_t begin_of(std::int32_t cell_row, std::int32_t column) const {
-    return start_[static_cast<std::size_t>(cell_row) * columns_ + column];
+  // First position of a cell of a level; the cell after the last of a row begins the next row.
+  std::int32_t start(const Level& level, std::int32_t row, std::int32_t column) const {
+    return start_[level.first_start + static_cast<std::int64_t>(row) * level.columns + column];
   }
+
+  // Visit runs of positions, from `from` (at northing `from_y`) on, that hold all points in the
+  // region: visit(begin, end). A region has a box, and narrows it for one row: narrow(south, north, west, east).
+  // Returns the number of rows of cells looked at.
+  template <typename Region, typename Visit>
+  std::int64_t for_each_run(const Region& region, std::int32_t from, double from_y,
+                            Visit&& visit) const {
+    const std::int32_t first_row =
+        std::max(top().row_at(region.box().south), top().row_at(from_y));
+    return visit_level(top(), first_row, region, from, visit);
+  }
+
+  // Narrowing a row costs more than it saves where a box spans few columns.
+  static constexpr std::int32_t kNarrowColumns = 4;
 
  private:
-  static constexpr double kPointsPerCell = 2.0;
+  struct Span {
+    std::int32_t begin;
+    double cell_size;
+  };
+  struct Child {
+    std::int32_t column;
+    std::int32_t level;
+  };
+  friend class GridBuilder;
 
-  static std::int32_t clamped(double cell, std::int32_t count) {
-    if (!(cell > 0.0)) return 0;
-    return cell < count ? static_cast<std::int32_t>(cell) : count - 1;
-  }
-
-  void measure(const PointRows& rows) {
-    double east = rows[0].x, north = rows[0].y;
-    west_ = east;
-    south_ = north;
-    for (std::int64_t i = 1; i < rows.count; ++i) {
-      const Point p = rows[i];
-      west_ = std::min(west_, p.x);
-      east = std::max(east, p.x);
-      south_ = std::min(south_, p.y);
-      north = std::max(north, p.y);
-    }
-    const double width = east - west_, height = north - south_;
-    const double cells = std::max(1.0, static_cast<double>(rows.count) / kPointsPerCell);
-    cell_size_ = std::max({std::sqrt(width / cells) * std::sqrt(height), width / cells,
-                           height / cells});
-    if (!(cell_size_ > 0.0)) cell_size_ = 1.0;
-    per_cell_ = 1.0 / cell_size_;
-    columns_ = 1 + static_cast<std::int32_t>(width * per_cell_);
-    cell_rows_ = 1 + static_cast<std::int32_t>(height * per_cell_);
-  }
-
-  void bucket(const PointRows& rows) {
-    const auto n = static_cast<std::size_t>(rows.count);
-    std::vector<std::int32_t> cell_of(n);
-    start_.assign(static_cast<std::size_t>(columns_) * cell_rows_ + 1, 0);
-    for (std::size_t i = 0; i < n; ++i) {
-      const Point p = rows[static_cast<std::int64_t>(i)];
-      cell_of[i] = cell_row_at(p.y) * columns_ + column_at(p.x);
-      ++start_[cell_of[i]];
-    }
-    std::int32_t total = 0;
-    for (auto& start : start_) {
-      total += start;
-      start = total;  // the end of the cell; filling backwards turns it into the begin
-    }
-    x_.resize(n);
-    y_.resize(n);
-    rows_.resize(n);
-    for (std::size_t i = n; i-- > 0;) {
-      const Point p = rows[static_cast<std::int64_t>(i)];
-      const std::int32_t place = --start_[cell_of[i]];
-      x_[place] = p.x;
-      y_[place] = p.y;
-      rows_[place] = static_cast<Row>(i);
-    }
-  }
-
-  void sort_cells() {
-    for (std::size_t cell = 0; cell + 1 < start_.size(); ++cell) {
-      const std::int32_t begin = start_[cell], end = start_[cell + 1];
-      if (end - begin > kLongCell) {
-        sort_long_cell(begin, end);
+  template <typename Region, typename Visit>
+  std::int64_t visit_level(const Level& level, std::int32_t first_row, const Region& region,
+                           std::int32_t from, Visit& visit) const {
+    const Box& box = region.box();
+    const std::int32_t last_row = level.row_at(box.north);
+    std::int64_t looked_at = last_row - first_row + 1;
+    for (std::int32_t row = first_row; row <= last_row; ++row) {
+      double west = box.west, east = box.east;
+      std::int32_t first = level.column_at(west), last = level.column_at(east);
+      if (last - first >= kNarrowColumns) {
+        const double south = level.box.south + row * level.cell_size;
+        const double north = std::min(south + level.cell_size, level.box.north);
+        if (!region.narrow(south, north, west, east)) continue;
+        first = level.column_at(west);
+        last = level.column_at(east);
+      }
+      if (level.first_child_row != Level::kNoChildren) {
+        looked_at += visit_row_with_children(level, row, first, last, region, from, visit);
       } else {
-        sort_short_cell(begin, end);
+        visit_run(start(level, row, first), start(level, row, last + 1), from, visit);
       }
     }
+    return looked_at;
   }
 
-  static constexpr std::int32_t kLongCell = 24;
-
-  // Both sorts are stable: rows at one place stay in the caller's order.
-  void sort_short_cell(std::int32_t begin, std::int32_t end) {
-    for (std::int32_t i = begin + 1; i < end; ++i) {
-      const Point p{x_[i], y_[i]};
-      const Row row = rows_[i];
-      std::int32_t j = i;
-      for (; j > begin && lexicographically_before(p, {x_[j - 1], y_[j - 1]}); --j) {
-        x_[j] = x_[j - 1];
-        y_[j] = y_[j - 1];
-        rows_[j] = rows_[j - 1];
-      }
-      x_[j] = p.x;
-      y_[j] = p.y;
-      rows_[j] = row;
-    }
-  }
-
-  void sort_long_cell(std::int32_t begin, std::int32_t end) {
-    struct Entry {
-      Point p;
-      Row row;
-    };
-    std::vector<Entry> entries;
-    entries.reserve(end - begin);
-    for (std::int32_t i = begin; i < end; ++i) entries.push_back({{x_[i], y_[i]}, rows_[i]});
-    std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
-      return lexicographically_before(a.p, b.p);
+  template <typename Region, typename Visit>
+  std::int64_t visit_row_with_children(const Level& level, std::int32_t row, std::int32_t first,
+                                       std::int32_t last, const Region& region,
+                                       std::int32_t from, Visit& visit) const {
+    std::int64_t looked_at = 0;
+    std::int32_t begin = start(level, row, first);
+    const Child* child = children_.data() + child_row_[level.first_child_row + row];
+    const Child* end = children_.data() + child_row_[level.first_child_row + row + 1];
+    child = std::lower_bound(child, end, first, [](const Child& c, std::int32_t column) {
+      return c.column < column;
     });
-    for (std::int32_t i = begin; i < end; ++i) {
-      x_[i] = entries[i - begin].p.x;
-      y_[i] = entries[i - begin].p.y;
-      rows_[i] = entries[i - begin].row;
-    }
-  }
-
-  bool repeats_previous(std::size_t i) const { return x_[i] == x_[i - 1] && y_[i] == y_[i - 1]; }
-
-  void drop_repeated(std::int64_t n_rows) {
-    std::size_t repeated = 0;
-    for (std::size_t i = 1; i < x_.size(); ++i) repeated += repeats_previous(i);
-    if (repeated == 0) return;
-    kept_row_.resize(n_rows);
-    std::size_t kept = 0;
-    std::size_t i = 0;
-    for (std::size_t cell = 0; cell + 1 < start_.size(); ++cell) {
-      const auto end = static_cast<std::size_t>(start_[cell + 1]);
-      start_[cell] = static_cast<std::int32_t>(kept);
-      for (; i < end; ++i) {
-        const bool repeats = kept > 0 && x_[i] == x_[kept - 1] && y_[i] == y_[kept - 1];
-        if (!repeats) {
-          x_[kept] = x_[i];
-          y_[kept] = y_[i];
-          rows_[kept] = rows_[i];
-          ++kept;
-        }
-        kept_row_[number(rows_[i])] = number(rows_[kept - 1]);
+    for (; child != end && child->column <= last; ++child) {
+      const Level& inner = levels_[child->level];
+      visit_run(begin, inner.begin, from, visit);
+      begin = inner.end;
+      ++looked_at;
+      double west = inner.box.west, east = inner.box.east;
+      if (inner.end > from && inner.box.meets(region.box()) &&
+          region.narrow(inner.box.south, inner.box.north, west, east)) {
+        looked_at += visit_level(inner, inner.row_at(region.box().south), region, from, visit);
       }
     }
-    start_.back() = static_cast<std::int32_t>(kept);
-    x_.resize(kept);
-    y_.resize(kept);
-    rows_.resize(kept);
+    visit_run(begin, start(level, row, last + 1), from, visit);
+    return looked_at;
   }
 
-  double west_ = 0.0, south_ = 0.0, cell_size_ = 1.0, per_cell_ = 1.0;
-  std::int32_t columns_ = 1, cell_rows_ = 1;
-  std::vector<std::int32_t> start_;
+  template <typename Visit>
+  static void visit_run(std::int32_t begin, std::int32_t end, std::int32_t from, Visit& visit) {
+    begin = std::max(begin, from);
+    if (begin < end) visit(begin, end);
+  }
+
   std::vector<double> x_, y_;
   std::vector<Row> rows_;
+  std::vector<Level> levels_;            // the first holds all points
+  std::vector<std::int32_t> start_;      // of the cells of every level
+  std::vector<std::int64_t> child_row_;  // for each row of a level with children: its first child
+  std::vector<Child> children_;          // by column within a row
+  std::vector<Span> spans_;              // by position
   std::vector<std::int32_t> kept_row_;
 };
 
 }  // namespace tinsmith
+
+#include "grid_builder.hpp"

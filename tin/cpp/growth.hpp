@@ -53,10 +53,9 @@ class Growth {
   template <typename KeepGoing>
   Outcome run(KeepGoing&& keep_going, bool is_bounded) {
     constexpr std::int32_t kVerticesPerQuestion = 4096;
-    const std::int64_t budget = kLeastBudget + kBudgetPerPoint * count_;
     for (std::int32_t i = 0; i < count_; ++i) {
       if (i % kVerticesPerQuestion == 0 && !keep_going()) return Outcome::kStopped;
-      if (is_bounded && search_.counts().work() > budget) return Outcome::kTooCostly;
+      if (is_bounded && search_.counts().work() > budget_at(i)) return Outcome::kTooCostly;
       finish(static_cast<Vertex>(i));
     }
     return Outcome::kComplete;
@@ -65,14 +64,20 @@ class Growth {
   const SearchCounts& counts() const { return search_.counts(); }
 
  private:
-  // Candidates and cell rows looked at; even data need about 30 a point, and from about 100 on
-  // insertion is quicker.
-  static constexpr std::int64_t kBudgetPerPoint = 100;
+  // Even data need about 30 units of work a point, rasters 100; beyond the budget insertion is
+  // quicker. It grows with the vertices finished, so that hopeless data are given up early.
+  static constexpr std::int64_t kBudgetPerPoint = 500;
+  static constexpr std::int64_t kAdvance = 32;  // at first a thirty-second of the points is granted
   static constexpr std::int64_t kLeastBudget = 20000;
 
+  std::int64_t budget_at(std::int64_t finished) const {
+    return kLeastBudget + kBudgetPerPoint * (finished + count_ / kAdvance);
+  }
+
   void finish(Vertex v) {
+    search_.move_to(v);
     if (waiting_.is_untouched(v)) {
-      const Vertex w = search_.nearest(v);
+      const Vertex w = search_.nearest();
       const HalfEdge first = half_edge(made_, 2);
       const HalfEdge last = grow_sector(v, w, w, kNoHalfEdge);
       join(first, last);
@@ -93,7 +98,7 @@ class Growth {
     const bool is_full_turn = behind == kNoHalfEdge;
     const Vertex first = w;
     while (true) {
-      const Vertex c = search_.third_point(v, w, is_full_turn && w == first ? kNoVertex : hint);
+      const Vertex c = search_.third_point(w, is_full_turn && w == first ? kNoVertex : hint);
       const std::int32_t triangle = made_++;
       out_.corners[3 * triangle] = number(v);
       out_.corners[3 * triangle + 1] = number(w);

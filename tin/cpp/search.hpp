@@ -31,55 +31,67 @@ struct SearchCounts {
   std::int64_t cell_rows = 0;
   std::int64_t exact_decisions = 0;
 
-  std::int64_t work() const { return candidates + cell_rows; }
+  // In units of one candidate.
+  std::int64_t work() const { return candidates + cell_rows + 40 * exact_decisions; }
 };
 
 class ThirdPointSearch {
  public:
   explicit ThirdPointSearch(const PointGrid& grid)
-      : grid_(grid), x_(grid.x()), y_(grid.y()), cell_(grid.cell_size()) {
-    const double far_west = std::fabs(grid.west()) + cell_ * grid.columns();
-    const double far_south = std::fabs(grid.south()) + cell_ * grid.cell_rows();
-    coordinate_slack_ = kSlack * (far_west + far_south);
+      : grid_(grid), x_(grid.x()), y_(grid.y()), cell_(grid.top().cell_size) {
+    const Box& box = grid.top().box;
+    const double farthest = std::max({std::fabs(box.west), std::fabs(box.east),
+                                      std::fabs(box.south), std::fabs(box.north)});
+    coordinate_slack_ = kSlack * 4.0 * farthest;
   }
 
-  // The winner among the points after `a` in the sweep. `a` is the vertex being finished, so all
-  // points before it have all their triangles. Requires a winner: the edge is not on the hull
-  // with its outside to the left. `hint` is a point that may win, or kNoVertex.
-  Vertex third_point(Vertex a, Vertex b, Vertex hint) {
+  // Searches are about `v` from now on: the vertex being finished.
+  void move_to(Vertex v) {
+    a_ = number(v);
+    ax_ = x_[a_];
+    ay_ = y_[a_];
+    if (!grid_.is_plain()) cell_ = grid_.cell_size_at(a_);
+  }
+
+  // The winner for the edge from v to b among the points after v in the sweep: all points before
+  // have all their triangles. Requires a winner: the edge is not on the hull with its outside to
+  // the left. `hint` is a point that may win, or kNoVertex.
+  Vertex third_point(Vertex b, Vertex hint) {
     ++counts_.searches;
-    set_edge(a, b);
+    set_edge(b);
     Circle circle = first_disc();
     if (hint != kNoVertex && is_promising(hint, circle)) offer(number(hint));
-    const std::int32_t offered = best_;
+    const bool is_long = circle.radius > kLongInCells * cell_;
+    if (is_long && !has_best()) offer_likely();
     if (has_best()) circle = best_circle();
-    Cells searched = cap_cells(circle);
+    Cap searched = cap_of(circle);
     scan(searched);
     while (!has_best()) {
-      if (all_cells().within(searched)) {
+      if (!(circle.radius < kUnbounded)) {
         throw std::logic_error("an edge inside the hull found no third point");
       }
-      circle = circle_of_radius(2.0 * circle.radius);
-      searched = cap_cells(circle);
+      if (!is_long) offer_likely();
+      circle = has_best() ? best_circle() : larger(circle, searched);
+      searched = cap_of(circle);
       scan(searched);
     }
-    if (best_ != offered) {
-      const Cells needed = cap_cells(best_circle());
-      if (!needed.within(searched)) scan(needed);
+    // Caps on one edge are nested by their cotangent.
+    const Circle needed = best_circle();
+    if (needed.cotangent > circle.cotangent) {
+      Cap cap = cap_of(needed);
+      if (!is_searched(cap, searched)) scan(cap);
     }
+    last_third_ = best_;
     return static_cast<Vertex>(best_);
   }
 
   // The point nearest to a vertex that has no triangle yet: the two are always an edge. All its
   // neighbours come after it in the sweep, so only those are looked at; of equally near ones the
   // first in the sweep is taken.
-  Vertex nearest(Vertex v) {
-    a_ = number(v);
-    ax_ = x_[a_];
-    ay_ = y_[a_];
+  Vertex nearest() {
     double radius = cell_;
     while (true) {
-      const std::int32_t found = nearest_in(disc_cells(radius));
+      const std::int32_t found = nearest_in(Disc{box_around(radius)});
       const double distance = found < 0 ? HUGE_VAL : distance_to(found);
       if (distance <= radius) return static_cast<Vertex>(found);
       radius = found < 0 ? 2.0 * radius : distance;
@@ -96,6 +108,8 @@ class ThirdPointSearch {
   static constexpr double kDiscPerCell = 0.8;
   static constexpr double kDiscCotangent = 0.56789083458002739;  // sqrt(1.15^2 - 1)
   static constexpr double kUnbounded = 1e300;
+  // A first disc of this many cells is long for its surroundings: the data run along lines.
+  static constexpr double kLongInCells = 3.0;
 
   // A circle on the edge, by the cotangent under which its left side sees the edge.
   struct Circle {
@@ -103,22 +117,52 @@ class ThirdPointSearch {
     double radius;
   };
 
-  struct Cells {
-    std::int32_t first_column, last_column, first_row, last_row;
+  // The part of a circle left of the edge, as a region of the index.
+  class Cap {
+   public:
+    Cap(const Box& box, Point center, const Circle& circle, const ThirdPointSearch& search)
+        : box_(box), center_(center), circle_(circle), radius_(circle.radius),
+          slack_(search.slack_of(radius_ < kUnbounded ? radius_ : 0.0)),
+          search_(&search) {}
 
-    bool within(const Cells& outer) const {
-      return first_column >= outer.first_column && last_column <= outer.last_column &&
-             first_row >= outer.first_row && last_row <= outer.last_row;
+    const Box& box() const { return box_; }
+    const Circle& circle() const { return circle_; }
+
+    // Cut the row of cells from south to north down to where it meets the cap.
+    bool narrow(double south, double north, double& west, double& east) const {
+      if (!(radius_ < kUnbounded)) {
+        search_->cut_by_edge(south - slack_, north + slack_, west, east);
+        return west <= east;
+      }
+      const double off = std::max({0.0, south - center_.y, center_.y - north}) - slack_;
+      const double reach = radius_ + slack_;
+      if (off > reach) return false;
+      const double half_chord = off > 0.0 ? std::sqrt((reach - off) * (reach + off)) : reach;
+      west = std::max(west, center_.x - half_chord - slack_);
+      east = std::min(east, center_.x + half_chord + slack_);
+      search_->cut_by_edge(south - slack_, north + slack_, west, east);
+      return west <= east;
     }
+
+   private:
+    Box box_;
+    Point center_;
+    Circle circle_;
+    double radius_, slack_;
+    const ThirdPointSearch* search_;
+  };
+
+  // A whole disc, as its box.
+  struct Disc {
+    Box bounds;
+    const Box& box() const { return bounds; }
+    bool narrow(double, double, double&, double&) const { return true; }
   };
 
   bool has_best() const { return best_ >= 0; }
 
-  void set_edge(Vertex a, Vertex b) {
-    a_ = number(a);
+  void set_edge(Vertex b) {
     b_ = number(b);
-    ax_ = x_[a_];
-    ay_ = y_[a_];
     ex_ = x_[b_] - ax_;
     ey_ = y_[b_] - ay_;
     edge_square_ = ex_ * ex_ + ey_ * ey_;
@@ -135,6 +179,12 @@ class ThirdPointSearch {
     const double radius_square = kDiscPerHalfEdge * kDiscPerHalfEdge * 0.25 * edge_square_;
     if (radius_square > least * least) return {kDiscCotangent, std::sqrt(radius_square)};
     return circle_of_radius(least);
+  }
+
+  // Twice the radius, or everything once the cap's box holds everything.
+  Circle larger(const Circle& circle, const Cap& searched) const {
+    if (grid_.top().box.within(searched.box())) return {kUnbounded, kUnbounded};
+    return circle_of_radius(2.0 * circle.radius);
   }
 
   // Not smaller than the circle on the edge as its diameter.
@@ -178,18 +228,45 @@ class ThirdPointSearch {
 
   // ------------------------------------------------------------- candidates
 
-  void scan(const Cells& cells) {
-    extend_reach(cells);
-    for_each_run(cells, [this](std::int32_t begin, std::int32_t end) {
+  void scan(Cap& cap) {
+    extend_reach(cap.box());
+    const bool shrinks = cap.circle().radius > kLongInCells * cell_;
+    for_each_run(cap, [&](std::int32_t begin, std::int32_t end) {
+      const std::int32_t best_before = best_;
       counts_.candidates += end - begin;
       for (std::int32_t i = begin; i < end; ++i) {
         const double px = x_[i] - ax_, py = y_[i] - ay_;
         const double cross = ex_ * py - ey_ * px;
         const double dot = px * (px - ex_) + py * (py - ey_);
         const bool is_left = cross > -cross_error_;
-        if (is_left & beats_best(dot, cross, 1.0)) offer(i, dot, cross);
+        if (is_left & beats_best(dot, cross, 1.0)) {
+          // The error bounds hold within reach; beyond it lies no point of the cap.
+          if (std::max(std::fabs(px), std::fabs(py)) <= reach_) offer(i, dot, cross);
+        }
       }
+      if (shrinks && best_ != best_before) shrink(cap);
     });
+  }
+
+  // The paper's moving circle: go on within the better circle, which lies inside the old one.
+  void shrink(Cap& cap) const {
+    const Circle circle = best_circle();
+    if (circle.cotangent < cap.circle().cotangent) cap = cap_of(circle);
+  }
+
+  // Points that often win where data run along lines: those next to the edge's ends and to the
+  // last winner, in the order of the sweep.
+  void offer_likely() {
+    for (const std::int32_t i : {b_ - 1, b_ + 1, a_ + 1, last_third_ - 1, last_third_,
+                                 last_third_ + 1, last_third_ + 2}) {
+      if (i <= a_ || i >= grid_.count() || i == b_) continue;
+      const double px = x_[i] - ax_, py = y_[i] - ay_;
+      const double reach = std::max(std::fabs(px), std::fabs(py));
+      if (reach > reach_) set_reach(reach);
+      const double cross = ex_ * py - ey_ * px;
+      const double dot = px * (px - ex_) + py * (py - ey_);
+      if (cross > cross_error_ && (!has_best() || beats_best(dot, cross, 1.0))) offer(i, dot, cross);
+    }
   }
 
   void offer(std::int32_t i) {
@@ -225,10 +302,12 @@ class ThirdPointSearch {
 
   // ------------------------------------------------------------- boxes
 
-  // Cells that meet the circle's cap left of the edge.
-  Cells cap_cells(const Circle& circle) const {
+  // Farther than what a dozen roundings add up to, for places on a circle of this radius.
+  double slack_of(double radius) const { return coordinate_slack_ + kSlack * radius; }
+
+  Cap cap_of(const Circle& circle) const {
     const double radius = circle.radius;
-    if (!(radius < kUnbounded)) return all_cells();
+    if (!(radius < kUnbounded)) return Cap(grid_.top().box, here(a_), circle, *this);
     const double cx = 0.5 * (ex_ - ey_ * circle.cotangent);
     const double cy = 0.5 * (ey_ + ex_ * circle.cotangent);
     double west = std::min(0.0, ex_), east = std::max(0.0, ex_);
@@ -239,49 +318,67 @@ class ThirdPointSearch {
     if (!(side - ey_ * radius <= 0.0)) east = std::max(east, cx + radius);
     if (!(side - ex_ * radius <= 0.0)) south = std::min(south, cy - radius);
     if (!(side + ex_ * radius <= 0.0)) north = std::max(north, cy + radius);
-    const double slack = coordinate_slack_ + kSlack * radius;
-    return cells_of(west - slack, east + slack, south - slack, north + slack);
+    const double slack = slack_of(radius);
+    const Box box{ax_ + west - slack, ax_ + east + slack, ay_ + south - slack,
+                  ay_ + north + slack};
+    return Cap(box, {ax_ + cx, ay_ + cy}, circle, *this);
   }
 
-  Cells disc_cells(double radius) const {
-    const double slack = coordinate_slack_ + kSlack * radius;
-    return cells_of(-radius - slack, radius + slack, -radius - slack, radius + slack);
+  // On a plain grid whole cells were looked at, which may hold the new cap too.
+  bool is_searched(const Cap& cap, const Cap& searched) const {
+    const Level& top = grid_.top();
+    const Box& in = cap.box();
+    const Box& out = searched.box();
+    const std::int32_t first = top.column_at(out.west), last = top.column_at(out.east);
+    return grid_.is_plain() && last - first < PointGrid::kNarrowColumns &&
+           top.column_at(in.west) >= first && top.column_at(in.east) <= last &&
+           top.row_at(in.north) <= top.row_at(out.north) &&
+           std::max(top.row_at(in.south), top.row_at(ay_)) >= top.row_at(out.south);
   }
 
-  Cells all_cells() const {
-    return {0, grid_.columns() - 1, grid_.cell_row_at(ay_), grid_.cell_rows() - 1};
+  // Keep the side left of the edge, within rows from south to north.
+  void cut_by_edge(double south, double north, double& west, double& east) const {
+    if (ey_ == 0.0) return;
+    const double slope = ex_ / ey_;
+    const double at_south = ax_ + slope * (south - ay_), at_north = ax_ + slope * (north - ay_);
+    const double slack = coordinate_slack_ + kSlack * (std::fabs(slope) * (north - south) +
+                                                       std::fabs(at_south - ax_) +
+                                                       std::fabs(at_north - ax_));
+    if (ey_ > 0.0) {
+      east = std::min(east, std::max(at_south, at_north) + slack);
+    } else {
+      west = std::max(west, std::min(at_south, at_north) - slack);
+    }
   }
 
-  Cells cells_of(double west, double east, double south, double north) const {
-    return {grid_.column_at(ax_ + west), grid_.column_at(ax_ + east),
-            std::max(grid_.cell_row_at(ay_ + south), grid_.cell_row_at(ay_)),
-            grid_.cell_row_at(ay_ + north)};
+  Box box_around(double radius) const {
+    const double reach = radius + slack_of(radius);
+    return {ax_ - reach, ax_ + reach, ay_ - reach, ay_ + reach};
   }
 
-  void extend_reach(const Cells& cells) {
-    const double west = grid_.west() + cell_ * cells.first_column - ax_;
-    const double east = grid_.west() + cell_ * (cells.last_column + 1) - ax_;
-    const double north = grid_.south() + cell_ * (cells.last_row + 1) - ay_;
-    const double reach = std::max({std::fabs(west), std::fabs(east), north}) + cell_;
+  // The box, and on a plain grid all of every cell that meets it (is_searched relies on it).
+  void extend_reach(const Box& box) {
+    const Box& all = grid_.top().box;
+    const double west = std::max(box.west, all.west) - ax_;
+    const double east = std::min(box.east, all.east) - ax_;
+    const double south = std::max(box.south, all.south) - ay_;
+    const double north = std::min(box.north, all.north) - ay_;
+    const double reach = std::max({std::fabs(west), std::fabs(east), std::fabs(south),
+                                   std::fabs(north)}) +
+                         2.0 * cell_;
     if (reach > reach_) set_reach(reach);
   }
 
-  // Contiguous runs of stored points in the cells, those after a only.
-  template <typename Visit>
-  void for_each_run(const Cells& cells, Visit&& visit) {
-    counts_.cell_rows += cells.last_row - cells.first_row + 1;
-    for (std::int32_t row = cells.first_row; row <= cells.last_row; ++row) {
-      const std::int32_t begin = std::max(grid_.begin_of(row, cells.first_column), a_ + 1);
-      const std::int32_t end = grid_.begin_of(row, cells.last_column + 1);
-      if (begin < end) visit(begin, end);
-    }
+  template <typename Region, typename Visit>
+  void for_each_run(const Region& region, Visit&& visit) {
+    counts_.cell_rows += grid_.for_each_run(region, a_ + 1, ay_, visit);
   }
 
   // ------------------------------------------------------------- nearest
 
-  std::int32_t nearest_in(const Cells& cells) {
+  std::int32_t nearest_in(const Disc& disc) {
     std::int32_t found = -1;
-    for_each_run(cells, [&](std::int32_t begin, std::int32_t end) {
+    for_each_run(disc, [&](std::int32_t begin, std::int32_t end) {
       for (std::int32_t i = begin; i < end; ++i) {
         const bool is_nearer =
             found < 0 || compare_distances(here(a_), here(i), here(found)) < 0;
@@ -296,7 +393,7 @@ class ThirdPointSearch {
   const PointGrid& grid_;
   const double* x_;
   const double* y_;
-  const double cell_;
+  double cell_;  // size of the cells around a
   double coordinate_slack_ = 0.0;
 
   // The edge at hand, relative to a.
@@ -309,6 +406,7 @@ class ThirdPointSearch {
   // or it is so nearly on the edge's line that its cotangent says nothing; then every point that
   // may be left of the edge is a rival.
   std::int32_t best_ = -1;
+  std::int32_t last_third_ = 0;  // the winner of the search before
   bool is_best_flat_ = true;
   double best_dot_ = 0.0, best_cross_ = 0.0;
 

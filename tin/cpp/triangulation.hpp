@@ -55,15 +55,11 @@ bool insert_all(Triangulation& result, const PointGrid& grid, KeepGoing&& keep_g
   return true;
 }
 
-// Growth, or insertion where points are too crowded for the grid; the result is the same.
+// Growth, or insertion where its searches cost too much; the result is the same.
 template <typename KeepGoing>
 bool build(Triangulation& result, const PointGrid& grid, const std::vector<Vertex>& hull,
            Method method, KeepGoing&& keep_going) {
-  // Growth's cost a point grows with the crowding; here the two ways cost the same.
-  constexpr double kTooCrowded = 16.0;
-  const bool try_growth = method == Method::kGrowth ||
-                          (method == Method::kAutomatic && grid.crowding() < kTooCrowded);
-  if (try_growth) {
+  if (method != Method::kInsertion) {
     Growth growth(grid, hull, {result.corners.get(), result.neighbors.get()});
     const bool is_bounded = method == Method::kAutomatic;
     const Growth::Outcome outcome = growth.run(keep_going, is_bounded);
