@@ -11,40 +11,53 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from . import io, terrain, tin
+    from .io import CrsError, FormatError, ReadError, WriteError, read, write
+    from .terrain import OptionError, RenderError
     from .tin import (
         TIN,
         Bounds,
+        CheckError,
+        CheckResult,
         Grid,
         MissingExtraError,
         PointsError,
         Report,
         Survey,
         TinsmithError,
+        check,
         triangulate,
     )
 
-_HOME = {
-    "TIN": "tin",
-    "Bounds": "tin",
-    "Grid": "tin",
-    "MissingExtraError": "tin",
-    "PointsError": "tin",
-    "Report": "tin",
-    "Survey": "tin",
-    "TinsmithError": "tin",
-    "triangulate": "tin",
+# The room that each public name lives in; rooms are loaded when a name is first used.
+_NAMES_OF_ROOM = {
+    "io": ("CrsError", "FormatError", "ReadError", "WriteError", "read", "write"),
+    "terrain": ("OptionError", "RenderError"),
+    "tin": (
+        "TIN",
+        "Bounds",
+        "CheckError",
+        "CheckResult",
+        "Grid",
+        "MissingExtraError",
+        "PointsError",
+        "Report",
+        "Survey",
+        "TinsmithError",
+        "check",
+        "triangulate",
+    ),
 }
-_ROOMS = ("io", "terrain", "tin")
+_ROOM_OF_NAME = {name: room for room, names in _NAMES_OF_ROOM.items() for name in names}
 
 __version__ = "0.1.0"
 
 
 def __getattr__(name: str) -> Any:
-    """Load a public name from its room when it is first used."""
-    if name in _ROOMS:
+    """Load a room, or a public name from its room, when it is first used."""
+    if name in _NAMES_OF_ROOM:
         return import_module(f"{__name__}.{name}")
-    if name in _HOME:
-        return getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
+    if name in _ROOM_OF_NAME:
+        return getattr(import_module(f"{__name__}.{_ROOM_OF_NAME[name]}"), name)
     raise AttributeError(f"module 'tinsmith' has no attribute '{name}'")
 
 
@@ -55,15 +68,26 @@ def __dir__() -> list[str]:
 __all__ = [
     "TIN",
     "Bounds",
+    "CheckError",
+    "CheckResult",
+    "CrsError",
+    "FormatError",
     "Grid",
     "MissingExtraError",
+    "OptionError",
     "PointsError",
+    "ReadError",
+    "RenderError",
     "Report",
     "Survey",
     "TinsmithError",
+    "WriteError",
     "__version__",
+    "check",
     "io",
+    "read",
     "terrain",
     "tin",
     "triangulate",
+    "write",
 ]
