@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import tinsmith as ts
-from tinsmith.tin import check, topology
+from tinsmith.tin import _kernel, check, topology
 
 UTM_CORNER = np.array([500_000.0, 4_000_000.0])
 
@@ -40,6 +40,19 @@ def require_sound(xy):
     return tin
 
 
+def require_same_by_every_method(xy):
+    """Growth and insertion by local change must agree in every array, entry by entry."""
+    points = np.ascontiguousarray(with_heights(xy))
+    wanted = _kernel.grow(points)
+    for method in _kernel.Method:
+        found = _kernel.grow(points, method=method)
+        np.testing.assert_array_equal(found.triangles, wanted.triangles)
+        np.testing.assert_array_equal(found.neighbors, wanted.neighbors)
+        assert (found.kept_row is None) == (wanted.kept_row is None)
+        if wanted.kept_row is not None:
+            np.testing.assert_array_equal(found.kept_row, wanted.kept_row)
+
+
 # ------------------------------------------------------------------ brute force
 
 
@@ -50,6 +63,7 @@ def require_brute_force(xy):
             grown(xy)
         return
     assert oracles.canonical(grown(xy).triangles) == wanted
+    require_same_by_every_method(xy)
 
 
 def distinct_points(coordinate, *, max_size):
@@ -286,6 +300,10 @@ def largest_beside_smallest():
     ]
 
 
+def three_huge_points_almost_on_a_line():
+    return [(2e15, -2e21), (1e29, -1e35), (0, 2e11)]
+
+
 def two_far_clusters():
     rng = np.random.default_rng(11)
     return np.concatenate([rng.random((200, 2)), rng.random((200, 2)) + 10 * UTM_CORNER])
@@ -334,6 +352,7 @@ HARD_CASES = [
     largest_coordinates,
     smallest_coordinates,
     largest_beside_smallest,
+    three_huge_points_almost_on_a_line,
     two_far_clusters,
     hexagonal_lattice,
     three_points,
@@ -345,6 +364,7 @@ HARD_CASES = [
 def test_hard_case(case):
     xy = np.asarray(case(), float)
     tin = require_sound(xy)
+    require_same_by_every_method(xy)
     shuffled = grown(np.random.default_rng(0).permutation(xy))
     np.testing.assert_array_equal(
         oracles.ranked_triangles(shuffled.points, shuffled.triangles),
@@ -364,6 +384,10 @@ def test_duplicates_are_one_vertex():
     xy = np.random.default_rng(13).integers(0, 12, (500, 2))
     tin = require_sound(xy)
     np.testing.assert_array_equal(tin.points[tin.vertex_of, :2], xy)
+
+
+def test_every_method_treats_duplicates_alike():
+    require_same_by_every_method(np.random.default_rng(13).integers(0, 12, (500, 2)))
 
 
 def test_vertices_keep_the_order_of_the_rows():
@@ -406,3 +430,35 @@ def test_a_million_points_pass_the_check(cloud):
     result.raise_if_failed()
     assert result.counts["ties_against_rule"] == 0
     assert len(tin.triangles) == 2 * len(tin.points) - 2 - result.counts["boundary_edges"]
+
+
+def rough_clouds(rng, n):
+    """One cloud of each kind that strains an index or a predicate."""
+    angle, step = rng.random(n) * 7, np.arange(n)
+    radius = 10 ** rng.uniform(-20, 20, n)
+    x = rng.random(n)
+    yield np.concatenate(
+        [
+            rng.normal(rng.random(2) * 1e4, 10 ** rng.uniform(-6, 2), (n // 5 + 1, 2))
+            for _ in "12345"
+        ]
+    )
+    yield np.column_stack([x, (step % 2) * rng.choice([1e-9, 1, 1e6])])
+    yield np.column_stack([0.1 * step, 0.3 * step + rng.integers(-1, 2, n) * 1e-16])
+    yield rng.integers(0, rng.integers(2, 50), (n, 2))
+    yield np.column_stack([radius * np.cos(angle), radius * np.sin(angle)])
+    yield rng.choice([-1, 1], (n, 2)) * 2.0 ** rng.uniform(-199, 249, (n, 2))
+    yield np.round(rng.normal(size=(n, 2)), 1) + UTM_CORNER
+    yield np.column_stack([x, x * x])
+    yield rng.random((n, 2)) * np.array([1, 10 ** rng.uniform(-15, 0)])
+    yield np.concatenate([np.column_stack([x, 0 * x]), np.column_stack([0 * x, rng.random(n)])])
+
+
+@pytest.mark.proof
+@pytest.mark.parametrize("n", [12, 30, 100, 500])
+def test_rough_clouds_pass_the_check(n):
+    rng = np.random.default_rng(n)
+    for _ in range(20):
+        for xy in rough_clouds(rng, n):
+            require_sound(xy)
+            require_same_by_every_method(xy)
