@@ -212,3 +212,12 @@ def test_no_rows_have_no_signs():
     none = np.empty((0, 2))
     assert len(_kernel.orientation(none, none, none)) == 0
     assert len(vectorised("in_circle", np.empty((0, 4, 2)))) == 0
+
+
+def test_the_core_refuses_places_that_are_not_finite():
+    good = np.zeros((1, 2))
+    bad = np.array([[np.nan, 0.0]])
+    with pytest.raises(ValueError, match="finite"):
+        _kernel.orientation(good, good, bad)
+    with pytest.raises(ValueError, match="finite"):
+        _kernel.in_circle(good, bad, good, good)

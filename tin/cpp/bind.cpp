@@ -4,6 +4,8 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/tuple.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <optional>
 #include <stdexcept>
@@ -95,12 +97,21 @@ tinsmith::Point place(const Places& places, std::size_t row) {
   return {places.data()[2 * row], places.data()[2 * row + 1]};
 }
 
+// The expansions of the exact stage hold finite numbers only.
+void require_finite(const Places& places) {
+  const double* end = places.data() + 2 * places.shape(0);
+  if (!std::all_of(places.data(), end, [](double c) { return std::isfinite(c); })) {
+    throw std::invalid_argument("every coordinate must be finite");
+  }
+}
+
 template <typename Decide>
 Signs signs(const Places& a, const Places& b, const Places& c, const Places& d, Decide decide) {
   const std::size_t n = a.shape(0);
   if (b.shape(0) != n || c.shape(0) != n || d.shape(0) != n) {
     throw std::invalid_argument("the arrays must have the same number of rows");
   }
+  for (const Places* places : {&a, &b, &c, &d}) require_finite(*places);
   std::unique_ptr<std::int8_t[]> result(new std::int8_t[n]);
   for (std::size_t i = 0; i < n; ++i) {
     result[i] = static_cast<std::int8_t>(decide(place(a, i), place(b, i), place(c, i), place(d, i)));

@@ -169,8 +169,7 @@ class ThirdPointSearch {
     edge_sum_ = std::fabs(ex_) + std::fabs(ey_);
     best_ = -1;
     is_best_flat_ = true;
-    best_dot_ = kUnbounded;
-    best_cross_ = 0.0;
+    best_dot_ = best_cross_ = 0.0;
     set_reach(2.0 * edge_sum_ + cell_);
   }
 
@@ -214,6 +213,10 @@ class ThirdPointSearch {
 
   // Bound on the error of dot * best_cross - cross * best_dot for candidates within reach.
   void update_tolerance() {
+    if (is_best_flat_) {
+      tolerance_ = 1.0;  // any number above 0 - 0: everything may win
+      return;
+    }
     const double most_cross = best_cross_ + 2.0 * edge_sum_ * reach_;
     const double most_dot = std::fabs(best_dot_) + 4.0 * reach_ * reach_;
     tolerance_ = 2.0 * (dot_error_ * most_cross + cross_error_ * most_dot);
@@ -281,7 +284,7 @@ class ThirdPointSearch {
     if (!(is_surely_left && is_surely_better) && !wins_exactly(i, is_surely_left)) return;
     best_ = i;
     is_best_flat_ = !is_surely_left;
-    best_dot_ = is_best_flat_ ? kUnbounded : dot;
+    best_dot_ = is_best_flat_ ? 0.0 : dot;
     best_cross_ = is_best_flat_ ? 0.0 : cross;
     update_tolerance();
   }
