@@ -144,11 +144,16 @@ def length_unit(text: str | None) -> LengthUnit:
 
 
 def elevation_unit(text: str | None) -> LengthUnit:
-    """Return the unit of elevations: metres unless the CRS has a vertical axis in another."""
+    """Return the unit of elevations.
+
+    That of the CRS's vertical axis; without one the unit of its eastings, since who works in
+    State Plane feet levels in feet; metres above longitude and latitude, or where nothing is known.
+    """
     axes = [] if text is None else as_crs(text).axis_info
-    if len(axes) < 3:
-        return METRE
-    return _unit(axes[2].unit_name, axes[2].unit_conversion_factor)
+    if len(axes) >= 3:
+        return _unit(axes[2].unit_name, axes[2].unit_conversion_factor)
+    along = length_unit(text)
+    return METRE if along.metres is None else along
 
 
 def _unit(name: str, metres: float) -> LengthUnit:

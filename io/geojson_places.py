@@ -65,7 +65,7 @@ def wgs84_places(points: NDArray[np.float64], crs: str | None) -> Places:
     target = "EPSG:4979" if _has_heights(crs) else "OGC:CRS84"
     moved = transform_points(points, crs, target)
     if not _has_heights(crs):
-        moved[:, 2] *= unit_metres(crs)[1] or 1.0
+        moved[:, 2] *= elevation_unit(crs).metres or 1.0
     _require_on_earth(moved, points, crs)
     moved[:, :2] = np.round(moved[:, :2], DEGREE_DECIMALS)
     moved[:, 2] = np.round(moved[:, 2], ELEVATION_DECIMALS)
@@ -82,15 +82,9 @@ def crs_places(points: NDArray[np.float64], crs: str | None) -> Places:
 
 
 def unit_metres(crs: str | None) -> tuple[float | None, float | None]:
-    """Return the metres in a unit of easting, and of elevation; None where not known.
-
-    Elevations without a vertical CRS are in the linear unit of the CRS: who works in State Plane
-    feet levels in feet.
-    """
+    """Return the metres in a unit of easting, and of elevation; None where not known."""
     along = length_unit(crs).metres
-    if crs is not None and _has_heights(crs):
-        return along, elevation_unit(crs).metres
-    return along, along
+    return along, None if crs is None else elevation_unit(crs).metres
 
 
 def texts(xyz: NDArray[np.float64]) -> NDArray[np.object_]:

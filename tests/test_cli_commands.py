@@ -205,14 +205,18 @@ def test_info_of_a_tin_has_its_measures(pyramid):
         assert facts["slope"][key] == pytest.approx(45.0)
 
 
-def test_info_slope_minds_feet(tmp_path):
-    """Elevations of a CRS in feet are metres unless it says otherwise."""
-    foot = 0.30480060960121924
-    points = np.array([[0, 0, 0], [4, 0, 0], [4, 4, 0], [0, 4, 0], [2, 2, 2 * foot]])
-    ts.io.write(ts.triangulate(points, crs="EPSG:2274"), tmp_path / "feet.ply")
+@pytest.mark.parametrize(
+    ("crs", "vertical", "metres"),
+    [("EPSG:2274", "US survey foot", 1200 / 3937), ("EPSG:2274+5703", "metre", 1.0)],
+)
+def test_info_slope_minds_feet(crs, vertical, metres, tmp_path):
+    """Elevations of a CRS in feet are feet unless it has a vertical axis in another unit."""
+    height = 2 * (1200 / 3937) / metres
+    points = np.array([[0, 0, 0], [4, 0, 0], [4, 4, 0], [0, 4, 0], [2, 2, height]])
+    ts.io.write(ts.triangulate(points, crs=crs), tmp_path / "feet.ply")
     facts = json.loads(run("info", tmp_path / "feet.ply", "--json").stdout)
     assert facts["slope"]["mean"] == pytest.approx(45.0)
-    assert facts["units"] == {"horizontal": "US survey foot", "vertical": "metre"}
+    assert facts["units"] == {"horizontal": "US survey foot", "vertical": vertical}
 
 
 def test_info_in_degrees_claims_no_areas(tmp_path):

@@ -67,7 +67,8 @@ def test_units(text, expected):
 
 def test_elevations_are_metres_unless_a_vertical_axis_says_otherwise():
     assert crs.elevation_unit(None) == crs.METRE
-    assert crs.elevation_unit("EPSG:2274") == crs.METRE
+    assert crs.elevation_unit("EPSG:2274") == crs.length_unit("EPSG:2274")
+    assert crs.elevation_unit("EPSG:4326") == crs.METRE
     assert crs.elevation_unit("EPSG:2274+6360").symbol == "US ft"
     assert crs.elevation_unit("EPSG:4979").symbol == "m"
 
