@@ -4,6 +4,7 @@ import doctest
 import importlib
 import os
 import pkgutil
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -116,3 +117,25 @@ def test_public_examples_run():
         assert result.failed == 0, name
         tried += result.attempted
     assert tried > 0
+
+
+def test_readme_python_runs(tmp_path, monkeypatch):
+    """Run the README's Python blocks, one after the other, in a folder with the samples."""
+    (tmp_path / "sample_data").symlink_to(ROOT / "sample_data")
+    monkeypatch.chdir(tmp_path)
+    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
+    assert len(blocks) >= 3
+    exec("\n".join(blocks), {})
+    assert (tmp_path / "surface.geojson").exists()
+    assert (tmp_path / "surface.png").exists()
+
+
+def test_readme_commands_run(tmp_path):
+    (tmp_path / "sample_data").symlink_to(ROOT / "sample_data")
+    text = (ROOT / "README.md").read_text()
+    lines = re.findall(r"^(tinsmith .*-o .*)$", text, re.MULTILINE)
+    assert len(lines) == 2
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    for line in lines:
+        result = run(*line.split(), cwd=tmp_path, PATH=path)
+        assert result.returncode == 0, result.stderr
