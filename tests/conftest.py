@@ -1,6 +1,20 @@
-"""Long proofs run only when asked for by their marker."""
+"""What all tests share: long proofs run only when asked for; pictures need OpenGL."""
 
 from __future__ import annotations
+
+import pytest
+
+from tinsmith.terrain import opengl
+from tinsmith.tin import TinsmithError
+
+
+@pytest.fixture(scope="session")
+def can_draw():
+    """Skip the test where no picture can be drawn."""
+    try:
+        opengl.require_opengl()
+    except TinsmithError as error:
+        pytest.skip(str(error))
 
 
 def pytest_collection_modifyitems(config, items):

@@ -119,7 +119,7 @@ def test_public_examples_run():
     assert tried > 0
 
 
-def test_readme_python_runs(tmp_path, monkeypatch):
+def test_readme_python_runs(tmp_path, monkeypatch, can_draw):
     """Run the README's Python blocks, one after the other, in a folder with the samples."""
     (tmp_path / "sample_data").symlink_to(ROOT / "sample_data")
     monkeypatch.chdir(tmp_path)
@@ -130,7 +130,7 @@ def test_readme_python_runs(tmp_path, monkeypatch):
     assert (tmp_path / "surface.png").exists()
 
 
-def test_readme_commands_run(tmp_path):
+def test_readme_commands_run(tmp_path, can_draw):
     (tmp_path / "sample_data").symlink_to(ROOT / "sample_data")
     text = (ROOT / "README.md").read_text()
     lines = re.findall(r"^(tinsmith .*-o .*)$", text, re.MULTILINE)

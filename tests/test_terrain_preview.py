@@ -27,14 +27,6 @@ pv = pytest.importorskip("pyvista")
 WHITE = (255, 255, 255)
 
 
-@pytest.fixture(scope="module")
-def can_draw():
-    try:
-        opengl.require_opengl()
-    except RenderError as error:
-        pytest.skip(str(error))
-
-
 def hill(*, crs="EPSG:32616", relief=30.0, steps=25, extent=240.0):
     """A round hill on a square grid at UTM coordinates."""
     axis = np.linspace(0.0, extent, steps)
