@@ -330,3 +330,9 @@ def test_broken_plug_in_says_so_and_harms_no_other(plug_in, value):
 def test_plug_in_cannot_replace_a_built_in_command(plug_in):
     plug_in(Entry("formats", click.Command("formats", callback=lambda: click.echo("mine"))))
     assert "mine" not in run("formats").stdout
+
+
+def test_formats_names_the_extras():
+    shown = " ".join(run("formats").stdout.split())
+    assert "tinsmith[raster]" in shown
+    assert "tinsmith[view]" in shown

@@ -51,6 +51,7 @@ def _table(known: tuple[Format, ...]) -> str:
 
     from rich import box
     from rich.console import Console as RichConsole
+    from rich.markup import escape
     from rich.table import Table
 
     table = Table(box=box.SIMPLE, pad_edge=False, header_style="bold")
@@ -61,7 +62,7 @@ def _table(known: tuple[Format, ...]) -> str:
             one.name,
             "yes" if one.read else "-",
             "yes" if one.write else "-",
-            one.description + (f" (needs tinsmith[{one.extra}])" if one.extra else ""),
+            escape(one.description + (f" (needs tinsmith[{one.extra}])" if one.extra else "")),
             " ".join(one.suffixes),
         )
     text = StringIO()
