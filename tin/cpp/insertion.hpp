@@ -13,78 +13,43 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <numeric>
 #include <utility>
 #include <vector>
 
 #include "grid.hpp"
 #include "ids.hpp"
 #include "predicates.hpp"
+#include "spatial_order.hpp"
 
 namespace tinsmith {
 
-// Order for insertion: indices 0..n-1 in random rounds, each along a Hilbert curve.
-class InsertionOrder {
- public:
-  explicit InsertionOrder(const PointGrid& grid) : x_(grid.x()), y_(grid.y()) {
-    order_.resize(grid.count());
-    for (std::int32_t i = 0; i < grid.count(); ++i) order_[i] = i;
-    shuffle();
-    auto end = order_.end();
-    while (end - order_.begin() > kFirstRound) {
-      const auto middle = order_.begin() + (end - order_.begin()) / 2;
-      sort_along_curve<0, false, false>(middle, end);
-      end = middle;
+// Order for insertion: random rounds, each twice as large as the one before, in spatial order.
+inline std::vector<std::int32_t> insertion_order(const PointGrid& grid) {
+  constexpr std::int32_t kFirstRound = 256;
+  std::vector<std::int32_t> order(grid.count());
+  std::iota(order.begin(), order.end(), 0);
+  std::uint64_t state = 0x9E3779B97F4A7C15u;  // a fixed seed: every run inserts in the same order
+  for (std::size_t i = order.size(); i > 1; --i) {
+    state ^= state << 13;
+    state ^= state >> 7;
+    state ^= state << 17;
+    std::swap(order[i - 1], order[state % i]);
+  }
+  std::vector<Point> places;
+  for (auto end = static_cast<std::int32_t>(order.size()); end > 0;) {
+    const std::int32_t begin = end > kFirstRound ? end / 2 : 0;
+    places.clear();
+    for (std::int32_t i = begin; i < end; ++i) {
+      places.push_back(grid.point(static_cast<Vertex>(order[i])));
     }
-    sort_along_curve<0, false, false>(order_.begin(), end);
+    std::vector<std::int32_t> round = SpatialOrder(places.data(), end - begin).take();
+    for (std::int32_t& place : round) place = order[begin + place];
+    std::copy(round.begin(), round.end(), order.begin() + begin);
+    end = begin;
   }
-
-  std::vector<std::int32_t> take() { return std::move(order_); }
-
- private:
-  using Iterator = std::vector<std::int32_t>::iterator;
-  static constexpr std::int32_t kFirstRound = 256;
-  static constexpr std::int32_t kUnsorted = 4;
-
-  // A fixed seed: every run inserts in the same order.
-  void shuffle() {
-    std::uint64_t state = 0x9E3779B97F4A7C15u;
-    for (std::size_t i = order_.size(); i > 1; --i) {
-      state ^= state << 13;
-      state ^= state >> 7;
-      state ^= state << 17;
-      std::swap(order_[i - 1], order_[state % i]);
-    }
-  }
-
-  // Split at the median in x or y, ascending or descending, and recurse into the quarters in the
-  // curve's order; the depth is log4 of the count.
-  template <int Axis, bool DescendX, bool DescendY>
-  void sort_along_curve(Iterator begin, Iterator end) {
-    if (end - begin <= kUnsorted) return;
-    constexpr int kOther = 1 - Axis;
-    const Iterator half = split<Axis, Axis == 0 ? DescendX : DescendY>(begin, end);
-    const Iterator first = split<kOther, Axis == 0 ? DescendY : DescendX>(begin, half);
-    const Iterator third = split<kOther, Axis == 0 ? !DescendY : !DescendX>(half, end);
-    sort_along_curve<kOther, DescendX, DescendY>(begin, first);
-    sort_along_curve<Axis, DescendX, DescendY>(first, half);
-    sort_along_curve<Axis, DescendX, DescendY>(half, third);
-    sort_along_curve<kOther, !DescendX, !DescendY>(third, end);
-  }
-
-  template <int Axis, bool Descending>
-  Iterator split(Iterator begin, Iterator end) const {
-    const Iterator middle = begin + (end - begin) / 2;
-    const double* key = Axis == 0 ? x_ : y_;
-    std::nth_element(begin, middle, end, [key](std::int32_t a, std::int32_t b) {
-      return Descending ? key[a] > key[b] : key[a] < key[b];
-    });
-    return middle;
-  }
-
-  const double* x_;
-  const double* y_;
-  std::vector<std::int32_t> order_;
-};
+  return order;
+}
 
 // A triangulated sphere: real triangles and ghost triangles, 2n - 2 together.
 struct GhostMesh {
@@ -101,7 +66,7 @@ struct GhostMesh {
 class Insertion {
  public:
   // The points must not all be collinear.
-  explicit Insertion(const PointGrid& grid) : sweep_of_(InsertionOrder(grid).take()) {
+  explicit Insertion(const PointGrid& grid) : sweep_of_(insertion_order(grid)) {
     const std::size_t n = sweep_of_.size();
     points_.reserve(n);
     for (std::int32_t v : sweep_of_) points_.push_back(grid.point(static_cast<Vertex>(v)));
