@@ -60,7 +60,8 @@ class ThirdPointSearch {
     ++counts_.searches;
     set_edge(b);
     Circle circle = first_disc();
-    if (hint != kNoVertex && is_promising(hint, circle)) offer(number(hint));
+    hint_ = number(hint);
+    if (hint != kNoVertex && is_promising(hint, circle)) offer(hint_);
     const bool is_long = circle.radius > kLongInCells * cell_;
     if (is_long && !has_best()) offer_likely();
     if (has_best()) circle = best_circle();
@@ -70,12 +71,13 @@ class ThirdPointSearch {
       if (!(circle.radius < kUnbounded)) {
         throw std::logic_error("an edge inside the hull found no third point");
       }
-      if (!is_long) offer_likely();
+      offer_likely();
       circle = has_best() ? best_circle() : larger(circle, searched);
       searched = cap_of(circle);
       scan(searched);
     }
     // Caps on one edge are nested by their cotangent.
+    if (best_circle().radius > kWide * circle.radius) offer_likely();
     const Circle needed = best_circle();
     if (needed.cotangent > circle.cotangent) {
       Cap cap = cap_of(needed);
@@ -110,6 +112,8 @@ class ThirdPointSearch {
   static constexpr double kUnbounded = 1e300;
   // A first disc of this many cells is long for its surroundings: the data run along lines.
   static constexpr double kLongInCells = 3.0;
+  // A best whose circle is this much wider than the disc searched was met by chance.
+  static constexpr double kWide = 2.0;
 
   // A circle on the edge, by the cotangent under which its left side sees the edge.
   struct Circle {
@@ -260,8 +264,8 @@ class ThirdPointSearch {
   // Points that often win where data run along lines: those next to the edge's ends and to the
   // last winner, in the order of the sweep.
   void offer_likely() {
-    for (const std::int32_t i : {b_ - 1, b_ + 1, a_ + 1, last_third_ - 1, last_third_,
-                                 last_third_ + 1, last_third_ + 2}) {
+    for (const std::int32_t i : {b_ - 1, b_ + 1, a_ + 1, hint_ - 1, hint_, hint_ + 1,
+                                 last_third_ - 1, last_third_, last_third_ + 1, last_third_ + 2}) {
       if (i <= a_ || i >= grid_.count() || i == b_) continue;
       const double px = x_[i] - ax_, py = y_[i] - ay_;
       const double reach = std::max(std::fabs(px), std::fabs(py));
@@ -409,7 +413,7 @@ class ThirdPointSearch {
   // or it is so nearly on the edge's line that its cotangent says nothing; then every point that
   // may be left of the edge is a rival.
   std::int32_t best_ = -1;
-  std::int32_t last_third_ = 0;  // the winner of the search before
+  std::int32_t hint_ = 0, last_third_ = 0;  // likely winners: the caller's, and the one before
   bool is_best_flat_ = true;
   double best_dot_ = 0.0, best_cross_ = 0.0;
 
