@@ -3,5 +3,6 @@
 import os
 
 # SciPy inverts one small matrix a triangle; threads that wait for each other make that 50 times
-# slower, and it would not be one core against one core.
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+# slower, and it would not be one core against one core. The same for pandas' and polars' pools.
+for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "GDAL_NUM_THREADS"):
+    os.environ.setdefault(_name, "1")

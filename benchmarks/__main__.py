@@ -1,0 +1,108 @@
+"""Run the benchmarks: ``python -m benchmarks [kernel] [locate] [readers] [writers]``."""
+
+from __future__ import annotations
+
+import argparse
+import shlex
+import sys
+from pathlib import Path
+
+from . import kernel, locate, readers, writers
+from .datasets import DATASETS
+from .machine import describe
+from .measure import Outcome
+from .report import write_report
+
+SECTIONS = (kernel.SECTION, locate.SECTION, readers.SECTION, writers.SECTION)
+RESULTS = Path(__file__).parent / "results"
+LEAST_POINTS = 200
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Measure what the command line asks for; write the report and say where it is."""
+    parser = _parser()
+    given = parser.parse_args(arguments)
+    if given.points is not None and given.points < LEAST_POINTS:
+        parser.error(f"--points {given.points}: at least {LEAST_POINTS} are needed")
+    outcome = Outcome()
+    for section in given.sections or SECTIONS:
+        outcome.add(_measured(section, given))
+    said = sys.argv[1:] if arguments is None else arguments
+    command = shlex.join(["python", "-m", "benchmarks", *said])
+    for path in write_report(outcome, describe(), command, given.output):
+        print(path)
+    for line in outcome.skipped:
+        print(line)
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
+    parser.add_argument(
+        "sections",
+        nargs="*",
+        metavar="SECTION",
+        choices=[[], *SECTIONS],
+        help=f"of {', '.join(SECTIONS)}; default all",
+    )
+    parser.add_argument(
+        "--points", type=int, metavar="N", help="points, rows, places, triangles; default 100,000"
+    )
+    parser.add_argument(
+        "--full",
+        action="store_true",
+        help="1,000,000, and 10,000,000 uniform points for the kernel",
+    )
+    parser.add_argument(
+        "--only",
+        nargs="+",
+        choices=DATASETS,
+        metavar="DATASET",
+        help=f"kernel: of {', '.join(DATASETS)}; default all",
+    )
+    parser.add_argument(
+        "--tools",
+        nargs="+",
+        choices=kernel.ALL_TOOLS,
+        metavar="TOOL",
+        default=kernel.ALL_TOOLS,
+        help=f"kernel: of {', '.join(kernel.ALL_TOOLS)}; default all",
+    )
+    parser.add_argument(
+        "--repeats",
+        type=int,
+        default=5,
+        metavar="K",
+        help="rounds; seconds are their median; default 5",
+    )
+    parser.add_argument(
+        "--limit",
+        type=float,
+        metavar="SECONDS",
+        help="for one triangulation; default 5, with --full 40",
+    )
+    parser.add_argument(
+        "--output",
+        type=Path,
+        default=RESULTS,
+        metavar="FOLDER",
+        help="for benchmarks.md, .json and .png",
+    )
+    return parser
+
+
+def _measured(section: str, given: argparse.Namespace) -> Outcome:
+    n = given.points or (1_000_000 if given.full else 100_000)
+    if section == kernel.SECTION:
+        cases = kernel.default_cases(n, is_full=given.full)
+        chosen = [(name, size) for name, size in cases if not given.only or name in given.only]
+        limit = given.limit or (40.0 if given.full else 5.0)
+        return kernel.run(chosen, tools=given.tools, repeats=given.repeats, limit=limit)
+    if section == locate.SECTION:
+        return locate.run(n, n, repeats=given.repeats)
+    return {readers.SECTION: readers, writers.SECTION: writers}[section].run(
+        n, repeats=given.repeats
+    )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,119 @@
+"""Is a peer's triangulation right? Compared with ours, and where it differs, checked by itself."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tinsmith.tin import TIN, PointsError, check
+from tinsmith.tin.findings import Problem
+
+__all__ = ["AS_MANY", "EQUAL", "Verdict", "counted", "numbered", "ranked", "verdict"]
+
+Floats = NDArray[np.float64]
+Triangles = NDArray[np.int64]
+
+
+EQUAL, AS_MANY = "equal", "as many triangles"
+
+
+class Verdict(NamedTuple):
+    """What became of the points.
+
+    Attributes
+    ----------
+    is_right : bool
+        A Delaunay triangulation of all the points.
+    text : str
+        "equal", how else it is right, or what is wrong.
+    """
+
+    is_right: bool
+    text: str
+
+
+def verdict(tin: TIN, answer: NDArray[Any], wanted: Triangles) -> Verdict:
+    """Judge an answer.
+
+    Parameters
+    ----------
+    tin : TIN
+        Ours, checked.
+    answer : (m, 3) int array or (m, 3, 2) float array
+        Vertex numbers in the order of ``tin.points``, or coordinates.
+    wanted : (k, 3) int array
+        ``ranked(tin.triangles)``.
+    """
+    triangles = answer.astype(np.int64) if answer.ndim == 2 else numbered(answer, tin.points)
+    if triangles.size and triangles.min() < 0:
+        return Verdict(False, "has points that were not given")
+    missing = len(wanted) - len(triangles)
+    lost = len(tin.points) - len(np.unique(triangles))
+    if missing or lost:
+        return Verdict(False, _loss(missing, len(wanted), lost, len(tin.points)))
+    if np.array_equal(ranked(triangles), wanted):
+        return Verdict(True, EQUAL)
+    return _by_itself(tin, triangles)
+
+
+def counted(tin: TIN) -> Callable[[NDArray[Any]], Verdict]:
+    """Return a judge that only counts the triangles: for sets too large to compare."""
+
+    def judge(answer: NDArray[Any]) -> Verdict:
+        missing = len(tin.triangles) - len(answer)
+        text = _loss(missing, len(tin.triangles), 0, len(tin.points))
+        return Verdict(missing == 0, text or AS_MANY)
+
+    return judge
+
+
+def _loss(missing: int, n_triangles: int, lost: int, n_points: int) -> str:
+    parts = []
+    if lost:
+        parts.append(f"{lost:,} points lost ({lost / n_points:.1%})")
+    if missing:
+        word = "missing" if missing > 0 else "too many"
+        parts.append(f"{abs(missing):,} triangles {word} ({abs(missing) / n_triangles:.1%})")
+    return ", ".join(parts)
+
+
+def _by_itself(tin: TIN, triangles: Triangles) -> Verdict:
+    try:
+        theirs = TIN.from_triangles(tin.points, triangles)
+    except PointsError as error:
+        return Verdict(False, f"no triangulation: {str(error).split(':')[0]}")
+    result = check(theirs, level=3)
+    if result.ok:
+        ties = result.counts["ties_against_rule"]
+        return Verdict(True, f"Delaunay; {ties:,} ties broken otherwise")
+    return Verdict(False, "; ".join(_problem(problem) for problem in result.problems))
+
+
+def _problem(problem: Problem) -> str:
+    if problem.kind == "delaunay":
+        return f"{problem.count:,} edges not Delaunay"
+    return problem.sentence.rstrip(".")
+
+
+def ranked(triangles: NDArray[Any]) -> Triangles:
+    """Return triangles as sorted vertex numbers, one code each, in ascending order."""
+    corners = np.sort(triangles.astype(np.int64), axis=1)
+    return corners[np.lexsort(corners.T[::-1])]
+
+
+def numbered(corners: Floats, points: Floats) -> Triangles:
+    """Find the vertex number of each corner by its coordinates, -1 where there is no such point."""
+    order = np.lexsort((points[:, 1], points[:, 0]))
+    known = _as_keys(points[order, :2])
+    asked = _as_keys(corners.reshape(-1, 2))
+    place = np.minimum(np.searchsorted(known, asked), len(known) - 1)
+    found = np.where(known[place] == asked, order[place], -1)
+    return found.reshape(-1, 3)
+
+
+def _as_keys(xy: Floats) -> NDArray[np.complex128]:
+    """Pairs as one value that sorts by x, then y."""
+    return np.ascontiguousarray(xy, np.float64).view(np.complex128)[:, 0]

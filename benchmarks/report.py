@@ -1,0 +1,302 @@
+"""What was measured as one page of Markdown, one JSON file and one plot."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import asdict
+from pathlib import Path
+
+from . import kernel, locate, readers, writers
+from .answers import AS_MANY, EQUAL
+from .measure import OURS, Outcome, Result, is_installed
+from .triangulators import CGAL, KERNEL
+
+__all__ = ["write_report"]
+
+NAME = "benchmarks"
+LEAST_FOR_MEMORY = 50_000
+"""Below this many points memory is that of the libraries, not of the points."""
+
+INTRODUCTION = """\
+# Benchmarks
+
+tinsmith beside the libraries that do the same, run in turn (A B C A B C) in one command on one
+core each; seconds are medians. **Every answer that is timed is compared**: ours is proved by
+`ts.check`, an exact peer's must be the same triangulation or one that differs only in how ties
+between cocircular points are broken, and what the others lose is said below the table.
+"""
+HOW_TO_REPEAT = """\
+## How to repeat this
+
+`make bench` runs everything at 100,000 points in some minutes; this page was made by
+
+    {command}
+
+CGAL is a C++ library: with `g++` and its headers (Debian: `libcgal-dev`) the command compiles a
+small harness; without them, and without any other peer, it says so and goes on. Data sets are
+made by seeded generators in `benchmarks/datasets.py`.
+"""
+KERNEL_NOTES = """\
+Seconds, and in brackets how many times the whole call `ts.triangulate(points)` that is: above 1
+tinsmith is faster. That call checks the input, merges duplicates and makes all arrays of the TIN;
+*kernel* is the compiled part alone, triangles and neighbours. Of the peers only the triangulation
+is timed: not the conversion of the points to their own types, and of CGAL (`insert(begin, end)`,
+exact predicates) nothing of Python. Points come in the order of the data set; startinpy inserts
+them in that order, so random order costs it most. † wrong or incomplete, see below.
+"""
+
+
+def write_report(
+    outcome: Outcome, machine: dict[str, str], command: str, folder: Path
+) -> list[Path]:
+    """Write ``benchmarks.md``, ``.json`` and, where matplotlib is installed, ``.png``.
+
+    Returns
+    -------
+    list of Path
+        The files written.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    page, data = folder / f"{NAME}.md", folder / f"{NAME}.json"
+    has_plot = _has_plot(outcome)
+    page.write_text(_page(outcome, machine, command, has_plot), encoding="utf-8")
+    data.write_text(_as_json(outcome, machine, command), encoding="utf-8")
+    written = [page, data]
+    if has_plot:
+        from .plot import draw
+
+        written.append(draw(_of(outcome.results, kernel.SECTION), folder / f"{NAME}.png"))
+    return written
+
+
+def _has_plot(outcome: Outcome) -> bool:
+    if not _of(outcome.results, kernel.SECTION):
+        return False
+    if not is_installed("matplotlib"):
+        outcome.skip({"plot": "matplotlib is not installed"})
+        return False
+    return True
+
+
+def _as_json(outcome: Outcome, machine: dict[str, str], command: str) -> str:
+    content = {
+        "command": command,
+        "machine": machine,
+        "results": [_without_nan(asdict(result)) for result in outcome.results],
+        "skipped": outcome.skipped,
+    }
+    return json.dumps(content, indent=1, allow_nan=False) + "\n"
+
+
+def _without_nan(values: dict[str, object]) -> dict[str, object]:
+    return {k: None if isinstance(v, float) and math.isnan(v) else v for k, v in values.items()}
+
+
+def _page(outcome: Outcome, machine: dict[str, str], command: str, has_plot: bool) -> str:
+    versions = ", ".join(f"{k} {v}" for k, v in machine.items() if k != "machine")
+    parts = [INTRODUCTION, f"Machine: {machine['machine']}. {versions}.\n"]
+    for section, render in SECTIONS.items():
+        results = _of(outcome.results, section)
+        if results:
+            parts.append(render(results, has_plot))
+    if outcome.skipped:
+        parts.append("\n".join(["## Left out", "", *(f"- {x}" for x in outcome.skipped), ""]))
+    parts.append(HOW_TO_REPEAT.format(command=command))
+    return "\n".join(parts)
+
+
+def _of(results: Iterable[Result], section: str) -> list[Result]:
+    return [result for result in results if result.section == section]
+
+
+TEXT_COLUMNS = ("data set, points", "task", "tool", "remark")
+
+
+def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Return a table, text to the left, numbers to the right."""
+    rule = ["---" if name in TEXT_COLUMNS else "---:" for name in head]
+    return "\n".join(f"| {' | '.join(row)} |" for row in (head, rule, *rows)) + "\n"
+
+
+def _seconds(seconds: float) -> str:
+    if math.isnan(seconds):
+        return "-"
+    if seconds < 0.0995:
+        return f"{seconds * 1000:.3g} ms"
+    return f"{seconds:.1f} s" if seconds >= 9.95 else f"{seconds:.2f} s"
+
+
+def _ratio(seconds: float, ours: float) -> str:
+    ratio = seconds / ours
+    return f"{ratio:.0f}" if ratio >= 9.95 else f"{ratio:.2f}"
+
+
+# ------------------------------------------------------------------------ kernel
+
+
+class _KernelRow:
+    """All results on one data set of one size, by tool."""
+
+    def __init__(self, results: list[Result]) -> None:
+        self.by_tool = {result.tool: result for result in results}
+        self.task, self.count = results[0].task, results[0].count
+
+    @property
+    def label(self) -> str:
+        return f"{self.task}, {self.count:,}"
+
+    def cell(self, tool: str) -> str:
+        result = self.by_tool.get(tool)
+        if result is None:
+            return ""
+        if math.isnan(result.seconds):
+            return "- †"
+        mark = " †" if _is_wrong(result) else ""
+        if tool == OURS or OURS not in self.by_tool:
+            return f"{_seconds(result.seconds)}{mark}"
+        return f"{_seconds(result.seconds)} ({self.ratio(tool, OURS)}){mark}"
+
+    def ratio(self, tool: str, to: str) -> str:
+        if tool not in self.by_tool or to not in self.by_tool:
+            return ""
+        return _ratio(self.by_tool[tool].seconds, self.by_tool[to].seconds)
+
+    def extra(self, tool: str, name: str, form: str = ",.0f") -> str:
+        result = self.by_tool.get(tool)
+        value = None if result is None else result.extra.get(name)
+        return "" if value is None else format(value, form)
+
+
+def _is_wrong(result: Result) -> bool:
+    return not result.extra["is_right"]
+
+
+def _kernel_rows(results: list[Result]) -> list[_KernelRow]:
+    groups: dict[tuple[str, int], list[Result]] = {}
+    for result in results:
+        groups.setdefault((result.task, result.count), []).append(result)
+    return [_KernelRow(group) for group in groups.values()]
+
+
+def _kernel(results: list[Result], has_plot: bool) -> str:
+    rows = _kernel_rows(results)
+    tools = [tool for tool in kernel.ALL_TOOLS if any(tool in row.by_tool for row in rows)]
+    parts = ["## Triangulation\n", KERNEL_NOTES]
+    if has_plot:
+        parts.append(f"![Time per point of every tool on every data set]({NAME}.png)\n")
+    parts.append(_times(rows, tools))
+    parts += ["### What the others lose, and how ties fall\n", _remarks(rows)]
+    parts += ["### Memory\n", MEMORY_NOTES, _memory(rows, tools)]
+    parts += ["### Work\n", WORK_NOTES, _work(rows)]
+    return "\n".join(parts)
+
+
+def _times(rows: list[_KernelRow], tools: list[str]) -> str:
+    is_beside = {KERNEL, CGAL} <= set(tools)
+    head = ["data set, points", *tools] + ["CGAL / kernel"] * is_beside
+    body = [
+        [row.label, *map(row.cell, tools)] + [row.ratio(CGAL, KERNEL)] * is_beside for row in rows
+    ]
+    return _table(head, body)
+
+
+def _remarks(rows: list[_KernelRow]) -> str:
+    """One line a tool and remark, for the answers that are not equal to ours."""
+    rows_of: dict[str, list[str]] = {}
+    for row in rows:
+        for tool, result in row.by_tool.items():
+            if tool != kernel.WORK and result.note not in (EQUAL, AS_MANY):
+                mark = " †" if _is_wrong(result) else ""
+                rows_of.setdefault(tool, []).append(f"{row.label}: {result.note}{mark}")
+    lines = [
+        f"- {tool}\n" + "\n".join(f"  - {x}" for x in texts) for tool, texts in rows_of.items()
+    ]
+    return "\n".join([*lines, ""]) if lines else "Every triangulation is equal to ours.\n"
+
+
+MEMORY_NOTES = """\
+Bytes per point: by how much the resident memory of a process that runs only this tool rises above
+what it held with the points loaded; the answer is part of it. *Beyond input and output*: less the
+arrays returned (of the whole call 106 bytes per point, of the kernel 48).
+"""
+
+
+def _memory(rows: list[_KernelRow], tools: list[str]) -> str:
+    ours = [tool for tool in (OURS, KERNEL) if tool in tools]
+    head = ["data set, points", *tools, *(f"{tool}, beyond input and output" for tool in ours)]
+    body = [
+        [
+            row.label,
+            *(row.extra(tool, "peak_bytes_per_point") for tool in tools),
+            *(row.extra(tool, "beyond_output_bytes_per_point") for tool in ours),
+        ]
+        for row in rows
+        if row.count >= LEAST_FOR_MEMORY
+    ]
+    return _table(head, body) if body else f"Too few points: {LEAST_FOR_MEMORY:,} are needed.\n"
+
+
+WORK_NOTES = """\
+Per triangle: searches for a third point (below 1 where the kernel hands the rest to insertion),
+candidates looked at, rows of cells entered, and decisions that needed exact arithmetic. These do
+not depend on the machine.
+"""
+WORK_COUNTS = ("searches", "candidates", "cell_rows", "exact_decisions")
+
+
+def _work(rows: list[_KernelRow]) -> str:
+    head = ["data set, points", *(name.replace("_", " ") for name in WORK_COUNTS)]
+    return _table(
+        head,
+        [[row.label, *(row.extra(kernel.WORK, c, ".3f") for c in WORK_COUNTS)] for row in rows],
+    )
+
+
+# ------------------------------------------------------------------ other sections
+
+
+def _others(title: str, unit: str, notes: str) -> Callable[[list[Result], bool], str]:
+    def render(results: list[Result], has_plot: bool) -> str:
+        del has_plot
+        ours = {result.task: result for result in results if result.tool == OURS}
+        head = ["task", "tool", unit, "seconds", "times tinsmith", "remark"]
+        rows = [_other_row(result, ours[result.task]) for result in results]
+        return "\n".join([f"## {title}\n", notes, _table(head, rows)])
+
+    return render
+
+
+def _other_row(result: Result, ours: Result) -> list[str]:
+    remark = result.note
+    if "prepare_seconds" in result.extra:
+        remark = f"{_seconds(result.extra['prepare_seconds'])} to prepare"
+    rate, our_rate = result.seconds / result.count, ours.seconds / ours.count
+    return [
+        result.task,
+        result.tool,
+        f"{result.count:,}",
+        _seconds(result.seconds),
+        _ratio(rate, our_rate),
+        remark,
+    ]
+
+
+SECTIONS: dict[str, Callable[[list[Result], bool], str]] = {
+    kernel.SECTION: _kernel,
+    locate.SECTION: _others(
+        "Queries",
+        "places",
+        "Random places on a TIN of uniform points, near the origin of coordinates so that SciPy\n"
+        "can take part; ratios are per place. To prepare is from points to the first answer.\n",
+    ),
+    readers.SECTION: _others(
+        "Readers",
+        "rows",
+        "One file of each kind, in the cache of the system; equal numbers read.\n",
+    ),
+    writers.SECTION: _others(
+        "Writers", "triangles", "From the TIN to the file; every file is read back and compared.\n"
+    ),
+}
