@@ -24,12 +24,13 @@ def main(arguments: list[str] | None = None) -> None:
     given = parser.parse_args(arguments)
     if given.points is not None and given.points < LEAST_POINTS:
         parser.error(f"--points {given.points}: at least {LEAST_POINTS} are needed")
+    said = sys.argv[1:] if arguments is None else arguments
+    command = shlex.join(["python", "-m", "benchmarks", *said])
     outcome = Outcome()
     for section in given.sections or SECTIONS:
         outcome.add(_measured(section, given))
-    said = sys.argv[1:] if arguments is None else arguments
-    command = shlex.join(["python", "-m", "benchmarks", *said])
-    for path in write_report(outcome, describe(), command, given.output):
+        written = write_report(outcome, describe(), command, given.output)
+    for path in written:
         print(path)
     for line in outcome.skipped:
         print(line)

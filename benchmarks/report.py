@@ -43,8 +43,9 @@ Seconds, and in brackets how many times the whole call `ts.triangulate(points)` 
 tinsmith is faster. That call checks the input, merges duplicates and makes all arrays of the TIN;
 *kernel* is the compiled part alone, triangles and neighbours. Of the peers only the triangulation
 is timed: not the conversion of the points to their own types, and of CGAL (`insert(begin, end)`,
-exact predicates) nothing of Python. Points come in the order of the data set; startinpy inserts
-them in that order, so random order costs it most. † wrong or incomplete, see below.
+exact predicates, compiled with `-O3 -march=native`) nothing of Python. Points come in the order
+of the data set; startinpy inserts them in that order, so random order costs it most. † wrong,
+incomplete or not ended in time, see below.
 """
 
 
