@@ -126,6 +126,7 @@ def test_report_is_plain_data():
             }
         ],
         "skipped": {},
+        "notes": [],
     }
     assert repr(tin.report) == "<Report: 5 rows, 4 vertices, 2 triangles, 1 row merged away>"
 
@@ -259,3 +260,14 @@ def test_snap_zero_merges_exact_repeats_only():
     rows = [[0, 0, 0], [1, 0, 0], [apart, 0, 0], [1, 0, 4], [0, 1, 0]]
     tin = ts.triangulate(rows, snap=0)
     assert tin.vertex_of.tolist() == [0, 1, 2, 1, 3]
+
+
+def test_the_report_tells_what_the_reader_left_out_and_assumed():
+    survey = ts.Survey(
+        points=np.array([[0.0, 0, 1], [1, 0, 2], [0, 1, 3]]),
+        skipped={"comment lines": 2},
+        notes=("columns taken as PNEZD",),
+    )
+    told = ts.triangulate(survey).report.to_dict()
+    assert told["skipped"] == {"comment lines": 2}
+    assert told["notes"] == ["columns taken as PNEZD"]

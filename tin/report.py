@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -70,6 +70,8 @@ class Report:
         Elevations that the merged vertices received.
     skipped : mapping of str to int
         What the reader left out and how often.
+    notes : sequence of str
+        What the reader assumed, a sentence each.
     """
 
     n_rows: int
@@ -84,6 +86,7 @@ class Report:
     merged_shifts: NDArray[np.float64] = field(default_factory=_no_numbers)
     vertex_heights: NDArray[np.float64] = field(default_factory=_no_numbers)
     skipped: Mapping[str, int] = field(default_factory=dict)
+    notes: Sequence[str] = ()
 
     def merges(self) -> Iterator[Merge]:
         """Walk the merges, one vertex at a time."""
@@ -107,6 +110,7 @@ class Report:
             "snap": self.snap,
             "merges": [merge._asdict() for merge in self.merges()],
             "skipped": dict(self.skipped),
+            "notes": list(self.notes),
         }
 
     def __repr__(self) -> str:

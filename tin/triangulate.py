@@ -92,6 +92,7 @@ def triangulate(
             duplicates=duplicates,
             snap=float(snap),
             skipped=survey.skipped,
+            notes=survey.notes,
             **merged.account,
         ),
         crs=crs if crs is not None else survey.crs,
