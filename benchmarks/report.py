@@ -220,7 +220,7 @@ def _remarks(rows: list[_KernelRow]) -> str:
 MEMORY_NOTES = """\
 Bytes per point: by how much the resident memory of a process that runs only this tool rises above
 what it held with the points loaded; the answer is part of it. *Beyond input and output*: less the
-arrays returned (of the whole call 106 bytes per point, of the kernel 48).
+arrays returned (of the whole call 82 bytes per point, of the kernel 48).
 """
 
 
