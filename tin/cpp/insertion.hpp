@@ -2,225 +2,174 @@
 // that a grid does not help the growth.
 //
 // A new point alters only its domain of influence: the triangles whose circle holds it. They are
-// removed and the hole is filled with a fan about the point. Ties are decided by the point set
-// alone (is_in_circle), so the result is the growth's. The order of insertion only sets the speed:
-// random rounds, each twice as large as the one before and sorted along a Hilbert curve, make the
-// expected work per point constant for every distribution.
-//
-// One ghost vertex closes the outside: a ghost triangle stands on every hull edge, and its circle
-// is the open half-plane beyond that edge.
+// removed and the hole is filled with a fan about the point (cavity.hpp). Ties are decided by the
+// point set alone (is_in_circle), so the result is the growth's. The order of insertion
+// (insertion_order.hpp) only sets the speed.
 #pragma once
 
-#include <algorithm>
+#include <cmath>
 #include <cstdint>
-#include <numeric>
+#include <limits>
 #include <utility>
-#include <vector>
 
+#include "cavity.hpp"
+#include "ghost_mesh.hpp"
 #include "grid.hpp"
 #include "ids.hpp"
+#include "insertion_order.hpp"
+#include "large_array.hpp"
 #include "predicates.hpp"
 #include "spatial_order.hpp"
 
 namespace tinsmith {
 
-// Order for insertion: random rounds, each twice as large as the one before, in spatial order.
-inline std::vector<std::int32_t> insertion_order(const PointGrid& grid) {
-  constexpr std::int32_t kFirstRound = 256;
-  std::vector<std::int32_t> order(grid.count());
-  std::iota(order.begin(), order.end(), 0);
-  std::uint64_t state = 0x9E3779B97F4A7C15u;  // a fixed seed: every run inserts in the same order
-  for (std::size_t i = order.size(); i > 1; --i) {
-    state ^= state << 13;
-    state ^= state >> 7;
-    state ^= state << 17;
-    std::swap(order[i - 1], order[state % i]);
-  }
-  std::vector<Point> places;
-  for (auto end = static_cast<std::int32_t>(order.size()); end > 0;) {
-    const std::int32_t begin = end > kFirstRound ? end / 2 : 0;
-    places.clear();
-    for (std::int32_t i = begin; i < end; ++i) {
-      places.push_back(grid.point(static_cast<Vertex>(order[i])));
-    }
-    std::vector<std::int32_t> round = SpatialOrder(places.data(), end - begin).take();
-    for (std::int32_t& place : round) place = order[begin + place];
-    std::copy(round.begin(), round.end(), order.begin() + begin);
-    end = begin;
-  }
-  return order;
-}
-
-// A triangulated sphere: real triangles and ghost triangles, 2n - 2 together.
-struct GhostMesh {
-  static constexpr std::int32_t kGhost = -1;
-  std::vector<std::int32_t> corners;  // 3 a triangle, sweep numbers or kGhost
-  std::vector<std::int32_t> twins;    // the same edge as half-edge of the triangle across it
-
-  bool is_ghost(std::int32_t triangle) const {
-    return corners[3 * triangle] == kGhost || corners[3 * triangle + 1] == kGhost ||
-           corners[3 * triangle + 2] == kGhost;
-  }
-};
-
 class Insertion {
  public:
   // The points must not all be collinear.
-  explicit Insertion(const PointGrid& grid) : sweep_of_(insertion_order(grid)) {
-    const std::size_t n = sweep_of_.size();
-    points_.reserve(n);
-    for (std::int32_t v : sweep_of_) points_.push_back(grid.point(static_cast<Vertex>(v)));
-    fan_.assign(n + 1, 0);
-    mesh_.corners.reserve(3 * (2 * n - 2));
-    mesh_.twins.reserve(3 * (2 * n - 2));
-  }
+  explicit Insertion(const PointGrid& grid)
+      : grid_(grid), count_(grid.count()), sweep_of_(count_ + std::size_t{1}), points_(count_ + std::size_t{1}) {}
 
   // Returns false if `keep_going` did.
   template <typename KeepGoing>
   bool run(KeepGoing&& keep_going) {
-    constexpr std::size_t kPointsPerQuestion = 4096;
+    if (!keep_going()) return false;
+    put_in_order();
     start();
-    for (std::size_t i = 3; i < points_.size(); ++i) {
-      if (i % kPointsPerQuestion == 0 && !keep_going()) return false;
-      insert(static_cast<std::int32_t>(i));
-    }
-    for (auto& corner : mesh_.corners) {
-      if (corner != GhostMesh::kGhost) corner = sweep_of_[corner];
-    }
-    return true;
+    const bool is_complete = insert_all(keep_going);
+    if (is_complete) number_by_sweep();
+    return is_complete;
   }
 
-  const GhostMesh& mesh() const { return mesh_; }
+  GhostMesh& mesh() { return mesh_; }
 
  private:
-  static constexpr std::int32_t kGhost = GhostMesh::kGhost;
+  // By vertex, with a place for the ghost in front.
+  template <typename T>
+  class WithGhost {
+   public:
+    explicit WithGhost(std::size_t count) : values_(large_array<T>(count)) {}
+    T& operator[](std::int32_t vertex) { return begin()[vertex]; }
+    const T& operator[](std::int32_t vertex) const { return begin()[vertex]; }
+    T* begin() const { return values_.get() + 1; }
+    void release() { values_.reset(); }
 
-  static std::int32_t next(std::int32_t half_edge) {
-    return half_edge % 3 == 2 ? half_edge - 2 : half_edge + 1;
-  }
-  static std::int32_t previous(std::int32_t half_edge) {
-    return half_edge % 3 == 0 ? half_edge + 2 : half_edge - 1;
-  }
-  std::int32_t start_of(std::int32_t half_edge) const { return mesh_.corners[next(half_edge)]; }
-  std::int32_t end_of(std::int32_t half_edge) const { return mesh_.corners[previous(half_edge)]; }
-
-  // The first triangle that is none of a line, and a ghost on each of its edges.
-  void start() {
-    std::size_t third = 2;
-    while (orientation(points_[0], points_[1], points_[third]) == 0) ++third;
-    std::swap(points_[2], points_[third]);
-    std::swap(sweep_of_[2], sweep_of_[third]);
-    const bool is_left = orientation(points_[0], points_[1], points_[2]) > 0;
-    const std::int32_t a = 0, b = is_left ? 1 : 2, c = is_left ? 2 : 1;
-    mesh_.corners = {a, b, c, kGhost, c, b, kGhost, a, c, kGhost, b, a};
-    mesh_.twins = {3, 6, 9, 0, 11, 7, 1, 5, 10, 2, 8, 4};
-    stamp_.assign(4, 0);
-    last_ = 0;
-  }
-
-  void insert(std::int32_t p) {
-    collect_cavity(p, find_conflict(points_[p]));
-    fill_cavity(p);
-  }
-
-  // Walk towards p across edges that separate it, to a triangle that must go.
-  std::int32_t find_conflict(Point p) {
-    std::int32_t triangle = last_;
-    while (true) {
-      const std::int32_t across = edge_towards(triangle, p);
-      if (across < 0) return triangle;
-      triangle = mesh_.twins[across] / 3;
-      if (mesh_.is_ghost(triangle)) return triangle;
-    }
-  }
-
-  std::int32_t edge_towards(std::int32_t triangle, Point p) const {
-    for (std::int32_t edge = 3 * triangle; edge < 3 * triangle + 3; ++edge) {
-      if (orientation(points_[start_of(edge)], points_[end_of(edge)], p) < 0) return edge;
-    }
-    return -1;
-  }
-
-  bool is_in_conflict(std::int32_t triangle, Point p) const {
-    const std::int32_t* corner = &mesh_.corners[3 * triangle];
-    for (int k = 0; k < 3; ++k) {
-      if (corner[k] == kGhost) {
-        return is_beyond(points_[corner[(k + 1) % 3]], points_[corner[(k + 2) % 3]], p);
-      }
-    }
-    return is_in_circle(points_[corner[0]], points_[corner[1]], points_[corner[2]], p);
-  }
-
-  // Left of the hull edge (seen from outside), or on it between its ends.
-  static bool is_beyond(Point from, Point to, Point p) {
-    const int side = orientation(from, to, p);
-    if (side != 0) return side > 0;
-    const bool is_forward = lexicographically_before(from, to);
-    return lexicographically_before(is_forward ? from : to, p) &&
-           lexicographically_before(p, is_forward ? to : from);
-  }
-
-  // Triangles in conflict are connected; rim_ gets the edges around them, seen from outside.
-  void collect_cavity(std::int32_t p, std::int32_t first) {
-    cavity_.assign(1, first);
-    rim_.clear();
-    stamp_[first] = p;
-    for (std::size_t i = 0; i < cavity_.size(); ++i) {
-      for (std::int32_t edge = 3 * cavity_[i]; edge < 3 * cavity_[i] + 3; ++edge) {
-        const std::int32_t twin = mesh_.twins[edge];
-        const std::int32_t other = twin / 3;
-        if (stamp_[other] == p) continue;
-        if (is_in_conflict(other, points_[p])) {
-          stamp_[other] = p;
-          cavity_.push_back(other);
-        } else {
-          rim_.push_back({twin, start_of(edge), end_of(edge)});
-        }
-      }
-    }
-  }
-
-  // A fan of triangles (p, from, to) in the places of the removed ones and two new places.
-  void fill_cavity(std::int32_t p) {
-    while (cavity_.size() < rim_.size()) {
-      cavity_.push_back(static_cast<std::int32_t>(stamp_.size()));
-      stamp_.push_back(0);
-      mesh_.corners.resize(mesh_.corners.size() + 3);
-      mesh_.twins.resize(mesh_.twins.size() + 3);
-    }
-    for (std::size_t i = 0; i < rim_.size(); ++i) {
-      const std::int32_t triangle = cavity_[i];
-      std::int32_t* corner = &mesh_.corners[3 * triangle];
-      corner[0] = p;
-      corner[1] = rim_[i].from;
-      corner[2] = rim_[i].to;
-      join(3 * triangle, rim_[i].outer);
-      fan_[rim_[i].from + 1] = triangle;
-      if (rim_[i].from != kGhost && rim_[i].to != kGhost) last_ = triangle;
-    }
-    for (std::size_t i = 0; i < rim_.size(); ++i) {
-      join(3 * cavity_[i] + 1, 3 * fan_[rim_[i].to + 1] + 2);
-    }
-  }
-
-  void join(std::int32_t a, std::int32_t b) {
-    mesh_.twins[a] = b;
-    mesh_.twins[b] = a;
-  }
-
-  struct RimEdge {
-    std::int32_t outer;  // the edge as half-edge of the triangle that stays
-    std::int32_t from, to;
+   private:
+    LargeArray<T> values_;
   };
 
-  std::vector<std::int32_t> sweep_of_;  // by order of insertion
-  std::vector<Point> points_;           // likewise
+  void put_in_order() {
+    const auto place = [this](std::int32_t i) { return grid_.point(static_cast<Vertex>(i)); };
+    const SpatialOrder order(count_, place);
+    for (std::int32_t i = 0; i < count_; ++i) {
+      sweep_of_[i] = order[i];
+      points_[i] = place(order[i]);
+    }
+    constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
+    points_[kGhost] = {kNotANumber, kNotANumber};
+    sweep_of_[kGhost] = kGhost;
+  }
+
+  // The first triangle, of points that are not in line, and a ghost on each of its edges.
+  void start() {
+    swap_points(1, count_ / 2);
+    std::int32_t third = 2;
+    while (orientation(points_[0], points_[1], points_[third]) == 0) ++third;
+    swap_points(2, third);
+    const bool is_left = orientation(points_[0], points_[1], points_[2]) > 0;
+    const std::int32_t a = 0, b = is_left ? 1 : 2, c = is_left ? 2 : 1;
+    mesh_.triangles = large_array<GhostTriangle>(2 * static_cast<std::size_t>(count_) - 2);
+    mesh_.triangles[0] = {{a, b, c}, {mesh_edge(1, 0), mesh_edge(2, 0), mesh_edge(3, 0)}};
+    mesh_.triangles[1] = {{kGhost, c, b}, {mesh_edge(0, 0), mesh_edge(3, 2), mesh_edge(2, 1)}};
+    mesh_.triangles[2] = {{kGhost, a, c}, {mesh_edge(0, 1), mesh_edge(1, 2), mesh_edge(3, 1)}};
+    mesh_.triangles[3] = {{kGhost, b, a}, {mesh_edge(0, 2), mesh_edge(2, 2), mesh_edge(1, 1)}};
+    mesh_.count = kStartTriangles;
+  }
+
+  void swap_points(std::int32_t a, std::int32_t b) {
+    std::swap(points_[a], points_[b]);
+    std::swap(sweep_of_[a], sweep_of_[b]);
+  }
+
+  template <typename KeepGoing>
+  bool insert_all(KeepGoing&& keep_going) {
+    constexpr std::uint32_t kPointsPerQuestion = 4096;
+    Cavity cavity(mesh_, points_.begin());
+    std::uint32_t last = 0;
+    std::uint32_t until_question = kPointsPerQuestion;
+    return InsertionRounds(count_).for_each([&](std::uint32_t place) {
+      const auto vertex = static_cast<std::int32_t>(place);
+      if (vertex < kStartVertices) return true;
+      if (--until_question == 0) {
+        if (!keep_going()) return false;
+        until_question = kPointsPerQuestion;
+      }
+      last = cavity.insert(vertex, find_conflict(points_[vertex], last));
+      return true;
+    });
+  }
+
+  // Walk towards p across edges that separate it, to a triangle whose circle holds it.
+  std::uint32_t find_conflict(Point p, std::uint32_t triangle) const {
+    const GhostTriangle* const triangles = mesh_.triangles.get();
+    const GhostTriangle* here = &triangles[triangle];
+    // p is not right of the edge from `right` to `left`, seen from the triangle to search.
+    Sight left = sight(here->corner[2], p), right = sight(here->corner[1], p);
+    std::uint32_t edge = mesh_edge(triangle, 0);
+    if (is_right_of(right, left, p)) {
+      edge = here->twin[0];
+      std::swap(left, right);
+    }
+    while (true) {
+      here = &triangles[triangle_of(edge)];
+      const std::uint32_t place = place_of(edge);
+      const std::int32_t vertex = here->corner[place];
+      if (vertex == kGhost) return triangle_of(edge);
+      const Sight apex = sight(vertex, p);
+      if (is_right_of(left, apex, p)) {
+        edge = here->twin[place_after(place)];
+        right = apex;
+      } else if (is_right_of(apex, right, p)) {
+        edge = here->twin[place_before(place)];
+        left = apex;
+      } else {
+        return triangle_of(edge);
+      }
+    }
+  }
+
+  struct Sight {  // a vertex as seen from p
+    double x, y;
+    std::int32_t vertex;
+  };
+  Sight sight(std::int32_t vertex, Point p) const {
+    return {points_[vertex].x - p.x, points_[vertex].y - p.y, vertex};
+  }
+
+  // Is p right of the line from a to b? (As `orientation`, from differences at hand.)
+  bool is_right_of(const Sight& a, const Sight& b, Point p) const {
+    const double left = a.x * b.y, right = a.y * b.x;
+    const double side = left - right;
+    const double bound = detail::kOrientationBound * (std::fabs(left) + std::fabs(right));
+    if (side > bound || -side > bound) return side < 0.0;
+    return orientation(points_[a.vertex], points_[b.vertex], p) < 0;
+  }
+
+  void number_by_sweep() {
+    points_.release();
+    for (std::uint32_t t = 0; t < mesh_.count; ++t) {
+      for (std::int32_t& corner : mesh_.triangles[t].corner) corner = sweep_of_[corner];
+    }
+    sweep_of_.release();
+  }
+
+  static constexpr std::int32_t kStartVertices = 3;
+  static constexpr std::uint32_t kStartTriangles = 4;
+
+  const PointGrid& grid_;
+  std::int32_t count_;
+  WithGhost<std::int32_t> sweep_of_;  // by place on the curve, which is the number of a vertex here
+  WithGhost<Point> points_;           // likewise
   GhostMesh mesh_;
-  std::vector<std::int32_t> stamp_;  // the last point in whose cavity a triangle was
-  std::vector<std::int32_t> fan_;    // the new triangle that starts at a vertex (ghost first)
-  std::vector<std::int32_t> cavity_;
-  std::vector<RimEdge> rim_;
-  std::int32_t last_ = 0;
 };
 
 }  // namespace tinsmith

@@ -1,8 +1,8 @@
 // Exact predicates on plane coordinates: which side of a line, inside which circle.
 //
 // Each decides in stages and stops at the first that is certain: plain doubles with an error
-// bound; 128-bit integers where the differences of the coordinates are exact (they are for
-// neighbouring points of any survey or raster); expansions for everything else.
+// bound; wide integers where the differences of the coordinates have a common unit that is not too
+// small (they have for neighbouring points of any survey or raster); expansions for all else.
 //
 // Exact while every coordinate is 0 or of a magnitude in [kSmallestCoordinate,
 // kLargestCoordinate]: products of four differences then neither overflow nor lose bits below
@@ -12,6 +12,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
+#include <cstring>
 
 #include "expansion.hpp"
 
@@ -62,42 +64,108 @@ inline int sign_of_product_difference(double a1, double a2, double b1, double b2
 }
 
 #ifdef __SIZEOF_INT128__
-// In-circle determinant of exact differences as integers modulo 2^128. The caller knows that the
-// true value is small beside the terms (it failed the filter), so the remainder is the value:
-// differences of 42 bits give |terms| < 2^172, and a value within the filter's 2^-49 of them is
-// below 2^123.
+// In-circle determinant of exact differences, as an integer modulo 2^128 or 2^192. The caller
+// knows that the true value is small beside the terms (it failed the filter), so the remainder is
+// the value: differences of b bits give |terms| < 2^(4b + 4), and a value within twice the
+// filter's bound, 2^-48 of them, is below 2^(4b - 44).
 class IntegerInCircle {
  public:
-  static constexpr int kBits = 42;
-
-  bool load(const double (&differences)[6]) {
+  // False if the differences have no common unit in which they are integers of kMostBits.
+  bool load(const TwoDoubles (&differences)[6]) {
     double largest = 0.0;
-    for (double d : differences) largest = std::max(largest, std::fabs(d));
-    int exponent = 0;
-    std::frexp(largest, &exponent);
-    const double scale = std::ldexp(1.0, kBits - exponent);
+    for (const TwoDoubles& d : differences) largest = std::max(largest, std::fabs(d.high));
+    if (largest == 0.0) return false;
+    const double scale = power_of_two(kMostBits - 1 - exponent(largest));
+    std::uint64_t used = 0;
     for (int i = 0; i < 6; ++i) {
-      const double scaled = differences[i] * scale;
-      value_[i] = static_cast<std::int64_t>(scaled);
-      if (static_cast<double>(value_[i]) != scaled) return false;
+      const double high = differences[i].high * scale, low = differences[i].low * scale;
+      const auto high_value = static_cast<std::int64_t>(high);
+      const auto low_value = static_cast<std::int64_t>(low);
+      if (static_cast<double>(high_value) != high || static_cast<double>(low_value) != low) {
+        return false;
+      }
+      value_[i] = high_value + low_value;
+      used |= static_cast<std::uint64_t>(std::abs(value_[i]));
     }
+    drop_common_zeros(used);
     return true;
   }
 
-  int sign() const {
+  int sign() const { return bits_ <= kBitsFor128 ? sign_modulo_128() : sign_modulo_192(); }
+
+ private:
+  using Integer = unsigned __int128;  // wraps around by definition
+  static constexpr int kMostBits = 58;
+  static constexpr int kBitsFor128 = 42;
+
+  struct Wide {
+    Integer low;
+    std::uint64_t high;
+    Wide operator+(const Wide& other) const {
+      const Integer sum = low + other.low;
+      return {sum, high + other.high + (sum < low)};
+    }
+  };
+
+  // The power of two at or below a normal, positive value.
+  static int exponent(double value) {
+    std::uint64_t bits;
+    std::memcpy(&bits, &value, sizeof bits);
+    return static_cast<int>(bits >> 52) - 1023;
+  }
+  static double power_of_two(int exponent) {
+    const std::uint64_t bits = static_cast<std::uint64_t>(exponent + 1023) << 52;
+    double value;
+    std::memcpy(&value, &bits, sizeof value);
+    return value;
+  }
+
+  void drop_common_zeros(std::uint64_t used) {
+    if (used == 0) return;
+    const int zeros = __builtin_ctzll(used);
+    for (auto& value : value_) value >>= zeros;
+    bits_ = 64 - __builtin_clzll(used) - zeros;
+  }
+
+  int sign_modulo_128() const {
     const Integer adx = value_[0], ady = value_[1], bdx = value_[2];
     const Integer bdy = value_[3], cdx = value_[4], cdy = value_[5];
-    const Integer determinant = lift(adx, ady) * (bdx * cdy - cdx * bdy) +
-                                lift(bdx, bdy) * (cdx * ady - adx * cdy) +
-                                lift(cdx, cdy) * (adx * bdy - bdx * ady);
+    const Integer determinant = (adx * adx + ady * ady) * (bdx * cdy - cdx * bdy) +
+                                (bdx * bdx + bdy * bdy) * (cdx * ady - adx * cdy) +
+                                (cdx * cdx + cdy * cdy) * (adx * bdy - bdx * ady);
     const auto value = static_cast<__int128>(determinant);
     return (value > 0) - (value < 0);
   }
 
- private:
-  using Integer = unsigned __int128;  // wraps around by definition
-  static Integer lift(Integer x, Integer y) { return x * x + y * y; }
+  int sign_modulo_192() const {
+    const Wide determinant = term(0, 2, 4) + term(2, 4, 0) + term(4, 0, 2);
+    if (static_cast<std::int64_t>(determinant.high) < 0) return -1;
+    return determinant.high != 0 || determinant.low != 0;
+  }
+
+  // |a|^2 (b x c), of the differences that stand from a, b and c on.
+  Wide term(int a, int b, int c) const {
+    const Integer lift = product(a, a) + product(a + 1, a + 1);
+    const Integer cross = product(b, c + 1) - product(c, b + 1);
+    const auto lift0 = static_cast<std::uint64_t>(lift);
+    const auto lift1 = static_cast<std::uint64_t>(lift >> 64);
+    const auto cross0 = static_cast<std::uint64_t>(cross);
+    const auto cross1 = static_cast<std::uint64_t>(cross >> 64);
+    const std::uint64_t cross2 = cross1 >> 63 != 0 ? ~std::uint64_t{0} : 0;  // its sign
+    const Integer bottom = static_cast<Integer>(lift0) * cross0;
+    const Integer left = static_cast<Integer>(lift1) * cross0;
+    const Integer right = static_cast<Integer>(lift0) * cross1;
+    const Wide outer{bottom, lift1 * cross1 + lift0 * cross2};
+    return outer + Wide{left << 64, static_cast<std::uint64_t>(left >> 64)} +
+           Wide{right << 64, static_cast<std::uint64_t>(right >> 64)};
+  }
+
+  Integer product(int i, int j) const {
+    return static_cast<Integer>(static_cast<__int128>(value_[i]) * value_[j]);
+  }
+
   std::int64_t value_[6];
+  int bits_ = 0;
 };
 #endif
 
@@ -118,14 +186,8 @@ inline int in_circle_exact(Point a, Point b, Point c, Point d) {
       exact_difference(a.x, d.x), exact_difference(a.y, d.y), exact_difference(b.x, d.x),
       exact_difference(b.y, d.y), exact_difference(c.x, d.x), exact_difference(c.y, d.y)};
 #ifdef __SIZEOF_INT128__
-  double high[6];
-  bool is_exact = true;
-  for (int i = 0; i < 6; ++i) {
-    high[i] = difference[i].high;
-    is_exact &= difference[i].low == 0.0;
-  }
   IntegerInCircle integers;
-  if (is_exact && integers.load(high)) return integers.sign();
+  if (integers.load(difference)) return integers.sign();
 #endif
   return in_circle_expanded(difference);
 }

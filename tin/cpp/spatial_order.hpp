@@ -6,56 +6,89 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numeric>
+#include <utility>
 #include <vector>
 
 #include "predicates.hpp"
 
 namespace tinsmith {
 
-// Position along Hilbert's curve of cell (column, row) in a grid of 2^bits by 2^bits.
-inline std::uint32_t hilbert_position(std::uint32_t column, std::uint32_t row, int bits) {
-  struct Move {
-    std::uint8_t digit;
-    std::uint8_t turn;
-  };
+// Position along Hilbert's curve of a cell in a grid of 2^16 by 2^16 cells.
+class HilbertCurve {
+ public:
+  static constexpr int kBits = 16;  // of a column or row; a position has twice as many
+
+  std::uint32_t position(std::uint32_t column, std::uint32_t row) const {
+    std::uint32_t position = 0;
+    std::uint32_t turn = 0;
+    for (int bit = kBits - kStride; bit >= 0; bit -= kStride) {
+      const std::uint32_t block = ((column >> bit) & kMask) << kStride | ((row >> bit) & kMask);
+      const Move move = moves_[turn][block];
+      position = position << (2 * kStride) | move.digits;
+      turn = move.turn;
+    }
+    return position;
+  }
+
   // The curve in a square is one of four, by where it starts and ends; each visits the four
   // quadrants (2 * right half + upper half) in its own order, with one of the four in each.
-  static constexpr Move kMoves[4][4] = {{{0, 1}, {1, 0}, {3, 3}, {2, 0}},
-                                        {{0, 0}, {3, 2}, {1, 1}, {2, 1}},
-                                        {{2, 2}, {3, 1}, {1, 2}, {0, 3}},
-                                        {{2, 3}, {1, 3}, {3, 0}, {0, 2}}};
-  std::uint32_t position = 0;
-  std::uint32_t turn = 0;
-  for (int bit = bits - 1; bit >= 0; --bit) {
-    const std::uint32_t quadrant = 2 * ((column >> bit) & 1) + ((row >> bit) & 1);
-    const Move move = kMoves[turn][quadrant];
-    position = 4 * position + move.digit;
-    turn = move.turn;
+  constexpr HilbertCurve() : moves_{} {
+    constexpr std::uint8_t kDigit[4][4] = {{0, 1, 3, 2}, {0, 3, 1, 2}, {2, 3, 1, 0}, {2, 1, 3, 0}};
+    constexpr std::uint8_t kTurn[4][4] = {{1, 0, 3, 0}, {0, 2, 1, 1}, {2, 1, 2, 3}, {3, 3, 0, 2}};
+    for (std::uint32_t start = 0; start < 4; ++start) {
+      for (std::uint32_t block = 0; block < (1u << (2 * kStride)); ++block) {
+        std::uint32_t digits = 0, turn = start;
+        for (int bit = kStride - 1; bit >= 0; --bit) {
+          const std::uint32_t right = (block >> (kStride + bit)) & 1, upper = (block >> bit) & 1;
+          digits = 4 * digits + kDigit[turn][2 * right + upper];
+          turn = kTurn[turn][2 * right + upper];
+        }
+        moves_[start][block].digits = static_cast<std::uint8_t>(digits);
+        moves_[start][block].turn = static_cast<std::uint8_t>(turn);
+      }
+    }
   }
-  return position;
-}
+
+ private:
+  static constexpr int kStride = 4;  // levels of the curve taken at once
+  static constexpr std::uint32_t kMask = (1u << kStride) - 1;
+  struct Move {
+    std::uint8_t digits = 0;
+    std::uint8_t turn = 0;
+  };
+
+  Move moves_[4][1 << (2 * kStride)];
+};
+
+inline constexpr HilbertCurve kHilbertCurve;
 
 class SpatialOrder {
  public:
   // Places that are not finite are allowed: they come somewhere.
-  SpatialOrder(const Point* places, std::int32_t count) : places_(places) {
-    order_.resize(count);
-    std::iota(order_.begin(), order_.end(), 0);
-    cell_of_.resize(count);
-    spare_.resize(count);
+  SpatialOrder(const Point* places, std::int32_t count)
+      : SpatialOrder(count, [places](std::int32_t i) { return places[i]; }) {}
+
+  template <typename PlaceOf>
+  SpatialOrder(std::int32_t count, PlaceOf&& place_of) : entries_(count), spare_(count) {
+    for (std::int32_t i = 0; i < count; ++i) entries_[i].item = i;
     crowded_.push_back({0, count});
     while (!crowded_.empty()) {
       const Range range = crowded_.back();
       crowded_.pop_back();
+      if (!assign_positions(range, place_of)) continue;
       sort(range);
+      list_crowded(range);
     }
   }
 
-  std::vector<std::int32_t> take() { return std::move(order_); }
+  std::vector<std::int32_t> take() {
+    std::vector<std::int32_t> order(entries_.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = entries_[i].item;
+    return order;
+  }
+  std::int32_t operator[](std::int32_t i) const { return entries_[i].item; }
 
  private:
   struct Range {
@@ -63,31 +96,23 @@ class SpatialOrder {
     std::int32_t end;
     std::int32_t size() const { return end - begin; }
   };
+  struct Entry {
+    std::uint32_t position;  // along the curve
+    std::int32_t item;
+  };
 
-  static constexpr std::int32_t kPlacesPerCell = 2;
-  static constexpr std::int32_t kCrowd = 8 * kPlacesPerCell;
-  static constexpr int kMostBits = 15;  // positions must fit in 31 bits
-
-  void sort(Range range) {
-    int bits = 1;
-    while (bits < kMostBits && kPlacesPerCell * (std::int64_t{4} << (2 * bits)) <= range.size()) {
-      ++bits;
-    }
-    if (!assign_cells(range, bits)) return;
-    sort_by_cell(range, bits);
-    for (std::size_t cell = 0; cell + 1 < start_.size(); ++cell) {
-      const Range inside{start_[cell], start_[cell + 1]};
-      // A cell that holds all cannot be split further.
-      if (inside.size() > kCrowd && inside.size() < range.size()) crowded_.push_back(inside);
-    }
-  }
+  static constexpr std::int32_t kCrowd = 16;
+  static constexpr std::int32_t kShort = 256;  // ranges that are sorted by comparing
+  static constexpr int kDigitBits = 11;        // two digits at a million places
+  static constexpr int kCellsPerPlace = 4;
 
   // False if all places are at one place.
-  bool assign_cells(Range range, int bits) {
+  template <typename PlaceOf>
+  bool assign_positions(Range range, PlaceOf&& place_of) {
     double west = std::numeric_limits<double>::infinity(), south = west;
     double east = -west, north = -west;
     for (std::int32_t i = range.begin; i < range.end; ++i) {
-      const Point p = places_[order_[i]];
+      const Point p = place_of(entries_[i].item);
       west = p.x < west ? p.x : west;
       east = p.x > east ? p.x : east;
       south = p.y < south ? p.y : south;
@@ -95,39 +120,73 @@ class SpatialOrder {
     }
     const double side = std::max(east - west, north - south);
     if (!(side > 0.0)) return false;
-    const std::uint32_t across = 1u << bits;
-    const double per_cell = across / side;
+    constexpr double kAcross = 1u << HilbertCurve::kBits;
+    const double per_cell = kAcross / side;
+    const int dropped = 2 * HilbertCurve::kBits - position_bits(range.size());
     for (std::int32_t i = range.begin; i < range.end; ++i) {
-      const Point p = places_[order_[i]];
-      cell_of_[i] = hilbert_position(clamped((p.x - west) * per_cell, across),
-                                     clamped((p.y - south) * per_cell, across), bits);
+      const Point p = place_of(entries_[i].item);
+      entries_[i].position =
+          kHilbertCurve.position(cell((p.x - west) * per_cell), cell((p.y - south) * per_cell)) >> dropped;
     }
     return true;
   }
 
-  static std::uint32_t clamped(double cell, std::uint32_t count) {
-    if (!(cell > 0.0)) return 0;
-    return cell < count ? static_cast<std::uint32_t>(cell) : count - 1;
+  static std::uint32_t cell(double place) {
+    constexpr std::uint32_t kLast = (1u << HilbertCurve::kBits) - 1;
+    if (!(place > 0.0)) return 0;
+    return place < kLast ? static_cast<std::uint32_t>(place) : kLast;
   }
 
-  void sort_by_cell(Range range, int bits) {
-    start_.assign((std::size_t{1} << (2 * bits)) + 1, 0);
-    for (std::int32_t i = range.begin; i < range.end; ++i) ++start_[cell_of_[i]];
+  // Finer cells than kCellsPerPlace, as many as fill the digits.
+  static int position_bits(std::int32_t count) {
+    if (count <= kShort) return 2 * HilbertCurve::kBits;
+    int bits = kDigitBits;
+    while (bits < 2 * HilbertCurve::kBits &&
+           (std::int64_t{1} << bits) < std::int64_t{kCellsPerPlace} * count) {
+      bits += kDigitBits;
+    }
+    return std::min(bits, 2 * HilbertCurve::kBits);
+  }
+
+  void sort(Range range) {
+    if (range.size() <= kShort) {
+      std::sort(entries_.begin() + range.begin, entries_.begin() + range.end,
+                [](const Entry& a, const Entry& b) { return a.position < b.position; });
+      return;
+    }
+    const int bits = position_bits(range.size());
+    for (int shift = 0; shift < bits; shift += kDigitBits) sort_by_digit(range, shift);
+  }
+
+  void sort_by_digit(Range range, int shift) {
+    std::array<std::int32_t, 1 << kDigitBits> start{};
+    const auto digit = [shift](const Entry& entry) {
+      return (entry.position >> shift) & ((1u << kDigitBits) - 1);
+    };
+    for (std::int32_t i = range.begin; i < range.end; ++i) ++start[digit(entries_[i])];
     std::int32_t total = range.begin;
-    for (auto& start : start_) {
-      total += start;
-      start = total;  // the end of the cell; filling backwards turns it into the begin
+    for (auto& s : start) total += std::exchange(s, total);
+    for (std::int32_t i = range.begin; i < range.end; ++i) {
+      spare_[start[digit(entries_[i])]++] = entries_[i];
     }
-    for (std::int32_t i = range.end; i-- > range.begin;) {
-      spare_[--start_[cell_of_[i]]] = order_[i];
+    if (range.size() == static_cast<std::int32_t>(entries_.size())) {
+      entries_.swap(spare_);
+    } else {
+      std::copy(spare_.begin() + range.begin, spare_.begin() + range.end,
+                entries_.begin() + range.begin);
     }
-    std::copy(spare_.begin() + range.begin, spare_.begin() + range.end,
-              order_.begin() + range.begin);
   }
 
-  const Point* places_;
-  std::vector<std::int32_t> order_, spare_, start_;
-  std::vector<std::uint32_t> cell_of_;
+  void list_crowded(Range range) {
+    for (std::int32_t begin = range.begin, end; begin < range.end; begin = end) {
+      end = begin + 1;
+      while (end < range.end && entries_[end].position == entries_[begin].position) ++end;
+      // A cell that holds all cannot be split further.
+      if (end - begin > kCrowd && end - begin < range.size()) crowded_.push_back({begin, end});
+    }
+  }
+
+  std::vector<Entry> entries_, spare_;
   std::vector<Range> crowded_;
 };
 
