@@ -40,17 +40,23 @@ def require_sound(xy):
     return tin
 
 
-def require_same_by_every_method(xy):
-    """Growth and insertion by local change must agree in every array, entry by entry."""
+def require_same_by_every_way(xy):
+    """Methods, threads and vector paths must agree in every array, entry by entry."""
     points = np.ascontiguousarray(with_heights(xy))
     wanted = _kernel.grow(points)
-    for method in _kernel.Method:
-        found = _kernel.grow(points, method=method)
-        np.testing.assert_array_equal(found.triangles, wanted.triangles)
-        np.testing.assert_array_equal(found.neighbors, wanted.neighbors)
-        assert (found.kept_row is None) == (wanted.kept_row is None)
-        if wanted.kept_row is not None:
-            np.testing.assert_array_equal(found.kept_row, wanted.kept_row)
+    ways = [{"method": method} for method in _kernel.Method]
+    ways += [{"method": _kernel.Method.GROWTH, "threads": threads} for threads in (2, 3, 5)]
+    ways += [{"method": _kernel.Method.GROWTH, "path": path} for path in _kernel.VECTOR_PATHS]
+    for way in ways:
+        require_same_growth(_kernel.grow(points, **way), wanted)
+
+
+def require_same_growth(found, wanted):
+    np.testing.assert_array_equal(found.triangles, wanted.triangles)
+    np.testing.assert_array_equal(found.neighbors, wanted.neighbors)
+    assert (found.kept_row is None) == (wanted.kept_row is None)
+    if wanted.kept_row is not None:
+        np.testing.assert_array_equal(found.kept_row, wanted.kept_row)
 
 
 # ------------------------------------------------------------------ brute force
@@ -63,7 +69,7 @@ def require_brute_force(xy):
             grown(xy)
         return
     assert oracles.canonical(grown(xy).triangles) == wanted
-    require_same_by_every_method(xy)
+    require_same_by_every_way(xy)
 
 
 def distinct_points(coordinate, *, max_size):
@@ -364,7 +370,7 @@ HARD_CASES = [
 def test_hard_case(case):
     xy = np.asarray(case(), float)
     tin = require_sound(xy)
-    require_same_by_every_method(xy)
+    require_same_by_every_way(xy)
     shuffled = grown(np.random.default_rng(0).permutation(xy))
     np.testing.assert_array_equal(
         oracles.ranked_triangles(shuffled.points, shuffled.triangles),
@@ -387,7 +393,7 @@ def test_duplicates_are_one_vertex():
 
 
 def test_every_method_treats_duplicates_alike():
-    require_same_by_every_method(np.random.default_rng(13).integers(0, 12, (500, 2)))
+    require_same_by_every_way(np.random.default_rng(13).integers(0, 12, (500, 2)))
 
 
 def test_vertices_keep_the_order_of_the_rows():
@@ -461,4 +467,4 @@ def test_rough_clouds_pass_the_check(n):
     for _ in range(20):
         for xy in rough_clouds(rng, n):
             require_sound(xy)
-            require_same_by_every_method(xy)
+            require_same_by_every_way(xy)

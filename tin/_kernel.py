@@ -16,6 +16,7 @@ __all__ = [
     "Growth",
     "Locator",
     "Method",
+    "VECTOR_PATHS",
     "count_work",
     "grow",
     "in_circle",
@@ -46,18 +47,38 @@ class Growth(NamedTuple):
     kept_row: NDArray[np.int32] | None
 
 
-def grow(points: NDArray[np.float64], *, method: Method = Method.AUTOMATIC) -> Growth:
-    """Grow the Delaunay triangulation of (n, 3) float64 points, n >= 1; z is not looked at.
+VECTOR_PATHS: tuple[str, ...] = tuple(_core.vector_paths())
+"""Vector instructions that this processor has, slowest first; the growth uses the last."""
 
-    Every method gives the same arrays; ``Method.AUTOMATIC`` grows, and inserts where points are
-    so uneven that growing would be slow.
+
+def grow(
+    points: NDArray[np.float64],
+    *,
+    method: Method = Method.AUTOMATIC,
+    threads: int = 1,
+    path: str = VECTOR_PATHS[-1],
+) -> Growth:
+    r"""Grow the Delaunay triangulation of (n, 3) float64 points, n >= 1; z is not looked at.
+
+    Every method, number of threads and vector path gives the same arrays. ``Method.AUTOMATIC``
+    grows, and inserts where points are so uneven that growing would be slow.
+
+    The search for a third point, most of the work::
+
+              . c .          1. The cells around vertex v are gathered once: coordinates relative
+           .   / \   .           to v, side by side.
+          .   /   \   .      2. For each open edge v-w all of them are compared at once, by the
+           . /     \ .          cotangent of the angle under which they see it; what the error
+            v-------w           bound leaves open is decided exactly.
+                             3. If the winner c's circle stays within the cells, c is proven;
+                                else the search goes on over the whole index, within the circle.
 
     Raises
     ------
     PointsError
         If fewer than three places are distinct, or all are collinear.
     """
-    triangles, neighbors, kept_row, n_distinct = _core.grow(points, method)
+    triangles, neighbors, kept_row, n_distinct = _core.grow(points, method, threads, path)
     if len(triangles) == 0:
         raise PointsError(_why_no_triangle(len(points), n_distinct))
     return Growth(triangles, neighbors, kept_row)

@@ -13,6 +13,7 @@ from .points import as_points
 from .report import Report
 from .surface import TIN
 from .survey import Survey
+from .threads import thread_count
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -25,6 +26,7 @@ def triangulate(
     *,
     duplicates: DuplicatePolicy = "mean",
     snap: float = 0.0,
+    threads: int | None = None,
     crs: str | None = None,
 ) -> TIN:
     """Build the Delaunay TIN of a set of elevation points.
@@ -42,6 +44,8 @@ def triangulate(
     snap : float
         Merge points no further apart than this, CRS units. Afterwards all vertices are more than
         ``snap`` apart, and no point has moved by more. 0 merges exact duplicates only.
+    threads : int, optional
+        Number of threads; default every core, where it pays. The result is the same.
     crs : str, optional
         Coordinate reference system; default the survey's own.
 
@@ -53,7 +57,8 @@ def triangulate(
     ------
     PointsError
         If a coordinate is not finite or outside the exact range, if fewer than three places are
-        distinct, if all are collinear, or (``duplicates="error"``) if two rows coincide.
+        distinct, if all are collinear, or (``duplicates="error"``) if two rows coincide; if an
+        option is none of the allowed.
 
     Notes
     -----
@@ -76,8 +81,9 @@ def triangulate(
         raise PointsError(
             f"{len(xyz)} points cannot make a TIN: at least three not collinear ones are needed."
         )
+    n_threads = thread_count(threads, len(xyz))
     kept_row = _kernel.snap(xyz, float(snap)) if snap > 0 else None
-    growth = _kernel.grow(xyz if kept_row is None else _kept(xyz, kept_row))
+    growth = _kernel.grow(xyz if kept_row is None else _kept(xyz, kept_row), threads=n_threads)
     merged = merge_rows(xyz, growth.kept_row if kept_row is None else kept_row, duplicates)
     return TIN(
         points=merged.points,

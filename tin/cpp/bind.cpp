@@ -2,6 +2,7 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <cstring>
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <tuple>
 
 #include "locate.hpp"
@@ -56,11 +58,17 @@ bool no_signal() {
   return PyErr_CheckSignals() == 0;
 }
 
-auto grow(const Points& points, tinsmith::Method method) {
+tinsmith::Options options_of(tinsmith::Method method, int threads, const std::string& path) {
+  if (threads < 1) throw std::invalid_argument("at least one thread is needed");
+  return {method, threads, tinsmith::vector_path_named(path)};
+}
+
+auto grow(const Points& points, tinsmith::Method method, int threads, const std::string& path) {
   const tinsmith::PointRows rows = rows_of(points);
+  const tinsmith::Options options = options_of(method, threads, path);
   tinsmith::Triangulation made = [&] {
     nb::gil_scoped_release release;
-    return tinsmith::triangulate(rows, method, no_signal);
+    return tinsmith::Triangulator(rows, options, no_signal).run();
   }();
   if (!made.is_complete) throw nb::python_error();
   const auto size = static_cast<std::size_t>(made.triangle_count);
@@ -71,16 +79,26 @@ auto grow(const Points& points, tinsmith::Method method) {
                          made.distinct_count);
 }
 
-nb::dict count_work(const Points& points, tinsmith::Method method) {
+nb::dict count_work(const Points& points, tinsmith::Method method, int threads,
+                    const std::string& path) {
   const tinsmith::PointRows rows = rows_of(points);
-  const tinsmith::Triangulation made = tinsmith::triangulate(rows, method, [] { return true; });
+  tinsmith::Triangulator triangulator(rows, options_of(method, threads, path), no_signal);
+  const tinsmith::Triangulation made = triangulator.run();
+  if (!made.is_complete) throw nb::python_error();
   nb::dict counts;
   counts["triangles"] = made.triangle_count;
   counts["searches"] = made.counts.searches;
+  counts["full_searches"] = made.counts.full_searches;
   counts["candidates"] = made.counts.candidates;
   counts["cell_rows"] = made.counts.cell_rows;
   counts["exact_decisions"] = made.counts.exact_decisions;
   return counts;
+}
+
+nb::list vector_paths() {
+  nb::list names;
+  for (const tinsmith::NamedPath& path : tinsmith::vector_paths()) names.append(path.name);
+  return names;
 }
 
 Numbers snap(const Points& points, double distance) {
@@ -204,11 +222,15 @@ NB_MODULE(_core, m) {
       .value("AUTOMATIC", tinsmith::Method::kAutomatic)
       .value("GROWTH", tinsmith::Method::kGrowth)
       .value("INSERTION", tinsmith::Method::kInsertion);
+  const auto fastest = tinsmith::vector_paths().back().name;
   m.def("grow", &grow, "points"_a.noconvert(), "method"_a = tinsmith::Method::kAutomatic,
+        "threads"_a = 1, "path"_a = fastest,
         "Triangles, neighbours, kept row of each row (or None) and the number of distinct places.");
   m.def("count_work", &count_work, "points"_a.noconvert(),
-        "method"_a = tinsmith::Method::kAutomatic,
+        "method"_a = tinsmith::Method::kAutomatic, "threads"_a = 1, "path"_a = fastest,
         "Triangulate and return how much the searches did.");
+  m.def("vector_paths", &vector_paths,
+        "Names of the vector instructions that this processor has, slowest first.");
   m.def("snap", &snap, "points"_a.noconvert(), "distance"_a,
         "For each row the row that it is merged into.");
   m.def("orientation", &orientation, "a"_a.noconvert(), "b"_a.noconvert(), "c"_a.noconvert(),

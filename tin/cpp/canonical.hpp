@@ -14,7 +14,7 @@
 
 #include "ghost_mesh.hpp"
 #include "grid.hpp"
-#include "growth.hpp"
+#include "triangle_store.hpp"
 #include "large_array.hpp"
 #include "predicates.hpp"
 

@@ -17,9 +17,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "ids.hpp"
+#include "parallel.hpp"
 #include "predicates.hpp"
 
 namespace tinsmith {
@@ -93,43 +95,64 @@ struct Level {
 
 class PointGrid {
  public:
-  explicit PointGrid(const PointRows& rows);
+  PointGrid(const PointRows& rows, Team& team);
 
-  std::int32_t count() const { return static_cast<std::int32_t>(x_.size()); }
+  std::int32_t count() const { return count_; }
   Point point(Vertex v) const { return {x_[number(v)], y_[number(v)]}; }
-  const double* x() const { return x_.data(); }
-  const double* y() const { return y_.data(); }
-  Row row_of(Vertex v) const { return rows_[number(v)]; }
+  const double* x() const { return x_.get(); }  // kPadding more may be read, of any value
+  const double* y() const { return y_.get(); }
+  // The caller's row of each position; repeated rows are not counted.
+  const Row* rows() const { return rows_.get(); }
 
   // For each input row the first row at its place; empty if no two rows share a place.
   const std::vector<std::int32_t>& kept_row() const { return kept_row_; }
 
+  // Vector loads may begin at any position, one or two at once: so many doubles.
+  static constexpr std::int32_t kPadding = 16;
+
   const Level& top() const { return levels_.front(); }
   bool is_plain() const { return levels_.size() == 1; }
 
-  // Size of the cells around a position: those of the innermost level that holds it.
-  double cell_size_at(std::int32_t position) const {
-    const auto after = std::upper_bound(
-        spans_.begin(), spans_.end(), position,
-        [](std::int32_t sought, const Span& span) { return sought < span.begin; });
-    return (after - 1)->cell_size;
-  }
+  // The innermost level that holds each of ascending positions.
+  class LevelCursor {
+   public:
+    LevelCursor(const PointGrid& grid, std::int32_t position) : grid_(&grid) {
+      const auto after = std::upper_bound(
+          grid.spans_.begin(), grid.spans_.end(), position,
+          [](std::int32_t sought, const Span& span) { return sought < span.begin; });
+      next_ = static_cast<std::size_t>(after - grid.spans_.begin());
+    }
+
+    const Level& at(std::int32_t position) {
+      const std::vector<Span>& spans = grid_->spans_;
+      while (next_ < spans.size() && spans[next_].begin <= position) ++next_;
+      return grid_->levels_[spans[next_ - 1].level];
+    }
+
+   private:
+    const PointGrid* grid_;
+    std::size_t next_;
+  };
 
   // First position of a cell of a level; the cell after the last of a row begins the next row.
   std::int32_t start(const Level& level, std::int32_t row, std::int32_t column) const {
     return start_[level.first_start + static_cast<std::int64_t>(row) * level.columns + column];
   }
 
-  // Visit runs of positions, from `from` (at northing `from_y`) on, that hold all points in the
-  // region: visit(begin, end). A region has a box, and narrows it for one row: narrow(south, north, west, east).
-  // Returns the number of rows of cells looked at.
+  // Visit runs of positions that hold all points of the region among `those`: visit(begin, end).
+  // A region has a box, and narrows it for one row: narrow(south, north, west, east). Returns the
+  // number of rows of cells looked at.
   template <typename Region, typename Visit>
-  std::int64_t for_each_run(const Region& region, std::int32_t from, double from_y,
-                            Visit&& visit) const {
-    const std::int32_t first_row =
-        std::max(top().row_at(region.box().south), top().row_at(from_y));
-    return visit_level(top(), first_row, region, from, visit);
+  std::int64_t for_each_run(const Region& region, Range those, Visit&& visit) const {
+    if (those.begin >= those.end) return 0;
+    const Box& box = region.box();
+    const std::int32_t first = std::max(top().row_at(box.south), row_of(those.begin));
+    const std::int32_t last = std::min(top().row_at(box.north), row_of(those.end - 1));
+    return visit_level(top(), first, last, region, those, visit);
   }
+
+  // Row of cells of the top level that holds a position; ascends with the positions.
+  std::int32_t row_of(std::int32_t position) const { return top().row_at(y_[position]); }
 
   // Narrowing a row costs more than it saves where a box spans few columns.
   static constexpr std::int32_t kNarrowColumns = 4;
@@ -137,7 +160,7 @@ class PointGrid {
  private:
   struct Span {
     std::int32_t begin;
-    double cell_size;
+    std::int32_t level;
   };
   struct Child {
     std::int32_t column;
@@ -146,11 +169,10 @@ class PointGrid {
   friend class GridBuilder;
 
   template <typename Region, typename Visit>
-  std::int64_t visit_level(const Level& level, std::int32_t first_row, const Region& region,
-                           std::int32_t from, Visit& visit) const {
+  std::int64_t visit_level(const Level& level, std::int32_t first_row, std::int32_t last_row,
+                           const Region& region, Range those, Visit& visit) const {
     const Box& box = region.box();
-    const std::int32_t last_row = level.row_at(box.north);
-    std::int64_t looked_at = last_row - first_row + 1;
+    std::int64_t looked_at = std::max(0, last_row - first_row + 1);
     for (std::int32_t row = first_row; row <= last_row; ++row) {
       double west = box.west, east = box.east;
       std::int32_t first = level.column_at(west), last = level.column_at(east);
@@ -162,9 +184,9 @@ class PointGrid {
         last = level.column_at(east);
       }
       if (level.first_child_row != Level::kNoChildren) {
-        looked_at += visit_row_with_children(level, row, first, last, region, from, visit);
+        looked_at += visit_row_with_children(level, row, first, last, region, those, visit);
       } else {
-        visit_run(start(level, row, first), start(level, row, last + 1), from, visit);
+        visit_run(start(level, row, first), start(level, row, last + 1), those, visit);
       }
     }
     return looked_at;
@@ -173,7 +195,7 @@ class PointGrid {
   template <typename Region, typename Visit>
   std::int64_t visit_row_with_children(const Level& level, std::int32_t row, std::int32_t first,
                                        std::int32_t last, const Region& region,
-                                       std::int32_t from, Visit& visit) const {
+                                       Range those, Visit& visit) const {
     std::int64_t looked_at = 0;
     std::int32_t begin = start(level, row, first);
     const Child* child = children_.data() + child_row_[level.first_child_row + row];
@@ -183,27 +205,30 @@ class PointGrid {
     });
     for (; child != end && child->column <= last; ++child) {
       const Level& inner = levels_[child->level];
-      visit_run(begin, inner.begin, from, visit);
+      visit_run(begin, inner.begin, those, visit);
       begin = inner.end;
       ++looked_at;
       double west = inner.box.west, east = inner.box.east;
-      if (inner.end > from && inner.box.meets(region.box()) &&
+      if (inner.end > those.begin && inner.begin < those.end && inner.box.meets(region.box()) &&
           region.narrow(inner.box.south, inner.box.north, west, east)) {
-        looked_at += visit_level(inner, inner.row_at(region.box().south), region, from, visit);
+        looked_at += visit_level(inner, inner.row_at(region.box().south),
+                                 inner.row_at(region.box().north), region, those, visit);
       }
     }
-    visit_run(begin, start(level, row, last + 1), from, visit);
+    visit_run(begin, start(level, row, last + 1), those, visit);
     return looked_at;
   }
 
   template <typename Visit>
-  static void visit_run(std::int32_t begin, std::int32_t end, std::int32_t from, Visit& visit) {
-    begin = std::max(begin, from);
+  static void visit_run(std::int32_t begin, std::int32_t end, Range those, Visit& visit) {
+    begin = std::max(begin, those.begin);
+    end = std::min(end, those.end);
     if (begin < end) visit(begin, end);
   }
 
-  std::vector<double> x_, y_;
-  std::vector<Row> rows_;
+  std::int32_t count_ = 0;
+  std::unique_ptr<double[]> x_, y_;
+  std::unique_ptr<Row[]> rows_;
   std::vector<Level> levels_;            // the first holds all points
   std::vector<std::int32_t> start_;      // of the cells of every level
   std::vector<std::int64_t> child_row_;  // for each row of a level with children: its first child

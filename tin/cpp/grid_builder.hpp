@@ -1,4 +1,9 @@
-// Building the index: counting sort into cells, crowded cells into grids of their own.
+// Building the index: a counting sort into cells, then crowded cells into grids of their own.
+//
+// The sort takes two passes, each over memory that fits the cache: rows go to bands of
+// neighbouring cells first, then each band is sorted by cell. Both passes are shared by threads
+// and keep the order of the caller's rows within a cell, so the index does not depend on how many
+// there are.
 #pragma once
 
 #include <algorithm>
@@ -7,17 +12,24 @@
 #include <vector>
 
 #include "grid.hpp"
+#include "parallel.hpp"
 
 namespace tinsmith {
 
 class GridBuilder {
  public:
-  GridBuilder(PointGrid& grid, const PointRows& rows) : grid_(grid), rows_(rows) {}
+  GridBuilder(PointGrid& grid, const PointRows& rows, Team& team)
+      : grid_(grid), rows_(rows), team_(team), parts_(team.size()) {}
 
   void build() {
-    bucket_rows();
-    crowded_ = sharing() < kEven ? kCrowdedIfEven : kCrowdedIfUneven;
-    nest(0, 0);
+    const auto n = static_cast<std::int32_t>(rows_.count);
+    grid_.count_ = n;
+    grid_.x_ = padded(n);
+    grid_.y_ = padded(n);
+    grid_.rows_.reset(new Row[n]);
+    grid_.levels_.push_back(Level::fitted(box_of_rows(), 0, n, kPointsPerCell));
+    sort_into_cells();
+    nest_top();
     list_spans(0);
     drop_repeated();
   }
@@ -34,44 +46,130 @@ class GridBuilder {
   // Each level divides its box by the number of its points; what is crowded still is at places
   // closer together than any survey's, and is searched as one cell.
   static constexpr int kDeepest = 12;
+  // A band of so many points fits the second-level cache, in so many bands a page each of memory
+  // stays at hand.
+  static constexpr std::int64_t kPointsPerBand = 4096;
+  static constexpr std::int64_t kMostBands = 1024;
 
   struct Entry {
     Point p;
     Row row;
+    std::int32_t cell;
   };
 
-  void bucket_rows() {
-    const auto n = static_cast<std::size_t>(rows_.count);
-    Box box{rows_[0].x, rows_[0].x, rows_[0].y, rows_[0].y};
-    for (std::size_t i = 1; i < n; ++i) extend(box, rows_[static_cast<std::int64_t>(i)]);
-    Level level =
-        Level::fitted(box, 0, static_cast<std::int32_t>(n), kPointsPerCell);
-    level.first_start = 0;
-    std::vector<std::int32_t> cell_of(n);
-    auto& start = grid_.start_;
-    start.assign(level.cell_count() + 1, 0);
-    for (std::size_t i = 0; i < n; ++i) {
-      cell_of[i] = level.cell_at(rows_[static_cast<std::int64_t>(i)]);
-      ++start[cell_of[i]];
-    }
-    ends_from_counts(0);
-    grid_.x_.resize(n);
-    grid_.y_.resize(n);
-    grid_.rows_.resize(n);
-    for (std::size_t i = n; i-- > 0;) {
-      store(--start[cell_of[i]], {rows_[static_cast<std::int64_t>(i)], static_cast<Row>(i)});
-    }
-    grid_.levels_.push_back(level);
+  // What one thread finds out.
+  struct Part {
+    Box box;
+    std::vector<std::int32_t> band_end;    // while filling: where its next entry of a band goes
+    std::vector<std::int32_t> full_cells;  // with more points than kCrowdedIfUneven, ascending
+    double squares = 0.0;                  // of the numbers of points in its cells, summed up
+  };
+
+  static std::unique_ptr<double[]> padded(std::int32_t n) {
+    std::unique_ptr<double[]> values(new double[n + PointGrid::kPadding]);
+    std::fill_n(values.get() + n, PointGrid::kPadding, 0.0);
+    return values;
   }
 
-  // How many points share the cell of a point, on average.
-  double sharing() const {
-    double squares = 0.0;
-    for (std::size_t cell = 0; cell + 1 < grid_.start_.size(); ++cell) {
-      const double held = grid_.start_[cell + 1] - grid_.start_[cell];
-      squares += held * held;
+  // ------------------------------------------------------------- the top level
+
+  Box box_of_rows() {
+    team_.run([this](int part) {
+      const Range range = part_of(rows_.count, part, team_.size());
+      Box box{rows_[0].x, rows_[0].x, rows_[0].y, rows_[0].y};
+      for (std::int32_t i = range.begin; i < range.end; ++i) extend(box, rows_[i]);
+      parts_[part].box = box;
+    });
+    Box box = parts_[0].box;
+    for (const Part& part : parts_) {
+      extend(box, {part.box.west, part.box.south});
+      extend(box, {part.box.east, part.box.north});
     }
-    return squares / static_cast<double>(rows_.count);
+    return box;
+  }
+
+  void sort_into_cells() {
+    const Level& top = grid_.levels_.front();
+    const std::int64_t bands =
+        std::clamp(rows_.count / kPointsPerBand, std::int64_t{1}, kMostBands);
+    while ((top.cell_count() >> band_shift_) >= bands) ++band_shift_;
+    bands_ = static_cast<std::int32_t>(((top.cell_count() - 1) >> band_shift_) + 1);
+    grid_.start_.assign(top.cell_count() + 1, 0);
+    grid_.start_.back() = grid_.count_;
+    entries_.reset(new Entry[rows_.count]);
+    team_.run([this](int part) { count_bands(part); });
+    const std::vector<std::int32_t> begins = begins_of_bands();
+    team_.run([this](int part) { fill_bands(part); });
+    team_.run([&](int part) {
+      const Range own = part_of(bands_, part, team_.size());
+      for (std::int32_t band = own.begin; band < own.end; ++band) {
+        sort_band(band, {begins[band], begins[band + 1]}, parts_[part]);
+      }
+    });
+    entries_.reset();
+  }
+
+  void count_bands(int part) {
+    const Level top = grid_.levels_.front();
+    std::vector<std::int32_t> count(bands_, 0);
+    const Range range = part_of(rows_.count, part, team_.size());
+    for (std::int32_t i = range.begin; i < range.end; ++i) {
+      ++count[top.cell_at(rows_[i]) >> band_shift_];
+    }
+    parts_[part].band_end = std::move(count);
+  }
+
+  // Turns the counts of the parts into the places where each begins to fill each band.
+  std::vector<std::int32_t> begins_of_bands() {
+    std::vector<std::int32_t> begins;
+    std::int32_t total = 0;
+    for (std::int32_t band = 0; band < bands_; ++band) {
+      begins.push_back(total);
+      for (Part& part : parts_) {
+        const std::int32_t count = part.band_end[band];
+        part.band_end[band] = total;
+        total += count;
+      }
+    }
+    begins.push_back(total);
+    return begins;
+  }
+
+  void fill_bands(int part) {
+    const Level top = grid_.levels_.front();
+    std::vector<std::int32_t>& end = parts_[part].band_end;
+    const Range range = part_of(rows_.count, part, team_.size());
+    for (std::int32_t i = range.begin; i < range.end; ++i) {
+      const Point p = rows_[i];
+      const std::int32_t cell = top.cell_at(p);
+      entries_[end[cell >> band_shift_]++] = {p, static_cast<Row>(i), cell};
+    }
+  }
+
+  void sort_band(std::int32_t band, Range held, Part& part) {
+    const std::int64_t first = static_cast<std::int64_t>(band) << band_shift_;
+    const std::int64_t last = std::min(first + (std::int64_t{1} << band_shift_),
+                                       grid_.levels_.front().cell_count());
+    std::int32_t* start = grid_.start_.data();
+    for (std::int32_t i = held.begin; i < held.end; ++i) ++start[entries_[i].cell];
+    std::int32_t total = held.begin;
+    for (std::int64_t cell = first; cell < last; ++cell) {
+      part.squares += static_cast<double>(start[cell]) * start[cell];
+      total += start[cell];
+      start[cell] = total;
+    }
+    for (std::int32_t i = held.end; i-- > held.begin;) {
+      store(--start[entries_[i].cell], entries_[i]);
+    }
+    for (std::int64_t cell = first; cell < last; ++cell) {
+      const std::int32_t begin = start[cell];
+      const std::int32_t end = cell + 1 < last ? start[cell + 1] : held.end;
+      if (end - begin > kCrowdedIfUneven) {
+        part.full_cells.push_back(static_cast<std::int32_t>(cell));
+      } else {
+        sort_cell(begin, end);
+      }
+    }
   }
 
   static void extend(Box& box, Point p) {
@@ -81,28 +179,42 @@ class GridBuilder {
     box.north = std::max(box.north, p.y);
   }
 
-  // Turn counts, from `first` on, into ends; filling backwards turns ends into begins.
-  void ends_from_counts(std::int64_t first, std::int32_t total = 0) {
-    for (std::size_t i = first; i < grid_.start_.size(); ++i) {
-      total += grid_.start_[i];
-      grid_.start_[i] = total;
-    }
-  }
-
   void store(std::int32_t position, const Entry& entry) {
     grid_.x_[position] = entry.p.x;
     grid_.y_[position] = entry.p.y;
     grid_.rows_[position] = entry.row;
   }
   Entry entry(std::int32_t position) const {
-    return {{grid_.x_[position], grid_.y_[position]}, grid_.rows_[position]};
+    return {{grid_.x_[position], grid_.y_[position]}, grid_.rows_[position], 0};
   }
 
-  // Sort the small cells of a level and give the crowded ones a level each.
-  void nest(std::int32_t index, int depth) {
+  // ------------------------------------------------------------- nested levels
+
+  void nest_top() {
+    double squares = 0.0;
+    for (const Part& part : parts_) squares += part.squares;
+    const double sharing = squares / static_cast<double>(rows_.count);
+    crowded_ = sharing < kEven ? kCrowdedIfEven : kCrowdedIfUneven;
+    std::vector<std::int64_t> cells;
+    for (const Part& part : parts_) {
+      cells.insert(cells.end(), part.full_cells.begin(), part.full_cells.end());
+    }
+    nest(0, 0, cells);
+  }
+
+  void nest_all(std::int32_t index, int depth) {
+    std::vector<std::int64_t> cells(grid_.levels_[index].cell_count());
+    for (std::size_t cell = 0; cell < cells.size(); ++cell) {
+      cells[cell] = static_cast<std::int64_t>(cell);
+    }
+    nest(index, depth, cells);
+  }
+
+  // Sort the given cells of a level, but give the crowded ones a level each.
+  void nest(std::int32_t index, int depth, const std::vector<std::int64_t>& cells) {
     const Level level = grid_.levels_[index];
     std::vector<std::pair<std::int64_t, std::int32_t>> inner;  // cell, level
-    for (std::int64_t cell = 0; cell < level.cell_count(); ++cell) {
+    for (const std::int64_t cell : cells) {
       const std::int32_t begin = grid_.start_[level.first_start + cell];
       const std::int32_t end = grid_.start_[level.first_start + cell + 1];
       if (end - begin > crowded_ && depth < kDeepest && spread(begin, end)) {
@@ -113,7 +225,7 @@ class GridBuilder {
     }
     if (inner.empty()) return;
     list_children(index, inner);
-    for (const auto& [cell, child] : inner) nest(child, depth + 1);
+    for (const auto& [cell, child] : inner) nest_all(child, depth + 1);
   }
 
   // Put the points of a cell into a level of their own; false if they are all at one place.
@@ -128,7 +240,11 @@ class GridBuilder {
     start.resize(start.size() + level.cell_count() + 1, 0);
     std::int32_t* first = start.data() + level.first_start;
     for (const Entry& e : entries) ++first[level.cell_at(e.p)];
-    ends_from_counts(level.first_start, begin);
+    std::int32_t total = begin;
+    for (std::int64_t cell = 0; cell <= level.cell_count(); ++cell) {
+      total += first[cell];
+      first[cell] = total;
+    }
     for (std::size_t i = entries.size(); i-- > 0;) {
       store(--first[level.cell_at(entries[i].p)], entries[i]);
     }
@@ -179,37 +295,49 @@ class GridBuilder {
     for (std::int32_t i = begin; i < end; ++i) store(i, entries[i - begin]);
   }
 
-  // Where the size of the cells changes along the order.
+  // Which level the positions belong to, where that changes along the order.
   void list_spans(std::int32_t index) {
     const Level& level = grid_.levels_[index];
-    grid_.spans_.push_back({level.begin, level.cell_size});
+    grid_.spans_.push_back({level.begin, index});
     if (level.first_child_row == Level::kNoChildren) return;
     const std::int64_t first = grid_.child_row_[level.first_child_row];
     const std::int64_t last = grid_.child_row_[level.first_child_row + level.rows];
     for (std::int64_t i = first; i < last; ++i) {
       list_spans(grid_.children_[i].level);
-      grid_.spans_.push_back({grid_.levels_[grid_.children_[i].level].end, level.cell_size});
+      grid_.spans_.push_back({grid_.levels_[grid_.children_[i].level].end, index});
     }
   }
 
   // ------------------------------------------------------------- rows at one place
 
-  bool repeats_previous(std::size_t i) const {
-    return grid_.x_[i] == grid_.x_[i - 1] && grid_.y_[i] == grid_.y_[i - 1];
+  bool repeats(std::int32_t i, std::int32_t earlier) const {
+    return grid_.x_[i] == grid_.x_[earlier] && grid_.y_[i] == grid_.y_[earlier];
+  }
+
+  bool is_any_repeated() {
+    std::vector<char> found(team_.size(), 0);
+    team_.run([&](int part) {
+      const Range range = part_of(grid_.count_, part, team_.size());
+      std::int32_t repeated = 0;
+      for (std::int32_t i = std::max(range.begin, 1); i < range.end; ++i) {
+        repeated += repeats(i, i - 1);
+      }
+      found[part] = repeated > 0;
+    });
+    return std::find(found.begin(), found.end(), 1) != found.end();
   }
 
   void drop_repeated() {
-    const std::size_t n = grid_.x_.size();
-    std::size_t repeated = 0;
-    for (std::size_t i = 1; i < n; ++i) repeated += repeats_previous(i);
-    if (repeated == 0) return;
+    if (!is_any_repeated()) return;
+    const std::int32_t n = grid_.count_;
     grid_.kept_row_.resize(n);
     std::vector<std::int32_t> position(n + 1);  // of the kept point at or after an old position
     std::int32_t kept = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      const bool repeats = i > 0 && repeats_previous_kept(i, kept);
+    for (std::int32_t i = 0; i < n; ++i) {
+      // Compared with the last kept: places below i may be overwritten already.
+      const bool is_repeated = i > 0 && repeats(i, kept - 1);
       position[i] = kept;
-      if (!repeats) store(kept++, entry(static_cast<std::int32_t>(i)));
+      if (!is_repeated) store(kept++, entry(i));
       grid_.kept_row_[number(grid_.rows_[i])] = number(grid_.rows_[kept - 1]);
     }
     position[n] = kept;
@@ -219,21 +347,35 @@ class GridBuilder {
       level.begin = position[level.begin];
       level.end = position[level.end];
     }
-    grid_.x_.resize(kept);
-    grid_.y_.resize(kept);
-    grid_.rows_.resize(kept);
+    grid_.count_ = kept;
+    count_kept_rows_only();
   }
 
-  // The kept point before place `kept` is compared: places below i may be overwritten already.
-  bool repeats_previous_kept(std::size_t i, std::int32_t kept) const {
-    return grid_.x_[i] == grid_.x_[kept - 1] && grid_.y_[i] == grid_.y_[kept - 1];
+  void count_kept_rows_only() {
+    const std::int32_t n = static_cast<std::int32_t>(rows_.count);
+    std::vector<std::int32_t> number_of(n);
+    std::int32_t next = 0;
+    for (std::int32_t row = 0; row < n; ++row) {
+      number_of[row] = next;
+      if (grid_.kept_row_[row] == row) ++next;
+    }
+    for (std::int32_t i = 0; i < grid_.count_; ++i) {
+      grid_.rows_[i] = static_cast<Row>(number_of[number(grid_.rows_[i])]);
+    }
   }
 
   PointGrid& grid_;
   const PointRows& rows_;
+  Team& team_;
+  std::vector<Part> parts_;
+  std::unique_ptr<Entry[]> entries_;  // by band
+  int band_shift_ = 0;  // cell >> band_shift_ is the band
+  std::int32_t bands_ = 1;
   std::int32_t crowded_ = kCrowdedIfEven;
 };
 
-inline PointGrid::PointGrid(const PointRows& rows) { GridBuilder(*this, rows).build(); }
+inline PointGrid::PointGrid(const PointRows& rows, Team& team) {
+  GridBuilder(*this, rows, team).build();
+}
 
 }  // namespace tinsmith

@@ -11,76 +11,87 @@
 //
 // Hull edges wait from the start, with the outside as their other triangle, so no search ever
 // looks for a point where there is none.
+//
+// A thread finishes a range of vertices of its own. For it all other points come later: those
+// after the range, and then those before it. So it makes all triangles at its vertices, and the
+// ones that also have a corner before the range are found by another thread too (stitch.hpp).
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
-#include <stdexcept>
 #include <vector>
 
 #include "grid.hpp"
 #include "ids.hpp"
 #include "open_edges.hpp"
+#include "parallel.hpp"
 #include "search.hpp"
+#include "search_counts.hpp"
+#include "triangle_store.hpp"
 
 namespace tinsmith {
 
-// Flat arrays, three entries a triangle, numbered by sweep order while growing.
-struct Triangles {
-  std::int32_t* corners;
-  std::int32_t* neighbors;
-};
+// Every triangulation of n points with h of them on the hull has this many triangles.
+inline std::int64_t triangle_count(std::int64_t points, std::int64_t on_hull) {
+  return 2 * points - 2 - on_hull;
+}
 
+enum class Outcome { kComplete, kStopped, kTooCostly };
+
+// `Near` is a VectorNeighborhood.
+template <typename Near>
 class Growth {
  public:
-  // `hull` counter-clockwise; `out` has room for triangle_count(...) triangles.
-  Growth(const PointGrid& grid, const std::vector<Vertex>& hull, Triangles out)
-      : search_(grid), waiting_(grid.count()), out_(out), count_(grid.count()) {
+  // `hull` counter-clockwise.
+  Growth(const PointGrid& grid, const std::vector<Vertex>& hull, Range own, TriangleStore& out)
+      : level_(grid, own.begin), near_(grid, own), search_(grid, own), waiting_(own), out_(out),
+        own_(own), count_(grid.count()) {
     for (std::size_t i = 0; i < hull.size(); ++i) {
       waiting_.add(hull[i], hull[(i + 1) % hull.size()], kOutside);
     }
   }
-
-  // Every triangulation of n points with h of them on the hull has this many triangles.
-  static std::int64_t triangle_count(std::int64_t points, std::int64_t on_hull) {
-    return 2 * points - 2 - on_hull;
-  }
-
-  enum class Outcome { kComplete, kStopped, kTooCostly };
 
   // Stops when `keep_going` returns false, or, if bounded, when the searches have cost more than
   // another way of building the triangulation would.
   template <typename KeepGoing>
   Outcome run(KeepGoing&& keep_going, bool is_bounded) {
     constexpr std::int32_t kVerticesPerQuestion = 4096;
-    for (std::int32_t i = 0; i < count_; ++i) {
-      if (i % kVerticesPerQuestion == 0 && !keep_going()) return Outcome::kStopped;
-      if (is_bounded && search_.counts().work() > budget_at(i)) return Outcome::kTooCostly;
+    for (std::int32_t i = own_.begin; i < own_.end; ++i) {
+      const std::int32_t finished = i - own_.begin;
+      if (finished % kVerticesPerQuestion == 0 && !keep_going()) return Outcome::kStopped;
+      if (is_bounded && counts().work() > budget_at(finished)) return Outcome::kTooCostly;
       finish(static_cast<Vertex>(i));
     }
     return Outcome::kComplete;
   }
 
-  const SearchCounts& counts() const { return search_.counts(); }
+  const SearchCounts& counts() { return search_.counts(); }
+
+  // The last triangle with a corner before the range, which another thread found too; or -1.
+  std::int32_t last_shared() const { return last_shared_; }
 
  private:
-  // Even data need about 30 units of work a point, rasters 100; beyond the budget insertion is
-  // quicker. It grows with the vertices finished, so that hopeless data are given up early.
-  static constexpr std::int64_t kBudgetPerPoint = 500;
+  // Even data need about 1 unit of work a point, rasters 5, clusters 18, contour lines 100; from
+  // 12 on insertion is quicker. Threads share the work, while insertion has one. The budget grows
+  // with the vertices finished, so that hopeless data are given up early.
+  static constexpr std::int64_t kBudgetPerPoint = 12;
   static constexpr std::int64_t kAdvance = 32;  // at first a thirty-second of the points is granted
-  static constexpr std::int64_t kLeastBudget = 20000;
+  static constexpr std::int64_t kLeastBudget = 5000;
 
   std::int64_t budget_at(std::int64_t finished) const {
-    return kLeastBudget + kBudgetPerPoint * (finished + count_ / kAdvance);
+    const std::int64_t shared = count_ * finished / own_.size();
+    return kLeastBudget + kBudgetPerPoint * (shared + count_ / kAdvance);
   }
 
   void finish(Vertex v) {
-    search_.move_to(v);
+    const Level& level = level_.at(number(v));
+    near_.gather(number(v), level);
+    search_.move_to(v, level.cell_size);
     if (waiting_.is_untouched(v)) {
       const Vertex w = search_.nearest();
-      const HalfEdge first = half_edge(made_, 2);
+      const HalfEdge first = half_edge(out_.size(), 2);
       const HalfEdge last = grow_sector(v, w, w, kNoHalfEdge);
-      join(first, last);
+      out_.join(first, last);
       return;
     }
     waiting_.take(v, starts_, ends_);
@@ -98,14 +109,12 @@ class Growth {
     const bool is_full_turn = behind == kNoHalfEdge;
     const Vertex first = w;
     while (true) {
-      const Vertex c = search_.third_point(w, is_full_turn && w == first ? kNoVertex : hint);
-      const std::int32_t triangle = made_++;
-      out_.corners[3 * triangle] = number(v);
-      out_.corners[3 * triangle + 1] = number(w);
-      out_.corners[3 * triangle + 2] = number(c);
+      const Vertex c = third_point(w, is_full_turn && w == first ? kNoVertex : hint);
+      const std::int32_t triangle = out_.add(v, w, c);
+      if (std::min(number(w), number(c)) < own_.begin) last_shared_ = triangle;
       const HalfEdge across = waiting_.match_or_add(w, c, half_edge(triangle, 0));
-      join(half_edge(triangle, 0), across);
-      join(half_edge(triangle, 2), behind);
+      out_.join(half_edge(triangle, 0), across);
+      out_.join(half_edge(triangle, 2), behind);
       behind = half_edge(triangle, 1);
       if (is_full_turn ? c == first : reaches_end(c, behind)) return behind;
       w = c;
@@ -115,7 +124,7 @@ class Growth {
   bool reaches_end(Vertex c, HalfEdge behind) {
     for (WaitingEdge& end : ends_) {
       if (end.other != c) continue;
-      join(behind, end.half_edge);
+      out_.join(behind, end.half_edge);
       end = ends_.back();
       ends_.pop_back();
       return true;
@@ -123,17 +132,22 @@ class Growth {
     return false;
   }
 
-  void join(HalfEdge a, HalfEdge b) {
-    if (a == kNoHalfEdge || b == kNoHalfEdge) return;
-    if (a != kOutside) out_.neighbors[number(a)] = b == kOutside ? kNoNeighbor : number(b) / 3;
-    if (b != kOutside) out_.neighbors[number(b)] = a == kOutside ? kNoNeighbor : number(a) / 3;
+  Vertex third_point(Vertex b, Vertex hint) {
+    SearchCounts& counts = search_.counts();
+    ++counts.searches;
+    const auto near = near_.third_point(number(b), counts);
+    if (near.is_proven) return static_cast<Vertex>(near.point);
+    return search_.third_point(b, near.point == Near::kNone ? hint : static_cast<Vertex>(near.point));
   }
 
+  PointGrid::LevelCursor level_;
+  Near near_;
   ThirdPointSearch search_;
   OpenEdges waiting_;
-  Triangles out_;
-  std::int32_t count_;
-  std::int32_t made_ = 0;
+  TriangleStore& out_;
+  Range own_;
+  std::int64_t count_;  // of all points
+  std::int32_t last_shared_ = -1;
   std::vector<WaitingEdge> starts_, ends_;
 };
 

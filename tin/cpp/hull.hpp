@@ -8,6 +8,7 @@
 
 #include "grid.hpp"
 #include "ids.hpp"
+#include "parallel.hpp"
 #include "predicates.hpp"
 
 namespace tinsmith {
@@ -15,7 +16,7 @@ namespace tinsmith {
 // Finds the hull among few points: those inside a polygon of extreme points are left out first.
 class HullFinder {
  public:
-  explicit HullFinder(const PointGrid& grid) : grid_(grid) {}
+  HullFinder(const PointGrid& grid, Team& team) : grid_(grid), team_(team) {}
 
   // Counter-clockwise vertices; empty if all points are collinear.
   std::vector<Vertex> find() {
@@ -36,35 +37,64 @@ class HullFinder {
 
  private:
   // Extreme points counter-clockwise from the west: W, SW, S, SE, E, NE, N, NW.
-  void find_extremes() {
-    const double* x = grid_.x();
-    const double* y = grid_.y();
-    std::array<double, 8> best;
-    best.fill(-HUGE_VAL);
-    for (std::int32_t i = 0; i < grid_.count(); ++i) {
-      const double towards[8] = {-x[i],        -x[i] - y[i], -y[i],       x[i] - y[i],
-                                 x[i],         x[i] + y[i],  y[i],        y[i] - x[i]};
+  struct Extremes {
+    std::array<double, 8> reach;
+    std::array<Point, 8> point;
+
+    void offer(Point p) {
+      const double towards[8] = {-p.x, -p.x - p.y, -p.y, p.x - p.y, p.x, p.x + p.y, p.y, p.y - p.x};
       for (int k = 0; k < 8; ++k) {
-        if (towards[k] > best[k]) {
-          best[k] = towards[k];
-          extreme_[k] = {x[i], y[i]};
+        if (towards[k] > reach[k]) {
+          reach[k] = towards[k];
+          point[k] = p;
         }
       }
     }
+  };
+
+  void find_extremes() {
+    std::vector<Extremes> found(team_.size());
+    team_.run([&](int part) {
+      Extremes extremes;
+      extremes.reach.fill(-HUGE_VAL);
+      const Range range = part_of(grid_.count(), part, team_.size());
+      for (std::int32_t i = range.begin; i < range.end; ++i) {
+        extremes.offer(grid_.point(static_cast<Vertex>(i)));
+      }
+      found[part] = extremes;
+    });
+    Extremes all = found[0];
+    for (const Extremes& extremes : found) {
+      for (int k = 0; k < 8; ++k) {
+        if (extremes.reach[k] > -HUGE_VAL) all.offer(extremes.point[k]);
+      }
+    }
+    extreme_ = all.point;
   }
 
   void collect_candidates() {
+    std::vector<std::vector<Vertex>> found(team_.size());
+    team_.run([&](int part) {
+      found[part] = candidates_in(part_of(grid_.count(), part, team_.size()));
+    });
+    for (const auto& part : found) {
+      candidates_.insert(candidates_.end(), part.begin(), part.end());
+    }
+  }
+
+  std::vector<Vertex> candidates_in(Range range) const {
     // The box between the diagonal extremes lies inside their quadrilateral: its south side is
     // above both SW and SE, and so on. No arithmetic, so no rounding.
     const Point sw = extreme_[1], se = extreme_[3], ne = extreme_[5], nw = extreme_[7];
     const double west = std::max(sw.x, nw.x), east = std::min(se.x, ne.x);
     const double south = std::max(sw.y, se.y), north = std::min(nw.y, ne.y);
-    const double* x = grid_.x();
-    const double* y = grid_.y();
-    for (std::int32_t i = 0; i < grid_.count(); ++i) {
-      if (x[i] > west && x[i] < east && y[i] > south && y[i] < north) continue;
-      if (!is_surely_inside({x[i], y[i]})) candidates_.push_back(static_cast<Vertex>(i));
+    std::vector<Vertex> candidates;
+    for (std::int32_t i = range.begin; i < range.end; ++i) {
+      const Point p = grid_.point(static_cast<Vertex>(i));
+      if (p.x > west && p.x < east && p.y > south && p.y < north) continue;
+      if (!is_surely_inside(p)) candidates.push_back(static_cast<Vertex>(i));
     }
+    return candidates;
   }
 
   bool is_surely_inside(Point p) const {
@@ -94,6 +124,7 @@ class HullFinder {
   }
 
   const PointGrid& grid_;
+  Team& team_;
   std::array<Point, 8> extreme_;
   std::vector<Vertex> candidates_;
 };

@@ -25,6 +25,7 @@ constexpr Vertex kNoVertex{-1};
 constexpr HalfEdge kOutside{-1};    // beyond the hull
 constexpr HalfEdge kNoHalfEdge{-2};  // not known (yet)
 constexpr std::int32_t kNoNeighbor = -1;
+constexpr std::int32_t kUnknownNeighbor = -2;  // not known (yet)
 
 // 2n triangles, three half-edges each, must fit in 31 bits.
 constexpr std::int64_t kMostPoints = INT32_MAX / 6;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "ids.hpp"
+#include "parallel.hpp"
 
 namespace tinsmith {
 
@@ -13,16 +14,19 @@ struct WaitingEdge {
   HalfEdge half_edge;  // the edge as seen from its one triangle; kOutside for a hull edge
 };
 
+// Only edges with an end among the `own` positions are kept: those are finished in turn, and all
+// others, in order, come after them.
 class OpenEdges {
  public:
-  explicit OpenEdges(std::int32_t vertices) : head_(vertices, kUntouched) {}
+  explicit OpenEdges(Range own) : own_(own), head_(own.size(), kUntouched) {}
 
   // No edge has ever waited at v and no triangle has touched it.
-  bool is_untouched(Vertex v) const { return head_[number(v)] == kUntouched; }
+  bool is_untouched(Vertex v) const { return head_[key(v)] == kUntouched; }
 
   // The edge u-w waits for the triangle on its left; its other side is `half_edge`.
   void add(Vertex u, Vertex w, HalfEdge half_edge) {
-    const bool is_forward = u < w;
+    const bool is_forward = key(u) < key(w);
+    if (!is_own(is_forward ? u : w)) return;
     push(is_forward ? u : w, {is_forward ? w : u, half_edge, is_forward, kEmpty});
     touch(is_forward ? w : u);
   }
@@ -30,8 +34,10 @@ class OpenEdges {
   // A triangle lies left of the edge u-w as `half_edge`. If the edge waited, it is closed and its
   // other side returned; if not, it waits from now on and kNoHalfEdge is returned.
   HalfEdge match_or_add(Vertex u, Vertex w, HalfEdge half_edge) {
-    const Vertex earlier = u < w ? u : w, later = u < w ? w : u;
-    std::int32_t* link = &head_[number(earlier)];
+    const bool is_forward = key(u) < key(w);
+    const Vertex earlier = is_forward ? u : w, later = is_forward ? w : u;
+    if (!is_own(earlier)) return kNoHalfEdge;
+    std::int32_t* link = &head_[key(earlier)];
     while (*link >= 0) {
       const std::int32_t found = *link;
       if (edges_[found].other == later) {
@@ -51,7 +57,7 @@ class OpenEdges {
   void take(Vertex v, std::vector<WaitingEdge>& starts, std::vector<WaitingEdge>& ends) {
     starts.clear();
     ends.clear();
-    std::int32_t at = head_[number(v)];
+    std::int32_t at = head_[key(v)];
     while (at >= 0) {
       Edge& edge = edges_[at];
       (edge.is_open_left ? starts : ends).push_back({edge.other, edge.half_edge});
@@ -60,10 +66,16 @@ class OpenEdges {
       free_ = at;
       at = next;
     }
-    head_[number(v)] = kEmpty;
+    head_[key(v)] = kEmpty;
   }
 
  private:
+  // Place in the order in which vertices are finished.
+  std::uint32_t key(Vertex v) const {
+    return static_cast<std::uint32_t>(number(v)) - static_cast<std::uint32_t>(own_.begin);
+  }
+  bool is_own(Vertex v) const { return key(v) < head_.size(); }
+
   static constexpr std::int32_t kEmpty = -1;
   static constexpr std::int32_t kUntouched = -2;
 
@@ -75,12 +87,12 @@ class OpenEdges {
   };
 
   void touch(Vertex v) {
-    if (head_[number(v)] == kUntouched) head_[number(v)] = kEmpty;
+    if (is_own(v) && head_[key(v)] == kUntouched) head_[key(v)] = kEmpty;
   }
 
   void push(Vertex v, Edge edge) {
     touch(v);
-    edge.next = head_[number(v)];
+    edge.next = head_[key(v)];
     std::int32_t place = free_;
     if (place >= 0) {
       free_ = edges_[place].next;
@@ -89,9 +101,10 @@ class OpenEdges {
       place = static_cast<std::int32_t>(edges_.size());
       edges_.push_back(edge);
     }
-    head_[number(v)] = place;
+    head_[key(v)] = place;
   }
 
+  Range own_;
   std::vector<std::int32_t> head_;
   std::vector<Edge> edges_;
   std::int32_t free_ = -1;

@@ -1,16 +1,8 @@
-// Search for the third point: of all points left of an edge, the one that sees it under the
-// largest angle.
+// Full search for the third point: of all points left of an edge, the one that sees it under the
+// largest angle, found over the whole index.
 //
-//                  c            For an edge from a to b and a point c left of it, let
-//                 / \             e = b - a,  p = c - a,  q = c - b.
-//               /     \         The cotangent of the angle at c is (p . q) / (e x p). The smallest
-//             a ------- b       cotangent is the largest angle, and the circle through a, b, c
-//                               is empty on the left of the edge if and only if c is the winner.
-//
-// The centre of the circle with cotangent t lies t |e| / 2 left of the edge's middle, so circles
-// on one edge are ordered by t and their left caps are nested: once a candidate is known, only
-// its cap needs to be searched, and the cap shrinks as candidates improve (the paper's moving
-// circle).
+// Once a candidate is known, only its cap (circle_on_edge.hpp) needs to be searched, and the cap
+// shrinks as candidates improve: the paper's moving circle.
 #pragma once
 
 #include <algorithm>
@@ -18,46 +10,35 @@
 #include <cstdint>
 #include <stdexcept>
 
+#include "circle_on_edge.hpp"
 #include "grid.hpp"
 #include "ids.hpp"
+#include "parallel.hpp"
 #include "predicates.hpp"
+#include "search_counts.hpp"
 
 namespace tinsmith {
 
-// How much work the searches did; exact decisions are those beyond the error bound.
-struct SearchCounts {
-  std::int64_t searches = 0;
-  std::int64_t candidates = 0;
-  std::int64_t cell_rows = 0;
-  std::int64_t exact_decisions = 0;
-
-  // In units of one candidate.
-  std::int64_t work() const { return candidates + cell_rows + 40 * exact_decisions; }
-};
-
 class ThirdPointSearch {
  public:
-  explicit ThirdPointSearch(const PointGrid& grid)
-      : grid_(grid), x_(grid.x()), y_(grid.y()), cell_(grid.top().cell_size) {
-    const Box& box = grid.top().box;
-    const double farthest = std::max({std::fabs(box.west), std::fabs(box.east),
-                                      std::fabs(box.south), std::fabs(box.north)});
-    coordinate_slack_ = kSlack * 4.0 * farthest;
-  }
+  // `own` are the positions whose vertices are finished in turn; all others come later.
+  ThirdPointSearch(const PointGrid& grid, Range own)
+      : grid_(grid), x_(grid.x()), y_(grid.y()), own_(own), cell_(grid.top().cell_size),
+        coordinate_slack_(coordinate_slack(grid.top().box)) {}
 
-  // Searches are about `v` from now on: the vertex being finished.
-  void move_to(Vertex v) {
+  // Searches are about `v` from now on: the vertex being finished, among cells of this size.
+  void move_to(Vertex v, double cell) {
     a_ = number(v);
     ax_ = x_[a_];
     ay_ = y_[a_];
-    if (!grid_.is_plain()) cell_ = grid_.cell_size_at(a_);
+    cell_ = cell;
   }
 
   // The winner for the edge from v to b among the points after v in the sweep: all points before
   // have all their triangles. Requires a winner: the edge is not on the hull with its outside to
   // the left. `hint` is a point that may win, or kNoVertex.
   Vertex third_point(Vertex b, Vertex hint) {
-    ++counts_.searches;
+    ++counts_.full_searches;
     set_edge(b);
     Circle circle = first_disc();
     hint_ = number(hint);
@@ -100,11 +81,9 @@ class ThirdPointSearch {
     }
   }
 
-  const SearchCounts& counts() const { return counts_; }
+  SearchCounts& counts() { return counts_; }
 
  private:
-  // Relative slack on boxes and radii; far above what a dozen roundings add up to.
-  static constexpr double kSlack = 1e-14;
   // First disc: radius over half the edge, and over the cell.
   static constexpr double kDiscPerHalfEdge = 1.15;
   static constexpr double kDiscPerCell = 0.8;
@@ -198,39 +177,28 @@ class ThirdPointSearch {
 
   // The circle through the best candidate, or one a little larger for what rounding may have done.
   Circle best_circle() const {
-    if (is_best_flat_ || !(best_cross_ > 2.0 * cross_error_)) return {kUnbounded, kUnbounded};
-    const double per_cross = 1.0 / best_cross_;
-    const double rounded = best_dot_ * per_cross;
-    const double error = 2.0 * (dot_error_ + std::fabs(rounded) * cross_error_) * per_cross;
-    const double cotangent = rounded + error + 4.0 * kUnitRoundoff * std::fabs(rounded);
+    if (is_best_flat_ || !(best_cross_ > 2.0 * errors_.cross())) return {kUnbounded, kUnbounded};
+    const double cotangent = errors_.widened(best_dot_, best_cross_);
     return {cotangent, 0.5 * std::sqrt(edge_square_ * (1.0 + cotangent * cotangent))};
   }
 
-  // Error bounds for candidates whose coordinates differ from a's by at most `reach`: of the
-  // cross product e x p, and of the dot product p . q (q is taken as p - e).
+  // Coordinates of candidates differ from a's by at most `reach`.
   void set_reach(double reach) {
     reach_ = reach;
-    cross_error_ = 8.0 * kUnitRoundoff * edge_sum_ * reach;
-    dot_error_ = 24.0 * kUnitRoundoff * reach * reach;
+    errors_ = CotangentErrors(edge_sum_, reach);
     update_tolerance();
   }
 
-  // Bound on the error of dot * best_cross - cross * best_dot for candidates within reach.
   void update_tolerance() {
-    if (is_best_flat_) {
-      tolerance_ = 1.0;  // any number above 0 - 0: everything may win
-      return;
-    }
-    const double most_cross = best_cross_ + 2.0 * edge_sum_ * reach_;
-    const double most_dot = std::fabs(best_dot_) + 4.0 * reach_ * reach_;
-    tolerance_ = 2.0 * (dot_error_ * most_cross + cross_error_ * most_dot);
+    // Without a best worth its cotangent any number is above 0 - 0: everything may win.
+    tolerance_ = is_best_flat_ ? 1.0 : errors_.tolerance(best_dot_, best_cross_);
   }
 
   bool is_promising(Vertex hint, const Circle& disc) const {
     const double px = x_[number(hint)] - ax_, py = y_[number(hint)] - ay_;
     if (std::max(std::fabs(px), std::fabs(py)) > reach_) return false;
     const double cross = ex_ * py - ey_ * px;
-    return cross > cross_error_ && px * (px - ex_) + py * (py - ey_) < disc.cotangent * cross;
+    return cross > errors_.cross() && px * (px - ex_) + py * (py - ey_) < disc.cotangent * cross;
   }
 
   // ------------------------------------------------------------- candidates
@@ -241,11 +209,12 @@ class ThirdPointSearch {
     for_each_run(cap, [&](std::int32_t begin, std::int32_t end) {
       const std::int32_t best_before = best_;
       counts_.candidates += end - begin;
+      counts_.full_candidates += end - begin;
       for (std::int32_t i = begin; i < end; ++i) {
         const double px = x_[i] - ax_, py = y_[i] - ay_;
         const double cross = ex_ * py - ey_ * px;
         const double dot = px * (px - ex_) + py * (py - ey_);
-        const bool is_left = cross > -cross_error_;
+        const bool is_left = cross > -errors_.cross();
         if (is_left & beats_best(dot, cross, 1.0)) {
           // The error bounds hold within reach; beyond it lies no point of the cap.
           if (std::max(std::fabs(px), std::fabs(py)) <= reach_) offer(i, dot, cross);
@@ -266,14 +235,18 @@ class ThirdPointSearch {
   void offer_likely() {
     for (const std::int32_t i : {b_ - 1, b_ + 1, a_ + 1, hint_ - 1, hint_, hint_ + 1,
                                  last_third_ - 1, last_third_, last_third_ + 1, last_third_ + 2}) {
-      if (i <= a_ || i >= grid_.count() || i == b_) continue;
+      if (!is_later(i) || i == b_) continue;
       const double px = x_[i] - ax_, py = y_[i] - ay_;
       const double reach = std::max(std::fabs(px), std::fabs(py));
       if (reach > reach_) set_reach(reach);
       const double cross = ex_ * py - ey_ * px;
       const double dot = px * (px - ex_) + py * (py - ey_);
-      if (cross > cross_error_ && (!has_best() || beats_best(dot, cross, 1.0))) offer(i, dot, cross);
+      if (cross > errors_.cross() && (!has_best() || beats_best(dot, cross, 1.0))) offer(i, dot, cross);
     }
+  }
+
+  bool is_later(std::int32_t i) const {
+    return (i > a_ && i < grid_.count()) || (i >= 0 && i < own_.begin);
   }
 
   void offer(std::int32_t i) {
@@ -283,7 +256,7 @@ class ThirdPointSearch {
 
   // A candidate that may be left of the edge and may beat the best so far.
   void offer(std::int32_t i, double dot, double cross) {
-    const bool is_surely_left = cross > cross_error_;
+    const bool is_surely_left = cross > errors_.cross();
     const bool is_surely_better = is_best_flat_ ? !has_best() : beats_best(dot, cross, -1.0);
     if (!(is_surely_left && is_surely_better) && !wins_exactly(i, is_surely_left)) return;
     best_ = i;
@@ -315,20 +288,12 @@ class ThirdPointSearch {
   Cap cap_of(const Circle& circle) const {
     const double radius = circle.radius;
     if (!(radius < kUnbounded)) return Cap(grid_.top().box, here(a_), circle, *this);
-    const double cx = 0.5 * (ex_ - ey_ * circle.cotangent);
-    const double cy = 0.5 * (ey_ + ex_ * circle.cotangent);
-    double west = std::min(0.0, ex_), east = std::max(0.0, ex_);
-    double south = std::min(0.0, ey_), north = std::max(0.0, ey_);
-    // The circle's extreme points count where they are left of the edge.
-    const double side = ex_ * cy - ey_ * cx;
-    if (!(side + ey_ * radius <= 0.0)) west = std::min(west, cx - radius);
-    if (!(side - ey_ * radius <= 0.0)) east = std::max(east, cx + radius);
-    if (!(side - ex_ * radius <= 0.0)) south = std::min(south, cy - radius);
-    if (!(side + ex_ * radius <= 0.0)) north = std::max(north, cy + radius);
+    const Point center{0.5 * (ex_ - ey_ * circle.cotangent), 0.5 * (ey_ + ex_ * circle.cotangent)};
+    const Box cap = box_of_cap({ex_, ey_}, center, radius);
     const double slack = slack_of(radius);
-    const Box box{ax_ + west - slack, ax_ + east + slack, ay_ + south - slack,
-                  ay_ + north + slack};
-    return Cap(box, {ax_ + cx, ay_ + cy}, circle, *this);
+    const Box box{ax_ + cap.west - slack, ax_ + cap.east + slack, ay_ + cap.south - slack,
+                  ay_ + cap.north + slack};
+    return Cap(box, {ax_ + center.x, ay_ + center.y}, circle, *this);
   }
 
   // On a plain grid whole cells were looked at, which may hold the new cap too.
@@ -340,7 +305,8 @@ class ThirdPointSearch {
     return grid_.is_plain() && last - first < PointGrid::kNarrowColumns &&
            top.column_at(in.west) >= first && top.column_at(in.east) <= last &&
            top.row_at(in.north) <= top.row_at(out.north) &&
-           std::max(top.row_at(in.south), top.row_at(ay_)) >= top.row_at(out.south);
+           std::max(top.row_at(in.south), own_.begin > 0 ? 0 : top.row_at(ay_)) >=
+               top.row_at(out.south);
   }
 
   // Keep the side left of the edge, within rows from south to north.
@@ -378,7 +344,8 @@ class ThirdPointSearch {
 
   template <typename Region, typename Visit>
   void for_each_run(const Region& region, Visit&& visit) {
-    counts_.cell_rows += grid_.for_each_run(region, a_ + 1, ay_, visit);
+    counts_.cell_rows += grid_.for_each_run(region, {a_ + 1, grid_.count()}, visit);
+    if (own_.begin > 0) counts_.cell_rows += grid_.for_each_run(region, {0, own_.begin}, visit);
   }
 
   // ------------------------------------------------------------- nearest
@@ -400,14 +367,16 @@ class ThirdPointSearch {
   const PointGrid& grid_;
   const double* x_;
   const double* y_;
+  Range own_;
   double cell_;  // size of the cells around a
-  double coordinate_slack_ = 0.0;
+  double coordinate_slack_;
 
   // The edge at hand, relative to a.
   std::int32_t a_ = 0, b_ = 0;
   double ax_ = 0.0, ay_ = 0.0, ex_ = 0.0, ey_ = 0.0;
   double edge_square_ = 0.0, edge_sum_ = 0.0;
-  double reach_ = 0.0, cross_error_ = 0.0, dot_error_ = 0.0, tolerance_ = 0.0;
+  double reach_ = 0.0, tolerance_ = 0.0;
+  CotangentErrors errors_;
 
   // The best candidate so far; its cotangent is best_dot_ / best_cross_. Flat: there is none yet,
   // or it is so nearly on the edge's line that its cotangent says nothing; then every point that

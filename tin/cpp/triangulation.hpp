@@ -1,8 +1,12 @@
 // The main path: index the points, find the hull, grow, number by the caller's rows.
 #pragma once
 
+#include <algorithm>
+#include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "canonical.hpp"
@@ -11,8 +15,20 @@
 #include "hull.hpp"
 #include "ids.hpp"
 #include "insertion.hpp"
+#include "parallel.hpp"
+#include "stitch.hpp"
+#include "vector_paths.hpp"
 
 namespace tinsmith {
+
+enum class Method { kAutomatic, kGrowth, kInsertion };
+
+// How to build; the result is the same for all.
+struct Options {
+  Method method = Method::kAutomatic;
+  int threads = 1;
+  VectorPath path = vector_paths().back().path;
+};
 
 struct Triangulation {
   std::unique_ptr<std::int32_t[]> corners;    // 3 a triangle, by vertex
@@ -22,70 +38,115 @@ struct Triangulation {
   std::int64_t distinct_count = 0;
   SearchCounts counts;
   bool is_complete = true;  // false if asked to stop
+
+  Triangles arrays() const { return {corners.get(), neighbors.get()}; }
 };
 
-// The vertex number of each kept row: rows counted without the repeated ones.
-inline std::vector<std::int32_t> vertex_at_row(const std::vector<std::int32_t>& kept_row) {
-  std::vector<std::int32_t> vertex(kept_row.size());
-  std::int32_t next = 0;
-  for (std::size_t row = 0; row < kept_row.size(); ++row) {
-    const bool is_kept = kept_row[row] == static_cast<std::int32_t>(row);
-    vertex[row] = is_kept ? next++ : kNoNeighbor;
+class Triangulator {
+ public:
+  // `keep_going` is asked now and then, on the calling thread, whether to go on.
+  Triangulator(const PointRows& rows, const Options& options, std::function<bool()> keep_going)
+      : rows_(rows), options_(options),
+        team_(static_cast<int>(std::min<std::int64_t>(options.threads, rows.count)),
+              std::move(keep_going)) {}
+
+  // Delaunay triangulation of one or more rows. No triangles if all points are collinear.
+  Triangulation run() {
+    const PointGrid grid(rows_, team_);
+    result_.kept_row = grid.kept_row();
+    result_.distinct_count = grid.count();
+    if (grid.count() < 3) return std::move(result_);
+    const std::vector<Vertex> hull = HullFinder(grid, team_).find();
+    if (hull.empty()) return std::move(result_);
+    result_.triangle_count = triangle_count(grid.count(), static_cast<std::int64_t>(hull.size()));
+    result_.corners.reset(new std::int32_t[3 * result_.triangle_count]);
+    result_.neighbors.reset(new std::int32_t[3 * result_.triangle_count]);
+    build(grid, hull);
+    result_.is_complete = !team_.is_stopped();
+    return std::move(result_);
   }
-  return vertex;
-}
 
-inline void number_by_rows(Triangulation& result, const PointGrid& grid) {
-  std::int32_t* corners = result.corners.get();
-  const std::int64_t size = 3 * result.triangle_count;
-  const std::vector<std::int32_t> vertex = vertex_at_row(result.kept_row);
-  for (std::int64_t i = 0; i < size; ++i) {
-    const std::int32_t row = number(grid.row_of(static_cast<Vertex>(corners[i])));
-    corners[i] = vertex.empty() ? row : vertex[row];
+ private:
+  // Growth, or insertion where its searches cost too much.
+  void build(const PointGrid& grid, const std::vector<Vertex>& hull) {
+    rows_of_ = grid.rows();
+    const bool is_grown = options_.method != Method::kInsertion &&
+                          with_path(options_.path, [&](auto tag) {
+                            return grow<typename decltype(tag)::Type>(grid, hull);
+                          });
+    if (!is_grown && !team_.is_stopped()) insert_all(grid);
   }
-}
 
-enum class Method { kAutomatic, kGrowth, kInsertion };
-
-template <typename KeepGoing>
-bool insert_all(Triangulation& result, const PointGrid& grid, KeepGoing&& keep_going) {
-  Insertion insertion(grid);
-  if (!insertion.run(keep_going)) return false;
-  CanonicalOrder(grid, insertion.mesh()).write({result.corners.get(), result.neighbors.get()});
-  return true;
-}
-
-// Growth, or insertion where its searches cost too much; the result is the same.
-template <typename KeepGoing>
-bool build(Triangulation& result, const PointGrid& grid, const std::vector<Vertex>& hull,
-           Method method, KeepGoing&& keep_going) {
-  if (method != Method::kInsertion) {
-    Growth growth(grid, hull, {result.corners.get(), result.neighbors.get()});
-    const bool is_bounded = method == Method::kAutomatic;
-    const Growth::Outcome outcome = growth.run(keep_going, is_bounded);
-    result.counts = growth.counts();
-    if (outcome != Growth::Outcome::kTooCostly) return outcome == Growth::Outcome::kComplete;
+  // Returns whether all triangles are made.
+  template <typename Near>
+  bool grow(const PointGrid& grid, const std::vector<Vertex>& hull) {
+    std::vector<TriangleStore> stores;
+    stores.emplace_back(result_.arrays());
+    for (int part = 1; part < team_.size(); ++part) {
+      stores.emplace_back(expected_triangles(part_of(grid.count(), part, team_.size())));
+    }
+    std::vector<std::int32_t> last_shared(team_.size());
+    std::vector<SearchCounts> counts(team_.size());
+    std::atomic<bool> is_too_costly{false};
+    team_.run([&](int part) {
+      Growth<Near> growth(grid, hull, part_of(grid.count(), part, team_.size()), stores[part]);
+      const Outcome outcome =
+          growth.run([&] { return !is_too_costly && team_.keeps_going(part); },
+                     options_.method == Method::kAutomatic);
+      if (outcome == Outcome::kTooCostly) is_too_costly = true;
+      counts[part] = growth.counts();
+      last_shared[part] = growth.last_shared();
+    });
+    for (const SearchCounts& part : counts) result_.counts += part;
+    if (is_too_costly || team_.is_stopped()) return false;
+    stitch(grid, stores, last_shared);
+    return true;
   }
-  return insert_all(result, grid, keep_going);
-}
 
-// Delaunay triangulation of one or more rows. No triangles if all points are collinear.
-template <typename KeepGoing>
-Triangulation triangulate(const PointRows& rows, Method method, KeepGoing&& keep_going) {
-  Triangulation result;
-  const PointGrid grid(rows);
-  result.kept_row = grid.kept_row();
-  result.distinct_count = grid.count();
-  if (grid.count() < 3) return result;
-  const std::vector<Vertex> hull = HullFinder(grid).find();
-  if (hull.empty()) return result;
-  const auto on_hull = static_cast<std::int64_t>(hull.size());
-  result.triangle_count = Growth::triangle_count(grid.count(), on_hull);
-  result.corners.reset(new std::int32_t[3 * result.triangle_count]);
-  result.neighbors.reset(new std::int32_t[3 * result.triangle_count]);
-  result.is_complete = build(result, grid, hull, method, keep_going);
-  if (result.is_complete) number_by_rows(result, grid);
-  return result;
-}
+  // Two a vertex, with room for those that a neighbouring part finds too.
+  static std::int64_t expected_triangles(Range own) {
+    return std::int64_t{2} * own.size() + own.size() / 8 + 1024;
+  }
+
+  void stitch(const PointGrid& grid, const std::vector<TriangleStore>& stores,
+              const std::vector<std::int32_t>& last_shared) {
+    if (stores.size() == 1) return number_by_rows();
+    std::vector<GrownPart> parts;
+    std::vector<std::int32_t> base{0};
+    for (int part = 0; part < team_.size(); ++part) {
+      const TriangleStore& store = stores[part];
+      parts.emplace_back(part_of(grid.count(), part, team_.size()), store.arrays(), store.size(),
+                         last_shared[part]);
+      base.push_back(base.back() + parts.back().kept());
+    }
+    team_.run([&](int part) {
+      parts[part].write(base[part], result_.arrays(),
+                        [this](std::int32_t position) { return number(rows_of_[position]); });
+    });
+    join_open_edges(parts, result_.arrays());
+  }
+
+  void insert_all(const PointGrid& grid) {
+    Insertion insertion(grid);
+    if (!insertion.run([this] { return team_.keeps_going(0); })) return;
+    CanonicalOrder(grid, insertion.mesh()).write(result_.arrays());
+    number_by_rows();
+  }
+
+  void number_by_rows() {
+    team_.run([this](int part) {
+      const Range range = part_of(result_.triangle_count, part, team_.size());
+      for (std::int64_t i = std::int64_t{3} * range.begin; i < std::int64_t{3} * range.end; ++i) {
+        result_.corners[i] = number(rows_of_[result_.corners[i]]);
+      }
+    });
+  }
+
+  PointRows rows_;
+  Options options_;
+  Team team_;
+  const Row* rows_of_ = nullptr;  // of each position, while the grid lives
+  Triangulation result_;
+};
 
 }  // namespace tinsmith

@@ -1,0 +1,63 @@
+// Triangles while they are made: corners and neighbours, three a triangle, numbered as found.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+
+#include "ids.hpp"
+
+namespace tinsmith {
+
+// Flat arrays, three entries a triangle.
+struct Triangles {
+  std::int32_t* corners;
+  std::int32_t* neighbors;
+};
+
+// Writes into arrays of the caller's that are large enough, or into its own, which grow.
+class TriangleStore {
+ public:
+  explicit TriangleStore(Triangles enough) : arrays_(enough), capacity_(INT32_MAX) {}
+  explicit TriangleStore(std::int64_t expected) { enlarge(expected); }
+
+  std::int32_t size() const { return size_; }
+  Triangles arrays() const { return arrays_; }
+
+  // The new triangle's edges have no neighbours yet.
+  std::int32_t add(Vertex a, Vertex b, Vertex c) {
+    if (size_ == capacity_) enlarge(std::int64_t{2} * capacity_);
+    const std::size_t at = 3 * static_cast<std::size_t>(size_);
+    arrays_.corners[at] = number(a);
+    arrays_.corners[at + 1] = number(b);
+    arrays_.corners[at + 2] = number(c);
+    std::fill_n(arrays_.neighbors + at, 3, kUnknownNeighbor);
+    return size_++;
+  }
+
+  // Two half-edges are the sides of one edge; one of them may be the outside or unknown.
+  void join(HalfEdge a, HalfEdge b) {
+    if (a == kNoHalfEdge || b == kNoHalfEdge) return;
+    if (a != kOutside) arrays_.neighbors[number(a)] = b == kOutside ? kNoNeighbor : number(b) / 3;
+    if (b != kOutside) arrays_.neighbors[number(b)] = a == kOutside ? kNoNeighbor : number(a) / 3;
+  }
+
+ private:
+  void enlarge(std::int64_t capacity) {
+    std::unique_ptr<std::int32_t[]> corners(new std::int32_t[3 * capacity]);
+    std::unique_ptr<std::int32_t[]> neighbors(new std::int32_t[3 * capacity]);
+    std::copy_n(arrays_.corners, 3 * static_cast<std::int64_t>(size_), corners.get());
+    std::copy_n(arrays_.neighbors, 3 * static_cast<std::int64_t>(size_), neighbors.get());
+    corners_ = std::move(corners);
+    neighbors_ = std::move(neighbors);
+    arrays_ = {corners_.get(), neighbors_.get()};
+    capacity_ = static_cast<std::int32_t>(capacity);
+  }
+
+  std::unique_ptr<std::int32_t[]> corners_, neighbors_;
+  Triangles arrays_{nullptr, nullptr};
+  std::int32_t capacity_ = 0;
+  std::int32_t size_ = 0;
+};
+
+}  // namespace tinsmith
