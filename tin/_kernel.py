@@ -13,10 +13,11 @@ if TYPE_CHECKING:
 
 __all__ = [
     "EXACT_RANGE",
+    "VECTOR_PATHS",
     "Growth",
     "Locator",
     "Method",
-    "VECTOR_PATHS",
+    "clean",
     "count_work",
     "grow",
     "in_circle",
@@ -32,6 +33,7 @@ orientation = _core.orientation
 in_circle = _core.in_circle
 snap = _core.snap
 count_work = _core.count_work
+clean = _core.clean
 Method = _core.Method
 
 

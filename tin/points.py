@@ -8,6 +8,7 @@ import numpy as np
 
 from . import _kernel
 from .errors import PointsError
+from .threads import thread_count
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -17,8 +18,10 @@ __all__ = ["as_points", "as_xy"]
 SHOWN = 5
 
 
-def as_points(points: ArrayLike) -> NDArray[np.float64]:
+def as_points(points: ArrayLike, *, threads: int | None = 1) -> NDArray[np.float64]:
     """Return a fresh (n, 3) float64 array of finite coordinates in the exact range.
+
+    -0.0 becomes 0.0, so that equal coordinates are equal bytes.
 
     Raises
     ------
@@ -32,14 +35,11 @@ def as_points(points: ArrayLike) -> NDArray[np.float64]:
             f"Points have shape {xyz.shape}: (n, 3) is needed, "
             "columns easting, northing, elevation."
         )
-    xyz = np.array(xyz, np.float64, order="C")
-    with np.errstate(over="ignore", invalid="ignore"):
-        total = xyz.sum()
-    if not np.isfinite(total):
-        _require_finite(xyz)
-    xyz += 0.0  # turns -0.0 into 0.0, so that equal coordinates are equal bytes
-    _require_exact_range(xyz[:, :2], "Points")
-    return xyz
+    clean, is_sound = _kernel.clean(np.ascontiguousarray(xyz), thread_count(threads, len(xyz)))
+    if not is_sound:
+        _require_finite(clean)
+        _require_exact_range(clean[:, :2], "Points")
+    return clean
 
 
 def as_xy(xy: ArrayLike) -> NDArray[np.float64]:

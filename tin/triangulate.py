@@ -74,9 +74,9 @@ def triangulate(
     <TIN: 5 vertices, 4 triangles, z 5 to 9, crs unknown>
     """
     _require_options(duplicates, snap)
-    survey = points if isinstance(points, Survey) else Survey(points=as_points(points))
+    survey = points if isinstance(points, Survey) else Survey(points=np.empty((0, 3)))
     _require_no_lines(survey)
-    xyz = as_points(survey.points)
+    xyz = as_points(points.points if isinstance(points, Survey) else points, threads=threads)
     if len(xyz) < 3:
         raise PointsError(
             f"{len(xyz)} points cannot make a TIN: at least three not collinear ones are needed."

@@ -13,6 +13,7 @@
 #include <string>
 #include <tuple>
 
+#include "cleaning.hpp"
 #include "locate.hpp"
 #include "predicates.hpp"
 #include "snapping.hpp"
@@ -26,6 +27,7 @@ namespace {
 using Points = nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 using Places = nb::ndarray<const double, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
 using Corners = nb::ndarray<nb::numpy, std::int32_t, nb::shape<-1, 3>>;
+using Rows = nb::ndarray<nb::numpy, double, nb::shape<-1, 3>>;
 using Numbers = nb::ndarray<nb::numpy, std::int32_t, nb::shape<-1>>;
 using Heights = nb::ndarray<nb::numpy, double, nb::shape<-1>>;
 using Signs = nb::ndarray<nb::numpy, std::int8_t, nb::shape<-1>>;
@@ -99,6 +101,19 @@ nb::list vector_paths() {
   nb::list names;
   for (const tinsmith::NamedPath& path : tinsmith::vector_paths()) names.append(path.name);
   return names;
+}
+
+// The clean copy, and whether it is sound.
+auto clean(const Points& points, int threads) {
+  const std::size_t size = points.shape(0);
+  std::unique_ptr<double[]> copy(new double[3 * size]);
+  bool is_sound = false;
+  {
+    nb::gil_scoped_release release;
+    tinsmith::Team team(threads, [] { return true; });
+    is_sound = tinsmith::copy_clean(points.data(), static_cast<std::int64_t>(size), copy.get(), team);
+  }
+  return std::make_tuple(hand_over<Rows>(std::move(copy), {size, 3}), is_sound);
 }
 
 Numbers snap(const Points& points, double distance) {
@@ -231,6 +246,8 @@ NB_MODULE(_core, m) {
         "Triangulate and return how much the searches did.");
   m.def("vector_paths", &vector_paths,
         "Names of the vector instructions that this processor has, slowest first.");
+  m.def("clean", &clean, "points"_a.noconvert(), "threads"_a = 1,
+        "A copy without -0.0, and whether the growth can work with it.");
   m.def("snap", &snap, "points"_a.noconvert(), "distance"_a,
         "For each row the row that it is merged into.");
   m.def("orientation", &orientation, "a"_a.noconvert(), "b"_a.noconvert(), "c"_a.noconvert(),

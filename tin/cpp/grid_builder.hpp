@@ -21,6 +21,7 @@ class GridBuilder {
   GridBuilder(PointGrid& grid, const PointRows& rows, Team& team)
       : grid_(grid), rows_(rows), team_(team), parts_(team.size()) {}
 
+  // Leaves the index unfinished if the team is stopped.
   void build() {
     const auto n = static_cast<std::int32_t>(rows_.count);
     grid_.count_ = n;
@@ -28,8 +29,7 @@ class GridBuilder {
     grid_.y_ = padded(n);
     grid_.rows_.reset(new Row[n]);
     grid_.levels_.push_back(Level::fitted(box_of_rows(), 0, n, kPointsPerCell));
-    sort_into_cells();
-    nest_top();
+    if (!sort_into_cells() || !nest_top()) return;
     list_spans(0);
     drop_repeated();
   }
@@ -46,6 +46,8 @@ class GridBuilder {
   // Each level divides its box by the number of its points; what is crowded still is at places
   // closer together than any survey's, and is searched as one cell.
   static constexpr int kDeepest = 12;
+  // Rows between two questions whether to go on.
+  static constexpr std::int32_t kPerQuestion = 1 << 20;
   // A band of so many points fits the second-level cache, in so many bands a page each of memory
   // stays at hand.
   static constexpr std::int64_t kPointsPerBand = 4096;
@@ -88,7 +90,7 @@ class GridBuilder {
     return box;
   }
 
-  void sort_into_cells() {
+  bool sort_into_cells() {
     const Level& top = grid_.levels_.front();
     const std::int64_t bands =
         std::clamp(rows_.count / kPointsPerBand, std::int64_t{1}, kMostBands);
@@ -100,13 +102,16 @@ class GridBuilder {
     team_.run([this](int part) { count_bands(part); });
     const std::vector<std::int32_t> begins = begins_of_bands();
     team_.run([this](int part) { fill_bands(part); });
+    if (team_.is_stopped()) return false;
     team_.run([&](int part) {
       const Range own = part_of(bands_, part, team_.size());
       for (std::int32_t band = own.begin; band < own.end; ++band) {
+        if (!team_.keeps_going(part)) return;
         sort_band(band, {begins[band], begins[band + 1]}, parts_[part]);
       }
     });
     entries_.reset();
+    return !team_.is_stopped();
   }
 
   void count_bands(int part) {
@@ -140,6 +145,7 @@ class GridBuilder {
     std::vector<std::int32_t>& end = parts_[part].band_end;
     const Range range = part_of(rows_.count, part, team_.size());
     for (std::int32_t i = range.begin; i < range.end; ++i) {
+      if (i % kPerQuestion == 0 && !team_.keeps_going(part)) return;
       const Point p = rows_[i];
       const std::int32_t cell = top.cell_at(p);
       entries_[end[cell >> band_shift_]++] = {p, static_cast<Row>(i), cell};
@@ -190,7 +196,7 @@ class GridBuilder {
 
   // ------------------------------------------------------------- nested levels
 
-  void nest_top() {
+  bool nest_top() {
     double squares = 0.0;
     for (const Part& part : parts_) squares += part.squares;
     const double sharing = squares / static_cast<double>(rows_.count);
@@ -200,6 +206,7 @@ class GridBuilder {
       cells.insert(cells.end(), part.full_cells.begin(), part.full_cells.end());
     }
     nest(0, 0, cells);
+    return !team_.is_stopped();
   }
 
   void nest_all(std::int32_t index, int depth) {
@@ -210,11 +217,16 @@ class GridBuilder {
     nest(index, depth, cells);
   }
 
+  bool keeps_nesting() {
+    return ++nested_ % kPerQuestion == 0 ? team_.keeps_going(0) : !team_.is_stopped();
+  }
+
   // Sort the given cells of a level, but give the crowded ones a level each.
   void nest(std::int32_t index, int depth, const std::vector<std::int64_t>& cells) {
     const Level level = grid_.levels_[index];
     std::vector<std::pair<std::int64_t, std::int32_t>> inner;  // cell, level
     for (const std::int64_t cell : cells) {
+      if (!keeps_nesting()) return;
       const std::int32_t begin = grid_.start_[level.first_start + cell];
       const std::int32_t end = grid_.start_[level.first_start + cell + 1];
       if (end - begin > crowded_ && depth < kDeepest && spread(begin, end)) {
@@ -372,6 +384,7 @@ class GridBuilder {
   int band_shift_ = 0;  // cell >> band_shift_ is the band
   std::int32_t bands_ = 1;
   std::int32_t crowded_ = kCrowdedIfEven;
+  std::int32_t nested_ = 0;  // cells looked at
 };
 
 inline PointGrid::PointGrid(const PointRows& rows, Team& team) {

@@ -52,21 +52,26 @@ class Triangulator {
 
   // Delaunay triangulation of one or more rows. No triangles if all points are collinear.
   Triangulation run() {
-    const PointGrid grid(rows_, team_);
-    result_.kept_row = grid.kept_row();
-    result_.distinct_count = grid.count();
-    if (grid.count() < 3) return std::move(result_);
-    const std::vector<Vertex> hull = HullFinder(grid, team_).find();
-    if (hull.empty()) return std::move(result_);
-    result_.triangle_count = triangle_count(grid.count(), static_cast<std::int64_t>(hull.size()));
-    result_.corners.reset(new std::int32_t[3 * result_.triangle_count]);
-    result_.neighbors.reset(new std::int32_t[3 * result_.triangle_count]);
-    build(grid, hull);
+    triangulate();
     result_.is_complete = !team_.is_stopped();
     return std::move(result_);
   }
 
  private:
+  void triangulate() {
+    const PointGrid grid(rows_, team_);
+    if (!team_.keeps_going(0)) return;
+    result_.kept_row = grid.kept_row();
+    result_.distinct_count = grid.count();
+    if (grid.count() < 3) return;
+    const std::vector<Vertex> hull = HullFinder(grid, team_).find();
+    if (hull.empty() || !team_.keeps_going(0)) return;
+    result_.triangle_count = triangle_count(grid.count(), static_cast<std::int64_t>(hull.size()));
+    result_.corners.reset(new std::int32_t[3 * result_.triangle_count]);
+    result_.neighbors.reset(new std::int32_t[3 * result_.triangle_count]);
+    build(grid, hull);
+  }
+
   // Growth, or insertion where its searches cost too much.
   void build(const PointGrid& grid, const std::vector<Vertex>& hull) {
     rows_of_ = grid.rows();

@@ -52,6 +52,7 @@ class Triangulating:
 
     duplicates: str = "mean"
     snap: float = 0.0
+    threads: int | None = None
 
 
 @dataclass(frozen=True)
@@ -165,6 +166,12 @@ triangulating_options = _gathered(
         default=0.0,
         show_default=True,
         help="Merge points no further apart than this, in CRS units.",
+    ),
+    click.option(
+        "--threads",
+        metavar="N",
+        type=click.IntRange(min=1),
+        help="Number of threads; default every core. The result is the same.",
     ),
 )
 
