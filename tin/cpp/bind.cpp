@@ -14,6 +14,7 @@
 #include <tuple>
 
 #include "cleaning.hpp"
+#include "large_array.hpp"
 #include "locate.hpp"
 #include "predicates.hpp"
 #include "snapping.hpp"
@@ -33,14 +34,14 @@ using Heights = nb::ndarray<nb::numpy, double, nb::shape<-1>>;
 using Signs = nb::ndarray<nb::numpy, std::int8_t, nb::shape<-1>>;
 
 template <typename Array, typename T>
-Array hand_over(std::unique_ptr<T[]> data, std::initializer_list<std::size_t> shape) {
+Array hand_over(tinsmith::LargeArray<T> data, std::initializer_list<std::size_t> shape) {
   T* raw = data.release();
-  nb::capsule owner(raw, [](void* p) noexcept { delete[] static_cast<T*>(p); });
+  nb::capsule owner(raw, [](void* p) noexcept { tinsmith::FreeMemory()(p); });
   return Array(raw, shape, owner);
 }
 
 Numbers hand_over(const std::vector<std::int32_t>& values) {
-  std::unique_ptr<std::int32_t[]> data(new std::int32_t[values.size()]);
+  auto data = tinsmith::streamed_array<std::int32_t>(values.size());
   std::memcpy(data.get(), values.data(), values.size() * sizeof(std::int32_t));
   return hand_over<Numbers>(std::move(data), {values.size()});
 }
@@ -106,7 +107,7 @@ nb::list vector_paths() {
 // The clean copy, and whether it is sound.
 auto clean(const Points& points, int threads) {
   const std::size_t size = points.shape(0);
-  std::unique_ptr<double[]> copy(new double[3 * size]);
+  auto copy = tinsmith::streamed_array<double>(3 * size);
   bool is_sound = false;
   {
     nb::gil_scoped_release release;
@@ -145,7 +146,7 @@ Signs signs(const Places& a, const Places& b, const Places& c, const Places& d, 
     throw std::invalid_argument("the arrays must have the same number of rows");
   }
   for (const Places* places : {&a, &b, &c, &d}) require_finite(*places);
-  std::unique_ptr<std::int8_t[]> result(new std::int8_t[n]);
+  auto result = tinsmith::streamed_array<std::int8_t>(n);
   for (std::size_t i = 0; i < n; ++i) {
     result[i] = static_cast<std::int8_t>(decide(place(a, i), place(b, i), place(c, i), place(d, i)));
   }
@@ -212,7 +213,7 @@ class HeldLocator {
   template <typename Array, typename T, typename Run>
   static Array answer(const Places& xy, Run run) {
     const std::size_t count = xy.shape(0);
-    std::unique_ptr<T[]> result(new T[count]);
+    auto result = tinsmith::streamed_array<T>(count);
     bool is_complete = false;
     {
       nb::gil_scoped_release release;

@@ -17,10 +17,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "ids.hpp"
+#include "large_array.hpp"
 #include "parallel.hpp"
 #include "predicates.hpp"
 
@@ -227,8 +227,8 @@ class PointGrid {
   }
 
   std::int32_t count_ = 0;
-  std::unique_ptr<double[]> x_, y_;
-  std::unique_ptr<Row[]> rows_;
+  LargeArray<double> x_, y_;
+  LargeArray<Row> rows_;
   std::vector<Level> levels_;            // the first holds all points
   std::vector<std::int32_t> start_;      // of the cells of every level
   std::vector<std::int64_t> child_row_;  // for each row of a level with children: its first child

@@ -24,6 +24,17 @@ struct FreeMemory {
 template <typename T>
 using LargeArray = std::unique_ptr<T[], FreeMemory>;
 
+// For what is written once, from front to back: a small page that the system has just cleared is
+// still in the cache when it is written, and a large one is not.
+template <typename T>
+LargeArray<T> streamed_array(std::size_t count) {
+  static_assert(std::is_trivially_destructible_v<T>);
+  void* memory = std::malloc(count > 0 ? count * sizeof(T) : 1);
+  if (memory == nullptr) throw std::bad_alloc();
+  return LargeArray<T>(static_cast<T*>(memory));
+}
+
+// For what is jumped about in.
 template <typename T>
 LargeArray<T> large_array(std::size_t count) {
   static_assert(std::is_trivially_destructible_v<T>);

@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <memory>
+#include <utility>
 
 #include "ids.hpp"
+#include "large_array.hpp"
 
 namespace tinsmith {
 
@@ -44,8 +45,8 @@ class TriangleStore {
 
  private:
   void enlarge(std::int64_t capacity) {
-    std::unique_ptr<std::int32_t[]> corners(new std::int32_t[3 * capacity]);
-    std::unique_ptr<std::int32_t[]> neighbors(new std::int32_t[3 * capacity]);
+    LargeArray<std::int32_t> corners = streamed_array<std::int32_t>(3 * capacity);
+    LargeArray<std::int32_t> neighbors = streamed_array<std::int32_t>(3 * capacity);
     std::copy_n(arrays_.corners, 3 * static_cast<std::int64_t>(size_), corners.get());
     std::copy_n(arrays_.neighbors, 3 * static_cast<std::int64_t>(size_), neighbors.get());
     corners_ = std::move(corners);
@@ -54,7 +55,7 @@ class TriangleStore {
     capacity_ = static_cast<std::int32_t>(capacity);
   }
 
-  std::unique_ptr<std::int32_t[]> corners_, neighbors_;
+  LargeArray<std::int32_t> corners_, neighbors_;
   Triangles arrays_{nullptr, nullptr};
   std::int32_t capacity_ = 0;
   std::int32_t size_ = 0;

@@ -5,7 +5,6 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <utility>
 #include <vector>
 
@@ -15,6 +14,7 @@
 #include "hull.hpp"
 #include "ids.hpp"
 #include "insertion.hpp"
+#include "large_array.hpp"
 #include "parallel.hpp"
 #include "stitch.hpp"
 #include "vector_paths.hpp"
@@ -31,8 +31,8 @@ struct Options {
 };
 
 struct Triangulation {
-  std::unique_ptr<std::int32_t[]> corners;    // 3 a triangle, by vertex
-  std::unique_ptr<std::int32_t[]> neighbors;  // 3 a triangle, kNoNeighbor outside
+  LargeArray<std::int32_t> corners;    // 3 a triangle, by vertex
+  LargeArray<std::int32_t> neighbors;  // 3 a triangle, kNoNeighbor outside
   std::int64_t triangle_count = 0;
   std::vector<std::int32_t> kept_row;  // empty if all rows are kept
   std::int64_t distinct_count = 0;
@@ -67,8 +67,8 @@ class Triangulator {
     const std::vector<Vertex> hull = HullFinder(grid, team_).find();
     if (hull.empty() || !team_.keeps_going(0)) return;
     result_.triangle_count = triangle_count(grid.count(), static_cast<std::int64_t>(hull.size()));
-    result_.corners.reset(new std::int32_t[3 * result_.triangle_count]);
-    result_.neighbors.reset(new std::int32_t[3 * result_.triangle_count]);
+    result_.corners = streamed_array<std::int32_t>(3 * result_.triangle_count);
+    result_.neighbors = streamed_array<std::int32_t>(3 * result_.triangle_count);
     build(grid, hull);
   }
 
