@@ -176,8 +176,10 @@ class Neighborhood {
     const double nearest = std::min(std::min(cx - west_, east_ - cx),
                                     std::min(north_ - cy, cy - south_));
     if (nearest > 0.0 && nearest * nearest > square) return true;
-    const Box cap = box_of_cap({ex_, ey_}, {cx, cy}, std::sqrt(square));
-    return cap.west > west_ && cap.east < east_ && cap.north < north_ && cap.south > south_;
+    const double radius = std::sqrt(square), slack = kSlack * radius;
+    const Box cap = box_of_cap({ex_, ey_}, {cx, cy}, radius);
+    return cap.west - slack > west_ && cap.east + slack < east_ && cap.north + slack < north_ &&
+           cap.south - slack > south_;
   }
 
   std::int32_t point_in(std::int32_t lane) const {
