@@ -60,7 +60,7 @@ class GridBuilder {
   };
 
   // What one thread finds out.
-  struct Part {
+  struct alignas(kCacheLine) Part {
     Box box;
     std::vector<std::int32_t> band_end;    // while filling: where its next entry of a band goes
     std::vector<std::int32_t> full_cells;  // with more points than kCrowdedIfUneven, ascending

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <cstddef>
 #include <cstdint>
 #include <exception>
 #include <functional>
@@ -15,6 +16,9 @@
 #include <vector>
 
 namespace tinsmith {
+
+// What one thread writes often must not lie on a line that another one uses.
+constexpr std::size_t kCacheLine = 64;
 
 // Half-open range of positions.
 struct Range {

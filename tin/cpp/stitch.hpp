@@ -17,8 +17,9 @@
 namespace tinsmith {
 
 // One thread's triangles, by the first vertex in its range.
-class GrownPart {
+class alignas(kCacheLine) GrownPart {
  public:
+  GrownPart() = default;
   GrownPart(Range own, Triangles triangles, std::int32_t count, std::int32_t last_shared)
       : own_(own), triangles_(triangles), count_(count) {
     number_seam(last_shared);
@@ -69,20 +70,31 @@ class GrownPart {
 
   // Number the triangles up to the last vertex that has shared ones.
   void number_seam(std::int32_t last_shared) {
-    std::vector<std::int32_t> kept;
+    seam_number_.reserve(last_shared + 1);
     for (std::int32_t begin = 0; begin <= last_shared;) {
+      const std::int32_t vertex = corner(begin, 0);
+      bool has_shared = false;
       std::int32_t end = begin;
-      kept.clear();
-      for (; end < count_ && corner(end, 0) == corner(begin, 0); ++end) {
-        if (!is_shared(end)) kept.push_back(end);
+      for (; end < count_ && corner(end, 0) == vertex; ++end) {
+        has_shared |= is_shared(end);
+        seam_number_.push_back(end - dropped_);
       }
-      if (static_cast<std::int32_t>(kept.size()) < end - begin) sort_canonically(kept);
-      seam_number_.resize(end, kDropped);
-      auto next = begin - dropped_;
-      for (const std::int32_t triangle : kept) seam_number_[triangle] = next++;
-      dropped_ = end - next;
+      if (has_shared) number_group(begin, end);
       begin = end;
     }
+  }
+
+  // Triangles of one vertex, some of them shared: the others in canonical order.
+  void number_group(std::int32_t begin, std::int32_t end) {
+    std::vector<std::int32_t> kept;
+    for (std::int32_t triangle = begin; triangle < end; ++triangle) {
+      if (!is_shared(triangle)) kept.push_back(triangle);
+      seam_number_[triangle] = kDropped;
+    }
+    sort_canonically(kept);
+    std::int32_t next = begin - dropped_;
+    for (const std::int32_t triangle : kept) seam_number_[triangle] = next++;
+    dropped_ = end - next;
   }
 
   // Triangles of one vertex: sectors by the vertex they start at, then counter-clockwise.
@@ -121,9 +133,9 @@ class GrownPart {
     return at == kDropped ? kUnknownNeighbor : base_ + at;
   }
 
-  Range own_;
-  Triangles triangles_;
-  std::int32_t count_;
+  Range own_{0, 0};
+  Triangles triangles_{nullptr, nullptr};
+  std::int32_t count_ = 0;
   std::int32_t dropped_ = 0;
   std::int32_t base_ = 0;
   std::vector<std::int32_t> seam_number_;  // of the first triangles; the rest follow on

@@ -7,6 +7,7 @@
 
 #include "ids.hpp"
 #include "large_array.hpp"
+#include "parallel.hpp"
 
 namespace tinsmith {
 
@@ -16,8 +17,9 @@ struct Triangles {
   std::int32_t* neighbors;
 };
 
-// Writes into arrays of the caller's that are large enough, or into its own, which grow.
-class TriangleStore {
+// Writes into arrays of the caller's that are large enough, or into its own, which grow. Threads
+// have one each, on cache lines of its own.
+class alignas(kCacheLine) TriangleStore {
  public:
   explicit TriangleStore(Triangles enough) : arrays_(enough), capacity_(INT32_MAX) {}
   explicit TriangleStore(std::int64_t expected) { enlarge(expected); }

@@ -116,14 +116,13 @@ class Triangulator {
   void stitch(const PointGrid& grid, const std::vector<TriangleStore>& stores,
               const std::vector<std::int32_t>& last_shared) {
     if (stores.size() == 1) return number_by_rows();
-    std::vector<GrownPart> parts;
+    std::vector<GrownPart> parts(stores.size());
+    team_.run([&](int part) {
+      parts[part] = GrownPart(part_of(grid.count(), part, team_.size()), stores[part].arrays(),
+                              stores[part].size(), last_shared[part]);
+    });
     std::vector<std::int32_t> base{0};
-    for (int part = 0; part < team_.size(); ++part) {
-      const TriangleStore& store = stores[part];
-      parts.emplace_back(part_of(grid.count(), part, team_.size()), store.arrays(), store.size(),
-                         last_shared[part]);
-      base.push_back(base.back() + parts.back().kept());
-    }
+    for (const GrownPart& part : parts) base.push_back(base.back() + part.kept());
     team_.run([&](int part) {
       parts[part].write(base[part], result_.arrays(),
                         [this](std::int32_t position) { return number(rows_of_[position]); });
