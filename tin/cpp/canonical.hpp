@@ -5,72 +5,98 @@
 // counter-clockwise. A vertex that owns its whole star starts at its nearest neighbour.
 //
 // Triangles are dealt out to their owners by counting, in the order of the mesh, and put in order
-// within each owner: two or three at a time, in place. No walk about a vertex is needed.
+// within each owner, two or three at a time, where they lie. No walk about a vertex is needed.
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "ghost_mesh.hpp"
 #include "grid.hpp"
-#include "triangle_store.hpp"
-#include "large_array.hpp"
+#include "ids.hpp"
 #include "predicates.hpp"
+#include "scratch_array.hpp"
+#include "triangle_store.hpp"
 
 namespace tinsmith {
 
 class CanonicalOrder {
  public:
-  // Corners of the mesh are sweep numbers.
+  // Corners of the mesh are sweep numbers. Both must outlive the order.
   CanonicalOrder(const PointGrid& grid, const GhostMesh& mesh)
       : grid_(grid),
         triangles_(mesh.triangles.get()),
         count_(mesh.count),
-        number_of_(large_array<std::int32_t>(mesh.count)),
+        number_of_(scratch_array<std::int32_t>(mesh.count)),
         end_of_(grid.count() + std::size_t{1}) {}
 
+  // `out` has room for all triangles but the ghosts. Returns false if `keep_going` did.
+  template <typename KeepGoing>
+  bool write(Triangles out, KeepGoing&& keep_going) {
+    corners_ = out.corners;
+    neighbors_ = out.neighbors;
+    const auto triangles = static_cast<std::int64_t>(count_);
+    if (!in_blocks(triangles, keep_going, &CanonicalOrder::count_owned)) return false;
+    begins_from_counts();
+    return in_blocks(triangles, keep_going, &CanonicalOrder::deal) &&
+           in_blocks(grid_.count(), keep_going, &CanonicalOrder::order_stars) &&
+           in_blocks(triangles, keep_going, &CanonicalOrder::write_neighbors);
+  }
   void write(Triangles out) {
     write(out, [] { return true; });
   }
 
-  // Returns false if `keep_going` did.
+ private:
+  struct Ray {  // a triangle of the star in hand, without the vertex that owns it
+    std::int32_t from, to;
+    std::int32_t triangle;
+    std::int32_t next;  // the ray that starts at `to`
+    bool is_start;      // no ray ends at `from`
+  };
+  static constexpr std::int32_t kNoRay = -1;
+  static constexpr std::int32_t kFewRays = 12;  // so few are compared all with all
+
   template <typename KeepGoing>
-  bool write(Triangles out, KeepGoing&& keep_going) {
-    count_owned(keep_going);
-    deal(out);
-    order_stars(out);
-    write_neighbors(out);
+  bool in_blocks(std::int64_t count, KeepGoing&& keep_going,
+                 void (CanonicalOrder::*work)(std::int64_t, std::int64_t)) {
+    constexpr std::int64_t kBlock = 65536;  // a few milliseconds
+    for (std::int64_t begin = 0; begin < count; begin += kBlock) {
+      if (!keep_going()) return false;
+      (this->*work)(begin, std::min(begin + kBlock, count));
+    }
     return true;
   }
 
- private:
   // Place of the first vertex of the sweep, or of the ghost.
-  static std::uint32_t first_place(const GhostTriangle& t) {
-    const bool is_second = t.corner[1] < t.corner[0];
-    const std::int32_t lower = is_second ? t.corner[1] : t.corner[0];
-    return t.corner[2] < lower ? 2 : is_second;
+  static std::uint32_t first_place(const GhostTriangle& triangle) {
+    const bool is_second = triangle.corner[1] < triangle.corner[0];
+    const std::int32_t first = triangle.corner[is_second];
+    return triangle.corner[2] < first ? 2 : is_second;
   }
 
-  template <typename K>
-  void count_owned(K&&) {
-    std::int32_t* const counts = end_of_.data();
-    for (std::uint32_t t = 0; t < count_; ++t) {
-      const GhostTriangle& triangle = triangles_[t];
-      const std::int32_t owner = std::min({triangle.corner[0], triangle.corner[1], triangle.corner[2]});
-      ++counts[owner + 1];  // ghosts in front
+  // One place on from its owner, so that the ghost's are counted in front.
+  void count_owned(std::int64_t begin, std::int64_t end) {
+    for (std::int64_t t = begin; t < end; ++t) {
+      const auto& corner = triangles_[t].corner;
+      ++end_of_[std::min({corner[0], corner[1], corner[2]}) + 1];
     }
+  }
+
+  // Dealing out turns the begins into ends.
+  void begins_from_counts() {
+    end_of_[0] = 0;
     std::int32_t total = 0;
-    counts[0] = 0;
-    for (auto& end : end_of_) {
+    for (std::int32_t& end : end_of_) {
       const std::int32_t size = end;
-      end = total;  // the begin, until all are dealt out
+      end = total;
       total += size;
     }
   }
 
-  void deal(Triangles out) {
-    for (std::uint32_t t = 0; t < count_; ++t) {
+  void deal(std::int64_t begin, std::int64_t end) {
+    for (std::int64_t t = begin; t < end; ++t) {
       const GhostTriangle& triangle = triangles_[t];
       const std::uint32_t place = first_place(triangle);
       const std::int32_t owner = triangle.corner[place];
@@ -79,86 +105,125 @@ class CanonicalOrder {
         continue;
       }
       const std::int32_t at = end_of_[owner + 1]++;
-      std::int32_t* const corner = out.corners + 3 * static_cast<std::int64_t>(at);
+      std::int32_t* const corner = corners_ + std::int64_t{3} * at;
       corner[0] = owner;
       corner[1] = triangle.corner[place_after(place)];
       corner[2] = triangle.corner[place_before(place)];
-      out.neighbors[at] = static_cast<std::int32_t>(t);
+      neighbors_[at] = static_cast<std::int32_t>(t);  // for the time being
     }
   }
 
-  struct Ray { std::int32_t from, to, triangle, next; bool is_start; };
-
-  void order_stars(Triangles out) {
-    std::int32_t begin = 0;
-    const std::int32_t* const triangle = out.neighbors;
-    for (std::int32_t v = 0; v < grid_.count(); ++v) {
-      const std::int32_t end = end_of_[v + 1];
-      std::int32_t* const corner = out.corners + 3 * static_cast<std::int64_t>(begin);
-      if (end - begin == 1) {
-        number_of_[triangle[begin]] = begin;
-      } else if (end - begin == 2) {
-        const std::int32_t f0 = corner[1], t0 = corner[2], f1 = corner[4], t1 = corner[5];
-        const bool swap = t1 == f0 || (t0 != f1 && f1 < f0);
-        corner[1] = swap ? f1 : f0;
-        corner[2] = swap ? t1 : t0;
-        corner[4] = swap ? f0 : f1;
-        corner[5] = swap ? t0 : t1;
-        number_of_[triangle[begin]] = begin + swap;
-        number_of_[triangle[begin + 1]] = begin + 1 - swap;
-      } else if (end - begin > 2) {
-        order_star(v, begin, end, out);
+  void order_stars(std::int64_t first, std::int64_t end) {
+    std::int32_t begin = end_of_[first];  // the end of the vertex before
+    for (std::int64_t v = first; v < end; ++v) {
+      const std::int32_t after = end_of_[v + 1];
+      const std::int32_t owned = after - begin;
+      if (owned == 1) {
+        number_of_[neighbors_[begin]] = begin;
+      } else if (owned == 2) {
+        order_two(begin);
+      } else if (owned > 2) {
+        order_star(static_cast<Vertex>(v), begin, after);
       }
-      begin = end;
+      begin = after;
     }
   }
 
-  void order_star(std::int32_t v, std::int32_t begin, std::int32_t end, Triangles out) {
+  // In one sector, or each in its own: two triangles are no whole star.
+  void order_two(std::int32_t begin) {
+    std::int32_t* const corner = corners_ + std::int64_t{3} * begin;
+    const std::int32_t from = corner[1], to = corner[2];
+    const std::int32_t other_from = corner[4], other_to = corner[5];
+    const bool is_swapped = other_to == from || (to != other_from && other_from < from);
+    corner[1] = is_swapped ? other_from : from;
+    corner[2] = is_swapped ? other_to : to;
+    corner[4] = is_swapped ? from : other_from;
+    corner[5] = is_swapped ? to : other_to;
+    number_of_[neighbors_[begin]] = begin + is_swapped;
+    number_of_[neighbors_[begin + 1]] = begin + !is_swapped;
+  }
+
+  void order_star(Vertex v, std::int32_t begin, std::int32_t end) {
     rays_.clear();
     for (std::int32_t i = begin; i < end; ++i) {
-      rays_.push_back({out.corners[3 * static_cast<std::int64_t>(i) + 1], out.corners[3 * static_cast<std::int64_t>(i) + 2], out.neighbors[i], -1, true});
+      const std::int32_t* const corner = corners_ + std::int64_t{3} * i;
+      rays_.push_back({corner[1], corner[2], neighbors_[i], kNoRay, true});
     }
-    std::sort(rays_.begin(), rays_.end(), [](const Ray& a, const Ray& b) { return a.from < b.from; });
-    bool any = false;
-    for (auto& ray : rays_) {
-      auto it = std::lower_bound(rays_.begin(), rays_.end(), ray.to, [](const Ray& a, std::int32_t to) { return a.from < to; });
-      if (it != rays_.end() && it->from == ray.to) { it->is_start = false; ray.next = static_cast<std::int32_t>(it - rays_.begin()); }
+    if (end - begin <= kFewRays) {
+      link_few_rays();
+    } else {
+      link_many_rays();
     }
-    for (std::int32_t i = 0; i < static_cast<std::int32_t>(rays_.size()); ++i) {
-      if (rays_[i].is_start) { begin = emit(i, begin, out); any = true; }
+    starts_.clear();
+    for (std::int32_t i = 0; i < end - begin; ++i) {
+      if (rays_[i].is_start) starts_.push_back(i);
     }
-    if (!any) emit(nearest_start(v), begin, out);
+    if (starts_.empty()) starts_.push_back(nearest_ray(v));
+    std::sort(starts_.begin(), starts_.end(), [this](std::int32_t a, std::int32_t b) {
+      return rays_[a].from < rays_[b].from;
+    });
+    for (const std::int32_t start : starts_) begin = number_sector(start, begin);
   }
 
-  std::int32_t emit(std::int32_t start, std::int32_t at, Triangles out) {
+  void link(Ray& ray, std::int32_t next) {
+    ray.next = next;
+    if (next != kNoRay) rays_[next].is_start = false;
+  }
+
+  void link_few_rays() {
+    for (Ray& ray : rays_) {
+      std::int32_t next = kNoRay;
+      for (std::size_t i = 0; i < rays_.size(); ++i) {
+        next = rays_[i].from == ray.to ? static_cast<std::int32_t>(i) : next;
+      }
+      link(ray, next);
+    }
+  }
+
+  void link_many_rays() {
+    std::sort(rays_.begin(), rays_.end(),
+              [](const Ray& a, const Ray& b) { return a.from < b.from; });
+    for (Ray& ray : rays_) {
+      const auto found =
+          std::lower_bound(rays_.begin(), rays_.end(), ray.to,
+                           [](const Ray& other, std::int32_t to) { return other.from < to; });
+      const bool is_found = found != rays_.end() && found->from == ray.to;
+      link(ray, is_found ? static_cast<std::int32_t>(found - rays_.begin()) : kNoRay);
+    }
+  }
+
+  std::int32_t nearest_ray(Vertex v) const {
+    const Point center = grid_.point(v);
+    const auto is_nearer = [&](const Ray& a, const Ray& b) {
+      const int order = compare_distances(center, grid_.point(static_cast<Vertex>(a.from)),
+                                          grid_.point(static_cast<Vertex>(b.from)));
+      return order < 0 || (order == 0 && a.from < b.from);
+    };
+    const auto nearest = std::min_element(rays_.begin(), rays_.end(), is_nearer);
+    return static_cast<std::int32_t>(nearest - rays_.begin());
+  }
+
+  // Returns the number after the sector's last.
+  std::int32_t number_sector(std::int32_t start, std::int32_t number) {
     std::int32_t i = start;
     do {
-      out.corners[3 * static_cast<std::int64_t>(at) + 1] = rays_[i].from;
-      out.corners[3 * static_cast<std::int64_t>(at) + 2] = rays_[i].to;
-      number_of_[rays_[i].triangle] = at++;
-      i = rays_[i].next;
-    } while (i >= 0 && i != start);
-    return at;
+      const Ray& ray = rays_[i];
+      std::int32_t* const corner = corners_ + std::int64_t{3} * number;
+      corner[1] = ray.from;
+      corner[2] = ray.to;
+      number_of_[ray.triangle] = number++;
+      i = ray.next;
+    } while (i != kNoRay && i != start);
+    return number;
   }
 
-  std::int32_t nearest_start(std::int32_t v) const {
-    const auto place = [this](std::int32_t u) { return grid_.point(static_cast<Vertex>(u)); };
-    std::int32_t best = 0;
-    for (std::int32_t i = 1; i < static_cast<std::int32_t>(rays_.size()); ++i) {
-      const int order = compare_distances(place(v), place(rays_[i].from), place(rays_[best].from));
-      if (order < 0 || (order == 0 && rays_[i].from < rays_[best].from)) best = i;
-    }
-    return best;
-  }
-
-  void write_neighbors(Triangles out) const {
+  void write_neighbors(std::int64_t begin, std::int64_t end) {
     const std::int32_t* const number_of = number_of_.get();
-    for (std::uint32_t t = 0; t < count_; ++t) {
-      const std::int32_t number = number_of[t];
-      if (number == kNoNeighbor) continue;
+    for (std::int64_t t = begin; t < end; ++t) {
+      if (number_of[t] == kNoNeighbor) continue;
       const GhostTriangle& triangle = triangles_[t];
       const std::uint32_t place = first_place(triangle);
-      std::int32_t* const neighbor = out.neighbors + 3 * static_cast<std::int64_t>(number);
+      std::int32_t* const neighbor = neighbors_ + std::int64_t{3} * number_of[t];
       neighbor[0] = number_of[triangle_of(triangle.twin[place])];
       neighbor[1] = number_of[triangle_of(triangle.twin[place_after(place)])];
       neighbor[2] = number_of[triangle_of(triangle.twin[place_before(place)])];
@@ -168,9 +233,12 @@ class CanonicalOrder {
   const PointGrid& grid_;
   const GhostTriangle* triangles_;
   std::uint32_t count_;
-  LargeArray<std::int32_t> number_of_;  // of each triangle of the mesh; ghosts have none
-  std::vector<std::int32_t> end_of_;
+  ScratchArray<std::int32_t> number_of_;  // of each triangle of the mesh; ghosts have none
+  std::vector<std::int32_t> end_of_;    // of each owner's triangles, the ghost's in front
+  std::int32_t* corners_ = nullptr;
+  std::int32_t* neighbors_ = nullptr;
   std::vector<Ray> rays_;
+  std::vector<std::int32_t> starts_;
 };
 
 }  // namespace tinsmith

@@ -1,7 +1,7 @@
 // A triangulation closed to a sphere, so that insertion needs no special case at the hull.
 //
 // One ghost vertex stands outside; a ghost triangle joins it to every hull edge, and its circle is
-// the open half-plane beyond that edge. n points make 2n - 4 + 2 triangles, ghosts included.
+// the open half-plane beyond that edge. n points make 2n - 2 triangles, ghosts included.
 //
 // Six numbers a triangle, together in memory: a step of a walk touches one place.
 //
@@ -14,7 +14,7 @@
 
 #include <cstdint>
 
-#include "large_array.hpp"
+#include "scratch_array.hpp"
 
 namespace tinsmith {
 
@@ -27,7 +27,7 @@ struct GhostTriangle {
 };
 
 struct GhostMesh {
-  LargeArray<GhostTriangle> triangles;
+  ScratchArray<GhostTriangle> triangles;
   std::uint32_t count = 0;
 };
 

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <utility>
@@ -17,8 +18,8 @@
 #include "grid.hpp"
 #include "ids.hpp"
 #include "insertion_order.hpp"
-#include "large_array.hpp"
 #include "predicates.hpp"
+#include "scratch_array.hpp"
 #include "spatial_order.hpp"
 
 namespace tinsmith {
@@ -27,13 +28,17 @@ class Insertion {
  public:
   // The points must not all be collinear.
   explicit Insertion(const PointGrid& grid)
-      : grid_(grid), count_(grid.count()), sweep_of_(count_ + std::size_t{1}), points_(count_ + std::size_t{1}) {}
+      : grid_(grid),
+        count_(grid.count()),
+        sweep_of_(count_ + std::size_t{1}),
+        points_(count_ + std::size_t{1}) {}
 
   // Returns false if `keep_going` did.
   template <typename KeepGoing>
   bool run(KeepGoing&& keep_going) {
     if (!keep_going()) return false;
     put_in_order();
+    if (!keep_going()) return false;
     start();
     const bool is_complete = insert_all(keep_going);
     if (is_complete) number_by_sweep();
@@ -47,14 +52,14 @@ class Insertion {
   template <typename T>
   class WithGhost {
    public:
-    explicit WithGhost(std::size_t count) : values_(large_array<T>(count)) {}
+    explicit WithGhost(std::size_t count) : values_(scratch_array<T>(count)) {}
     T& operator[](std::int32_t vertex) { return begin()[vertex]; }
     const T& operator[](std::int32_t vertex) const { return begin()[vertex]; }
     T* begin() const { return values_.get() + 1; }
     void release() { values_.reset(); }
 
    private:
-    LargeArray<T> values_;
+    ScratchArray<T> values_;
   };
 
   void put_in_order() {
@@ -77,7 +82,7 @@ class Insertion {
     swap_points(2, third);
     const bool is_left = orientation(points_[0], points_[1], points_[2]) > 0;
     const std::int32_t a = 0, b = is_left ? 1 : 2, c = is_left ? 2 : 1;
-    mesh_.triangles = large_array<GhostTriangle>(2 * static_cast<std::size_t>(count_) - 2);
+    mesh_.triangles = scratch_array<GhostTriangle>(2 * static_cast<std::size_t>(count_) - 2);
     mesh_.triangles[0] = {{a, b, c}, {mesh_edge(1, 0), mesh_edge(2, 0), mesh_edge(3, 0)}};
     mesh_.triangles[1] = {{kGhost, c, b}, {mesh_edge(0, 0), mesh_edge(3, 2), mesh_edge(2, 1)}};
     mesh_.triangles[2] = {{kGhost, a, c}, {mesh_edge(0, 1), mesh_edge(1, 2), mesh_edge(3, 1)}};

@@ -4,11 +4,12 @@
 // triangulation grown from one side has long, thin triangles at its front, and in the worst case
 // all of them change again and again. So the points come in rounds, a sample of one point in
 // eight (chosen at random among eight neighbours on the curve) before the others, a sample of the
-// sample before that, and so on: expected work a point is constant for every distribution.
+// sample before that, and so on: as in a random order, the expected work a point is constant.
 //
-//      curve      o o o o o o o o   o o o o o o o o   o o o o o o o o   ...
-//      round 0    o o o o   o o o   o   o o o o o o   o o o o o o o     ...    the last, most points
-//      round 1            o           o                             o   ...
+//      on the curve     o o o o o o o o  o o o o o o o o  o o o o o o o o  ...
+//      last round       o o o   o o o o  o o o o o o   o    o o o o o o o  ...
+//      round before           o                              o             ...
+//      earlier still                                  o                    ...
 //
 // A point's place on the curve is its number while inserting: neighbours in the plane are near
 // in memory, whatever round they come in.
@@ -53,9 +54,9 @@ class InsertionRounds {
 
   // The member of a block that comes in an earlier round, by a multiplicative hash.
   static std::uint32_t chosen(int round, std::uint32_t block) {
-    constexpr std::uint32_t kGolden = 0x9E3779B9u;  // 2^32 over the golden ratio
+    constexpr std::uint32_t kGolden = 0x9E3779B9u;     // 2^32 over the golden ratio
     constexpr std::uint32_t kRoundStep = 0x85EBCA6Bu;  // any odd number: each round chooses anew
-    const std::uint32_t hash = (block + 1) * kGolden + static_cast<std::uint32_t>(round) * kRoundStep;
+    const std::uint32_t hash = block * kGolden + static_cast<std::uint32_t>(round) * kRoundStep;
     return block * kBlock + (hash >> (32 - kBlockBits));
   }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "predicates.hpp"
+#include "scratch_array.hpp"
 
 namespace tinsmith {
 
@@ -71,7 +72,8 @@ class SpatialOrder {
       : SpatialOrder(count, [places](std::int32_t i) { return places[i]; }) {}
 
   template <typename PlaceOf>
-  SpatialOrder(std::int32_t count, PlaceOf&& place_of) : entries_(count), spare_(count) {
+  SpatialOrder(std::int32_t count, PlaceOf&& place_of)
+      : count_(count), entries_(scratch_array<Entry>(count)), spare_(scratch_array<Entry>(count)) {
     for (std::int32_t i = 0; i < count; ++i) entries_[i].item = i;
     crowded_.push_back({0, count});
     while (!crowded_.empty()) {
@@ -81,11 +83,12 @@ class SpatialOrder {
       sort(range);
       list_crowded(range);
     }
+    spare_.reset();
   }
 
   std::vector<std::int32_t> take() {
-    std::vector<std::int32_t> order(entries_.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = entries_[i].item;
+    std::vector<std::int32_t> order(count_);
+    for (std::int32_t i = 0; i < count_; ++i) order[i] = entries_[i].item;
     return order;
   }
   std::int32_t operator[](std::int32_t i) const { return entries_[i].item; }
@@ -103,8 +106,8 @@ class SpatialOrder {
 
   static constexpr std::int32_t kCrowd = 16;
   static constexpr std::int32_t kShort = 256;  // ranges that are sorted by comparing
-  static constexpr int kDigitBits = 11;        // two digits at a million places
-  static constexpr int kCellsPerPlace = 4;
+  static constexpr int kDigitBits = 11;       // so many counters fit the first-level cache
+  static constexpr int kCellsPerPlace = 16;  // crowds along lines need many cells
 
   // False if all places are at one place.
   template <typename PlaceOf>
@@ -125,8 +128,9 @@ class SpatialOrder {
     const int dropped = 2 * HilbertCurve::kBits - position_bits(range.size());
     for (std::int32_t i = range.begin; i < range.end; ++i) {
       const Point p = place_of(entries_[i].item);
-      entries_[i].position =
-          kHilbertCurve.position(cell((p.x - west) * per_cell), cell((p.y - south) * per_cell)) >> dropped;
+      const std::uint32_t column = cell((p.x - west) * per_cell);
+      const std::uint32_t row = cell((p.y - south) * per_cell);
+      entries_[i].position = kHilbertCurve.position(column, row) >> dropped;
     }
     return true;
   }
@@ -137,7 +141,7 @@ class SpatialOrder {
     return place < kLast ? static_cast<std::uint32_t>(place) : kLast;
   }
 
-  // Finer cells than kCellsPerPlace, as many as fill the digits.
+  // At least kCellsPerPlace, and as many as fill the digits.
   static int position_bits(std::int32_t count) {
     if (count <= kShort) return 2 * HilbertCurve::kBits;
     int bits = kDigitBits;
@@ -150,7 +154,7 @@ class SpatialOrder {
 
   void sort(Range range) {
     if (range.size() <= kShort) {
-      std::sort(entries_.begin() + range.begin, entries_.begin() + range.end,
+      std::sort(entries_.get() + range.begin, entries_.get() + range.end,
                 [](const Entry& a, const Entry& b) { return a.position < b.position; });
       return;
     }
@@ -169,11 +173,11 @@ class SpatialOrder {
     for (std::int32_t i = range.begin; i < range.end; ++i) {
       spare_[start[digit(entries_[i])]++] = entries_[i];
     }
-    if (range.size() == static_cast<std::int32_t>(entries_.size())) {
+    if (range.size() == count_) {
       entries_.swap(spare_);
     } else {
-      std::copy(spare_.begin() + range.begin, spare_.begin() + range.end,
-                entries_.begin() + range.begin);
+      std::copy(spare_.get() + range.begin, spare_.get() + range.end,
+                entries_.get() + range.begin);
     }
   }
 
@@ -186,7 +190,8 @@ class SpatialOrder {
     }
   }
 
-  std::vector<Entry> entries_, spare_;
+  std::int32_t count_;
+  ScratchArray<Entry> entries_, spare_;
   std::vector<Range> crowded_;
 };
 

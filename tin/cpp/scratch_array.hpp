@@ -1,0 +1,57 @@
+// Scratch arrays of many megabytes: in large pages, and the system's again as soon as they are
+// freed.
+//
+// malloc keeps what is freed, and the next stage's arrays come on top of it: the stages of
+// insertion, which use all their memory but once, would hold a quarter more at the peak. And what
+// malloc hands out again lies in small pages, which costs the stages that jump about a tenth.
+#pragma once
+
+#include <cstddef>
+#include <cstdlib>
+#include <memory>
+#include <new>
+#include <type_traits>
+#if defined(__linux__)
+#include <sys/mman.h>
+#endif
+
+namespace tinsmith {
+
+struct ReleaseMemory {
+  std::size_t mapped_bytes = 0;  // 0 if the memory is malloc's
+
+  void operator()(void* memory) const {
+#if defined(__linux__)
+    if (mapped_bytes > 0) {
+      munmap(memory, mapped_bytes);
+      return;
+    }
+#endif
+    std::free(memory);
+  }
+};
+
+// Plain values, not initialised.
+template <typename T>
+using ScratchArray = std::unique_ptr<T[], ReleaseMemory>;
+
+template <typename T>
+ScratchArray<T> scratch_array(std::size_t count) {
+  static_assert(std::is_trivially_destructible_v<T>);
+  const std::size_t size = count * sizeof(T);
+#if defined(__linux__)
+  constexpr std::size_t kWorthMapping = std::size_t{4} << 20;  // holds a large page for certain
+  if (size >= kWorthMapping) {
+    void* const memory =
+        mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (memory == MAP_FAILED) throw std::bad_alloc();
+    madvise(memory, size, MADV_HUGEPAGE);  // a wish: refusal does no harm
+    return ScratchArray<T>(static_cast<T*>(memory), ReleaseMemory{size});
+  }
+#endif
+  void* const memory = std::malloc(size > 0 ? size : 1);
+  if (memory == nullptr) throw std::bad_alloc();
+  return ScratchArray<T>(static_cast<T*>(memory));
+}
+
+}  // namespace tinsmith
