@@ -9,16 +9,12 @@ import scipy.spatial
 import triangle as triangle_library
 from hypothesis import given
 from hypothesis import strategies as st
+from kernel_ways import require_same_growth, with_heights
 
 import tinsmith as ts
 from tinsmith.tin import _kernel, check, topology
 
 UTM_CORNER = np.array([500_000.0, 4_000_000.0])
-
-
-def with_heights(xy):
-    xy = np.asarray(xy, float)
-    return np.column_stack([xy, np.arange(len(xy))])
 
 
 def grown(xy):
@@ -49,14 +45,6 @@ def require_same_by_every_way(xy):
     ways += [{"method": _kernel.Method.GROWTH, "path": path} for path in _kernel.VECTOR_PATHS]
     for way in ways:
         require_same_growth(_kernel.grow(points, **way), wanted)
-
-
-def require_same_growth(found, wanted):
-    np.testing.assert_array_equal(found.triangles, wanted.triangles)
-    np.testing.assert_array_equal(found.neighbors, wanted.neighbors)
-    assert (found.kept_row is None) == (wanted.kept_row is None)
-    if wanted.kept_row is not None:
-        np.testing.assert_array_equal(found.kept_row, wanted.kept_row)
 
 
 # ------------------------------------------------------------------ brute force
