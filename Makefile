@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
-CORE := $(wildcard tin/cpp/*)
+CORE := $(wildcard tin/cpp/* tin/cpp/*/*)
 TREE := build/typing
 
 # Pins reach the isolated build of the core too.

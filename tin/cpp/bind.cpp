@@ -13,11 +13,11 @@
 #include <string>
 #include <tuple>
 
-#include "cleaning.hpp"
-#include "large_array.hpp"
-#include "locate.hpp"
-#include "predicates.hpp"
-#include "snapping.hpp"
+#include "base/large_array.hpp"
+#include "location/locate.hpp"
+#include "points/cleaning.hpp"
+#include "points/snapping.hpp"
+#include "predicates/predicates.hpp"
 #include "triangulation.hpp"
 
 namespace nb = nanobind;

@@ -8,16 +8,16 @@
 #include <utility>
 #include <vector>
 
-#include "canonical.hpp"
-#include "grid.hpp"
-#include "growth.hpp"
-#include "hull.hpp"
-#include "ids.hpp"
-#include "insertion.hpp"
-#include "large_array.hpp"
-#include "parallel.hpp"
-#include "stitch.hpp"
-#include "vector_paths.hpp"
+#include "base/ids.hpp"
+#include "base/large_array.hpp"
+#include "base/parallel.hpp"
+#include "growth/growth.hpp"
+#include "growth/stitch.hpp"
+#include "hull/hull.hpp"
+#include "index/grid.hpp"
+#include "insertion/canonical.hpp"
+#include "insertion/insertion.hpp"
+#include "search/vector_paths.hpp"
 
 namespace tinsmith {
 
@@ -132,8 +132,9 @@ class Triangulator {
 
   void insert_all(const PointGrid& grid) {
     Insertion insertion(grid);
-    if (!insertion.run([this] { return team_.keeps_going(0); })) return;
-    CanonicalOrder(grid, insertion.mesh()).write(result_.arrays());
+    const auto keep_going = [this] { return team_.keeps_going(0); };
+    if (!insertion.run(keep_going)) return;
+    if (!CanonicalOrder(grid, insertion.mesh()).write(result_.arrays(), keep_going)) return;
     number_by_rows();
   }
 

@@ -18,8 +18,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "../predicates/predicates.hpp"
 #include "ghost_mesh.hpp"
-#include "predicates.hpp"
 
 #if defined(__GNUC__)
 #define TINSMITH_RARE __attribute__((noinline, cold))

@@ -1,8 +1,7 @@
 // Arrays of many megabytes, in large pages where the system offers them.
 //
-// Insertion and canonical order jump about in their arrays. With pages of 4 KiB each jump misses
-// the address cache, and the system clears a page at a time at the first touch; with pages of
-// 2 MiB both costs all but vanish.
+// Building the index jumps about in its arrays. With pages of 4 KiB each jump misses the address
+// cache; with pages of 2 MiB hardly one does.
 #pragma once
 
 #include <cstddef>

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "predicates.hpp"
-#include "scratch_array.hpp"
+#include "../base/scratch_array.hpp"
+#include "../predicates/predicates.hpp"
 
 namespace tinsmith {
 

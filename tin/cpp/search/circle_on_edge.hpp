@@ -13,8 +13,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "grid.hpp"
-#include "predicates.hpp"
+#include "../index/grid.hpp"
+#include "../predicates/predicates.hpp"
 
 namespace tinsmith {
 

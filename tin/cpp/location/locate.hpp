@@ -14,11 +14,11 @@
 #include <limits>
 #include <vector>
 
+#include "../base/ids.hpp"
+#include "../index/spatial_order.hpp"
+#include "../predicates/expansion.hpp"
+#include "../predicates/predicates.hpp"
 #include "box_tree.hpp"
-#include "expansion.hpp"
-#include "ids.hpp"
-#include "predicates.hpp"
-#include "spatial_order.hpp"
 
 namespace tinsmith {
 

@@ -13,12 +13,12 @@
 #include <cstdint>
 #include <vector>
 
+#include "../base/ids.hpp"
+#include "../base/scratch_array.hpp"
+#include "../growth/triangle_store.hpp"
+#include "../index/grid.hpp"
+#include "../predicates/predicates.hpp"
 #include "ghost_mesh.hpp"
-#include "grid.hpp"
-#include "ids.hpp"
-#include "predicates.hpp"
-#include "scratch_array.hpp"
-#include "triangle_store.hpp"
 
 namespace tinsmith {
 

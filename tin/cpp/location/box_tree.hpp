@@ -10,7 +10,7 @@
 #include <limits>
 #include <vector>
 
-#include "predicates.hpp"
+#include "../predicates/predicates.hpp"
 
 namespace tinsmith {
 

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <vector>
 
-#include "grid.hpp"
-#include "ids.hpp"
-#include "parallel.hpp"
-#include "predicates.hpp"
+#include "../base/ids.hpp"
+#include "../base/parallel.hpp"
+#include "../index/grid.hpp"
+#include "../predicates/predicates.hpp"
 
 namespace tinsmith {
 

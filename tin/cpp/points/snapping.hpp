@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "grid.hpp"
-#include "predicates.hpp"
+#include "../index/grid.hpp"
+#include "../predicates/predicates.hpp"
 
 namespace tinsmith {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "parallel.hpp"
-#include "predicates.hpp"
+#include "../base/parallel.hpp"
+#include "../predicates/predicates.hpp"
 
 namespace tinsmith {
 

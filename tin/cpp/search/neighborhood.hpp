@@ -8,7 +8,7 @@
 //           v . .|  . | .  |        edge, does not leave the cells.
 //           +----+----+----+
 //
-// Without the proof the search goes on over the whole index (search.hpp). On even data 98 of 100
+// Without the proof the search goes on over the whole index (full_search.hpp). On even data 98 of 100
 // searches end here.
 #pragma once
 
@@ -16,10 +16,10 @@
 #include <cmath>
 #include <cstdint>
 
+#include "../base/parallel.hpp"
+#include "../index/grid.hpp"
+#include "../predicates/predicates.hpp"
 #include "circle_on_edge.hpp"
-#include "grid.hpp"
-#include "parallel.hpp"
-#include "predicates.hpp"
 #include "search_counts.hpp"
 
 namespace tinsmith {

@@ -19,10 +19,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "ids.hpp"
-#include "large_array.hpp"
-#include "parallel.hpp"
-#include "predicates.hpp"
+#include "../base/ids.hpp"
+#include "../base/large_array.hpp"
+#include "../base/parallel.hpp"
+#include "../predicates/predicates.hpp"
 
 namespace tinsmith {
 

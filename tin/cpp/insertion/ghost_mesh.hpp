@@ -14,7 +14,7 @@
 
 #include <cstdint>
 
-#include "scratch_array.hpp"
+#include "../base/scratch_array.hpp"
 
 namespace tinsmith {
 

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <utility>
 
-#include "ids.hpp"
-#include "large_array.hpp"
-#include "parallel.hpp"
+#include "../base/ids.hpp"
+#include "../base/large_array.hpp"
+#include "../base/parallel.hpp"
 
 namespace tinsmith {
 

@@ -13,14 +13,14 @@
 #include <limits>
 #include <utility>
 
+#include "../base/ids.hpp"
+#include "../base/scratch_array.hpp"
+#include "../index/grid.hpp"
+#include "../index/spatial_order.hpp"
+#include "../predicates/predicates.hpp"
 #include "cavity.hpp"
 #include "ghost_mesh.hpp"
-#include "grid.hpp"
-#include "ids.hpp"
 #include "insertion_order.hpp"
-#include "predicates.hpp"
-#include "scratch_array.hpp"
-#include "spatial_order.hpp"
 
 namespace tinsmith {
 

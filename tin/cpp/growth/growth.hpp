@@ -21,12 +21,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "grid.hpp"
-#include "ids.hpp"
+#include "../base/ids.hpp"
+#include "../base/parallel.hpp"
+#include "../index/grid.hpp"
+#include "../search/full_search.hpp"
+#include "../search/search_counts.hpp"
 #include "open_edges.hpp"
-#include "parallel.hpp"
-#include "search.hpp"
-#include "search_counts.hpp"
 #include "triangle_store.hpp"
 
 namespace tinsmith {
@@ -56,11 +56,17 @@ class Growth {
   template <typename KeepGoing>
   Outcome run(KeepGoing&& keep_going, bool is_bounded) {
     constexpr std::int32_t kVerticesPerQuestion = 4096;
-    for (std::int32_t i = own_.begin; i < own_.end; ++i) {
-      const std::int32_t finished = i - own_.begin;
-      if (finished % kVerticesPerQuestion == 0 && !keep_going()) return Outcome::kStopped;
-      if (is_bounded && counts().work() > budget_at(finished)) return Outcome::kTooCostly;
-      finish(static_cast<Vertex>(i));
+    try {
+      for (std::int32_t i = own_.begin; i < own_.end; ++i) {
+        const std::int32_t finished = i - own_.begin;
+        if (finished % kVerticesPerQuestion == 0) {
+          if (!keep_going()) return Outcome::kStopped;
+          if (is_bounded) search_.allow(budget_at(finished));
+        }
+        finish(static_cast<Vertex>(i));
+      }
+    } catch (const SearchTooCostly&) {
+      return Outcome::kTooCostly;
     }
     return Outcome::kComplete;
   }

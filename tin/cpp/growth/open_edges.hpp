@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "ids.hpp"
-#include "parallel.hpp"
+#include "../base/ids.hpp"
+#include "../base/parallel.hpp"
 
 namespace tinsmith {
 

@@ -10,14 +10,17 @@
 #include <cstdint>
 #include <stdexcept>
 
+#include "../base/ids.hpp"
+#include "../base/parallel.hpp"
+#include "../index/grid.hpp"
+#include "../predicates/predicates.hpp"
 #include "circle_on_edge.hpp"
-#include "grid.hpp"
-#include "ids.hpp"
-#include "parallel.hpp"
-#include "predicates.hpp"
 #include "search_counts.hpp"
 
 namespace tinsmith {
+
+// Thrown by a search that passes the work allowed: a single one may look at every point.
+struct SearchTooCostly {};
 
 class ThirdPointSearch {
  public:
@@ -82,6 +85,9 @@ class ThirdPointSearch {
   }
 
   SearchCounts& counts() { return counts_; }
+
+  // Total work up to which searches go on.
+  void allow(std::int64_t work) { allowed_ = work; }
 
  private:
   // First disc: radius over half the edge, and over the cell.
@@ -207,6 +213,7 @@ class ThirdPointSearch {
     extend_reach(cap.box());
     const bool shrinks = cap.circle().radius > kLongInCells * cell_;
     for_each_run(cap, [&](std::int32_t begin, std::int32_t end) {
+      if (counts_.work() > allowed_) throw SearchTooCostly();
       const std::int32_t best_before = best_;
       counts_.candidates += end - begin;
       counts_.full_candidates += end - begin;
@@ -387,6 +394,7 @@ class ThirdPointSearch {
   double best_dot_ = 0.0, best_cross_ = 0.0;
 
   SearchCounts counts_;
+  std::int64_t allowed_ = INT64_MAX;
 };
 
 }  // namespace tinsmith

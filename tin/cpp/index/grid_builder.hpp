@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "../base/parallel.hpp"
 #include "grid.hpp"
-#include "parallel.hpp"
 
 namespace tinsmith {
 

@@ -10,8 +10,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "ids.hpp"
-#include "parallel.hpp"
+#include "../base/ids.hpp"
+#include "../base/parallel.hpp"
 #include "triangle_store.hpp"
 
 namespace tinsmith {
