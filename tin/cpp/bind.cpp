@@ -13,7 +13,7 @@
 #include <string>
 #include <tuple>
 
-#include "base/large_array.hpp"
+#include "base/arrays.hpp"
 #include "location/locate.hpp"
 #include "points/cleaning.hpp"
 #include "points/snapping.hpp"
@@ -34,7 +34,7 @@ using Heights = nb::ndarray<nb::numpy, double, nb::shape<-1>>;
 using Signs = nb::ndarray<nb::numpy, std::int8_t, nb::shape<-1>>;
 
 template <typename Array, typename T>
-Array hand_over(tinsmith::LargeArray<T> data, std::initializer_list<std::size_t> shape) {
+Array hand_over(tinsmith::StreamedArray<T> data, std::initializer_list<std::size_t> shape) {
   T* raw = data.release();
   nb::capsule owner(raw, [](void* p) noexcept { tinsmith::FreeMemory()(p); });
   return Array(raw, shape, owner);

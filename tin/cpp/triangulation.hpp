@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/ids.hpp"
-#include "base/large_array.hpp"
+#include "base/arrays.hpp"
 #include "base/parallel.hpp"
 #include "growth/growth.hpp"
 #include "growth/stitch.hpp"
@@ -31,8 +31,8 @@ struct Options {
 };
 
 struct Triangulation {
-  LargeArray<std::int32_t> corners;    // 3 a triangle, by vertex
-  LargeArray<std::int32_t> neighbors;  // 3 a triangle, kNoNeighbor outside
+  StreamedArray<std::int32_t> corners;    // 3 a triangle, by vertex
+  StreamedArray<std::int32_t> neighbors;  // 3 a triangle, kNoNeighbor outside
   std::int64_t triangle_count = 0;
   std::vector<std::int32_t> kept_row;  // empty if all rows are kept
   std::int64_t distinct_count = 0;
@@ -59,32 +59,42 @@ class Triangulator {
 
  private:
   void triangulate() {
-    const PointGrid grid(rows_, team_);
+    PointGrid grid(rows_, team_);
     if (!team_.keeps_going(0)) return;
     result_.kept_row = grid.kept_row();
     result_.distinct_count = grid.count();
     if (grid.count() < 3) return;
-    const std::vector<Vertex> hull = HullFinder(grid, team_).find();
+    std::vector<Vertex> hull = HullFinder(grid, team_).find();
     if (hull.empty() || !team_.keeps_going(0)) return;
     result_.triangle_count = triangle_count(grid.count(), static_cast<std::int64_t>(hull.size()));
-    result_.corners = streamed_array<std::int32_t>(3 * result_.triangle_count);
-    result_.neighbors = streamed_array<std::int32_t>(3 * result_.triangle_count);
-    build(grid, hull);
+    build(grid, std::move(hull));
   }
 
+  // With more of the points on the hull they lie on one curve, where every search sees them all.
+  static constexpr std::int32_t kMostOnHull = 4;  // one point in four
+  static constexpr std::int32_t kLeastToInsert = 1000;
+
   // Growth, or insertion where its searches cost too much.
-  void build(const PointGrid& grid, const std::vector<Vertex>& hull) {
+  void build(PointGrid& grid, std::vector<Vertex> hull) {
     rows_of_ = grid.rows();
-    const bool is_grown = options_.method != Method::kInsertion &&
+    const bool is_curve = static_cast<std::int32_t>(hull.size()) > grid.count() / kMostOnHull &&
+                          grid.count() > kLeastToInsert;
+    const bool is_worth_growing =
+        options_.method == Method::kGrowth ||
+        (options_.method == Method::kAutomatic && !is_curve);
+    const bool is_grown = is_worth_growing &&
                           with_path(options_.path, [&](auto tag) {
                             return grow<typename decltype(tag)::Type>(grid, hull);
                           });
-    if (!is_grown && !team_.is_stopped()) insert_all(grid);
+    if (is_grown || team_.is_stopped()) return;
+    hull = {};
+    insert_all(grid);
   }
 
   // Returns whether all triangles are made.
   template <typename Near>
   bool grow(const PointGrid& grid, const std::vector<Vertex>& hull) {
+    allocate();
     std::vector<TriangleStore> stores;
     stores.emplace_back(result_.arrays());
     for (int part = 1; part < team_.size(); ++part) {
@@ -130,10 +140,21 @@ class Triangulator {
     join_open_edges(parts, result_.arrays());
   }
 
-  void insert_all(const PointGrid& grid) {
-    Insertion insertion(grid);
+  void allocate() {
+    result_.corners = streamed_array<std::int32_t>(3 * result_.triangle_count);
+    result_.neighbors = streamed_array<std::int32_t>(3 * result_.triangle_count);
+  }
+
+  // All memory of the growth, and of what is not needed for this, is given back first.
+  void insert_all(PointGrid& grid) {
+    result_.corners.reset();
+    result_.neighbors.reset();
+    grid.drop_cells();
+    release_freed_memory();
     const auto keep_going = [this] { return team_.keeps_going(0); };
+    Insertion insertion(grid);
     if (!insertion.run(keep_going)) return;
+    allocate();
     if (!CanonicalOrder(grid, insertion.mesh()).write(result_.arrays(), keep_going)) return;
     number_by_rows();
   }

@@ -1,9 +1,11 @@
 // Open edges: those with one triangle, kept at their earlier vertex until the other is found.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
+#include "../base/arrays.hpp"
 #include "../base/ids.hpp"
 #include "../base/parallel.hpp"
 
@@ -18,7 +20,9 @@ struct WaitingEdge {
 // others, in order, come after them.
 class OpenEdges {
  public:
-  explicit OpenEdges(Range own) : own_(own), head_(own.size(), kUntouched) {}
+  explicit OpenEdges(Range own) : own_(own), head_(scratch_array<std::int32_t>(own.size())) {
+    std::fill_n(head_.get(), own.size(), kUntouched);
+  }
 
   // No edge has ever waited at v and no triangle has touched it.
   bool is_untouched(Vertex v) const { return head_[key(v)] == kUntouched; }
@@ -74,7 +78,7 @@ class OpenEdges {
   std::uint32_t key(Vertex v) const {
     return static_cast<std::uint32_t>(number(v)) - static_cast<std::uint32_t>(own_.begin);
   }
-  bool is_own(Vertex v) const { return key(v) < head_.size(); }
+  bool is_own(Vertex v) const { return key(v) < static_cast<std::uint32_t>(own_.size()); }
 
   static constexpr std::int32_t kEmpty = -1;
   static constexpr std::int32_t kUntouched = -2;
@@ -105,7 +109,7 @@ class OpenEdges {
   }
 
   Range own_;
-  std::vector<std::int32_t> head_;
+  ScratchArray<std::int32_t> head_;
   std::vector<Edge> edges_;
   std::int32_t free_ = -1;
 };

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "../base/ids.hpp"
-#include "../base/large_array.hpp"
+#include "../base/arrays.hpp"
 #include "../base/parallel.hpp"
 
 namespace tinsmith {
@@ -47,8 +47,8 @@ class alignas(kCacheLine) TriangleStore {
 
  private:
   void enlarge(std::int64_t capacity) {
-    LargeArray<std::int32_t> corners = streamed_array<std::int32_t>(3 * capacity);
-    LargeArray<std::int32_t> neighbors = streamed_array<std::int32_t>(3 * capacity);
+    StreamedArray<std::int32_t> corners = streamed_array<std::int32_t>(3 * capacity);
+    StreamedArray<std::int32_t> neighbors = streamed_array<std::int32_t>(3 * capacity);
     std::copy_n(arrays_.corners, 3 * static_cast<std::int64_t>(size_), corners.get());
     std::copy_n(arrays_.neighbors, 3 * static_cast<std::int64_t>(size_), neighbors.get());
     corners_ = std::move(corners);
@@ -57,7 +57,7 @@ class alignas(kCacheLine) TriangleStore {
     capacity_ = static_cast<std::int32_t>(capacity);
   }
 
-  LargeArray<std::int32_t> corners_, neighbors_;
+  StreamedArray<std::int32_t> corners_, neighbors_;
   Triangles arrays_{nullptr, nullptr};
   std::int32_t capacity_ = 0;
   std::int32_t size_ = 0;

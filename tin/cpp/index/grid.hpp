@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "../base/ids.hpp"
-#include "../base/large_array.hpp"
+#include "../base/arrays.hpp"
 #include "../base/parallel.hpp"
 #include "../predicates/predicates.hpp"
 
@@ -103,6 +103,15 @@ class PointGrid {
   const double* y() const { return y_.get(); }
   // The caller's row of each position; repeated rows are not counted.
   const Row* rows() const { return rows_.get(); }
+
+  // Keep the points and their order, and give up the cells: nothing can be searched any more.
+  void drop_cells() {
+    levels_ = {};
+    start_ = {};
+    child_row_ = {};
+    children_ = {};
+    spans_ = {};
+  }
 
   // For each input row the first row at its place; empty if no two rows share a place.
   const std::vector<std::int32_t>& kept_row() const { return kept_row_; }
@@ -227,8 +236,8 @@ class PointGrid {
   }
 
   std::int32_t count_ = 0;
-  LargeArray<double> x_, y_;
-  LargeArray<Row> rows_;
+  ScratchArray<double> x_, y_;
+  ScratchArray<Row> rows_;
   std::vector<Level> levels_;            // the first holds all points
   std::vector<std::int32_t> start_;      // of the cells of every level
   std::vector<std::int64_t> child_row_;  // for each row of a level with children: its first child

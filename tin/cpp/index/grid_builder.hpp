@@ -27,7 +27,7 @@ class GridBuilder {
     grid_.count_ = n;
     grid_.x_ = padded(n);
     grid_.y_ = padded(n);
-    grid_.rows_ = large_array<Row>(n);
+    grid_.rows_ = scratch_array<Row>(n);
     grid_.levels_.push_back(Level::fitted(box_of_rows(), 0, n, kPointsPerCell));
     if (!sort_into_cells() || !nest_top()) return;
     list_spans(0);
@@ -67,8 +67,8 @@ class GridBuilder {
     double squares = 0.0;                  // of the numbers of points in its cells, summed up
   };
 
-  static LargeArray<double> padded(std::int32_t n) {
-    LargeArray<double> values = large_array<double>(n + std::size_t{PointGrid::kPadding});
+  static ScratchArray<double> padded(std::int32_t n) {
+    ScratchArray<double> values = scratch_array<double>(n + std::size_t{PointGrid::kPadding});
     std::fill_n(values.get() + n, PointGrid::kPadding, 0.0);
     return values;
   }
@@ -98,7 +98,7 @@ class GridBuilder {
     bands_ = static_cast<std::int32_t>(((top.cell_count() - 1) >> band_shift_) + 1);
     grid_.start_.assign(top.cell_count() + 1, 0);
     grid_.start_.back() = grid_.count_;
-    entries_ = large_array<Entry>(rows_.count);
+    entries_ = streamed_array<Entry>(rows_.count);  // the output reuses its memory
     team_.run([this](int part) { count_bands(part); });
     const std::vector<std::int32_t> begins = begins_of_bands();
     team_.run([this](int part) { fill_bands(part); });
@@ -380,7 +380,7 @@ class GridBuilder {
   const PointRows& rows_;
   Team& team_;
   std::vector<Part> parts_;
-  LargeArray<Entry> entries_;  // by band
+  StreamedArray<Entry> entries_;  // by band
   int band_shift_ = 0;  // cell >> band_shift_ is the band
   std::int32_t bands_ = 1;
   std::int32_t crowded_ = kCrowdedIfEven;

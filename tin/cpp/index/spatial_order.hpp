@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "../base/scratch_array.hpp"
+#include "../base/arrays.hpp"
 #include "../predicates/predicates.hpp"
 
 namespace tinsmith {

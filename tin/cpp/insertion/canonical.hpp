@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "../base/ids.hpp"
-#include "../base/scratch_array.hpp"
+#include "../base/arrays.hpp"
 #include "../growth/triangle_store.hpp"
 #include "../index/grid.hpp"
 #include "../predicates/predicates.hpp"

@@ -14,7 +14,7 @@
 
 #include <cstdint>
 
-#include "../base/scratch_array.hpp"
+#include "../base/arrays.hpp"
 
 namespace tinsmith {
 

@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "../base/ids.hpp"
-#include "../base/scratch_array.hpp"
+#include "../base/arrays.hpp"
 #include "../index/grid.hpp"
 #include "../index/spatial_order.hpp"
 #include "../predicates/predicates.hpp"
