@@ -1,4 +1,4 @@
-"""Run the benchmarks: ``python -m benchmarks [kernel] [locate] [readers] [writers]``."""
+"""Run the benchmarks: ``python -m benchmarks [kernel] [ways] [locate] [readers] [writers]``."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ import shlex
 import sys
 from pathlib import Path
 
-from . import kernel, locate, readers, writers
+from . import kernel, locate, readers, ways, writers
 from .datasets import DATASETS
 from .machine import describe
 from .measure import Outcome
 from .report import write_report
 
-SECTIONS = (kernel.SECTION, locate.SECTION, readers.SECTION, writers.SECTION)
+SECTIONS = (kernel.SECTION, ways.SECTION, locate.SECTION, readers.SECTION, writers.SECTION)
 RESULTS = Path(__file__).parent / "results"
 LEAST_POINTS = 200
 
@@ -98,6 +98,8 @@ def _measured(section: str, given: argparse.Namespace) -> Outcome:
         chosen = [(name, size) for name, size in cases if not given.only or name in given.only]
         limit = given.limit or (40.0 if given.full else 5.0)
         return kernel.run(chosen, tools=given.tools, repeats=given.repeats, limit=limit)
+    if section == ways.SECTION:
+        return ways.run(n, repeats=given.repeats)
     if section == locate.SECTION:
         return locate.run(n, n, repeats=given.repeats)
     return {readers.SECTION: readers, writers.SECTION: writers}[section].run(

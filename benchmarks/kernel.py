@@ -26,15 +26,16 @@ from .cgal import CgalMissingError, harness
 from .datasets import DATASETS, dataset
 from .measure import OURS, SLOW_SECONDS, Outcome, Result, median
 from .tool_process import ToolFailedError, ToolProcess
-from .triangulators import CGAL, KERNEL, TOOLS
+from .triangulators import ALL_CORES, CGAL, KERNEL, KERNEL_ALL_CORES, TOOLS
 
-__all__ = ["ALL_TOOLS", "SECTION", "WORK", "available_tools", "default_cases", "run"]
+__all__ = ["ALL_TOOLS", "OUR_TOOLS", "SECTION", "WORK", "available_tools", "default_cases", "run"]
 
 SECTION = "kernel"
 WORK = "work"
 """Stands as tool in the rows that count work."""
 
-ALL_TOOLS = (OURS, KERNEL, CGAL, *(name for name in TOOLS if name not in (OURS, KERNEL)))
+OUR_TOOLS = (OURS, KERNEL, ALL_CORES, KERNEL_ALL_CORES)
+ALL_TOOLS = (*OUR_TOOLS, CGAL, *(name for name in TOOLS if name not in OUR_TOOLS))
 LARGEST_COMPARED = 1_000_000
 """Above this only the numbers of triangles are compared, and ours is checked to level 2."""
 
@@ -129,7 +130,7 @@ def _result(case: Case, tool: str, count: int, process: ToolProcess, found: Verd
     extra: dict[str, Any] = {"is_right": found.is_right}
     if process.growth is not None and process.seconds:
         extra["peak_bytes_per_point"] = process.growth / count
-        if tool in (OURS, KERNEL):
+        if tool in OUR_TOOLS:
             beyond = process.growth - process.output_bytes
             extra["beyond_output_bytes_per_point"] = beyond / count
     runs = tuple(process.seconds)

@@ -8,8 +8,9 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict
 from pathlib import Path
 
-from . import kernel, locate, readers, writers
+from . import kernel, locate, readers, ways, writers
 from .answers import AS_MANY, EQUAL
+from .goals import judged
 from .measure import OURS, Outcome, Result, is_installed
 from .triangulators import CGAL, KERNEL
 
@@ -22,10 +23,11 @@ LEAST_FOR_MEMORY = 50_000
 INTRODUCTION = """\
 # Benchmarks
 
-tinsmith beside the libraries that do the same, run in turn (A B C A B C) in one command on one
-core each; seconds are medians. **Every answer that is timed is compared**: ours is proved by
-`ts.check`, an exact peer's must be the same triangulation or one that differs only in how ties
-between cocircular points are broken, and what the others lose is said below the table.
+tinsmith beside the libraries that do the same, run in turn (A B C A B C) in one command, on one
+core each where nothing else is said; seconds are medians. **Every answer that is timed is
+compared**: ours is proved by `ts.check`, an exact peer's must be the same triangulation or one that
+differs only in how ties between cocircular points are broken, and what the others lose is said
+below the table.
 """
 HOW_TO_REPEAT = """\
 ## How to repeat this
@@ -112,7 +114,7 @@ def _of(results: Iterable[Result], section: str) -> list[Result]:
     return [result for result in results if result.section == section]
 
 
-TEXT_COLUMNS = ("data set, points", "task", "tool", "remark")
+TEXT_COLUMNS = ("data set, points", "task", "tool", "remark", "goal", "data set")
 
 
 def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
@@ -188,10 +190,26 @@ def _kernel(results: list[Result], has_plot: bool) -> str:
     if has_plot:
         parts.append(f"![Time per point of every tool on every data set]({NAME}.png)\n")
     parts.append(_times(rows, tools))
+    parts += goals_part(results)
     parts += ["### What the others lose, and how ties fall\n", _remarks(rows)]
     parts += ["### Memory\n", MEMORY_NOTES, _memory(rows, tools)]
     parts += ["### Work\n", WORK_NOTES, _work(rows)]
     return "\n".join(parts)
+
+
+GOALS_NOTES = """\
+The project's own goals for one thread at 1,000,000 points unless said otherwise, judged by the
+figures of this page. Each ratio is the least favourable of its data sets.
+"""
+
+
+def goals_part(results: list[Result]) -> list[str]:
+    """Return the page's part about goals; nothing where no goal can be judged."""
+    lines = judged(results)
+    if not lines:
+        return []
+    head = ["goal", "data set", "required", "aim", "reached", ""]
+    return ["### Required and reached\n", GOALS_NOTES, _table(head, lines)]
 
 
 def _times(rows: list[_KernelRow], tools: list[str]) -> str:
@@ -225,7 +243,7 @@ arrays returned (of the whole call 82 bytes per point, of the kernel 48).
 
 
 def _memory(rows: list[_KernelRow], tools: list[str]) -> str:
-    ours = [tool for tool in (OURS, KERNEL) if tool in tools]
+    ours = [tool for tool in kernel.OUR_TOOLS if tool in tools]
     head = ["data set, points", *tools, *(f"{tool}, beyond input and output" for tool in ours)]
     body = [
         [
@@ -240,11 +258,12 @@ def _memory(rows: list[_KernelRow], tools: list[str]) -> str:
 
 
 WORK_NOTES = """\
-Per triangle: searches for a third point (below 1 where the kernel hands the rest to insertion),
-candidates looked at, rows of cells entered, and decisions that needed exact arithmetic. These do
-not depend on the machine.
+Per triangle: searches for a third point (below 1 where the kernel hands the rest to insertion); of
+these, full searches that go beyond the gathered neighbourhood; candidates looked at, rows of cells
+that full searches enter, and decisions that needed exact arithmetic. These do not depend on the
+machine; `count_work` in `tin/_kernel.py` tells them of any points.
 """
-WORK_COUNTS = ("searches", "candidates", "cell_rows", "exact_decisions")
+WORK_COUNTS = ("searches", "full_searches", "candidates", "cell_rows", "exact_decisions")
 
 
 def _work(rows: list[_KernelRow]) -> str:
@@ -286,6 +305,12 @@ def _other_row(result: Result, ours: Result) -> list[str]:
 
 SECTIONS: dict[str, Callable[[list[Result], bool], str]] = {
     kernel.SECTION: _kernel,
+    ways.SECTION: _others(
+        "The kernel's own ways",
+        "points",
+        "Vector instructions, the two methods between which the kernel chooses, and small inputs;\n"
+        "all in one process and in turn, each with the same arrays as the others.\n",
+    ),
     locate.SECTION: _others(
         "Queries",
         "places",

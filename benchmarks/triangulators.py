@@ -8,17 +8,20 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["CGAL", "KERNEL", "TOOLS", "Tool"]
+__all__ = ["ALL_CORES", "CGAL", "KERNEL", "KERNEL_ALL_CORES", "TOOLS", "Tool"]
 
 Floats = NDArray[np.float64]
 
 CGAL = "CGAL"
 KERNEL = "tinsmith kernel"
+ALL_CORES = "tinsmith, all cores"
+KERNEL_ALL_CORES = "kernel, all cores"
 
 
 @dataclass(frozen=True)
@@ -48,7 +51,7 @@ class Tool:
     run: Callable[[Any], Any]
     triangles: Callable[[Any], NDArray[Any]]
     output_bytes: Callable[[Any], int] = lambda _: 0
-    largest: int = 1_000_000
+    largest: int = 100_000
     is_exact: bool = False
 
 
@@ -63,16 +66,17 @@ def _plane(points: Floats) -> Floats:
 # ---------------------------------------------------------------------- tinsmith
 
 
-def _triangulate(points: Floats) -> Any:
+def _triangulate(points: Floats, threads: int | None = 1) -> Any:
     from tinsmith import triangulate
 
-    return triangulate(points)
+    return triangulate(points, threads=threads)
 
 
-def _grow(points: Floats) -> Any:
+def _grow(points: Floats, threads: int | None = 1) -> Any:
     from tinsmith.tin import _kernel
+    from tinsmith.tin.threads import thread_count
 
-    return _kernel.grow(points)
+    return _kernel.grow(points, threads=thread_count(threads, len(points)))
 
 
 def _tin_bytes(tin: Any) -> int:
@@ -134,25 +138,23 @@ def _geos_triangles(collection: Any) -> NDArray[Any]:
     return np.asarray(shapely.get_coordinates(collection).reshape(-1, 4, 2)[:, :3])
 
 
+def _ours(run: Callable[[Floats], Any], output_bytes: Callable[[Any], int]) -> Tool:
+    return Tool(
+        module="tinsmith",
+        prepare=_as_given,
+        run=run,
+        triangles=lambda made: made.triangles,
+        output_bytes=output_bytes,
+        largest=10_000_000,
+        is_exact=True,
+    )
+
+
 TOOLS: dict[str, Tool] = {
-    "tinsmith": Tool(
-        module="tinsmith",
-        prepare=_as_given,
-        run=_triangulate,
-        triangles=lambda tin: tin.triangles,
-        output_bytes=_tin_bytes,
-        largest=10_000_000,
-        is_exact=True,
-    ),
-    KERNEL: Tool(
-        module="tinsmith",
-        prepare=_as_given,
-        run=_grow,
-        triangles=lambda growth: growth.triangles,
-        output_bytes=_growth_bytes,
-        largest=10_000_000,
-        is_exact=True,
-    ),
+    "tinsmith": _ours(_triangulate, _tin_bytes),
+    KERNEL: _ours(_grow, _growth_bytes),
+    ALL_CORES: _ours(partial(_triangulate, threads=None), _tin_bytes),
+    KERNEL_ALL_CORES: _ours(partial(_grow, threads=None), _growth_bytes),
     "Triangle": Tool(
         module="triangle",
         prepare=_triangle_input,
