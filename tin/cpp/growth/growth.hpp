@@ -78,14 +78,15 @@ class Growth {
 
  private:
   // Even data need about 1 unit of work a point, rasters 5, clusters 18, contour lines 100; from
-  // 12 on insertion is quicker. Threads share the work, while insertion has one. The budget grows
-  // with the vertices finished, so that hopeless data are given up early.
+  // 12 on insertion is quicker. Threads share the work, while insertion has one: each of them
+  // adds half of that again, for it may not have a core to itself. The budget grows with the
+  // vertices finished, so that hopeless data are given up early.
   static constexpr std::int64_t kBudgetPerPoint = 12;
   static constexpr std::int64_t kAdvance = 64;  // at first a sixty-fourth of the points is granted
   static constexpr std::int64_t kLeastBudget = 20000;
 
   std::int64_t budget_at(std::int64_t finished) const {
-    const std::int64_t shared = count_ * finished / own_.size();
+    const std::int64_t shared = (count_ * finished / own_.size() + finished) / 2;
     return kLeastBudget + kBudgetPerPoint * (shared + count_ / kAdvance);
   }
 
