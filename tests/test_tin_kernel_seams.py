@@ -113,6 +113,12 @@ def fan_about_the_last_point():
     return -wide_fan()
 
 
+def cloud_with_holes():
+    """Circles across a hole reach rows far behind a seam."""
+    xy = np.random.default_rng(8).random((3_000, 2)) * 50
+    return xy[np.sin(1.2 * xy).prod(axis=1) > 0]
+
+
 def scattered_tenths():
     return np.round(np.random.default_rng(7).random((900, 2)) * 20, 1) + UTM_CORNER
 
@@ -135,6 +141,7 @@ SEAM_CASES = [
     small_circle_in_a_raster,
     wide_fan,
     fan_about_the_last_point,
+    cloud_with_holes,
     scattered_tenths,
 ]
 
