@@ -248,10 +248,9 @@ def _by_letters(
 
 
 def _require_no_lines(survey: Survey, path: Path) -> None:
-    lines = len(survey.breaklines) + len(survey.holes) + (survey.boundary is not None)
-    if lines:
+    if survey.has_lines:
         raise WriteError(
-            f"Cannot write '{path}': the survey holds {lines} breaklines, boundaries or holes, "
+            f"Cannot write '{path}': the survey holds breaklines, boundaries, holes or water, "
             "which a list of points would lose.",
             path=path,
         )

@@ -200,10 +200,10 @@ def test_breaklines_are_refused_rather_than_ignored():
     line = GOOD[:2]
     for survey in (
         ts.Survey(points=GOOD, breaklines=[line]),
-        ts.Survey(points=GOOD, boundary=GOOD[:3]),
+        ts.Survey(points=GOOD, boundary=[GOOD[:3]]),
         ts.Survey(points=GOOD, holes=[GOOD[:3]]),
     ):
-        with pytest.raises(ts.PointsError, match="breaklines, boundaries or holes"):
+        with pytest.raises(ts.PointsError, match="breaklines, boundaries, holes or water"):
             ts.triangulate(survey)
 
 

@@ -1,7 +1,8 @@
 """The shape room: points become triangles. Knows no files, no CRS, no pictures."""
 
 from .check import CheckResult, check
-from .errors import CheckError, MissingExtraError, PointsError, TinsmithError
+from .errors import CheckError, LinesError, MissingExtraError, PointsError, TinsmithError
+from .lines import Breakline, Lines, Water
 from .report import Merge, Report
 from .surface import TIN
 from .survey import Survey
@@ -11,15 +12,19 @@ from .types import Bounds, Grid
 __all__ = [
     "TIN",
     "Bounds",
+    "Breakline",
     "CheckError",
     "CheckResult",
     "Grid",
+    "Lines",
+    "LinesError",
     "Merge",
     "MissingExtraError",
     "PointsError",
     "Report",
     "Survey",
     "TinsmithError",
+    "Water",
     "check",
     "triangulate",
 ]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from .findings import Problem
 
-__all__ = ["CheckError", "MissingExtraError", "PointsError", "TinsmithError"]
+__all__ = ["CheckError", "LinesError", "MissingExtraError", "PointsError", "TinsmithError"]
 
 
 class TinsmithError(Exception):
@@ -27,6 +27,20 @@ class PointsError(TinsmithError, ValueError):
     def __init__(self, message: str, *, rows: Iterable[int] = ()) -> None:
         super().__init__(message)
         self.rows = tuple(int(row) for row in rows)
+
+
+class LinesError(TinsmithError, ValueError):
+    """Breaklines, rings or options for them that the surface cannot hold.
+
+    Attributes
+    ----------
+    lines : tuple of int
+        The first few lines (0-based, in the caller's own input) at fault; may be empty.
+    """
+
+    def __init__(self, message: str, *, lines: Iterable[int] = ()) -> None:
+        super().__init__(message)
+        self.lines = tuple(int(line) for line in lines)
 
 
 class CheckError(TinsmithError, ValueError):

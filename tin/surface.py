@@ -10,6 +10,7 @@ import numpy as np
 
 from . import _kernel, topology
 from .errors import PointsError
+from .lines import Lines
 from .points import as_points, as_xy
 from .report import Report
 from .types import Bounds
@@ -43,6 +44,8 @@ class TIN:
         The vertex that stands for each input row.
     report : Report
         What became of every input row.
+    lines : Lines
+        Breaklines, boundary, holes and water, as chains of vertices.
     crs : str or None
         Coordinate reference system, as authority code or WKT.
     """
@@ -53,6 +56,7 @@ class TIN:
     constrained: NDArray[np.bool_]
     vertex_of: NDArray[np.int32]
     report: Report = field(repr=False)
+    lines: Lines = field(default_factory=Lines, repr=False)
     crs: str | None = None
 
     def __post_init__(self) -> None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .lines import Breakline, Water
 from .types import Bounds
 
 if TYPE_CHECKING:
@@ -24,12 +25,16 @@ class Survey:
     ----------
     points : (n, 3) float64 array
         Easting, northing, elevation; CRS units, elevation in metres unless the CRS says otherwise.
-    breaklines : sequence of (k, 3) float64 arrays
-        Polylines that must be edges of the surface.
-    boundary : (k, 3) float64 array, optional
-        Outer ring of the surface.
-    holes : sequence of (k, 3) float64 arrays
-        Rings without surface.
+    breaklines : sequence of Breakline or (k, 3) or (k, 2) arrays
+        Polylines that must be edges of the surface; with two columns draped on it.
+    boundary : sequence of (k, 3) or (k, 2) arrays
+        Outer rings: the surface ends there.
+    holes : sequence of (k, 3) or (k, 2) arrays
+        Rings without surface inside.
+    erase : sequence of (k, 2) arrays
+        Rings inside which points are left out; the surface spans them.
+    water : sequence of Water
+        Flat polygons.
     attributes : mapping of str to (n,) array
         Further columns, one value a point (for example ``"number"`` and ``"description"``).
     crs : str, optional
@@ -43,9 +48,11 @@ class Survey:
     """
 
     points: NDArray[np.float64]
-    breaklines: Sequence[NDArray[np.float64]] = ()
-    boundary: NDArray[np.float64] | None = None
+    breaklines: Sequence[Breakline | NDArray[np.float64]] = ()
+    boundary: Sequence[NDArray[np.float64]] = ()
     holes: Sequence[NDArray[np.float64]] = ()
+    erase: Sequence[NDArray[np.float64]] = ()
+    water: Sequence[Water] = ()
     attributes: Mapping[str, NDArray[Any]] = field(default_factory=dict)
     crs: str | None = None
     source: str | None = None
@@ -56,6 +63,11 @@ class Survey:
     def bounds(self) -> Bounds:
         """Bounds of the points (at least one point)."""
         return Bounds.of(self.points)
+
+    @property
+    def has_lines(self) -> bool:
+        """Whether there is more than points."""
+        return any((self.breaklines, self.boundary, self.holes, self.erase, self.water))
 
     def __len__(self) -> int:
         return len(self.points)

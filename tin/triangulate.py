@@ -119,9 +119,8 @@ def _require_options(duplicates: str, snap: float) -> None:
 
 
 def _require_no_lines(survey: Survey) -> None:
-    lines = len(survey.breaklines) + len(survey.holes) + (survey.boundary is not None)
-    if lines:
+    if survey.has_lines:
         raise PointsError(
-            f"The survey holds {lines} breaklines, boundaries or holes, which this version cannot "
+            "The survey holds breaklines, boundaries, holes or water, which this version cannot "
             "force into the TIN: pass survey.points to triangulate the points alone."
         )

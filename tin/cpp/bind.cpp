@@ -14,6 +14,8 @@
 #include <tuple>
 
 #include "base/arrays.hpp"
+#include "bind_arrays.hpp"
+#include "bind_lines.hpp"
 #include "location/locate.hpp"
 #include "points/cleaning.hpp"
 #include "points/snapping.hpp"
@@ -25,41 +27,7 @@ using namespace nb::literals;
 
 namespace {
 
-using Points = nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
-using Places = nb::ndarray<const double, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
-using Corners = nb::ndarray<nb::numpy, std::int32_t, nb::shape<-1, 3>>;
-using Rows = nb::ndarray<nb::numpy, double, nb::shape<-1, 3>>;
-using Numbers = nb::ndarray<nb::numpy, std::int32_t, nb::shape<-1>>;
-using Heights = nb::ndarray<nb::numpy, double, nb::shape<-1>>;
-using Signs = nb::ndarray<nb::numpy, std::int8_t, nb::shape<-1>>;
-
-template <typename Array, typename T>
-Array hand_over(tinsmith::StreamedArray<T> data, std::initializer_list<std::size_t> shape) {
-  T* raw = data.release();
-  nb::capsule owner(raw, [](void* p) noexcept { tinsmith::FreeMemory()(p); });
-  return Array(raw, shape, owner);
-}
-
-Numbers hand_over(const std::vector<std::int32_t>& values) {
-  auto data = tinsmith::streamed_array<std::int32_t>(values.size());
-  std::memcpy(data.get(), values.data(), values.size() * sizeof(std::int32_t));
-  return hand_over<Numbers>(std::move(data), {values.size()});
-}
-
-tinsmith::PointRows rows_of(const Points& points) {
-  const auto count = static_cast<std::int64_t>(points.shape(0));
-  if (count == 0) throw std::invalid_argument("at least one point is needed");
-  if (count > tinsmith::kMostPoints) {
-    throw std::invalid_argument("more points than 32-bit indices can number");
-  }
-  return {points.data(), count, 3};
-}
-
-// Ask Python whether Ctrl-C was pressed.
-bool no_signal() {
-  nb::gil_scoped_acquire gil;
-  return PyErr_CheckSignals() == 0;
-}
+using namespace tinsmith::python;
 
 tinsmith::Options options_of(tinsmith::Method method, int threads, const std::string& path) {
   if (threads < 1) throw std::invalid_argument("at least one thread is needed");
@@ -256,6 +224,7 @@ NB_MODULE(_core, m) {
   m.def("in_circle", &in_circle, "a"_a.noconvert(), "b"_a.noconvert(), "c"_a.noconvert(),
         "d"_a.noconvert(),
         "+1 where d lies inside the circle through counter-clockwise a, b, c, -1 outside, 0 on it.");
+  tinsmith::python::bind_lines(m);
   nb::class_<HeldLocator>(m, "Locator", "Finds the triangle and the height at any place.")
       .def(nb::init<const Points&, const HeldLocator::Triangles&, const HeldLocator::Triangles&>(),
            "points"_a.noconvert(), "triangles"_a.noconvert(), "neighbors"_a.noconvert())

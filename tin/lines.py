@@ -1,0 +1,213 @@
+"""Lines that the surface must hold: breaklines, rings and water, as callers give them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import TYPE_CHECKING, Literal, get_args
+
+import numpy as np
+
+from .errors import LinesError
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["Breakline", "BreaklineKind", "LineKind", "Lines", "Water"]
+
+BreaklineKind = Literal["hard", "soft"]
+LineKind = Literal["hard", "soft", "boundary", "hole", "water"]
+
+
+@dataclass(frozen=True, eq=False)
+class Breakline:
+    """A polyline that must be edges of the surface.
+
+    Attributes
+    ----------
+    coords : (k, 3) or (k, 2) float64 array
+        Vertices, k >= 2, CRS units; first and last equal if it is closed. With two columns it is
+        draped: its heights are taken from the surface of everything that has heights.
+    kind : {"hard", "soft"}
+        A soft breakline shapes the surface, but is no break of slope.
+    priority : int
+        Where breaklines cross, the height of the higher one counts; among equals, of the first.
+    name : str
+        For reports and pictures.
+
+    Raises
+    ------
+    LinesError
+        For another shape, coordinates that are not finite, or an unknown kind.
+
+    Examples
+    --------
+    >>> Breakline([[0, 0, 5], [4, 0, 6]], name="kerb")
+    <Breakline: hard, 2 vertices, 'kerb'>
+    """
+
+    coords: NDArray[np.float64]
+    kind: BreaklineKind = "hard"
+    priority: int = 0
+    name: str = ""
+
+    def __init__(
+        self,
+        coords: ArrayLike,
+        *,
+        kind: BreaklineKind = "hard",
+        priority: int = 0,
+        name: str = "",
+    ) -> None:
+        if kind not in get_args(BreaklineKind):
+            allowed = ", ".join(get_args(BreaklineKind))
+            raise LinesError(f"Invalid breakline kind '{kind}': one of {allowed}.")
+        what = f"breakline '{name}'" if name else "a breakline"
+        object.__setattr__(self, "coords", as_coords(coords, what, least=2))
+        object.__setattr__(self, "kind", kind)
+        object.__setattr__(self, "priority", int(priority))
+        object.__setattr__(self, "name", str(name))
+
+    @property
+    def is_draped(self) -> bool:
+        """Whether the heights come from the surface."""
+        return int(self.coords.shape[1]) == 2
+
+    def __repr__(self) -> str:
+        draped = ", draped" if self.is_draped else ""
+        name = f", '{self.name}'" if self.name else ""
+        return f"<Breakline: {self.kind}, {len(self.coords)} vertices{draped}{name}>"
+
+
+@dataclass(frozen=True, eq=False)
+class Water:
+    """A flat polygon: a pond, a slab, a building's footprint.
+
+    Points and breaklines inside it are left out, and said so in the report.
+
+    Attributes
+    ----------
+    ring : (k, 2) float64 array
+        Corners in order, the first not repeated, k >= 3, CRS units.
+    z : float
+        Its constant height.
+    name : str
+
+    Raises
+    ------
+    LinesError
+        For another shape or coordinates that are not finite.
+    """
+
+    ring: NDArray[np.float64]
+    z: float
+    name: str = ""
+
+    def __init__(self, ring: ArrayLike, z: float, *, name: str = "") -> None:
+        what = f"water '{name}'" if name else "a water polygon"
+        if not (isinstance(z, int | float | np.number) and np.isfinite(z)):
+            raise LinesError(f"Invalid height {z!r} of {what}: a finite number is needed.")
+        object.__setattr__(self, "ring", as_ring(ring, what)[:, :2])
+        object.__setattr__(self, "z", float(z))
+        object.__setattr__(self, "name", str(name))
+
+    def __repr__(self) -> str:
+        name = f", '{self.name}'" if self.name else ""
+        return f"<Water: {len(self.ring)} corners at {self.z:g}{name}>"
+
+
+def _no_numbers() -> NDArray[np.int32]:
+    return np.empty(0, np.int32)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Lines:
+    """The lines in a TIN: chains of vertices, every step of which is an edge of the TIN.
+
+    Chain ``i`` is ``vertices[offsets[i]:offsets[i + 1]]``, in the direction of the line that it
+    comes from; a closed one ends where it begins. A line of which parts are left out, outside the
+    boundary or in water, has several chains or none.
+
+    Attributes
+    ----------
+    vertices : (k,) int32 array
+    offsets : (l + 1,) int32 array
+    kinds : tuple of LineKind
+        Of each chain.
+    sources : (l,) int32 array
+        The caller's line that each chain comes from, counted within breaklines, boundary rings,
+        holes and water.
+    names : tuple of str
+        Of each chain, ``""`` if it has none.
+    """
+
+    vertices: NDArray[np.int32] = field(default_factory=_no_numbers)
+    offsets: NDArray[np.int32] = field(default_factory=lambda: np.zeros(1, np.int32))
+    kinds: tuple[LineKind, ...] = ()
+    sources: NDArray[np.int32] = field(default_factory=_no_numbers)
+    names: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        for array in (self.vertices, self.offsets, self.sources):
+            array.flags.writeable = False
+
+    def __len__(self) -> int:
+        return len(self.kinds)
+
+    def chains(self) -> Iterator[NDArray[np.int32]]:
+        """Walk the chains, as vertex numbers."""
+        for start, end in pairwise(self.offsets.tolist()):
+            yield self.vertices[start:end]
+
+    def steps(self) -> NDArray[np.int32]:
+        """Return the edges that the chains walk, (s, 2) vertex pairs in order."""
+        is_step = np.ones(len(self.vertices), np.bool_)
+        is_step[self.offsets[1:] - 1] = False
+        start = np.flatnonzero(is_step)
+        return np.stack([self.vertices[start], self.vertices[start + 1]], axis=1)
+
+    def __repr__(self) -> str:
+        kinds = ", ".join(f"{self.kinds.count(kind)} {kind}" for kind in get_args(LineKind))
+        return f"<Lines: {kinds}; {len(self.vertices)} vertices>"
+
+
+def as_coords(coords: ArrayLike, what: str, *, least: int) -> NDArray[np.float64]:
+    """Return a (k, 2) or (k, 3) float64 array of at least ``least`` finite rows, read-only.
+
+    Raises
+    ------
+    LinesError
+        Otherwise; the sentence begins with ``what``.
+    """
+    subject = what[0].upper() + what[1:]
+    try:
+        array = np.array(coords, np.float64)
+    except (TypeError, ValueError):
+        raise LinesError(f"{subject} is no table of real numbers.") from None
+    if array.ndim != 2 or array.shape[1] not in (2, 3) or len(array) < least:
+        raise LinesError(
+            f"{subject} has shape {array.shape}: (k, 3), or (k, 2) to drape it, "
+            f"with k >= {least} is needed."
+        )
+    wrong = ~np.isfinite(array).all(axis=1)
+    if wrong.any():
+        row = int(np.argmax(wrong))
+        raise LinesError(
+            f"{subject} has {int(wrong.sum())} vertices that are not finite "
+            f"(first: vertex {row}, {array[row].tolist()}): "
+            "every coordinate must be a finite number."
+        )
+    array += 0.0  # no -0.0: equal coordinates are equal bytes
+    array.flags.writeable = False
+    return array
+
+
+def as_ring(ring: ArrayLike, what: str) -> NDArray[np.float64]:
+    """Return the corners of a ring, the first not repeated at the end; as :func:`as_coords`."""
+    coords = as_coords(ring, what, least=3)
+    if (coords[0, :2] == coords[-1, :2]).all():
+        coords = coords[:-1]
+    if len(coords) < 3:
+        raise LinesError(f"{what[0].upper() + what[1:]} has two corners: a ring needs three.")
+    return coords
