@@ -16,6 +16,7 @@
 #include "base/arrays.hpp"
 #include "bind_arrays.hpp"
 #include "bind_lines.hpp"
+#include "bind_mesh.hpp"
 #include "location/locate.hpp"
 #include "points/cleaning.hpp"
 #include "points/snapping.hpp"
@@ -225,6 +226,7 @@ NB_MODULE(_core, m) {
         "d"_a.noconvert(),
         "+1 where d lies inside the circle through counter-clockwise a, b, c, -1 outside, 0 on it.");
   tinsmith::python::bind_lines(m);
+  tinsmith::python::bind_mesh(m);
   nb::class_<HeldLocator>(m, "Locator", "Finds the triangle and the height at any place.")
       .def(nb::init<const Points&, const HeldLocator::Triangles&, const HeldLocator::Triangles&>(),
            "points"_a.noconvert(), "triangles"_a.noconvert(), "neighbors"_a.noconvert())

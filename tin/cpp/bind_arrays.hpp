@@ -18,6 +18,7 @@
 namespace tinsmith::python {
 
 namespace nb = nanobind;
+using namespace nb::literals;
 
 using Points = nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 using Places = nb::ndarray<const double, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;

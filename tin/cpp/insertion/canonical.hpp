@@ -48,6 +48,19 @@ class CanonicalOrder {
     write(out, [] { return true; });
   }
 
+  // After `write`: flags[3 * triangle + corner] = is_set(triangle of the mesh, place).
+  template <typename Flag, typename IsSet>
+  void write_flags(Flag* flags, IsSet&& is_set) const {
+    for (std::uint32_t t = 0; t < count_; ++t) {
+      if (number_of_[t] == kNoNeighbor) continue;
+      const std::uint32_t place = first_place(triangles_[t]);
+      Flag* const flag = flags + std::int64_t{3} * number_of_[t];
+      flag[0] = is_set(t, place);
+      flag[1] = is_set(t, place_after(place));
+      flag[2] = is_set(t, place_before(place));
+    }
+  }
+
  private:
   struct Ray {  // a triangle of the star in hand, without the vertex that owns it
     std::int32_t from, to;

@@ -1,0 +1,184 @@
+// The border to Python for a mesh that can be changed.
+#pragma once
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/tuple.h>
+
+#include <cstdint>
+#include <stdexcept>
+#include <tuple>
+#include <vector>
+
+#include "bind_arrays.hpp"
+#include "index/spatial_order.hpp"
+#include "mesh/mesh_arrays.hpp"
+#include "mesh/mesh_editor.hpp"
+
+namespace tinsmith::python {
+
+using GivenPlaces = nb::ndarray<const double, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
+using GivenTriangles =
+    nb::ndarray<const std::int32_t, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
+using GivenPairs = nb::ndarray<const std::int32_t, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
+using GivenNumbers = nb::ndarray<const std::int32_t, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
+using GivenFlags = nb::ndarray<const bool, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
+using Flags = nb::ndarray<nb::numpy, bool, nb::shape<-1, 3>>;
+
+// The editor with the checks that keep a caller's mistake from corrupting it.
+class HeldMesh {
+ public:
+  HeldMesh(const GivenPlaces& xy, const GivenTriangles& triangles, const GivenTriangles& neighbors,
+           const GivenFlags& fixed)
+      : editor_(made(xy, triangles, neighbors, fixed)) {}
+
+  std::int32_t slots() const { return editor_.slots(); }
+  std::int32_t count() const { return editor_.count(); }
+
+  // The vertex at each place, in the order given: a new slot's, or the one that is there already.
+  Numbers insert(const GivenPlaces& xy) {
+    const auto count = static_cast<std::int32_t>(xy.shape(0));
+    if (std::int64_t{count} + editor_.slots() > kMostPoints) {
+      throw std::invalid_argument("more points than 32-bit indices can number");
+    }
+    const auto* places = reinterpret_cast<const Point*>(xy.data());
+    auto result = streamed_array<std::int32_t>(count);
+    nb::gil_scoped_release release;
+    const std::int32_t first = editor_.slots();
+    for (std::int32_t i = 0; i < count; ++i) editor_.add_slot();
+    const SpatialOrder order(places, count);
+    for (std::int32_t i = 0; i < count; ++i) {
+      result[order[i]] = editor_.insert(places[order[i]], first + order[i]);
+    }
+    nb::gil_scoped_acquire acquire;
+    return hand_over<Numbers>(std::move(result), {static_cast<std::size_t>(count)});
+  }
+
+  // Put a vertex that was removed at another place; returns the one that stands there.
+  std::int32_t put(std::int32_t slot, double x, double y) {
+    if (slot < 0 || slot >= editor_.slots() || editor_.mesh().is_alive(slot)) {
+      throw std::invalid_argument("the slot must be one whose vertex was removed");
+    }
+    return editor_.insert({x, y}, slot);
+  }
+
+  // Whether all were removed; stops at the first without which there would be no triangle.
+  bool remove(const GivenNumbers& vertices) {
+    for (std::size_t i = 0; i < vertices.shape(0); ++i) {
+      const std::int32_t v = vertices.data()[i];
+      require_vertex(v);
+      if (editor_.has_fixed_edge(v)) throw std::invalid_argument("a fixed edge ends at the vertex");
+      if (!editor_.can_remove(v)) return false;
+      editor_.remove(v);
+    }
+    return true;
+  }
+
+  // Vertices on the way of each segment, as (segment, vertex) pairs; and the segments that a fixed
+  // edge stops.
+  auto force(const GivenPairs& segments) {
+    std::vector<std::int32_t> passed, blocked;
+    for (std::size_t i = 0; i < segments.shape(0); ++i) {
+      const std::int32_t a = segments.data()[2 * i], b = segments.data()[2 * i + 1];
+      require_vertex(a);
+      require_vertex(b);
+      const auto visit = [&](std::int32_t v) {
+        if (v == b) return;
+        passed.push_back(static_cast<std::int32_t>(i));
+        passed.push_back(v);
+      };
+      if (editor_.force(a, b, visit) == MeshEditor::Forced::kBlocked) {
+        blocked.push_back(static_cast<std::int32_t>(i));
+      }
+    }
+    return std::make_tuple(hand_over(passed), hand_over(blocked));
+  }
+
+  // The number of segments that were fixed edges.
+  std::int32_t release(const GivenPairs& segments) {
+    std::int32_t released = 0;
+    for (std::size_t i = 0; i < segments.shape(0); ++i) {
+      const std::int32_t a = segments.data()[2 * i], b = segments.data()[2 * i + 1];
+      require_vertex(a);
+      require_vertex(b);
+      released += editor_.release(a, b);
+    }
+    return released;
+  }
+
+  // Triangles, neighbours and fixed edges in canonical order.
+  auto arrays(int threads) const {
+    MeshArrays made = [&] {
+      nb::gil_scoped_release release;
+      Team team(threads, [] { return true; });
+      return MeshArrays(editor_, team);
+    }();
+    const std::size_t size = made.triangle_count;
+    return std::make_tuple(hand_over<Corners>(std::move(made.corners), {size, 3}),
+                           hand_over<Corners>(std::move(made.neighbors), {size, 3}),
+                           hand_over<Flags>(std::move(made.fixed), {size, 3}));
+  }
+
+  // Which slots hold a vertex.
+  nb::ndarray<nb::numpy, bool, nb::shape<-1>> alive() const {
+    const auto size = static_cast<std::size_t>(editor_.slots());
+    auto flags = streamed_array<bool>(size);
+    for (std::size_t v = 0; v < size; ++v) {
+      flags[v] = editor_.mesh().is_alive(static_cast<std::int32_t>(v));
+    }
+    return hand_over<nb::ndarray<nb::numpy, bool, nb::shape<-1>>>(std::move(flags), {size});
+  }
+
+  bool has_fixed_edge(std::int32_t v) const {
+    require_vertex(v);
+    return editor_.has_fixed_edge(v);
+  }
+
+ private:
+  static MeshEditor made(const GivenPlaces& xy, const GivenTriangles& triangles,
+                         const GivenTriangles& neighbors, const GivenFlags& fixed) {
+    const auto count = static_cast<std::int32_t>(triangles.shape(0));
+    if (neighbors.shape(0) != triangles.shape(0) || fixed.shape(0) != triangles.shape(0)) {
+      throw std::invalid_argument("triangles, neighbors and fixed must have as many rows");
+    }
+    nb::gil_scoped_release release;
+    const auto* places = reinterpret_cast<const Point*>(xy.data());
+    const auto vertices = static_cast<std::int32_t>(xy.shape(0));
+    const HullTriangles given{triangles.data(), neighbors.data(), fixed.data(), count};
+    return MeshEditor(mesh_of(given, vertices), std::vector<Point>(places, places + vertices));
+  }
+
+  void require_vertex(std::int32_t v) const {
+    if (v < 0 || v >= editor_.slots() || !editor_.mesh().is_alive(v)) {
+      throw std::invalid_argument("there is no such vertex");
+    }
+  }
+
+  MeshEditor editor_;
+};
+
+inline void bind_mesh(nb::module_& m) {
+  nb::class_<HeldMesh>(m, "Mesh", "A constrained Delaunay triangulation that can be changed.")
+      .def(nb::init<const GivenPlaces&, const GivenTriangles&, const GivenTriangles&,
+                    const GivenFlags&>(),
+           "xy"_a.noconvert(), "triangles"_a.noconvert(), "neighbors"_a.noconvert(),
+           "fixed"_a.noconvert())
+      .def_prop_ro("slots", &HeldMesh::slots, "Vertices that are or were there.")
+      .def_prop_ro("count", &HeldMesh::count, "Vertices that are there.")
+      .def("alive", &HeldMesh::alive, "Which slots hold a vertex.")
+      .def("has_fixed_edge", &HeldMesh::has_fixed_edge, "vertex"_a)
+      .def("insert", &HeldMesh::insert, "xy"_a.noconvert(),
+           "The vertex at each place; one new slot a place.")
+      .def("put", &HeldMesh::put, "slot"_a, "x"_a, "y"_a,
+           "Put a removed vertex back at a place; returns the vertex there.")
+      .def("remove", &HeldMesh::remove, "vertices"_a.noconvert(),
+           "Remove vertices; False if one could not be, for no triangle would be left.")
+      .def("force", &HeldMesh::force, "segments"_a.noconvert(),
+           "Fix edges along segments; (segment, vertex) pairs passed, and segments blocked.")
+      .def("release", &HeldMesh::release, "segments"_a.noconvert(),
+           "Let fixed edges go; how many there were.")
+      .def("arrays", &HeldMesh::arrays, "threads"_a = 1,
+           "Triangles, neighbours and fixed edges in canonical order.");
+}
+
+}  // namespace tinsmith::python

@@ -1,0 +1,533 @@
+// Local change: the constrained Delaunay triangulation of points and fixed edges, kept so while
+// points come and go and edges are fixed and released.
+//
+// Every change makes any valid triangulation of the part that it touches, and then flips edges
+// that are not Delaunay until none is left. Ties are decided by the points alone (is_in_circle),
+// so the result is a function of the points and the fixed edges, not of the way to it.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "../predicates/predicates.hpp"
+#include "mesh.hpp"
+
+namespace tinsmith {
+
+class MeshEditor {
+ public:
+  enum class Where { kInside, kOnEdge, kAtVertex, kOutside };
+  struct Location {
+    Where where;
+    MeshEdge edge;  // of the triangle; the edge; one that leaves the vertex; of the ghost
+  };
+  enum class Forced { kDone, kBlocked };
+
+  // A mesh with its points, ready to be changed.
+  MeshEditor(Mesh mesh, std::vector<Point> points)
+      : mesh_(std::move(mesh)), points_(std::move(points)) {
+    for (std::size_t v = 0; v < points_.size(); ++v) {
+      count_ += mesh_.is_alive(static_cast<std::int32_t>(v));
+    }
+  }
+
+  const Mesh& mesh() const { return mesh_; }
+  std::int32_t slots() const { return static_cast<std::int32_t>(points_.size()); }
+  std::int32_t count() const { return count_; }  // of vertices
+  Point point(std::int32_t v) const { return points_[v]; }
+
+  // ------------------------------------------------------------------- points
+
+  // A number for a vertex that is put in later.
+  std::int32_t add_slot() {
+    points_.push_back({});
+    mesh_.add_vertices(1);
+    return slots() - 1;
+  }
+
+  // The vertex at p, which is `slot` if there was none; a fixed edge through p is split.
+  std::int32_t insert(Point p, std::int32_t slot) {
+    const Location at = locate(p);
+    if (at.where == Where::kAtVertex) return mesh_.from(at.edge);
+    points_[slot] = p;
+    ++count_;
+    if (at.where == Where::kOnEdge) {
+      for (const MeshEdge e : mesh_.split_edge(at.edge, slot).edge) pending_.push_back(e);
+    } else {
+      const auto around = mesh_.split_triangle(triangle_of(at.edge), slot);
+      for (const MeshEdge e : around.edge) pending_.push_back(e);
+      if (at.where == Where::kOutside) widen_hull(p);
+    }
+    last_ = mesh_.leaving(slot);
+    legalize();
+    return slot;
+  }
+
+  // Whether the surface would still have a triangle without v.
+  bool can_remove(std::int32_t v) const {
+    if (count_ <= 3) return false;
+    std::int32_t degree = 0;
+    bool is_straight = true;
+    const MeshEdge first = mesh_.leaving(v);
+    MeshEdge e = first;
+    do {
+      const std::int32_t a = mesh_.to(mesh_.previous_leaving(e)), b = mesh_.to(e);
+      const std::int32_t c = mesh_.corner(e);
+      is_straight &= a == kGhost || b == kGhost || c == kGhost || turn(a, b, c) == 0;
+      ++degree;
+      e = mesh_.next_leaving(e);
+    } while (e != first);
+    return !is_straight || degree < count_;
+  }
+
+  bool has_fixed_edge(std::int32_t v) const {
+    const MeshEdge first = mesh_.leaving(v);
+    MeshEdge e = first;
+    do {
+      if (mesh_.is_fixed(e)) return true;
+      e = mesh_.next_leaving(e);
+    } while (e != first);
+    return false;
+  }
+
+  // v has no fixed edges, and the surface is one without it.
+  void remove(std::int32_t v) {
+    --count_;
+    cut_ears(v);
+    const std::int32_t degree = degree_of(v);
+    if (degree == 3 && !is_on_hull(v)) {
+      changed_.push_back(mesh_.merge_three(v));
+    } else if (const MeshEdge flat = degree == 4 ? flat_diagonal(v) : kNoMeshEdge;
+               flat != kNoMeshEdge) {
+      const MeshEdge diagonal = mesh_.merge_four(v, flat);
+      changed_.push_back(triangle_of(diagonal));
+      changed_.push_back(triangle_of(mesh_.twin(diagonal)));
+    } else {
+      const MeshEdge e = leaving_to_ghost(v);
+      changed_.push_back(triangle_of(mesh_.twin(mesh_.before(e))));
+      mesh_.merge_into_ghost(v, e);
+    }
+    last_ = mesh_edge(changed_.back(), 0);
+    legalize_changed();
+  }
+
+  // -------------------------------------------------------------------- edges
+
+  // Fix the edges from a to b; `visit(v)` is called for every vertex on the way, b last. Nothing
+  // further is done where an edge that is fixed already is in the way.
+  template <typename Visit>
+  Forced force(std::int32_t a, std::int32_t b, Visit&& visit) {
+    while (a != b) {
+      const MeshEdge edge = make_edge(a, b);
+      if (edge == kNoMeshEdge) {
+        legalize_changed();
+        return Forced::kBlocked;
+      }
+      mesh_.fix(edge, true);
+      a = mesh_.to(edge);
+      last_ = edge;
+      legalize_changed();
+      visit(a);
+    }
+    return Forced::kDone;
+  }
+
+  // Let the edge between two vertices go; false if there is none that is fixed.
+  bool release(std::int32_t a, std::int32_t b) {
+    const MeshEdge e = edge_between(a, b);
+    if (e == kNoMeshEdge || !mesh_.is_fixed(e)) return false;
+    mesh_.fix(e, false);
+    last_ = e;
+    pending_.push_back(e);
+    legalize();
+    return true;
+  }
+
+  MeshEdge edge_between(std::int32_t a, std::int32_t b) const {
+    const MeshEdge first = mesh_.leaving(a);
+    MeshEdge e = first;
+    do {
+      if (mesh_.to(e) == b) return e;
+      e = mesh_.next_leaving(e);
+    } while (e != first);
+    return kNoMeshEdge;
+  }
+
+  // ----------------------------------------------------------------- location
+
+  Location locate(Point p) {
+    MeshEdge e = nearest_start(p);
+    if (mesh_.is_ghost(triangle_of(e))) e = real_side(triangle_of(e));
+    std::uint32_t t = triangle_of(e);
+    std::uint32_t entry = kNoPlace;
+    while (true) {
+      const std::uint32_t place = place_beyond(p, t, entry);
+      if (place == kNoPlace) return location_in(p, t);
+      const MeshEdge across = mesh_.twin(mesh_edge(t, place));
+      if (mesh_.corner(across) == kGhost) return {Where::kOutside, across};
+      t = triangle_of(across);
+      entry = place_of(across);
+    }
+  }
+
+ private:
+  static constexpr std::uint32_t kNoPlace = 3;
+
+  int turn(std::int32_t a, std::int32_t b, std::int32_t c) const {
+    return orientation(points_[a], points_[b], points_[c]);
+  }
+
+  // ------------------------------------------------------------------ walking
+
+  // The walk begins at the last change, or at the nearest of a few vertices drawn at random: as
+  // many as make the walk from there as short as the drawing.
+  MeshEdge nearest_start(Point p) {
+    MeshEdge best = last_;
+    if (best == kNoMeshEdge || mesh_.is_free(triangle_of(best))) best = first_edge();
+    double nearest = distance_to(p, best);
+    if (nearest <= kShortWalk * square_of(best)) return best;
+    const auto draws = static_cast<std::int32_t>(0.5 * std::cbrt(static_cast<double>(count_)));
+    for (std::int32_t i = 0; i < draws; ++i) {
+      const auto v = static_cast<std::int32_t>(random() % static_cast<std::uint64_t>(slots()));
+      if (!mesh_.is_alive(v)) continue;
+      const double distance = distance_to(p, mesh_.leaving(v));
+      if (distance < nearest) {
+        nearest = distance;
+        best = mesh_.leaving(v);
+      }
+    }
+    return best;
+  }
+
+  static constexpr double kShortWalk = 64.0;  // as a square: eight edges
+
+  // Squares, of the distance to the edge's start and of its length.
+  double distance_to(Point p, MeshEdge e) const {
+    const std::int32_t v = mesh_.from(e) == kGhost ? mesh_.to(e) : mesh_.from(e);
+    return square(points_[v], p);
+  }
+  double square_of(MeshEdge e) const {
+    const std::int32_t a = mesh_.from(e), b = mesh_.to(e);
+    return a == kGhost || b == kGhost ? 0.0 : square(points_[a], points_[b]);
+  }
+  static double square(Point p, Point q) {
+    const double dx = q.x - p.x, dy = q.y - p.y;
+    return dx * dx + dy * dy;
+  }
+
+  MeshEdge first_edge() const {
+    std::uint32_t t = 0;
+    while (mesh_.is_free(t)) ++t;
+    return mesh_edge(t, 0);
+  }
+
+  // An edge of the triangle on the other side of a ghost's hull edge.
+  MeshEdge real_side(std::uint32_t ghost) const {
+    std::uint32_t place = 0;
+    while (mesh_[ghost].corner[place] != kGhost) ++place;
+    return mesh_[ghost].twin[place];
+  }
+
+  // The place of an edge that has p on its other side, or kNoPlace. The edges are tried from a
+  // random one on: among fixed edges a walk in fixed order could go round and round.
+  std::uint32_t place_beyond(Point p, std::uint32_t t, std::uint32_t entry) {
+    std::uint32_t place = static_cast<std::uint32_t>(random() % 3);
+    for (int i = 0; i < 3; ++i, place = place_after(place)) {
+      if (place == entry) continue;
+      const MeshEdge e = mesh_edge(t, place);
+      if (orientation(points_[mesh_.from(e)], points_[mesh_.to(e)], p) < 0) return place;
+    }
+    return kNoPlace;
+  }
+
+  // p is in the triangle or on its rim.
+  Location location_in(Point p, std::uint32_t t) const {
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      if (points_[mesh_[t].corner[k]] == p) return {Where::kAtVertex, mesh_edge(t, place_before(k))};
+    }
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const MeshEdge e = mesh_edge(t, k);
+      if (orientation(points_[mesh_.from(e)], points_[mesh_.to(e)], p) == 0) {
+        return {Where::kOnEdge, e};
+      }
+    }
+    return {Where::kInside, mesh_edge(t, 0)};
+  }
+
+  std::uint64_t random() {
+    state_ = state_ * 6364136223846793005u + 1442695040888963407u;  // Knuth's MMIX
+    return state_ >> 33;
+  }
+
+  // --------------------------------------------------------------- legalizing
+
+  // Flip until every edge is Delaunay that is pending or near one that was flipped.
+  void legalize() {
+    while (!pending_.empty()) {
+      const MeshEdge e = pending_.back();
+      pending_.pop_back();
+      if (!is_illegal(e)) continue;
+      const MeshEdge f = mesh_.twin(e);
+      mesh_.flip(e);
+      const std::uint32_t t = triangle_of(e), u = triangle_of(f);
+      for (const MeshEdge side : {mesh_edge(t, 0), mesh_edge(t, 2), mesh_edge(u, 0), mesh_edge(u, 2)}) {
+        pending_.push_back(side);
+      }
+    }
+  }
+
+  void legalize_changed() {
+    for (const std::uint32_t t : changed_) {
+      if (mesh_.is_free(t)) continue;
+      for (std::uint32_t k = 0; k < 3; ++k) pending_.push_back(mesh_edge(t, k));
+    }
+    changed_.clear();
+    legalize();
+  }
+
+  bool is_illegal(MeshEdge e) const {
+    if (mesh_.is_fixed(e)) return false;
+    const std::int32_t a = mesh_.corner(e), b = mesh_.from(e), c = mesh_.to(e);
+    const std::int32_t d = mesh_.corner(mesh_.twin(e));
+    if (a == kGhost || b == kGhost || c == kGhost || d == kGhost) return false;
+    return is_in_circle(points_[a], points_[b], points_[c], points_[d]);
+  }
+
+  // ---------------------------------------------------------------- insertion
+
+  // p has been put into a ghost: join it to all hull edges that it sees, on both sides.
+  void widen_hull(Point p) {
+    const std::size_t ends[2] = {pending_.size() - 3, pending_.size()};
+    for (std::size_t i = ends[0]; i < ends[1]; ++i) {
+      const MeshEdge e = pending_[i];
+      if (mesh_.to(e) == kGhost) widen_counter_clockwise(p, e);
+      if (mesh_.from(e) == kGhost) widen_clockwise(p, e);
+    }
+  }
+
+  // `e` runs from a hull vertex to the ghost, and p is left of it.
+  void widen_counter_clockwise(Point p, MeshEdge e) {
+    while (true) {
+      const MeshEdge f = mesh_.twin(e);
+      if (orientation(points_[mesh_.from(e)], points_[mesh_.corner(f)], p) <= 0) return;
+      mesh_.flip(e);
+      pending_.push_back(mesh_edge(triangle_of(e), 0));
+      e = mesh_edge(triangle_of(f), 2);
+    }
+  }
+
+  // `e` runs from the ghost to a hull vertex, and p is left of it.
+  void widen_clockwise(Point p, MeshEdge e) {
+    while (true) {
+      const MeshEdge f = mesh_.twin(e);
+      if (orientation(points_[mesh_.corner(f)], points_[mesh_.to(e)], p) <= 0) return;
+      mesh_.flip(e);
+      pending_.push_back(mesh_edge(triangle_of(f), 2));
+      e = mesh_edge(triangle_of(e), 0);
+    }
+  }
+
+  // ------------------------------------------------------------------ removal
+
+  std::int32_t degree_of(std::int32_t v) const {
+    std::int32_t degree = 0;
+    const MeshEdge first = mesh_.leaving(v);
+    MeshEdge e = first;
+    do {
+      ++degree;
+      e = mesh_.next_leaving(e);
+    } while (e != first);
+    return degree;
+  }
+
+  MeshEdge leaving_to_ghost(std::int32_t v) const {
+    const MeshEdge first = mesh_.leaving(v);
+    MeshEdge e = first;
+    do {
+      if (mesh_.to(e) == kGhost) return e;
+      e = mesh_.next_leaving(e);
+    } while (e != first);
+    return kNoMeshEdge;
+  }
+  bool is_on_hull(std::int32_t v) const { return leaving_to_ghost(v) != kNoMeshEdge; }
+
+  // Flip edges at v away, an ear of its star each, every other one in turn so that no fan
+  // arises, until no ear is left or v has three neighbours.
+  void cut_ears(std::int32_t v) {
+    std::int32_t degree = degree_of(v);
+    MeshEdge e = mesh_.leaving(v);
+    for (std::int32_t misses = 0; misses <= degree && degree > 3;) {
+      if (!is_ear(v, e)) {
+        e = mesh_.next_leaving(e);
+        ++misses;
+        continue;
+      }
+      const MeshEdge f = mesh_.twin(e);
+      mesh_.flip(e);
+      changed_.push_back(triangle_of(e));
+      changed_.push_back(triangle_of(f));
+      e = mesh_.next_leaving(mesh_.next_leaving(mesh_edge(triangle_of(e), 0)));
+      --degree;
+      misses = 0;
+    }
+  }
+
+  // Whether the neighbours before and after the end of e can be joined.
+  bool is_ear(std::int32_t v, MeshEdge e) const {
+    const std::int32_t before = mesh_.corner(mesh_.twin(e)), tip = mesh_.to(e);
+    const std::int32_t after = mesh_.corner(e);
+    if (before == kGhost || tip == kGhost || after == kGhost) return false;
+    return turn(before, tip, after) > 0 && turn(v, before, after) > 0;
+  }
+
+  // With four neighbours, one of them perhaps the ghost: the edge to one of two between which v
+  // lies.
+  MeshEdge flat_diagonal(std::int32_t v) const {
+    MeshEdge e = mesh_.leaving(v);
+    for (int i = 0; i < 4; ++i, e = mesh_.next_leaving(e)) {
+      const std::int32_t a = mesh_.to(e), b = mesh_.corner(e);
+      const std::int32_t c = mesh_.corner(mesh_.next_leaving(e));
+      if (a == kGhost || b == kGhost || c == kGhost) continue;
+      if (turn(a, v, c) == 0 && turn(a, b, c) > 0) return e;
+    }
+    return kNoMeshEdge;
+  }
+
+  // ------------------------------------------------------------------ forcing
+
+  // The edge from a to b, or to the first vertex on the way there; made if need be. None if a
+  // fixed edge is in the way.
+  MeshEdge make_edge(std::int32_t a, std::int32_t b) {
+    const MeshEdge start = first_towards(a, b);
+    if (mesh_.from(start) == a) return start;
+    if (!open_corridor(a, b, start)) return kNoMeshEdge;
+    return close_corridor();
+  }
+
+  // The edge that leaves a along the way to b, or the first edge across it (from right to left).
+  MeshEdge first_towards(std::int32_t a, std::int32_t b) const {
+    const bool is_forward = lexicographically_before(points_[a], points_[b]);
+    const MeshEdge first = mesh_.leaving(a);
+    MeshEdge e = first;
+    do {
+      const std::int32_t right = mesh_.to(e), left = mesh_.corner(e);
+      if (right == b) return e;
+      if (right != kGhost) {
+        const int side = turn(a, b, right);
+        const bool is_ahead =
+            lexicographically_before(points_[a], points_[right]) == is_forward;
+        if (side == 0 && is_ahead) return e;
+        if (side < 0 && left != kGhost && turn(a, b, left) > 0) return mesh_.after(e);
+      }
+      e = mesh_.next_leaving(e);
+    } while (e != first);
+    return e;  // not reached: a sees something in every direction within the hull
+  }
+
+  // An edge on the rim of the triangles that are replaced: as seen from within, from without, and
+  // from the triangle that comes in their place.
+  struct RimEdge {
+    std::int32_t from, to;
+    MeshEdge inner, outer, made;
+    bool is_fixed;
+  };
+  RimEdge rim_edge(MeshEdge e) const {
+    return {mesh_.from(e), mesh_.to(e), e, mesh_.twin(e), kNoMeshEdge, mesh_.is_fixed(e)};
+  }
+
+  // Collect the triangles that the way from a to b crosses, and their rim on its right and left;
+  // `e` is the first edge across, from right to left. False if a fixed edge is in the way.
+  bool open_corridor(std::int32_t a, std::int32_t b, MeshEdge e) {
+    corridor_.assign(1, triangle_of(e));
+    right_rim_.assign(1, rim_edge(mesh_.before(e)));
+    left_rim_.assign(1, rim_edge(mesh_.after(e)));
+    while (true) {
+      if (mesh_.is_fixed(e)) return false;
+      const MeshEdge f = mesh_.twin(e);
+      const std::int32_t ahead = mesh_.corner(f);
+      const int side = ahead == b ? 0 : turn(a, b, ahead);
+      corridor_.push_back(triangle_of(f));
+      if (side <= 0) right_rim_.push_back(rim_edge(mesh_.after(f)));
+      if (side >= 0) left_rim_.push_back(rim_edge(mesh_.before(f)));
+      if (side == 0) return true;
+      e = side > 0 ? mesh_.after(f) : mesh_.before(f);
+    }
+  }
+
+  // Fill the corridor on both sides of the way; returns the edge along it.
+  MeshEdge close_corridor() {
+    std::reverse(left_rim_.begin(), left_rim_.end());
+    changed_ = corridor_;
+    const MeshEdge right = fill(right_rim_), left = fill(left_rim_);
+    mesh_.join(right, left);
+    join_rim();
+    return left;
+  }
+
+  // Triangulate between a rim, counter-clockwise, and the edge from its end to its start: wherever
+  // two edges turn left, a triangle takes their place. Every vertex of the rim sees the closing
+  // edge, so none lies in the way. Returns the closing edge, as seen from within.
+  MeshEdge fill(std::vector<RimEdge>& rim) {
+    struct Open {
+      std::int32_t from, to;
+      MeshEdge beyond;  // of a triangle made already,
+      RimEdge* rim;     // or on the rim
+    };
+    std::vector<Open> open;
+    const auto attach = [this](const Open& edge, MeshEdge side) {
+      if (edge.rim == nullptr) {
+        mesh_.join(side, edge.beyond);
+      } else {
+        edge.rim->made = side;
+      }
+    };
+    for (RimEdge& next : rim) {
+      Open last{next.from, next.to, kNoMeshEdge, &next};
+      while (!open.empty() && turn(open.back().from, last.from, last.to) > 0) {
+        const Open before = open.back();
+        open.pop_back();
+        const std::uint32_t t = corridor_.back();
+        corridor_.pop_back();
+        mesh_.reuse(t, before.from, last.from, last.to);
+        attach(last, mesh_edge(t, 0));
+        attach(before, mesh_edge(t, 2));
+        last = {before.from, last.to, mesh_edge(t, 1), nullptr};
+      }
+      open.push_back(last);
+    }
+    return open.back().beyond;
+  }
+
+  // An edge may be on the rim twice, with the corridor on both of its sides.
+  void join_rim() {
+    std::vector<RimEdge*> rim;
+    for (RimEdge& edge : right_rim_) rim.push_back(&edge);
+    for (RimEdge& edge : left_rim_) rim.push_back(&edge);
+    const auto is_before = [](const RimEdge* a, const RimEdge* b) { return a->inner < b->inner; };
+    std::sort(rim.begin(), rim.end(), is_before);
+    for (RimEdge* edge : rim) {
+      const auto other = std::lower_bound(
+          rim.begin(), rim.end(), edge->outer,
+          [](const RimEdge* candidate, MeshEdge sought) { return candidate->inner < sought; });
+      const bool is_twice = other != rim.end() && (*other)->inner == edge->outer;
+      mesh_.join(edge->made, is_twice ? (*other)->made : edge->outer);
+    }
+    for (RimEdge* edge : rim) mesh_.fix(edge->made, edge->is_fixed);
+  }
+
+  Mesh mesh_;
+  std::vector<Point> points_;  // of every slot; a slot without a vertex holds anything
+  std::int32_t count_ = 0;
+  MeshEdge last_ = kNoMeshEdge;  // near the last change
+  std::uint64_t state_ = 0;      // of the random walk, which never shows in the result
+  std::vector<MeshEdge> pending_;
+  std::vector<std::uint32_t> changed_;
+  std::vector<std::uint32_t> corridor_;
+  std::vector<RimEdge> right_rim_, left_rim_;
+};
+
+}  // namespace tinsmith
