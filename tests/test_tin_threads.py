@@ -125,6 +125,18 @@ def test_available_cores_are_those_of_this_process():
 # ------------------------------------------------------------------ several callers
 
 
+@pytest.mark.parametrize("threads", [2, 3, 16])
+def test_threads_that_take_over_from_each_other_change_nothing(threads):
+    """The south is quick, the north is slow: whoever has the south is through first."""
+    rng = np.random.default_rng(3)
+    raster = np.stack(np.meshgrid(np.arange(400.0), np.arange(400.0)), axis=-1).reshape(-1, 2)
+    scattered = rng.random((160_000, 2)) * [400, 400] + [0, 400]
+    points = with_heights(np.concatenate([scattered, raster]))
+    alone = _kernel.grow(points, threads=1)
+    for _ in range(3):
+        require_same_growth(_kernel.grow(points, threads=threads), alone)
+
+
 def test_callers_at_the_same_time_get_their_own_tins():
     clouds = [dataset(name, 10_000) for name in ("uniform", "raster", "clusters", "circle")] * 2
     wanted = [ts.triangulate(points, threads=1) for points in clouds]

@@ -12,6 +12,7 @@
 #include "base/arrays.hpp"
 #include "base/parallel.hpp"
 #include "growth/growth.hpp"
+#include "growth/shares.hpp"
 #include "growth/stitch.hpp"
 #include "hull/hull.hpp"
 #include "index/grid.hpp"
@@ -91,51 +92,77 @@ class Triangulator {
     insert_all(grid);
   }
 
+  // What a thread made of a share.
+  struct alignas(kCacheLine) Grown {
+    explicit Grown(TriangleStore made) : store(std::move(made)) {}
+    TriangleStore store;
+    int share = 0;
+    std::int32_t last_shared = -1;
+    SearchCounts counts;
+  };
+
   // Returns whether all triangles are made.
   template <typename Near>
   bool grow(const PointGrid& grid, const std::vector<Vertex>& hull) {
     allocate();
-    std::vector<TriangleStore> stores;
-    stores.emplace_back(result_.arrays());
-    for (int part = 1; part < team_.size(); ++part) {
-      stores.emplace_back(expected_triangles(part_of(grid.count(), part, team_.size())));
-    }
-    std::vector<std::int32_t> last_shared(team_.size());
-    std::vector<SearchCounts> counts(team_.size());
+    Shares shares(grid.count(), team_.size());
+    std::vector<std::vector<Grown>> grown(team_.size());
     std::atomic<bool> is_too_costly{false};
     team_.run([&](int part) {
-      Growth<Near> growth(grid, hull, part_of(grid.count(), part, team_.size()), stores[part]);
-      const Outcome outcome =
-          growth.run([&] { return !is_too_costly && team_.keeps_going(part); },
-                     options_.method == Method::kAutomatic);
-      if (outcome == Outcome::kTooCostly) is_too_costly = true;
-      counts[part] = growth.counts();
-      last_shared[part] = growth.last_shared();
+      for (int share = part; share != Shares::kNone; share = shares.split_largest()) {
+        const Range own = shares.range(share);
+        grown[part].emplace_back(share == 0 ? TriangleStore(result_.arrays())
+                                            : TriangleStore(expected_triangles(own)));
+        Grown& made = grown[part].back();
+        Growth<Near> growth(grid, hull, own, made.store);
+        const Outcome outcome =
+            growth.run([&] { return !is_too_costly && team_.keeps_going(part); },
+                       options_.method == Method::kAutomatic,
+                       [&] { return shares.next_block(share); });
+        if (outcome == Outcome::kTooCostly) is_too_costly = true;
+        made.share = share;
+        made.counts = growth.counts();
+        made.last_shared = growth.last_shared();
+        if (outcome != Outcome::kComplete) return;
+      }
     });
-    for (const SearchCounts& part : counts) result_.counts += part;
+    std::vector<Grown> all;
+    for (std::vector<Grown>& part : grown) {
+      for (Grown& made : part) {
+        result_.counts += made.counts;
+        all.push_back(std::move(made));
+      }
+    }
     if (is_too_costly || team_.is_stopped()) return false;
-    stitch(grid, stores, last_shared);
+    stitch(grid, shares, all);
     return true;
   }
 
-  // Two a vertex, with room for those that a neighbouring part finds too.
+  // Two a vertex, with room for those that a neighbouring share finds too.
   static std::int64_t expected_triangles(Range own) {
     return std::int64_t{2} * own.size() + own.size() / 8 + 1024;
   }
 
-  void stitch(const PointGrid& grid, const std::vector<TriangleStore>& stores,
-              const std::vector<std::int32_t>& last_shared) {
-    if (stores.size() == 1) return number_by_rows();
-    std::vector<GrownPart> parts(stores.size());
-    team_.run([&](int part) {
-      parts[part] = GrownPart(part_of(grid.count(), part, team_.size()), stores[part].arrays(),
-                              stores[part].size(), last_shared[part]);
+  void stitch(const PointGrid& grid, Shares& shares, std::vector<Grown>& grown) {
+    if (grown.size() == 1) return number_by_rows();
+    std::sort(grown.begin(), grown.end(), [&](const Grown& a, const Grown& b) {
+      return shares.range(a.share).begin < shares.range(b.share).begin;
+    });
+    const auto count = static_cast<int>(grown.size());
+    std::vector<GrownPart> parts(grown.size());
+    team_.run([&](int member) {
+      for (int i = member; i < count; i += team_.size()) {
+        parts[i] = GrownPart(shares.range(grown[i].share), grown[i].store.arrays(),
+                             grown[i].store.size(), grown[i].last_shared);
+      }
     });
     std::vector<std::int32_t> base{0};
     for (const GrownPart& part : parts) base.push_back(base.back() + part.kept());
-    team_.run([&](int part) {
-      parts[part].write(base[part], result_.arrays(),
-                        [this](std::int32_t position) { return number(rows_of_[position]); });
+    team_.run([&](int member) {
+      for (int i = member; i < count; i += team_.size()) {
+        parts[i].write(base[i], result_.arrays(),
+                       [this](std::int32_t position) { return number(rows_of_[position]); });
+      }
     });
     join_open_edges(parts, result_.arrays());
   }

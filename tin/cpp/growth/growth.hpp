@@ -51,19 +51,16 @@ class Growth {
     }
   }
 
-  // Stops when `keep_going` returns false, or, if bounded, when the searches have cost more than
-  // another way of building the triangulation would.
-  template <typename KeepGoing>
-  Outcome run(KeepGoing&& keep_going, bool is_bounded) {
-    constexpr std::int32_t kVerticesPerQuestion = 4096;
+  // Finish the vertices of `next_block()` until it is empty. Stops when `keep_going` returns
+  // false, or, if bounded, when the searches have cost more than another way of building the
+  // triangulation would.
+  template <typename KeepGoing, typename NextBlock>
+  Outcome run(KeepGoing&& keep_going, bool is_bounded, NextBlock&& next_block) {
     try {
-      for (std::int32_t i = own_.begin; i < own_.end; ++i) {
-        const std::int32_t finished = i - own_.begin;
-        if (finished % kVerticesPerQuestion == 0) {
-          if (!keep_going()) return Outcome::kStopped;
-          if (is_bounded) search_.allow(budget_at(finished));
-        }
-        finish(static_cast<Vertex>(i));
+      for (Range block = next_block(); block.begin < block.end; block = next_block()) {
+        if (!keep_going()) return Outcome::kStopped;
+        if (is_bounded) search_.allow(budget_at(block.begin - own_.begin));
+        for (std::int32_t i = block.begin; i < block.end; ++i) finish(static_cast<Vertex>(i));
       }
     } catch (const SearchTooCostly&) {
       return Outcome::kTooCostly;
