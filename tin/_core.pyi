@@ -39,3 +39,27 @@ class Locator:
     ) -> None: ...
     def locate(self, xy: NDArray[np.float64]) -> NDArray[np.int32]: ...
     def interpolate(self, xy: NDArray[np.float64]) -> NDArray[np.float64]: ...
+
+def crossings(
+    xy: NDArray[np.float64],
+    segments: NDArray[np.int32],
+    first_new: int = ...,
+    threads: int = ...,
+) -> NDArray[np.int32]: ...
+def touches(
+    xy: NDArray[np.float64],
+    segments: NDArray[np.int32],
+    distance: float = ...,
+    first_vertex: int = ...,
+    threads: int = ...,
+) -> NDArray[np.int32]: ...
+def intersections(
+    xy: NDArray[np.float64], segments: NDArray[np.int32], pairs: NDArray[np.int32]
+) -> NDArray[np.float64]: ...
+def vertices_at(xy: NDArray[np.float64], places: NDArray[np.float64]) -> NDArray[np.int32]: ...
+def places_in_rings(
+    xy: NDArray[np.float64],
+    ring_xy: NDArray[np.float64],
+    offsets: NDArray[np.int32],
+    threads: int = ...,
+) -> NDArray[np.int8]: ...

@@ -19,10 +19,15 @@ __all__ = [
     "Method",
     "clean",
     "count_work",
+    "crossings",
     "grow",
     "in_circle",
+    "intersections",
     "orientation",
+    "places_in_rings",
     "snap",
+    "touches",
+    "vertices_at",
 ]
 
 EXACT_RANGE: tuple[float, float] = (_core.SMALLEST_COORDINATE, _core.LARGEST_COORDINATE)
@@ -34,6 +39,11 @@ in_circle = _core.in_circle
 snap = _core.snap
 count_work = _core.count_work
 clean = _core.clean
+crossings = _core.crossings
+touches = _core.touches
+intersections = _core.intersections
+vertices_at = _core.vertices_at
+places_in_rings = _core.places_in_rings
 Method = _core.Method
 
 

@@ -33,6 +33,15 @@ struct Rectangle {
     return (p.x >= xmin) & (p.x <= xmax) & (p.y >= ymin) & (p.y <= ymax);
   }
 
+  bool meets(const Rectangle& other) const {
+    return (other.xmin <= xmax) & (other.xmax >= xmin) & (other.ymin <= ymax) &
+           (other.ymax >= ymin);
+  }
+
+  Rectangle grown_by(double reach) const {
+    return {xmin - reach, ymin - reach, xmax + reach, ymax + reach};
+  }
+
   Point center() const { return {xmin + 0.5 * (xmax - xmin), ymin + 0.5 * (ymax - ymin)}; }
 };
 
@@ -65,13 +74,20 @@ class BoxTree {
   // Call visit(first, last) for runs of items whose box holds p, until it returns true.
   template <typename Visit>
   void visit_leaves(Point p, Visit&& visit) const {
+    visit_leaves_if([p](const Rectangle& box, std::int64_t) { return box.holds(p); }, visit);
+  }
+
+  // The same for runs all boxes around which are wanted: wanted(box, end), where `end` comes after
+  // the box's last item.
+  template <typename Wanted, typename Visit>
+  void visit_leaves_if(Wanted&& wanted, Visit&& visit) const {
     struct Node {
       std::int32_t level;
       std::int32_t box;
     };
     Node open[kFanOut * kMostLevels];
     std::int32_t count = 0;
-    if (boxes_.empty() || !boxes_.back().holds(p)) return;
+    if (boxes_.empty() || !wanted(boxes_.back(), item_count_)) return;
     open[count++] = {static_cast<std::int32_t>(level_.size()) - 2, level_.back() - 1};
     while (count > 0) {
       const Node node = open[--count];
@@ -80,9 +96,10 @@ class BoxTree {
         continue;
       }
       const auto [begin, end] = children(node.level, node.box);
+      const std::int32_t below = node.level - 1;
       for (std::int32_t child = begin; child < end; ++child) {
-        open[count] = {node.level - 1, child};
-        count += boxes_[child].holds(p);
+        open[count] = {below, child};
+        count += wanted(boxes_[child], end_item(below, child));
       }
     }
   }
@@ -98,6 +115,12 @@ class BoxTree {
   std::int32_t first_item(std::int32_t leaf) const {
     return static_cast<std::int32_t>(
         std::min<std::int64_t>(std::int64_t{kItemsPerLeaf} * leaf, item_count_));
+  }
+
+  // May lie beyond the last item.
+  std::int64_t end_item(std::int32_t level, std::int32_t node) const {
+    static_assert(kItemsPerLeaf == 4 && kFanOut == 4, "a level is a factor of four");
+    return std::int64_t{node - level_[level] + 1} << (2 * (level + 1));
   }
 
   Range children(std::size_t level, std::int32_t node) const {

@@ -72,25 +72,6 @@ struct Surface {
   }
 };
 
-namespace detail {
-
-// Twice the signed area of a, b, c; the sign is exact and the value good to about 12 digits.
-inline double twice_area(Point a, Point b, Point c) {
-  constexpr double kCancelled = 0x1p-12;  // fewer than 12 of 53 bits lost is good enough
-  const double left = (a.x - c.x) * (b.y - c.y);
-  const double right = (a.y - c.y) * (b.x - c.x);
-  const double value = left - right;
-  if (std::fabs(value) > kCancelled * (std::fabs(left) + std::fabs(right))) return value;
-  const auto exact =
-      expand(exact_difference(a.x, c.x)) * expand(exact_difference(b.y, c.y)) -
-      expand(exact_difference(a.y, c.y)) * expand(exact_difference(b.x, c.x));
-  double sum = 0.0;
-  for (std::size_t i = 0; i < exact.size; ++i) sum += exact.part[i];
-  return sum;
-}
-
-}  // namespace detail
-
 class Locator {
  public:
   // The surface's arrays must outlive the locator, and its points and corners be sound.

@@ -53,6 +53,12 @@ struct Expansion {
     if (size == 0) return 0;
     return part[size - 1] > 0.0 ? 1 : -1;
   }
+  // Rounded: good to a unit or two in the last place.
+  double value() const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < size; ++i) sum += part[i];
+    return sum;
+  }
 };
 
 inline Expansion<2> expand(TwoDoubles value) {

@@ -192,6 +192,22 @@ inline int in_circle_exact(Point a, Point b, Point c, Point d) {
   return in_circle_expanded(difference);
 }
 
+// Twice the signed area of a, b, c, exactly.
+inline Expansion<16> exact_twice_area(Point a, Point b, Point c) {
+  return expand(exact_difference(a.x, c.x)) * expand(exact_difference(b.y, c.y)) -
+         expand(exact_difference(a.y, c.y)) * expand(exact_difference(b.x, c.x));
+}
+
+// Twice the signed area of a, b, c; the sign is exact and the value good to about 12 digits.
+inline double twice_area(Point a, Point b, Point c) {
+  constexpr double kCancelled = 0x1p-12;  // fewer than 12 of 53 bits lost is good enough
+  const double left = (a.x - c.x) * (b.y - c.y);
+  const double right = (a.y - c.y) * (b.x - c.x);
+  const double value = left - right;
+  if (std::fabs(value) > kCancelled * (std::fabs(left) + std::fabs(right))) return value;
+  return exact_twice_area(a, b, c).value();
+}
+
 }  // namespace detail
 
 // +1 if c lies left of the line from a to b, -1 right, 0 on it.

@@ -1,0 +1,104 @@
+// Segments between numbered places, and what lies near one.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "../base/parallel.hpp"
+#include "../location/box_tree.hpp"
+#include "../predicates/predicates.hpp"
+
+namespace tinsmith {
+
+// As the caller holds them; the two ends may be one place.
+struct Segments {
+  const Point* places;
+  const std::int32_t* ends;  // two place numbers each
+  std::int32_t count;
+
+  std::int32_t end(std::int32_t segment, int k) const {
+    return ends[2 * static_cast<std::size_t>(segment) + k];
+  }
+  Point place(std::int32_t segment, int k) const { return places[end(segment, k)]; }
+  Rectangle box_of(std::int32_t segment) const {
+    Rectangle box;
+    for (int k = 0; k < 2; ++k) box.include(place(segment, k));
+    return box;
+  }
+};
+
+struct NumberPair {
+  std::int32_t first;
+  std::int32_t second;
+};
+
+inline bool operator<(NumberPair a, NumberPair b) {
+  return a.first < b.first || (a.first == b.first && a.second < b.second);
+}
+
+// All that lies within `reach` of a segment. meets() may say yes to what lies just outside, but
+// never no to what lies within: then the sides' rounded distance exceeds its error bound.
+class Band {
+ public:
+  Band(Point a, Point b, double reach) : a_(a), dx_(b.x - a.x), dy_(b.y - a.y) {
+    box_.include(a);
+    box_.include(b);
+    const double wide_reach = kRoom * reach;
+    box_ = box_.grown_by(wide_reach);
+    half_width_ = wide_reach * (std::fabs(dx_) + std::fabs(dy_));
+  }
+
+  bool meets(const Rectangle& box) const { return box_.meets(box) && reaches(box); }
+
+ private:
+  static constexpr double kRoom = 1.0 + 0x1p-10;
+  static constexpr double kErrorBound = 0x1p-48;  // a few roundings of each term
+
+  // Whether the box has corners on both sides of the line, or one within reach of it.
+  bool reaches(const Rectangle& box) const {
+    const double west = box.xmin - a_.x, east = box.xmax - a_.x;
+    const double south = box.ymin - a_.y, north = box.ymax - a_.y;
+    const double x = 0.5 * (west + east), half_x = 0.5 * (east - west);
+    const double y = 0.5 * (south + north), half_y = 0.5 * (north - south);
+    const double across = std::fabs(dx_ * y - dy_ * x);
+    const double spread = std::fabs(dx_) * half_y + std::fabs(dy_) * half_x + half_width_;
+    const double terms = std::fabs(dx_ * y) + std::fabs(dy_ * x) + spread;
+    return across <= spread + kErrorBound * terms;
+  }
+
+  Point a_;
+  double dx_, dy_;
+  double half_width_;  // reach times the segment's length, or more
+  Rectangle box_;
+};
+
+// visit(item) for every item by the team's parts, in blocks that each part fetches.
+template <typename Visit>
+void visit_in_blocks(std::int32_t count, Team& team, Visit&& visit) {
+  constexpr std::int64_t kBlock = 1024;
+  std::atomic<std::int64_t> next{0};
+  team.run([&](int part) {
+    for (;;) {
+      const std::int64_t begin = next.fetch_add(kBlock);
+      if (begin >= count || !team.keeps_going(part)) return;
+      const std::int64_t end = std::min<std::int64_t>(begin + kBlock, count);
+      for (std::int64_t i = begin; i < end; ++i) visit(part, static_cast<std::int32_t>(i));
+    }
+  });
+}
+
+// What the parts found, as one sorted list.
+inline std::vector<NumberPair> sorted_together(std::vector<std::vector<NumberPair>>& found) {
+  std::vector<NumberPair> all = std::move(found[0]);
+  for (std::size_t part = 1; part < found.size(); ++part) {
+    all.insert(all.end(), found[part].begin(), found[part].end());
+  }
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+}  // namespace tinsmith

@@ -1,0 +1,148 @@
+// Which vertices lie on segments?
+//
+// A vertex touches a segment if it lies in the open interior, exactly. With a distance d > 0 it
+// also does if it lies within d of the segment's line, further than d from both ends, and nearer
+// to each end than the ends are to each other:
+//
+//             .  '  .   .  '  .
+//           .     .  '.'  .     .        inside both circles about the ends through the other end
+//         .( )---------------( ).        (so its foot is inside, and both parts that it splits the
+//           .     .  '.'  .     .        segment into are shorter than the segment), but not
+//             .  .  '   '  .  .          within d of an end: such a vertex is the end's affair
+//
+// So splitting segments at what touches them comes to an end: parts only ever get shorter.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "../index/spatial_order.hpp"
+#include "segment_raster.hpp"
+#include "segments.hpp"
+
+namespace tinsmith {
+
+// Whether p is in the open interior of a-b.
+inline bool is_on_interior(Point a, Point b, Point p) {
+  const bool forward = lexicographically_before(a, p) && lexicographically_before(p, b);
+  const bool backward = lexicographically_before(b, p) && lexicographically_before(p, a);
+  return (forward || backward) && orientation(a, b, p) == 0;
+}
+
+// Whether p touches a-b within `distance` > 0; the same for b-a.
+inline bool is_near_interior(Point a, Point b, Point p, double distance) {
+  if (is_on_interior(a, b, p)) return true;
+  if (lexicographically_before(b, a)) std::swap(a, b);
+  const auto square = [](Point u, Point v) {
+    const double dx = v.x - u.x, dy = v.y - u.y;
+    return dx * dx + dy * dy;
+  };
+  const double to_a = square(a, p), to_b = square(b, p), length = square(a, b);
+  const double near = distance * distance;
+  if (!(to_a > near && to_b > near && to_a < length && to_b < length)) return false;
+  return std::fabs(detail::twice_area(a, b, p)) <= distance * std::sqrt(length);
+}
+
+// Pairs (segment, vertex), sorted; incomplete if the team was stopped. Vertices are the places
+// from `first_vertex` to `vertex_count` - 1.
+class TouchSearch {
+ public:
+  TouchSearch(const Segments& segments, double distance) : segments_(segments), distance_(distance) {}
+
+  std::vector<NumberPair> run(std::int32_t first_vertex, std::int32_t vertex_count, Team& team) {
+    gather(first_vertex, vertex_count, team);
+    std::vector<std::vector<NumberPair>> found(team.size());
+    if (team.is_stopped()) return {};
+    visit_in_blocks(segments_.count, team,
+                    [&](int part, std::int32_t segment) { search(segment, found[part]); });
+    return sorted_together(found);
+  }
+
+ private:
+  struct Vertex {
+    Point place;
+    std::int32_t number;
+  };
+
+  // The vertices that a raster of the segments cannot rule out, in spatial order.
+  void gather(std::int32_t first_vertex, std::int32_t vertex_count, Team& team) {
+    const SegmentRaster raster(segments_, distance_, vertex_count - first_vertex);
+    std::vector<std::vector<std::int32_t>> kept(team.size());
+    team.run([&](int part) {
+      const Range range = part_of(vertex_count - first_vertex, part, team.size());
+      if (!team.keeps_going(part)) return;
+      for (std::int32_t i = range.begin; i < range.end; ++i) {
+        const std::int32_t v = first_vertex + i;
+        if (raster.may_hold(segments_.places[v])) kept[part].push_back(v);
+      }
+    });
+    std::vector<std::int32_t> numbers = std::move(kept[0]);
+    for (int part = 1; part < team.size(); ++part) {
+      numbers.insert(numbers.end(), kept[part].begin(), kept[part].end());
+    }
+    const auto count = static_cast<std::int32_t>(numbers.size());
+    const SpatialOrder order(count, [&](std::int32_t i) { return segments_.places[numbers[i]]; });
+    vertices_.resize(count);
+    for (std::int32_t i = 0; i < count; ++i) {
+      const std::int32_t v = numbers[order[i]];
+      vertices_[i] = {segments_.places[v], v};
+    }
+    tree_ = BoxTree(count, [&](std::int32_t i) {
+      const Point p = vertices_[i].place;
+      return Rectangle{p.x, p.y, p.x, p.y};
+    });
+  }
+
+  void search(std::int32_t segment, std::vector<NumberPair>& found) const {
+    const Point a = segments_.place(segment, 0), b = segments_.place(segment, 1);
+    const std::int32_t first = segments_.end(segment, 0), second = segments_.end(segment, 1);
+    const Band band(a, b, distance_);
+    const auto wanted = [&](const Rectangle& box, std::int64_t) { return band.meets(box); };
+    tree_.visit_leaves_if(wanted, [&](std::int32_t begin, std::int32_t end) {
+      for (std::int32_t i = begin; i < end; ++i) {
+        const Vertex& vertex = vertices_[i];
+        if (vertex.number == first || vertex.number == second) continue;
+        if (touches(a, b, vertex.place)) found.push_back({segment, vertex.number});
+      }
+      return false;
+    });
+  }
+
+  bool touches(Point a, Point b, Point p) const {
+    return distance_ > 0.0 ? is_near_interior(a, b, p, distance_) : is_on_interior(a, b, p);
+  }
+
+  Segments segments_;
+  double distance_;
+  std::vector<Vertex> vertices_;
+  BoxTree tree_;
+};
+
+// The vertex at each of the places, -1 where there is none.
+inline std::vector<std::int32_t> vertices_at(const Point* vertices, std::int32_t vertex_count,
+                                             const Point* places, std::int32_t place_count) {
+  constexpr std::int32_t kNone = -1;
+  std::vector<std::int32_t> order(place_count);
+  for (std::int32_t i = 0; i < place_count; ++i) order[i] = i;
+  std::sort(order.begin(), order.end(), [&](std::int32_t i, std::int32_t j) {
+    return lexicographically_before(places[i], places[j]);
+  });
+  std::vector<std::int32_t> found(place_count, kNone);
+  const PlaceFilter filter(places, place_count);
+  for (std::int32_t v = 0; v < vertex_count; ++v) {
+    if (!filter.may_hold(vertices[v])) continue;
+    auto at = std::lower_bound(order.begin(), order.end(), vertices[v],
+                               [&](std::int32_t i, Point p) {
+                                 return lexicographically_before(places[i], p);
+                               });
+    for (; at != order.end() && places[*at] == vertices[v]; ++at) {
+      if (found[*at] == kNone) found[*at] = v;
+    }
+  }
+  return found;
+}
+
+}  // namespace tinsmith
