@@ -53,6 +53,12 @@ def touches(
     first_vertex: int = ...,
     threads: int = ...,
 ) -> NDArray[np.int32]: ...
+def contacts(
+    xy: NDArray[np.float64],
+    segments: NDArray[np.int32],
+    distance: float = ...,
+    threads: int = ...,
+) -> tuple[NDArray[np.int32], NDArray[np.int32]]: ...
 def intersections(
     xy: NDArray[np.float64], segments: NDArray[np.int32], pairs: NDArray[np.int32]
 ) -> NDArray[np.float64]: ...

@@ -18,6 +18,7 @@ __all__ = [
     "Locator",
     "Method",
     "clean",
+    "contacts",
     "count_work",
     "crossings",
     "grow",
@@ -39,6 +40,7 @@ in_circle = _core.in_circle
 snap = _core.snap
 count_work = _core.count_work
 clean = _core.clean
+contacts = _core.contacts
 crossings = _core.crossings
 touches = _core.touches
 intersections = _core.intersections

@@ -132,7 +132,7 @@ class Splitting:
         self.crossing_vertices = np.empty(0, np.int32)
         self._snap = snap
         self._threads = threads
-        self._untouched = np.empty(0, np.int64)  # segments without touches by the first vertices
+        self._untouched = np.empty(0, np.int64)  # segments that the first vertices do not touch
         self._n_touched = 0  # the number of those vertices
         self._uncrossed = np.empty(0, np.int64)  # segments that do not cross one another
 
@@ -154,18 +154,33 @@ class Splitting:
 
     def _find_touches(self) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
         """Ask new segments about all vertices, known ones about new vertices."""
-        ends = self.steps.ends
+        if self._n_touched == 0:
+            return self._find_contacts()
         is_known = _is_in(self.steps.keys, self._untouched)
         found = []
         for asked, first in ((~is_known, 0), (is_known, self._n_touched)):
             numbers = np.flatnonzero(asked)
+            ends = self.steps.ends[numbers]
             if len(numbers) and first < len(self.xy):
-                pairs = _kernel.touches(self.xy, ends[numbers], self._snap, first, self._threads)
+                pairs = _kernel.touches(self.xy, ends, self._snap, first, self._threads)
                 found.append((numbers[pairs[:, 0]], pairs[:, 1]))
         if not found:
             return np.empty(0, np.int64), np.empty(0, np.int32)
         segment, vertex = (np.concatenate(column) for column in zip(*found, strict=True))
         return segment, vertex
+
+    def _find_contacts(self) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
+        """Ask all segments about all, and note those that cross none."""
+        ends = self.steps.ends
+        crossings, touches = _kernel.contacts(self.xy, ends, self._snap, self._threads)
+        crossed = np.zeros(len(ends), np.bool_)
+        crossed[crossings.ravel()] = True
+        touched = np.zeros(len(ends), np.bool_)
+        touched[touches[:, 0]] = True
+        self._uncrossed = self.steps.keys[~crossed]
+        self._untouched = self.steps.keys[~touched]
+        self._n_touched = len(self.xy)
+        return touches[:, 0].astype(np.int64), touches[:, 1]
 
     def _shortening(
         self, segment: NDArray[np.int64], vertex: NDArray[np.int32]
@@ -188,6 +203,8 @@ class Splitting:
     def find_crossings(self) -> NDArray[np.int64]:
         """Return the pairs of distinct segments that cross, (c, 2)."""
         is_known = _is_in(self.steps.keys, self._uncrossed)
+        if is_known.all():
+            return np.empty((0, 2), np.int64)
         order = np.argsort(~is_known, kind="stable")
         pairs = _kernel.crossings(
             self.xy, self.steps.ends[order], int(is_known.sum()), self._threads

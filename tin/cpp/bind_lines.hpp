@@ -3,6 +3,7 @@
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/tuple.h>
 
 #include <algorithm>
 #include <atomic>
@@ -10,11 +11,12 @@
 #include <cstdint>
 #include <cstring>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "bind_arrays.hpp"
-#include "lines/crossings.hpp"
+#include "lines/contacts.hpp"
 #include "lines/meeting_point.hpp"
 #include "lines/ring_places.hpp"
 #include "lines/touches.hpp"
@@ -87,20 +89,33 @@ inline PairRows crossings(const Places& xy, const NumberPairs& segments, std::in
   require_first(first_new);
   const Segments given = sound_segments(xy, segments);
   return hand_over(unlocked(
-      threads, [&](Team& team) { return CrossingSearch(given, first_new).run(team); }));
+      threads, [&](Team& team) { return find_crossings(given, first_new, team); }));
+}
+
+inline void require_distance(double distance) {
+  if (distance >= 0.0 && distance <= kLargestCoordinate) return;
+  throw std::invalid_argument("the distance must be finite and 0 or more");
 }
 
 inline PairRows touches(const Places& xy, const NumberPairs& segments, double distance,
                         std::int32_t first_vertex, int threads) {
-  if (!(distance >= 0.0 && distance <= kLargestCoordinate)) {
-    throw std::invalid_argument("the distance must be finite and 0 or more");
-  }
+  require_distance(distance);
   require_first(first_vertex);
   const Segments given = sound_segments(xy, segments);
   const std::int32_t count = row_count(xy.shape(0));
   return hand_over(unlocked(threads, [&](Team& team) {
-    return TouchSearch(given, distance).run(std::min(first_vertex, count), count, team);
+    const auto is_asked = [](std::int32_t) { return true; };
+    return TouchSearch(given, distance).run(std::min(first_vertex, count), count, is_asked, team);
   }));
+}
+
+inline auto contacts(const Places& xy, const NumberPairs& segments, double distance, int threads) {
+  require_distance(distance);
+  const Segments given = sound_segments(xy, segments);
+  const std::int32_t count = row_count(xy.shape(0));
+  const ContactSearch found = unlocked(
+      threads, [&](Team& team) { return ContactSearch(given, count, distance, team); });
+  return std::make_tuple(hand_over(found.crossings), hand_over(found.touches));
 }
 
 inline PlaceRows intersections(const Places& xy, const NumberPairs& segments,
@@ -165,6 +180,8 @@ inline void bind_lines(nb::module_& m) {
         "first_vertex"_a = 0, "threads"_a = 1,
         "Pairs (segment, vertex), sorted, where the vertex, first_vertex or later, lies inside the "
         "segment or, further than the distance from both ends, within the distance of it.");
+  m.def("contacts", &contacts, "xy"_a.noconvert(), "segments"_a.noconvert(), "distance"_a = 0.0,
+        "threads"_a = 1, "The crossings and the touches of all, found together.");
   m.def("intersections", &intersections, "xy"_a.noconvert(), "segments"_a.noconvert(),
         "pairs"_a.noconvert(), "Where the segments of each pair cross, rounded once.");
   m.def("vertices_at", &places_of_vertices, "xy"_a.noconvert(), "places"_a.noconvert(),

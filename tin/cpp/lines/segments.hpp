@@ -44,6 +44,8 @@ inline bool operator<(NumberPair a, NumberPair b) {
 // never no to what lies within: then the sides' rounded distance exceeds its error bound.
 class Band {
  public:
+  static constexpr double kRoom = 1.0 + 0x1p-10;
+
   Band(Point a, Point b, double reach) : a_(a), dx_(b.x - a.x), dy_(b.y - a.y) {
     box_.include(a);
     box_.include(b);
@@ -55,7 +57,6 @@ class Band {
   bool meets(const Rectangle& box) const { return box_.meets(box) && reaches(box); }
 
  private:
-  static constexpr double kRoom = 1.0 + 0x1p-10;
   static constexpr double kErrorBound = 0x1p-48;  // a few roundings of each term
 
   // Whether the box has corners on both sides of the line, or one within reach of it.
@@ -79,7 +80,7 @@ class Band {
 // visit(item) for every item by the team's parts, in blocks that each part fetches.
 template <typename Visit>
 void visit_in_blocks(std::int32_t count, Team& team, Visit&& visit) {
-  constexpr std::int64_t kBlock = 1024;
+  constexpr std::int64_t kBlock = 128;  // small enough for even shares of uneven work
   std::atomic<std::int64_t> next{0};
   team.run([&](int part) {
     for (;;) {

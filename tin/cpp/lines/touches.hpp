@@ -34,28 +34,36 @@ inline bool is_on_interior(Point a, Point b, Point p) {
 
 // Whether p touches a-b within `distance` > 0; the same for b-a.
 inline bool is_near_interior(Point a, Point b, Point p, double distance) {
-  if (is_on_interior(a, b, p)) return true;
-  if (lexicographically_before(b, a)) std::swap(a, b);
   const auto square = [](Point u, Point v) {
     const double dx = v.x - u.x, dy = v.y - u.y;
     return dx * dx + dy * dy;
   };
   const double to_a = square(a, p), to_b = square(b, p), length = square(a, b);
+  if (!(to_a <= length && to_b <= length)) return false;  // rounding is monotone
+  if (lexicographically_before(b, a)) std::swap(a, b);
+  const double area = std::fabs(detail::twice_area(a, b, p));
+  if (area == 0.0) return is_on_interior(a, b, p);
   const double near = distance * distance;
-  if (!(to_a > near && to_b > near && to_a < length && to_b < length)) return false;
-  return std::fabs(detail::twice_area(a, b, p)) <= distance * std::sqrt(length);
+  return area <= distance * std::sqrt(length) && to_a > near && to_b > near && to_a < length &&
+         to_b < length;
 }
 
-// Pairs (segment, vertex), sorted; incomplete if the team was stopped. Vertices are the places
-// from `first_vertex` to `vertex_count` - 1.
+inline bool touches_interior(Point a, Point b, Point p, double distance) {
+  return distance > 0.0 ? is_near_interior(a, b, p, distance) : is_on_interior(a, b, p);
+}
+
+// Pairs (segment, vertex), sorted; incomplete if the team was stopped. The vertices are those of
+// the places from `first_vertex` to `vertex_count` - 1 for which `is_asked(number)`.
 class TouchSearch {
  public:
   TouchSearch(const Segments& segments, double distance) : segments_(segments), distance_(distance) {}
 
-  std::vector<NumberPair> run(std::int32_t first_vertex, std::int32_t vertex_count, Team& team) {
-    gather(first_vertex, vertex_count, team);
+  template <typename IsAsked>
+  std::vector<NumberPair> run(std::int32_t first_vertex, std::int32_t vertex_count,
+                              IsAsked&& is_asked, Team& team) {
+    gather(first_vertex, vertex_count, is_asked, team);
     std::vector<std::vector<NumberPair>> found(team.size());
-    if (team.is_stopped()) return {};
+    if (team.is_stopped() || vertices_.empty()) return {};
     visit_in_blocks(segments_.count, team,
                     [&](int part, std::int32_t segment) { search(segment, found[part]); });
     return sorted_together(found);
@@ -68,7 +76,9 @@ class TouchSearch {
   };
 
   // The vertices that a raster of the segments cannot rule out, in spatial order.
-  void gather(std::int32_t first_vertex, std::int32_t vertex_count, Team& team) {
+  template <typename IsAsked>
+  void gather(std::int32_t first_vertex, std::int32_t vertex_count, IsAsked&& is_asked,
+              Team& team) {
     const SegmentRaster raster(segments_, distance_, vertex_count - first_vertex);
     std::vector<std::vector<std::int32_t>> kept(team.size());
     team.run([&](int part) {
@@ -76,7 +86,7 @@ class TouchSearch {
       if (!team.keeps_going(part)) return;
       for (std::int32_t i = range.begin; i < range.end; ++i) {
         const std::int32_t v = first_vertex + i;
-        if (raster.may_hold(segments_.places[v])) kept[part].push_back(v);
+        if (is_asked(v) && raster.may_hold(segments_.places[v])) kept[part].push_back(v);
       }
     });
     std::vector<std::int32_t> numbers = std::move(kept[0]);
@@ -105,14 +115,10 @@ class TouchSearch {
       for (std::int32_t i = begin; i < end; ++i) {
         const Vertex& vertex = vertices_[i];
         if (vertex.number == first || vertex.number == second) continue;
-        if (touches(a, b, vertex.place)) found.push_back({segment, vertex.number});
+        if (touches_interior(a, b, vertex.place, distance_)) found.push_back({segment, vertex.number});
       }
       return false;
     });
-  }
-
-  bool touches(Point a, Point b, Point p) const {
-    return distance_ > 0.0 ? is_near_interior(a, b, p, distance_) : is_on_interior(a, b, p);
   }
 
   Segments segments_;
