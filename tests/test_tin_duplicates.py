@@ -125,8 +125,13 @@ def test_report_is_plain_data():
                 "height": 5.0,
             }
         ],
+        "left_out": {},
+        "lines": 0,
+        "crossings": [],
+        "overruled": [],
         "skipped": {},
         "notes": [],
+        "edits": [],
     }
     assert repr(tin.report) == "<Report: 5 rows, 4 vertices, 2 triangles, 1 row merged away>"
 
@@ -271,3 +276,14 @@ def test_the_report_tells_what_the_reader_left_out_and_assumed():
     told = ts.triangulate(survey).report.to_dict()
     assert told["skipped"] == {"comment lines": 2}
     assert told["notes"] == ["columns taken as PNEZD"]
+
+
+@pytest.mark.parametrize("share", [0.01, 0.5, 3.0])
+def test_repeated_rows_do_not_show_in_the_triangles(share):
+    rng = np.random.default_rng(4)
+    points = rng.integers(0, 60, (2_000, 3)).astype(float)
+    alone = ts.triangulate(points[np.sort(np.unique(points[:, :2], axis=0, return_index=True)[1])])
+    again = np.concatenate([points, points[rng.integers(0, 2_000, int(2_000 * share))]])
+    tin = ts.triangulate(again)
+    np.testing.assert_array_equal(tin.triangles, alone.triangles)
+    np.testing.assert_array_equal(tin.neighbors, alone.neighbors)

@@ -196,17 +196,6 @@ def test_input_stays_writable():
     assert tin.points[0].tolist() == [0, 0, 5]
 
 
-def test_breaklines_are_refused_rather_than_ignored():
-    line = GOOD[:2]
-    for survey in (
-        ts.Survey(points=GOOD, breaklines=[line]),
-        ts.Survey(points=GOOD, boundary=[GOOD[:3]]),
-        ts.Survey(points=GOOD, holes=[GOOD[:3]]),
-    ):
-        with pytest.raises(ts.PointsError, match="breaklines, boundaries, holes or water"):
-            ts.triangulate(survey)
-
-
 def test_crs_of_the_survey_unless_named():
     survey = ts.Survey(points=GOOD, crs="EPSG:32616")
     assert ts.triangulate(survey).crs == "EPSG:32616"

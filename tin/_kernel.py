@@ -16,6 +16,7 @@ __all__ = [
     "VECTOR_PATHS",
     "Growth",
     "Locator",
+    "Mesh",
     "Method",
     "clean",
     "contacts",
@@ -26,6 +27,7 @@ __all__ = [
     "intersections",
     "orientation",
     "places_in_rings",
+    "regions",
     "snap",
     "touches",
     "vertices_at",
@@ -35,6 +37,8 @@ EXACT_RANGE: tuple[float, float] = (_core.SMALLEST_COORDINATE, _core.LARGEST_COO
 """Smallest (but 0) and largest magnitude of a coordinate for which the predicates are exact."""
 
 Locator = _core.Locator
+Mesh = _core.Mesh
+regions = _core.regions
 orientation = _core.orientation
 in_circle = _core.in_circle
 snap = _core.snap

@@ -76,10 +76,12 @@ def _check_coordinates(points: NDArray[np.float64], found: Findings) -> None:
 
 def _check_ranges(tin: TIN, found: Findings) -> None:
     n_vertices, n_triangles = len(tin.points), len(tin.triangles)
+    has_vertex = np.ones(len(tin.vertex_of), np.bool_)
+    has_vertex[tin.report.left_out_rows[tin.report.left_out_rows < len(has_vertex)]] = False
     ranges = (
         ("triangles", "triangles", tin.triangles, 0, n_vertices),
         ("neighbors", "triangles", tin.neighbors, topology.NO_NEIGHBOR, n_triangles),
-        ("vertex_of", "rows", tin.vertex_of[:, None], 0, n_vertices),
+        ("vertex_of", "rows", np.where(has_vertex, tin.vertex_of, 0)[:, None], 0, n_vertices),
     )
     for name, things, array, lowest, end in ranges:
         wrong = ((array < lowest) | (array >= end)).any(axis=1)

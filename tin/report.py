@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -11,7 +11,19 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Merge", "Report"]
+    from .editing import Edit
+
+__all__ = ["LEFT_OUT", "Crossings", "Merge", "Overruled", "Report"]
+
+LEFT_OUT = (
+    "erased",
+    "in water",
+    "outside the boundary",
+    "in a hole",
+    "trimmed",
+    "removed by an edit",
+)
+"""Why a row of points has no vertex; ``Report.left_out_why`` holds places in this list."""
 
 
 class Merge(NamedTuple):
@@ -36,6 +48,59 @@ class Merge(NamedTuple):
     heights: tuple[float, ...]
     shifts: tuple[float, ...]
     height: float
+
+
+class Crossings(NamedTuple):
+    """Places where lines cross between their vertices, and the heights of both there.
+
+    Attributes
+    ----------
+    vertices : (c,) int32 array
+        The vertex made there, -1 if it is no part of the surface.
+    xy : (c, 2) float64 array
+    lines : (c, 2) int32 array
+        Numbers of the two lines, as ``Report.line_labels`` lists them.
+    heights : (c, 2) float64 array
+        Their own heights at the place.
+    taken : (c,) float64 array
+        The height that the vertex received.
+    """
+
+    vertices: NDArray[np.int32]
+    xy: NDArray[np.float64]
+    lines: NDArray[np.int32]
+    heights: NDArray[np.float64]
+    taken: NDArray[np.float64]
+
+
+class Overruled(NamedTuple):
+    """Heights that gave way to another at the same vertex.
+
+    Attributes
+    ----------
+    vertices : (k,) int32 array
+        -1 if it is no part of the surface.
+    lines : (k,) int32 array
+        Whose height it was, as ``Report.line_labels`` lists them; -1 for the points there.
+    heights : (k,) float64 array
+        The height that gave way.
+    taken : (k,) float64 array
+        The height of the vertex.
+    """
+
+    vertices: NDArray[np.int32]
+    lines: NDArray[np.int32]
+    heights: NDArray[np.float64]
+    taken: NDArray[np.float64]
+
+
+def _no_crossings() -> Crossings:
+    none = _no_rows()
+    return Crossings(none, np.empty((0, 2)), none.reshape(0, 2), np.empty((0, 2)), np.empty(0))
+
+
+def _none_overruled() -> Overruled:
+    return Overruled(_no_rows(), _no_rows(), np.empty(0), np.empty(0))
 
 
 def _no_rows() -> NDArray[np.int32]:
@@ -68,10 +133,24 @@ class Report:
         Elevation and displacement in the plane of every merged row.
     vertex_heights : (g,) float64 array
         Elevations that the merged vertices received.
+    left_out_rows : (k,) int32 array
+        Rows without a vertex, ascending.
+    left_out_why : (k,) int8 array
+        Why, as places in ``LEFT_OUT``.
+    n_lines : int
+        Breaklines, rings and water polygons that were given.
+    line_labels : tuple of str
+        What lines are called; a draped line that was cut has several parts.
+    crossings : Crossings
+        Vertices as numbered before any edits.
+    overruled : Overruled
+        Likewise.
     skipped : mapping of str to int
         What the reader left out and how often.
     notes : sequence of str
         What the reader assumed, a sentence each.
+    edits : sequence of Edit
+        What was done to the TIN since.
     """
 
     n_rows: int
@@ -85,8 +164,35 @@ class Report:
     merged_heights: NDArray[np.float64] = field(default_factory=_no_numbers)
     merged_shifts: NDArray[np.float64] = field(default_factory=_no_numbers)
     vertex_heights: NDArray[np.float64] = field(default_factory=_no_numbers)
+    left_out_rows: NDArray[np.int32] = field(default_factory=_no_rows)
+    left_out_why: NDArray[np.int8] = field(default_factory=lambda: np.empty(0, np.int8))
+    n_lines: int = 0
+    line_labels: tuple[str, ...] = ()
+    crossings: Crossings = field(default_factory=_no_crossings)
+    overruled: Overruled = field(default_factory=_none_overruled)
     skipped: Mapping[str, int] = field(default_factory=dict)
     notes: Sequence[str] = ()
+    edits: Sequence[Edit] = ()
+
+    def after_edits(
+        self, vertex_of: NDArray[np.int32], n_vertices: int, n_triangles: int, edits: Sequence[Edit]
+    ) -> Report:
+        """Return the report of a TIN that was edited, whose rows have these vertices now."""
+        lost = np.flatnonzero(vertex_of < 0).astype(np.int32)
+        why = np.full(len(lost), LEFT_OUT.index("removed by an edit"), np.int8)
+        before = np.isin(lost, self.left_out_rows)
+        slot = np.searchsorted(self.left_out_rows, lost[before])
+        why[before] = self.left_out_why[slot]
+        return replace(
+            self,
+            n_rows=len(vertex_of),
+            n_vertices=n_vertices,
+            n_triangles=n_triangles,
+            merged_vertices=vertex_of[self.merged_rows[self.merged_offsets[:-1]]],
+            left_out_rows=lost,
+            left_out_why=why,
+            edits=edits,
+        )
 
     def merges(self) -> Iterator[Merge]:
         """Walk the merges, one vertex at a time."""
@@ -109,9 +215,55 @@ class Report:
             "duplicates": self.duplicates,
             "snap": self.snap,
             "merges": [merge._asdict() for merge in self.merges()],
+            "left_out": self._left_out(),
+            "lines": self.n_lines,
+            "crossings": self._crossings(),
+            "overruled": self._overruled(),
             "skipped": dict(self.skipped),
             "notes": list(self.notes),
+            "edits": [edit.to_dict() for edit in self.edits],
         }
+
+    def _left_out(self) -> dict[str, list[int]]:
+        return {
+            reason: self.left_out_rows[self.left_out_why == code].tolist()
+            for code, reason in enumerate(LEFT_OUT)
+            if (self.left_out_why == code).any()
+        }
+
+    def _crossings(self) -> list[dict[str, Any]]:
+        met = self.crossings
+        return [
+            {
+                "vertex": vertex,
+                "place": place,
+                "lines": [self.line_labels[line] for line in lines],
+                "heights": heights,
+                "height": taken,
+            }
+            for vertex, place, lines, heights, taken in zip(
+                met.vertices.tolist(),
+                met.xy.tolist(),
+                met.lines.tolist(),
+                met.heights.tolist(),
+                met.taken.tolist(),
+                strict=True,
+            )
+        ]
+
+    def _overruled(self) -> list[dict[str, Any]]:
+        gave_way = self.overruled
+        return [
+            {
+                "vertex": vertex,
+                "of": "points" if line < 0 else self.line_labels[line],
+                "height": height,
+                "taken": taken,
+            }
+            for vertex, line, height, taken in zip(
+                *(array.tolist() for array in gave_way), strict=True
+            )
+        ]
 
     def __repr__(self) -> str:
         merged = len(self.merged_rows) - len(self.merged_vertices)

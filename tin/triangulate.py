@@ -1,22 +1,21 @@
-"""Triangulate: elevation points become a TIN."""
+"""Triangulate: elevation points, and lines, become a TIN."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, get_args
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
-import numpy as np
-
-from . import _kernel
-from .duplicates import DuplicatePolicy, merge_rows
-from .errors import PointsError
-from .points import as_points
-from .report import Report
+from .building import build
+from .constrained import CrossingPolicy
+from .duplicates import DuplicatePolicy
+from .recipe import TrimPolicy, recipe_of
 from .surface import TIN
-from .survey import Survey
-from .threads import thread_count
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
+
+    from .lines import Breakline, Water
+    from .survey import Survey
 
 __all__ = ["triangulate"]
 
@@ -24,26 +23,60 @@ __all__ = ["triangulate"]
 def triangulate(
     points: Survey | ArrayLike,
     *,
+    breaklines: Sequence[Breakline | ArrayLike] = (),
+    boundary: Sequence[ArrayLike] = (),
+    holes: Sequence[ArrayLike] = (),
+    erase: Sequence[ArrayLike] = (),
+    water: Sequence[Water] = (),
+    max_edge: float | None = None,
+    trim: TrimPolicy = "perimeter",
+    crossing: CrossingPolicy = "split",
+    conforming: bool = False,
     duplicates: DuplicatePolicy = "mean",
     snap: float = 0.0,
     threads: int | None = None,
     crs: str | None = None,
 ) -> TIN:
-    """Build the Delaunay TIN of a set of elevation points.
+    """Build the Delaunay TIN of a set of elevation points, and of lines that must be its edges.
 
     The triangulation is grown: from every open edge to the point that sees it under the largest
     angle [1]_. Ties between cocircular points are broken by the points' own coordinates, so the
-    result is a function of the point *set*: the same for every order of the rows.
+    result is a function of the point *set*: the same for every order of the rows. With lines it is
+    the constrained Delaunay triangulation, a function of the sets of points and lines.
 
     Parameters
     ----------
     points : Survey or (n, 3) array
-        Easting, northing, elevation, CRS units.
+        Easting, northing, elevation, CRS units. A survey's own lines are used as well.
+    breaklines : sequence of Breakline or arrays
+        Polylines that must be edges: (k, 3) arrays hard ones, (k, 2) arrays draped on the surface
+        of everything that has heights, with a vertex wherever they cross an edge of it.
+    boundary : sequence of (k, 2) or (k, 3) arrays
+        Rings: only the surface inside is kept; a ring within a ring cuts out an island. Draped if
+        without heights; what lies beyond the surface of the points is left out.
+    holes : sequence of (k, 2) or (k, 3) arrays
+        Rings: the surface inside is cut away.
+    erase : sequence of (k, 2) arrays
+        Rings: the points strictly inside are left out, and the surface spans them.
+    water : sequence of Water
+        Flat polygons: points and parts of breaklines inside are left out, all vertices on the ring
+        are put at its height.
+    max_edge : float, optional
+        Drop triangles at edges longer than this that are no lines, CRS units.
+    trim : {"perimeter", "everywhere"}
+        Drop them from the outside inwards only, or wherever they are.
+    crossing : {"split", "error"}
+        Where lines cross between their vertices, make a vertex with the height of the line of
+        higher priority, or of the first; or refuse. Both heights are in the report.
+    conforming : bool
+        Split the steps of lines until every edge is Delaunay, constrained or not.
     duplicates : {"mean", "first", "last", "lowest", "highest", "error"}
-        Elevation of the vertex that stands for several rows at one place.
+        Elevation of the vertex that stands for several rows at one place. A line with heights of
+        its own counts more than the points.
     snap : float
-        Merge points no further apart than this, CRS units. Afterwards all vertices are more than
-        ``snap`` apart, and no point has moved by more. 0 merges exact duplicates only.
+        Merge points no further apart than this, CRS units, and bend lines onto points no further
+        away. Afterwards all vertices are more than ``snap`` apart, and no point has moved by more.
+        0 merges exact duplicates only.
     threads : int, optional
         Number of threads; default every core, where it pays. The result is the same.
     crs : str, optional
@@ -59,10 +92,15 @@ def triangulate(
         If a coordinate is not finite or outside the exact range, if fewer than three places are
         distinct, if all are collinear, or (``duplicates="error"``) if two rows coincide; if an
         option is none of the allowed.
+    LinesError
+        If a line has too few vertices or coordinates that are not finite, if a ring crosses
+        itself, if lines cross and must not, if a hole lies outside, or if no triangle is left.
 
     Notes
     -----
-    Exact for coordinates of magnitude 0 or 6e-61 to 1e75. Time and memory grow linearly.
+    Exact for coordinates of magnitude 0 or 6e-61 to 1e75. Time and memory grow linearly with the
+    points. A place where lines cross is rounded to coordinates once; from there on both lines run
+    through that vertex exactly.
 
     References
     ----------
@@ -72,55 +110,25 @@ def triangulate(
     --------
     >>> triangulate([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8], [2, 1, 9]])
     <TIN: 5 vertices, 4 triangles, z 5 to 9, crs unknown>
+    >>> square = [[0, 0, 5], [4, 0, 6], [4, 4, 7], [0, 4, 8]]
+    >>> triangulate(square, breaklines=[[[0, 0, 5], [4, 4, 7]]]).lines
+    <Lines: 1 hard, 0 soft, 0 boundary, 0 hole, 0 water; 2 vertices>
     """
-    _require_options(duplicates, snap)
-    survey = points if isinstance(points, Survey) else Survey(points=np.empty((0, 3)))
-    _require_no_lines(survey)
-    xyz = as_points(points.points if isinstance(points, Survey) else points, threads=threads)
-    if len(xyz) < 3:
-        raise PointsError(
-            f"{len(xyz)} points cannot make a TIN: at least three not collinear ones are needed."
-        )
-    n_threads = thread_count(threads, len(xyz))
-    kept_row = _kernel.snap(xyz, float(snap)) if snap > 0 else None
-    growth = _kernel.grow(xyz if kept_row is None else _kept(xyz, kept_row), threads=n_threads)
-    merged = merge_rows(xyz, growth.kept_row if kept_row is None else kept_row, duplicates)
-    return TIN(
-        points=merged.points,
-        triangles=growth.triangles,
-        neighbors=growth.neighbors,
-        constrained=np.zeros(growth.triangles.shape, np.bool_),
-        vertex_of=merged.vertex_of,
-        report=Report(
-            n_rows=len(xyz),
-            n_vertices=len(merged.points),
-            n_triangles=len(growth.triangles),
+    return build(
+        recipe_of(
+            points,
+            breaklines=breaklines,
+            boundary=boundary,
+            holes=holes,
+            erase=erase,
+            water=water,
+            max_edge=max_edge,
+            trim=trim,
+            crossing=crossing,
+            conforming=conforming,
             duplicates=duplicates,
-            snap=float(snap),
-            skipped=survey.skipped,
-            notes=survey.notes,
-            **merged.account,
-        ),
-        crs=crs if crs is not None else survey.crs,
-    )
-
-
-def _kept(xyz: NDArray[np.float64], kept_row: NDArray[np.int32]) -> NDArray[np.float64]:
-    kept: NDArray[np.float64] = xyz[kept_row == np.arange(len(xyz), dtype=np.int32)]
-    return kept
-
-
-def _require_options(duplicates: str, snap: float) -> None:
-    allowed = get_args(DuplicatePolicy)
-    if duplicates not in allowed:
-        raise PointsError(f"Invalid duplicates '{duplicates}': one of {', '.join(allowed)}.")
-    if not (isinstance(snap, int | float | np.number) and 0 <= snap < np.inf):
-        raise PointsError(f"Invalid snap {snap!r}: a distance >= 0 in CRS units is needed.")
-
-
-def _require_no_lines(survey: Survey) -> None:
-    if survey.has_lines:
-        raise PointsError(
-            "The survey holds breaklines, boundaries, holes or water, which this version cannot "
-            "force into the TIN: pass survey.points to triangulate the points alone."
+            snap=snap,
+            threads=threads,
+            crs=crs,
         )
+    )

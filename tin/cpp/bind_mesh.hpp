@@ -14,6 +14,7 @@
 #include "index/spatial_order.hpp"
 #include "mesh/mesh_arrays.hpp"
 #include "mesh/mesh_editor.hpp"
+#include "mesh/regions.hpp"
 
 namespace tinsmith::python {
 
@@ -24,6 +25,7 @@ using GivenPairs = nb::ndarray<const std::int32_t, nb::shape<-1, 2>, nb::c_conti
 using GivenNumbers = nb::ndarray<const std::int32_t, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
 using GivenFlags = nb::ndarray<const bool, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 using Flags = nb::ndarray<nb::numpy, bool, nb::shape<-1, 3>>;
+using FlagRow = nb::ndarray<nb::numpy, bool, nb::shape<-1>>;
 
 // The editor with the checks that keep a caller's mistake from corrupting it.
 class HeldMesh {
@@ -94,6 +96,44 @@ class HeldMesh {
     return std::make_tuple(hand_over(passed), hand_over(blocked));
   }
 
+  // The edges that each segment crosses, in order: (segment, from, to).
+  auto crossed(const GivenPairs& segments, bool only_fixed) {
+    std::vector<std::int32_t> found;
+    for (std::size_t i = 0; i < segments.shape(0); ++i) {
+      const std::int32_t a = segments.data()[2 * i], b = segments.data()[2 * i + 1];
+      require_vertex(a);
+      require_vertex(b);
+      editor_.cross(a, b, [&](std::int32_t from, std::int32_t to, bool is_fixed) {
+        if (only_fixed && !is_fixed) return;
+        found.insert(found.end(), {static_cast<std::int32_t>(i), from, to});
+      });
+    }
+    return hand_over(found);
+  }
+
+  Numbers fixed_neighbors(std::int32_t v) const {
+    require_vertex(v);
+    return hand_over(editor_.fixed_neighbors(v));
+  }
+
+  Numbers corners_beside(std::int32_t a, std::int32_t b) const {
+    require_vertex(a);
+    require_vertex(b);
+    return hand_over(editor_.corners_beside(a, b));
+  }
+
+  // Whether the edge along each segment is Delaunay.
+  FlagRow is_delaunay(const GivenPairs& segments) const {
+    auto flags = streamed_array<bool>(segments.shape(0));
+    for (std::size_t i = 0; i < segments.shape(0); ++i) {
+      const std::int32_t a = segments.data()[2 * i], b = segments.data()[2 * i + 1];
+      require_vertex(a);
+      require_vertex(b);
+      flags[i] = editor_.is_delaunay(a, b);
+    }
+    return hand_over<FlagRow>(std::move(flags), {segments.shape(0)});
+  }
+
   // The number of segments that were fixed edges.
   std::int32_t release(const GivenPairs& segments) {
     std::int32_t released = 0;
@@ -120,13 +160,13 @@ class HeldMesh {
   }
 
   // Which slots hold a vertex.
-  nb::ndarray<nb::numpy, bool, nb::shape<-1>> alive() const {
+  FlagRow alive() const {
     const auto size = static_cast<std::size_t>(editor_.slots());
     auto flags = streamed_array<bool>(size);
     for (std::size_t v = 0; v < size; ++v) {
       flags[v] = editor_.mesh().is_alive(static_cast<std::int32_t>(v));
     }
-    return hand_over<nb::ndarray<nb::numpy, bool, nb::shape<-1>>>(std::move(flags), {size});
+    return hand_over<FlagRow>(std::move(flags), {size});
   }
 
   bool has_fixed_edge(std::int32_t v) const {
@@ -145,8 +185,14 @@ class HeldMesh {
     const auto* places = reinterpret_cast<const Point*>(xy.data());
     const auto vertices = static_cast<std::int32_t>(xy.shape(0));
     const HullTriangles given{triangles.data(), neighbors.data(), fixed.data(), count};
-    return MeshEditor(mesh_of(given, vertices), std::vector<Point>(places, places + vertices));
+    std::vector<Point> points;
+    points.reserve(vertices + room_for(vertices));
+    points.assign(places, places + vertices);
+    return MeshEditor(mesh_of(given, vertices, room_for(vertices)), std::move(points));
   }
+
+  // So many vertices can be added before anything is moved in memory.
+  static std::int32_t room_for(std::int32_t vertices) { return 64 + vertices / 8; }
 
   void require_vertex(std::int32_t v) const {
     if (v < 0 || v >= editor_.slots() || !editor_.mesh().is_alive(v)) {
@@ -157,7 +203,25 @@ class HeldMesh {
   MeshEditor editor_;
 };
 
+// Region of each triangle, and the largest triangle of each region.
+inline auto regions(const GivenPlaces& xy, const GivenTriangles& triangles,
+                    const GivenTriangles& neighbors, const GivenFlags& barrier) {
+  const auto count = static_cast<std::int32_t>(triangles.shape(0));
+  if (neighbors.shape(0) != triangles.shape(0) || barrier.shape(0) != triangles.shape(0)) {
+    throw std::invalid_argument("triangles, neighbors and barrier must have as many rows");
+  }
+  const Regions found = [&] {
+    nb::gil_scoped_release release;
+    return find_regions(reinterpret_cast<const Point*>(xy.data()), triangles.data(),
+                        neighbors.data(), barrier.data(), count);
+  }();
+  return std::make_tuple(hand_over(found.region_of), hand_over(found.largest));
+}
+
 inline void bind_mesh(nb::module_& m) {
+  m.def("regions", &regions, "xy"_a.noconvert(), "triangles"_a.noconvert(),
+        "neighbors"_a.noconvert(), "barrier"_a.noconvert(),
+        "The region of each triangle between barrier edges, and each region's largest triangle.");
   nb::class_<HeldMesh>(m, "Mesh", "A constrained Delaunay triangulation that can be changed.")
       .def(nb::init<const GivenPlaces&, const GivenTriangles&, const GivenTriangles&,
                     const GivenFlags&>(),
@@ -175,6 +239,14 @@ inline void bind_mesh(nb::module_& m) {
            "Remove vertices; False if one could not be, for no triangle would be left.")
       .def("force", &HeldMesh::force, "segments"_a.noconvert(),
            "Fix edges along segments; (segment, vertex) pairs passed, and segments blocked.")
+      .def("is_delaunay", &HeldMesh::is_delaunay, "segments"_a.noconvert(),
+           "Whether the edge along each segment would stay if it were not fixed.")
+      .def("fixed_neighbors", &HeldMesh::fixed_neighbors, "vertex"_a,
+           "The other ends of the fixed edges at a vertex.")
+      .def("corners_beside", &HeldMesh::corners_beside, "a"_a, "b"_a,
+           "The corners left and right of the edge from a to b; none if it is no inner edge.")
+      .def("crossed", &HeldMesh::crossed, "segments"_a.noconvert(), "only_fixed"_a = false,
+           "Edges that segments cross, flat triples of segment, start and end.")
       .def("release", &HeldMesh::release, "segments"_a.noconvert(),
            "Let fixed edges go; how many there were.")
       .def("arrays", &HeldMesh::arrays, "threads"_a = 1,

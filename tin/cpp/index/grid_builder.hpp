@@ -387,8 +387,22 @@ class GridBuilder {
   std::int32_t nested_ = 0;  // cells looked at
 };
 
+// Rows at the place of another must not show in the order of the sweep: where there are any, the
+// index is built of the distinct places alone.
 inline PointGrid::PointGrid(const PointRows& rows, Team& team) {
   GridBuilder(*this, rows, team).build();
+  if (kept_row_.empty() || team.is_stopped()) return;
+  std::vector<Point> places(count_);
+  for (std::int32_t i = 0; i < count_; ++i) {
+    places[number(rows_[i])] = point(static_cast<Vertex>(i));
+  }
+  std::vector<std::int32_t> kept_row = std::move(kept_row_);
+  drop_cells();
+  x_.reset();
+  y_.reset();
+  rows_.reset();
+  *this = PointGrid({&places[0].x, count_, 2}, team);
+  kept_row_ = std::move(kept_row);
 }
 
 }  // namespace tinsmith

@@ -62,9 +62,11 @@ inline void add_ghosts(const HullTriangles& given, std::int32_t vertex_count, Me
 
 }  // namespace detail
 
-inline Mesh mesh_of(const HullTriangles& given, std::int32_t vertex_count) {
+// With room for some more vertices.
+inline Mesh mesh_of(const HullTriangles& given, std::int32_t vertex_count, std::int32_t more) {
   Mesh mesh;
-  mesh.reserve(vertex_count, given.count + std::size_t{64});
+  mesh.reserve(std::size_t{0} + vertex_count + more,
+               2 * (std::size_t{0} + vertex_count + more));  // ghosts included
   mesh.add_vertices(vertex_count);
   for (std::int64_t t = 0; t < given.count; ++t) {
     mesh.add(given.corners[3 * t], given.corners[3 * t + 1], given.corners[3 * t + 2]);

@@ -136,6 +136,27 @@ class MeshEditor {
     return Forced::kDone;
   }
 
+  // Call `visit(from, to, is_fixed)` for every edge that the way from a to b crosses; an edge that runs along
+  // it is passed over.
+  template <typename Visit>
+  void cross(std::int32_t a, std::int32_t b, Visit&& visit) const {
+    while (a != b) {
+      MeshEdge e = first_towards(a, b);
+      if (mesh_.from(e) == a) {
+        a = mesh_.to(e);
+        continue;
+      }
+      for (int side = 1; side != 0;) {
+        visit(mesh_.from(e), mesh_.to(e), mesh_.is_fixed(e));
+        const MeshEdge f = mesh_.twin(e);
+        const std::int32_t ahead = mesh_.corner(f);
+        side = ahead == b ? 0 : turn(a, b, ahead);
+        if (side == 0) a = ahead;
+        e = side > 0 ? mesh_.after(f) : mesh_.before(f);
+      }
+    }
+  }
+
   // Let the edge between two vertices go; false if there is none that is fixed.
   bool release(std::int32_t a, std::int32_t b) {
     const MeshEdge e = edge_between(a, b);
@@ -147,6 +168,12 @@ class MeshEditor {
     return true;
   }
 
+  // Whether the edge between two vertices would stay if it were not fixed. True if there is none.
+  bool is_delaunay(std::int32_t a, std::int32_t b) const {
+    const MeshEdge e = edge_between(a, b);
+    return e == kNoMeshEdge || !is_in_far_circle(e);
+  }
+
   MeshEdge edge_between(std::int32_t a, std::int32_t b) const {
     const MeshEdge first = mesh_.leaving(a);
     MeshEdge e = first;
@@ -155,6 +182,28 @@ class MeshEditor {
       e = mesh_.next_leaving(e);
     } while (e != first);
     return kNoMeshEdge;
+  }
+
+  // Ends of the fixed edges at a vertex, counter-clockwise.
+  std::vector<std::int32_t> fixed_neighbors(std::int32_t v) const {
+    std::vector<std::int32_t> found;
+    const MeshEdge first = mesh_.leaving(v);
+    MeshEdge e = first;
+    do {
+      if (mesh_.is_fixed(e)) found.push_back(mesh_.to(e));
+      e = mesh_.next_leaving(e);
+    } while (e != first);
+    return found;
+  }
+
+  // The corners left and right of the edge from a to b; empty if there is none or it is an outer
+  // one.
+  std::vector<std::int32_t> corners_beside(std::int32_t a, std::int32_t b) const {
+    const MeshEdge e = edge_between(a, b);
+    if (e == kNoMeshEdge) return {};
+    const std::int32_t left = mesh_.corner(e), right = mesh_.corner(mesh_.twin(e));
+    if (left == kGhost || right == kGhost) return {};
+    return {left, right};
   }
 
   // ----------------------------------------------------------------- location
@@ -289,8 +338,10 @@ class MeshEditor {
     legalize();
   }
 
-  bool is_illegal(MeshEdge e) const {
-    if (mesh_.is_fixed(e)) return false;
+  bool is_illegal(MeshEdge e) const { return !mesh_.is_fixed(e) && is_in_far_circle(e); }
+
+  // Whether the far corner lies in the circle of the triangle at the edge.
+  bool is_in_far_circle(MeshEdge e) const {
     const std::int32_t a = mesh_.corner(e), b = mesh_.from(e), c = mesh_.to(e);
     const std::int32_t d = mesh_.corner(mesh_.twin(e));
     if (a == kGhost || b == kGhost || c == kGhost || d == kGhost) return false;

@@ -1,0 +1,241 @@
+"""From a recipe to a TIN: drape, triangulate with the lines, cut to the boundary, account."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from . import _kernel
+from .constrained import Draft, draft
+from .draping import drape
+from .duplicates import merge_rows
+from .line_set import LineSet
+from .model import Clip, LineInfo, Model, lines_in
+from .pieces import Pieces
+from .regions import in_rings
+from .report import LEFT_OUT, Crossings, Overruled, Report
+from .surface import TIN
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .recipe import Recipe
+
+__all__ = ["build"]
+
+
+def build(recipe: Recipe) -> TIN:
+    """Build the TIN of a recipe."""
+    return _plain(recipe) if recipe.is_plain else _with_lines(recipe)
+
+
+# ------------------------------------------------------------------ points alone
+
+
+def _plain(recipe: Recipe) -> TIN:
+    xyz, options = recipe.points, recipe.options
+    kept_row = _kernel.snap(xyz, options.snap) if options.snap > 0 else None
+    growth = _kernel.grow(
+        xyz if kept_row is None else _kept(xyz, kept_row), threads=options.threads
+    )
+    merged = merge_rows(xyz, growth.kept_row if kept_row is None else kept_row, options.duplicates)
+    tin = TIN(
+        points=merged.points,
+        triangles=growth.triangles,
+        neighbors=growth.neighbors,
+        constrained=np.zeros(growth.triangles.shape, np.bool_),
+        vertex_of=merged.vertex_of,
+        report=_report(recipe, len(merged.points), len(growth.triangles), merged.account),
+        crs=recipe.crs,
+    )
+    tin.remember(
+        Model(
+            points=merged.points,
+            pieces=Pieces.none(),
+            infos=(),
+            clip=Clip(),
+            vertex_of=merged.vertex_of,
+        )
+    )
+    return tin
+
+
+def _kept(xyz: NDArray[np.float64], kept_row: NDArray[np.int32]) -> NDArray[np.float64]:
+    kept: NDArray[np.float64] = xyz[kept_row == np.arange(len(xyz), dtype=np.int32)]
+    return kept
+
+
+def _report(recipe: Recipe, n_vertices: int, n_triangles: int, account: dict[str, Any]) -> Report:
+    return Report(
+        n_rows=len(recipe.points),
+        n_vertices=n_vertices,
+        n_triangles=n_triangles,
+        duplicates=recipe.options.duplicates,
+        snap=recipe.options.snap,
+        skipped=recipe.skipped,
+        **{"notes": recipe.notes, **account},
+    )
+
+
+# -------------------------------------------------------------- points and lines
+
+
+class _Ground(NamedTuple):
+    """Lines that all have heights, and the rim where draped ones leave the surface."""
+
+    lines: LineSet
+    rim: NDArray[np.float64]
+    notes: list[str]
+
+
+def _with_lines(recipe: Recipe) -> TIN:
+    is_erased = _erased(recipe)
+    rows = np.flatnonzero(~is_erased)
+    xyz = recipe.points[rows]
+    ground = _draped(xyz, recipe)
+    made = draft(xyz, ground.lines, recipe.options, conforming=recipe.conforming)
+    model = _model(recipe, ground, made, rows)
+    surface, number_of = model.surface(made.surface)
+    vertex_of = _numbered(model.vertex_of, number_of)
+    account = _account(recipe, made, number_of, is_erased, vertex_of, ground)
+    tin = TIN(
+        points=surface.points,
+        triangles=surface.triangles,
+        neighbors=surface.neighbors,
+        constrained=surface.constrained,
+        vertex_of=vertex_of,
+        report=_report(recipe, len(surface.points), len(surface.triangles), account),
+        lines=lines_in(model.pieces, model.infos, number_of, surface),
+        crs=recipe.crs,
+    )
+    tin.remember(model)
+    return tin
+
+
+def _model(recipe: Recipe, ground: _Ground, made: Draft, rows: NDArray[np.int64]) -> Model:
+    lines = ground.lines
+    vertex_of = np.full(len(recipe.points), -1, np.int32)
+    vertex_of[rows] = made.vertex_of
+    boundaries = [recipe.boundary] if recipe.boundary else []
+    return Model(
+        points=made.surface.points,
+        pieces=made.pieces,
+        infos=tuple(
+            LineInfo(*info)
+            for info in zip(
+                lines.kinds,
+                lines.sources.tolist(),
+                lines.names,
+                lines.priorities.tolist(),
+                strict=True,
+            )
+        ),
+        clip=Clip(
+            boundaries=[*boundaries, [ground.rim]] if len(ground.rim) else boundaries,
+            holes=recipe.holes,
+            max_edge=recipe.max_edge,
+            is_trimmed_everywhere=recipe.trim == "everywhere",
+        ),
+        vertex_of=vertex_of,
+    )
+
+
+def _numbered(vertices: NDArray[np.int32], number_of: NDArray[np.int32]) -> NDArray[np.int32]:
+    """Renumber vertices of which some are -1, for none."""
+    found: NDArray[np.int32] = np.append(number_of, np.int32(-1))[vertices]
+    return found
+
+
+def _erased(recipe: Recipe) -> NDArray[np.bool_]:
+    is_erased = np.zeros(len(recipe.points), np.bool_)
+    for ring in recipe.erase:
+        is_erased |= in_rings(recipe.points[:, :2], [ring]) > 0
+    return is_erased
+
+
+def _draped(xyz: NDArray[np.float64], recipe: Recipe) -> _Ground:
+    """Give all lines heights: draped ones from the surface of everything else."""
+    lines, empty = recipe.lines, np.empty((0, 2))
+    is_draped = lines.is_draped
+    if not is_draped.any():
+        return _Ground(lines, empty, [])
+    base = draft(xyz, lines.chosen(~is_draped), recipe.options)
+    laid = drape(base.surface, lines.chosen(is_draped), threads=recipe.options.threads)
+    notes = []
+    if laid.n_cut:
+        notes.append(
+            f"Of {laid.n_cut} draped line{'s' * (laid.n_cut != 1)} the parts outside the surface "
+            "of the points were left out."
+        )
+    together = LineSet.joined([lines.chosen(~is_draped), laid.lines, laid.rim])
+    return _Ground(together, laid.ring, notes)
+
+
+# ----------------------------------------------------------------------- account
+
+
+def _account(
+    recipe: Recipe,
+    made: Draft,
+    number_of: NDArray[np.int32],
+    is_erased: NDArray[np.bool_],
+    vertex_of: NDArray[np.int32],
+    ground: _Ground,
+) -> dict[str, Any]:
+    """Return the report's fields about merged rows, left-out rows and lines that met."""
+    final = _numbered(made.number_of, number_of)
+    account = _without_lost_merges(dict(made.merges), final)
+    left_out = np.flatnonzero(vertex_of < 0).astype(np.int32)
+    labels = [ground.lines.label(i) for i in range(len(ground.lines.kinds))]
+    met, gave_way = made.noded.crossings, made.overruled
+    return account | {
+        "left_out_rows": left_out,
+        "left_out_why": _reasons(recipe, left_out, is_erased, made),
+        "n_lines": len(recipe.lines.kinds),
+        "line_labels": tuple(labels),
+        "crossings": Crossings(
+            _numbered(met.vertex, final),
+            met.xy,
+            np.stack([met.line_a, met.line_b], axis=1).astype(np.int32),
+            np.stack([met.height_a, met.height_b], axis=1),
+            met.height,
+        ),
+        "overruled": Overruled(
+            _numbered(gave_way.vertices, final), gave_way.lines, gave_way.heights, gave_way.taken
+        ),
+        "notes": [*recipe.notes, *ground.notes],
+    }
+
+
+def _without_lost_merges(account: dict[str, Any], final: NDArray[np.int32]) -> dict[str, Any]:
+    """Return the merges at vertices that are left, numbered as in the TIN."""
+    if not account:
+        return account
+    vertices = final[account["merged_vertices"]]
+    keep = vertices >= 0
+    counts = np.diff(account["merged_offsets"])
+    rows = np.repeat(keep, counts)
+    return {
+        "merged_vertices": vertices[keep],
+        "merged_offsets": np.append(0, np.cumsum(counts[keep])).astype(np.int32),
+        "vertex_heights": account["vertex_heights"][keep],
+        **{k: account[k][rows] for k in ("merged_rows", "merged_heights", "merged_shifts")},
+    }
+
+
+def _reasons(
+    recipe: Recipe, rows: NDArray[np.int32], is_erased: NDArray[np.bool_], made: Draft
+) -> NDArray[np.int8]:
+    """Return why each row was left out, as places in ``LEFT_OUT``."""
+    xy = recipe.points[rows, :2]
+    why = np.full(len(rows), LEFT_OUT.index("trimmed"), np.int8)
+    for hole in recipe.holes:
+        why[in_rings(xy, [hole]) >= 0] = LEFT_OUT.index("in a hole")
+    if recipe.boundary and len(rows):
+        why[in_rings(xy, recipe.boundary) <= 0] = LEFT_OUT.index("outside the boundary")
+    drowned = np.zeros(len(is_erased), np.bool_)
+    drowned[np.flatnonzero(~is_erased)[made.vertex_of < 0]] = True
+    why[drowned[rows]] = LEFT_OUT.index("in water")
+    why[is_erased[rows]] = LEFT_OUT.index("erased")
+    return why

@@ -1,0 +1,280 @@
+"""Points and lines become the constrained Delaunay triangulation of their convex hull.
+
+The main path: rows at one place become one vertex, lines are cut where they meet, the points are
+triangulated, and the steps of the lines are forced into the triangulation.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+
+import numpy as np
+
+from . import _kernel
+from .conforming import conform
+from .duplicates import DuplicatePolicy, merge_rows
+from .line_set import ABOVE_ALL, BELOW_ALL, LineSet
+from .model import force
+from .noding import Chains, Noded, node
+from .pieces import Pieces
+from .regions import Surface, edge_keys, in_rings
+from .report import Overruled
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["CrossingPolicy", "Draft", "LineOptions", "draft"]
+
+CrossingPolicy = Literal["split", "error"]
+
+
+class LineOptions(NamedTuple):
+    """How rows are merged and lines cut."""
+
+    duplicates: DuplicatePolicy = "mean"
+    snap: float = 0.0
+    crossing: CrossingPolicy = "split"
+    threads: int = 1
+
+
+class Draft(NamedTuple):
+    """The triangulated hull with its lines.
+
+    Attributes
+    ----------
+    surface : Surface
+    vertex_of : (n,) int32 array
+        The vertex of each row of points, -1 for rows in water.
+    pieces : Pieces
+        What is left of the lines, water excluded.
+    merges : dict
+        Fields of the report about merged rows.
+    noded : Noded
+        Where lines met; its vertices are numbered as ``number_of`` says.
+    overruled : Overruled
+        Likewise.
+    number_of : (v,) int32 array
+        The vertex of the surface for each vertex before water took its share, -1 for none.
+    """
+
+    surface: Surface
+    vertex_of: NDArray[np.int32]
+    pieces: Pieces
+    merges: dict[str, Any]
+    noded: Noded
+    overruled: Overruled
+    number_of: NDArray[np.int32]
+
+
+class _Merged(NamedTuple):
+    points: NDArray[np.float64]
+    vertex_of: NDArray[np.int32]
+    chains: Chains
+    growth: _kernel.Growth
+    merges: dict[str, Any]
+    overruled: Overruled
+
+
+def draft(
+    xyz: NDArray[np.float64], lines: LineSet, options: LineOptions, *, conforming: bool = False
+) -> Draft:
+    """Triangulate points and lines; all lines have heights.
+
+    Raises
+    ------
+    PointsError
+        If there is no triangle, or rows coincide that must not.
+    LinesError
+        If lines cross that must not.
+    """
+    merged = _merge(xyz, lines, options)
+    noded = node(
+        np.ascontiguousarray(merged.points[:, :2]),
+        merged.chains,
+        lines.priorities,
+        snap=options.snap,
+        crossing=options.crossing,
+        threads=options.threads,
+        names=[lines.label(i) for i in range(len(lines.kinds))],
+    )
+    points = np.concatenate([merged.points, noded.new_points])
+    pieces = Pieces(
+        noded.chains.vertices, noded.chains.offsets, np.arange(len(lines.kinds), dtype=np.int32)
+    )
+    overruled = _passed_by(points, noded, merged.overruled)
+    overruled = _leveled(points, pieces, lines, overruled)
+    pieces, wet = _without_water(points, pieces, lines)
+    mesh = _mesh(merged, noded)
+    mesh.remove(np.flatnonzero(wet).astype(np.int32))
+    force(mesh, pieces)
+    if conforming:
+        points, pieces = conform(mesh, points, pieces)
+        wet = np.append(wet, np.zeros(len(points) - len(wet), np.bool_))
+    triangles, neighbors, constrained = mesh.arrays(options.threads)
+    number_of = np.where(wet, -1, np.cumsum(~wet) - 1).astype(np.int32)
+    return Draft(
+        Surface(points[~wet], triangles, neighbors, constrained),
+        number_of[merged.vertex_of[: len(xyz)]],
+        pieces.renumbered(number_of),
+        merged.merges,
+        noded,
+        overruled,
+        number_of,
+    )
+
+
+# ------------------------------------------------------------------------- rows
+
+
+def _merge(xyz: NDArray[np.float64], lines: LineSet, options: LineOptions) -> _Merged:
+    """Make one vertex of all rows at one place; a line's height counts more than a point's."""
+    n = len(xyz)
+    rows = np.concatenate([xyz, np.column_stack([lines.xy, np.nan_to_num(lines.heights)])])
+    place = _kernel.snap(rows, options.snap) if options.snap > 0 else None
+    own = np.arange(len(rows), dtype=np.int32)
+    growth = _kernel.grow(rows if place is None else rows[place == own], threads=options.threads)
+    place = growth.kept_row if place is None else place
+    place = own if place is None else place
+    is_kept = place == own
+    vertex_of = (np.cumsum(is_kept, dtype=np.int32) - np.int32(1))[place]
+    points = rows[is_kept]
+    merges = _merge_points(xyz, vertex_of[:n], points, options.duplicates)
+    overruled = _line_heights(points, vertex_of, n, lines)
+    chains = Chains(vertex_of[n:], lines.offsets.astype(np.int32), lines.heights)
+    return _Merged(points, vertex_of, chains, growth, merges, overruled)
+
+
+def _merge_points(
+    xyz: NDArray[np.float64],
+    vertex_of: NDArray[np.int32],
+    points: NDArray[np.float64],
+    policy: DuplicatePolicy,
+) -> dict[str, Any]:
+    """Give vertices the heights of their points; return the account of merged rows."""
+    n = len(xyz)
+    first = np.full(len(points), n, np.int32)
+    np.minimum.at(first, vertex_of, np.arange(n, dtype=np.int32))
+    merged = merge_rows(xyz, first[vertex_of], policy)
+    of_vertex = np.flatnonzero(first < n)
+    of_vertex = of_vertex[np.argsort(first[of_vertex], kind="stable")].astype(np.int32)
+    points[:, 2] = np.nan
+    points[of_vertex, 2] = merged.points[:, 2]
+    account = dict(merged.account)
+    if account:
+        account["merged_vertices"] = of_vertex[account["merged_vertices"]]
+        moved = xyz[account["merged_rows"], :2] - points[vertex_of[account["merged_rows"]], :2]
+        account["merged_shifts"] = np.hypot(*moved.T)
+    return account
+
+
+def _line_heights(
+    points: NDArray[np.float64], vertex_of: NDArray[np.int32], n: int, lines: LineSet
+) -> Overruled:
+    """Give vertices on lines the height of the line that counts most there."""
+    vertices, line_of = vertex_of[n:], lines.line_of
+    priority = lines.priorities[line_of]
+    order = np.lexsort((line_of, -priority, vertices))
+    is_first = np.append(True, np.diff(vertices[order]) > 0)[: len(order)]
+    best = order[is_first]
+    before = points[vertices[best], 2].copy()
+    counts = (priority[best] > BELOW_ALL) | np.isnan(before)
+    points[vertices[best[counts]], 2] = lines.heights[best[counts]]
+    taken = points[vertices[best], 2]
+    gave_way = np.flatnonzero(~np.isnan(before) & (before != taken))
+    other = np.flatnonzero(lines.heights != points[vertices, 2])
+    return Overruled(
+        np.concatenate([vertices[best[gave_way]], vertices[other]]),
+        np.concatenate([np.full(len(gave_way), -1), line_of[other]]).astype(np.int32),
+        np.concatenate([before[gave_way], lines.heights[other]]),
+        np.concatenate([taken[gave_way], points[vertices[other], 2]]),
+    )
+
+
+def _passed_by(points: NDArray[np.float64], noded: Noded, overruled: Overruled) -> Overruled:
+    """Add the heights of lines that run through a vertex of others, where they differ."""
+    met = noded.touches
+    taken = points[met.vertex, 2]
+    rounding = 8 * np.spacing(np.maximum(np.abs(taken), np.abs(met.height)))
+    other = np.abs(met.height - taken) > rounding
+    return Overruled(
+        np.append(overruled.vertices, met.vertex[other]),
+        np.append(overruled.lines, met.line[other]).astype(np.int32),
+        np.append(overruled.heights, met.height[other]),
+        np.append(overruled.taken, taken[other]),
+    )
+
+
+# ------------------------------------------------------------------------ water
+
+
+def _leveled(
+    points: NDArray[np.float64], pieces: Pieces, lines: LineSet, overruled: Overruled
+) -> Overruled:
+    """Put every vertex on a shore at the height of its water, in place."""
+    for line in np.flatnonzero(lines.priorities == ABOVE_ALL):
+        shore = np.unique(pieces.vertices[pieces.offsets[line] : pieces.offsets[line + 1]])
+        level = lines.heights[lines.offsets[line]]
+        wrong = shore[points[shore, 2] != level]
+        overruled = Overruled(
+            np.append(overruled.vertices, wrong),
+            np.append(overruled.lines, np.full(len(wrong), -1, np.int32)),
+            np.append(overruled.heights, points[wrong, 2]),
+            np.append(overruled.taken, np.full(len(wrong), level)),
+        )
+        points[wrong, 2] = level
+    return overruled
+
+
+def _without_water(
+    points: NDArray[np.float64], pieces: Pieces, lines: LineSet
+) -> tuple[Pieces, NDArray[np.bool_]]:
+    """Leave out steps in water; return the rest, and which vertices are in water."""
+    wet = np.zeros(len(points), np.bool_)
+    for line in np.flatnonzero(lines.priorities == ABOVE_ALL).tolist():
+        ring = points[pieces.vertices[pieces.lines[_piece_of(pieces)] == line], :2]
+        if len(ring) < 4:
+            continue
+        inside = _inside(points[:, :2], ring)
+        steps, line_of = pieces.steps()
+        both = points[steps[:, 0], :2] / 2 + points[steps[:, 1], :2] / 2
+        drowned = inside[steps].any(axis=1) | _inside(both, ring)
+        pieces = pieces.kept(~drowned | (line_of == line) | _runs_along(steps, line_of, line))
+        wet |= inside
+    return pieces, wet
+
+
+def _runs_along(
+    steps: NDArray[np.int32], line_of: NDArray[np.int32], line: int
+) -> NDArray[np.bool_]:
+    n = int(steps.max(initial=0)) + 1
+    keys = edge_keys(steps, n)
+    return np.isin(keys, keys[line_of == line])
+
+
+def _piece_of(pieces: Pieces) -> NDArray[np.int64]:
+    return np.repeat(np.arange(len(pieces.lines)), np.diff(pieces.offsets))
+
+
+def _inside(xy: NDArray[np.float64], ring: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Tell which places lie strictly inside a ring whose first corner is repeated."""
+    low, high = ring.min(axis=0), ring.max(axis=0)
+    near = np.flatnonzero(((xy > low) & (xy < high)).all(axis=1))
+    inside = np.zeros(len(xy), np.bool_)
+    if len(near):
+        inside[near] = in_rings(xy[near], [ring[:-1]]) > 0
+    return inside
+
+
+# ----------------------------------------------------------------- triangulation
+
+
+def _mesh(merged: _Merged, noded: Noded) -> _kernel.Mesh:
+    mesh = _kernel.Mesh(
+        np.ascontiguousarray(merged.points[:, :2]),
+        merged.growth.triangles,
+        merged.growth.neighbors,
+        np.zeros(merged.growth.triangles.shape, np.bool_),
+    )
+    if len(noded.new_points):
+        mesh.insert(np.ascontiguousarray(noded.new_points[:, :2]))
+    return mesh

@@ -1,0 +1,228 @@
+"""The lines of a survey as flat arrays, ready to be put into a surface."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from . import _kernel
+from .errors import LinesError
+from .lines import Breakline, LineKind, Water, as_ring
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["ABOVE_ALL", "BELOW_ALL", "LineSet", "gather_lines", "gather_rings", "gather_water"]
+
+ABOVE_ALL = np.inf
+"""Priority of water: it stays flat whatever crosses it."""
+
+BELOW_ALL = -np.inf
+"""Priority of draped lines: they never change a height."""
+
+
+class LineSet(NamedTuple):
+    """Lines as ragged arrays; line ``i`` has the rows ``offsets[i]:offsets[i + 1]``.
+
+    Attributes
+    ----------
+    xy : (k, 2) float64 array
+    heights : (k,) float64 array
+        NaN for draped lines.
+    offsets : (l + 1,) int64 array
+    kinds : tuple of LineKind
+    sources : (l,) int32 array
+        The caller's number within breaklines, boundary, holes or water.
+    priorities : (l,) float64 array
+    names : tuple of str
+    """
+
+    xy: NDArray[np.float64]
+    heights: NDArray[np.float64]
+    offsets: NDArray[np.int64]
+    kinds: tuple[LineKind, ...]
+    sources: NDArray[np.int32]
+    priorities: NDArray[np.float64]
+    names: tuple[str, ...]
+
+    @property
+    def is_draped(self) -> NDArray[np.bool_]:
+        """Whether each line takes its heights from the surface."""
+        return np.isnan(self.heights[self.offsets[:-1]])
+
+    @property
+    def line_of(self) -> NDArray[np.int64]:
+        """The line of each row."""
+        return np.repeat(np.arange(len(self.kinds)), np.diff(self.offsets))
+
+    def label(self, line: int) -> str:
+        """Return what a line is called in sentences."""
+        kind = self.kinds[line]
+        noun = "breakline" if kind in ("hard", "soft") else kind
+        name = f" '{self.names[line]}'" if self.names[line] else ""
+        return f"{noun} {int(self.sources[line])}{name}"
+
+    @classmethod
+    def joined(cls, sets: Sequence[LineSet]) -> LineSet:
+        """Return the lines of several sets as one."""
+        counts = np.concatenate([np.diff(part.offsets) for part in sets])
+        return cls(
+            np.concatenate([part.xy for part in sets]),
+            np.concatenate([part.heights for part in sets]),
+            np.concatenate([[0], np.cumsum(counts)]),
+            tuple(kind for part in sets for kind in part.kinds),
+            np.concatenate([part.sources for part in sets]),
+            np.concatenate([part.priorities for part in sets]),
+            tuple(name for part in sets for name in part.names),
+        )
+
+    def chosen(self, is_chosen: NDArray[np.bool_]) -> LineSet:
+        """Return some of the lines."""
+        rows = np.repeat(is_chosen, np.diff(self.offsets))
+        counts = np.diff(self.offsets)[is_chosen]
+        numbers = np.flatnonzero(is_chosen)
+        return LineSet(
+            self.xy[rows],
+            self.heights[rows],
+            np.concatenate([[0], np.cumsum(counts)]),
+            tuple(self.kinds[i] for i in numbers),
+            self.sources[is_chosen],
+            self.priorities[is_chosen],
+            tuple(self.names[i] for i in numbers),
+        )
+
+
+def gather_lines(
+    breaklines: Sequence[Breakline | ArrayLike],
+    boundary: Sequence[ArrayLike],
+    holes: Sequence[ArrayLike],
+    water: Sequence[Water],
+) -> LineSet:
+    """Put all lines into one set: breaklines, then boundary rings, holes and water.
+
+    Raises
+    ------
+    LinesError
+        If a line has another shape, too few vertices, coordinates that are not finite or too
+        large, or if a ring crosses itself.
+    """
+    lines = [
+        line if isinstance(line, Breakline) else Breakline(line)
+        for line in _sequence(breaklines, "breaklines")
+    ]
+    rings = [
+        *_rings(boundary, "boundary"),
+        *_rings(holes, "hole"),
+    ]
+    ponds = gather_water(water)
+    coords = [
+        *(line.coords for line in lines),
+        *(_closed(ring) for _, ring in rings),
+        *(_closed(_level(pond)) for pond in ponds),
+    ]
+    kinds: list[LineKind] = [line.kind for line in lines]
+    kinds += [kind for kind, _ in rings]
+    kinds += ["water" for _ in ponds]
+    found = LineSet(
+        *_stacked(coords),
+        offsets=np.concatenate([[0], np.cumsum([len(c) for c in coords], dtype=np.int64)]),
+        kinds=tuple(kinds),
+        sources=_sources(kinds),
+        priorities=np.array(
+            [
+                *(BELOW_ALL if line.is_draped else line.priority for line in lines),
+                *(BELOW_ALL if ring.shape[1] == 2 else 0.0 for _, ring in rings),
+                *(ABOVE_ALL for _ in ponds),
+            ],
+            np.float64,
+        ),
+        names=(*(line.name for line in lines), *("" for _ in rings), *(p.name for p in ponds)),
+    )
+    _require_exact_range(found)
+    return found
+
+
+def gather_rings(rings: Sequence[ArrayLike], what: str) -> list[NDArray[np.float64]]:
+    """Return rings as (k, 2) arrays, the first corner not repeated."""
+    return [
+        as_ring(ring, f"{what} ring {number}")[:, :2]
+        for number, ring in enumerate(_sequence(rings, what))
+    ]
+
+
+def gather_water(water: Sequence[Water]) -> list[Water]:
+    """Return the water polygons, or say what is none."""
+    ponds = list(_sequence(water, "water"))
+    for pond in ponds:
+        if not isinstance(pond, Water):
+            raise LinesError(f"Invalid water {type(pond).__name__}: a tinsmith.Water is needed.")
+    return ponds
+
+
+def _sequence(lines: Any, what: str) -> list[Any]:
+    """Return several lines; one line alone is told apart by its rows being numbers."""
+    if isinstance(lines, Breakline | Water):
+        return [lines]
+    if isinstance(lines, np.ndarray) and lines.ndim == 2 and lines.dtype != object:
+        return [lines]
+    try:
+        return list(lines)
+    except TypeError:
+        raise LinesError(
+            f"Invalid {what} {lines!r}: a sequence of lines is needed, each an array of vertices."
+        ) from None
+
+
+def _rings(
+    rings: Sequence[ArrayLike], kind: LineKind
+) -> list[tuple[LineKind, NDArray[np.float64]]]:
+    return [
+        (kind, as_ring(ring, f"{kind} ring {number}"))
+        for number, ring in enumerate(_sequence(rings, kind))
+    ]
+
+
+def _level(pond: Water) -> NDArray[np.float64]:
+    return np.column_stack([pond.ring, np.full(len(pond.ring), pond.z)])
+
+
+def _closed(ring: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.concatenate([ring, ring[:1]])
+
+
+def _stacked(coords: list[NDArray[np.float64]]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    if not coords:
+        return np.empty((0, 2)), np.empty(0)
+    xy = np.concatenate([line[:, :2] for line in coords])
+    draped = [len(line) if line.shape[1] == 2 else 0 for line in coords]
+    heights = np.concatenate(
+        [np.full(n, np.nan) if n else line[:, 2] for n, line in zip(draped, coords, strict=True)]
+    )
+    return np.ascontiguousarray(xy), heights
+
+
+def _sources(kinds: Sequence[str]) -> NDArray[np.int32]:
+    counts: dict[str, int] = {}
+    numbers = []
+    for kind in kinds:
+        group = "breakline" if kind in ("hard", "soft") else kind
+        numbers.append(counts.get(group, 0))
+        counts[group] = numbers[-1] + 1
+    return np.array(numbers, np.int32)
+
+
+def _require_exact_range(lines: LineSet) -> None:
+    smallest, largest = _kernel.EXACT_RANGE
+    size = np.abs(lines.xy)
+    wrong = ((size > largest) | ((size < smallest) & (size > 0))).any(axis=1)
+    if wrong.any():
+        row = int(np.argmax(wrong))
+        line = int(lines.line_of[row])
+        raise LinesError(
+            f"{lines.label(line)} has a vertex outside the exact range "
+            f"(x {lines.xy[row, 0]!r}, y {lines.xy[row, 1]!r}): magnitudes from {smallest:.0e} to "
+            f"{largest:.0e}, or 0, are allowed.".capitalize(),
+            lines=[line],
+        )

@@ -1,0 +1,165 @@
+"""Model: vertices, the steps of lines, and what of the hull is the surface.
+
+A model is what a TIN is a function of once rows are merged and lines cut where they meet. The
+triangulation of its vertices with its steps is unique, so any way to it gives the same TIN.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from . import _kernel
+from .errors import LinesError
+from .lines import LineKind, Lines
+from .pieces import Pieces
+from .regions import Surface, clipped, edge_keys, is_inside, trimmed
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["Clip", "LineInfo", "Model", "lines_in", "mesh_of"]
+
+
+class LineInfo(NamedTuple):
+    """What a line is; source -1 is an edge of the rim that was cut."""
+
+    kind: LineKind
+    source: int = -1
+    name: str = ""
+    priority: float = 0.0
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Clip:
+    """Which triangles of the hull are the surface.
+
+    Attributes
+    ----------
+    boundaries : list of lists of (k, 2) float64 arrays
+        The surface lies inside every one of these, each of one or more rings.
+    holes : list of (k, 2) float64 arrays
+    max_edge : float
+        Infinity for none.
+    is_trimmed_everywhere : bool
+    """
+
+    boundaries: list[list[NDArray[np.float64]]] = field(default_factory=list)
+    holes: list[NDArray[np.float64]] = field(default_factory=list)
+    max_edge: float = np.inf
+    is_trimmed_everywhere: bool = False
+
+    @property
+    def is_none(self) -> bool:
+        """Whether all of the hull is the surface."""
+        return not (self.boundaries or self.holes or np.isfinite(self.max_edge))
+
+    def keeps(self, surface: Surface, ring_steps: NDArray[np.int32]) -> NDArray[np.bool_]:
+        """Tell which triangles are kept; ``ring_steps`` are the edges along the rings.
+
+        Raises
+        ------
+        LinesError
+            If there are none, or if a hole cuts nothing away.
+        """
+        keep = np.ones(len(surface.triangles), np.bool_)
+        if self.boundaries or self.holes:
+            keep = is_inside(surface, ring_steps, self.boundaries, self.holes)
+            _require_triangles(keep, "The boundary and the holes leave no triangle of the surface")
+        if np.isfinite(self.max_edge):
+            everywhere = self.is_trimmed_everywhere
+            keep = trimmed(surface, keep, self.max_edge, everywhere=everywhere)
+            _require_triangles(keep, f"No triangle is left with max_edge {self.max_edge:g}")
+        return keep
+
+
+def _require_triangles(keep: NDArray[np.bool_], sentence: str) -> None:
+    if not keep.any():
+        raise LinesError(f"{sentence}: a TIN needs one at least.")
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Model:
+    """Vertices and lines of the whole hull.
+
+    Attributes
+    ----------
+    points : (v, 3) float64 array
+        Distinct places.
+    pieces : Pieces
+        Chains of vertices; ``pieces.lines`` are places in ``infos``.
+    infos : tuple of LineInfo
+    clip : Clip
+    vertex_of : (n,) int32 array
+        The vertex of each row of the caller's points, -1 for none.
+    """
+
+    points: NDArray[np.float64]
+    pieces: Pieces
+    infos: tuple[LineInfo, ...]
+    clip: Clip
+    vertex_of: NDArray[np.int32]
+
+    def surface(self, hull: Surface) -> tuple[Surface, NDArray[np.int32]]:
+        """Cut the triangulated hull; return the surface and the new number of each vertex."""
+        if self.clip.is_none:
+            return hull, np.arange(len(hull.points), dtype=np.int32)
+        steps, line_of = self.pieces.steps()
+        is_ring = np.array([info.kind in ("boundary", "hole") for info in self.infos], np.bool_)
+        keep = self.clip.keeps(hull, steps[is_ring[line_of]])
+        if keep.all():
+            return hull, np.arange(len(hull.points), dtype=np.int32)
+        return clipped(hull, keep)
+
+
+def mesh_of(points: NDArray[np.float64], pieces: Pieces, *, threads: int) -> _kernel.Mesh:
+    """Triangulate distinct points, and fix the steps of lines that are cut where they meet."""
+    growth = _kernel.grow(points, threads=threads)
+    mesh = _kernel.Mesh(
+        np.ascontiguousarray(points[:, :2]),
+        growth.triangles,
+        growth.neighbors,
+        np.zeros(growth.triangles.shape, np.bool_),
+    )
+    force(mesh, pieces)
+    return mesh
+
+
+def force(mesh: _kernel.Mesh, pieces: Pieces) -> None:
+    """Fix every step once."""
+    steps, _ = pieces.steps()
+    keys = edge_keys(steps, mesh.slots)
+    _, once = np.unique(keys, return_index=True)
+    passed, blocked = mesh.force(np.ascontiguousarray(steps[np.sort(once)]))
+    if len(passed) or len(blocked):
+        raise AssertionError("lines were not cut at all places where they meet")
+
+
+def lines_in(
+    pieces: Pieces, infos: tuple[LineInfo, ...], number_of: NDArray[np.int32], surface: Surface
+) -> Lines:
+    """Return the lines as far as they are edges of the surface, by its numbers of vertices."""
+    n = len(surface.points)
+    steps, line_of = pieces.steps()
+    steps = number_of[steps]
+    triangle, corner = np.nonzero(surface.constrained)
+    edges = np.stack(
+        [
+            surface.triangles[triangle, (corner + 1) % 3],
+            surface.triangles[triangle, (corner + 2) % 3],
+        ],
+        axis=1,
+    )
+    is_edge = np.asarray((steps >= 0).all(axis=1), np.bool_)
+    is_edge[is_edge] = np.isin(edge_keys(steps[is_edge], n), edge_keys(edges, n))
+    is_given = np.array([info.source >= 0 for info in infos], np.bool_)
+    left = pieces.kept(is_edge & is_given[line_of])
+    return Lines(
+        vertices=number_of[left.vertices],
+        offsets=left.offsets,
+        kinds=tuple(infos[i].kind for i in left.lines),
+        sources=np.array([infos[i].source for i in left.lines], np.int32),
+        names=tuple(infos[i].name for i in left.lines),
+    )

@@ -1,0 +1,148 @@
+"""Recipe: all that a TIN is a function of."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal, get_args
+
+import numpy as np
+
+from . import _kernel
+from .constrained import CrossingPolicy, LineOptions
+from .duplicates import DuplicatePolicy
+from .errors import LinesError, PointsError
+from .line_set import LineSet, gather_lines, gather_rings
+from .points import as_points
+from .survey import Survey
+from .threads import thread_count
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from .lines import Breakline, Water
+
+__all__ = ["Recipe", "TrimPolicy", "recipe_of"]
+
+TrimPolicy = Literal["perimeter", "everywhere"]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Recipe:
+    """Points, lines and options, checked: the same recipe gives the same TIN.
+
+    Attributes
+    ----------
+    points : (n, 3) float64 array
+    lines : LineSet
+    boundary, holes, erase : list of (k, 2) float64 arrays
+        Rings, the first corner not repeated.
+    max_edge : float
+        Infinity for none.
+    """
+
+    points: NDArray[np.float64]
+    lines: LineSet
+    boundary: list[NDArray[np.float64]]
+    holes: list[NDArray[np.float64]]
+    erase: list[NDArray[np.float64]]
+    max_edge: float
+    trim: TrimPolicy
+    conforming: bool
+    options: LineOptions
+    crs: str | None
+    skipped: Mapping[str, int] = field(default_factory=dict)
+    notes: Sequence[str] = ()
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether there are only points, and all of the hull is the surface."""
+        return not (self.lines.kinds or self.erase or np.isfinite(self.max_edge))
+
+
+def recipe_of(
+    points: Survey | ArrayLike,
+    *,
+    breaklines: Sequence[Breakline | ArrayLike],
+    boundary: Sequence[ArrayLike],
+    holes: Sequence[ArrayLike],
+    erase: Sequence[ArrayLike],
+    water: Sequence[Water],
+    max_edge: float | None,
+    trim: TrimPolicy,
+    crossing: CrossingPolicy,
+    conforming: bool,
+    duplicates: DuplicatePolicy,
+    snap: float,
+    threads: int | None,
+    crs: str | None,
+) -> Recipe:
+    """Check everything; lines come on top of the survey's own.
+
+    Raises
+    ------
+    PointsError, LinesError
+        As :func:`tinsmith.triangulate`.
+    """
+    _require_options(duplicates, snap, trim, crossing, max_edge)
+    survey = points if isinstance(points, Survey) else None
+    own = survey if survey is not None else Survey(points=np.empty((0, 3)))
+    xyz = as_points(points.points if isinstance(points, Survey) else points, threads=threads)
+    outer, inner = [*own.boundary, *boundary], [*own.holes, *holes]
+    lines = gather_lines([*own.breaklines, *breaklines], outer, inner, [*own.water, *water])
+    if len(xyz) < 3 and not lines.kinds:
+        raise PointsError(
+            f"{len(xyz)} points cannot make a TIN: at least three not collinear ones are needed."
+        )
+    _require_simple_rings(lines)
+    return Recipe(
+        points=xyz,
+        lines=lines,
+        boundary=gather_rings(outer, "boundary"),
+        holes=gather_rings(inner, "hole"),
+        erase=gather_rings([*own.erase, *erase], "erase"),
+        max_edge=np.inf if max_edge is None else float(max_edge),
+        trim=trim,
+        conforming=bool(conforming),
+        options=LineOptions(duplicates, float(snap), crossing, thread_count(threads, len(xyz))),
+        crs=crs if crs is not None else own.crs,
+        skipped=own.skipped,
+        notes=own.notes,
+    )
+
+
+def _require_options(
+    duplicates: str, snap: float, trim: str, crossing: str, max_edge: float | None
+) -> None:
+    for name, value, kind in (
+        ("duplicates", duplicates, DuplicatePolicy),
+        ("trim", trim, TrimPolicy),
+        ("crossing", crossing, CrossingPolicy),
+    ):
+        if value not in get_args(kind):
+            raise PointsError(f"Invalid {name} '{value}': one of {', '.join(get_args(kind))}.")
+    if not (isinstance(snap, int | float | np.number) and 0 <= snap < np.inf):
+        raise PointsError(f"Invalid snap {snap!r}: a distance >= 0 in CRS units is needed.")
+    if max_edge is not None and not (
+        isinstance(max_edge, int | float | np.number) and 0 < max_edge < np.inf
+    ):
+        raise PointsError(f"Invalid max_edge {max_edge!r}: a length > 0 in CRS units is needed.")
+
+
+def _require_simple_rings(lines: LineSet) -> None:
+    for line, kind in enumerate(lines.kinds):
+        if kind in ("hard", "soft"):
+            continue
+        rows = np.arange(lines.offsets[line], lines.offsets[line + 1], dtype=np.int32)
+        corners = np.append(rows[:-1], rows[0]) - rows[0]
+        xy = np.ascontiguousarray(lines.xy[rows[:-1]])
+        segments = np.ascontiguousarray(np.stack([corners[:-1], corners[1:]], axis=1))
+        crossings = _kernel.crossings(xy, segments)
+        if len(crossings):
+            x, y = _kernel.intersections(xy, segments, crossings[:1])[0]
+            label = lines.label(line)
+            raise LinesError(
+                f"{label[0].upper() + label[1:]} crosses itself at {len(crossings)} places "
+                f"(first: x {x:.6g}, y {y:.6g}): a ring must not.",
+                lines=[line],
+            )
