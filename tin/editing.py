@@ -116,7 +116,7 @@ class History:
         """
         try:
             result, notes = self._run(operation, arguments)
-        except TinsmithError:
+        except BaseException:
             self._restore()
             raise
         self.edits.append(Edit(operation, arguments, notes))
@@ -198,7 +198,10 @@ class History:
 
     def _set_z(self, _: list[str], vertices: ArrayLike, z: ArrayLike) -> None:
         slots = self._slots(vertices)
-        heights = np.asarray(z, np.float64)
+        try:
+            heights = np.asarray(z, np.float64)
+        except (TypeError, ValueError):
+            raise PointsError(f"Invalid heights {z!r}: numbers are needed.") from None
         if heights.ndim > 1 or (heights.ndim == 1 and len(heights) != len(slots)):
             raise PointsError(
                 f"{heights.size} heights for {len(slots)} vertices: one each, or one for all, "
@@ -243,6 +246,8 @@ class History:
         return [part for part in parts if len(part) > 1]
 
     def _remove_breakline(self, _: list[str], number: int) -> None:
+        if isinstance(number, bool) or not isinstance(number, int | np.integer):
+            raise LinesError(f"Invalid breakline {number!r}: a whole number is needed.")
         self._editor.remove_line(int(number))
 
 

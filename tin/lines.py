@@ -63,6 +63,8 @@ class Breakline:
         if kind not in get_args(BreaklineKind):
             allowed = ", ".join(get_args(BreaklineKind))
             raise LinesError(f"Invalid breakline kind '{kind}': one of {allowed}.")
+        if isinstance(priority, bool) or not isinstance(priority, int | np.integer):
+            raise LinesError(f"Invalid priority {priority!r}: a whole number is needed.")
         what = f"breakline '{name}'" if name else "a breakline"
         object.__setattr__(self, "coords", as_coords(coords, what, least=2))
         object.__setattr__(self, "kind", kind)

@@ -1,0 +1,87 @@
+"""``tinsmith edit`` as a user runs it."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import tinsmith as ts
+from tinsmith.cli import main
+
+POINTS = "x,y,z\n0,0,5\n4,0,6\n4,4,7\n0,4,8\n2,1,9\n"
+SCRIPT = [
+    {"op": "insert", "points": [[3, 3, 1]]},
+    {"op": "remove", "vertices": [4]},
+    {"op": "move", "vertex": 4, "point": [1, 3, 2]},
+    {"op": "set_z", "vertices": [0], "z": 50.0},
+    {"op": "add_breakline", "coords": [[0.5, 0.5, 1], [3, 1, 2]]},
+]
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "points.csv").write_text(POINTS)
+    return tmp_path
+
+
+def run(folder, script, *arguments):
+    text = script if isinstance(script, str) else json.dumps(script)
+    (folder / "script.json").write_text(text)
+    return CliRunner().invoke(
+        main, ["edit", "points.csv", "script.json", "-o", "out.ply", *arguments]
+    )
+
+
+def test_edits_are_those_of_python(folder):
+    result = run(folder, SCRIPT, "--report", "report.json")
+    assert result.exit_code == 0, result.stderr
+    tin = ts.triangulate(np.genfromtxt("points.csv", delimiter=",", skip_header=1))
+    for edit in SCRIPT:
+        edit = dict(edit)
+        getattr(tin, edit.pop("op"))(**edit)
+    written = ts.read("out.ply")
+    np.testing.assert_array_equal(written.points, tin.points)
+    np.testing.assert_array_equal(written.triangles, tin.triangles)
+    np.testing.assert_array_equal(written.constrained, tin.constrained)
+    report = json.loads((folder / "report.json").read_text())
+    assert [edit["op"] for edit in report["edits"]] == [edit["op"] for edit in SCRIPT]
+
+
+def test_report_of_a_run_is_a_script(folder):
+    run(folder, SCRIPT, "--report", "report.json")
+    wanted = (folder / "out.ply").read_bytes()
+    result = run(folder, (folder / "report.json").read_text())
+    assert result.exit_code == 0, result.stderr
+    assert (folder / "out.ply").read_bytes() == wanted
+
+
+@pytest.mark.parametrize(
+    ("script", "sentence"),
+    [
+        ("[{", "no JSON (line 1"),
+        ("{}", "holds something else"),
+        ("[3]", "holds something else"),
+        ([{"op": "explode"}], "Edit 0 has op 'explode'"),
+        ([{"op": "remove", "vertices": [99]}], "no vertex 99"),
+        ([{"op": "remove"}], "wrong arguments"),
+        ([{"op": "set_z", "vertices": [0], "z": "high"}], "Edit 0"),
+        ([{"op": "insert", "points": "here"}], "Edit 0"),
+    ],
+)
+def test_bad_script_is_one_sentence_and_writes_nothing(folder, script, sentence):
+    result = run(folder, script)
+    assert result.exit_code == 1
+    assert sentence in " ".join(result.stderr.split())
+    assert "Traceback" not in result.stderr
+    assert "bug in tinsmith" not in result.stderr
+    assert not (folder / "out.ply").exists()
+
+
+def test_missing_script_is_named(folder):
+    result = CliRunner().invoke(main, ["edit", "points.csv", "nowhere.json", "-o", "out.ply"])
+    assert result.exit_code == 1
+    assert "nowhere.json" in result.stderr
