@@ -84,6 +84,7 @@ def touches(
     segments: NDArray[np.int32],
     distance: float = ...,
     first_vertex: int = ...,
+    is_rounded: bool = ...,
     threads: int = ...,
 ) -> NDArray[np.int32]: ...
 def contacts(

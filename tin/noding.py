@@ -7,9 +7,16 @@ Rounds, each a function of the set of segments, never of their order or directio
    its parts are looked at again. Parts only ever get shorter, so this comes to an end.
 2. Where segments cross, one vertex is made at each distinct place, its coordinates rounded once,
    or the vertex taken that is there already; both segments are split. Rounding bends them by a
-   unit in the last place, so step 1 follows, and both are repeated until nothing crosses.
+   unit in the last place, so step 1 follows, from now on for all vertices within such a unit
+   [1]_: else nearly parallel lines would cross again and again, between ever more vertices.
+   Both are repeated until nothing crosses.
 
 Only what is new is looked at again: segments since the last round, and vertices.
+
+References
+----------
+.. [1] J. D. Hobby, Practical segment intersection with finite precision output, Computational
+   Geometry 13 (1999), doi:10.1016/S0925-7721(99)00021-8.
 """
 
 from __future__ import annotations

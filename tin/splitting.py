@@ -132,6 +132,7 @@ class Splitting:
         self.crossing_vertices = np.empty(0, np.int32)
         self._snap = snap
         self._threads = threads
+        self._is_rounded = False  # whether vertices within a rounding of a segment are on it
         self._untouched = np.empty(0, np.int64)  # segments that the first vertices do not touch
         self._n_touched = 0  # the number of those vertices
         self._uncrossed = np.empty(0, np.int64)  # segments that do not cross one another
@@ -142,11 +143,12 @@ class Splitting:
         """Split steps at the vertices on them until there is none."""
         for _ in range(MOST_ROUNDS):
             segment, vertex = self._find_touches()
-            if len(segment) and self._snap > 0:
+            bends = self._snap > 0 or self._is_rounded
+            if len(segment) and bends:
                 segment, vertex = self._shortening(segment, vertex)
             if len(segment):
-                self._split(segment, vertex, bends=self._snap > 0)
-            if len(segment) == 0 or self._snap == 0:  # exact splits leave no touches
+                self._split(segment, vertex, bends=bends)
+            if len(segment) == 0 or not bends:  # exact splits leave no touches
                 self._untouched = self.steps.keys
                 self._n_touched = len(self.xy)
                 return
@@ -162,7 +164,9 @@ class Splitting:
             numbers = np.flatnonzero(asked)
             ends = self.steps.ends[numbers]
             if len(numbers) and first < len(self.xy):
-                pairs = _kernel.touches(self.xy, ends, self._snap, first, self._threads)
+                pairs = _kernel.touches(
+                    self.xy, ends, self._snap, first, self._is_rounded, self._threads
+                )
                 found.append((numbers[pairs[:, 0]], pairs[:, 1]))
         if not found:
             return np.empty(0, np.int64), np.empty(0, np.int32)
@@ -225,6 +229,7 @@ class Splitting:
         uncrossed[split] = False
         self._uncrossed = self.steps.keys[uncrossed]
         self._split(split, at.astype(np.int32), bends=False)
+        self._is_rounded = True
 
     def places_of(self, pairs: NDArray[np.int64]) -> NDArray[np.float64]:
         """Return where the segments of each pair cross, (c, 2)."""

@@ -98,14 +98,15 @@ inline void require_distance(double distance) {
 }
 
 inline PairRows touches(const Places& xy, const NumberPairs& segments, double distance,
-                        std::int32_t first_vertex, int threads) {
+                        std::int32_t first_vertex, bool is_rounded, int threads) {
   require_distance(distance);
   require_first(first_vertex);
   const Segments given = sound_segments(xy, segments);
   const std::int32_t count = row_count(xy.shape(0));
   return hand_over(unlocked(threads, [&](Team& team) {
     const auto is_asked = [](std::int32_t) { return true; };
-    return TouchSearch(given, distance).run(std::min(first_vertex, count), count, is_asked, team);
+    return TouchSearch(given, {distance, is_rounded})
+        .run(std::min(first_vertex, count), count, is_asked, team);
   }));
 }
 
@@ -177,9 +178,10 @@ inline void bind_lines(nb::module_& m) {
         "threads"_a = 1,
         "Pairs i < j of segments that cross, sorted; j is first_new or more.");
   m.def("touches", &touches, "xy"_a.noconvert(), "segments"_a.noconvert(), "distance"_a = 0.0,
-        "first_vertex"_a = 0, "threads"_a = 1,
+        "first_vertex"_a = 0, "is_rounded"_a = false, "threads"_a = 1,
         "Pairs (segment, vertex), sorted, where the vertex, first_vertex or later, lies inside the "
-        "segment or, further than the distance from both ends, within the distance of it.");
+        "segment or, further than the distance from both ends, within the distance of it; "
+        "is_rounded: at least a unit in the last place.");
   m.def("contacts", &contacts, "xy"_a.noconvert(), "segments"_a.noconvert(), "distance"_a = 0.0,
         "threads"_a = 1, "The crossings and the touches of all, found together.");
   m.def("intersections", &intersections, "xy"_a.noconvert(), "segments"_a.noconvert(),

@@ -110,7 +110,7 @@ class ContactSearch {
       for (int k = 0; k < 2; ++k) is_end[segments.end(i, k)] = 1;
     }
     const auto is_asked = [&](std::int32_t v) { return is_end[v] == 0; };
-    return TouchSearch(segments, distance_).run(0, vertex_count, is_asked, team);
+    return TouchSearch(segments, {distance_, false}).run(0, vertex_count, is_asked, team);
   }
 
   double distance_;

@@ -16,19 +16,20 @@ namespace tinsmith {
 // Cells that come within `reach` of a segment, and some that do not quite.
 class SegmentRaster {
  public:
-  SegmentRaster(const Segments& segments, double reach, std::int64_t vertex_count) {
-    for (std::int32_t i = 0; i < segments.count; ++i) box_.include(segments.box_of(i));
+  SegmentRaster(const Segments& segments, Reach reach, std::int64_t vertex_count) {
+    const auto reach_of = [&](std::int32_t i) {
+      return Band::kRoom * reach.of(segments.place(i, 0), segments.place(i, 1));
+    };
+    for (std::int32_t i = 0; i < segments.count; ++i) {
+      box_.include(segments.box_of(i).grown_by(reach_of(i)));
+    }
     if (segments.count == 0) return;  // the empty box holds nothing
-    const double wide_reach = kRoom * reach;
-    box_ = box_.grown_by(wide_reach);
     choose_side(segments, vertex_count);
     columns_per_unit_ = cells_per_unit(box_.xmax - box_.xmin);
     rows_per_unit_ = cells_per_unit(box_.ymax - box_.ymin);
-    margin_x_ = wide_reach * columns_per_unit_ + kRounding;
-    margin_y_ = wide_reach * rows_per_unit_ + kRounding;
     bits_.resize(static_cast<std::size_t>(side_) * (side_ / kWord));
     for (std::int32_t i = 0; i < segments.count; ++i) {
-      mark(cell_of(segments.place(i, 0)), cell_of(segments.place(i, 1)));
+      mark(cell_of(segments.place(i, 0)), cell_of(segments.place(i, 1)), reach_of(i));
     }
   }
 
@@ -45,7 +46,6 @@ class SegmentRaster {
   static constexpr std::uint32_t kLeastSide = kWord;
   static constexpr std::uint32_t kMostSide = 4096;     // the bits fit the second-level cache
   static constexpr std::int64_t kCellsPerSegment = 32;  // then few cells are near one
-  static constexpr double kRoom = 1.0 + 0x1p-10;
   static constexpr double kRounding = 0x1p-20;  // in cells; far more than the roundings make
 
   // Fine enough for the segments; not so fine that marking them costs more than it saves.
@@ -76,19 +76,21 @@ class SegmentRaster {
     return static_cast<std::uint32_t>(std::min(std::max(cell, 0.0), side_ - 1.0));
   }
 
-  void mark(Point a, Point b) {
+  void mark(Point a, Point b, double reach) {
+    const double margin_x = reach * columns_per_unit_ + kRounding;
+    const double margin_y = reach * rows_per_unit_ + kRounding;
     const double bottom = std::min(a.y, b.y), top = std::max(a.y, b.y);
     const double slope = top - bottom > 1.0 ? (b.x - a.x) / (b.y - a.y) : 0.0;
-    const std::uint32_t last = clamped(top + margin_y_);
-    for (std::uint32_t row = clamped(bottom - margin_y_); row <= last; ++row) {
+    const std::uint32_t last = clamped(top + margin_y);
+    for (std::uint32_t row = clamped(bottom - margin_y); row <= last; ++row) {
       double west = std::min(a.x, b.x), east = std::max(a.x, b.x);
       if (top - bottom > 1.0) {
-        const double from = a.x + (std::max(row - margin_y_, bottom) - a.y) * slope;
-        const double to = a.x + (std::min(row + 1.0 + margin_y_, top) - a.y) * slope;
+        const double from = a.x + (std::max(row - margin_y, bottom) - a.y) * slope;
+        const double to = a.x + (std::min(row + 1.0 + margin_y, top) - a.y) * slope;
         west = std::min(from, to);
         east = std::max(from, to);
       }
-      mark_run(row, clamped(west - margin_x_), clamped(east + margin_x_));
+      mark_run(row, clamped(west - margin_x), clamped(east + margin_x));
     }
   }
 
@@ -105,7 +107,6 @@ class SegmentRaster {
   Rectangle box_;
   std::uint32_t side_ = kLeastSide;
   double columns_per_unit_ = 0.0, rows_per_unit_ = 0.0;
-  double margin_x_ = 0.0, margin_y_ = 0.0;  // cells
   std::vector<std::uint64_t> bits_;
 };
 

@@ -31,6 +31,19 @@ struct Segments {
   }
 };
 
+// How far a segment reaches for vertices.
+struct Reach {
+  double distance;
+  bool is_rounded;  // at least one unit in the last place of the ends' largest coordinate
+
+  double of(Point a, Point b) const {
+    if (!is_rounded) return distance;
+    const double largest = std::max(std::max(std::fabs(a.x), std::fabs(a.y)),
+                                    std::max(std::fabs(b.x), std::fabs(b.y)));
+    return std::max(distance, std::nextafter(largest, HUGE_VAL) - largest);
+  }
+};
+
 struct NumberPair {
   std::int32_t first;
   std::int32_t second;

@@ -56,7 +56,7 @@ inline bool touches_interior(Point a, Point b, Point p, double distance) {
 // the places from `first_vertex` to `vertex_count` - 1 for which `is_asked(number)`.
 class TouchSearch {
  public:
-  TouchSearch(const Segments& segments, double distance) : segments_(segments), distance_(distance) {}
+  TouchSearch(const Segments& segments, Reach reach) : segments_(segments), reach_(reach) {}
 
   template <typename IsAsked>
   std::vector<NumberPair> run(std::int32_t first_vertex, std::int32_t vertex_count,
@@ -79,7 +79,7 @@ class TouchSearch {
   template <typename IsAsked>
   void gather(std::int32_t first_vertex, std::int32_t vertex_count, IsAsked&& is_asked,
               Team& team) {
-    const SegmentRaster raster(segments_, distance_, vertex_count - first_vertex);
+    const SegmentRaster raster(segments_, reach_, vertex_count - first_vertex);
     std::vector<std::vector<std::int32_t>> kept(team.size());
     team.run([&](int part) {
       const Range range = part_of(vertex_count - first_vertex, part, team.size());
@@ -109,20 +109,21 @@ class TouchSearch {
   void search(std::int32_t segment, std::vector<NumberPair>& found) const {
     const Point a = segments_.place(segment, 0), b = segments_.place(segment, 1);
     const std::int32_t first = segments_.end(segment, 0), second = segments_.end(segment, 1);
-    const Band band(a, b, distance_);
+    const double distance = reach_.of(a, b);
+    const Band band(a, b, distance);
     const auto wanted = [&](const Rectangle& box, std::int64_t) { return band.meets(box); };
     tree_.visit_leaves_if(wanted, [&](std::int32_t begin, std::int32_t end) {
       for (std::int32_t i = begin; i < end; ++i) {
         const Vertex& vertex = vertices_[i];
         if (vertex.number == first || vertex.number == second) continue;
-        if (touches_interior(a, b, vertex.place, distance_)) found.push_back({segment, vertex.number});
+        if (touches_interior(a, b, vertex.place, distance)) found.push_back({segment, vertex.number});
       }
       return false;
     });
   }
 
   Segments segments_;
-  double distance_;
+  Reach reach_;
   std::vector<Vertex> vertices_;
   BoxTree tree_;
 };
