@@ -188,24 +188,32 @@ def _account(
     account = _without_lost_merges(dict(made.merges), final)
     left_out = np.flatnonzero(vertex_of < 0).astype(np.int32)
     labels = [ground.lines.label(i) for i in range(len(ground.lines.kinds))]
-    met, gave_way = made.noded.crossings, made.overruled
+    gave_way = made.overruled
     return account | {
         "left_out_rows": left_out,
         "left_out_why": _reasons(recipe, left_out, is_erased, made),
         "n_lines": len(recipe.lines.kinds),
         "line_labels": tuple(labels),
-        "crossings": Crossings(
-            _numbered(met.vertex, final),
-            met.xy,
-            np.stack([met.line_a, met.line_b], axis=1).astype(np.int32),
-            np.stack([met.height_a, met.height_b], axis=1),
-            met.height,
-        ),
+        "crossings": _crossings(made, final),
         "overruled": Overruled(
             _numbered(gave_way.vertices, final), gave_way.lines, gave_way.heights, gave_way.taken
         ),
         "notes": [*recipe.notes, *ground.notes],
     }
+
+
+def _crossings(made: Draft, final: NDArray[np.int32]) -> Crossings:
+    met = made.noded.crossings
+    lines = np.stack([met.line_a, met.line_b], axis=1).astype(np.int32)
+    heights = np.stack([met.height_a, met.height_b], axis=1)
+    order = np.argsort(lines, axis=1, kind="stable")
+    return Crossings(
+        _numbered(met.vertex, final),
+        met.xy,
+        np.take_along_axis(lines, order, axis=1),
+        np.take_along_axis(heights, order, axis=1),
+        met.height,
+    )
 
 
 def _without_lost_merges(account: dict[str, Any], final: NDArray[np.int32]) -> dict[str, Any]:

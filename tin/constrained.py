@@ -13,6 +13,7 @@ import numpy as np
 from . import _kernel
 from .conforming import conform
 from .duplicates import DuplicatePolicy, merge_rows
+from .errors import PointsError
 from .line_set import ABOVE_ALL, BELOW_ALL, LineSet
 from .model import force
 from .noding import Chains, Noded, node
@@ -129,6 +130,11 @@ def draft(
 def _merge(xyz: NDArray[np.float64], lines: LineSet, options: LineOptions) -> _Merged:
     """Make one vertex of all rows at one place; a line's height counts more than a point's."""
     n = len(xyz)
+    if n + len(lines.xy) < 3:
+        raise PointsError(
+            f"{n + len(lines.xy)} points are left: a TIN needs at least three that are not "
+            "collinear."
+        )
     rows = np.concatenate([xyz, np.column_stack([lines.xy, np.nan_to_num(lines.heights)])])
     place = _kernel.snap(rows, options.snap) if options.snap > 0 else None
     own = np.arange(len(rows), dtype=np.int32)

@@ -180,15 +180,14 @@ def _along_surface(
         np.ascontiguousarray(surface.points[:, :2]),
         surface.triangles,
         surface.neighbors,
-        surface.constrained,
+        np.ones(surface.triangles.shape, np.bool_),  # so that every edge is there to be crossed
     )
     slots = np.full(len(places), -1, np.int32)
     used = np.unique(pieces.vertices)
     slots[used] = mesh.insert(np.ascontiguousarray(places[used]))
     steps, _ = pieces.steps()
     n_own = len(surface.points)
-    crossed = mesh.crossed(np.ascontiguousarray(slots[steps])).reshape(-1, 3)
-    crossed = crossed[(crossed[:, 1:] < n_own).all(axis=1)]
+    crossed = mesh.crossed(np.ascontiguousarray(slots[steps]), True).reshape(-1, 3)
     xy = np.concatenate([surface.points[:, :2], np.empty((mesh.slots - n_own, 2))])
     xy[slots[used]] = places[used]
     pairs = np.stack([crossed[:, 0], len(steps) + np.arange(len(crossed))], axis=1)

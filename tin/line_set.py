@@ -14,7 +14,15 @@ from .lines import Breakline, LineKind, Water, as_ring
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["ABOVE_ALL", "BELOW_ALL", "LineSet", "gather_lines", "gather_rings", "gather_water"]
+__all__ = [
+    "ABOVE_ALL",
+    "BELOW_ALL",
+    "LineSet",
+    "as_sequence",
+    "gather_lines",
+    "gather_rings",
+    "gather_water",
+]
 
 ABOVE_ALL = np.inf
 """Priority of water: it stays flat whatever crosses it."""
@@ -110,7 +118,7 @@ def gather_lines(
     """
     lines = [
         line if isinstance(line, Breakline) else Breakline(line)
-        for line in _sequence(breaklines, "breaklines")
+        for line in as_sequence(breaklines, "breaklines")
     ]
     rings = [
         *_rings(boundary, "boundary"),
@@ -148,20 +156,20 @@ def gather_rings(rings: Sequence[ArrayLike], what: str) -> list[NDArray[np.float
     """Return rings as (k, 2) arrays, the first corner not repeated."""
     return [
         as_ring(ring, f"{what} ring {number}")[:, :2]
-        for number, ring in enumerate(_sequence(rings, what))
+        for number, ring in enumerate(as_sequence(rings, what))
     ]
 
 
 def gather_water(water: Sequence[Water]) -> list[Water]:
     """Return the water polygons, or say what is none."""
-    ponds = list(_sequence(water, "water"))
+    ponds = list(as_sequence(water, "water"))
     for pond in ponds:
         if not isinstance(pond, Water):
             raise LinesError(f"Invalid water {type(pond).__name__}: a tinsmith.Water is needed.")
     return ponds
 
 
-def _sequence(lines: Any, what: str) -> list[Any]:
+def as_sequence(lines: Any, what: str) -> list[Any]:
     """Return several lines; one line alone is told apart by its rows being numbers."""
     if isinstance(lines, Breakline | Water):
         return [lines]
@@ -180,7 +188,7 @@ def _rings(
 ) -> list[tuple[LineKind, NDArray[np.float64]]]:
     return [
         (kind, as_ring(ring, f"{kind} ring {number}"))
-        for number, ring in enumerate(_sequence(rings, kind))
+        for number, ring in enumerate(as_sequence(rings, kind))
     ]
 
 

@@ -12,7 +12,7 @@ from . import _kernel
 from .constrained import CrossingPolicy, LineOptions
 from .duplicates import DuplicatePolicy
 from .errors import LinesError, PointsError
-from .line_set import LineSet, gather_lines, gather_rings
+from .line_set import LineSet, as_sequence, gather_lines, gather_rings
 from .points import as_points
 from .survey import Survey
 from .threads import thread_count
@@ -88,8 +88,14 @@ def recipe_of(
     survey = points if isinstance(points, Survey) else None
     own = survey if survey is not None else Survey(points=np.empty((0, 3)))
     xyz = as_points(points.points if isinstance(points, Survey) else points, threads=threads)
-    outer, inner = [*own.boundary, *boundary], [*own.holes, *holes]
-    lines = gather_lines([*own.breaklines, *breaklines], outer, inner, [*own.water, *water])
+    outer = [*own.boundary, *as_sequence(boundary, "boundary")]
+    inner = [*own.holes, *as_sequence(holes, "holes")]
+    lines = gather_lines(
+        [*own.breaklines, *as_sequence(breaklines, "breaklines")],
+        outer,
+        inner,
+        [*own.water, *as_sequence(water, "water")],
+    )
     if len(xyz) < 3 and not lines.kinds:
         raise PointsError(
             f"{len(xyz)} points cannot make a TIN: at least three not collinear ones are needed."
@@ -100,7 +106,7 @@ def recipe_of(
         lines=lines,
         boundary=gather_rings(outer, "boundary"),
         holes=gather_rings(inner, "hole"),
-        erase=gather_rings([*own.erase, *erase], "erase"),
+        erase=gather_rings([*own.erase, *as_sequence(erase, "erase")], "erase"),
         max_edge=np.inf if max_edge is None else float(max_edge),
         trim=trim,
         conforming=bool(conforming),

@@ -58,7 +58,11 @@ def edit(
     add_breakline, remove_breakline. The report of an earlier run will do as well.
 
     \b
-    Example of a script:
+    Example:
+      tinsmith edit site.ply changes.json -o changed.ply --report changes-made.json
+
+    \b
+    A script:
       [{"op": "insert", "points": [[752700.5, 4024250.0, 322.1]]},
        {"op": "remove", "vertices": [17]},
        {"op": "move", "vertex": 3, "point": [752771.2, 4024321.0, 329.1]},

@@ -1,0 +1,377 @@
+"""Lines in a TIN: breaklines, boundaries, holes, erased parts, water, long edges."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import shapely
+
+import tinsmith as ts
+from tinsmith.tin.report import LEFT_OUT
+
+ARRAYS = ("points", "triangles", "neighbors", "constrained")
+
+
+def terrain(n=400, seed=0, size=100.0):
+    rng = np.random.default_rng(seed)
+    xy = rng.random((n, 2)) * size
+    return np.c_[xy, np.round(5 * np.sin(xy[:, 0] / 15) + xy[:, 1] / 20, 3)]
+
+
+def polygon(ring):
+    return shapely.Polygon(np.asarray(ring)[:, :2])
+
+
+def hull_of(points):
+    return shapely.MultiPoint(points[:, :2]).convex_hull
+
+
+def edges_of(tin, *, constrained):
+    return {
+        frozenset(tuple(tin.points[int(t[(k + j) % 3]), :2]) for j in (1, 2))
+        for t, flags in zip(tin.triangles, tin.constrained, strict=True)
+        for k in range(3)
+        if flags[k] or not constrained
+    }
+
+
+def triangle_set(tin):
+    return {frozenset(map(tuple, tin.points[t].tolist())) for t in tin.triangles}
+
+
+def cross_of(a=10.0, b=12.0):
+    return [[[5, 50, a], [95, 50.5, a]], [[50.25, 5, b], [50.75, 95, b]]]
+
+
+# ------------------------------------------------------- what a breakline does
+
+
+def test_breakline_is_edges_of_the_surface():
+    line = [[10, 10, 1.0], [60, 70, 2.0], [90, 20, 3.0]]
+    tin = ts.triangulate(terrain(), breaklines=[line])
+    (chain,) = tin.lines.chains()
+    way = tin.points[chain]
+    assert [p.tolist() for p in way if p.tolist() in line] == line
+    steps = {frozenset(map(tuple, pair)) for pair in zip(way[:-1, :2], way[1:, :2], strict=True)}
+    assert steps == edges_of(tin, constrained=True)
+    assert ts.check(tin, points=terrain()).ok
+
+
+def test_height_between_vertices_of_a_breakline_is_the_lines_own():
+    tin = ts.triangulate(terrain(), breaklines=[[[10, 10, 100.0], [90, 80, 200.0]]])
+    share = np.linspace(0, 1, 50)
+    places = np.array([10, 10]) + share[:, None] * [80, 70]
+    np.testing.assert_allclose(tin.interpolate(places), 100 + 100 * share, rtol=0, atol=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_result_is_a_function_of_the_sets_of_points_and_lines(seed):
+    rng = np.random.default_rng(seed)
+    points = terrain(200, seed)
+    lines = [np.c_[rng.random((k, 2)) * 100, rng.random(k)] for k in rng.integers(2, 6, 8)]
+    wanted = ts.triangulate(points, breaklines=lines)
+    order = rng.permutation(len(points))
+    turned = [lines[i][:: rng.choice([-1, 1])] for i in rng.permutation(len(lines))]
+    found = ts.triangulate(points[order], breaklines=turned)
+
+    def plan(tin):
+        return {frozenset(map(tuple, tin.points[t, :2].tolist())) for t in tin.triangles}
+
+    assert plan(found) == plan(wanted)
+    assert edges_of(found, constrained=True) == edges_of(wanted, constrained=True)
+    assert ts.check(found, points=points[order]).ok
+
+
+@pytest.mark.parametrize("threads", [1, 2, 5])
+def test_result_is_the_same_for_every_number_of_threads(threads):
+    points, lines = terrain(3_000), cross_of()
+    wanted = ts.triangulate(points, breaklines=lines, threads=1)
+    found = ts.triangulate(points, breaklines=lines, threads=threads)
+    for name in ARRAYS:
+        np.testing.assert_array_equal(getattr(found, name), getattr(wanted, name))
+
+
+def test_soft_breakline_keeps_its_kind():
+    soft = ts.Breakline([[10, 10, 1], [90, 90, 1]], kind="soft", name="crease")
+    tin = ts.triangulate(terrain(), breaklines=[soft, [[10, 90, 1], [20, 60, 1]]])
+    assert tin.lines.kinds == ("soft", "hard")
+    assert tin.lines.names == ("crease", "")
+    assert tin.lines.sources.tolist() == [0, 1]
+
+
+def test_closed_breakline_stays_closed():
+    ring = [[20, 20, 1], [80, 20, 1], [50, 80, 1], [20, 20, 1]]
+    (chain,) = ts.triangulate(terrain(), breaklines=[ring]).lines.chains()
+    assert chain[0] == chain[-1]
+
+
+def test_lines_alone_make_a_surface():
+    tin = ts.triangulate(np.empty((0, 3)), breaklines=[[[0, 0, 1], [4, 0, 2], [4, 4, 3]]])
+    assert len(tin.triangles) == 1
+    assert ts.check(tin).ok
+
+
+# ------------------------------------------------------------------ dirty lines
+
+
+@pytest.mark.parametrize(
+    ("priorities", "taken"), [((0, 0), 10.0), ((0, 1), 12.0), ((1, 0), 10.0), ((-1, 0), 12.0)]
+)
+def test_crossing_takes_the_higher_priority_or_the_first_and_reports_both(priorities, taken):
+    lines = [
+        ts.Breakline(line, priority=priority)
+        for line, priority in zip(cross_of(), priorities, strict=True)
+    ]
+    tin = ts.triangulate(terrain(), breaklines=lines)
+    (met,) = tin.report.to_dict()["crossings"]
+    assert met["lines"] == ["breakline 0", "breakline 1"]
+    assert met["heights"] == pytest.approx([10, 12])
+    assert met["height"] == pytest.approx(taken)
+    vertex = tin.points[met["vertex"]]
+    assert vertex.tolist() == [*met["place"], met["height"]]
+    wanted = shapely.LineString(cross_of()[0]).intersection(shapely.LineString(cross_of()[1]))
+    assert vertex[:2] == pytest.approx([wanted.x, wanted.y], abs=1e-9)
+    assert all(met["vertex"] in chain for chain in tin.lines.chains())
+    assert ts.check(tin).ok
+
+
+def test_crossing_is_refused_if_asked_for():
+    with pytest.raises(ts.LinesError, match=r"(?i)breakline 0.*breakline 1.*10.*12"):
+        ts.triangulate(terrain(), breaklines=cross_of(), crossing="error")
+
+
+def test_line_on_points_takes_them_in_and_reports_their_heights():
+    points = np.array([[0, 0, 1], [10, 0, 1], [10, 10, 1], [0, 10, 1], [5, 5, 7.0], [3, 3, 2.0]])
+    tin = ts.triangulate(points, breaklines=[[[0, 0, 1], [10, 10, 1]]])
+    (chain,) = tin.lines.chains()
+    assert tin.points[chain, :2].tolist() == [[0, 0], [3, 3], [5, 5], [10, 10]]
+    assert tin.points[chain, 2].tolist() == [1, 2, 7, 1]
+    assert [(one["height"], one["taken"]) for one in tin.report.to_dict()["overruled"]] == [
+        (1, 2),
+        (1, 7),
+    ] or sorted(one["taken"] for one in tin.report.to_dict()["overruled"]) == [2, 7]
+
+
+def test_vertex_of_a_line_on_a_point_gives_it_its_height():
+    points = np.array([[0, 0, 1], [10, 0, 1], [10, 10, 1], [0, 10, 1.0]])
+    tin = ts.triangulate(points, breaklines=[[[0, 0, 9], [10, 10, 8]]])
+    assert tin.points[:, 2].tolist() == [9, 1, 8, 1]
+    overruled = tin.report.to_dict()["overruled"]
+    assert [(one["of"], one["height"], one["taken"]) for one in overruled] == [
+        ("points", 1, 9),
+        ("points", 1, 8),
+    ]
+
+
+def test_overlapping_and_repeated_lines_are_one_edge():
+    line = [[10, 10, 1], [90, 10, 2]]
+    tin = ts.triangulate(terrain(), breaklines=[line, line[::-1], [[30, 10, 1], [70, 10, 1]], line])
+    assert len(tin.lines) == 4
+    assert ts.check(tin).ok
+
+
+def test_line_that_crosses_itself_gets_a_vertex_there():
+    knot = [[10, 10, 1], [90, 90, 2], [90, 10, 3], [10, 90, 4]]
+    tin = ts.triangulate(terrain(), breaklines=[knot])
+    assert len(tin.report.crossings.vertices) == 1
+    assert ts.check(tin).ok
+    with pytest.raises(ts.LinesError, match="itself"):
+        ts.triangulate(terrain(), breaklines=[knot], crossing="error")
+
+
+def test_line_is_bent_onto_points_within_snap():
+    points = np.array([[0, 0, 1], [10, 0, 1], [10, 10, 1], [0, 10, 1], [5, 5.04, 7.0]])
+    line = [[1, 5, 0], [9, 5, 0]]
+    assert len(ts.triangulate(points, breaklines=[line]).lines.vertices) == 2
+    tin = ts.triangulate(points, breaklines=[line], snap=0.1)
+    assert tin.points[tin.lines.vertices].tolist() == [[1, 5, 0], [5, 5.04, 7], [9, 5, 0]]
+    assert ts.check(tin).ok
+
+
+# ------------------------------------------------------ boundary, holes, erasing
+
+CONCAVE = [[10, 10], [90, 10], [90, 90], [50, 40], [10, 90]]
+
+
+def test_boundary_cuts_exactly_and_tells_who_is_out():
+    points = terrain()
+    tin = ts.triangulate(points, boundary=[CONCAVE])
+    assert tin.area == pytest.approx(polygon(CONCAVE).area, rel=1e-12)
+    inside = shapely.contains_xy(polygon(CONCAVE), points[:, 0], points[:, 1])
+    np.testing.assert_array_equal(tin.vertex_of >= 0, inside)
+    np.testing.assert_array_equal(tin.report.left_out_rows, np.flatnonzero(~inside))
+    assert {LEFT_OUT[code] for code in tin.report.left_out_why} == {"outside the boundary"}
+    assert ts.check(tin, points=points).ok
+    for vertex, row in zip(tin.vertex_of[inside], points[inside], strict=True):
+        assert tin.points[vertex].tolist() == row.tolist()
+
+
+def test_draped_boundary_leaves_the_surface_as_it_was():
+    points = terrain()
+    whole, tin = ts.triangulate(points), ts.triangulate(points, boundary=[CONCAVE])
+    ring = polygon(CONCAVE).exterior
+    along = np.array(
+        [ring.interpolate(s, normalized=True).coords[0] for s in np.linspace(0, 1, 300)]
+    )
+    inner = along + 1e-7 * (np.array([50, 25]) - along)
+    np.testing.assert_allclose(tin.interpolate(inner), whole.interpolate(inner), atol=1e-5)
+
+
+def test_boundary_with_heights_is_the_rim():
+    ring = [[10, 10, 50], [90, 10, 51], [90, 90, 52], [10, 90, 53]]
+    tin = ts.triangulate(terrain(), boundary=[ring])
+    assert {tuple(p) for p in tin.points[tin.hull].tolist()} >= {tuple(map(float, p)) for p in ring}
+
+
+def test_several_boundaries_and_a_ring_within_a_ring():
+    left, right = [[5, 5], [40, 5], [40, 95], [5, 95]], [[60, 5], [95, 5], [95, 95], [60, 95]]
+    island = [[65, 20], [90, 20], [90, 80], [65, 80]]
+    tin = ts.triangulate(terrain(), boundary=[left, right, island])
+    wanted = polygon(left).area + polygon(right).area - polygon(island).area
+    assert tin.area == pytest.approx(wanted, rel=1e-12)
+    assert ts.check(tin).ok
+
+
+def test_boundary_beyond_the_points_ends_where_they_end():
+    points = terrain()
+    ring = [[-50, -50], [50, -20], [150, 60], [40, 45], [20, 180]]
+    tin = ts.triangulate(points, boundary=[ring])
+    assert tin.area == pytest.approx(hull_of(points).intersection(polygon(ring)).area, rel=1e-9)
+    assert any("outside the surface" in note for note in tin.report.notes)
+    assert ts.check(tin).ok
+
+
+def test_holes_are_cut_out():
+    holes = [[[20, 20], [40, 20], [40, 40], [20, 40]], [[60, 60, 9], [80, 60, 9], [70, 80, 9]]]
+    tin = ts.triangulate(terrain(), boundary=[[*CONCAVE[:3], [10, 90]]], holes=holes)
+    wanted = polygon([*CONCAVE[:3], [10, 90]]).difference(
+        shapely.union_all([polygon(h) for h in holes])
+    )
+    assert tin.area == pytest.approx(wanted.area, rel=1e-12)
+    assert len(tin.rings) == 3
+    assert np.isnan(tin.interpolate([[30, 30]])).all()
+    assert ts.check(tin).ok
+
+
+def test_erased_points_are_spanned():
+    points, ring = terrain(), [[30, 30], [70, 30], [70, 70], [30, 70]]
+    tin = ts.triangulate(points, erase=[ring])
+    inside = shapely.contains_xy(polygon(ring), points[:, 0], points[:, 1])
+    alone = ts.triangulate(points[~inside])
+    assert triangle_set(tin) == triangle_set(alone)
+    assert tin.report.to_dict()["left_out"] == {"erased": np.flatnonzero(inside).tolist()}
+
+
+# ------------------------------------------------------------------------ water
+
+
+def test_water_is_flat_and_nothing_stands_in_it():
+    pond = [[30, 30], [70, 35], [60, 70], [35, 60]]
+    points = terrain()
+    tin = ts.triangulate(points, water=[ts.Water(pond, 2.5, name="pond")], breaklines=cross_of())
+    places = np.array(shapely.MultiPoint(points[:, :2]).intersection(polygon(pond)).geoms)
+    xy = np.array([[p.x, p.y] for p in places])
+    assert len(xy) > 20
+    np.testing.assert_array_equal(tin.interpolate(xy), 2.5)
+    inside = shapely.contains_xy(polygon(pond), points[:, 0], points[:, 1])
+    assert tin.report.to_dict()["left_out"] == {"in water": np.flatnonzero(inside).tolist()}
+    middle = shapely.LineString(cross_of()[0]).intersection(polygon(pond)).centroid
+    for chain, kind in zip(tin.lines.chains(), tin.lines.kinds, strict=True):
+        if kind == "hard":
+            assert shapely.LineString(tin.points[chain, :2]).distance(middle) > 5
+    assert ts.check(tin, points=points).ok
+
+
+def test_breakline_meets_the_shore_at_the_height_of_the_water():
+    pond = [[40, 40], [60, 40], [60, 60], [40, 60]]
+    line = ts.Breakline([[5, 50, 90], [95, 50, 90]], priority=7)
+    tin = ts.triangulate(terrain(), water=[ts.Water(pond, 2.5)], breaklines=[line])
+    np.testing.assert_array_equal(tin.interpolate([[40, 50], [60, 50]]), 2.5)
+    assert [met["heights"] for met in tin.report.to_dict()["crossings"]] == [[90, 2.5], [90, 2.5]]
+
+
+# ------------------------------------------------------------- long edges, conforming
+
+
+def test_trimming_from_the_perimeter_keeps_long_edges_inside():
+    points = np.concatenate([terrain(300), [[300, 50, 0]]])
+    ring = [[20, 20], [80, 20], [80, 80], [20, 80]]
+    options = {"max_edge": 25.0, "erase": [ring]}
+    tin = ts.triangulate(points, **options)
+    everywhere = ts.triangulate(points, trim="everywhere", **options)
+    assert tin.vertex_of[-1] == everywhere.vertex_of[-1] == -1
+    assert tin.report.to_dict()["left_out"]["trimmed"][-1] == len(points) - 1
+    assert len(tin.rings) == 1
+    assert len(everywhere.rings) > 1
+    for one in (tin, everywhere):
+        assert ts.check(one).ok
+        length = np.hypot(*(one.points[one.edges[:, 0], :2] - one.points[one.edges[:, 1], :2]).T)
+        assert (length.max() > 25.0) == (one is tin)
+        rim = np.concatenate(
+            [one.points[r, :2] - one.points[np.roll(r, -1), :2] for r in one.rings]
+        )
+        assert np.hypot(*rim.T).max() <= 25.0
+
+
+def test_conforming_surface_is_delaunay_without_its_flags():
+    lines = [*cross_of(), [[20, 20, 1], [21, 80, 1], [22, 20, 1]]]
+    plain = ts.triangulate(terrain(), breaklines=lines)
+    tin = ts.triangulate(terrain(), breaklines=lines, conforming=True)
+    assert not ts.check(ts.TIN.from_triangles(plain.points, plain.triangles)).ok
+    assert ts.check(ts.TIN.from_triangles(tin.points, tin.triangles)).ok
+    assert ts.check(tin).ok
+    assert len(tin.points) > len(plain.points)
+    for chain, line in zip(tin.lines.chains(), lines, strict=True):
+        way, given = shapely.LineString(tin.points[chain, :2]), shapely.LineString(line)
+        assert way.hausdorff_distance(shapely.force_2d(given)) < 1e-9
+
+
+# --------------------------------------------------------------------- bad input
+
+NAN = float("nan")
+BOW_TIE = [[10, 10], [90, 90], [90, 10], [10, 90]]
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        ({"breaklines": [[[1, 1, 1]]]}, r"(?i)breakline.*shape \(1, 3\)"),
+        ({"breaklines": [[[1, 1, 1], [2, NAN, 1]]]}, "not finite"),
+        ({"breaklines": [[[1, 1, 1], [2, np.inf, 1]]]}, "not finite"),
+        ({"breaklines": [[[1, 1, 1], [2, 1e300, 1]]]}, "exact range"),
+        ({"breaklines": [["a", "b"]]}, "no table of real numbers"),
+        ({"breaklines": 5}, "sequence of lines"),
+        ({"boundary": [[[1, 1], [2, 2]]]}, "Boundary ring 0"),
+        ({"boundary": [[[1, 1], [2, 2], [1, 1]]]}, "three"),
+        ({"boundary": [BOW_TIE]}, "Boundary 0 crosses itself"),
+        ({"holes": [BOW_TIE]}, "Hole 0 crosses itself"),
+        ({"water": [ts.Water(BOW_TIE, 1.0)]}, "Water 0 crosses itself"),
+        ({"holes": [[[200, 200], [210, 200], [205, 210]]]}, "Hole 0 lies outside"),
+        ({"boundary": [[[200, 200], [210, 200], [205, 210]]]}, "leave no triangle"),
+        ({"max_edge": 1e-3}, "No triangle is left"),
+        ({"max_edge": -1}, "Invalid max_edge"),
+        ({"max_edge": NAN}, "Invalid max_edge"),
+        ({"trim": "inside"}, "Invalid trim 'inside'"),
+        ({"crossing": "ignore"}, "Invalid crossing 'ignore'"),
+        ({"water": [[[1, 1], [2, 2], [1, 2]]]}, r"tinsmith\.Water"),
+        ({"erase": [[[-99, -99], [199, -99], [199, 199], [-99, 199]]]}, "points"),
+    ],
+)
+def test_bad_lines_are_refused_in_one_sentence(options, sentence):
+    with pytest.raises((ts.LinesError, ts.PointsError), match=sentence) as caught:
+        ts.triangulate(terrain(), **options)
+    assert str(caught.value).count("\n") == 0
+
+
+@pytest.mark.parametrize(
+    ("make", "sentence"),
+    [
+        (lambda: ts.Breakline([[1, 1, 1], [2, 2, 2]], kind="sharp"), "Invalid breakline kind"),
+        (lambda: ts.Breakline([[1, 1, 1], [2, 2, 2]], priority=0.5), "Invalid priority"),
+        (lambda: ts.Water([[1, 1], [2, 2], [1, 2]], NAN), "finite number"),
+        (lambda: ts.Water([[1, 1], [2, 2]], 1.0), "k >= 3"),
+    ],
+)
+def test_bad_values_are_refused_in_one_sentence(make, sentence):
+    with pytest.raises(ts.LinesError, match=sentence):
+        make()
