@@ -57,7 +57,7 @@ inline bool operator<(NumberPair a, NumberPair b) {
 // never no to what lies within: then the sides' rounded distance exceeds its error bound.
 class Band {
  public:
-  static constexpr double kRoom = 1.0 + 0x1p-10;
+  static constexpr double kRoom = 1.0 + 0x1p-10;  // more than all roundings of a reach make
 
   Band(Point a, Point b, double reach) : a_(a), dx_(b.x - a.x), dy_(b.y - a.y) {
     box_.include(a);
