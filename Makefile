@@ -43,7 +43,7 @@ $(TREE):
 	@rm -rf $(TREE) && mkdir -p $(TREE)/tinsmith
 	@cd $(TREE)/tinsmith && ln -s ../../../src/tinsmith/* . && ln -s ../../../tin ../../../io ../../../terrain .
 
-bench: $(READY) ## Time kernel, queries, readers and writers beside their peers
+bench: $(READY) ## Time kernel, lines, edits, queries, readers, writers beside their peers
 	$(BIN)/python -m pip install --quiet --group bench
 	$(BIN)/python -m benchmarks
 

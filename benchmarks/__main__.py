@@ -1,4 +1,4 @@
-"""Run the benchmarks: ``python -m benchmarks [kernel] [ways] [locate] [readers] [writers]``."""
+"""Run the benchmarks: ``python -m benchmarks [SECTION ...]``."""
 
 from __future__ import annotations
 
@@ -7,13 +7,23 @@ import shlex
 import sys
 from pathlib import Path
 
-from . import kernel, locate, readers, ways, writers
+from . import edits, kernel, lines, locate, readers, ways, writers
 from .datasets import DATASETS
+from .line_datasets import LINE_DATASETS
 from .machine import describe
 from .measure import Outcome
 from .report import write_report
 
-SECTIONS = (kernel.SECTION, ways.SECTION, locate.SECTION, readers.SECTION, writers.SECTION)
+SIMPLE = {module.SECTION: module for module in (ways, edits, readers, writers)}
+SECTIONS = (
+    kernel.SECTION,
+    ways.SECTION,
+    lines.SECTION,
+    edits.SECTION,
+    locate.SECTION,
+    readers.SECTION,
+    writers.SECTION,
+)
 RESULTS = Path(__file__).parent / "results"
 LEAST_POINTS = 200
 
@@ -56,9 +66,9 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--only",
         nargs="+",
-        choices=DATASETS,
+        choices=(*DATASETS, *LINE_DATASETS),
         metavar="DATASET",
-        help=f"kernel: of {', '.join(DATASETS)}; default all",
+        help=f"kernel: of {', '.join(DATASETS)}; lines: of {', '.join(LINE_DATASETS)}; default all",
     )
     parser.add_argument(
         "--tools",
@@ -98,13 +108,12 @@ def _measured(section: str, given: argparse.Namespace) -> Outcome:
         chosen = [(name, size) for name, size in cases if not given.only or name in given.only]
         limit = given.limit or (40.0 if given.full else 5.0)
         return kernel.run(chosen, tools=given.tools, repeats=given.repeats, limit=limit)
-    if section == ways.SECTION:
-        return ways.run(n, repeats=given.repeats)
+    if section == lines.SECTION:
+        names = [name for name in LINE_DATASETS if not given.only or name in given.only]
+        return lines.run(n, names=names, repeats=given.repeats, limit=given.limit or 40.0)
     if section == locate.SECTION:
         return locate.run(n, n, repeats=given.repeats)
-    return {readers.SECTION: readers, writers.SECTION: writers}[section].run(
-        n, repeats=given.repeats
-    )
+    return SIMPLE[section].run(n, repeats=given.repeats)
 
 
 if __name__ == "__main__":

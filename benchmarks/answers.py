@@ -11,7 +11,16 @@ from numpy.typing import NDArray
 from tinsmith.tin import TIN, PointsError, check
 from tinsmith.tin.findings import Problem
 
-__all__ = ["AS_MANY", "EQUAL", "Verdict", "counted", "numbered", "ranked", "verdict"]
+__all__ = [
+    "AS_MANY",
+    "EQUAL",
+    "Verdict",
+    "counted",
+    "edge_codes",
+    "numbered",
+    "ranked",
+    "verdict",
+]
 
 Floats = NDArray[np.float64]
 Triangles = NDArray[np.int64]
@@ -26,7 +35,7 @@ class Verdict(NamedTuple):
     Attributes
     ----------
     is_right : bool
-        A Delaunay triangulation of all the points.
+        A Delaunay triangulation of all the points, constrained to the lines if there are any.
     text : str
         "equal", how else it is right, or what is wrong.
     """
@@ -35,7 +44,9 @@ class Verdict(NamedTuple):
     text: str
 
 
-def verdict(tin: TIN, answer: NDArray[Any], wanted: Triangles) -> Verdict:
+def verdict(
+    tin: TIN, answer: NDArray[Any], wanted: Triangles, *, steps: Triangles | None = None
+) -> Verdict:
     """Judge an answer.
 
     Parameters
@@ -46,6 +57,8 @@ def verdict(tin: TIN, answer: NDArray[Any], wanted: Triangles) -> Verdict:
         Vertex numbers in the order of ``tin.points``, or coordinates.
     wanted : (k, 3) int array
         ``ranked(tin.triangles)``.
+    steps : (s, 2) int array, optional
+        Vertices of ``tin`` that lines join.
     """
     triangles = answer.astype(np.int64) if answer.ndim == 2 else numbered(answer, tin.points)
     if triangles.size and triangles.min() < 0:
@@ -56,7 +69,7 @@ def verdict(tin: TIN, answer: NDArray[Any], wanted: Triangles) -> Verdict:
         return Verdict(False, _loss(missing, len(wanted), lost, len(tin.points)))
     if np.array_equal(ranked(triangles), wanted):
         return Verdict(True, EQUAL)
-    return _by_itself(tin, triangles)
+    return _by_itself(tin, triangles, np.empty((0, 2), np.int64) if steps is None else steps)
 
 
 def counted(tin: TIN) -> Callable[[NDArray[Any]], Verdict]:
@@ -80,9 +93,14 @@ def _loss(missing: int, n_triangles: int, lost: int, n_points: int) -> str:
     return ", ".join(parts)
 
 
-def _by_itself(tin: TIN, triangles: Triangles) -> Verdict:
+def _by_itself(tin: TIN, triangles: Triangles, steps: Triangles) -> Verdict:
+    lines = np.unique(edge_codes(steps))
+    edges = edge_codes(np.stack([triangles[:, [1, 2, 0]], triangles[:, [2, 0, 1]]], axis=2))
+    lost = len(lines) - np.count_nonzero(np.isin(lines, edges))
+    if lost:
+        return Verdict(False, f"{lost:,} edges of lines missing")
     try:
-        theirs = TIN.from_triangles(tin.points, triangles)
+        theirs = TIN.from_triangles(tin.points, triangles, constrained=np.isin(edges, lines))
     except PointsError as error:
         return Verdict(False, f"no triangulation: {str(error).split(':')[0]}")
     result = check(theirs, level=3)
@@ -96,6 +114,12 @@ def _problem(problem: Problem) -> str:
     if problem.kind == "delaunay":
         return f"{problem.count:,} edges not Delaunay"
     return problem.sentence.rstrip(".")
+
+
+def edge_codes(ends: NDArray[Any]) -> NDArray[np.int64]:
+    """Return one number for each pair of vertex numbers, the same for both directions."""
+    low, high = np.min(ends, axis=-1).astype(np.int64), np.max(ends, axis=-1)
+    return low << 32 | high
 
 
 def ranked(triangles: NDArray[Any]) -> Triangles:

@@ -12,7 +12,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["DATASETS", "dataset"]
+__all__ = ["DATASETS", "UTM_CORNER", "dataset", "with_heights"]
 
 Floats = NDArray[np.float64]
 
@@ -31,10 +31,11 @@ def dataset(name: str, n: int) -> Floats:
         Number of points wanted, at least 200.
     """
     rng = np.random.default_rng(SEED)
-    return _with_heights(DATASETS[name](n, rng))
+    return with_heights(DATASETS[name](n, rng))
 
 
-def _with_heights(xy: Floats) -> Floats:
+def with_heights(xy: Floats) -> Floats:
+    """Put places on rolling ground: (n, 2) to (n, 3), metres."""
     x, y = (xy - UTM_CORNER).T
     z = 120.0 + 15.0 * np.sin(x / 370.0) + 9.0 * np.cos(y / 190.0) + 0.002 * x
     return np.column_stack([xy, z])

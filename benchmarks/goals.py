@@ -1,10 +1,14 @@
-"""The project's own goals for the kernel, and how a run stands to them."""
+"""The project's own goals, and how a run stands to them."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
+from .edit_tasks import BATCH, EDITS, labelled
+from .edit_tools import BUILD, WITH_ARRAYS
+from .line_tools import CGAL_INDICES
 from .measure import OURS, Result
 from .triangulators import CGAL, KERNEL, KERNEL_ALL_CORES
 
@@ -32,7 +36,7 @@ class Goal(NamedTuple):
 
 
 class Results:
-    """Results of the kernel's section by data set, size class and tool."""
+    """Results of one section by data set, size class and tool."""
 
     def __init__(self, results: Iterable[Result]) -> None:
         self._by_key = {(r.task, _size_class(r.count), r.tool): r for r in results}
@@ -76,6 +80,21 @@ def _memory(results: Results, task: str) -> float | None:
     return results.memory(task, KERNEL)
 
 
+def _lines_beside_cgal(results: Results, task: str) -> float | None:
+    """Take the quicker of CGAL's two ways."""
+    ways = [results.seconds(task, CGAL), results.seconds(task, CGAL_INDICES)]
+    known = [seconds for seconds in ways if seconds is not None and not math.isnan(seconds)]
+    return _quotient(min(known), results.seconds(task, OURS)) if known else None
+
+
+def _edits(results: Results, task: str) -> float | None:
+    return results.seconds(task, OURS, EDITS)
+
+
+def _batch(results: Results, task: str) -> float | None:
+    return _quotient(results.seconds(task, WITH_ARRAYS), results.seconds(task, BUILD))
+
+
 GOALS = (
     Goal("CGAL time / kernel", ("uniform", "scan lines", "raster"), 1.5, 2.5, _beside_cgal),
     Goal("CGAL time / kernel", UNEVEN, 1.0, 1.5, _beside_cgal),
@@ -99,6 +118,17 @@ GOALS = (
         _memory,
         is_most=True,
     ),
+    Goal("CGAL time / tinsmith", ("short lines",), 1.0, 1.5, _lines_beside_cgal),
+    Goal("CGAL time / tinsmith", ("nested rings", "hills"), 1.0, 1.5, _lines_beside_cgal),
+    Goal(
+        "seconds for 1,000 edits",
+        (labelled("mixed edits", POINTS),),
+        0.1,
+        0.05,
+        _edits,
+        is_most=True,
+    ),
+    Goal("batch / building it", (labelled(BATCH, POINTS),), 3.0, 2.0, _batch, is_most=True),
 )
 
 

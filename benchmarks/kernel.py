@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import sys
 import tempfile
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
@@ -28,7 +28,17 @@ from .measure import OURS, SLOW_SECONDS, Outcome, Result, median
 from .tool_process import ToolFailedError, ToolProcess
 from .triangulators import ALL_CORES, CGAL, KERNEL, KERNEL_ALL_CORES, TOOLS
 
-__all__ = ["ALL_TOOLS", "OUR_TOOLS", "SECTION", "WORK", "available_tools", "default_cases", "run"]
+__all__ = [
+    "ALL_TOOLS",
+    "OUR_TOOLS",
+    "SECTION",
+    "WORK",
+    "available_tools",
+    "default_cases",
+    "in_turn",
+    "result_of",
+    "run",
+]
 
 SECTION = "kernel"
 WORK = "work"
@@ -101,10 +111,10 @@ def _measure(case: Case, tools: list[str], repeats: int, limit: float) -> Iterat
             tool: stack.enter_context(ToolProcess(tool, points, Path(folder), limit))
             for tool in fitting
         }
-        failures = _in_turn(processes, repeats)
+        failures = in_turn(processes, repeats)
         verdicts = _judged(points, processes, failures)
     for tool, process in processes.items():
-        yield _result(case, tool, len(points), process, verdicts[tool])
+        yield result_of(SECTION, case.name, tool, len(points), process, verdicts[tool])
     yield _work(case, points)
 
 
@@ -112,7 +122,7 @@ def _largest(tool: str) -> int:
     return TOOLS[tool].largest if tool in TOOLS else TOOLS[OURS].largest
 
 
-def _in_turn(processes: dict[str, ToolProcess], repeats: int) -> dict[str, str]:
+def in_turn(processes: Mapping[str, ToolProcess], repeats: int) -> dict[str, str]:
     """Run A B C A B C; return what went wrong by tool."""
     failures: dict[str, str] = {}
     for turn in range(repeats):
@@ -126,7 +136,10 @@ def _in_turn(processes: dict[str, ToolProcess], repeats: int) -> dict[str, str]:
     return failures
 
 
-def _result(case: Case, tool: str, count: int, process: ToolProcess, found: Verdict) -> Result:
+def result_of(
+    section: str, task: str, tool: str, count: int, process: ToolProcess, found: Verdict
+) -> Result:
+    """Return seconds, memory and answer of a tool that has had its turns."""
     extra: dict[str, Any] = {"is_right": found.is_right}
     if process.growth is not None and process.seconds:
         extra["peak_bytes_per_point"] = process.growth / count
@@ -134,7 +147,7 @@ def _result(case: Case, tool: str, count: int, process: ToolProcess, found: Verd
             beyond = process.growth - process.output_bytes
             extra["beyond_output_bytes_per_point"] = beyond / count
     runs = tuple(process.seconds)
-    return Result(SECTION, case.name, tool, count, median(process.seconds), runs, found.text, extra)
+    return Result(section, task, tool, count, median(process.seconds), runs, found.text, extra)
 
 
 def _work(case: Case, points: Floats) -> Result:

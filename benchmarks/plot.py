@@ -6,11 +6,12 @@ import math
 from pathlib import Path
 from typing import Any
 
-from . import kernel
+from . import kernel, lines
+from .line_tools import CGAL_INDICES
 from .measure import OURS, Result
 from .triangulators import ALL_CORES, CGAL, KERNEL, KERNEL_ALL_CORES
 
-__all__ = ["draw"]
+__all__ = ["TITLES", "draw"]
 
 PALE = 0.3
 
@@ -26,6 +27,13 @@ STYLES: dict[str, dict[str, Any]] = {
         "facecolors": "none",
     },
     CGAL: {"color": "#d1495b", "marker": "D", "s": 42, "zorder": 4},
+    CGAL_INDICES: {
+        "color": "#d1495b",
+        "marker": "D",
+        "s": 30,
+        "zorder": 4,
+        "facecolors": "none",
+    },
     "Triangle": {"color": "#e08e1b", "marker": "^", "s": 46, "zorder": 3},
     "GEOS": {"color": "#66a182", "marker": "s", "s": 36, "zorder": 3},
     "SciPy": {"color": "#8d6a9f", "marker": "v", "s": 46, "zorder": 3},
@@ -33,8 +41,15 @@ STYLES: dict[str, dict[str, Any]] = {
 }
 
 
+TITLES = {
+    kernel.SECTION: "Delaunay triangulation at UTM coordinates, one core where not said",
+    lines.SECTION: "Triangulation with breaklines at UTM coordinates, one core where not said",
+}
+"""Sections that have a plot, and its title."""
+
+
 def draw(results: list[Result], path: Path) -> Path:
-    """Draw the kernel's results: a row a data set, microseconds per point to the right."""
+    """Draw a section's results: a row a data set, microseconds per point to the right."""
     import matplotlib as mpl
 
     mpl.use("Agg")
@@ -51,7 +66,7 @@ def draw(results: list[Result], path: Path) -> Path:
             times = [result.seconds / result.count * 1e6 for result in mine]
             rows = [labels.index(_label(result)) for result in mine]
             axes.scatter(times, rows, alpha=strength, linewidths=1.4, **style)
-    _dress(axes, labels)
+    _dress(axes, labels, TITLES[results[0].section])
     figure.savefig(path, dpi=150, metadata={"Software": None})
     plt.close(figure)
     return path
@@ -65,12 +80,12 @@ def _label(result: Result) -> str:
     return f"{result.task}, {result.count:,}"
 
 
-def _dress(axes: Any, labels: list[str]) -> None:
+def _dress(axes: Any, labels: list[str], title: str) -> None:
     axes.set_xscale("log")
     axes.set_yticks(range(len(labels)), labels)
     axes.invert_yaxis()
     axes.set_xlabel("microseconds per point (less is better); pale: wrong or incomplete answer")
-    axes.set_title("Delaunay triangulation at UTM coordinates, one core where not said", loc="left")
+    axes.set_title(title, loc="left")
     axes.xaxis.set_major_formatter("{x:g}")
     axes.grid(axis="x", which="both", color="#e6e6e6", linewidth=0.7)
     axes.grid(axis="y", color="#f0f0f0", linewidth=0.7)

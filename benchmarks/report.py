@@ -8,15 +8,17 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict
 from pathlib import Path
 
-from . import kernel, locate, readers, ways, writers
+from . import edits, kernel, lines, locate, readers, ways, writers
 from .answers import AS_MANY, EQUAL
 from .goals import judged
+from .line_tools import ALL_LINE_TOOLS
 from .measure import OURS, Outcome, Result, is_installed
 from .triangulators import CGAL, KERNEL
 
 __all__ = ["write_report"]
 
 NAME = "benchmarks"
+PLOTS = {kernel.SECTION: f"{NAME}.png", lines.SECTION: f"{NAME}-lines.png"}
 LEAST_FOR_MEMORY = 50_000
 """Below this many points memory is that of the libraries, not of the points."""
 
@@ -38,7 +40,7 @@ HOW_TO_REPEAT = """\
 
 CGAL is a C++ library: with `g++` and its headers (Debian: `libcgal-dev`) the command compiles a
 small harness; without them, and without any other peer, it says so and goes on. Data sets are
-made by seeded generators in `benchmarks/datasets.py`.
+made by seeded generators in `benchmarks/`.
 """
 KERNEL_NOTES = """\
 Seconds, and in brackets how many times the whole call `ts.triangulate(points)` that is: above 1
@@ -63,24 +65,24 @@ def write_report(
     """
     folder.mkdir(parents=True, exist_ok=True)
     page, data = folder / f"{NAME}.md", folder / f"{NAME}.json"
-    has_plot = _has_plot(outcome)
-    page.write_text(_page(outcome, machine, command, has_plot), encoding="utf-8")
+    plots = _plots(outcome)
+    page.write_text(_page(outcome, machine, command, plots), encoding="utf-8")
     data.write_text(_as_json(outcome, machine, command), encoding="utf-8")
     written = [page, data]
-    if has_plot:
+    for section, name in plots.items():
         from .plot import draw
 
-        written.append(draw(_of(outcome.results, kernel.SECTION), folder / f"{NAME}.png"))
+        written.append(draw(_of(outcome.results, section), folder / name))
     return written
 
 
-def _has_plot(outcome: Outcome) -> bool:
-    if not _of(outcome.results, kernel.SECTION):
-        return False
-    if not is_installed("matplotlib"):
+def _plots(outcome: Outcome) -> dict[str, str]:
+    """Return the names of the plots to draw, by section."""
+    drawn = {section: name for section, name in PLOTS.items() if _of(outcome.results, section)}
+    if drawn and not is_installed("matplotlib"):
         outcome.skip({"plot": "matplotlib is not installed"})
-        return False
-    return True
+        return {}
+    return drawn
 
 
 def _as_json(outcome: Outcome, machine: dict[str, str], command: str) -> str:
@@ -97,13 +99,13 @@ def _without_nan(values: dict[str, object]) -> dict[str, object]:
     return {k: None if isinstance(v, float) and math.isnan(v) else v for k, v in values.items()}
 
 
-def _page(outcome: Outcome, machine: dict[str, str], command: str, has_plot: bool) -> str:
+def _page(outcome: Outcome, machine: dict[str, str], command: str, plots: dict[str, str]) -> str:
     versions = ", ".join(f"{k} {v}" for k, v in machine.items() if k != "machine")
     parts = [INTRODUCTION, f"Machine: {machine['machine']}. {versions}.\n"]
     for section, render in SECTIONS.items():
         results = _of(outcome.results, section)
         if results:
-            parts.append(render(results, has_plot))
+            parts.append(render(results, plots.get(section, "")))
     if outcome.skipped:
         parts.append("\n".join(["## Left out", "", *(f"- {x}" for x in outcome.skipped), ""]))
     parts.append(HOW_TO_REPEAT.format(command=command))
@@ -183,18 +185,21 @@ def _kernel_rows(results: list[Result]) -> list[_KernelRow]:
     return [_KernelRow(group) for group in groups.values()]
 
 
-def _kernel(results: list[Result], has_plot: bool) -> str:
+def _kernel(results: list[Result], plot: str) -> str:
     rows = _kernel_rows(results)
     tools = [tool for tool in kernel.ALL_TOOLS if any(tool in row.by_tool for row in rows)]
     parts = ["## Triangulation\n", KERNEL_NOTES]
-    if has_plot:
-        parts.append(f"![Time per point of every tool on every data set]({NAME}.png)\n")
+    parts += _picture(plot)
     parts.append(_times(rows, tools))
     parts += goals_part(results)
     parts += ["### What the others lose, and how ties fall\n", _remarks(rows)]
     parts += ["### Memory\n", MEMORY_NOTES, _memory(rows, tools)]
     parts += ["### Work\n", WORK_NOTES, _work(rows)]
     return "\n".join(parts)
+
+
+def _picture(plot: str) -> list[str]:
+    return [f"![Time per point of every tool on every data set]({plot})\n"] if plot else []
 
 
 GOALS_NOTES = """\
@@ -274,16 +279,45 @@ def _work(rows: list[_KernelRow]) -> str:
     )
 
 
+# ------------------------------------------------------------------------- lines
+
+LINES_NOTES = """\
+Seconds for the whole call `ts.triangulate(points, breaklines=lines)`, and of the peers in brackets
+how many times that. tinsmith finds out itself which vertices of lines are points, where lines cross
+and which points lie on them; the peers are given every place once and the lines as pairs of place
+numbers, made beforehand. CGAL: `insert` all points and `insert_constraint` by vertex handles, or
+`insert_constraints` by indices, exact predicates. Triangle: switches `pcQz`. Counted are points and
+vertices of lines together.
+
+- *short lines*: uniform points, lines of ten segments; *long lines*: from side to side
+- *nested rings*: contours of one hill, each within the next; *hills*: 70 on each of many hills
+- *raster lines*: between points of a 0.1 m raster, many over further points
+"""
+LINES_MEMORY_NOTES = """\
+As for triangulation without lines. Every tool is given what it needs before.
+"""
+
+
+def _lines(results: list[Result], plot: str) -> str:
+    rows = _kernel_rows(results)
+    tools = [tool for tool in ALL_LINE_TOOLS if any(tool in row.by_tool for row in rows)]
+    parts = ["## Triangulation with breaklines\n", LINES_NOTES, *_picture(plot)]
+    parts += [_times(rows, tools), *goals_part(results)]
+    parts += ["### Answers with lines that differ from ours\n", _remarks(rows)]
+    parts += ["### Memory with lines\n", LINES_MEMORY_NOTES, _memory(rows, tools)]
+    return "\n".join(parts)
+
+
 # ------------------------------------------------------------------ other sections
 
 
 def _others(title: str, unit: str, notes: str) -> Callable[[list[Result], bool], str]:
-    def render(results: list[Result], has_plot: bool) -> str:
-        del has_plot
+    def render(results: list[Result], plot: str) -> str:
+        del plot
         ours = {result.task: result for result in results if result.tool == OURS}
         head = ["task", "tool", unit, "seconds", "times tinsmith", "remark"]
         rows = [_other_row(result, ours[result.task]) for result in results]
-        return "\n".join([f"## {title}\n", notes, _table(head, rows)])
+        return "\n".join([f"## {title}\n", notes, _table(head, rows), *goals_part(results)])
 
     return render
 
@@ -303,13 +337,28 @@ def _other_row(result: Result, ours: Result) -> list[str]:
     ]
 
 
-SECTIONS: dict[str, Callable[[list[Result], bool], str]] = {
+EDITS_NOTES = """\
+Random edits of a finished TIN of uniform points, one call each, and as many points again in one
+call; one core each. *tinsmith* is from the finished TIN, the first edit, which makes it ready for
+more, included; *opened* leaves a first one out, *and its arrays* includes looking at the triangles
+afterwards, *building* is the batch triangulated alone. CGAL (`Delaunay_triangulation_2`) and
+startinpy name vertices by handles that stay, and keep no history. CGAL has no heights; a move of
+startinpy is a removal and an insertion; its points are sorted along a curve first, not timed.
+"""
+
+SECTIONS: dict[str, Callable[[list[Result], str], str]] = {
     kernel.SECTION: _kernel,
     ways.SECTION: _others(
         "The kernel's own ways",
         "points",
         "Vector instructions, the two methods between which the kernel chooses, and small inputs;\n"
         "all in one process and in turn, each with the same arrays as the others.\n",
+    ),
+    lines.SECTION: _lines,
+    edits.SECTION: _others(
+        "Edits",
+        "edits",
+        EDITS_NOTES,
     ),
     locate.SECTION: _others(
         "Queries",

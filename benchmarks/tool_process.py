@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .cgal import harness
-from .triangulators import CGAL
+from .triangulators import is_cgal
 
-__all__ = ["ToolFailedError", "ToolProcess"]
+__all__ = ["ToolFailedError", "ToolProcess", "worker_command"]
 
 ROOT = Path(__file__).parents[1]
 START_SECONDS = 120.0
@@ -25,48 +25,57 @@ LEAST_TIMED_SECONDS = 0.02
 """Runs shorter than this are repeated within one timing."""
 
 
+def worker_command(kind: str, name: str, path: Path) -> list[str]:
+    """Return the command for a tool that Python can call, on a task of some kind in a file."""
+    return [sys.executable, "-m", "benchmarks.worker", kind, name, str(path)]
+
+
 class ToolFailedError(Exception):
     """The tool did not answer in time, or its process died."""
 
 
 class ToolProcess:
-    """A tool that holds one set of points.
+    """A tool that holds one set of points; other tasks override ``command``.
 
     Parameters
     ----------
     name : str
         ``CGAL`` or a key of ``TOOLS``.
-    points : (n, 3) float64 array
+    task : (n, 3) float64 array
+        Points; in subclasses what their tools work on.
     folder : Path
         For files that pass between the processes.
     limit : float
         Seconds that one run may take.
     """
 
-    def __init__(self, name: str, points: NDArray[np.float64], folder: Path, limit: float) -> None:
+    least_timed_seconds = LEAST_TIMED_SECONDS
+
+    def __init__(self, name: str, task: Any, folder: Path, limit: float) -> None:
         self.seconds: list[float] = []
         self.growth: int | None = None
         self.output_bytes = 0
-        self._is_cgal = name == CGAL
+        self._is_cgal = is_cgal(name)
         self._folder = folder
         self._limit = limit
         self._count = 1
-        command = self._command(name, points)
+        command = self.command(name, task, folder)
         self._process = subprocess.Popen(
             command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, cwd=ROOT
         )
         self._answer(START_SECONDS)
 
-    def _command(self, name: str, points: NDArray[np.float64]) -> list[str]:
-        if self._is_cgal:
-            plane = self._folder / "points.bin"
+    def command(self, name: str, task: Any, folder: Path) -> list[str]:
+        """Write the task for the tool, unless another one's process has; return what runs it."""
+        if is_cgal(name):
+            plane = folder / "points.bin"
             if not plane.exists():
-                points[:, :2].tofile(plane)
+                task[:, :2].tofile(plane)
             return [str(harness()), str(plane)]
-        table = self._folder / "points.npy"
+        table = folder / "points.npy"
         if not table.exists():
-            np.save(table, points)
-        return [sys.executable, "-m", "benchmarks.worker", name, str(table)]
+            np.save(table, task)
+        return worker_command("points", name, table)
 
     def __enter__(self) -> Self:
         return self
@@ -93,7 +102,7 @@ class ToolProcess:
         before = self._memory_before()
         first = self._timed()
         self.growth = self._growth_since(before)
-        self._count = math.ceil(LEAST_TIMED_SECONDS / max(first, 1e-6))
+        self._count = max(1, math.ceil(self.least_timed_seconds / max(first, 1e-6)))
         if self._count > 1:
             self.seconds.clear()  # cold caches
             return self._timed()

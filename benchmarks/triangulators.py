@@ -14,7 +14,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["ALL_CORES", "CGAL", "KERNEL", "KERNEL_ALL_CORES", "TOOLS", "Tool"]
+__all__ = [
+    "ALL_CORES",
+    "CGAL",
+    "KERNEL",
+    "KERNEL_ALL_CORES",
+    "TOOLS",
+    "Tool",
+    "is_cgal",
+    "tin_bytes",
+]
 
 Floats = NDArray[np.float64]
 
@@ -33,7 +42,9 @@ class Tool:
     module : str
         What must be installed.
     prepare : callable
-        (n, 3) points to the library's own input.
+        (n, 3) points, or another task, to the library's own input.
+    renew : callable
+        Input to what a run gets, anew before each.
     run : callable
         Input to answer; this is timed.
     triangles : callable
@@ -50,9 +61,15 @@ class Tool:
     prepare: Callable[[Floats], Any]
     run: Callable[[Any], Any]
     triangles: Callable[[Any], NDArray[Any]]
+    renew: Callable[[Any], Any] = lambda given: given
     output_bytes: Callable[[Any], int] = lambda _: 0
     largest: int = 100_000
     is_exact: bool = False
+
+
+def is_cgal(tool: str) -> bool:
+    """Whether a tool is a way of using CGAL, which has harnesses of its own."""
+    return tool.startswith(CGAL)
 
 
 def _as_given(points: Floats) -> Floats:
@@ -79,7 +96,8 @@ def _grow(points: Floats, threads: int | None = 1) -> Any:
     return _kernel.grow(points, threads=thread_count(threads, len(points)))
 
 
-def _tin_bytes(tin: Any) -> int:
+def tin_bytes(tin: Any) -> int:
+    """Return the bytes of a TIN's arrays."""
     arrays = (tin.points, tin.triangles, tin.neighbors, tin.constrained, tin.vertex_of)
     return sum(array.nbytes for array in arrays)
 
@@ -151,9 +169,9 @@ def _ours(run: Callable[[Floats], Any], output_bytes: Callable[[Any], int]) -> T
 
 
 TOOLS: dict[str, Tool] = {
-    "tinsmith": _ours(_triangulate, _tin_bytes),
+    "tinsmith": _ours(_triangulate, tin_bytes),
     KERNEL: _ours(_grow, _growth_bytes),
-    ALL_CORES: _ours(partial(_triangulate, threads=None), _tin_bytes),
+    ALL_CORES: _ours(partial(_triangulate, threads=None), tin_bytes),
     KERNEL_ALL_CORES: _ours(partial(_grow, threads=None), _growth_bytes),
     "Triangle": Tool(
         module="triangle",

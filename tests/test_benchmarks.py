@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import sys
+from fractions import Fraction
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -14,12 +16,18 @@ import tinsmith as ts
 
 sys.path.append(str(Path(__file__).parents[1]))
 
-from benchmarks import kernel, locate, readers, writers
+from benchmarks import edits, kernel, lines, locate, readers, writers
 from benchmarks.__main__ import main
 from benchmarks.answers import EQUAL, Verdict, ranked, verdict
 from benchmarks.cgal import CgalMissingError, build, harness
 from benchmarks.datasets import DATASETS, UTM_CORNER, dataset
-from benchmarks.measure import OURS, Outcome, alternate, is_installed
+from benchmarks.edit_tasks import BATCH, EDIT_TASKS, INSERT_ALL, WHAT, edit_task
+from benchmarks.edit_tools import ALL_EDIT_TOOLS, BUILD, EDIT_TOOLS, OPENED, WITH_ARRAYS
+from benchmarks.goals import judged as goals_of
+from benchmarks.line_datasets import LINE_DATASETS, line_dataset
+from benchmarks.line_tools import ALL_LINE_TOOLS, CGAL_INDICES, LINE_TOOLS
+from benchmarks.measure import OURS, Outcome, Result, alternate, is_installed
+from benchmarks.tasks import read_task, write_task
 from benchmarks.tool_process import ToolFailedError, ToolProcess
 from benchmarks.triangulators import CGAL, KERNEL, TOOLS
 
@@ -226,6 +234,144 @@ def test_every_tool_is_either_here_or_named():
     assert len(present) + len(outcome.skipped) == len(kernel.ALL_TOOLS) == len(TOOLS) + 1
 
 
+# -------------------------------------------------------------------------- lines
+
+
+@pytest.mark.parametrize("name", LINE_DATASETS)
+def test_lines_do_not_cross_and_are_given_twice_the_same(name):
+    import shapely
+
+    task = line_dataset(name, N)
+    assert 0.95 * N <= len(task.vertices) <= 1.2 * N
+    assert len(np.unique(task.vertices, axis=0)) == len(task.vertices)
+    drawn = shapely.MultiLineString([line[:, :2] for line in task.breaklines()])
+    assert drawn.is_simple
+    pairs = shapely.MultiLineString(list(task.vertices[task.segments]))
+    assert len(drawn.geoms) < len(pairs.geoms) or name == "long lines"
+    assert drawn.equals(pairs)
+    cut = shapely.MultiLineString(list(task.vertices[task.steps]))
+    assert cut.length == pytest.approx(drawn.length, rel=1e-12)
+
+
+def test_nested_rings_lie_each_in_the_next():
+    import shapely
+
+    rings = [shapely.Polygon(line) for line in line_dataset("nested rings", 20 * N).breaklines()]
+    assert len(rings) == 20 * N // 140
+    assert all(b.contains_properly(a) for a, b in pairwise(rings))
+    heights = [line[0, 2] for line in line_dataset("nested rings", N).breaklines()]
+    assert (np.diff(heights) < 0).all()
+
+
+def test_steps_of_raster_lines_are_cut_where_points_are_on_them_exactly():
+    task = line_dataset("raster lines", N)
+    exact = [[Fraction(x), Fraction(y)] for x, y in task.vertices.tolist()]
+    wanted = set()
+    for start, end in task.segments.tolist():
+        (ax, ay), (bx, by) = exact[start], exact[end]
+        on = [i for i, (x, y) in enumerate(exact)
+              if (bx - ax) * (y - ay) == (by - ay) * (x - ax)
+              and min(ax, bx) <= x <= max(ax, bx) and min(ay, by) <= y <= max(ay, by)]  # fmt: skip
+        on.sort(key=lambda i: abs(exact[i][0] - ax) + abs(exact[i][1] - ay))
+        wanted |= {frozenset(pair) for pair in pairwise(on)}
+    assert {frozenset(step) for step in task.steps.tolist()} == wanted
+    assert len(wanted) > len(task.segments)
+
+
+def test_tasks_survive_their_file(tmp_path):
+    for task in (line_dataset("hills", N), edit_task("mixed edits", 300)):
+        write_task(task, tmp_path / "task.npz")
+        for array, found in zip(task, read_task(type(task), tmp_path / "task.npz"), strict=True):
+            np.testing.assert_array_equal(array, found)
+
+
+def test_every_tool_holds_the_lines():
+    outcome = lines.run(1_000, names=["raster lines", "nested rings"], repeats=1)
+    present = lines.available_tools(ALL_LINE_TOOLS, LINE_TOOLS, "constrained", Outcome())
+    assert [r.tool for r in outcome.results] == 2 * present
+    assert {OURS} <= set(present)
+    for result in outcome.results:
+        assert result.seconds > 0
+        assert result.extra["is_right"] or result.tool == "Triangle", result
+
+
+def test_verdict_names_edges_of_lines_that_are_missing():
+    corners = [[0, 0, 0], [9, 0, 0], [9, 4, 0], [0, 5, 0]]
+    tin = ts.triangulate(corners, breaklines=[[corners[0], corners[2]]])
+    other = np.array([[0, 1, 3], [1, 2, 3]])
+    wanted, steps = ranked(tin.triangles), np.array([[2, 0]])
+    assert verdict(tin, tin.triangles, wanted, steps=steps) == Verdict(True, EQUAL)
+    lost = Verdict(False, "1 edges of lines missing")
+    assert verdict(tin, other, wanted, steps=steps) == lost
+
+
+def test_verdict_lets_an_edge_be_wrong_only_for_a_line():
+    corners = np.array([[0, 0, 0], [9, 0, 0], [9, 4, 0], [0, 5, 0.0]])
+    free = ts.triangulate(corners)
+    pair = [1, 3] if [0, 2] in np.sort(free.edges, axis=1).tolist() else [0, 2]
+    a, b = (i for i in range(4) if i not in pair)
+    crossed = np.array([[*pair, a], [*pair, b]])
+    wanted = ranked(free.triangles)
+    assert not verdict(free, crossed, wanted).is_right
+    assert verdict(free, crossed, wanted, steps=np.array([pair])).is_right
+
+
+# -------------------------------------------------------------------------- edits
+
+
+def test_points_after_edits_are_those_of_edits_one_by_one():
+    task = edit_task("mixed edits", 100)
+    points = task.points.tolist()
+    assert set(task.script[:, 0]) == {0.0, 1.0, 2.0, 3.0}
+    for what, number, vertex, *xyz in task.script.tolist():
+        at = int(vertex)
+        if WHAT[int(what)] == "insert":
+            points.append(xyz)
+            continue
+        assert points[at] == task.points[int(number)].tolist()
+        if WHAT[int(what)] == "remove":
+            del points[at]
+        else:
+            points[at] = xyz
+    np.testing.assert_array_equal(task.afterwards(), points)
+
+
+def test_batch_is_as_many_points_again():
+    task = edit_task(BATCH, 300)
+    assert set(task.script[:, 0]) == {INSERT_ALL}
+    assert len(task.afterwards()) == len(np.unique(task.afterwards()[:, :2], axis=0)) == 600
+
+
+def test_every_tool_edits():
+    outcome = edits.run(400, repeats=1)
+    present = lines.available_tools(ALL_EDIT_TOOLS, EDIT_TOOLS, "edits", Outcome())
+    assert {OURS, OPENED, WITH_ARRAYS, BUILD} <= set(present)
+    assert {r.tool for r in outcome.results} == set(present)
+    assert len({r.task for r in outcome.results}) == len(EDIT_TASKS) + 1
+    for result in outcome.results:
+        assert result.seconds > 0
+        assert result.extra["is_right"] or result.tool == "startinpy", result
+
+
+# -------------------------------------------------------------------------- goals
+
+
+def test_goals_take_the_quicker_way_of_cgal_and_the_worse_data_set():
+    times = {
+        ("nested rings", OURS): 2.0,
+        ("nested rings", CGAL): 5.0,
+        ("nested rings", CGAL_INDICES): 4.0,
+        ("hills", OURS): 1.0,
+        ("hills", CGAL): 0.5,
+        ("hills", CGAL_INDICES): float("nan"),
+    }
+    results = [Result("lines", *key, 1_000_000, seconds) for key, seconds in times.items()]
+    (row,) = goals_of(results)
+    assert row[1:] == ["hills (worst of 2)", "\u2265 1", "1.5", "0.50", "\u2717"]
+    (row,) = goals_of(results[:3])
+    assert row[1:] == ["nested rings", "\u2265 1", "1.5", "2.00", "\u2713"]
+
+
 # ------------------------------------------------------------------ other sections
 
 
@@ -266,6 +412,18 @@ def test_report_is_a_page_data_and_a_plot(tmp_path, capsys):
     assert data["command"].startswith("python -m benchmarks kernel writers --points 300")
     assert (tmp_path / "benchmarks.png").exists() == is_installed("matplotlib")
     assert str(tmp_path / "benchmarks.md") in capsys.readouterr().out
+
+
+def test_report_has_lines_and_edits(tmp_path):
+    arguments = ["lines", "edits", "--points", "400", "--only", "hills", "--repeats", "1",
+                 "--output", str(tmp_path)]  # fmt: skip
+    main(arguments)
+    page = (tmp_path / "benchmarks.md").read_text(encoding="utf-8")
+    assert "| hills, 980 |" in page
+    assert "short lines, " not in page
+    assert "| mixed edits, TIN of 400 points | tinsmith | 100 |" in page
+    assert (tmp_path / "benchmarks-lines.png").exists() == is_installed("matplotlib")
+    assert ("benchmarks-lines.png" in page) == is_installed("matplotlib")
 
 
 def test_too_few_points_are_refused(capsys):

@@ -1,4 +1,4 @@
-"""Compile the harness: CGAL's own flags, and this machine's instructions.
+"""Compile the harnesses: CGAL's own flags, and this machine's instructions.
 
 tinsmith chooses vector instructions when it runs, so CGAL gets the same chance: ``-march=native``
 makes it a fifth faster.
@@ -6,15 +6,16 @@ makes it a fifth faster.
 
 from __future__ import annotations
 
+import os
 import shutil
 import subprocess
 from pathlib import Path
 
 __all__ = ["CgalMissingError", "harness"]
 
-SOURCE = Path(__file__).parent / "delaunay.cpp"
-MADE_OF = (SOURCE, Path(__file__))
-BUILT = Path(__file__).parents[2] / "build" / "benchmarks" / "cgal_delaunay"
+HERE = Path(__file__).parent
+SHARED = (HERE / "serve.hpp", Path(__file__))
+BUILT = HERE.parents[1] / "build" / "benchmarks"
 FLAGS = ("-std=c++17", "-O3", "-DNDEBUG", "-march=native", "-frounding-math")
 
 
@@ -22,29 +23,40 @@ class CgalMissingError(Exception):
     """There is no compiler, or it does not find CGAL."""
 
 
-def harness() -> Path:
-    """Return the executable, compiled anew if its source or flags have changed.
+def harness(name: str = "delaunay") -> Path:
+    """Return an executable, compiled anew if its source or flags have changed.
+
+    Parameters
+    ----------
+    name : str
+        Of a C++ file in this folder: ``"delaunay"``, ``"constrained"`` or ``"edits"``.
 
     Raises
     ------
     CgalMissingError
         If there is no g++, or it cannot compile the harness.
     """
-    if BUILT.exists() and BUILT.stat().st_mtime > max(x.stat().st_mtime for x in MADE_OF):
-        return BUILT
+    source, built = HERE / f"{name}.cpp", BUILT / f"cgal_{name}"
+    changed = max(x.stat().st_mtime for x in (source, *SHARED))
+    if built.exists() and built.stat().st_mtime > changed:
+        return built
     compiler = shutil.which("g++")
     if compiler is None:
         raise CgalMissingError("g++ is not installed")
     if not _finds_cgal(compiler):
         raise CgalMissingError("its headers are not installed (Debian: libcgal-dev)")
-    BUILT.parent.mkdir(parents=True, exist_ok=True)
-    fresh = BUILT.with_suffix(".new")
-    command = [compiler, *FLAGS, str(SOURCE), "-lmpfr", "-lgmp", "-o", str(fresh)]
+    _compile(compiler, source, built)
+    return built
+
+
+def _compile(compiler: str, source: Path, built: Path) -> None:
+    built.parent.mkdir(parents=True, exist_ok=True)
+    fresh = built.with_suffix(f".{os.getpid()}")
+    command = [compiler, *FLAGS, str(source), "-lmpfr", "-lgmp", "-o", str(fresh)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode:
         raise CgalMissingError(f"g++ fails: {(done.stderr.splitlines() or ['?'])[0]}")
-    fresh.replace(BUILT)
-    return BUILT
+    fresh.replace(built)
 
 
 def _finds_cgal(compiler: str) -> bool:
