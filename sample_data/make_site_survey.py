@@ -171,10 +171,10 @@ def along(line: Floats, step: float) -> Floats:
     return np.concatenate(places)
 
 
-def walk(places: Floats, code: str, noise: float = 0.015) -> list[Shot]:
-    """Shoot a line in walking order; the field book marks where it begins and ends."""
+def walk(places: Floats, code: str, noise: float = 0.015, *, end: str = "END") -> list[Shot]:
+    """Shoot a line in walking order; the field book marks where it begins, and ends or closes."""
     last = len(places) - 1
-    marks = {0: f"{code} BEG", last: f"{code} END"}
+    marks = {0: f"{code} BEG", last: f"{code} {end}"}
     return [Shot(u, v, marks.get(i, code), noise) for i, (u, v) in enumerate(places)]
 
 
@@ -211,7 +211,7 @@ def pond() -> list[list[Shot]]:
     """Return the water's edge, then soundings of the bottom."""
     angle = np.linspace(0.0, 2.0 * np.pi, 32, endpoint=False)
     ring = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    edge = walk(POND_CENTER + POND_RADII * ring, "WE1", 0.01)
+    edge = walk(POND_CENTER + POND_RADII * ring, "WE1", 0.01, end="CLS")
     soundings = [POND_CENTER[None, :]]
     for share in (0.75, 0.4):
         soundings.append(POND_CENTER + share * POND_RADII * ring[:: 2 if share > 0.5 else 4])
@@ -223,11 +223,13 @@ def buildings() -> list[Shot]:
     shots = []
     for number, building in enumerate(BUILDINGS, start=1):
         angle = np.radians(building.bearing)
+        corners = []
         for right, up in ((-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)):
             along, across = right * building.size[0], up * building.size[1]
             u = building.center[0] + along * np.cos(angle) + across * np.sin(angle)
             v = building.center[1] - along * np.sin(angle) + across * np.cos(angle)
-            shots.append(Shot(float(u), float(v), f"BLDG{number}", 0.01))
+            corners.append((float(u), float(v)))
+        shots += walk(np.array(corners), f"BLDG{number}", 0.01, end="CLS")
     return shots
 
 
