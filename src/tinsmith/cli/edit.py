@@ -59,7 +59,7 @@ def edit(
 
     \b
     Example:
-      tinsmith edit site.ply changes.json -o changed.ply --report changes-made.json
+      tinsmith edit sample_data/site_survey.csv sample_data/edits.json --crs EPSG:32616 -o site.ply
 
     \b
     A script:
