@@ -184,7 +184,7 @@ def _shapes(
     import shapely
 
     shapes: NDArray[np.object_] = shapely.from_wkb(geometries, on_invalid="ignore")
-    wrong = np.equal(shapes, None) & ~np.equal(geometries, None)
+    wrong = shapely.is_missing(shapes) & np.array([one is not None for one in geometries])
     if wrong.any():
         raise ReadError(
             f"'{path}': feature {numbers[np.argmax(wrong)]} has a geometry of another kind: "

@@ -15,6 +15,7 @@ from .annotations import Caption, Sheet, annotate
 from .camera import VIEWS, View, aim, ground_axes, pixels_per_unit
 from .errors import OptionError, RenderError
 from .lift import as_exaggeration
+from .linework import add_lines
 from .overlay import Overlay
 from .scene import add_lights, add_terrain, choose_exaggeration, fade_edges, scene_points
 from .units import ground_of
@@ -51,6 +52,7 @@ def preview(
     output: str | os.PathLike[str] | None = None,
     exaggeration: float | None = None,
     edges: bool = False,
+    lines: bool = True,
     size: tuple[int, int] = (1600, 1000),
     title: str | None = None,
     view: str = "oblique",
@@ -66,7 +68,10 @@ def preview(
         Factor on heights. Default: a round number that lifts the relief to a tenth of the extent
         or more, 1 where it is steep enough. It is written in the picture.
     edges : bool, optional
-        Draw the edges of the triangles, and breaklines heavier.
+        Draw the edges of the triangles.
+    lines : bool, optional
+        Draw the lines in the TIN: hard breaklines dark, soft ones dashed, boundary and holes brown,
+        the water's edge blue.
     size : tuple of int, optional
         Width and height, pixels, 200 to 5000 each.
     title : str, optional
@@ -104,7 +109,7 @@ def preview(
     ground = ground_of(tin)
     factor = choose_exaggeration(tin, ground) if factor is None else factor
     caption = _caption(tin, ground, factor, title or "Terrain surface")
-    stage = _Stage(tin, ground, factor, edges, size, caption, VIEWS[view])
+    stage = _Stage(tin, ground, factor, edges, lines, size, caption, VIEWS[view])
     with _plain_vtk():
         if path is None:
             _Show(stage, size, off_screen=False).open_window()
@@ -121,6 +126,7 @@ class _Stage:
     ground: Ground
     exaggeration: float
     edges: bool
+    lines: bool
     size: tuple[int, int]
     caption: Caption
     view: View
@@ -150,6 +156,8 @@ class _Show:
         self._overlay = Overlay(self.plotter.renderer)
         self._drawn_for: tuple[object, ...] = ()
         sheet, factor = _layout(window)
+        if stage.lines:
+            add_lines(self.plotter, stage.tin, points, factor=factor)
         frame = Bounds(*(factor * side for side in astuple(sheet.frame)))
         aim(self.plotter.camera, seen, view=stage.view, frame=frame, size=window)
         self.plotter.renderer.ResetCameraClippingRange()

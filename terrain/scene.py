@@ -83,7 +83,7 @@ def add_terrain(
     points : (n, 3) float64 array
         Its vertices as drawn.
     edges : bool
-        Whether to draw the triangles' edges, and constrained edges heavier.
+        Whether to draw the triangles' edges.
 
     Returns
     -------
@@ -102,7 +102,8 @@ def add_terrain(
     block = _block(pv, tin, points)
     plotter.add_mesh(block, color=_BLOCK_COLOR, culling="back", **_lighting(_BLOCK_AMBIENT))
     if edges:
-        _show_edges(plotter, actor, tin, points)
+        actor.prop.show_edges = True
+        actor.prop.edge_color = _EDGE_COLOR
     return actor, np.vstack([points, block.points])
 
 
@@ -182,17 +183,3 @@ def _block(pv: Any, tin: TIN, points: NDArray[np.float64]) -> Any:
     walls = np.column_stack([count, 2 * len(start) + count, 3 * len(start) + count])
     walls = np.column_stack([walls, len(start) + count])
     return pv.PolyData.from_regular_faces(np.concatenate([upper, lower]), walls)
-
-
-def _show_edges(plotter: Any, actor: Any, tin: TIN, points: NDArray[np.float64]) -> None:
-    pv = extras.pyvista(_PURPOSE)
-
-    actor.prop.show_edges = True
-    actor.prop.edge_color = _EDGE_COLOR
-    triangle, corner = np.nonzero(tin.constrained)
-    if len(triangle):
-        pairs = np.column_stack(
-            [tin.triangles[triangle, (corner + 1) % 3], tin.triangles[triangle, (corner + 2) % 3]]
-        )
-        lines = pv.PolyData(points, lines=np.column_stack([np.full(len(pairs), 2), pairs]).ravel())
-        plotter.add_mesh(lines, color=_EDGE_COLOR, lighting=False, line_width=2)

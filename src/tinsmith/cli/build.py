@@ -37,7 +37,7 @@ __all__ = ["build"]
     "--report",
     metavar="FILE",
     type=click.Path(path_type=Path),
-    help="JSON file that accounts for every row that was merged or skipped.",
+    help="JSON file that accounts for every row merged or left out, and every crossing of lines.",
 )
 @console_options
 def build(
@@ -49,22 +49,23 @@ def build(
     report: Path | None,
     console: Console,
 ) -> None:
-    """Build the exact Delaunay TIN of the elevation points in POINTS.
+    """Build the exact Delaunay TIN of the elevation points in POINTS, and of lines.
 
     POINTS is a text file of survey points (CSV, TXT, XYZ) or an elevation raster (DEM).
-    'tinsmith formats' lists what can be read and written.
+    'tinsmith formats' lists what can be read and written. Breaklines, a boundary, holes and water
+    come from vector files, in any CRS, or from the codes of the points.
 
     \b
     Example:
-      tinsmith build sample_data/site_survey.csv --crs EPSG:32616 -o site.geojson
+      tinsmith build sample_data/site_survey.csv --crs EPSG:32616 --codes -o site.geojson
       tinsmith build sample_data/jacksboro.tif --stride 4 -o hills.ply -o hills.stl
     """  # noqa: D301 - click reads the control character
     from .facts import report_facts
-    from .files import plan_outputs, read_input, triangulated, write_outputs
+    from .files import plan_outputs, read_input, triangulated, with_lines, write_outputs
 
     started = perf_counter()
     planned = plan_outputs(outputs, writing, source=points)
-    survey = _as_survey(read_input(points, reading, console), points)
+    survey = with_lines(_as_survey(read_input(points, reading, console), points), how, console)
     tin = triangulated(survey, how, console)
     write_outputs(tin, planned, console)
     if report is not None:
@@ -97,13 +98,15 @@ def _fields(
     points: Path, survey: Survey, tin: TIN, outputs: list[Output], seconds: float
 ) -> list[Field]:
     from .facts import crs_field, extent_fields, file_size, merge_field, reading_fields
+    from .line_facts import line_fields, tin_counts
 
     sizes = "\n".join(f"{one.path} ({file_size(one.path)})" for one in outputs)
     return [
         ("Points", f"{len(survey):,} from {points}"),
         *reading_fields(survey),
         *merge_field(tin.report, survey),
-        ("TIN", f"{len(tin.points):,} vertices, {len(tin.triangles):,} triangles"),
+        *line_fields(survey, tin),
+        ("TIN", tin_counts(tin)),
         *extent_fields(tin.points, tin.crs),
         crs_field(tin.crs),
         ("Written", sizes),
@@ -115,11 +118,13 @@ def _facts(
     points: Path, survey: Survey, tin: TIN, outputs: list[Output], seconds: float
 ) -> dict[str, Any]:
     from .facts import report_facts, survey_facts, tin_facts
+    from .line_facts import line_counts
 
     return {
         "input": str(points),
         "survey": survey_facts(survey),
         "tin": tin_facts(tin),
+        "counts": line_counts(tin.report),
         "report": report_facts(tin.report, survey),
         "outputs": [
             {"path": str(one.path), "format": one.format.name, "bytes": one.path.stat().st_size}

@@ -10,6 +10,7 @@ import numpy as np
 from ..io.crs import as_crs, elevation_unit, is_geographic, length_unit
 from ..terrain import slope
 from ..tin import TIN, Bounds, Survey
+from .line_facts import constrained_edges, given_lines, given_lines_text, tin_counts
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -44,7 +45,7 @@ def survey_facts(survey: Survey) -> dict[str, Any]:
         "points": len(survey),
         **_place_facts(survey.points, survey.crs),
         "attributes": list(survey.attributes),
-        "breaklines": len(survey.breaklines),
+        **given_lines(survey),
         "skipped": dict(survey.skipped),
         "notes": list(survey.notes),
     }
@@ -59,7 +60,8 @@ def tin_facts(tin: TIN) -> dict[str, Any]:
         "edges": len(tin.edges),
         "hull_vertices": len(tin.hull),
         "rings": len(tin.rings),
-        "constrained_edges": _count_constrained(tin),
+        "constrained_edges": constrained_edges(tin),
+        "lines": {kind: tin.lines.kinds.count(kind) for kind in sorted(set(tin.lines.kinds))},
         **_place_facts(tin.points, tin.crs),
         **_ground_facts(tin),
     }
@@ -114,11 +116,6 @@ def _with_one_unit(tin: TIN) -> TIN:
     return replace(tin, points=tin.points * [1.0, 1.0, up / across])
 
 
-def _count_constrained(tin: TIN) -> int:
-    on_rim = tin.constrained & (tin.neighbors < 0)
-    return int((tin.constrained.sum() + on_rim.sum()) // 2)
-
-
 # ---------------------------------------------------------------- for people
 
 
@@ -133,6 +130,8 @@ def survey_fields(survey: Survey) -> list[Field]:
     fields = [("Points", f"{len(survey):,}"), *reading_fields(survey)]
     if survey.attributes:
         fields.append(("Columns", ", ".join(survey.attributes)))
+    if survey.has_lines:
+        fields.append(("Lines", given_lines_text(survey)))
     return [*fields, *extent_fields(survey.points, survey.crs), crs_field(survey.crs)]
 
 
@@ -141,7 +140,7 @@ def tin_fields(tin: TIN) -> list[Field]:
     facts = _ground_facts(tin)
     across, _ = units(tin.crs)
     fields = [
-        ("TIN", f"{len(tin.points):,} vertices, {len(tin.triangles):,} triangles"),
+        ("TIN", tin_counts(tin)),
         ("Edges", f"{len(tin.edges):,}, {len(tin.hull):,} of them on the hull"),
         *extent_fields(tin.points, tin.crs),
     ]

@@ -19,7 +19,15 @@ if TYPE_CHECKING:
     from .console import Console
     from .options import Reading, Triangulating, Writing
 
-__all__ = ["Output", "plan_outputs", "read_input", "read_tin", "triangulated", "write_outputs"]
+__all__ = [
+    "Output",
+    "plan_outputs",
+    "read_input",
+    "read_tin",
+    "triangulated",
+    "with_lines",
+    "write_outputs",
+]
 
 
 @dataclass(frozen=True)
@@ -43,13 +51,34 @@ def read_input(path: Path, reading: Reading, console: Console) -> Survey | TIN:
         return read(path, **options)
 
 
+def with_lines(survey: Survey, how: Triangulating, console: Console) -> Survey:
+    """Add the lines of the points' codes and of files to a survey, showing progress.
+
+    Raises
+    ------
+    click.UsageError
+        If there is a height of water, but no water.
+    """
+    from ..io import lines_from_codes
+    from ..io import with_lines as with_lines_of_files
+
+    if how.water_z is not None and not how.water:
+        raise click.UsageError("--water-z needs --water: a file of the polygons that it is for.")
+    if how.codes:
+        survey = lines_from_codes(survey)
+    if not how.files:
+        return survey
+    with console.steps() as steps, steps.step("Reading lines"):
+        return with_lines_of_files(survey, **how.files)
+
+
 def triangulated(survey: Survey, how: Triangulating, console: Console) -> TIN:
     """Build the TIN of a survey, showing progress; rows at fault are named by point number too."""
     from ..tin import PointsError, triangulate
 
     try:
         with console.steps() as steps, steps.step(f"Triangulating {len(survey):,} points"):
-            return triangulate(survey, **asdict(how))
+            return triangulate(survey, **how.method)
     except PointsError as error:
         raise Failure(f"{error}{_row_names(survey, error.rows)}") from error
 
@@ -71,8 +100,14 @@ def read_tin(
 
     found = read_input(path, reading, console)
     if isinstance(found, TIN):
+        if how.shaping:
+            raise Failure(
+                f"'{path}' holds a TIN already, and {how.shaping[0]} needs points to build from: "
+                "'tinsmith edit' adds lines to a TIN."
+            )
         return found, None
-    return triangulated(found, how, console), found
+    survey = with_lines(found, how, console)
+    return triangulated(survey, how, console), survey
 
 
 def plan_outputs(paths: Sequence[Path], writing: Writing, *, source: Path) -> list[Output]:

@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 import click
 
 from .console import Console
+from .line_options import LINE_OPTIONS
 
 __all__ = [
     "Reading",
@@ -28,7 +29,9 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
 DUPLICATES = ("mean", "first", "last", "lowest", "highest", "error")
-KINDS = ("triangles", "points", "edges", "hull")
+KINDS = ("triangles", "points", "edges", "lines", "hull")
+_METHOD = ("duplicates", "snap", "threads", "crossing", "conforming", "max_edge", "trim")
+_FILES = ("breaklines", "soft_breaklines", "boundary", "holes", "erase", "water")
 
 
 @dataclass(frozen=True)
@@ -53,6 +56,36 @@ class Triangulating:
     duplicates: str = "mean"
     snap: float = 0.0
     threads: int | None = None
+    crossing: str = "split"
+    conforming: bool = False
+    max_edge: float | None = None
+    trim: str = "perimeter"
+    breaklines: tuple[Path, ...] = ()
+    soft_breaklines: tuple[Path, ...] = ()
+    boundary: tuple[Path, ...] = ()
+    holes: tuple[Path, ...] = ()
+    erase: tuple[Path, ...] = ()
+    water: tuple[Path, ...] = ()
+    water_z: float | str | None = None
+    drape: bool = False
+    codes: bool = False
+
+    @property
+    def method(self) -> dict[str, Any]:
+        """Options of :func:`tinsmith.triangulate`."""
+        return {name: getattr(self, name) for name in _METHOD}
+
+    @property
+    def files(self) -> dict[str, Any]:
+        """Options of :func:`tinsmith.io.with_lines`; empty if there are no files."""
+        given = {name: getattr(self, name) for name in _FILES}
+        return given | {"water_z": self.water_z, "drape": self.drape} if any(given.values()) else {}
+
+    @property
+    def shaping(self) -> list[str]:
+        """Names of the options given that need points to build from."""
+        names = ("max_edge", "codes", "conforming", *_FILES)
+        return [f"--{name.replace('_', '-')}" for name in names if getattr(self, name)]
 
 
 @dataclass(frozen=True)
@@ -173,6 +206,7 @@ triangulating_options = _gathered(
         type=click.IntRange(min=1),
         help="Number of threads; default every core. The result is the same.",
     ),
+    *LINE_OPTIONS,
 )
 
 writing_options = _gathered(

@@ -30,6 +30,9 @@ __all__ = ["view"]
     "--exaggeration", metavar="FACTOR", type=float, help="Vertical exaggeration; chosen if absent."
 )
 @click.option("--edges", is_flag=True, help="Draw the edges of the triangles.")
+@click.option(
+    "--lines/--no-lines", default=True, show_default=True, help="Draw breaklines and rims."
+)
 @click.option("--top", is_flag=True, help="Look straight down, north up.")
 @click.option("--title", metavar="TEXT", help="Title in the picture; default the file's name.")
 @reading_options
@@ -47,7 +50,7 @@ def view(
 
     \b
     Example:
-      tinsmith view sample_data/site_survey.csv --crs EPSG:32616 -o site.png
+      tinsmith view sample_data/site_survey.csv --crs EPSG:32616 --codes -o site.png
     """  # noqa: D301 - click reads the control character
     from ..terrain import preview
     from .files import read_tin

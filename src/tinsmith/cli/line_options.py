@@ -1,0 +1,88 @@
+"""Options for lines: which files they come from, and how they meet the points."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+__all__ = ["CROSSINGS", "LINE_OPTIONS", "TRIMS"]
+
+CROSSINGS = ("split", "error")
+TRIMS = ("perimeter", "everywhere")
+
+
+def _files(name: str, words: str) -> Any:
+    return click.option(
+        name,
+        metavar="FILE",
+        type=click.Path(path_type=Path),
+        multiple=True,
+        help=f"{words} May be given several times; FILE:LAYER names a layer.",
+    )
+
+
+def _as_level(
+    ctx: click.Context,  # noqa: ARG001 - click's signature
+    param: click.Parameter,  # noqa: ARG001 - click's signature
+    value: str | None,
+) -> float | str | None:
+    """Return a height as a number, anything else as the name of a column."""
+    if value is None:
+        return None
+    try:
+        return float(value)
+    except ValueError:
+        return value
+
+
+LINE_OPTIONS = (
+    _files(
+        "--breaklines",
+        "Vector file (GeoPackage, Shapefile, GeoJSON ...) of lines that must be edges of the "
+        "surface; columns kind, priority and name are honoured.",
+    ),
+    _files("--soft-breaklines", "Vector file of lines that are edges but no breaks of slope."),
+    _files("--boundary", "Vector file of polygons: the surface ends there."),
+    _files("--holes", "Vector file of polygons without surface inside."),
+    _files("--erase", "Vector file of polygons: points inside are left out and spanned."),
+    _files("--water", "Vector file of flat polygons."),
+    click.option(
+        "--water-z",
+        metavar="Z",
+        callback=_as_level,
+        help="Height of the water, or the column that holds it.",
+    ),
+    click.option(
+        "--drape", is_flag=True, help="Take the heights of lines in files from the surface."
+    ),
+    click.option(
+        "--codes",
+        is_flag=True,
+        help="Make lines of the points' own codes, such as EP1 BEG, EP1, EP1 END, BLDG1 CLS.",
+    ),
+    click.option(
+        "--crossing",
+        type=click.Choice(CROSSINGS),
+        default="split",
+        show_default=True,
+        help="Where lines cross: make a vertex there, or refuse.",
+    ),
+    click.option(
+        "--conforming", is_flag=True, help="Split lines until every edge is Delaunay by itself."
+    ),
+    click.option(
+        "--max-edge",
+        metavar="LENGTH",
+        type=float,
+        help="Drop triangles with longer edges, in CRS units.",
+    ),
+    click.option(
+        "--trim",
+        type=click.Choice(TRIMS),
+        default="perimeter",
+        show_default=True,
+        help="Where --max-edge drops them: from the outside inwards, or everywhere.",
+    ),
+)
