@@ -1,4 +1,4 @@
-"""GeoJSON (RFC 7946): triangles, points, edges or hull of a surface, for any GIS."""
+"""GeoJSON (RFC 7946): triangles, points, edges, lines or hull of a surface, for any GIS."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from ..tin import Survey
 from .atomic import replacing
 from .crs import is_geographic
 from .errors import FormatError, WriteError
+from .geojson_lines import edge_words, line_features, line_vertices, require_lines
 from .geojson_places import (
     Places,
     crs_places,
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Kind", "write"]
 
-Kind = Literal["triangles", "points", "edges", "hull"]
+Kind = Literal["triangles", "points", "edges", "lines", "hull"]
 
 _BATCH = 16_384
 _FEATURE = '{"type":"Feature","properties":%s,"geometry":{"type":"%s","coordinates":%s}}'
@@ -42,7 +43,7 @@ _TRIANGLE = _FEATURE % (
     "Polygon",
     "[[%s,%s,%s,%s]]",
 )
-_EDGE = _FEATURE % ('{"id":%d,"constrained":%s}', "LineString", "[%s,%s]")
+_EDGE = _FEATURE % ('{"id":%d,%s}', "LineString", "[%s,%s]")
 _POINT = _FEATURE % ("%s", "Point", "%s")
 _HULL = _FEATURE % ('{"id":%d,"area":%.12g}', "Polygon", "[%s]")
 
@@ -62,11 +63,13 @@ def write(
     surface : TIN or Survey
         Its CRS must be known, unless ``projected``.
     path : Path
-    kind : {"triangles", "points", "edges", "hull"}, optional
+    kind : {"triangles", "points", "edges", "lines", "hull"}, optional
         One Polygon a triangle with the properties ``id``, ``slope`` and ``aspect`` (degrees; null
         where there is none) and ``area`` (in the plane, square metres); one Point a vertex, or a
-        point of the survey with its attributes; one LineString an edge with ``constrained``; or
-        the outline, holes included, with its ``area``. Default triangles, of a survey points.
+        point of the survey with its attributes; one LineString an edge with ``constrained`` and
+        ``kind`` (that of its line: hard, soft, boundary, hole, water; null if none is known); one
+        LineString a line with ``kind``, ``name`` and ``source`` (its number in the input); or the
+        outline, holes included, with its ``area``. Default triangles, of a survey points.
     projected : bool
         Leave the coordinates in the CRS, every digit kept, and name it in the ``crs`` member of
         the 2008 specification: not RFC 7946, but GDAL and QGIS understand it. Default WGS 84
@@ -79,7 +82,7 @@ def write(
     CrsError
         If the CRS is not known, or puts points outside the Earth.
     FormatError
-        If there is no such kind, or a survey is asked for triangles.
+        If there is no such kind, a survey is asked for triangles, or a TIN without lines for lines.
     WriteError
         If the file cannot be written, a coordinate is not finite, or the surface crosses the
         antimeridian.
@@ -97,6 +100,8 @@ def write(
     """
     surface = require_writable(surface, path)
     chosen = _checked_kind(surface, kind)
+    if chosen == "lines" and not isinstance(surface, Survey):
+        require_lines(surface)
     _require_finite(surface.points, path)
     place = crs_places if projected else wgs84_places
     places = place(surface.points, surface.crs)
@@ -107,7 +112,7 @@ def write(
         corners = places.xyz[surface.triangles, 0]
         if places.crs_member is None:
             require_one_piece(corners, path)
-        used = places.xyz[_used_vertices(surface)]
+        used = places.xyz[_used_vertices(surface, chosen)]
         total = len(surface.triangles)
         features = _SURFACE_FEATURES[chosen](surface, places)
     with replacing(path, binary=False) as file:
@@ -156,9 +161,9 @@ def _head(places: Places, used: NDArray[np.float64]) -> str:
     return "{" + ",\n".join(lines) + ',\n"features":['
 
 
-def _used_vertices(tin: TIN) -> NDArray[np.bool_]:
+def _used_vertices(tin: TIN, kind: str) -> NDArray[np.bool_]:
     used = np.zeros(len(tin.points), np.bool_)
-    used[tin.triangles] = True
+    used[np.concatenate(line_vertices(tin)) if kind == "lines" else tin.triangles] = True
     return used
 
 
@@ -225,8 +230,7 @@ def _counter_clockwise(triangles: NDArray[np.int32], xyz: NDArray[np.float64]) -
 
 def _edges(tin: TIN, places: Places) -> Iterator[tuple[int, str]]:
     positions = texts(places.xyz)
-    constrained = np.array(["false", "true"], object)
-    flags = _flags_from_both_sides(tin)
+    words = edge_words(tin, _flags_from_both_sides(tin))
     across = np.arange(len(tin.triangles), dtype=np.int32)[:, None]
     once = (tin.neighbors < 0) | (tin.neighbors > across)
     written = 0
@@ -235,7 +239,7 @@ def _edges(tin: TIN, places: Places) -> Iterator[tuple[int, str]]:
         starts = positions[tin.triangles[part][:, [1, 2, 0]][here]]
         ends = positions[tin.triangles[part][:, [2, 0, 1]][here]]
         ids = range(written, written + len(starts))
-        rows = zip(ids, constrained[flags[part][here].astype(int)], starts, ends, strict=True)
+        rows = zip(ids, words[part][here], starts, ends, strict=True)
         if len(starts):
             yield done, ",\n".join(map(_EDGE.__mod__, rows))
         written += len(starts)
@@ -249,6 +253,10 @@ def _flags_from_both_sides(tin: TIN) -> NDArray[np.bool_]:
     row, back = np.nonzero(tin.neighbors[other] == triangle[:, None])
     flags[other[row], back] = True
     return flags
+
+
+def _lines(tin: TIN, places: Places) -> Iterator[tuple[int, str]]:
+    yield len(tin.triangles), ",\n".join(line_features(tin, texts(places.xyz)))
 
 
 # ------------------------------------------------------------------------------- hull
@@ -325,5 +333,6 @@ def _json(value: Any) -> str:
 _SURFACE_FEATURES: dict[str, Callable[[TIN, Places], Iterator[tuple[int, str]]]] = {
     "triangles": _triangles,
     "edges": _edges,
+    "lines": _lines,
     "hull": _hull,
 }

@@ -30,7 +30,7 @@ class _Pen(NamedTuple):
 
 
 _PENS = {
-    "soft": _Pen((84, 88, 92), 1.5, is_dashed=True),
+    "soft": _Pen((64, 68, 72), 1.8, is_dashed=True),
     "hard": _Pen((34, 34, 38), 1.7),
     "hole": _Pen((150, 58, 34), 2.0),
     "boundary": _Pen((150, 58, 34), 2.4),
@@ -58,14 +58,15 @@ class LineEdges(NamedTuple):
     kinds: NDArray[np.int8]
 
 
-def line_edges(tin: TIN) -> LineEdges:
+def line_edges(tin: TIN, *, guess: bool = True) -> LineEdges:
     """Return the edges of all lines of a TIN.
 
     Parameters
     ----------
     tin : TIN
-        Constrained edges of which no line is known, as in a TIN from a file, are hard breaklines
-        within the surface and boundary on its rim.
+    guess : bool
+        Take constrained edges of which no line is known, as in a TIN from a file, for hard
+        breaklines within the surface and for boundary on its rim; else leave them out.
 
     Returns
     -------
@@ -74,7 +75,7 @@ def line_edges(tin: TIN) -> LineEdges:
     lines = tin.lines
     ranks = np.array([EDGE_KINDS.index(kind) for kind in lines.kinds], np.int8)
     known = LineEdges(lines.steps(), np.repeat(ranks, np.diff(lines.offsets) - 1))
-    found = _constrained_edges(tin)
+    found = _constrained_edges(tin) if guess else LineEdges(known.pairs[:0], known.kinds[:0])
     pairs = np.concatenate([known.pairs, found.pairs])
     kinds = np.concatenate([known.kinds, found.kinds])
     is_guess = np.arange(len(pairs)) >= len(known.pairs)

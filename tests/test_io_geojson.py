@@ -413,7 +413,7 @@ def test_a_survey_with_a_coordinate_that_is_not_finite(tmp_path, value):
 def test_a_kind_that_there_is_not(tmp_path):
     refused(
         FormatError,
-        "'faces': one of triangles, points, edges, hull",
+        "'faces': one of triangles, points, edges, lines, hull",
         *(hills(9), tmp_path / "a.geojson"),
         kind="faces",
     )
