@@ -13,7 +13,7 @@ draw() {
 }
 
 echo "A survey of an invented site:"
-tinsmith build "$samples/site_survey.csv" --crs EPSG:32616 \
+tinsmith build "$samples/site_survey.csv" --crs EPSG:32616 --codes \
   -o "$folder/site_survey.geojson" -o "$folder/site_survey.ply"
 draw site_survey "Site survey"
 
