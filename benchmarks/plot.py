@@ -81,12 +81,15 @@ def _label(result: Result) -> str:
 
 
 def _dress(axes: Any, labels: list[str], title: str) -> None:
+    from matplotlib.ticker import LogFormatter
+
     axes.set_xscale("log")
     axes.set_yticks(range(len(labels)), labels)
     axes.invert_yaxis()
     axes.set_xlabel("microseconds per point (less is better); pale: wrong or incomplete answer")
     axes.set_title(title, loc="left")
     axes.xaxis.set_major_formatter("{x:g}")
+    axes.xaxis.set_minor_formatter(LogFormatter(labelOnlyBase=False))
     axes.grid(axis="x", which="both", color="#e6e6e6", linewidth=0.7)
     axes.grid(axis="y", color="#f0f0f0", linewidth=0.7)
     axes.set_axisbelow(True)
