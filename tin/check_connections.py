@@ -8,6 +8,7 @@ import numpy as np
 
 from . import topology
 from .exact import EXACT_RANGE, blocks
+from .report import LEFT_OUT
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 __all__ = ["check_arrays", "check_connections"]
 
 _NEXT, _AFTER_NEXT = (1, 2, 0), (2, 0, 1)
+NO_VERTEX = -1
 
 
 def check_arrays(tin: TIN, found: Findings) -> bool:
@@ -76,12 +78,11 @@ def _check_coordinates(points: NDArray[np.float64], found: Findings) -> None:
 
 def _check_ranges(tin: TIN, found: Findings) -> None:
     n_vertices, n_triangles = len(tin.points), len(tin.triangles)
-    has_vertex = np.ones(len(tin.vertex_of), np.bool_)
-    has_vertex[tin.report.left_out_rows[tin.report.left_out_rows < len(has_vertex)]] = False
+    is_left_out = _left_out(tin, found)
     ranges = (
         ("triangles", "triangles", tin.triangles, 0, n_vertices),
         ("neighbors", "triangles", tin.neighbors, topology.NO_NEIGHBOR, n_triangles),
-        ("vertex_of", "rows", np.where(has_vertex, tin.vertex_of, 0)[:, None], 0, n_vertices),
+        ("vertex_of", "rows", np.where(is_left_out, 0, tin.vertex_of)[:, None], 0, n_vertices),
     )
     for name, things, array, lowest, end in ranges:
         wrong = ((array < lowest) | (array >= end)).any(axis=1)
@@ -91,6 +92,34 @@ def _check_ranges(tin: TIN, found: Findings) -> None:
             f"{{count}} {things} have an entry of {name} outside {lowest} to {end - 1} "
             f"(first: {things} {{first}}).",
         )
+
+
+def _left_out(tin: TIN, found: Findings) -> NDArray[np.bool_]:
+    """Check the report's rows without a vertex; tell which they are."""
+    rows, why = np.asarray(tin.report.left_out_rows), np.asarray(tin.report.left_out_why)
+    is_left_out = np.zeros(len(tin.vertex_of), np.bool_)
+    if rows.dtype.kind not in "iu" or why.dtype.kind not in "iu" or rows.shape != (len(why),):
+        found.fail(
+            "left_out",
+            f"The report has {rows.shape} rows of type {rows.dtype} that were left out, "
+            f"and {why.shape} reasons of type {why.dtype}.",
+        )
+        return is_left_out
+    is_known = (rows >= 0) & (rows < len(is_left_out)) & (why >= 0) & (why < len(LEFT_OUT))
+    is_known[1:] &= rows[1:] > rows[:-1]
+    found.report(
+        "left_out",
+        np.flatnonzero(~is_known),
+        "{count} entries of the report about rows that were left out have no such row, no such "
+        "reason or are out of order (first: entries {first}).",
+    )
+    is_left_out[rows[is_known]] = True
+    found.report(
+        "left_out",
+        np.flatnonzero(is_left_out & (tin.vertex_of != NO_VERTEX)),
+        "{count} rows were left out by the report, but have a vertex (first: rows {first}).",
+    )
+    return is_left_out
 
 
 def check_connections(tin: TIN, found: Findings) -> bool:

@@ -1,4 +1,4 @@
-"""Level 3 of a check: every free edge is Delaunay, every input row is at its vertex."""
+"""Level 3 of a check: every free edge is Delaunay."""
 
 from __future__ import annotations
 
@@ -15,9 +15,7 @@ if TYPE_CHECKING:
     from .findings import Findings
     from .surface import TIN
 
-__all__ = ["check_delaunay", "check_rows"]
-
-_ROUNDING = 4 * 2.0**-53
+__all__ = ["check_delaunay"]
 
 
 def check_delaunay(tin: TIN, found: Findings) -> None:
@@ -80,23 +78,3 @@ def _is_against_rule(
     last_end = np.where(is_last(xy, b, c), b, c)
     last_opposite = np.where(is_last(xy, a, far), a, far)
     return is_last(xy, last_end, last_opposite)
-
-
-def check_rows(tin: TIN, rows: NDArray[np.float64], found: Findings) -> None:
-    """Check that every input row is at its vertex, or within the distance of snapping."""
-    if len(rows) != len(tin.vertex_of):
-        found.fail(
-            "rows", f"There are {len(rows)} rows, but the TIN was made of {len(tin.vertex_of)}."
-        )
-        return
-    moved = np.abs(tin.points[tin.vertex_of, :2] - rows[:, :2])
-    moved[tin.vertex_of < 0] = 0.0  # left out, and the report says so
-    is_moved = moved.any(axis=1)
-    if tin.report.snap > 0:
-        is_moved = np.hypot(moved[:, 0], moved[:, 1]) > tin.report.snap * (1 + _ROUNDING)
-    found.report(
-        "rows",
-        np.flatnonzero(is_moved),
-        "{count} rows are not where their vertex is, "
-        f"within snap {tin.report.snap:g} (first: rows {{first}}).",
-    )

@@ -1,4 +1,4 @@
-"""Level 2 of a check: turns, boundary, Euler count and areas."""
+"""Level 2 of a check: turns, boundary, overlaps, Euler count and areas."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from . import topology
+from .check_rim import Rim, find_fault
 from .exact import Columns, columns, is_last, orientation
 
 if TYPE_CHECKING:
@@ -15,17 +16,18 @@ if TYPE_CHECKING:
     from .findings import Findings
     from .surface import TIN
 
-__all__ = ["check_shape"]
+__all__ = ["check_shape", "has_sound_rim", "rim_of"]
 
 _UNIT_ROUNDOFF = 2.0**-53
 
 
 def check_shape(tin: TIN, found: Findings) -> None:
-    """Check turns, rim, Euler count and areas."""
+    """Check turns, rim, overlaps, Euler count and areas."""
     xy = columns(tin.points)
+    clockwise = np.flatnonzero(orientation(xy, *tin.triangles.T) <= 0)
     found.report(
         "orientation",
-        np.flatnonzero(orientation(xy, *tin.triangles.T) <= 0),
+        clockwise,
         "{count} triangles are not counter-clockwise (first: triangles {first}).",
     )
     rings = topology.boundary_rings(tin.triangles, tin.neighbors)
@@ -33,7 +35,9 @@ def check_shape(tin: TIN, found: Findings) -> None:
     if not rings:
         found.fail("boundary", "The surface has no boundary: it closes upon itself.")
         return
-    is_free = _check_rim(tin, xy, rings, found)
+    is_convex, is_free = _check_rim(tin, xy, rings, found)
+    if not (is_convex or len(clockwise)):
+        _check_overlaps(tin, found)
     if is_free and len(rings) > 1:
         found.fail(
             "boundary",
@@ -43,10 +47,12 @@ def check_shape(tin: TIN, found: Findings) -> None:
     _check_areas(tin, rings, found)
 
 
-def _check_rim(tin: TIN, xy: Columns, rings: list[NDArray[np.int32]], found: Findings) -> bool:
+def _check_rim(
+    tin: TIN, xy: Columns, rings: list[NDArray[np.int32]], found: Findings
+) -> tuple[bool, bool]:
     """Check that the boundary is convex where it is not constrained.
 
-    Returns whether any of it is not constrained.
+    Returns whether it is one convex ring, and whether any of it is not constrained.
     """
     here = np.concatenate(rings)
     before = np.concatenate([np.roll(ring, 1) for ring in rings])
@@ -63,7 +69,32 @@ def _check_rim(tin: TIN, xy: Columns, rings: list[NDArray[np.int32]], found: Fin
     is_start = is_last(xy, before, here) & is_last(xy, after, here)
     if not is_reflex.any() and np.count_nonzero(is_start) != len(rings):
         found.fail("hull", "The boundary winds about itself: a convex ring turns round once.")
-    return not is_constrained.all()
+    return len(rings) == 1 and not is_reflex.any(), not is_constrained.all()
+
+
+def has_sound_rim(found: Findings) -> bool:
+    """Tell whether a level 2 without faults says which places lie inside the surface."""
+    faults = {"orientation", "boundary", "hull", "overlap"}
+    return faults.isdisjoint(problem.kind for problem in found.problems)
+
+
+def rim_of(tin: TIN) -> Rim:
+    """Return the edges with a triangle on one side only."""
+    triangle, corner = np.nonzero(tin.neighbors == topology.NO_NEIGHBOR)
+    start, end = topology.ends(tin.triangles, triangle, corner)
+    return Rim(tin.points, start, end)
+
+
+def _check_overlaps(tin: TIN, found: Findings) -> None:
+    """Check that the rim meets itself in vertices only, with the surface on one side of it."""
+    fault = find_fault(rim_of(tin))
+    if fault is not None:
+        what = (
+            "The boundary crosses or overlaps itself, or runs through a vertex of itself"
+            if fault.is_meeting
+            else "Parts of the surface lie over each other"
+        )
+        found.report("overlap", [fault.vertex], f"{what} (westernmost: near vertex {{first}}).")
 
 
 def _flags_on_rim(tin: TIN, start: NDArray[np.int32], end: NDArray[np.int32]) -> NDArray[np.bool_]:

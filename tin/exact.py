@@ -25,7 +25,16 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["EXACT_RANGE", "Columns", "blocks", "columns", "in_circle", "is_last", "orientation"]
+__all__ = [
+    "EXACT_RANGE",
+    "ORIENTATION_BOUND",
+    "Columns",
+    "blocks",
+    "columns",
+    "in_circle",
+    "is_last",
+    "orientation",
+]
 
 EXACT_RANGE = (2.0**-200, 2.0**250)
 """Smallest (but 0) and largest magnitude of a coordinate for which the signs are exact."""
@@ -35,7 +44,9 @@ Columns = tuple["NDArray[np.float64]", "NDArray[np.float64]"]
 
 _BLOCK = 1 << 14  # rows at a time: temporary arrays stay in the processor's cache
 _UNIT_ROUNDOFF = 2.0**-53
-_ORIENTATION_BOUND = (3 + 16 * _UNIT_ROUNDOFF) * _UNIT_ROUNDOFF
+ORIENTATION_BOUND = (3 + 16 * _UNIT_ROUNDOFF) * _UNIT_ROUNDOFF
+"""Of the error of a turn in doubles, relative to the sizes of its two products."""
+
 _IN_CIRCLE_BOUND = (10 + 96 * _UNIT_ROUNDOFF) * _UNIT_ROUNDOFF
 
 # Limbs of 28 bits: with 18 of them a sum of 36 products of limbs below 2^29 fits 63 bits.
@@ -76,7 +87,7 @@ def orientation(xy: Columns, a: NDArray[Any], b: NDArray[Any], c: NDArray[Any]) 
         (ax, ay), (bx, by), (cx, cy) = (_places(xy, corner[block]) for corner in (a, b, c))
         left = (ax - cx) * (by - cy)
         right = (ay - cy) * (bx - cx)
-        bound = _ORIENTATION_BOUND * (np.abs(left) + np.abs(right))
+        bound = ORIENTATION_BOUND * (np.abs(left) + np.abs(right))
         terms = ((ax, cx), (ay, cy), (bx, cx), (by, cy))
         signs[block] = _decided(left - right, bound, terms, _cross_sign)
     return signs

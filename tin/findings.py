@@ -22,13 +22,15 @@ class Problem:
     Attributes
     ----------
     kind : str
-        Short name: ``"shape"``, ``"coordinates"``, ``"index"``, ``"corners"``, ``"neighbors"``,
-        ``"constrained"``, ``"edge"``, ``"unused"``, ``"orientation"``, ``"boundary"``, ``"hull"``,
-        ``"euler"``, ``"area"``, ``"delaunay"``, ``"rows"``; among notes ``"tie"``, ``"stopped"``.
+        Short name: ``"shape"``, ``"coordinates"``, ``"index"``, ``"left_out"``, ``"corners"``,
+        ``"neighbors"``, ``"constrained"``, ``"edge"``, ``"unused"``, ``"chains"``,
+        ``"orientation"``, ``"boundary"``, ``"hull"``, ``"overlap"``, ``"euler"``, ``"area"``,
+        ``"delaunay"``, ``"lines"``, ``"rows"``; among notes ``"tie"``, ``"lines"``, ``"stopped"``.
     count : int
         How often it occurs.
     first : tuple of int
-        Numbers of the first few triangles, vertices or rows at fault, as the sentence says.
+        Numbers of the first few triangles, vertices, rows, chains or lines at fault, as the
+        sentence says.
     sentence : str
         What is wrong, in one sentence.
     """

@@ -1,0 +1,232 @@
+"""Follow the chains of a TIN along the lines that were given, and note what must be proved."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+from math import hypot
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .line_set import LineSet
+    from .lines import Lines
+
+__all__ = ["UNSEEN_CUTS", "Walk", "distance", "walk_along"]
+
+UNSEEN_CUTS = 16
+"""Cuts that are allowed for in a part of a line that is left out."""
+
+Place = list[float]
+
+
+class Walk(NamedTuple):
+    """What was met on the way.
+
+    Attributes
+    ----------
+    between : (k, 3) int64 array
+        Vertices that are none of their line, in order: number, and the rows of the line's vertices
+        before and after.
+    gap_rows : list of int
+        Rows of the line's vertices behind which a part is left out.
+    gap_places, gap_lines : lists of places and of int
+        Vertices left out and middles between them, and their lines.
+    end_vertices, end_lines : lists of int
+        Where chains begin or end, but not their line.
+    lost : list of int
+        Lines with a chain that is not found on them.
+    """
+
+    between: NDArray[np.int64]
+    gap_rows: list[int]
+    gap_places: list[Place]
+    gap_lines: list[int]
+    end_vertices: list[int]
+    end_lines: list[int]
+    lost: list[int]
+
+
+def walk_along(
+    xy: NDArray[np.float64], lines: Lines, given: LineSet, *, snap: float, unit: float
+) -> Walk:
+    """Follow the chains of every given line.
+
+    Parameters
+    ----------
+    xy : (n, 2) float64 array
+        The vertices of the TIN.
+    lines : Lines
+    given : LineSet
+    snap : float
+        How far a vertex of a line may have been moved.
+    unit : float
+        How far a line may be moved by one cut.
+    """
+    walker = _Walker(lines.vertices.tolist(), xy[lines.vertices].tolist(), given, snap, unit)
+    chains: dict[tuple[str, int], list[range]] = {}
+    spans = [range(*span) for span in pairwise(lines.offsets.tolist())]
+    for key, span in zip(zip(lines.kinds, lines.sources.tolist(), strict=True), spans, strict=True):
+        chains.setdefault(key, []).append(span)
+    for line, key in enumerate(zip(given.kinds, given.sources.tolist(), strict=True)):
+        walker.follow(line, chains.get(key, []))
+    return walker.walk
+
+
+class _Walker:
+    """Keeps to the earliest way along a line that its chains can have taken.
+
+    ``at`` counts the line's vertices, without repetitions: a chain has passed number ``at`` and
+    not yet the next one. Chains are ranges of positions among the vertices of all chains.
+    """
+
+    def __init__(
+        self,
+        vertices: list[int],
+        places: list[Place],
+        given: LineSet,
+        snap: float,
+        unit: float,
+    ) -> None:
+        self._vertices = vertices
+        self._places = places
+        self._xy = given.xy
+        self._given: list[Place] = given.xy.tolist()
+        self._offsets: list[int] = given.offsets.tolist()
+        self._snap = snap
+        self._unit = unit
+        self._between: list[tuple[int, int, int]] = []
+        self._gaps = Walk(np.empty((0, 3), np.int64), [], [], [], [], [], [])
+
+    @property
+    def walk(self) -> Walk:
+        """All that was met."""
+        between = np.array(self._between, np.int64).reshape(-1, 3)
+        return self._gaps._replace(between=between)
+
+    def follow(self, line: int, chains: list[range]) -> None:
+        """Follow the chains of one line."""
+        rows = self._rows_of(line)
+        if not chains and self._is_point(rows):
+            return
+        at, here = 0, None
+        for chain in chains:
+            begin = self._entry(rows, at, here, chain)
+            if begin is None:
+                self._gaps.lost.append(line)
+                return
+            self._pass_gap(line, rows[at : begin + 1], here, chain[0])
+            at = self._run(rows, begin, chain)
+            here = chain[-1]
+        if here is None or at < len(rows) - 1:
+            self._pass_gap(line, rows[at:], here, None)
+
+    def _rows_of(self, line: int) -> list[int]:
+        """Return the rows of a line, without repeated places."""
+        rows = range(self._offsets[line], self._offsets[line + 1])
+        given = self._given
+        return [row for row in rows if row == rows[0] or given[row] != given[row - 1]]
+
+    def _is_point(self, rows: list[int]) -> bool:
+        """Tell if snapping may have made one place of a line."""
+        first = self._given[rows[0]]
+        return all(_far(first, self._given[row]) <= 2 * self._snap for row in rows)
+
+    def _is_at(self, place: Place, row: int) -> bool:
+        given = self._given[row]
+        return place == given or (self._snap > 0 and _far(place, given) <= self._snap)
+
+    def _entry(self, rows: list[int], at: int, here: int | None, chain: range) -> int | None:
+        """Find behind which vertex a chain begins: the first that its first step fits to."""
+        if here is None and self._begins_with(rows, chain):
+            return 0
+        first, second = (np.array([self._places[position]]) for position in chain[:2])
+        a, b = self._xy[rows[at:-1]], self._xy[rows[at + 1 :]]
+        off = np.maximum(distance(first, a, b), distance(second, a, b))
+        begin, end = _along(first, a, b), _along(second, a, b)
+        off[end < begin - self._unit] = np.inf
+        if here is not None and begin[:1] < _along(np.array(self._places[here]), a[:1], b[:1]):
+            off[0] = np.inf
+        best = off.min(initial=np.inf)
+        if best > (1 + UNSEEN_CUTS + len(chain)) * self._unit:
+            return None
+        return at + int(np.argmax(off <= max(best, 2 * self._unit)))
+
+    def _begins_with(self, rows: list[int], chain: range) -> bool:
+        """Tell if a chain begins where its line does, and in the same direction."""
+        if not self._is_at(self._places[chain[0]], rows[0]):
+            return False
+        (ax, ay), (bx, by) = self._given[rows[0]], self._given[rows[1]]
+        x, y = self._places[chain[1]]
+        across = (bx - ax) * (y - ay) - (by - ay) * (x - ax)
+        is_ahead = (bx - ax) * (x - ax) + (by - ay) * (y - ay) > 0
+        return is_ahead and abs(across) <= 2 * self._unit * hypot(bx - ax, by - ay)
+
+    def _run(self, rows: list[int], at: int, chain: range) -> int:
+        """Walk a chain to its end; return where that is."""
+        places, last = self._places, len(rows) - 1
+        is_passed = self._is_at(places[chain[0]], rows[at])
+        for position in chain:
+            while at < last and self._is_at(places[position], rows[at + 1]):
+                at, is_passed = at + 1, True
+            if not is_passed:
+                before = min(at, last - 1)
+                self._between.append((self._vertices[position], rows[before], rows[before + 1]))
+            is_passed = False
+        return at
+
+    def _pass_gap(self, line: int, rows: Sequence[int], here: int | None, then: int | None) -> None:
+        """Note the part of a line from one chain to the next, or from or to its ends."""
+        ends = [self._places[position] for position in (here, then) if position is not None]
+        left_out = [
+            row
+            for number, row in enumerate(rows)
+            if (number or here is None) and not any(self._is_at(end, row) for end in ends)
+        ]
+        nodes = [*ends[: here is not None], *(self._given[row] for row in left_out)]
+        nodes += ends[len(ends) - (then is not None) :]
+        if len(nodes) < 2 or (not left_out and nodes[0] == nodes[1]):
+            return
+        gaps = self._gaps
+        gaps.gap_rows.extend(rows)
+        places = [
+            *(self._given[row] for row in left_out),
+            *([p[0] / 2 + q[0] / 2, p[1] / 2 + q[1] / 2] for p, q in pairwise(nodes)),
+        ]
+        gaps.gap_places.extend(places)
+        gaps.gap_lines.extend([line] * len(places))
+        for position in (here, then):
+            if position is not None:
+                gaps.end_vertices.append(self._vertices[position])
+                gaps.end_lines.append(line)
+
+
+# -------------------------------------------------------------------- measures
+
+
+def _far(p: Place, q: Place) -> float:
+    return hypot(p[0] - q[0], p[1] - q[1])
+
+
+def _along(
+    p: NDArray[np.float64], a: NDArray[np.float64], b: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return how far along the segments a-b the feet of p are."""
+    foot: NDArray[np.float64] = ((p - a) * (b - a)).sum(axis=1) / np.hypot(*(b - a).T)
+    return foot
+
+
+def distance(
+    p: NDArray[np.float64], a: NDArray[np.float64], b: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Measure from places to segments a-b, (k, 2) arrays."""
+    u, v = b - a, p - a
+    square = (u * u).sum(axis=1)
+    share = np.clip((u * v).sum(axis=1) / np.where(square > 0, square, 1.0), 0.0, 1.0)
+    across = np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]) / np.sqrt(np.where(square, square, 1.0))
+    to_end = np.hypot(*(v - share[:, None] * u).T)
+    measured: NDArray[np.float64] = np.where((share > 0) & (share < 1), across, to_end)
+    return measured
