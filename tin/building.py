@@ -106,7 +106,13 @@ def _with_lines(recipe: Recipe) -> TIN:
         constrained=surface.constrained,
         vertex_of=vertex_of,
         report=_report(recipe, len(surface.points), len(surface.triangles), account),
-        lines=lines_in(model.pieces, model.infos, number_of, surface),
+        lines=lines_in(
+            model.pieces,
+            model.infos,
+            number_of,
+            surface,
+            is_whole=surface is made.surface,
+        ),
         crs=recipe.crs,
     )
     tin.remember(model)

@@ -16,7 +16,7 @@ from .duplicates import DuplicatePolicy, merge_rows
 from .errors import PointsError
 from .line_set import ABOVE_ALL, BELOW_ALL, LineSet
 from .model import force
-from .noding import Chains, Noded, node
+from .noding import Chains, Noded, node, untouched
 from .pieces import Pieces
 from .regions import Surface, edge_keys, in_rings
 from .report import Overruled
@@ -89,25 +89,20 @@ def draft(
         If lines cross that must not.
     """
     merged = _merge(xyz, lines, options)
-    noded = node(
-        np.ascontiguousarray(merged.points[:, :2]),
-        merged.chains,
-        lines.priorities,
-        snap=options.snap,
-        crossing=options.crossing,
-        threads=options.threads,
-        names=[lines.label(i) for i in range(len(lines.kinds))],
-    )
+    mesh, noded = _mesh(merged), untouched(merged.chains)
+    is_simple = options.snap == 0.0 and not (lines.priorities == ABOVE_ALL).any()
+    is_forced = is_simple and _is_forced(mesh, _as_pieces(noded.chains))
+    if not is_forced:
+        noded = _noded(merged, lines, options)
+        mesh = _mesh(merged, noded.new_points)
     points = np.concatenate([merged.points, noded.new_points])
-    pieces = Pieces(
-        noded.chains.vertices, noded.chains.offsets, np.arange(len(lines.kinds), dtype=np.int32)
-    )
+    pieces = _as_pieces(noded.chains)
     overruled = _passed_by(points, noded, merged.overruled)
     overruled = _leveled(points, pieces, lines, overruled)
     pieces, wet = _without_water(points, pieces, lines)
-    mesh = _mesh(merged, noded)
-    mesh.remove(np.flatnonzero(wet).astype(np.int32))
-    force(mesh, pieces)
+    if not is_forced:
+        mesh.remove(np.flatnonzero(wet).astype(np.int32))
+        force(mesh, pieces)
     if conforming:
         points, pieces = conform(mesh, points, pieces)
         wet = np.append(wet, np.zeros(len(points) - len(wet), np.bool_))
@@ -122,6 +117,30 @@ def draft(
         overruled,
         number_of,
     )
+
+
+def _is_forced(mesh: _kernel.Mesh, pieces: Pieces) -> bool:
+    """Fix the steps of lines as they are given; tell whether nothing was in the way of any."""
+    steps, _ = pieces.steps()
+    passed, blocked = mesh.force(steps)
+    return not (len(passed) or len(blocked))
+
+
+def _noded(merged: _Merged, lines: LineSet, options: LineOptions) -> Noded:
+    return node(
+        np.ascontiguousarray(merged.points[:, :2]),
+        merged.chains,
+        lines.priorities,
+        snap=options.snap,
+        crossing=options.crossing,
+        threads=options.threads,
+        names=[lines.label(i) for i in range(len(lines.kinds))],
+    )
+
+
+def _as_pieces(chains: Chains) -> Pieces:
+    lines = np.arange(len(chains.offsets) - 1, dtype=np.int32)
+    return Pieces(chains.vertices, chains.offsets, lines)
 
 
 # ------------------------------------------------------------------------- rows
@@ -274,13 +293,13 @@ def _inside(xy: NDArray[np.float64], ring: NDArray[np.float64]) -> NDArray[np.bo
 # ----------------------------------------------------------------- triangulation
 
 
-def _mesh(merged: _Merged, noded: Noded) -> _kernel.Mesh:
+def _mesh(merged: _Merged, new_points: NDArray[np.float64] | None = None) -> _kernel.Mesh:
     mesh = _kernel.Mesh(
         np.ascontiguousarray(merged.points[:, :2]),
         merged.growth.triangles,
         merged.growth.neighbors,
         np.zeros(merged.growth.triangles.shape, np.bool_),
     )
-    if len(noded.new_points):
-        mesh.insert(np.ascontiguousarray(noded.new_points[:, :2]))
+    if new_points is not None and len(new_points):
+        mesh.insert(np.ascontiguousarray(new_points[:, :2]))
     return mesh

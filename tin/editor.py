@@ -16,6 +16,7 @@ import numpy as np
 from . import _kernel
 from .chains import ChainTable, Step, as_pairs, step_of, with_middle
 from .errors import LinesError, PointsError
+from .live_mesh import LiveMesh
 from .model import LineInfo, Model, lines_in, mesh_of
 from .regions import Surface
 
@@ -32,6 +33,10 @@ FLIP = "flip"
 """Name of the soft breakline that keeps a flipped edge."""
 
 _MOST_CROSSINGS = 1_000_000
+
+_LARGE_BATCH = 10_000
+_LARGE_SHARE = 8
+"""A batch of more than an eighth of the vertices is triangulated together with them."""
 
 
 class Refreshed(NamedTuple):
@@ -67,10 +72,10 @@ class Editor:
         self._removed: list[int] = []
         self._visible: NDArray[np.int32] | None = None
         if hull is None:
-            self._mesh = mesh_of(model.points, model.pieces, threads=threads)
+            arrays = mesh_of(model.points, model.pieces, threads=threads).arrays(threads)
         else:
-            xy = np.ascontiguousarray(hull.points[:, :2])
-            self._mesh = _kernel.Mesh(xy, hull.triangles, hull.neighbors, hull.constrained)
+            arrays = hull.triangles, hull.neighbors, hull.constrained
+        self._live = LiveMesh(np.ascontiguousarray(model.points[:, :2]), *arrays)
 
     # ------------------------------------------------------------------ numbers
 
@@ -82,7 +87,11 @@ class Editor:
     @property
     def count(self) -> int:
         """Number of vertices of the TIN (of a clipped one, when it was last refreshed)."""
-        return self._mesh.count if self._visible is None else len(self._visible)
+        return self._live.count if self._visible is None else len(self._visible)
+
+    @property
+    def _mesh(self) -> _kernel.Mesh:
+        return self._live.mesh
 
     def slots(self, vertices: NDArray[np.int64]) -> NDArray[np.int32]:
         """Return the slots of vertices of the TIN, which must exist."""
@@ -105,13 +114,13 @@ class Editor:
 
     def hull(self) -> Surface:
         """Return the triangulation of all vertices."""
-        triangles, neighbors, fixed = self._mesh.arrays(self._threads)
-        return Surface(self._points.values[self._mesh.alive()], triangles, neighbors, fixed)
+        triangles, neighbors, fixed = self._live.arrays(self._threads)
+        return Surface(self._points.values[self._live.alive()], triangles, neighbors, fixed)
 
     def refreshed(self) -> Refreshed:
         """Make the arrays of the TIN."""
         hull = self.hull()
-        alive = self._mesh.alive()
+        alive = self._live.alive()
         number = np.where(alive, np.cumsum(alive) - 1, -1).astype(np.int32)
         model = Model(
             points=hull.points,
@@ -125,7 +134,7 @@ class Editor:
             self._visible = np.flatnonzero(alive)[number_of >= 0].astype(np.int32)
         return Refreshed(
             surface,
-            lines_in(model.pieces, model.infos, number_of, surface),
+            lines_in(model.pieces, model.infos, number_of, surface, is_whole=surface is hull),
             np.append(number_of, np.int32(-1))[model.vertex_of],
             model,
         )
@@ -139,8 +148,11 @@ class Editor:
         return slots
 
     def _insert(self, xyz: NDArray[np.float64], policy: str) -> NDArray[np.int32]:
-        first = self._mesh.slots
-        slots = self._mesh.insert(np.ascontiguousarray(xyz[:, :2]))
+        first = self._live.slots
+        if self._is_large(len(xyz)):
+            slots = self._grow_with(xyz)
+        else:
+            slots = self._mesh.insert(np.ascontiguousarray(xyz[:, :2]))
         is_new = slots == np.arange(first, first + len(xyz))
         self._points.extend(xyz)
         self._removed.extend((first + np.flatnonzero(~is_new)).tolist())
@@ -151,6 +163,33 @@ class Editor:
             for slot in slots[is_new].tolist():
                 self._join_step_at(slot)
         return slots
+
+    def _is_large(self, count: int) -> bool:
+        """Tell whether growing all points anew is quicker than inserting so many."""
+        is_worth_it = count > _LARGE_BATCH and count * _LARGE_SHARE > self._live.count
+        return is_worth_it and not self._removed and not self._chains
+
+    def _grow_with(self, xyz: NDArray[np.float64]) -> NDArray[np.int32]:
+        """Triangulate the points that are there and those that come; return slots of the latter.
+
+        A slot is made for every row, as if each had been inserted, and stays empty where a vertex
+        was there already.
+        """
+        first = self._live.slots
+        rows = np.concatenate([self._points.values, xyz])
+        growth = _kernel.grow(rows, threads=self._threads)
+        own = np.arange(len(rows), dtype=np.int32)
+        slots = own if growth.kept_row is None else growth.kept_row
+        is_kept = slots == own
+        vertex = np.flatnonzero(is_kept).astype(np.int32)
+        self._live = LiveMesh(
+            np.ascontiguousarray(rows[:, :2]),
+            growth.triangles if is_kept.all() else vertex[growth.triangles],
+            growth.neighbors,
+            np.zeros(growth.triangles.shape, np.bool_),
+            is_kept,
+        )
+        return slots[first:]
 
     def _join_step_at(self, slot: int) -> None:
         """Take a vertex that came to lie on a fixed edge into the lines there."""
@@ -171,8 +210,6 @@ class Editor:
         for slot in slots.tolist():
             self._remove(slot)
             insort(self._removed, slot)
-        rows = self._rows.values
-        rows[np.isin(rows, slots)] = -1
 
     def _remove(self, slot: int) -> None:
         new: list[Step] = []

@@ -128,22 +128,39 @@ def mesh_of(points: NDArray[np.float64], pieces: Pieces, *, threads: int) -> _ke
 
 
 def force(mesh: _kernel.Mesh, pieces: Pieces) -> None:
-    """Fix every step once."""
+    """Fix all steps."""
     steps, _ = pieces.steps()
-    keys = edge_keys(steps, mesh.slots)
-    _, once = np.unique(keys, return_index=True)
-    passed, blocked = mesh.force(np.ascontiguousarray(steps[np.sort(once)]))
+    passed, blocked = mesh.force(steps)
     if len(passed) or len(blocked):
         raise AssertionError("lines were not cut at all places where they meet")
 
 
 def lines_in(
-    pieces: Pieces, infos: tuple[LineInfo, ...], number_of: NDArray[np.int32], surface: Surface
+    pieces: Pieces,
+    infos: tuple[LineInfo, ...],
+    number_of: NDArray[np.int32],
+    surface: Surface,
+    *,
+    is_whole: bool,
 ) -> Lines:
     """Return the lines as far as they are edges of the surface, by its numbers of vertices."""
-    n = len(surface.points)
+    is_given = np.array([info.source >= 0 for info in infos], np.bool_)
     steps, line_of = pieces.steps()
-    steps = number_of[steps]
+    is_edge = is_given[line_of]
+    if not is_whole:
+        is_edge &= _are_edges(number_of[steps], surface)
+    left = pieces.kept(is_edge)
+    return Lines(
+        vertices=number_of[left.vertices],
+        offsets=left.offsets,
+        kinds=tuple(infos[i].kind for i in left.lines),
+        sources=np.array([infos[i].source for i in left.lines], np.int32),
+        names=tuple(infos[i].name for i in left.lines),
+    )
+
+
+def _are_edges(steps: NDArray[np.int32], surface: Surface) -> NDArray[np.bool_]:
+    n = len(surface.points)
     triangle, corner = np.nonzero(surface.constrained)
     edges = np.stack(
         [
@@ -154,12 +171,4 @@ def lines_in(
     )
     is_edge = np.asarray((steps >= 0).all(axis=1), np.bool_)
     is_edge[is_edge] = np.isin(edge_keys(steps[is_edge], n), edge_keys(edges, n))
-    is_given = np.array([info.source >= 0 for info in infos], np.bool_)
-    left = pieces.kept(is_edge & is_given[line_of])
-    return Lines(
-        vertices=number_of[left.vertices],
-        offsets=left.offsets,
-        kinds=tuple(infos[i].kind for i in left.lines),
-        sources=np.array([infos[i].source for i in left.lines], np.int32),
-        names=tuple(infos[i].name for i in left.lines),
-    )
+    return is_edge

@@ -32,7 +32,7 @@ from .splitting import MOST_ROUNDS, Splitting, Walk, endless
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Chains", "Crossings", "Noded", "Touches", "node"]
+__all__ = ["Chains", "Crossings", "Noded", "Touches", "node", "untouched"]
 
 
 class Chains(NamedTuple):
@@ -107,6 +107,25 @@ class Noded(NamedTuple):
     chains: Chains
     crossings: Crossings
     touches: Touches
+
+
+def untouched(chains: Chains) -> Noded:
+    """Return lines that meet nowhere, as :func:`node` would; repeated vertices are dropped."""
+    vertices, offsets = chains.vertices, chains.offsets
+    is_repeated = np.zeros(len(vertices), np.bool_)
+    is_repeated[1:] = vertices[1:] == vertices[:-1]
+    is_repeated[offsets[:-1]] = False
+    none = np.empty(0, np.int32)
+    nothing = np.empty(0)
+    kept = np.concatenate([[0], np.cumsum(~is_repeated)])
+    return Noded(
+        np.empty((0, 3)),
+        Chains(
+            vertices[~is_repeated], kept[offsets].astype(np.int32), chains.heights[~is_repeated]
+        ),
+        Crossings(none, np.empty((0, 2)), none, none, nothing, nothing, nothing),
+        Touches(none, none, nothing),
+    )
 
 
 def node(

@@ -5,9 +5,11 @@
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/tuple.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <stdexcept>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "bind_arrays.hpp"
@@ -80,19 +82,29 @@ class HeldMesh {
   // edge stops.
   auto force(const GivenPairs& segments) {
     std::vector<std::int32_t> passed, blocked;
-    for (std::size_t i = 0; i < segments.shape(0); ++i) {
-      const std::int32_t a = segments.data()[2 * i], b = segments.data()[2 * i + 1];
-      require_vertex(a);
-      require_vertex(b);
-      const auto visit = [&](std::int32_t v) {
-        if (v == b) return;
-        passed.push_back(static_cast<std::int32_t>(i));
-        passed.push_back(v);
-      };
-      if (editor_.force(a, b, visit) == MeshEditor::Forced::kBlocked) {
-        blocked.push_back(static_cast<std::int32_t>(i));
+    bool is_complete = true;
+    const std::vector<std::int32_t> order = by_place_in_memory(segments);
+    {
+      nb::gil_scoped_release release;
+      constexpr std::int32_t kSegmentsPerQuestion = 4096;
+      std::int32_t until_question = kSegmentsPerQuestion;
+      for (const std::int32_t i : order) {
+        if (--until_question == 0) {
+          is_complete = no_signal();
+          until_question = kSegmentsPerQuestion;
+        }
+        if (!is_complete) break;
+        const std::int32_t a = segments.data()[2 * std::int64_t{i}];
+        const std::int32_t b = segments.data()[2 * std::int64_t{i} + 1];
+        const auto visit = [&](std::int32_t v) {
+          if (v == b) return;
+          passed.push_back(i);
+          passed.push_back(v);
+        };
+        if (editor_.force(a, b, visit) == MeshEditor::Forced::kBlocked) blocked.push_back(i);
       }
     }
+    if (!is_complete) throw nb::python_error();
     return std::make_tuple(hand_over(passed), hand_over(blocked));
   }
 
@@ -193,6 +205,20 @@ class HeldMesh {
 
   // So many vertices can be added before anything is moved in memory.
   static std::int32_t room_for(std::int32_t vertices) { return 64 + vertices / 8; }
+
+  // Segments in the order in which their triangles lie in memory; all vertices are there.
+  std::vector<std::int32_t> by_place_in_memory(const GivenPairs& segments) const {
+    std::vector<std::pair<MeshEdge, std::int32_t>> places(segments.shape(0));
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      require_vertex(segments.data()[2 * i]);
+      require_vertex(segments.data()[2 * i + 1]);
+      places[i] = {editor_.mesh().leaving(segments.data()[2 * i]), static_cast<std::int32_t>(i)};
+    }
+    std::sort(places.begin(), places.end());
+    std::vector<std::int32_t> order(places.size());
+    for (std::size_t i = 0; i < places.size(); ++i) order[i] = places[i].second;
+    return order;
+  }
 
   void require_vertex(std::int32_t v) const {
     if (v < 0 || v >= editor_.slots() || !editor_.mesh().is_alive(v)) {

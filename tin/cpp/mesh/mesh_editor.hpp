@@ -455,6 +455,14 @@ class MeshEditor {
   MeshEdge make_edge(std::int32_t a, std::int32_t b) {
     const MeshEdge start = first_towards(a, b);
     if (mesh_.from(start) == a) return start;
+    const MeshEdge beyond = mesh_.twin(start);
+    const std::int32_t ahead = mesh_.corner(beyond);
+    if (!mesh_.is_fixed(start) && (ahead == b || turn(a, b, ahead) == 0)) {
+      mesh_.flip(start);  // the only edge across
+      changed_.push_back(triangle_of(start));
+      changed_.push_back(triangle_of(beyond));
+      return mesh_edge(triangle_of(beyond), 1);
+    }
     if (!open_corridor(a, b, start)) return kNoMeshEdge;
     return close_corridor();
   }
@@ -486,6 +494,11 @@ class MeshEditor {
     MeshEdge inner, outer, made;
     bool is_fixed;
   };
+  struct Open {
+    std::int32_t from, to;
+    MeshEdge beyond;  // of a triangle made already,
+    RimEdge* rim;     // or on the rim
+  };
   RimEdge rim_edge(MeshEdge e) const {
     return {mesh_.from(e), mesh_.to(e), e, mesh_.twin(e), kNoMeshEdge, mesh_.is_fixed(e)};
   }
@@ -512,7 +525,7 @@ class MeshEditor {
   // Fill the corridor on both sides of the way; returns the edge along it.
   MeshEdge close_corridor() {
     std::reverse(left_rim_.begin(), left_rim_.end());
-    changed_ = corridor_;
+    changed_.insert(changed_.end(), corridor_.begin(), corridor_.end());
     const MeshEdge right = fill(right_rim_), left = fill(left_rim_);
     mesh_.join(right, left);
     join_rim();
@@ -523,12 +536,8 @@ class MeshEditor {
   // two edges turn left, a triangle takes their place. Every vertex of the rim sees the closing
   // edge, so none lies in the way. Returns the closing edge, as seen from within.
   MeshEdge fill(std::vector<RimEdge>& rim) {
-    struct Open {
-      std::int32_t from, to;
-      MeshEdge beyond;  // of a triangle made already,
-      RimEdge* rim;     // or on the rim
-    };
-    std::vector<Open> open;
+    std::vector<Open>& open = open_;
+    open.clear();
     const auto attach = [this](const Open& edge, MeshEdge side) {
       if (edge.rim == nullptr) {
         mesh_.join(side, edge.beyond);
@@ -555,7 +564,8 @@ class MeshEditor {
 
   // An edge may be on the rim twice, with the corridor on both of its sides.
   void join_rim() {
-    std::vector<RimEdge*> rim;
+    std::vector<RimEdge*>& rim = rim_;
+    rim.clear();
     for (RimEdge& edge : right_rim_) rim.push_back(&edge);
     for (RimEdge& edge : left_rim_) rim.push_back(&edge);
     const auto is_before = [](const RimEdge* a, const RimEdge* b) { return a->inner < b->inner; };
@@ -579,6 +589,8 @@ class MeshEditor {
   std::vector<std::uint32_t> changed_;
   std::vector<std::uint32_t> corridor_;
   std::vector<RimEdge> right_rim_, left_rim_;
+  std::vector<RimEdge*> rim_;
+  std::vector<Open> open_;
 };
 
 }  // namespace tinsmith
