@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..terrain.linework import EDGE_KINDS, line_edges
+from ..tin.regions import edge_keys
 from .errors import FormatError
 
 if TYPE_CHECKING:
@@ -49,16 +50,12 @@ def edge_words(tin: TIN, flags: NDArray[np.bool_]) -> NDArray[np.object_]:
 def _kinds_of(tin: TIN, pairs: NDArray[np.int32]) -> NDArray[np.int8]:
     """Return the kind of each edge, a place in ``EDGE_KINDS``; -1 where no line is known."""
     known = line_edges(tin, guess=False)
-    keys = _keys(known.pairs, len(tin.points))
+    keys = edge_keys(known.pairs, len(tin.points))
     order = np.argsort(keys)
-    wanted = _keys(pairs, len(tin.points))
+    wanted = edge_keys(pairs, len(tin.points))
     slot = np.minimum(np.searchsorted(keys[order], wanted), len(keys) - 1)
     found = order[slot]
     return np.where(keys[found] == wanted, known.kinds[found], -1).astype(np.int8)
-
-
-def _keys(pairs: NDArray[np.int32], n: int) -> NDArray[np.int64]:
-    return pairs.min(axis=1).astype(np.int64) * n + pairs.max(axis=1)
 
 
 def require_lines(tin: TIN) -> None:

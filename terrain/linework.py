@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ..tin.regions import edge_keys
 from . import extras
 
 if TYPE_CHECKING:
@@ -79,7 +80,7 @@ def line_edges(tin: TIN, *, guess: bool = True) -> LineEdges:
     pairs = np.concatenate([known.pairs, found.pairs])
     kinds = np.concatenate([known.kinds, found.kinds])
     is_guess = np.arange(len(pairs)) >= len(known.pairs)
-    keys = _keys(pairs, len(tin.points))
+    keys = edge_keys(pairs, len(tin.points))
     order = np.lexsort((np.arange(len(pairs)), -kinds, is_guess, keys))
     is_first = np.append(True, np.diff(keys[order]) != 0)[: len(order)]
     chosen = np.sort(order[is_first])
@@ -94,12 +95,6 @@ def _constrained_edges(tin: TIN) -> LineEdges:
     on_rim = tin.neighbors[triangle, corner] < 0
     ranks = EDGE_KINDS.index("hard"), EDGE_KINDS.index("boundary")
     return LineEdges(pairs, np.where(on_rim, ranks[1], ranks[0]).astype(np.int8))
-
-
-def _keys(pairs: NDArray[np.int32], n: int) -> NDArray[np.int64]:
-    """Return one number for each edge, whatever its direction."""
-    low, high = pairs.min(axis=1).astype(np.int64), pairs.max(axis=1)
-    return low * n + high
 
 
 # ----------------------------------------------------------------------- drawing
@@ -168,7 +163,8 @@ def dashes(
     cut = np.clip(cut, 0.0, 1.0)
     kept = cut[:, 1] > cut[:, 0]
     edge, cut = edge[kept], cut[kept, :, None]
-    return ends[edge, :1] + cut * (ends[edge, 1:] - ends[edge, :1])
+    made: NDArray[np.float64] = ends[edge, :1] + cut * (ends[edge, 1:] - ends[edge, :1])
+    return made
 
 
 def _drawn(plotter: Any, ends: NDArray[np.float64], pen: _Pen, factor: float) -> Any:
