@@ -89,11 +89,22 @@ def _is_seen(
     What hides the inside changes only in the directions from p to points. So one ray between each
     two such directions that follow each other is enough, to its middle within the triangle.
     """
+    x, y = (Fraction(sum(corner[axis] for corner in corners)) / 3 for axis in (0, 1))
+    if not any(_may_hide(*wall, p, (x, y)) for wall in walls):
+        return True
     for dx, dy in _between([(q[0] - p[0], q[1] - p[1]) for q in places if q != p]):
         target = _middle_within(p, (p[0] + dx, p[1] + dy), corners)
         if target is not None and not any(_cross(p, target, *wall) for wall in walls):
             return True
     return False
+
+
+def _may_hide(a: Place, b: Place, p: Place, q: Place) -> bool:
+    """Tell if the closed segments a-b and p-q may have a place in common."""
+    return (
+        orientation(a, b, p) * orientation(a, b, q) <= 0
+        and orientation(p, q, a) * orientation(p, q, b) <= 0
+    )
 
 
 def _between(directions: list[Place]) -> Iterator[Place]:

@@ -118,7 +118,8 @@ class _Walker:
             if begin is None:
                 self._gaps.lost.append(line)
                 return
-            self._pass_gap(line, rows[at : begin + 1], here, chain[0])
+            if here is not None or not self._is_at(self._places[chain[0]], rows[0]):
+                self._pass_gap(line, rows[at : begin + 1], here, chain[0])
             at = self._run(rows, begin, chain)
             here = chain[-1]
         if here is None or at < len(rows) - 1:
