@@ -251,6 +251,7 @@ def test_tin_that_is_not_delaunay_is_not_edited():
         ("add_breakline", {"coords": [[1, 1, 1]]}, "shape"),
         ("add_breakline", {"coords": [[1, 1, 1], [2, 2, np.nan]]}, "not finite"),
         ("add_breakline", {"coords": [[9, 9], [8, 9]]}, "outside"),
+        ("add_breakline", {"coords": [[1, 1, 1], [1, 1, 2]]}, "one place"),
         ("remove_breakline", {"number": 0}, "no breakline 0"),
         ("undo", {"count": 1}, "0 were made"),
         ("undo", {"count": 0}, "whole number"),

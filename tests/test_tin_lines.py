@@ -341,6 +341,7 @@ BOW_TIE = [[10, 10], [90, 90], [90, 10], [10, 90]]
         ({"breaklines": [[[1, 1, 1], [2, 1e300, 1]]]}, "exact range"),
         ({"breaklines": [["a", "b"]]}, "no table of real numbers"),
         ({"breaklines": 5}, "sequence of lines"),
+        ({"breaklines": [[[1, 1, 1], [1, 1, 2]]]}, "Breakline 0 has all its vertices at one"),
         ({"boundary": [[[1, 1], [2, 2]]]}, "Boundary ring 0"),
         ({"boundary": [[[1, 1], [2, 2], [1, 1]]]}, "three"),
         ({"boundary": [BOW_TIE]}, "Boundary 0 crosses itself"),

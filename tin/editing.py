@@ -235,10 +235,10 @@ class History:
             notes += self._editor.add_line(clean, info, splits=crossing == "split")
 
     def _with_heights(self, line: Breakline) -> list[NDArray[np.float64]]:
+        checked = gather_lines([line], (), (), ())
         if not line.is_draped:
             return [line.coords]
-        found = self._editor.hull()
-        laid = drape(found, gather_lines([line], (), (), ()), threads=self._threads).lines
+        laid = drape(self._editor.hull(), checked, threads=self._threads).lines
         rows = np.column_stack([laid.xy, laid.heights])
         parts = np.split(rows, laid.offsets[1:-1])
         if not any(len(part) > 1 for part in parts):

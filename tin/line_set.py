@@ -149,6 +149,7 @@ def gather_lines(
         names=(*(line.name for line in lines), *("" for _ in rings), *(p.name for p in ponds)),
     )
     _require_exact_range(found)
+    _require_length(found)
     return found
 
 
@@ -219,6 +220,21 @@ def _sources(kinds: Sequence[str]) -> NDArray[np.int32]:
         numbers.append(counts.get(group, 0))
         counts[group] = numbers[-1] + 1
     return np.array(numbers, np.int32)
+
+
+def _require_length(lines: LineSet) -> None:
+    starts = np.repeat(lines.xy[lines.offsets[:-1]], np.diff(lines.offsets), axis=0)
+    is_elsewhere = (lines.xy != starts).any(axis=1)
+    has_length = np.bincount(lines.line_of[is_elsewhere], minlength=len(lines.kinds)) > 0
+    if not has_length.all():
+        line = int(np.argmin(has_length))
+        label = lines.label(line)
+        x, y = lines.xy[lines.offsets[line]]
+        raise LinesError(
+            f"{label[0].upper() + label[1:]} has all its vertices at one place (x {x:g}, y {y:g}): "
+            "a line needs two places.",
+            lines=[line],
+        )
 
 
 def _require_exact_range(lines: LineSet) -> None:

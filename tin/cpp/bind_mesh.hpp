@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <stdexcept>
 #include <tuple>
-#include <utility>
 #include <vector>
 
 #include "bind_arrays.hpp"
@@ -208,15 +207,15 @@ class HeldMesh {
 
   // Segments in the order in which their triangles lie in memory; all vertices are there.
   std::vector<std::int32_t> by_place_in_memory(const GivenPairs& segments) const {
-    std::vector<std::pair<MeshEdge, std::int32_t>> places(segments.shape(0));
-    for (std::size_t i = 0; i < places.size(); ++i) {
+    std::vector<std::uint64_t> keys(segments.shape(0));  // place, then number
+    for (std::size_t i = 0; i < keys.size(); ++i) {
       require_vertex(segments.data()[2 * i]);
       require_vertex(segments.data()[2 * i + 1]);
-      places[i] = {editor_.mesh().leaving(segments.data()[2 * i]), static_cast<std::int32_t>(i)};
+      keys[i] = std::uint64_t{editor_.mesh().leaving(segments.data()[2 * i])} << 32 | i;
     }
-    std::sort(places.begin(), places.end());
-    std::vector<std::int32_t> order(places.size());
-    for (std::size_t i = 0; i < places.size(); ++i) order[i] = places[i].second;
+    std::sort(keys.begin(), keys.end());
+    std::vector<std::int32_t> order(keys.size());
+    for (std::size_t i = 0; i < keys.size(); ++i) order[i] = static_cast<std::int32_t>(keys[i]);
     return order;
   }
 

@@ -472,19 +472,24 @@ class MeshEditor {
     const bool is_forward = lexicographically_before(points_[a], points_[b]);
     const MeshEdge first = mesh_.leaving(a);
     MeshEdge e = first;
+    int side = side_of(a, b, mesh_.to(e));
     do {
       const std::int32_t right = mesh_.to(e), left = mesh_.corner(e);
       if (right == b) return e;
-      if (right != kGhost) {
-        const int side = turn(a, b, right);
-        const bool is_ahead =
-            lexicographically_before(points_[a], points_[right]) == is_forward;
-        if (side == 0 && is_ahead) return e;
-        if (side < 0 && left != kGhost && turn(a, b, left) > 0) return mesh_.after(e);
+      if (side == 0 && right != kGhost &&
+          lexicographically_before(points_[a], points_[right]) == is_forward) {
+        return e;
       }
+      const int left_side = side_of(a, b, left);
+      if (side < 0 && left_side > 0 && right != kGhost && left != kGhost) return mesh_.after(e);
       e = mesh_.next_leaving(e);
+      side = left_side;
     } while (e != first);
     return e;  // not reached: a sees something in every direction within the hull
+  }
+
+  int side_of(std::int32_t a, std::int32_t b, std::int32_t v) const {
+    return v == kGhost ? 0 : turn(a, b, v);
   }
 
   // An edge on the rim of the triangles that are replaced: as seen from within, from without, and
