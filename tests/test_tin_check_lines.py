@@ -156,7 +156,9 @@ def test_every_flip_of_a_free_edge_is_found():
     assert n_flips > 120
 
 
-@pytest.mark.parametrize("survey", [GIVEN, CLIPPED, replace(CLIPPED, holes=[FIELD[0] / 8 + [62, 40]])])
+@pytest.mark.parametrize(
+    "survey", [GIVEN, CLIPPED, replace(CLIPPED, holes=[FIELD[0] / 8 + [62, 40]])]
+)
 @pytest.mark.parametrize("options", [{}, {"snap": 2.0}, {"conforming": True}, {"max_edge": 12.0}])
 def test_surfaces_with_lines_pass_with_all_that_was_given(survey, options):
     tin = ts.triangulate(survey, **options)

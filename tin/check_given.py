@@ -94,7 +94,7 @@ def check_given_lines(tin: TIN, given: LineSet, found: Findings) -> None:
     most = _check_course(xy, given, walk, unit, found)
     slack = (1 + most + UNSEEN_CUTS) * unit
     _check_gaps(tin, given, walk, slack, found)
-    _check_ends(tin, walk, found)
+    _check_ends(tin, given, walk, slack, found)
 
 
 def _unit(tin: TIN, xy: NDArray[np.float64]) -> float:
@@ -138,16 +138,18 @@ def _check_gaps(tin: TIN, given: LineSet, walk: Walk, slack: float, found: Findi
     )
 
 
-def _check_ends(tin: TIN, walk: Walk, found: Findings) -> None:
+def _check_ends(tin: TIN, given: LineSet, walk: Walk, slack: float, found: Findings) -> None:
     """Check that chains end with their line, at the rim or at water."""
-    is_end = np.zeros(len(tin.points), np.bool_)
-    is_end[rim_of(tin).start] = True
+    vertices = np.array(walk.end_vertices, np.int64)
     is_wet = np.repeat([kind == "water" for kind in tin.lines.kinds], np.diff(tin.lines.offsets))
-    is_end[tin.lines.vertices[is_wet.astype(np.bool_)]] = True
-    is_loose = ~is_end[np.array(walk.end_vertices, np.int64)]
+    shore = tin.lines.vertices[is_wet.astype(np.bool_)]
+    loose = np.flatnonzero(~np.isin(vertices, np.append(rim_of(tin).start, shore)))
+    places = tin.points[vertices[loose], :2]
+    is_wrong = _is_inside(tin, places, slack)
+    is_wrong[is_wrong] = ~_is_drowned(places[is_wrong], given, slack)
     found.report(
         "lines",
-        np.unique(np.array(walk.end_lines, np.int64)[is_loose]),
+        np.unique(np.array(walk.end_lines, np.int64)[loose[is_wrong]]),
         "{count} lines end inside the surface, before their end (first: lines {first}).",
     )
 

@@ -105,6 +105,7 @@ class _Walker:
     def walk(self) -> Walk:
         """All that was met."""
         between = np.array(self._between, np.int64).reshape(-1, 3)
+        between[:, 0] = np.array(self._vertices, np.int64)[between[:, 0]]
         return self._gaps._replace(between=between)
 
     def follow(self, line: int, chains: list[range]) -> None:
@@ -120,7 +121,8 @@ class _Walker:
                 return
             if here is not None or not self._is_at(self._places[chain[0]], rows[0]):
                 self._pass_gap(line, rows[at : begin + 1], here, chain[0])
-            at = self._run(rows, begin, chain)
+            at, between = self._run(rows, begin, chain)
+            self._between += between
             here = chain[-1]
         if here is None or at < len(rows) - 1:
             self._pass_gap(line, rows[at:], here, None)
@@ -141,7 +143,7 @@ class _Walker:
         return place == given or (self._snap > 0 and _far(place, given) <= self._snap)
 
     def _entry(self, rows: list[int], at: int, here: int | None, chain: range) -> int | None:
-        """Find behind which vertex a chain begins: the first that its first step fits to."""
+        """Find behind which vertex a chain begins: the first from where it fits to the line."""
         if here is None and self._begins_with(rows, chain):
             return 0
         first, second = (np.array([self._places[position]]) for position in chain[:2])
@@ -154,7 +156,20 @@ class _Walker:
         best = off.min(initial=np.inf)
         if best > (1 + UNSEEN_CUTS + len(chain)) * self._unit:
             return None
-        return at + int(np.argmax(off <= max(best, 2 * self._unit)))
+        fits = at + np.flatnonzero(off <= max(best, 2 * self._unit))
+        if len(fits) == 1:
+            return int(fits[0])
+        worst = np.array([self._deviation(rows, number, chain) for number in fits.tolist()])
+        return int(fits[np.argmax(worst <= worst.min() + self._unit)])
+
+    def _deviation(self, rows: list[int], at: int, chain: range) -> float:
+        """Return how far a chain leaves its line if it begins behind vertex ``at``."""
+        _, between = self._run(rows, at, chain)
+        if not between:
+            return 0.0
+        positions, before, after = np.array(between).T
+        places = np.array([self._places[position] for position in positions])
+        return float(distance(places, self._xy[before], self._xy[after]).max())
 
     def _begins_with(self, rows: list[int], chain: range) -> bool:
         """Tell if a chain begins where its line does, and in the same direction."""
@@ -166,18 +181,21 @@ class _Walker:
         is_ahead = (bx - ax) * (x - ax) + (by - ay) * (y - ay) > 0
         return is_ahead and abs(across) <= 2 * self._unit * hypot(bx - ax, by - ay)
 
-    def _run(self, rows: list[int], at: int, chain: range) -> int:
-        """Walk a chain to its end; return where that is."""
+    def _run(
+        self, rows: list[int], at: int, chain: range
+    ) -> tuple[int, list[tuple[int, int, int]]]:
+        """Walk a chain to its end; return where that is, and what lies between its line's own."""
         places, last = self._places, len(rows) - 1
         is_passed = self._is_at(places[chain[0]], rows[at])
+        between = []
         for position in chain:
             while at < last and self._is_at(places[position], rows[at + 1]):
                 at, is_passed = at + 1, True
             if not is_passed:
                 before = min(at, last - 1)
-                self._between.append((self._vertices[position], rows[before], rows[before + 1]))
+                between.append((position, rows[before], rows[before + 1]))
             is_passed = False
-        return at
+        return at, between
 
     def _pass_gap(self, line: int, rows: Sequence[int], here: int | None, then: int | None) -> None:
         """Note the part of a line from one chain to the next, or from or to its ends."""
