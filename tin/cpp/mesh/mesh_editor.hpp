@@ -6,25 +6,20 @@
 // so the result is a function of the points and the fixed edges, not of the way to it.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <utility>
 #include <vector>
 
 #include "../predicates/predicates.hpp"
+#include "corridor.hpp"
 #include "mesh.hpp"
+#include "mesh_walk.hpp"
 
 namespace tinsmith {
 
 class MeshEditor {
  public:
-  enum class Where { kInside, kOnEdge, kAtVertex, kOutside };
-  struct Location {
-    Where where;
-    MeshEdge edge;  // of the triangle; the edge; one that leaves the vertex; of the ghost
-  };
   enum class Forced { kDone, kBlocked };
 
   // A mesh with its points, ready to be changed.
@@ -51,7 +46,8 @@ class MeshEditor {
 
   // The vertex at p, which is `slot` if there was none; a fixed edge through p is split.
   std::int32_t insert(Point p, std::int32_t slot) {
-    const Location at = locate(p);
+    using Where = MeshLocation::Where;
+    const MeshLocation at = MeshWalk(mesh_, points_, count_, state_).locate(p, last_);
     if (at.where == Where::kAtVertex) return mesh_.from(at.edge);
     points_[slot] = p;
     ++count_;
@@ -206,110 +202,9 @@ class MeshEditor {
     return {left, right};
   }
 
-  // ----------------------------------------------------------------- location
-
-  Location locate(Point p) {
-    MeshEdge e = nearest_start(p);
-    if (mesh_.is_ghost(triangle_of(e))) e = real_side(triangle_of(e));
-    std::uint32_t t = triangle_of(e);
-    std::uint32_t entry = kNoPlace;
-    while (true) {
-      const std::uint32_t place = place_beyond(p, t, entry);
-      if (place == kNoPlace) return location_in(p, t);
-      const MeshEdge across = mesh_.twin(mesh_edge(t, place));
-      if (mesh_.corner(across) == kGhost) return {Where::kOutside, across};
-      t = triangle_of(across);
-      entry = place_of(across);
-    }
-  }
-
  private:
-  static constexpr std::uint32_t kNoPlace = 3;
-
   int turn(std::int32_t a, std::int32_t b, std::int32_t c) const {
     return orientation(points_[a], points_[b], points_[c]);
-  }
-
-  // ------------------------------------------------------------------ walking
-
-  // The walk begins at the last change, or at the nearest of a few vertices drawn at random: as
-  // many as make the walk from there as short as the drawing.
-  MeshEdge nearest_start(Point p) {
-    MeshEdge best = last_;
-    if (best == kNoMeshEdge || mesh_.is_free(triangle_of(best))) best = first_edge();
-    double nearest = distance_to(p, best);
-    if (nearest <= kShortWalk * square_of(best)) return best;
-    const auto draws = static_cast<std::int32_t>(0.5 * std::cbrt(static_cast<double>(count_)));
-    for (std::int32_t i = 0; i < draws; ++i) {
-      const auto v = static_cast<std::int32_t>(random() % static_cast<std::uint64_t>(slots()));
-      if (!mesh_.is_alive(v)) continue;
-      const double distance = distance_to(p, mesh_.leaving(v));
-      if (distance < nearest) {
-        nearest = distance;
-        best = mesh_.leaving(v);
-      }
-    }
-    return best;
-  }
-
-  static constexpr double kShortWalk = 64.0;  // as a square: eight edges
-
-  // Squares, of the distance to the edge's start and of its length.
-  double distance_to(Point p, MeshEdge e) const {
-    const std::int32_t v = mesh_.from(e) == kGhost ? mesh_.to(e) : mesh_.from(e);
-    return square(points_[v], p);
-  }
-  double square_of(MeshEdge e) const {
-    const std::int32_t a = mesh_.from(e), b = mesh_.to(e);
-    return a == kGhost || b == kGhost ? 0.0 : square(points_[a], points_[b]);
-  }
-  static double square(Point p, Point q) {
-    const double dx = q.x - p.x, dy = q.y - p.y;
-    return dx * dx + dy * dy;
-  }
-
-  MeshEdge first_edge() const {
-    std::uint32_t t = 0;
-    while (mesh_.is_free(t)) ++t;
-    return mesh_edge(t, 0);
-  }
-
-  // An edge of the triangle on the other side of a ghost's hull edge.
-  MeshEdge real_side(std::uint32_t ghost) const {
-    std::uint32_t place = 0;
-    while (mesh_[ghost].corner[place] != kGhost) ++place;
-    return mesh_[ghost].twin[place];
-  }
-
-  // The place of an edge that has p on its other side, or kNoPlace. The edges are tried from a
-  // random one on: among fixed edges a walk in fixed order could go round and round.
-  std::uint32_t place_beyond(Point p, std::uint32_t t, std::uint32_t entry) {
-    std::uint32_t place = static_cast<std::uint32_t>(random() % 3);
-    for (int i = 0; i < 3; ++i, place = place_after(place)) {
-      if (place == entry) continue;
-      const MeshEdge e = mesh_edge(t, place);
-      if (orientation(points_[mesh_.from(e)], points_[mesh_.to(e)], p) < 0) return place;
-    }
-    return kNoPlace;
-  }
-
-  // p is in the triangle or on its rim.
-  Location location_in(Point p, std::uint32_t t) const {
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      if (points_[mesh_[t].corner[k]] == p) return {Where::kAtVertex, mesh_edge(t, place_before(k))};
-    }
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      const MeshEdge e = mesh_edge(t, k);
-      if (orientation(points_[mesh_.from(e)], points_[mesh_.to(e)], p) == 0) {
-        return {Where::kOnEdge, e};
-      }
-    }
-    return {Where::kInside, mesh_edge(t, 0)};
-  }
-
-  std::uint64_t random() {
-    state_ = state_ * 6364136223846793005u + 1442695040888963407u;  // Knuth's MMIX
-    return state_ >> 33;
   }
 
   // --------------------------------------------------------------- legalizing
@@ -463,8 +358,10 @@ class MeshEditor {
       changed_.push_back(triangle_of(beyond));
       return mesh_edge(triangle_of(beyond), 1);
     }
-    if (!open_corridor(a, b, start)) return kNoMeshEdge;
-    return close_corridor();
+    if (!corridor_.open(mesh_, points_, a, b, start)) return kNoMeshEdge;
+    const MeshEdge edge = corridor_.close(mesh_, points_);
+    changed_.insert(changed_.end(), corridor_.triangles().begin(), corridor_.triangles().end());
+    return edge;
   }
 
   // The edge that leaves a along the way to b, or the first edge across it (from right to left).
@@ -492,99 +389,6 @@ class MeshEditor {
     return v == kGhost ? 0 : turn(a, b, v);
   }
 
-  // An edge on the rim of the triangles that are replaced: as seen from within, from without, and
-  // from the triangle that comes in their place.
-  struct RimEdge {
-    std::int32_t from, to;
-    MeshEdge inner, outer, made;
-    bool is_fixed;
-  };
-  struct Open {
-    std::int32_t from, to;
-    MeshEdge beyond;  // of a triangle made already,
-    RimEdge* rim;     // or on the rim
-  };
-  RimEdge rim_edge(MeshEdge e) const {
-    return {mesh_.from(e), mesh_.to(e), e, mesh_.twin(e), kNoMeshEdge, mesh_.is_fixed(e)};
-  }
-
-  // Collect the triangles that the way from a to b crosses, and their rim on its right and left;
-  // `e` is the first edge across, from right to left. False if a fixed edge is in the way.
-  bool open_corridor(std::int32_t a, std::int32_t b, MeshEdge e) {
-    corridor_.assign(1, triangle_of(e));
-    right_rim_.assign(1, rim_edge(mesh_.before(e)));
-    left_rim_.assign(1, rim_edge(mesh_.after(e)));
-    while (true) {
-      if (mesh_.is_fixed(e)) return false;
-      const MeshEdge f = mesh_.twin(e);
-      const std::int32_t ahead = mesh_.corner(f);
-      const int side = ahead == b ? 0 : turn(a, b, ahead);
-      corridor_.push_back(triangle_of(f));
-      if (side <= 0) right_rim_.push_back(rim_edge(mesh_.after(f)));
-      if (side >= 0) left_rim_.push_back(rim_edge(mesh_.before(f)));
-      if (side == 0) return true;
-      e = side > 0 ? mesh_.after(f) : mesh_.before(f);
-    }
-  }
-
-  // Fill the corridor on both sides of the way; returns the edge along it.
-  MeshEdge close_corridor() {
-    std::reverse(left_rim_.begin(), left_rim_.end());
-    changed_.insert(changed_.end(), corridor_.begin(), corridor_.end());
-    const MeshEdge right = fill(right_rim_), left = fill(left_rim_);
-    mesh_.join(right, left);
-    join_rim();
-    return left;
-  }
-
-  // Triangulate between a rim, counter-clockwise, and the edge from its end to its start: wherever
-  // two edges turn left, a triangle takes their place. Every vertex of the rim sees the closing
-  // edge, so none lies in the way. Returns the closing edge, as seen from within.
-  MeshEdge fill(std::vector<RimEdge>& rim) {
-    std::vector<Open>& open = open_;
-    open.clear();
-    const auto attach = [this](const Open& edge, MeshEdge side) {
-      if (edge.rim == nullptr) {
-        mesh_.join(side, edge.beyond);
-      } else {
-        edge.rim->made = side;
-      }
-    };
-    for (RimEdge& next : rim) {
-      Open last{next.from, next.to, kNoMeshEdge, &next};
-      while (!open.empty() && turn(open.back().from, last.from, last.to) > 0) {
-        const Open before = open.back();
-        open.pop_back();
-        const std::uint32_t t = corridor_.back();
-        corridor_.pop_back();
-        mesh_.reuse(t, before.from, last.from, last.to);
-        attach(last, mesh_edge(t, 0));
-        attach(before, mesh_edge(t, 2));
-        last = {before.from, last.to, mesh_edge(t, 1), nullptr};
-      }
-      open.push_back(last);
-    }
-    return open.back().beyond;
-  }
-
-  // An edge may be on the rim twice, with the corridor on both of its sides.
-  void join_rim() {
-    std::vector<RimEdge*>& rim = rim_;
-    rim.clear();
-    for (RimEdge& edge : right_rim_) rim.push_back(&edge);
-    for (RimEdge& edge : left_rim_) rim.push_back(&edge);
-    const auto is_before = [](const RimEdge* a, const RimEdge* b) { return a->inner < b->inner; };
-    std::sort(rim.begin(), rim.end(), is_before);
-    for (RimEdge* edge : rim) {
-      const auto other = std::lower_bound(
-          rim.begin(), rim.end(), edge->outer,
-          [](const RimEdge* candidate, MeshEdge sought) { return candidate->inner < sought; });
-      const bool is_twice = other != rim.end() && (*other)->inner == edge->outer;
-      mesh_.join(edge->made, is_twice ? (*other)->made : edge->outer);
-    }
-    for (RimEdge* edge : rim) mesh_.fix(edge->made, edge->is_fixed);
-  }
-
   Mesh mesh_;
   std::vector<Point> points_;  // of every slot; a slot without a vertex holds anything
   std::int32_t count_ = 0;
@@ -592,10 +396,7 @@ class MeshEditor {
   std::uint64_t state_ = 0;      // of the random walk, which never shows in the result
   std::vector<MeshEdge> pending_;
   std::vector<std::uint32_t> changed_;
-  std::vector<std::uint32_t> corridor_;
-  std::vector<RimEdge> right_rim_, left_rim_;
-  std::vector<RimEdge*> rim_;
-  std::vector<Open> open_;
+  Corridor corridor_;
 };
 
 }  // namespace tinsmith
