@@ -376,3 +376,42 @@ def test_bad_lines_are_refused_in_one_sentence(options, sentence):
 def test_bad_values_are_refused_in_one_sentence(make, sentence):
     with pytest.raises(ts.LinesError, match=sentence):
         make()
+
+
+# ------------------------------------------------------------------ found by trying
+
+
+def small_grid():
+    xy = np.stack(np.meshgrid(np.arange(5.0), np.arange(6.0)), axis=-1).reshape(-1, 2)
+    return np.c_[xy, np.full(len(xy), 0.5)]
+
+
+@pytest.mark.parametrize("order", [(0, 1), (1, 0)])
+def test_ponds_that_overlap_and_share_a_corner(order):
+    ponds = [[[0, 2], [0, 0], [2, 1], [3, 1]], [[0, 0], [3, 0], [2, 5]]]
+    tin = ts.triangulate(small_grid(), water=[ts.Water(ponds[i], 1.0) for i in order])
+    union = shapely.union_all([polygon(pond) for pond in ponds])
+    inner = np.array([[1.0, 1.2], [1.8, 2.0], [2.0, 0.6]])
+    assert shapely.contains_xy(union, inner[:, 0], inner[:, 1]).all()
+    np.testing.assert_array_equal(tin.interpolate(inner), 1.0)
+    assert ts.check(tin).ok
+
+
+@pytest.mark.parametrize("option", ["holes", "boundary"])
+def test_ring_across_a_pond_cuts_it(option):
+    pond = ts.Water([[0, 2], [0, 0], [2, 1], [3, 1]], 1.0)
+    ring = [[0.5, 0.5], [4, 1], [4, 4], [1, 4]]
+    tin = ts.triangulate(small_grid(), water=[pond], **{option: [ring]})
+    inside = polygon(ring).area
+    assert tin.area == pytest.approx(20 - inside if option == "holes" else inside, rel=1e-12)
+    assert ts.check(tin).ok
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_boundary_across_the_rim_leaves_no_sliver(seed):
+    rng = np.random.default_rng(seed)
+    points = np.c_[rng.random((30, 2)) * 100, rng.random(30)]
+    ring = [[20, 20], [110, 20], [110, 110], [20, 110]]
+    tin = ts.triangulate(points, boundary=[ring], breaklines=[rng.random((3, 2)) * 140 - 20])
+    assert tin.area == pytest.approx(hull_of(points).intersection(polygon(ring)).area, rel=1e-9)
+    assert ts.check(tin).ok

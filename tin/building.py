@@ -85,7 +85,7 @@ class _Ground(NamedTuple):
     """Lines that all have heights, and the rim where draped ones leave the surface."""
 
     lines: LineSet
-    rim: NDArray[np.float64]
+    has_rim: bool
     notes: list[str]
 
 
@@ -123,7 +123,6 @@ def _model(recipe: Recipe, ground: _Ground, made: Draft, rows: NDArray[np.int64]
     lines = ground.lines
     vertex_of = np.full(len(recipe.points), -1, np.int32)
     vertex_of[rows] = made.vertex_of
-    boundaries = [recipe.boundary] if recipe.boundary else []
     return Model(
         points=made.surface.points,
         pieces=made.pieces,
@@ -138,8 +137,9 @@ def _model(recipe: Recipe, ground: _Ground, made: Draft, rows: NDArray[np.int64]
             )
         ),
         clip=Clip(
-            boundaries=[*boundaries, [ground.rim]] if len(ground.rim) else boundaries,
+            boundary=recipe.boundary,
             holes=recipe.holes,
+            has_rim=ground.has_rim,
             max_edge=recipe.max_edge,
             is_trimmed_everywhere=recipe.trim == "everywhere",
         ),
@@ -162,10 +162,10 @@ def _erased(recipe: Recipe) -> NDArray[np.bool_]:
 
 def _draped(xyz: NDArray[np.float64], recipe: Recipe) -> _Ground:
     """Give all lines heights: draped ones from the surface of everything else."""
-    lines, empty = recipe.lines, np.empty((0, 2))
+    lines = recipe.lines
     is_draped = lines.is_draped
     if not is_draped.any():
-        return _Ground(lines, empty, [])
+        return _Ground(lines, False, [])
     base = draft(xyz, lines.chosen(~is_draped), recipe.options)
     laid = drape(base.surface, lines.chosen(is_draped), threads=recipe.options.threads)
     notes = []
@@ -175,7 +175,7 @@ def _draped(xyz: NDArray[np.float64], recipe: Recipe) -> _Ground:
             "of the points were left out."
         )
     together = LineSet.joined([lines.chosen(~is_draped), laid.lines, laid.rim])
-    return _Ground(together, laid.ring, notes)
+    return _Ground(together, len(laid.rim.kinds) > 0, notes)
 
 
 # ----------------------------------------------------------------------- account

@@ -98,8 +98,7 @@ def draft(
     points = np.concatenate([merged.points, noded.new_points])
     pieces = _as_pieces(noded.chains)
     overruled = _passed_by(points, noded, merged.overruled)
-    overruled = _leveled(points, pieces, lines, overruled)
-    pieces, wet = _without_water(points, pieces, lines)
+    pieces, wet, overruled = _flooded(points, pieces, lines, overruled)
     if not is_forced:
         mesh.remove(np.flatnonzero(wet).astype(np.int32))
         force(mesh, pieces)
@@ -232,56 +231,71 @@ def _passed_by(points: NDArray[np.float64], noded: Noded, overruled: Overruled) 
 # ------------------------------------------------------------------------ water
 
 
-def _leveled(
+def _flooded(
     points: NDArray[np.float64], pieces: Pieces, lines: LineSet, overruled: Overruled
-) -> Overruled:
-    """Put every vertex on a shore at the height of its water, in place."""
-    for line in np.flatnonzero(lines.priorities == ABOVE_ALL):
-        shore = np.unique(pieces.vertices[pieces.offsets[line] : pieces.offsets[line + 1]])
-        level = lines.heights[lines.offsets[line]]
-        wrong = shore[points[shore, 2] != level]
-        overruled = Overruled(
-            np.append(overruled.vertices, wrong),
-            np.append(overruled.lines, np.full(len(wrong), -1, np.int32)),
-            np.append(overruled.heights, points[wrong, 2]),
-            np.append(overruled.taken, np.full(len(wrong), level)),
-        )
-        points[wrong, 2] = level
-    return overruled
+) -> tuple[Pieces, NDArray[np.bool_], Overruled]:
+    """Put shores at the height of their water, and leave out what is in it.
 
+    Parameters
+    ----------
+    points : (n, 3) float64 array
+        Changed in place.
 
-def _without_water(
-    points: NDArray[np.float64], pieces: Pieces, lines: LineSet
-) -> tuple[Pieces, NDArray[np.bool_]]:
-    """Leave out steps in water; return the rest, and which vertices are in water."""
+    Returns
+    -------
+    pieces : Pieces
+        Without the steps in water, but for those of boundaries and holes, which lie on it.
+    wet : (n,) bool array
+        Which vertices are in water, and go.
+    overruled : Overruled
+        With the heights that gave way to the water's.
+    """
     wet = np.zeros(len(points), np.bool_)
+    is_ring = np.array([kind in ("boundary", "hole") for kind in lines.kinds], np.bool_)
+    given = pieces
     for line in np.flatnonzero(lines.priorities == ABOVE_ALL).tolist():
-        ring = points[pieces.vertices[pieces.lines[_piece_of(pieces)] == line], :2]
-        if len(ring) < 4:
-            continue
-        inside = _inside(points[:, :2], ring)
+        shore = given.vertices[given.offsets[line] : given.offsets[line + 1]]
+        inside = _inside(points[:, :2], points[shore, :2])
         steps, line_of = pieces.steps()
-        both = points[steps[:, 0], :2] / 2 + points[steps[:, 1], :2] / 2
-        drowned = inside[steps].any(axis=1) | _inside(both, ring)
-        pieces = pieces.kept(~drowned | (line_of == line) | _runs_along(steps, line_of, line))
+        middle = points[steps[:, 0], :2] / 2 + points[steps[:, 1], :2] / 2
+        drowned = inside[steps].any(axis=1) | _inside(middle, points[shore, :2])
+        stays = (line_of == line) | is_ring[line_of] | _runs_along(steps, shore, len(points))
+        held = np.unique(steps[drowned & is_ring[line_of]])
+        level = float(lines.heights[lines.offsets[line]])
+        overruled = _set_level(points, np.union1d(shore, held), level, overruled)
+        pieces = pieces.kept(~drowned | stays)
+        inside[held] = False
         wet |= inside
-    return pieces, wet
+    steps, _ = pieces.steps()
+    is_dry = np.asarray(~wet[steps].any(axis=1), np.bool_)
+    return pieces.kept(is_dry), wet, overruled
+
+
+def _set_level(
+    points: NDArray[np.float64], vertices: NDArray[np.int32], level: float, overruled: Overruled
+) -> Overruled:
+    wrong = vertices[points[vertices, 2] != level]
+    before = points[wrong, 2]
+    points[wrong, 2] = level
+    return Overruled(
+        np.append(overruled.vertices, wrong).astype(np.int32),
+        np.append(overruled.lines, np.full(len(wrong), -1, np.int32)),
+        np.append(overruled.heights, before),
+        np.append(overruled.taken, np.full(len(wrong), level)),
+    )
 
 
 def _runs_along(
-    steps: NDArray[np.int32], line_of: NDArray[np.int32], line: int
+    steps: NDArray[np.int32], chain: NDArray[np.int32], n_vertices: int
 ) -> NDArray[np.bool_]:
-    n = int(steps.max(initial=0)) + 1
-    keys = edge_keys(steps, n)
-    return np.isin(keys, keys[line_of == line])
-
-
-def _piece_of(pieces: Pieces) -> NDArray[np.int64]:
-    return np.repeat(np.arange(len(pieces.lines)), np.diff(pieces.offsets))
+    own = np.stack([chain[:-1], chain[1:]], axis=1)
+    return np.isin(edge_keys(steps, n_vertices), edge_keys(own, n_vertices))
 
 
 def _inside(xy: NDArray[np.float64], ring: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Tell which places lie strictly inside a ring whose first corner is repeated."""
+    if len(ring) < 4:
+        return np.zeros(len(xy), np.bool_)
     low, high = ring.min(axis=0), ring.max(axis=0)
     near = np.flatnonzero(((xy > low) & (xy < high)).all(axis=1))
     inside = np.zeros(len(xy), np.bool_)

@@ -27,15 +27,12 @@ class Draped(NamedTuple):
         The given lines, cut where they leave the surface; kind, source and name are kept.
     rim : LineSet
         The parts of the surface's rim that got vertices where lines leave it.
-    ring : (k, 2) float64 array
-        The whole rim with those vertices; none were made if it is empty.
     n_cut : int
         Lines of which a part lies outside the surface.
     """
 
     lines: LineSet
     rim: LineSet
-    ring: NDArray[np.float64]
     n_cut: int
 
 
@@ -50,7 +47,7 @@ def drape(surface: Surface, lines: LineSet, *, threads: int) -> Draped:
     if (in_rings(lines.xy, [ring]) >= 0).all():
         xy, pieces = _vertices_once(lines)
         whole = _with_heights(surface, xy, np.full(len(xy), np.nan), pieces, lines)
-        return Draped(whole, _no_lines(lines), np.empty((0, 2)), 0)
+        return Draped(whole, _no_lines(lines), 0)
     return _cut_at_rim(surface, hull, lines, threads=threads)
 
 
@@ -100,7 +97,6 @@ def _cut_at_rim(
     return Draped(
         _with_heights(surface, places, heights, pieces.kept(is_inside), lines),
         _split_rim(places, rim_chain, rim_heights, vertex_of[len(lines.xy) :]),
-        places[rim_chain[:-1]],
         len(np.unique(line_of[~is_inside])),
     )
 

@@ -314,7 +314,7 @@ def _model_of(tin: TIN) -> Model:
             np.arange(len(chains), dtype=np.int32),
         ),
         infos=tuple(infos),
-        clip=Clip() if is_whole else Clip(boundaries=[rim]),
+        clip=Clip(has_rim=not is_whole),
         vertex_of=tin.vertex_of,
     )
 

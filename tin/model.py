@@ -15,7 +15,7 @@ from . import _kernel
 from .errors import LinesError
 from .lines import LineKind, Lines
 from .pieces import Pieces
-from .regions import Surface, clipped, edge_keys, is_inside, trimmed
+from .regions import BOUNDARY, RIM, RingSteps, Surface, clipped, edge_keys, is_inside, trimmed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -38,26 +38,32 @@ class Clip:
 
     Attributes
     ----------
-    boundaries : list of lists of (k, 2) float64 arrays
-        The surface lies inside every one of these, each of one or more rings.
-    holes : list of (k, 2) float64 arrays
+    boundary, holes : lists of (k, 2) float64 arrays
+        Rings.
+    has_rim : bool
+        Whether there are lines of the rim, beyond which there is no surface.
     max_edge : float
         Infinity for none.
     is_trimmed_everywhere : bool
     """
 
-    boundaries: list[list[NDArray[np.float64]]] = field(default_factory=list)
+    boundary: list[NDArray[np.float64]] = field(default_factory=list)
     holes: list[NDArray[np.float64]] = field(default_factory=list)
+    has_rim: bool = False
     max_edge: float = np.inf
     is_trimmed_everywhere: bool = False
 
     @property
     def is_none(self) -> bool:
         """Whether all of the hull is the surface."""
-        return not (self.boundaries or self.holes or np.isfinite(self.max_edge))
+        return not (self._has_rings or np.isfinite(self.max_edge))
 
-    def keeps(self, surface: Surface, ring_steps: NDArray[np.int32]) -> NDArray[np.bool_]:
-        """Tell which triangles are kept; ``ring_steps`` are the edges along the rings.
+    @property
+    def _has_rings(self) -> bool:
+        return bool(self.boundary or self.holes or self.has_rim)
+
+    def keeps(self, surface: Surface, ring_steps: RingSteps) -> NDArray[np.bool_]:
+        """Tell which triangles are kept.
 
         Raises
         ------
@@ -65,8 +71,8 @@ class Clip:
             If there are none, or if a hole cuts nothing away.
         """
         keep = np.ones(len(surface.triangles), np.bool_)
-        if self.boundaries or self.holes:
-            keep = is_inside(surface, ring_steps, self.boundaries, self.holes)
+        if self._has_rings:
+            keep = is_inside(surface, ring_steps, self.boundary, self.holes)
             _require_triangles(keep, "The boundary and the holes leave no triangle of the surface")
         if np.isfinite(self.max_edge):
             everywhere = self.is_trimmed_everywhere
@@ -107,11 +113,18 @@ class Model:
         if self.clip.is_none:
             return hull, np.arange(len(hull.points), dtype=np.int32)
         steps, line_of = self.pieces.steps()
-        is_ring = np.array([info.kind in ("boundary", "hole") for info in self.infos], np.bool_)
-        keep = self.clip.keeps(hull, steps[is_ring[line_of]])
+        group = np.array([_group_of(info) for info in self.infos], np.int64)[line_of]
+        is_ring = group >= RIM
+        keep = self.clip.keeps(hull, RingSteps(steps[is_ring], group[is_ring]))
         if keep.all():
             return hull, np.arange(len(hull.points), dtype=np.int32)
         return clipped(hull, keep)
+
+
+def _group_of(info: LineInfo) -> int:
+    if info.kind == "boundary":
+        return RIM if info.source < 0 else BOUNDARY
+    return info.source + 1 if info.kind == "hole" else RIM - 1
 
 
 def mesh_of(points: NDArray[np.float64], pieces: Pieces, *, threads: int) -> _kernel.Mesh:

@@ -13,7 +13,17 @@ from .errors import LinesError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Surface", "clipped", "edge_keys", "in_rings", "is_inside", "trimmed"]
+__all__ = [
+    "BOUNDARY",
+    "RIM",
+    "RingSteps",
+    "Surface",
+    "clipped",
+    "edge_keys",
+    "in_rings",
+    "is_inside",
+    "trimmed",
+]
 
 
 class Surface(NamedTuple):
@@ -39,48 +49,176 @@ def edge_keys(pairs: NDArray[np.int32], n_vertices: int) -> NDArray[np.int64]:
     return keys
 
 
+RIM = -1
+"""Group of the steps of a rim: the surface is on their left, and nothing on their right."""
+
+BOUNDARY = 0
+"""Group of the steps of all boundary rings together; hole ``k`` has group ``k + 1``."""
+
+
+class RingSteps(NamedTuple):
+    """Edges along rings, (k, 2) vertex pairs, and the group of each."""
+
+    pairs: NDArray[np.int32]
+    groups: NDArray[np.int64]
+
+
 def is_inside(
     surface: Surface,
-    steps: NDArray[np.int32],
-    boundaries: Sequence[Sequence[NDArray[np.float64]]],
+    steps: RingSteps,
+    boundary: Sequence[NDArray[np.float64]],
     holes: Sequence[NDArray[np.float64]],
 ) -> NDArray[np.bool_]:
-    """Tell which triangles lie inside every boundary, each of one or more rings, and in no hole.
+    """Tell which triangles lie inside the boundary and in no hole.
 
-    ``steps`` are the edges, (k, 2) vertex pairs, along which the rings run. The triangles between
-    them are one region; a place in its largest triangle, compared with the rings as they were
-    given, tells for all of it. (A ring's own vertices may have been rounded, the inside of the
-    largest triangle is not in doubt.)
+    The triangles between the rings are regions. Where the largest triangle of all lies is found by
+    comparing its middle with the rings, which leaves no doubt. From there on every ring that is
+    crossed changes sides, so slivers between rings that nearly coincide are told exactly.
+
+    Raises
+    ------
+    LinesError
+        If a hole cuts nothing away.
     """
-    region, largest = _regions(surface, steps)
+    half = _half_edges(surface, steps)
+    region, largest = _regions(surface, half)
+    is_out = np.zeros(len(largest), np.bool_)
+    is_out[region[half.triangle[half.is_behind_rim]]] = True
+    toggles = _toggles(steps, len(surface.points))
     place = _center(surface, largest)
-    keep = np.ones(len(place), np.bool_)
-    for rings in boundaries:
-        keep &= in_rings(place, rings) > 0
-    within = keep.copy()
-    for number, hole in enumerate(holes):
-        is_hole = in_rings(place, [hole]) > 0
-        if not (within & is_hole).any():
-            raise LinesError(
-                f"Hole {number} lies outside the surface: it must cut away a part of it.",
-                lines=[number],
-            )
-        keep &= ~is_hole
+    side = _Sides(boundary, holes)
+    bits = _spread(surface, region, half, toggles, is_out, largest, place, side)
+    keep = ~is_out & np.array([side.is_kept(own) for own in bits])
+    _require_all_cut(bits, is_out, side)
     chosen: NDArray[np.bool_] = keep[region]
     return chosen
 
 
-def _regions(
-    surface: Surface, steps: NDArray[np.int32]
-) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+class _HalfEdges(NamedTuple):
+    """Constrained half-edges along rings."""
+
+    triangle: NDArray[np.int64]
+    corner: NDArray[np.int64]
+    key: NDArray[np.int64]
+    is_behind_rim: NDArray[np.bool_]
+
+
+def _half_edges(surface: Surface, steps: RingSteps) -> _HalfEdges:
     n = len(surface.points)
     triangle, corner = np.nonzero(surface.constrained)
     start, end = topology.ends(surface.triangles, triangle, corner)
-    own = edge_keys(np.stack([start, end], axis=1).astype(np.int32), n)
+    key = edge_keys(np.stack([start, end], axis=1).astype(np.int32), n)
+    is_ring = np.isin(key, edge_keys(steps.pairs, n))
+    triangle, corner, key = triangle[is_ring], corner[is_ring], key[is_ring]
+    rim = steps.pairs[steps.groups == RIM].astype(np.int64)
+    backwards = rim[:, 1] * n + rim[:, 0]
+    is_behind = np.isin(start[is_ring] * n + end[is_ring], backwards)
+    return _HalfEdges(triangle, corner, key, is_behind)
+
+
+def _regions(surface: Surface, half: _HalfEdges) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
     barrier = np.zeros(surface.constrained.shape, np.bool_)
-    barrier[triangle, corner] = np.isin(own, edge_keys(steps, n))
+    barrier[half.triangle, half.corner] = True
     xy = np.ascontiguousarray(surface.points[:, :2])
     return _kernel.regions(xy, surface.triangles, surface.neighbors, barrier)
+
+
+def _toggles(steps: RingSteps, n_vertices: int) -> dict[int, int]:
+    """Return for each edge along rings the groups that lie on other sides of it, as bits."""
+    toggles: dict[int, int] = {}
+    keys = edge_keys(steps.pairs, n_vertices).tolist()
+    for key, group in zip(keys, steps.groups.tolist(), strict=True):
+        toggles[key] = toggles.get(key, 0) ^ (0 if group == RIM else 1 << group)
+    return toggles
+
+
+class _Sides:
+    """Which rings hold a place, as bits by group."""
+
+    def __init__(
+        self, boundary: Sequence[NDArray[np.float64]], holes: Sequence[NDArray[np.float64]]
+    ) -> None:
+        self._boundary = list(boundary)
+        self.holes = list(holes)
+
+    def at(self, place: NDArray[np.float64]) -> int:
+        xy = place[None]
+        bits = 0
+        if self._boundary and in_rings(xy, self._boundary)[0] > 0:
+            bits |= 1 << BOUNDARY
+        for number, hole in enumerate(self.holes):
+            if in_rings(xy, [hole])[0] > 0:
+                bits |= 1 << (number + 1)
+        return bits
+
+    def is_within(self, bits: int) -> bool:
+        return not self._boundary or bool(bits & 1)
+
+    def is_kept(self, bits: int) -> bool:
+        return self.is_within(bits) and bits >> 1 == 0
+
+
+def _spread(
+    surface: Surface,
+    region: NDArray[np.int32],
+    half: _HalfEdges,
+    toggles: dict[int, int],
+    is_out: NDArray[np.bool_],
+    largest: NDArray[np.int32],
+    place: NDArray[np.float64],
+    side: _Sides,
+) -> list[int]:
+    """Return the bits of every region, from the largest one across the rings."""
+    beside = _beside(surface, region, half)
+    bits: list[int | None] = [None] * len(largest)
+    for start in _by_size(surface, largest):
+        if bits[start] is not None:
+            continue
+        bits[start] = side.at(place[start])
+        pending = [start] if not is_out[start] else []
+        while pending:
+            here = pending.pop()
+            for there, key in beside.get(here, ()):
+                if bits[there] is None and not is_out[there]:
+                    bits[there] = (bits[here] or 0) ^ toggles[key]
+                    pending.append(there)
+    return [own or 0 for own in bits]
+
+
+def _beside(
+    surface: Surface, region: NDArray[np.int32], half: _HalfEdges
+) -> dict[int, list[tuple[int, int]]]:
+    """Return for each region those across a ring, with an edge between them."""
+    across = surface.neighbors[half.triangle, half.corner]
+    inner = across != topology.NO_NEIGHBOR
+    pairs = np.stack([region[half.triangle[inner]], region[across[inner]]], axis=1)
+    _, first = np.unique(pairs, axis=0, return_index=True)
+    found: dict[int, list[tuple[int, int]]] = {}
+    for (here, there), key in zip(
+        pairs[first].tolist(), half.key[inner][first].tolist(), strict=True
+    ):
+        found.setdefault(here, []).append((there, key))
+    return found
+
+
+def _by_size(surface: Surface, largest: NDArray[np.int32]) -> list[int]:
+    a, b, c = (surface.points[surface.triangles[largest, k], :2] for k in range(3))
+    (x, y), (u, v) = (b - a).T, (c - a).T
+    order: list[int] = np.argsort(-(x * v - y * u), kind="stable").tolist()
+    return order
+
+
+def _require_all_cut(bits: list[int], is_out: NDArray[np.bool_], side: _Sides) -> None:
+    cut = 0
+    for own, out in zip(bits, is_out.tolist(), strict=True):
+        if not out and side.is_within(own):
+            cut |= own
+    for number in range(len(side.holes)):
+        if not cut >> (number + 1) & 1:
+            raise LinesError(
+                f"Hole {number} lies outside the surface: it must cut away a part of it.",
+                lines=[number],
+            )
 
 
 def _center(surface: Surface, triangles: NDArray[np.int32]) -> NDArray[np.float64]:
