@@ -18,9 +18,10 @@ from tinsmith.tin import _kernel
 from .datasets import DATASETS, dataset
 from .measure import OURS, Outcome, Result, alternate, median
 
-__all__ = ["SECTION", "run"]
+__all__ = ["SECTION", "TWO_THREADS", "run"]
 
 SECTION = "ways"
+TWO_THREADS = "two threads"
 SMALL_SIZES = (100, 1_000)
 SMALL_CALLS = 200
 LARGEST_GROWN = 100_000
@@ -30,10 +31,11 @@ QUADRATIC = ("circle", "few circles", "rails")
 
 
 def run(n: int, *, repeats: int = 5) -> Outcome:
-    """Measure vector paths at ``n`` points, methods at up to 100,000, and small inputs."""
+    """Measure vector paths, threads (at ``n`` points), methods (up to 100,000), small inputs."""
     outcome = Outcome()
     for name in ("uniform", "raster"):
         outcome.results += _vector_paths(name, n, repeats)
+    outcome.results += _threads("uniform", n, repeats)
     for name in DATASETS:
         outcome.results += _methods(name, min(n, LARGEST_GROWN), repeats)
     for size in SMALL_SIZES:
@@ -49,6 +51,13 @@ def _vector_paths(name: str, n: int, repeats: int) -> Iterator[Result]:
     ways |= {f"path {path}": partial(_kernel.grow, points, path=path) for path in slower}
     note = {OURS: f"path {used}, the one it takes here"}
     return _results(f"{name}, vector instructions", len(points), ways, repeats, note)
+
+
+def _threads(name: str, n: int, repeats: int) -> Iterator[Result]:
+    points = dataset(name, n)
+    ways = {OURS: partial(_kernel.grow, points, threads=1)}
+    ways |= {TWO_THREADS: partial(_kernel.grow, points, threads=2)}
+    return _results(f"{name}, threads", len(points), ways, 3 * repeats, {OURS: "one thread"})
 
 
 def _methods(name: str, n: int, repeats: int) -> Iterator[Result]:
