@@ -6,7 +6,7 @@ looked at; arrays that were handed out before stay as they were.
 
 from __future__ import annotations
 
-from functools import cached_property
+from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -34,6 +34,17 @@ _RENEWED = (
     "lines",
     "report",
 )
+
+
+@cache
+def _derived(owner: type) -> tuple[str, ...]:
+    """Return the names of what a class computes once from its arrays."""
+    return tuple(
+        name
+        for base in owner.__mro__
+        for name, value in vars(base).items()
+        if isinstance(value, cached_property)
+    )
 
 
 class Editable:
@@ -278,13 +289,7 @@ class Editable:
     def _forget(self) -> None:
         """Drop arrays that an edit made old; they come back when they are looked at."""
         self.__dict__.setdefault("report_before", self.__dict__.get("report"))
-        derived = [
-            name
-            for owner in type(self).__mro__
-            for name, value in vars(owner).items()
-            if isinstance(value, cached_property)
-        ]
-        for name in [*_RENEWED, *derived]:
+        for name in (*_RENEWED, *_derived(type(self))):
             self.__dict__.pop(name, None)
 
     def __getattr__(self, name: str) -> Any:

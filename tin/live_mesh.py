@@ -49,6 +49,7 @@ class LiveMesh:
     ) -> None:
         self._given: _Arrays = (xy, triangles, neighbors, fixed)
         self._alive = np.ones(len(xy), np.bool_) if alive is None else alive
+        self._count = int(self._alive.sum())
         self._mesh: _kernel.Mesh | None = None
 
     @property
@@ -67,7 +68,7 @@ class LiveMesh:
     @property
     def count(self) -> int:
         """Vertices that are there."""
-        return int(self._alive.sum()) if self._mesh is None else self._mesh.count
+        return self._count if self._mesh is None else self._mesh.count
 
     def alive(self) -> NDArray[np.bool_]:
         """Tell which slots hold a vertex."""
