@@ -289,7 +289,7 @@ class Editable:
     def _forget(self) -> None:
         """Drop arrays that an edit made old; they come back when they are looked at."""
         self.__dict__.setdefault("report_before", self.__dict__.get("report"))
-        for name in (*_RENEWED, *_derived(type(self))):
+        for name in (*_RENEWED, *_derived(type(self))):  # type: ignore[arg-type]
             self.__dict__.pop(name, None)
 
     def __getattr__(self, name: str) -> Any:
