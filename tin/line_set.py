@@ -102,6 +102,17 @@ class LineSet(NamedTuple):
         )
 
 
+_NONE = LineSet(
+    np.empty((0, 2)),
+    np.empty(0),
+    np.zeros(1, np.int64),
+    (),
+    np.empty(0, np.int32),
+    np.empty(0),
+    (),
+)
+
+
 def gather_lines(
     breaklines: Sequence[Breakline | ArrayLike],
     boundary: Sequence[ArrayLike],
@@ -116,6 +127,8 @@ def gather_lines(
         If a line has another shape, too few vertices, coordinates that are not finite or too
         large, or if a ring crosses itself.
     """
+    if not (len(breaklines) or len(boundary) or len(holes) or len(water)):
+        return _NONE
     lines = [
         line if isinstance(line, Breakline) else Breakline(line)
         for line in as_sequence(breaklines, "breaklines")
