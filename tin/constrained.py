@@ -15,7 +15,7 @@ from .conforming import conform
 from .duplicates import DuplicatePolicy, merge_rows
 from .errors import PointsError
 from .line_set import ABOVE_ALL, BELOW_ALL, LineSet
-from .model import force
+from .model import force, mesh_of_growth
 from .noding import Chains, Noded, node, untouched
 from .pieces import Pieces
 from .regions import Surface, edge_keys, in_rings
@@ -89,12 +89,15 @@ def draft(
         If lines cross that must not.
     """
     merged = _merge(xyz, lines, options)
-    mesh, noded = _mesh(merged), untouched(merged.chains)
+    mesh, noded = mesh_of_growth(merged.points, merged.growth), untouched(merged.chains)
     is_simple = options.snap == 0.0 and not (lines.priorities == ABOVE_ALL).any()
     is_forced = is_simple and _is_forced(mesh, _as_pieces(noded.chains))
     if not is_forced:
         noded = _noded(merged, lines, options)
-        mesh = _mesh(merged, noded.new_points)
+        if is_simple:  # edges were fixed in vain
+            mesh = mesh_of_growth(merged.points, merged.growth)
+        if len(noded.new_points):
+            mesh.insert(np.ascontiguousarray(noded.new_points[:, :2]))
     points = np.concatenate([merged.points, noded.new_points])
     pieces = _as_pieces(noded.chains)
     overruled = _passed_by(points, noded, merged.overruled)
@@ -302,18 +305,3 @@ def _inside(xy: NDArray[np.float64], ring: NDArray[np.float64]) -> NDArray[np.bo
     if len(near):
         inside[near] = in_rings(xy[near], [ring[:-1]]) > 0
     return inside
-
-
-# ----------------------------------------------------------------- triangulation
-
-
-def _mesh(merged: _Merged, new_points: NDArray[np.float64] | None = None) -> _kernel.Mesh:
-    mesh = _kernel.Mesh(
-        np.ascontiguousarray(merged.points[:, :2]),
-        merged.growth.triangles,
-        merged.growth.neighbors,
-        np.zeros(merged.growth.triangles.shape, np.bool_),
-    )
-    if new_points is not None and len(new_points):
-        mesh.insert(np.ascontiguousarray(new_points[:, :2]))
-    return mesh

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from . import _kernel
+from . import _kernel, topology
 from .errors import LinesError
 from .lines import LineKind, Lines
 from .pieces import Pieces
@@ -20,7 +20,7 @@ from .regions import BOUNDARY, RIM, RingSteps, Surface, clipped, edge_keys, is_i
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Clip", "LineInfo", "Model", "lines_in", "mesh_of"]
+__all__ = ["Clip", "LineInfo", "Model", "force", "lines_in", "mesh_of", "mesh_of_growth"]
 
 
 class LineInfo(NamedTuple):
@@ -129,15 +129,19 @@ def _group_of(info: LineInfo) -> int:
 
 def mesh_of(points: NDArray[np.float64], pieces: Pieces, *, threads: int) -> _kernel.Mesh:
     """Triangulate distinct points, and fix the steps of lines that are cut where they meet."""
-    growth = _kernel.grow(points, threads=threads)
-    mesh = _kernel.Mesh(
+    mesh = mesh_of_growth(points, _kernel.grow(points, threads=threads))
+    force(mesh, pieces)
+    return mesh
+
+
+def mesh_of_growth(points: NDArray[np.float64], growth: _kernel.Growth) -> _kernel.Mesh:
+    """Return the triangulation of distinct points as a mesh, with no edge fixed."""
+    return _kernel.Mesh(
         np.ascontiguousarray(points[:, :2]),
         growth.triangles,
         growth.neighbors,
         np.zeros(growth.triangles.shape, np.bool_),
     )
-    force(mesh, pieces)
-    return mesh
 
 
 def force(mesh: _kernel.Mesh, pieces: Pieces) -> None:
@@ -175,13 +179,7 @@ def lines_in(
 def _are_edges(steps: NDArray[np.int32], surface: Surface) -> NDArray[np.bool_]:
     n = len(surface.points)
     triangle, corner = np.nonzero(surface.constrained)
-    edges = np.stack(
-        [
-            surface.triangles[triangle, (corner + 1) % 3],
-            surface.triangles[triangle, (corner + 2) % 3],
-        ],
-        axis=1,
-    )
+    edges = np.stack(topology.ends(surface.triangles, triangle, corner), axis=1)
     is_edge = np.asarray((steps >= 0).all(axis=1), np.bool_)
-    is_edge[is_edge] = np.isin(edge_keys(steps[is_edge], n), edge_keys(edges, n))
+    is_edge[is_edge] = np.isin(edge_keys(steps[is_edge], n), edge_keys(edges.astype(np.int32), n))
     return is_edge

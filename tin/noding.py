@@ -111,18 +111,13 @@ class Noded(NamedTuple):
 
 def untouched(chains: Chains) -> Noded:
     """Return lines that meet nowhere, as :func:`node` would; repeated vertices are dropped."""
-    vertices, offsets = chains.vertices, chains.offsets
-    is_repeated = np.zeros(len(vertices), np.bool_)
-    is_repeated[1:] = vertices[1:] == vertices[:-1]
-    is_repeated[offsets[:-1]] = False
+    walk = Walk.along(chains.vertices, chains.offsets, chains.heights)
+    offsets = np.searchsorted(walk.line, np.arange(len(chains.offsets))).astype(np.int32)
     none = np.empty(0, np.int32)
     nothing = np.empty(0)
-    kept = np.concatenate([[0], np.cumsum(~is_repeated)])
     return Noded(
         np.empty((0, 3)),
-        Chains(
-            vertices[~is_repeated], kept[offsets].astype(np.int32), chains.heights[~is_repeated]
-        ),
+        Chains(walk.vertices, offsets, walk.heights),
         Crossings(none, np.empty((0, 2)), none, none, nothing, nothing, nothing),
         Touches(none, none, nothing),
     )

@@ -61,7 +61,7 @@ def build(
       tinsmith build sample_data/jacksboro.tif --stride 4 -o hills.ply -o hills.stl
     """  # noqa: D301 - click reads the control character
     from .facts import report_facts
-    from .files import plan_outputs, read_input, triangulated, with_lines, write_outputs
+    from .files import plan_outputs, read_input, triangulated, with_lines, write_outputs, write_text
 
     started = perf_counter()
     planned = plan_outputs(outputs, writing, source=points)
@@ -69,7 +69,7 @@ def build(
     tin = triangulated(survey, how, console)
     write_outputs(tin, planned, console)
     if report is not None:
-        _write_text(report, plain(report_facts(tin.report, survey)) + "\n")
+        write_text(report, plain(report_facts(tin.report, survey)) + "\n")
     seconds = perf_counter() - started
     console.summarise(_fields(points, survey, tin, planned, seconds))
     if console.as_json:
@@ -85,13 +85,6 @@ def _as_survey(found: Survey | TIN, path: Path) -> Survey:
             f"'{path}' holds a TIN already: use 'tinsmith convert' to write it in another format."
         )
     return found
-
-
-def _write_text(path: Path, text: str) -> None:
-    from ..io.atomic import replacing
-
-    with replacing(path, binary=False) as file:
-        file.write(text)
 
 
 def _fields(

@@ -70,7 +70,7 @@ def edit(
        {"op": "add_breakline", "coords": [[752650, 4024200, 321], [752700, 4024300, 323]]}]
     """  # noqa: D301 - click reads the control character
     from ..tin.editing import apply_edits
-    from .files import plan_outputs, read_tin, write_outputs
+    from .files import plan_outputs, read_tin, write_outputs, write_text
 
     started = perf_counter()
     planned = plan_outputs(outputs, writing, source=file)
@@ -81,7 +81,7 @@ def edit(
         apply_edits(tin, edits)
     write_outputs(tin, planned, console)
     if report is not None:
-        _write_text(report, plain(tin.report.to_dict()) + "\n")
+        write_text(report, plain(tin.report.to_dict()) + "\n")
     console.summarise(
         [
             ("Read", f"a TIN of {before[0]:,} vertices, {before[1]:,} triangles from {file}"),
@@ -130,10 +130,3 @@ def _read_script(path: Path) -> list[dict[str, Any]]:
     if not isinstance(edits, list) or not all(isinstance(one, dict) for one in edits):
         raise Failure(f"'{path}' holds something else: {wanted}.")
     return edits
-
-
-def _write_text(path: Path, text: str) -> None:
-    from ..io.atomic import replacing
-
-    with replacing(path, binary=False) as file:
-        file.write(text)

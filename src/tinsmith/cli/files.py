@@ -27,6 +27,7 @@ __all__ = [
     "triangulated",
     "with_lines",
     "write_outputs",
+    "write_text",
 ]
 
 
@@ -184,3 +185,11 @@ def _shows_progress(one: Format) -> bool:
 
     module, _, function = (one.write or "").partition(":")
     return "progress" in signature(getattr(import_module(module), function)).parameters
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a whole text file or none."""
+    from ..io.atomic import replacing
+
+    with replacing(path, binary=False) as file:
+        file.write(text)
