@@ -72,10 +72,10 @@ class Editor:
         self._removed: list[int] = []
         self._visible: NDArray[np.int32] | None = None
         if hull is None:
-            arrays = mesh_of(model.points, model.pieces, threads=threads).arrays(threads)
+            self._live = LiveMesh.of(mesh_of(model.points, model.pieces, threads=threads))
         else:
-            arrays = hull.triangles, hull.neighbors, hull.constrained
-        self._live = LiveMesh(np.ascontiguousarray(model.points[:, :2]), *arrays)
+            xy = np.ascontiguousarray(model.points[:, :2])
+            self._live = LiveMesh(xy, hull.triangles, hull.neighbors, hull.constrained)
 
     # ------------------------------------------------------------------ numbers
 

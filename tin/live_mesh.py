@@ -52,6 +52,13 @@ class LiveMesh:
         self._count = int(self._alive.sum())
         self._mesh: _kernel.Mesh | None = None
 
+    @classmethod
+    def of(cls, mesh: _kernel.Mesh) -> LiveMesh:
+        """Return one that is a mesh already."""
+        live = cls(*_NOTHING)
+        live._mesh = mesh
+        return live
+
     @property
     def mesh(self) -> _kernel.Mesh:
         """The mesh, to be changed."""
