@@ -7,7 +7,25 @@ from typing import Any
 
 from ..tin import MissingExtraError
 
-__all__ = ["pyvista"]
+__all__ = ["matplotlib", "pyvista"]
+
+
+def matplotlib(purpose: str) -> Any:
+    """Return matplotlib's module of figures, or name the extra that brings it.
+
+    Figures of this module are drawn without a screen and leave no state behind.
+
+    Parameters
+    ----------
+    purpose : str
+        Subject of the sentence: what needs the library.
+
+    Raises
+    ------
+    MissingExtraError
+        If matplotlib is not installed.
+    """
+    return _module("matplotlib.figure", "plot", purpose)
 
 
 def pyvista(purpose: str) -> Any:
@@ -23,7 +41,12 @@ def pyvista(purpose: str) -> Any:
     MissingExtraError
         If pyvista is not installed.
     """
+    return _module("pyvista", "view", purpose)
+
+
+def _module(name: str, extra: str, purpose: str) -> Any:
     try:
-        return import_module("pyvista")
+        return import_module(name)
     except ImportError as error:
-        raise MissingExtraError("pyvista", extra="view", purpose=purpose) from error
+        library = name.partition(".")[0]
+        raise MissingExtraError(library, extra=extra, purpose=purpose) from error
