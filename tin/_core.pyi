@@ -43,10 +43,10 @@ class Locator:
 class Mesh:
     def __init__(
         self,
-        xy: NDArray[np.float64],
+        points: NDArray[np.float64],
         triangles: NDArray[np.int32],
         neighbors: NDArray[np.int32],
-        fixed: NDArray[np.bool_],
+        fixed: NDArray[np.bool_] | None = None,
     ) -> None: ...
     @property
     def slots(self) -> int: ...

@@ -173,7 +173,7 @@ def _along_surface(
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Return the places along every piece, with those where it crosses edges, and the piece."""
     mesh = _kernel.Mesh(
-        np.ascontiguousarray(surface.points[:, :2]),
+        surface.points,
         surface.triangles,
         surface.neighbors,
         np.ones(surface.triangles.shape, np.bool_),  # so that every edge is there to be crossed

@@ -9,13 +9,14 @@ from __future__ import annotations
 
 from bisect import bisect_left, bisect_right, insort
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Generic, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from . import _kernel
 from .chains import ChainTable, Step, as_pairs, step_of, with_middle
 from .errors import LinesError, PointsError
+from .growing import GrowingRows
 from .live_mesh import LiveMesh
 from .model import LineInfo, Model, lines_in, mesh_of
 from .regions import Surface
@@ -26,8 +27,6 @@ if TYPE_CHECKING:
     from .lines import Lines
 
 __all__ = ["FLIP", "Editor", "Refreshed"]
-
-Scalar = TypeVar("Scalar", bound=np.generic)
 
 FLIP = "flip"
 """Name of the soft breakline that keeps a flipped edge."""
@@ -65,8 +64,8 @@ class Editor:
     def __init__(self, model: Model, hull: Surface | None = None, *, threads: int = 1) -> None:
         self._threads = threads
         self._clip = model.clip
-        self._points = _Growing(model.points)
-        self._rows = _Growing(model.vertex_of)
+        self._points = GrowingRows(model.points)
+        self._rows = GrowingRows(model.vertex_of)
         self._infos = list(model.infos)
         self._chains = ChainTable(model.pieces)
         self._removed: list[int] = []
@@ -74,8 +73,7 @@ class Editor:
         if hull is None:
             self._live = LiveMesh.of(mesh_of(model.points, model.pieces, threads=threads))
         else:
-            xy = np.ascontiguousarray(model.points[:, :2])
-            self._live = LiveMesh(xy, hull.triangles, hull.neighbors, hull.constrained)
+            self._live = LiveMesh(model.points, hull.triangles, hull.neighbors, hull.constrained)
 
     # ------------------------------------------------------------------ numbers
 
@@ -115,7 +113,7 @@ class Editor:
     def hull(self) -> Surface:
         """Return the triangulation of all vertices."""
         triangles, neighbors, fixed = self._live.arrays(self._threads)
-        return Surface(self._points.values[self._live.alive()], triangles, neighbors, fixed)
+        return Surface(self._points.values()[self._live.alive()], triangles, neighbors, fixed)
 
     def refreshed(self) -> Refreshed:
         """Make the arrays of the TIN."""
@@ -127,7 +125,7 @@ class Editor:
             pieces=self._chains.pieces().renumbered(number),
             infos=tuple(self._infos),
             clip=self._clip,
-            vertex_of=np.append(number, np.int32(-1))[self._rows.values],
+            vertex_of=np.append(number, np.int32(-1))[self._rows.values()],
         )
         surface, number_of = model.surface(hull)
         if self.is_clipped:
@@ -157,8 +155,9 @@ class Editor:
         self._points.extend(xyz)
         self._removed.extend((first + np.flatnonzero(~is_new)).tolist())
         for row in np.flatnonzero(~is_new).tolist():
-            old, new = float(self._points.values[slots[row], 2]), float(xyz[row, 2])
-            self._points.values[slots[row], 2] = _merged_height(old, new, policy)
+            there = int(slots[row])
+            old, new = float(self._points.at(there)[2]), float(xyz[row, 2])
+            self._set_height(there, _merged_height(old, new, policy))
         if self._chains:
             for slot in slots[is_new].tolist():
                 self._join_step_at(slot)
@@ -176,14 +175,14 @@ class Editor:
         was there already.
         """
         first = self._live.slots
-        rows = np.concatenate([self._points.values, xyz])
+        rows = np.concatenate([self._points.values(), xyz])
         growth = _kernel.grow(rows, threads=self._threads)
         own = np.arange(len(rows), dtype=np.int32)
         slots = own if growth.kept_row is None else growth.kept_row
         is_kept = slots == own
         vertex = np.flatnonzero(is_kept).astype(np.int32)
         self._live = LiveMesh(
-            np.ascontiguousarray(rows[:, :2]),
+            rows,
             growth.triangles if is_kept.all() else vertex[growth.triangles],
             growth.neighbors,
             np.zeros(growth.triangles.shape, np.bool_),
@@ -238,7 +237,7 @@ class Editor:
         LinesError
             If a line would cross another.
         """
-        if (self._points.values[slot, :2] != point[:2]).any():
+        if (self._points.at(slot)[:2] != point[:2]).any():
             held = [step_of(slot, other) for other in self._mesh.fixed_neighbors(slot).tolist()]
             self._release(held)
             if not self._mesh.remove(np.array([slot], np.int32)):
@@ -251,15 +250,21 @@ class Editor:
                     f"Vertex {int(self.numbers(np.array([found], np.int32))[0])} stands at "
                     f"x {point[0]:g}, y {point[1]:g} already: two vertices need two places."
                 )
-            self._points.values[slot] = point
             self._join_step_at(slot)
             for step in held:
                 self._force(step)
-        self._points.values[slot, 2] = point[2]
+        self._points.put(slot, point)
 
     def set_z(self, slots: NDArray[np.int32], z: NDArray[np.float64]) -> None:
         """Give vertices other heights."""
-        self._points.values[slots, 2] = z
+        heights = np.broadcast_to(z, len(slots)).tolist()
+        for slot, height in zip(slots.tolist(), heights, strict=True):
+            self._set_height(slot, height)
+
+    def _set_height(self, slot: int, height: float) -> None:
+        point = self._points.at(slot).copy()
+        point[2] = height
+        self._points.put(slot, point)
 
     # -------------------------------------------------------------------- lines
 
@@ -284,13 +289,9 @@ class Editor:
                 self._drop_line(line)
             return
         left, right = beside
-        xy = self._points.values[:, :2]
-        quad = [np.ascontiguousarray(xy[[v]]) for v in (a, right, b, left)]
-        turns = [
-            int(_kernel.orientation(quad[i], quad[(i + 1) % 4], quad[(i + 2) % 4])[0])
-            for i in range(4)
-        ]
-        if min(turns) <= 0:
+        quad = np.ascontiguousarray(self._points.take([a, right, b, left])[:, :2])
+        following = np.roll(quad, -1, axis=0), np.roll(quad, -2, axis=0)
+        if _kernel.orientation(quad, *following).min() <= 0:
             raise PointsError("The two triangles at the edge are no convex quadrilateral.")
         line = self._new_line(LineInfo("soft", self._next_source(), FLIP))
         self._add_chain(line, [left, right])
@@ -372,12 +373,12 @@ class Editor:
     ) -> int:
         """Make a vertex where the next step of a new line crosses one; return it."""
         c, d = other
-        points = self._points.values
-        four = np.ascontiguousarray(points[[way[-1], to, c, d], :2])
+        ends = self._points.take([way[-1], to, c, d])
+        four = np.ascontiguousarray(ends[:, :2])
         pairs = np.array([[0, 1]], np.int32)
         place = _kernel.intersections(four, np.array([[0, 1], [2, 3]], np.int32), pairs)[0]
-        own = _height_at(points[[way[-1], to]], place)
-        theirs = _height_at(points[[c, d]], place)
+        own = _height_at(ends[:2], place)
+        theirs = _height_at(ends[2:], place)
         rivals = self._chains.lines_of_step(step_of(c, d))
         highest = max((self._infos[rival].priority for rival in rivals), default=np.inf)
         taken = own if self._infos[line].priority > highest else theirs
@@ -442,24 +443,3 @@ def _height_at(ends: NDArray[np.float64], place: NDArray[np.float64]) -> float:
     whole, part = ends[1, :2] - ends[0, :2], place - ends[0, :2]
     share = min(max(float(part @ whole / (whole @ whole)), 0.0), 1.0)
     return float(ends[0, 2] + share * (ends[1, 2] - ends[0, 2]))
-
-
-class _Growing(Generic[Scalar]):
-    """An array with room at its end."""
-
-    def __init__(self, values: NDArray[Scalar]) -> None:
-        self._room = values.copy()
-        self._size = len(values)
-
-    @property
-    def values(self) -> NDArray[Scalar]:
-        return self._room[: self._size]
-
-    def extend(self, more: NDArray[Scalar]) -> None:
-        size = self._size + len(more)
-        if size > len(self._room):
-            room = np.empty((size + size // 4 + 64, *self._room.shape[1:]), self._room.dtype)
-            room[: self._size] = self.values
-            self._room = room
-        self._room[self._size : size] = more
-        self._size = size

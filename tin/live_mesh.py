@@ -30,7 +30,7 @@ class LiveMesh:
 
     Parameters
     ----------
-    xy : (n, 2) float64 array
+    points : (n, 2 or 3) float64 array
         Of every slot.
     triangles, neighbors : (m, 3) int32 arrays
         By slot; in canonical order.
@@ -41,14 +41,14 @@ class LiveMesh:
 
     def __init__(
         self,
-        xy: NDArray[np.float64],
+        points: NDArray[np.float64],
         triangles: NDArray[np.int32],
         neighbors: NDArray[np.int32],
         fixed: NDArray[np.bool_],
         alive: NDArray[np.bool_] | None = None,
     ) -> None:
-        self._given: _Arrays = (xy, triangles, neighbors, fixed)
-        self._alive = np.ones(len(xy), np.bool_) if alive is None else alive
+        self._given: _Arrays = (points, triangles, neighbors, fixed)
+        self._alive = np.ones(len(points), np.bool_) if alive is None else alive
         self._count = int(self._alive.sum())
         self._mesh: _kernel.Mesh | None = None
 

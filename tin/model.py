@@ -136,12 +136,7 @@ def mesh_of(points: NDArray[np.float64], pieces: Pieces, *, threads: int) -> _ke
 
 def mesh_of_growth(points: NDArray[np.float64], growth: _kernel.Growth) -> _kernel.Mesh:
     """Return the triangulation of distinct points as a mesh, with no edge fixed."""
-    return _kernel.Mesh(
-        np.ascontiguousarray(points[:, :2]),
-        growth.triangles,
-        growth.neighbors,
-        np.zeros(growth.triangles.shape, np.bool_),
-    )
+    return _kernel.Mesh(points, growth.triangles, growth.neighbors)
 
 
 def force(mesh: _kernel.Mesh, pieces: Pieces) -> None:

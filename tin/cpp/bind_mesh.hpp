@@ -3,10 +3,12 @@
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/tuple.h>
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <tuple>
 #include <vector>
@@ -20,6 +22,7 @@
 namespace tinsmith::python {
 
 using GivenPlaces = nb::ndarray<const double, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
+using GivenRows = nb::ndarray<const double, nb::shape<-1, -1>, nb::c_contig, nb::device::cpu>;
 using GivenTriangles =
     nb::ndarray<const std::int32_t, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 using GivenPairs = nb::ndarray<const std::int32_t, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
@@ -31,9 +34,9 @@ using FlagRow = nb::ndarray<nb::numpy, bool, nb::shape<-1>>;
 // The editor with the checks that keep a caller's mistake from corrupting it.
 class HeldMesh {
  public:
-  HeldMesh(const GivenPlaces& xy, const GivenTriangles& triangles, const GivenTriangles& neighbors,
-           const GivenFlags& fixed)
-      : editor_(made(xy, triangles, neighbors, fixed)) {}
+  HeldMesh(const GivenRows& points, const GivenTriangles& triangles,
+           const GivenTriangles& neighbors, const std::optional<GivenFlags>& fixed)
+      : editor_(made(points, triangles, neighbors, fixed)) {}
 
   std::int32_t slots() const { return editor_.slots(); }
   std::int32_t count() const { return editor_.count(); }
@@ -186,20 +189,24 @@ class HeldMesh {
   }
 
  private:
-  static MeshEditor made(const GivenPlaces& xy, const GivenTriangles& triangles,
-                         const GivenTriangles& neighbors, const GivenFlags& fixed) {
+  static MeshEditor made(const GivenRows& points, const GivenTriangles& triangles,
+                         const GivenTriangles& neighbors, const std::optional<GivenFlags>& fixed) {
     const auto count = static_cast<std::int32_t>(triangles.shape(0));
-    if (neighbors.shape(0) != triangles.shape(0) || fixed.shape(0) != triangles.shape(0)) {
+    if (neighbors.shape(0) != triangles.shape(0) ||
+        (fixed && fixed->shape(0) != triangles.shape(0))) {
       throw std::invalid_argument("triangles, neighbors and fixed must have as many rows");
     }
+    if (points.shape(1) < 2) throw std::invalid_argument("points must have two columns at least");
+    const bool* const flags = fixed ? fixed->data() : nullptr;
     nb::gil_scoped_release release;
-    const auto* places = reinterpret_cast<const Point*>(xy.data());
-    const auto vertices = static_cast<std::int32_t>(xy.shape(0));
-    const HullTriangles given{triangles.data(), neighbors.data(), fixed.data(), count};
-    std::vector<Point> points;
-    points.reserve(vertices + room_for(vertices));
-    points.assign(places, places + vertices);
-    return MeshEditor(mesh_of(given, vertices, room_for(vertices)), std::move(points));
+    const PointRows rows{points.data(), static_cast<std::int64_t>(points.shape(0)),
+                         static_cast<std::int64_t>(points.shape(1))};
+    const auto vertices = static_cast<std::int32_t>(rows.count);
+    const HullTriangles given{triangles.data(), neighbors.data(), flags, count};
+    MeshPoints places;
+    places.reserve(std::size_t{0} + vertices + room_for(vertices));
+    for (std::int32_t row = 0; row < vertices; ++row) places.push_back(rows[row]);
+    return MeshEditor(mesh_of(given, vertices, room_for(vertices)), std::move(places));
   }
 
   // So many vertices can be added before anything is moved in memory.
@@ -248,10 +255,10 @@ inline void bind_mesh(nb::module_& m) {
         "neighbors"_a.noconvert(), "barrier"_a.noconvert(),
         "The region of each triangle between barrier edges, and each region's largest triangle.");
   nb::class_<HeldMesh>(m, "Mesh", "A constrained Delaunay triangulation that can be changed.")
-      .def(nb::init<const GivenPlaces&, const GivenTriangles&, const GivenTriangles&,
-                    const GivenFlags&>(),
-           "xy"_a.noconvert(), "triangles"_a.noconvert(), "neighbors"_a.noconvert(),
-           "fixed"_a.noconvert())
+      .def(nb::init<const GivenRows&, const GivenTriangles&, const GivenTriangles&,
+                    const std::optional<GivenFlags>&>(),
+           "points"_a.noconvert(), "triangles"_a.noconvert(), "neighbors"_a.noconvert(),
+           "fixed"_a.noconvert() = nb::none())
       .def_prop_ro("slots", &HeldMesh::slots, "Vertices that are or were there.")
       .def_prop_ro("count", &HeldMesh::count, "Vertices that are there.")
       .def("alive", &HeldMesh::alive, "Which slots hold a vertex.")

@@ -14,6 +14,8 @@
 #include <memory>
 #include <new>
 #include <type_traits>
+#include <utility>
+#include <vector>
 #if defined(__linux__)
 #include <sys/mman.h>
 #endif
@@ -40,13 +42,22 @@ struct ReleaseMemory {
 template <typename T>
 using ScratchArray = std::unique_ptr<T[], ReleaseMemory>;
 
+// How much of so many bytes is mapped: all or nothing.
+inline std::size_t mapped_bytes(std::size_t size) {
+#if defined(__linux__)
+  constexpr std::size_t kWorthMapping = std::size_t{4} << 20;  // holds a large page for certain
+  return size >= kWorthMapping ? size : 0;
+#else
+  return 0 * size;
+#endif
+}
+
 template <typename T>
 ScratchArray<T> scratch_array(std::size_t count) {
   static_assert(std::is_trivially_destructible_v<T>);
   const std::size_t size = count * sizeof(T);
 #if defined(__linux__)
-  constexpr std::size_t kWorthMapping = std::size_t{4} << 20;  // holds a large page for certain
-  if (size >= kWorthMapping) {
+  if (mapped_bytes(size) > 0) {
     void* const memory =
         mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (memory == MAP_FAILED) throw std::bad_alloc();
@@ -65,6 +76,34 @@ inline void release_freed_memory() {
   malloc_trim(0);
 #endif
 }
+
+// A scratch array that grows. What is made without a value holds anything.
+template <typename T>
+struct ScratchMemory {
+  using value_type = T;
+
+  ScratchMemory() = default;
+  template <typename U>
+  ScratchMemory(const ScratchMemory<U>&) {}
+
+  T* allocate(std::size_t count) { return scratch_array<T>(count).release(); }
+  void deallocate(T* memory, std::size_t count) {
+    ReleaseMemory{mapped_bytes(count * sizeof(T))}(memory);
+  }
+  template <typename U>
+  void construct(U* place) {
+    ::new (static_cast<void*>(place)) U;
+  }
+  template <typename U, typename... Given>
+  void construct(U* place, Given&&... given) {
+    ::new (static_cast<void*>(place)) U(std::forward<Given>(given)...);
+  }
+  friend bool operator==(const ScratchMemory&, const ScratchMemory&) { return true; }
+  friend bool operator!=(const ScratchMemory&, const ScratchMemory&) { return false; }
+};
+
+template <typename T>
+using ScratchVector = std::vector<T, ScratchMemory<T>>;
 
 struct FreeMemory {
   void operator()(void* memory) const { std::free(memory); }

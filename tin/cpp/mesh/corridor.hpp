@@ -20,7 +20,7 @@ class Corridor {
  public:
   // Collect the triangles that the way from a to b crosses, and their rim on its right and left;
   // `e` is the first edge across, from right to left. False if a fixed edge is in the way.
-  bool open(const Mesh& mesh, const std::vector<Point>& points, std::int32_t a, std::int32_t b,
+  bool open(const Mesh& mesh, const Point* points, std::int32_t a, std::int32_t b,
             MeshEdge e) {
     triangles_.assign(1, triangle_of(e));
     right_rim_.assign(1, rim_edge(mesh, mesh.before(e)));
@@ -39,7 +39,7 @@ class Corridor {
   }
 
   // Fill the corridor on both sides of the way; returns the edge along it.
-  MeshEdge close(Mesh& mesh, const std::vector<Point>& points) {
+  MeshEdge close(Mesh& mesh, const Point* points) {
     spare_ = triangles_;
     std::reverse(left_rim_.begin(), left_rim_.end());
     const MeshEdge right = fill(mesh, points, right_rim_);
@@ -72,7 +72,7 @@ class Corridor {
   // Triangulate between a rim, counter-clockwise, and the edge from its end to its start: wherever
   // two edges turn left, a triangle takes their place. Every vertex of the rim sees the closing
   // edge, so none lies in the way. Returns the closing edge, as seen from within.
-  MeshEdge fill(Mesh& mesh, const std::vector<Point>& points, std::vector<RimEdge>& rim) {
+  MeshEdge fill(Mesh& mesh, const Point* points, std::vector<RimEdge>& rim) {
     std::vector<Open>& open = open_;
     open.clear();
     const auto attach = [&mesh](const Open& edge, MeshEdge side) {

@@ -17,6 +17,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "../base/arrays.hpp"
 #include "../insertion/ghost_mesh.hpp"
 
 namespace tinsmith {
@@ -63,6 +64,18 @@ class Mesh {
     fixed_.reserve(triangles);
   }
   void add_vertices(std::size_t count) { leaving_.resize(leaving_.size() + count, kNoMeshEdge); }
+
+  // The first triangles, all at once: make(t, triangle) fills one in, neighbours and all, and
+  // returns the bits of its fixed edges.
+  template <typename Make>
+  void add_all(std::uint32_t count, const Make& make) {
+    triangles_.resize(count);
+    fixed_.resize(count);
+    for (std::uint32_t t = 0; t < count; ++t) {
+      fixed_[t] = make(t, triangles_[t]);
+      keep_leaving(t);
+    }
+  }
 
   // A triangle without neighbours yet.
   std::uint32_t add(std::int32_t a, std::int32_t b, std::int32_t c) {
@@ -234,10 +247,10 @@ class Mesh {
                                           opposite_c.is_fixed << 2);
   }
 
-  std::vector<GhostTriangle> triangles_;
-  std::vector<std::uint8_t> fixed_;     // bits by corner, both sides of an edge alike
-  std::vector<std::uint32_t> free_;     // triangles to use again
-  std::vector<MeshEdge> leaving_;       // one edge that leaves each vertex
+  ScratchVector<GhostTriangle> triangles_;
+  ScratchVector<std::uint8_t> fixed_;  // bits by corner, both sides of an edge alike
+  std::vector<std::uint32_t> free_;    // triangles to use again
+  ScratchVector<MeshEdge> leaving_;    // one edge that leaves each vertex
 };
 
 }  // namespace tinsmith

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -17,7 +18,7 @@
 namespace tinsmith {
 
 // Triangles of the whole convex hull, three entries each: corners, neighbours (kNoNeighbor
-// outside) and whether the edge opposite the corner is fixed.
+// outside) and whether the edge opposite the corner is fixed (null: none is).
 struct HullTriangles {
   const std::int32_t* corners;
   const std::int32_t* neighbors;
@@ -27,36 +28,49 @@ struct HullTriangles {
 
 namespace detail {
 
-inline void join_neighbors(const HullTriangles& given, Mesh& mesh) {
-  for (std::int32_t t = 0; t < given.count; ++t) {
+// Fills in one triangle after another, and remembers edges of the hull.
+class TriangleCopy {
+ public:
+  TriangleCopy(const HullTriangles& given, std::vector<MeshEdge>& hull)
+      : given_(given), hull_(hull) {}
+
+  std::uint8_t operator()(std::uint32_t t, GhostTriangle& made) const {
+    const std::size_t row = 3 * std::size_t{t};
+    std::uint8_t fixed = 0;
     for (std::uint32_t k = 0; k < 3; ++k) {
-      const std::int32_t u = given.neighbors[3 * std::int64_t{t} + k];
-      if (u < t) continue;  // joined already, or outside
-      const std::int32_t* const back = given.neighbors + 3 * std::int64_t{u};
-      const std::uint32_t place = back[0] == t ? 0 : back[1] == t ? 1 : 2;
-      mesh.join(mesh_edge(static_cast<std::uint32_t>(t), k),
-                mesh_edge(static_cast<std::uint32_t>(u), place));
+      made.corner[k] = given_.corners[row + k];
+      made.twin[k] = twin(t, k, given_.neighbors[row + k]);
+      if (given_.fixed != nullptr) fixed |= static_cast<std::uint8_t>(given_.fixed[row + k] << k);
     }
+    return fixed;
   }
-}
+
+ private:
+  MeshEdge twin(std::uint32_t t, std::uint32_t k, std::int32_t neighbor) const {
+    if (neighbor == kNoNeighbor) {
+      hull_.push_back(mesh_edge(t, k));
+      return kNoMeshEdge;
+    }
+    const std::int32_t* const back = given_.neighbors + 3 * std::int64_t{neighbor};
+    const auto own = static_cast<std::int32_t>(t);
+    const std::uint32_t place = (back[1] == own) + 2u * (back[2] == own);
+    return mesh_edge(static_cast<std::uint32_t>(neighbor), place);
+  }
+
+  const HullTriangles& given_;
+  std::vector<MeshEdge>& hull_;
+};
 
 // A ghost at every hull edge, each joined to the next along the hull.
-inline void add_ghosts(const HullTriangles& given, std::int32_t vertex_count, Mesh& mesh) {
-  std::vector<std::uint32_t> ghost_from(vertex_count, kNoMeshEdge);
-  std::vector<std::pair<std::uint32_t, std::int32_t>> ends;  // ghost, end of its hull edge
-  for (std::int32_t t = 0; t < given.count; ++t) {
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      if (given.neighbors[3 * std::int64_t{t} + k] != kNoNeighbor) continue;
-      const MeshEdge e = mesh_edge(static_cast<std::uint32_t>(t), k);
-      const std::int32_t start = mesh.from(e), end = mesh.to(e);
-      const std::uint32_t ghost = mesh.add(kGhost, end, start);
-      mesh.join(mesh_edge(ghost, 0), e);
-      ghost_from[start] = ghost;
-      ends.emplace_back(ghost, end);
-    }
+inline void add_ghosts(const std::vector<MeshEdge>& hull, Mesh& mesh) {
+  std::unordered_map<std::int32_t, std::uint32_t> ghost_from;
+  for (const MeshEdge e : hull) {
+    const std::uint32_t ghost = mesh.add(kGhost, mesh.to(e), mesh.from(e));
+    mesh.join(mesh_edge(ghost, 0), e);
+    ghost_from[mesh.from(e)] = ghost;
   }
-  for (const auto& [ghost, end] : ends) {
-    mesh.join(mesh_edge(ghost, 2), mesh_edge(ghost_from[end], 1));
+  for (const MeshEdge e : hull) {
+    mesh.join(mesh_edge(ghost_from[mesh.from(e)], 2), mesh_edge(ghost_from[mesh.to(e)], 1));
   }
 }
 
@@ -68,14 +82,11 @@ inline Mesh mesh_of(const HullTriangles& given, std::int32_t vertex_count, std::
   mesh.reserve(std::size_t{0} + vertex_count + more,
                2 * (std::size_t{0} + vertex_count + more));  // ghosts included
   mesh.add_vertices(vertex_count);
-  for (std::int64_t t = 0; t < given.count; ++t) {
-    mesh.add(given.corners[3 * t], given.corners[3 * t + 1], given.corners[3 * t + 2]);
-  }
-  detail::join_neighbors(given, mesh);
-  detail::add_ghosts(given, vertex_count, mesh);
-  for (std::int64_t i = 0; i < std::int64_t{3} * given.count; ++i) {
-    if (!given.fixed[i]) continue;
-    mesh.fix(mesh_edge(static_cast<std::uint32_t>(i / 3), static_cast<std::uint32_t>(i % 3)), true);
+  std::vector<MeshEdge> hull;
+  mesh.add_all(static_cast<std::uint32_t>(given.count), detail::TriangleCopy(given, hull));
+  detail::add_ghosts(hull, mesh);
+  for (const MeshEdge e : hull) {
+    if (mesh.is_fixed(e)) mesh.fix(e, true);  // on the ghost's side too
   }
   return mesh;
 }

@@ -23,7 +23,7 @@ class MeshEditor {
   enum class Forced { kDone, kBlocked };
 
   // A mesh with its points, ready to be changed.
-  MeshEditor(Mesh mesh, std::vector<Point> points)
+  MeshEditor(Mesh mesh, MeshPoints points)
       : mesh_(std::move(mesh)), points_(std::move(points)) {
     for (std::size_t v = 0; v < points_.size(); ++v) {
       count_ += mesh_.is_alive(static_cast<std::int32_t>(v));
@@ -358,8 +358,8 @@ class MeshEditor {
       changed_.push_back(triangle_of(beyond));
       return mesh_edge(triangle_of(beyond), 1);
     }
-    if (!corridor_.open(mesh_, points_, a, b, start)) return kNoMeshEdge;
-    const MeshEdge edge = corridor_.close(mesh_, points_);
+    if (!corridor_.open(mesh_, points_.data(), a, b, start)) return kNoMeshEdge;
+    const MeshEdge edge = corridor_.close(mesh_, points_.data());
     changed_.insert(changed_.end(), corridor_.triangles().begin(), corridor_.triangles().end());
     return edge;
   }
@@ -390,7 +390,7 @@ class MeshEditor {
   }
 
   Mesh mesh_;
-  std::vector<Point> points_;  // of every slot; a slot without a vertex holds anything
+  MeshPoints points_;
   std::int32_t count_ = 0;
   MeshEdge last_ = kNoMeshEdge;  // near the last change
   std::uint64_t state_ = 0;      // of the random walk, which never shows in the result

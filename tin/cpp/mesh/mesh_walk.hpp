@@ -5,10 +5,13 @@
 #include <cstdint>
 #include <vector>
 
+#include "../base/arrays.hpp"
 #include "../predicates/predicates.hpp"
 #include "mesh.hpp"
 
 namespace tinsmith {
+
+using MeshPoints = ScratchVector<Point>;  // by slot; one without a vertex holds anything
 
 struct MeshLocation {
   enum class Where { kInside, kOnEdge, kAtVertex, kOutside };
@@ -20,7 +23,7 @@ struct MeshLocation {
 class MeshWalk {
  public:
   // `state` of the random choices, which never show in the result.
-  MeshWalk(const Mesh& mesh, const std::vector<Point>& points, std::int32_t vertex_count,
+  MeshWalk(const Mesh& mesh, const MeshPoints& points, std::int32_t vertex_count,
            std::uint64_t& state)
       : mesh_(mesh), points_(points), count_(vertex_count), state_(state) {}
 
@@ -124,7 +127,7 @@ class MeshWalk {
   }
 
   const Mesh& mesh_;
-  const std::vector<Point>& points_;
+  const MeshPoints& points_;
   std::int32_t count_;
   std::uint64_t& state_;
 };

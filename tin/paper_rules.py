@@ -1,0 +1,116 @@
+"""The paper's rules for the third point of an edge: widest angle, or closest in the circle."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from .exact import in_circle
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from .exact import Columns
+
+__all__ = [
+    "Choice",
+    "Rule",
+    "closest_in_circle",
+    "closest_in_circle_or_widest_angle",
+    "widest_angle",
+]
+
+
+class Choice(NamedTuple):
+    """The point chosen, None if there is none, and the comparisons of points with circles."""
+
+    point: int | None
+    tests: int
+
+
+if TYPE_CHECKING:
+    Rule = Callable[[Columns, int, int, NDArray[np.int64]], Choice]
+
+
+def widest_angle(xy: Columns, p1: int, p2: int, qualified: NDArray[np.int64]) -> Choice:
+    """Choose the point that sees p1-p2 under the largest angle; of equals the first in the list.
+
+    Parameters
+    ----------
+    xy : Columns
+    p1, p2 : int
+    qualified : (k,) int64 array
+        Points strictly on one side of the edge, in ascending order.
+
+    Notes
+    -----
+    Whether P sees the edge under a larger angle than P' is whether P lies in the circle through
+    p1, p2 and P'. Cotangents in doubles propose, exact tests decide.
+    """
+    if len(qualified) == 0:
+        return Choice(None, 0)
+    cotangent = _cotangents(xy, p1, p2, qualified)
+    rivals = np.arange(len(qualified))
+    while True:
+        best = qualified[rivals[np.argmin(cotangent[rivals])]]
+        side = _sides_of_circle(xy, p1, p2, int(best), qualified)
+        rivals = np.flatnonzero(side > 0)
+        if len(rivals) == 0:
+            return Choice(int(qualified[np.argmax(side == 0)]), len(qualified) - 1)
+
+
+def closest_in_circle(xy: Columns, p1: int, p2: int, qualified: NDArray[np.int64]) -> Choice:
+    """Choose the point closest to p1-p2 in the circle whose diameter it is, rim included.
+
+    The perpendicular from a point of that circle meets the edge itself, so the distances to the
+    edge and to its line are the same. Of equals the first in the list is chosen; in doubles, as
+    coordinates are given.
+    """
+    (ax, ay), (bx, by) = _offsets(xy, p1, qualified), _offsets(xy, p2, qualified)
+    distance = np.abs(ax * by - ay * bx)
+    is_in_circle = ax * bx + ay * by <= 0
+    tests = len(qualified)
+    if not is_in_circle.any():
+        return Choice(None, tests)
+    distance[~is_in_circle] = np.inf
+    return Choice(int(qualified[np.argmin(distance)]), tests)
+
+
+def closest_in_circle_or_widest_angle(
+    xy: Columns, p1: int, p2: int, qualified: NDArray[np.int64]
+) -> Choice:
+    """Choose as :func:`closest_in_circle`; if the circle is empty as :func:`widest_angle`."""
+    in_circle = closest_in_circle(xy, p1, p2, qualified)
+    if in_circle.point is not None:
+        return in_circle
+    anywhere = widest_angle(xy, p1, p2, qualified)
+    return Choice(anywhere.point, in_circle.tests + anywhere.tests)
+
+
+def _cotangents(xy: Columns, p1: int, p2: int, points: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Cotangents of the angles under which points see p1-p2; a point nearly on it sees most."""
+    (ax, ay), (bx, by) = _offsets(xy, p1, points), _offsets(xy, p2, points)
+    cross = np.abs(ax * by - ay * bx)
+    dot = ax * bx + ay * by
+    flat = np.copysign(np.inf, dot)
+    cotangent: NDArray[np.float64] = np.divide(dot, cross, out=flat, where=cross > 0)
+    return cotangent
+
+
+def _offsets(xy: Columns, origin: int, points: NDArray[np.int64]) -> Columns:
+    x, y = xy
+    return x[points] - x[origin], y[points] - y[origin]
+
+
+def _sides_of_circle(
+    xy: Columns, p1: int, p2: int, p: int, points: NDArray[np.int64]
+) -> NDArray[np.int8]:
+    """Tell whether points on P's side of p1-p2 see it wider than P (+1), as wide (0) or less."""
+    size = len(points)
+    corners = (np.full(size, corner) for corner in (p1, p2, p))
+    side = in_circle(xy, *corners, points)
+    # Seen from the wrong side the circle's corners run clockwise, and every sign is the opposite.
+    return side
