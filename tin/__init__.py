@@ -8,6 +8,7 @@ from .surface import TIN
 from .survey import Survey
 from .triangulate import triangulate
 from .types import Bounds, Grid
+from .voronoi import Voronoi
 
 __all__ = [
     "TIN",
@@ -24,6 +25,7 @@ __all__ = [
     "Report",
     "Survey",
     "TinsmithError",
+    "Voronoi",
     "Water",
     "check",
     "triangulate",

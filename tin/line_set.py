@@ -236,11 +236,12 @@ def _sources(kinds: Sequence[str]) -> NDArray[np.int32]:
 
 
 def _require_length(lines: LineSet) -> None:
-    starts = np.repeat(lines.xy[lines.offsets[:-1]], np.diff(lines.offsets), axis=0)
-    is_elsewhere = (lines.xy != starts).any(axis=1)
-    has_length = np.bincount(lines.line_of[is_elsewhere], minlength=len(lines.kinds)) > 0
-    if not has_length.all():
-        line = int(np.argmin(has_length))
+    starts = lines.offsets[:-1]
+    begins_at_one_place = (lines.xy[starts] == lines.xy[starts + 1]).all(axis=1)
+    for line in np.flatnonzero(begins_at_one_place).tolist():
+        rows = lines.xy[lines.offsets[line] : lines.offsets[line + 1]]
+        if (rows != rows[0]).any():
+            continue
         label = lines.label(line)
         x, y = lines.xy[lines.offsets[line]]
         raise LinesError(

@@ -192,8 +192,8 @@ def as_coords(coords: ArrayLike, what: str, *, least: int) -> NDArray[np.float64
             f"{subject} has shape {array.shape}: (k, 3), or (k, 2) to drape it, "
             f"with k >= {least} is needed."
         )
-    wrong = ~np.isfinite(array).all(axis=1)
-    if wrong.any():
+    if not np.isfinite(array).all():
+        wrong = ~np.isfinite(array).all(axis=1)
         row = int(np.argmax(wrong))
         raise LinesError(
             f"{subject} has {int(wrong.sum())} vertices that are not finite "

@@ -63,16 +63,16 @@ class Lists:
         """Second step: tell whether the edge between two points is used twice already."""
         return self.count(p, q) == _MOST_USES
 
-    def qualified(self, p1: int, p2: int, p3: int) -> NDArray[np.int64]:
-        """Third step: the points across p1-p2 from p3 that may become a triangle with it.
+    def qualified(self, p1: int, p2: int) -> NDArray[np.int64]:
+        """Third step: the points that may become a triangle with the edge p1-p2 of a triangle.
 
-        Left out are 1) points collinear with the edge, 2) points on the side of ``p3``,
-        3) points to which an edge from p1 or p2 is used twice.
+        Left out are 1) points collinear with the edge, 2) points on the side of the triangle's
+        third point, which is the left, 3) points to which an edge from p1 or p2 is used twice.
         """
+        others = self.searched[(self.searched != p1) & (self.searched != p2)]
         self.searches += 1
-        self.candidates += len(self.searched)
-        side = sides(self.xy, p1, p2, np.append(self.searched, p3))
-        across = self.searched[side[:-1] == -side[-1]]
+        self.candidates += len(others)
+        across = others[sides(self.xy, p1, p2, others) < 0]
         closed = list(self._used_twice[p1] | self._used_twice[p2])
         return across[~np.isin(across, closed)] if closed else across
 

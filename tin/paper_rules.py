@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from .exact import in_circle
+from .exact import Columns, in_circle
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from numpy.typing import NDArray
-
-    from .exact import Columns
 
 __all__ = [
     "Choice",
@@ -31,8 +28,8 @@ class Choice(NamedTuple):
     tests: int
 
 
-if TYPE_CHECKING:
-    Rule = Callable[[Columns, int, int, NDArray[np.int64]], Choice]
+Rule = Callable[[Columns, int, int, "NDArray[np.int64]"], Choice]
+"""Chooses the third point of an edge among the points qualified, all strictly left of it."""
 
 
 def widest_angle(xy: Columns, p1: int, p2: int, qualified: NDArray[np.int64]) -> Choice:
@@ -43,7 +40,7 @@ def widest_angle(xy: Columns, p1: int, p2: int, qualified: NDArray[np.int64]) ->
     xy : Columns
     p1, p2 : int
     qualified : (k,) int64 array
-        Points strictly on one side of the edge, in ascending order.
+        Points strictly left of the edge, in ascending order.
 
     Notes
     -----
@@ -54,12 +51,12 @@ def widest_angle(xy: Columns, p1: int, p2: int, qualified: NDArray[np.int64]) ->
         return Choice(None, 0)
     cotangent = _cotangents(xy, p1, p2, qualified)
     rivals = np.arange(len(qualified))
-    while True:
-        best = qualified[rivals[np.argmin(cotangent[rivals])]]
-        side = _sides_of_circle(xy, p1, p2, int(best), qualified)
+    while len(rivals):
+        best = rivals[np.argmin(cotangent[rivals])]
+        side = _sides_of_circle(xy, p1, p2, int(qualified[best]), np.delete(qualified, best))
+        side = np.insert(side, best, 0)
         rivals = np.flatnonzero(side > 0)
-        if len(rivals) == 0:
-            return Choice(int(qualified[np.argmax(side == 0)]), len(qualified) - 1)
+    return Choice(int(qualified[np.argmax(side == 0)]), len(qualified) - 1)
 
 
 def closest_in_circle(xy: Columns, p1: int, p2: int, qualified: NDArray[np.int64]) -> Choice:
@@ -108,9 +105,6 @@ def _offsets(xy: Columns, origin: int, points: NDArray[np.int64]) -> Columns:
 def _sides_of_circle(
     xy: Columns, p1: int, p2: int, p: int, points: NDArray[np.int64]
 ) -> NDArray[np.int8]:
-    """Tell whether points on P's side of p1-p2 see it wider than P (+1), as wide (0) or less."""
+    """Tell whether points see p1-p2 under a wider angle than P (+1), the same (0), a narrower."""
     size = len(points)
-    corners = (np.full(size, corner) for corner in (p1, p2, p))
-    side = in_circle(xy, *corners, points)
-    # Seen from the wrong side the circle's corners run clockwise, and every sign is the opposite.
-    return side
+    return in_circle(xy, np.full(size, p1), np.full(size, p2), np.full(size, p), points)

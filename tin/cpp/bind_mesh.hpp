@@ -85,12 +85,12 @@ class HeldMesh {
   auto force(const GivenPairs& segments) {
     std::vector<std::int32_t> passed, blocked;
     bool is_complete = true;
-    const std::vector<std::int32_t> order = by_place_in_memory(segments);
+    require_vertices(segments);
     {
       nb::gil_scoped_release release;
       constexpr std::int32_t kSegmentsPerQuestion = 4096;
       std::int32_t until_question = kSegmentsPerQuestion;
-      for (const std::int32_t i : order) {
+      for (std::int32_t i = 0; i < static_cast<std::int32_t>(segments.shape(0)); ++i) {
         if (--until_question == 0) {
           is_complete = no_signal();
           until_question = kSegmentsPerQuestion;
@@ -212,18 +212,8 @@ class HeldMesh {
   // So many vertices can be added before anything is moved in memory.
   static std::int32_t room_for(std::int32_t vertices) { return 64 + vertices / 8; }
 
-  // Segments in the order in which their triangles lie in memory; all vertices are there.
-  std::vector<std::int32_t> by_place_in_memory(const GivenPairs& segments) const {
-    std::vector<std::uint64_t> keys(segments.shape(0));  // place, then number
-    for (std::size_t i = 0; i < keys.size(); ++i) {
-      require_vertex(segments.data()[2 * i]);
-      require_vertex(segments.data()[2 * i + 1]);
-      keys[i] = std::uint64_t{editor_.mesh().leaving(segments.data()[2 * i])} << 32 | i;
-    }
-    std::sort(keys.begin(), keys.end());
-    std::vector<std::int32_t> order(keys.size());
-    for (std::size_t i = 0; i < keys.size(); ++i) order[i] = static_cast<std::int32_t>(keys[i]);
-    return order;
+  void require_vertices(const GivenPairs& segments) const {
+    for (std::size_t i = 0; i < 2 * segments.shape(0); ++i) require_vertex(segments.data()[i]);
   }
 
   void require_vertex(std::int32_t v) const {

@@ -41,6 +41,8 @@ class Corridor {
   // Fill the corridor on both sides of the way; returns the edge along it.
   MeshEdge close(Mesh& mesh, const Point* points) {
     spare_ = triangles_;
+    inner_.clear();
+    find_twice(mesh);
     std::reverse(left_rim_.begin(), left_rim_.end());
     const MeshEdge right = fill(mesh, points, right_rim_);
     const MeshEdge left = fill(mesh, points, left_rim_);
@@ -49,8 +51,9 @@ class Corridor {
     return left;
   }
 
-  // The triangles crossed, and after closing those in their place.
-  const std::vector<std::uint32_t>& triangles() const { return triangles_; }
+  // After closing: the edges between new triangles, but for the one along the way. Only these can
+  // fail to be Delaunay, because a new fixed edge hides points from each other and shows none.
+  const std::vector<MeshEdge>& inner_edges() const { return inner_; }
 
  private:
   // An edge on the rim of the triangles that are replaced: as seen from within, from without, and
@@ -58,7 +61,7 @@ class Corridor {
   struct RimEdge {
     std::int32_t from, to;
     MeshEdge inner, outer, made;
-    bool is_fixed;
+    bool is_fixed, is_twice;  // is_twice: with the corridor on both of its sides
   };
   struct Open {
     std::int32_t from, to;
@@ -66,7 +69,7 @@ class Corridor {
     RimEdge* rim;     // or on the rim
   };
   static RimEdge rim_edge(const Mesh& mesh, MeshEdge e) {
-    return {mesh.from(e), mesh.to(e), e, mesh.twin(e), kNoMeshEdge, mesh.is_fixed(e)};
+    return {mesh.from(e), mesh.to(e), e, mesh.twin(e), kNoMeshEdge, mesh.is_fixed(e), false};
   }
 
   // Triangulate between a rim, counter-clockwise, and the edge from its end to its start: wherever
@@ -75,9 +78,10 @@ class Corridor {
   MeshEdge fill(Mesh& mesh, const Point* points, std::vector<RimEdge>& rim) {
     std::vector<Open>& open = open_;
     open.clear();
-    const auto attach = [&mesh](const Open& edge, MeshEdge side) {
+    const auto attach = [this, &mesh](const Open& edge, MeshEdge side) {
       if (edge.rim == nullptr) {
         mesh.join(side, edge.beyond);
+        inner_.push_back(side);
       } else {
         edge.rim->made = side;
       }
@@ -99,27 +103,44 @@ class Corridor {
     return open.back().beyond;
   }
 
-  // An edge may be on the rim twice, with the corridor on both of its sides.
-  void join_rim(Mesh& mesh) {
-    std::vector<RimEdge*>& rim = rim_;
-    rim.clear();
-    for (RimEdge& edge : right_rim_) rim.push_back(&edge);
-    for (RimEdge& edge : left_rim_) rim.push_back(&edge);
-    const auto is_before = [](const RimEdge* a, const RimEdge* b) { return a->inner < b->inner; };
-    std::sort(rim.begin(), rim.end(), is_before);
-    for (RimEdge* edge : rim) {
-      const auto other = std::lower_bound(
-          rim.begin(), rim.end(), edge->outer,
-          [](const RimEdge* candidate, MeshEdge sought) { return candidate->inner < sought; });
-      const bool is_twice = other != rim.end() && (*other)->inner == edge->outer;
-      mesh.join(edge->made, is_twice ? (*other)->made : edge->outer);
+  void find_twice(Mesh& mesh) {
+    for (const std::uint32_t t : triangles_) mesh.mark(t);
+    for (std::vector<RimEdge>* const rim : {&right_rim_, &left_rim_}) {
+      for (RimEdge& edge : *rim) edge.is_twice = mesh.is_marked(triangle_of(edge.outer));
     }
-    for (RimEdge* edge : rim) mesh.fix(edge->made, edge->is_fixed);
+  }
+
+  void join_rim(Mesh& mesh) {
+    twice_.clear();
+    for (std::vector<RimEdge>* const rim : {&right_rim_, &left_rim_}) {
+      for (RimEdge& edge : *rim) {
+        if (edge.is_twice) {
+          twice_.push_back(&edge);
+        } else {
+          mesh.join(edge.made, edge.outer);
+          if (edge.is_fixed) mesh.fix(edge.made, true);
+        }
+      }
+    }
+    join_twice(mesh);
+  }
+
+  void join_twice(Mesh& mesh) {
+    const auto is_before = [](const RimEdge* a, const RimEdge* b) { return a->inner < b->inner; };
+    std::sort(twice_.begin(), twice_.end(), is_before);
+    for (RimEdge* const edge : twice_) {
+      const auto other = std::lower_bound(
+          twice_.begin(), twice_.end(), edge->outer,
+          [](const RimEdge* candidate, MeshEdge sought) { return candidate->inner < sought; });
+      mesh.join(edge->made, (*other)->made);
+      mesh.fix(edge->made, edge->is_fixed);
+    }
   }
 
   std::vector<std::uint32_t> triangles_, spare_;
   std::vector<RimEdge> right_rim_, left_rim_;
-  std::vector<RimEdge*> rim_;
+  std::vector<RimEdge*> twice_;
+  std::vector<MeshEdge> inner_;
   std::vector<Open> open_;
 };
 

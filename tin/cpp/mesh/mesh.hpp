@@ -89,6 +89,10 @@ class Mesh {
     set_corners(t, a, b, c);
     fixed_[t] = 0;
   }
+  // A mark stays until the triangle is made anew.
+  void mark(std::uint32_t t) { fixed_[t] |= kMark; }
+  bool is_marked(std::uint32_t t) const { return (fixed_[t] & kMark) != 0; }
+
   void join(MeshEdge e, MeshEdge f) {
     triangles_[triangle_of(e)].twin[place_of(e)] = f;
     triangles_[triangle_of(f)].twin[place_of(f)] = e;
@@ -196,6 +200,7 @@ class Mesh {
 
  private:
   static constexpr std::int32_t kFree = -2;
+  static constexpr std::uint8_t kMark = 8;  // beyond the bits of the three edges
 
   struct Side {  // what lies beyond an edge
     MeshEdge twin;
@@ -248,7 +253,7 @@ class Mesh {
   }
 
   ScratchVector<GhostTriangle> triangles_;
-  ScratchVector<std::uint8_t> fixed_;  // bits by corner, both sides of an edge alike
+  ScratchVector<std::uint8_t> fixed_;  // bits by corner, both sides of an edge alike; mark
   std::vector<std::uint32_t> free_;    // triangles to use again
   ScratchVector<MeshEdge> leaving_;    // one edge that leaves each vertex
 };

@@ -130,7 +130,7 @@ class MeshArrays {
 
   // Without gaps, corners numbered by the sweep.
   GhostMesh swept_copy(const PointGrid& grid) {
-    std::vector<std::int32_t> sweep_of(places_.size());
+    const auto sweep_of = scratch_array<std::int32_t>(places_.size());
     for (std::int32_t i = 0; i < grid.count(); ++i) sweep_of[number(grid.rows()[i])] = i;
     GhostMesh copy;
     copy.triangles = scratch_array<GhostTriangle>(mesh_.triangle_count());
@@ -166,8 +166,8 @@ class MeshArrays {
 
   const MeshEditor& editor_;
   const Mesh& mesh_;
-  std::vector<Point> places_;              // of the vertices, without gaps
-  std::vector<std::int32_t> number_of_;    // of each slot
+  MeshPoints places_;              // of the vertices, without gaps
+  ScratchVector<std::int32_t> number_of_;  // of each slot
   std::vector<std::uint32_t> slot_of_;     // of each triangle of the copy; empty if the same
   std::uint32_t ghosts_ = 0;
 };

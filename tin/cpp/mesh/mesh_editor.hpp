@@ -119,14 +119,11 @@ class MeshEditor {
   Forced force(std::int32_t a, std::int32_t b, Visit&& visit) {
     while (a != b) {
       const MeshEdge edge = make_edge(a, b);
-      if (edge == kNoMeshEdge) {
-        legalize_changed();
-        return Forced::kBlocked;
-      }
+      if (edge == kNoMeshEdge) return Forced::kBlocked;
       mesh_.fix(edge, true);
       a = mesh_.to(edge);
       last_ = edge;
-      legalize_changed();
+      legalize();
       visit(a);
     }
     return Forced::kDone;
@@ -354,13 +351,11 @@ class MeshEditor {
     const std::int32_t ahead = mesh_.corner(beyond);
     if (!mesh_.is_fixed(start) && (ahead == b || turn(a, b, ahead) == 0)) {
       mesh_.flip(start);  // the only edge across
-      changed_.push_back(triangle_of(start));
-      changed_.push_back(triangle_of(beyond));
       return mesh_edge(triangle_of(beyond), 1);
     }
     if (!corridor_.open(mesh_, points_.data(), a, b, start)) return kNoMeshEdge;
     const MeshEdge edge = corridor_.close(mesh_, points_.data());
-    changed_.insert(changed_.end(), corridor_.triangles().begin(), corridor_.triangles().end());
+    pending_ = corridor_.inner_edges();
     return edge;
   }
 
