@@ -1,6 +1,7 @@
 """The meaning room: what a terrain surface says. Knows no files."""
 
 from .errors import OptionError, RenderError
+from .histogram import histogram
 from .lift import lift
 from .preview import preview
 from .slope import aspect, slope
@@ -9,6 +10,7 @@ __all__ = [
     "OptionError",
     "RenderError",
     "aspect",
+    "histogram",
     "lift",
     "preview",
     "slope",

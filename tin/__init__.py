@@ -3,6 +3,7 @@
 from .check import CheckResult, check
 from .errors import CheckError, LinesError, MissingExtraError, PointsError, TinsmithError
 from .lines import Breakline, Lines, Water
+from .quality import Quality, quality
 from .report import Merge, Report
 from .surface import TIN
 from .survey import Survey
@@ -22,11 +23,13 @@ __all__ = [
     "Merge",
     "MissingExtraError",
     "PointsError",
+    "Quality",
     "Report",
     "Survey",
     "TinsmithError",
     "Voronoi",
     "Water",
     "check",
+    "quality",
     "triangulate",
 ]

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..io.crs import as_crs, elevation_unit, is_geographic, length_unit
 from ..terrain import slope
-from ..tin import TIN, Bounds, Survey
+from ..tin import TIN, Bounds, Survey, quality
 from .line_facts import constrained_edges, given_lines, given_lines_text, tin_counts
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from ..tin import Merge, Report
+    from ..tin import Merge, Quality, Report
     from .console import Field
 
 __all__ = [
@@ -25,6 +25,8 @@ __all__ = [
     "extent_fields",
     "file_size",
     "merge_field",
+    "quality_fields",
+    "quality_of",
     "reading_fields",
     "report_facts",
     "survey_facts",
@@ -65,6 +67,11 @@ def tin_facts(tin: TIN) -> dict[str, Any]:
         **_place_facts(tin.points, tin.crs),
         **_ground_facts(tin),
     }
+
+
+def quality_of(tin: TIN) -> Quality | None:
+    """Measure the triangles in the plane; None in degrees, where angles are not those on earth."""
+    return None if is_geographic(tin.crs) else quality(tin)
 
 
 def report_facts(report: Report, survey: Survey) -> dict[str, Any]:
@@ -152,6 +159,27 @@ def tin_fields(tin: TIN) -> list[Field]:
             ("Slope", f"{steep['min']:.1f}° to {steep['max']:.1f}°, mean {steep['mean']:.1f}°"),
         ]
     return [*fields, crs_field(tin.crs)]
+
+
+def quality_fields(shapes: Quality | None) -> list[Field]:
+    """Describe the shapes of triangles in two lines; in none if they were not measured."""
+    if shapes is None:
+        return []
+    found = shapes.summary()
+    smallest, aspect = found["min_angle"], found["aspect_ratio"]
+    below = 100 * found["shares"]["min_angle_below"]["20"]
+    return [
+        (
+            "Quality",
+            f"smallest angle: median {smallest['median']:.1f}°, worst {smallest['min']:.2g}°, "
+            f"below 20° in {below:.1f} % of triangles",
+        ),
+        ("", f"aspect ratio: median {aspect['median']:.2f}, worst {_ratio(aspect['max'])}"),
+    ]
+
+
+def _ratio(value: float) -> str:
+    return f"{value:,.0f}" if 100 <= value < 1e9 else f"{value:.3g}"
 
 
 def extent_fields(points: NDArray[np.float64], crs: str | None) -> list[Field]:

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
+from .failures import Failure, note_written
 from .options import console_options, input_file, reading_options
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
-    from .console import Console
+    from ..tin import TIN, Quality
+    from .console import Console, Field
     from .options import Reading
 
 __all__ = ["info"]
@@ -19,12 +20,19 @@ __all__ = ["info"]
 
 @click.command(short_help="Describe a file of points or a TIN.")
 @input_file("file")
+@click.option(
+    "--plot",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    help="Picture (.png) to write: histograms of angles, aspect ratios and edge lengths of a TIN.",
+)
 @reading_options
 @console_options
-def info(file: Path, reading: Reading, console: Console) -> None:
+def info(file: Path, plot: Path | None, reading: Reading, console: Console) -> None:
     """Describe FILE: survey points, an elevation raster or a TIN.
 
-    Counts, extent, elevations and CRS; of a TIN also areas and slopes.
+    Counts, extent, elevations and CRS; of a TIN also areas, slopes and the shapes of its
+    triangles.
 
     \b
     Example:
@@ -32,12 +40,58 @@ def info(file: Path, reading: Reading, console: Console) -> None:
       tinsmith info sample_data/site_survey.csv --crs EPSG:32616 --json
     """  # noqa: D301 - click reads the control character
     from ..tin import TIN
-    from .facts import survey_facts, survey_fields, tin_facts, tin_fields
+    from .facts import survey_facts, survey_fields
     from .files import read_input
 
+    if plot is not None:
+        _require_picture(plot, file)
     found = read_input(file, reading, console)
-    about = {"input": str(file)}
     if isinstance(found, TIN):
-        console.answer([("File", str(file)), *tin_fields(found)], about | tin_facts(found))
-    else:
-        console.answer([("File", str(file)), *survey_fields(found)], about | survey_facts(found))
+        _describe(found, file, plot, console)
+        return
+    if plot is not None:
+        raise Failure(
+            f"'{file}' holds points, and --plot needs a TIN: 'tinsmith build' makes one of them."
+        )
+    facts = {"input": str(file)} | survey_facts(found)
+    console.answer([("File", str(file)), *survey_fields(found)], facts)
+
+
+def _require_picture(plot: Path, source: Path) -> None:
+    if plot.resolve() == source.resolve():
+        raise click.UsageError(f"'{plot}' is the input: it cannot be the picture too.")
+    if plot.suffix.lower() != ".png":
+        raise Failure(f"Cannot write a picture to '{plot}': its name must end in .png.")
+
+
+def _describe(tin: TIN, file: Path, plot: Path | None, console: Console) -> None:
+    from .facts import file_size, quality_fields, quality_of, tin_facts, tin_fields
+
+    shapes = quality_of(tin)
+    fields: list[Field] = [("File", str(file)), *tin_fields(tin), *quality_fields(shapes)]
+    facts = {"input": str(file)} | tin_facts(tin)
+    facts["quality"] = None if shapes is None else shapes.summary()
+    if plot is not None:
+        _plot(shapes, tin, file, plot, console)
+        fields.append(("Written", f"{plot} ({file_size(plot)})"))
+        facts["plot"] = str(plot)
+    console.answer(fields, facts)
+
+
+def _plot(shapes: Quality | None, tin: TIN, file: Path, plot: Path, console: Console) -> None:
+    """Write the histograms, whole or not at all."""
+    from ..io.atomic import replacing
+    from ..terrain import histogram
+    from .facts import units
+
+    if shapes is None:
+        raise Failure(
+            f"The coordinates of '{file}' are degrees, in which triangles have no true shape: "
+            "--plot needs a projected CRS, such as UTM."
+        )
+    with console.steps() as steps, steps.step("Drawing"):
+        title = f"Triangle quality: {file.stem.replace('_', ' ')}"
+        figure = histogram(shapes, title=title, unit=units(tin.crs)[0].strip())
+        with replacing(plot) as picture:
+            figure.savefig(picture, format="png", dpi=150, metadata={"Software": None})
+    note_written(plot)
