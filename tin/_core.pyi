@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 SMALLEST_COORDINATE: float
+MOST_POINTS: int
 LARGEST_COORDINATE: float
 
 class Method(enum.Enum):
@@ -67,6 +68,16 @@ class Mesh:
         self, threads: int = ...
     ) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.bool_]]: ...
 
+def refine(
+    points: NDArray[np.float64],
+    triangles: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+    fixed: NDArray[np.bool_],
+    least_angle: float,
+    largest_area: float,
+    longest_edge: float,
+    most: int,
+) -> tuple[NDArray[np.float64], NDArray[np.int32], bool]: ...
 def regions(
     xy: NDArray[np.float64],
     triangles: NDArray[np.int32],

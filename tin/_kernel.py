@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "EXACT_RANGE",
+    "MOST_POINTS",
     "VECTOR_PATHS",
     "Growth",
     "Locator",
@@ -27,6 +28,7 @@ __all__ = [
     "intersections",
     "orientation",
     "places_in_rings",
+    "refine",
     "regions",
     "snap",
     "touches",
@@ -36,8 +38,12 @@ __all__ = [
 EXACT_RANGE: tuple[float, float] = (_core.SMALLEST_COORDINATE, _core.LARGEST_COORDINATE)
 """Smallest (but 0) and largest magnitude of a coordinate for which the predicates are exact."""
 
+MOST_POINTS: int = _core.MOST_POINTS
+"""So many points 32-bit indices can number, and their edges."""
+
 Locator = _core.Locator
 Mesh = _core.Mesh
+refine = _core.refine
 regions = _core.regions
 orientation = _core.orientation
 in_circle = _core.in_circle

@@ -17,6 +17,7 @@
 #include "bind_arrays.hpp"
 #include "bind_lines.hpp"
 #include "bind_mesh.hpp"
+#include "bind_refine.hpp"
 #include "location/locate.hpp"
 #include "points/cleaning.hpp"
 #include "points/snapping.hpp"
@@ -203,6 +204,7 @@ NB_MODULE(_core, m) {
   m.doc() = "Compiled core of tinsmith.tin: exact predicates, growth, point location.";
   m.attr("SMALLEST_COORDINATE") = tinsmith::kSmallestCoordinate;
   m.attr("LARGEST_COORDINATE") = tinsmith::kLargestCoordinate;
+  m.attr("MOST_POINTS") = tinsmith::kMostPoints;
   nb::enum_<tinsmith::Method>(m, "Method", "How to build; the result is the same.")
       .value("AUTOMATIC", tinsmith::Method::kAutomatic)
       .value("GROWTH", tinsmith::Method::kGrowth)
@@ -227,6 +229,7 @@ NB_MODULE(_core, m) {
         "+1 where d lies inside the circle through counter-clockwise a, b, c, -1 outside, 0 on it.");
   tinsmith::python::bind_lines(m);
   tinsmith::python::bind_mesh(m);
+  tinsmith::python::bind_refine(m);
   nb::class_<HeldLocator>(m, "Locator", "Finds the triangle and the height at any place.")
       .def(nb::init<const Points&, const HeldLocator::Triangles&, const HeldLocator::Triangles&>(),
            "points"_a.noconvert(), "triangles"_a.noconvert(), "neighbors"_a.noconvert())

@@ -31,12 +31,36 @@ using GivenFlags = nb::ndarray<const bool, nb::shape<-1, 3>, nb::c_contig, nb::d
 using Flags = nb::ndarray<nb::numpy, bool, nb::shape<-1, 3>>;
 using FlagRow = nb::ndarray<nb::numpy, bool, nb::shape<-1>>;
 
+// So many vertices can be added before anything is moved in memory.
+inline std::int32_t room_for(std::int32_t vertices) { return 64 + vertices / 8; }
+
+// A mesh of arrays, ready to be changed.
+inline MeshEditor editor_of(const GivenRows& points, const GivenTriangles& triangles,
+                       const GivenTriangles& neighbors, const std::optional<GivenFlags>& fixed) {
+  const auto count = static_cast<std::int32_t>(triangles.shape(0));
+  if (neighbors.shape(0) != triangles.shape(0) ||
+      (fixed && fixed->shape(0) != triangles.shape(0))) {
+    throw std::invalid_argument("triangles, neighbors and fixed must have as many rows");
+  }
+  if (points.shape(1) < 2) throw std::invalid_argument("points must have two columns at least");
+  const bool* const flags = fixed ? fixed->data() : nullptr;
+  nb::gil_scoped_release release;
+  const PointRows rows{points.data(), static_cast<std::int64_t>(points.shape(0)),
+                       static_cast<std::int64_t>(points.shape(1))};
+  const auto vertices = static_cast<std::int32_t>(rows.count);
+  const HullTriangles given{triangles.data(), neighbors.data(), flags, count};
+  MeshPoints places;
+  places.reserve(std::size_t{0} + vertices + room_for(vertices));
+  for (std::int32_t row = 0; row < vertices; ++row) places.push_back(rows[row]);
+  return MeshEditor(mesh_of(given, vertices, room_for(vertices)), std::move(places));
+}
+
 // The editor with the checks that keep a caller's mistake from corrupting it.
 class HeldMesh {
  public:
   HeldMesh(const GivenRows& points, const GivenTriangles& triangles,
            const GivenTriangles& neighbors, const std::optional<GivenFlags>& fixed)
-      : editor_(made(points, triangles, neighbors, fixed)) {}
+      : editor_(editor_of(points, triangles, neighbors, fixed)) {}
 
   std::int32_t slots() const { return editor_.slots(); }
   std::int32_t count() const { return editor_.count(); }
@@ -189,29 +213,6 @@ class HeldMesh {
   }
 
  private:
-  static MeshEditor made(const GivenRows& points, const GivenTriangles& triangles,
-                         const GivenTriangles& neighbors, const std::optional<GivenFlags>& fixed) {
-    const auto count = static_cast<std::int32_t>(triangles.shape(0));
-    if (neighbors.shape(0) != triangles.shape(0) ||
-        (fixed && fixed->shape(0) != triangles.shape(0))) {
-      throw std::invalid_argument("triangles, neighbors and fixed must have as many rows");
-    }
-    if (points.shape(1) < 2) throw std::invalid_argument("points must have two columns at least");
-    const bool* const flags = fixed ? fixed->data() : nullptr;
-    nb::gil_scoped_release release;
-    const PointRows rows{points.data(), static_cast<std::int64_t>(points.shape(0)),
-                         static_cast<std::int64_t>(points.shape(1))};
-    const auto vertices = static_cast<std::int32_t>(rows.count);
-    const HullTriangles given{triangles.data(), neighbors.data(), flags, count};
-    MeshPoints places;
-    places.reserve(std::size_t{0} + vertices + room_for(vertices));
-    for (std::int32_t row = 0; row < vertices; ++row) places.push_back(rows[row]);
-    return MeshEditor(mesh_of(given, vertices, room_for(vertices)), std::move(places));
-  }
-
-  // So many vertices can be added before anything is moved in memory.
-  static std::int32_t room_for(std::int32_t vertices) { return 64 + vertices / 8; }
-
   void require_vertices(const GivenPairs& segments) const {
     for (std::size_t i = 0; i < 2 * segments.shape(0); ++i) require_vertex(segments.data()[i]);
   }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -17,7 +16,7 @@
 
 namespace tinsmith {
 
-// Triangles of the whole convex hull, three entries each: corners, neighbours (kNoNeighbor
+// Triangles of the whole convex hull, or of a surface with any rim, three entries each: corners, neighbours (kNoNeighbor
 // outside) and whether the edge opposite the corner is fixed (null: none is).
 struct HullTriangles {
   const std::int32_t* corners;
@@ -61,16 +60,17 @@ class TriangleCopy {
   std::vector<MeshEdge>& hull_;
 };
 
-// A ghost at every hull edge, each joined to the next along the hull.
+// A ghost at every edge of the rim, each joined to the next along the rim: around their vertex,
+// through the surface, so that a vertex may be on the rim more than once.
 inline void add_ghosts(const std::vector<MeshEdge>& hull, Mesh& mesh) {
-  std::unordered_map<std::int32_t, std::uint32_t> ghost_from;
   for (const MeshEdge e : hull) {
     const std::uint32_t ghost = mesh.add(kGhost, mesh.to(e), mesh.from(e));
     mesh.join(mesh_edge(ghost, 0), e);
-    ghost_from[mesh.from(e)] = ghost;
   }
   for (const MeshEdge e : hull) {
-    mesh.join(mesh_edge(ghost_from[mesh.from(e)], 2), mesh_edge(ghost_from[mesh.to(e)], 1));
+    MeshEdge next = Mesh::after(e);
+    while (mesh.corner(mesh.twin(next)) != kGhost) next = Mesh::after(mesh.twin(next));
+    mesh.join(mesh_edge(triangle_of(mesh.twin(e)), 2), mesh_edge(triangle_of(mesh.twin(next)), 1));
   }
 }
 

@@ -35,6 +35,12 @@ class MeshEditor {
   std::int32_t count() const { return count_; }  // of vertices
   Point point(std::int32_t v) const { return points_[v]; }
 
+  // Make every edge Delaunay that is not fixed, of a mesh that was not so.
+  void legalize_all() {
+    for (std::uint32_t t = 0; t < mesh_.triangle_slots(); ++t) changed_.push_back(t);
+    legalize_changed();
+  }
+
   // ------------------------------------------------------------------- points
 
   // A number for a vertex that is put in later.
@@ -46,22 +52,31 @@ class MeshEditor {
 
   // The vertex at p, which is `slot` if there was none; a fixed edge through p is split.
   std::int32_t insert(Point p, std::int32_t slot) {
+    return insert_at(MeshWalk(mesh_, points_, count_, state_).locate(p, last_), p, slot);
+  }
+
+  // The same where it is known in which triangle or on which edge p lies. A point that is only near
+  // the edge will do, if the triangles on both sides are turned the right way with it.
+  std::int32_t insert_at(MeshLocation at, Point p, std::int32_t slot) {
     using Where = MeshLocation::Where;
-    const MeshLocation at = MeshWalk(mesh_, points_, count_, state_).locate(p, last_);
     if (at.where == Where::kAtVertex) return mesh_.from(at.edge);
     points_[slot] = p;
     ++count_;
     if (at.where == Where::kOnEdge) {
-      for (const MeshEdge e : mesh_.split_edge(at.edge, slot).edge) pending_.push_back(e);
+      for (const MeshEdge e : mesh_.split_edge(at.edge, slot).edge) put_off(e);
     } else {
       const auto around = mesh_.split_triangle(triangle_of(at.edge), slot);
-      for (const MeshEdge e : around.edge) pending_.push_back(e);
+      for (const MeshEdge e : around.edge) put_off(e);
       if (at.where == Where::kOutside) widen_hull(p);
     }
     last_ = mesh_.leaving(slot);
     legalize();
     return slot;
   }
+
+  // From now on remember every triangle that is made or changed.
+  void watch() { is_watched_ = true; }
+  std::vector<std::uint32_t> take_touched() { return std::exchange(touched_, {}); }
 
   // Whether the surface would still have a triangle without v.
   bool can_remove(std::int32_t v) const {
@@ -216,7 +231,7 @@ class MeshEditor {
       mesh_.flip(e);
       const std::uint32_t t = triangle_of(e), u = triangle_of(f);
       for (const MeshEdge side : {mesh_edge(t, 0), mesh_edge(t, 2), mesh_edge(u, 0), mesh_edge(u, 2)}) {
-        pending_.push_back(side);
+        put_off(side);
       }
     }
   }
@@ -224,10 +239,16 @@ class MeshEditor {
   void legalize_changed() {
     for (const std::uint32_t t : changed_) {
       if (mesh_.is_free(t)) continue;
-      for (std::uint32_t k = 0; k < 3; ++k) pending_.push_back(mesh_edge(t, k));
+      for (std::uint32_t k = 0; k < 3; ++k) put_off(mesh_edge(t, k));
     }
     changed_.clear();
     legalize();
+  }
+
+  // The edge is to be looked at, and its triangle is one that was made or changed.
+  void put_off(MeshEdge e) {
+    pending_.push_back(e);
+    if (is_watched_) touched_.push_back(triangle_of(e));
   }
 
   bool is_illegal(MeshEdge e) const { return !mesh_.is_fixed(e) && is_in_far_circle(e); }
@@ -392,6 +413,8 @@ class MeshEditor {
   std::vector<MeshEdge> pending_;
   std::vector<std::uint32_t> changed_;
   Corridor corridor_;
+  bool is_watched_ = false;
+  std::vector<std::uint32_t> touched_;
 };
 
 }  // namespace tinsmith

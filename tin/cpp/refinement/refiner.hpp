@@ -1,0 +1,418 @@
+// Refiner: points are added to a constrained Delaunay mesh until its triangles are good.
+//
+// Delaunay refinement after Ruppert (1995) and Chew (1993), with the off-centres of Ungor (2004):
+//
+//   1. A segment (a fixed edge; every edge of the rim is one) that a corner beside it encroaches
+//      upon, or that is too long, is split. Points put inside the surface before and now within
+//      the circle on the segment are taken out first.
+//   2. A bad triangle gets a point at its remedy. If a segment is in the way, or the point would
+//      encroach upon one, that segment is split instead.
+//
+// At an input vertex with a small angle, segments are split on circles around it whose radii are
+// powers of two, so that both sides are cut alike and do not cut each other on and on. Triangles
+// that only the angles of the input make bad are left, and so are those that could only be mended
+// by edges much shorter than any of the input: this is why it always ends.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <unordered_set>
+#include <utility>
+#include <vector>
+
+#include "../mesh/mesh_editor.hpp"
+#include "triangle_shape.hpp"
+#include "work_queue.hpp"
+
+namespace tinsmith {
+
+class Refiner {
+ public:
+  enum class Ended { kDone, kTooMany, kStopped };
+
+  // A segment from `from` to `to` was split at `middle`.
+  struct Split {
+    std::int32_t from, to, middle;
+  };
+
+  Refiner(MeshEditor& editor, const RefinementGoal& goal)
+      : editor_(editor),
+        mesh_(editor.mesh()),
+        shape_(goal),
+        input_count_(editor.slots()),
+        step_of_(editor.slots(), kNoStep),
+        segments_(editor),
+        triangles_(editor) {
+    editor_.legalize_all();
+    editor_.watch();
+    urgency_ = Urgency(extreme(false), extreme(true));
+    squared_floor_ = kFloor * kFloor *
+                     std::min({squared_shortest_edge(), goal.largest_area,
+                               goal.longest_edge * goal.longest_edge});
+  }
+
+  template <typename KeepGoing>
+  Ended run(std::int32_t most_vertices, KeepGoing&& keep_going) {
+    for (std::uint32_t t = 0; t < mesh_.triangle_slots(); ++t) examine(t);
+    constexpr int kStepsPerQuestion = 4096;
+    for (int until_question = kStepsPerQuestion; has_work(); --until_question) {
+      if (until_question == 0) {
+        if (!keep_going()) return Ended::kStopped;
+        until_question = kStepsPerQuestion;
+      }
+      if (editor_.count() >= most_vertices) return Ended::kTooMany;
+      if (!segments_.is_empty()) {
+        serve(segments_.pop());
+      } else {
+        serve(triangles_.pop());
+      }
+    }
+    return Ended::kDone;
+  }
+
+  // In order; the halves of a segment come after it.
+  const std::vector<Split>& splits() const { return splits_; }
+
+ private:
+  static constexpr std::int32_t kNoStep = -1;
+
+  // No edge is made shorter by more than this than the shortest one at the beginning, or than the
+  // size asked for. Where the angles of the input are not small, a least angle of 20.7 degrees
+  // never needs it.
+  static constexpr double kFloor = 1.0 / 64.0;
+
+  bool has_work() const { return !segments_.is_empty() || !triangles_.is_empty(); }
+  Point point(std::int32_t v) const { return editor_.point(v); }
+
+  double squared_shortest_edge() const {
+    double least = INFINITY;
+    for (std::uint32_t t = 0; t < mesh_.triangle_slots(); ++t) {
+      if (!is_surface(t)) continue;
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const MeshEdge e = mesh_edge(t, k);
+        least = std::min(least, squared_distance(point(mesh_.from(e)), point(mesh_.to(e))));
+      }
+    }
+    return least;
+  }
+
+  // The corner of the box around all points that is lowest, or highest.
+  Point extreme(bool is_highest) const {
+    Point found = point(0);
+    for (std::int32_t v = 1; v < input_count_; ++v) {
+      const Point p = point(v);
+      found.x = is_highest ? std::max(found.x, p.x) : std::min(found.x, p.x);
+      found.y = is_highest ? std::max(found.y, p.y) : std::min(found.y, p.y);
+    }
+    return found;
+  }
+
+  bool is_surface(std::uint32_t t) const { return !mesh_.is_free(t) && !mesh_.is_ghost(t); }
+
+  // ------------------------------------------------------------------ finding
+
+  void examine_touched() {
+    std::vector<std::uint32_t> touched = editor_.take_touched();
+    std::sort(touched.begin(), touched.end());
+    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+    for (const std::uint32_t t : touched) examine(t);
+  }
+
+  void examine(std::uint32_t t) {
+    if (!is_surface(t)) return;
+    bool is_segment_split = false;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const MeshEdge e = mesh_edge(t, k);
+      if (mesh_.is_fixed(e) && !is_stuck(e) && must_split(e)) {
+        put_off(e, false);
+        is_segment_split = true;
+      }
+    }
+    if (is_segment_split) return;  // the triangle goes with the segment
+    const TurnedTriangle turned = turned_of(t);
+    if (is_bad(t, turned)) put_off(t, turned);
+  }
+
+  bool must_split(MeshEdge e) const {
+    const Point a = point(mesh_.from(e)), b = point(mesh_.to(e));
+    if (shape_.is_long(a, b)) return true;
+    for (const MeshEdge side : {e, mesh_.twin(e)}) {
+      const std::int32_t c = mesh_.corner(side);
+      if (c != kGhost && shape_.encroaches(point(c), a, b)) return true;
+    }
+    return false;
+  }
+
+  void put_off(MeshEdge e, bool is_ordered) {
+    const std::int32_t a = mesh_.from(e), b = mesh_.to(e);
+    const bool is_forward = lexicographically_before(point(a), point(b));
+    const std::int32_t low = is_forward ? a : b, high = is_forward ? b : a;
+    const double squared_length = squared_distance(point(a), point(b));
+    segments_.push(
+        {urgency_.of_longest(squared_length, point(low)), e, {low, high}, is_ordered});
+  }
+
+  TurnedTriangle turned_of(std::uint32_t t) const {
+    const auto& c = mesh_[t].corner;
+    return TurnedTriangle::of({point(c[0]), point(c[1]), point(c[2])});
+  }
+
+  void put_off(std::uint32_t t, const TurnedTriangle& turned) {
+    const MeshEdge base = mesh_edge(t, static_cast<std::uint32_t>(turned.place_of_apex));
+    triangles_.push({urgency_.of_shortest(squared_distance(turned.p, turned.q), turned.p), t,
+                     {mesh_.from(base), mesh_.to(base), mesh_.corner(base)}});
+  }
+
+  bool is_bad(std::uint32_t t, const TurnedTriangle& turned) const {
+    if (shape_.is_large(turned)) return true;
+    return shape_.has_small_angle(turned) && !is_angle_given(t, turned.place_of_apex);
+  }
+
+  // Whether the small angle is one between segments that meet, seen from their own vertex or, on
+  // one of the circles around it, from elsewhere.
+  bool is_angle_given(std::uint32_t t, int place_of_apex) const {
+    const auto place = static_cast<std::uint32_t>(place_of_apex);
+    const MeshEdge base = mesh_edge(t, place);
+    if (mesh_.is_fixed(Mesh::after(base)) && mesh_.is_fixed(Mesh::before(base))) return true;
+    const std::int32_t s = step_of_[mesh_.from(base)], u = step_of_[mesh_.to(base)];
+    if (s == kNoStep || u == kNoStep || s == u) return false;
+    for (const std::int32_t common : steps_[s]) {
+      if (common != steps_[u][0] && common != steps_[u][1]) continue;
+      const double one = squared_distance(point(common), point(mesh_.from(base)));
+      const double other = squared_distance(point(common), point(mesh_.to(base)));
+      if (std::abs(one - other) <= kSameCircle * one) return true;
+    }
+    return false;
+  }
+
+  static constexpr double kSameCircle = 0.001;  // far beyond rounding, far below a power of two
+
+  // ----------------------------------------------------------------- segments
+
+  void serve(const SegmentWork& work) {
+    if (!is_segment(work.edge, work.vertex[0], work.vertex[1])) return;
+    if (work.is_ordered || must_split(work.edge)) split(work.edge);
+  }
+
+  bool is_segment(MeshEdge e, std::int32_t a, std::int32_t b) const {
+    if (mesh_.is_free(triangle_of(e)) || !mesh_.is_fixed(e) || is_stuck(e)) return false;
+    const std::int32_t from = mesh_.from(e), to = mesh_.to(e);
+    return (from == a && to == b) || (from == b && to == a);
+  }
+
+  // False if there is no room for a point on the segment.
+  bool split(MeshEdge e) {
+    e = without_free_points(e);
+    const std::int32_t a = mesh_.from(e), b = mesh_.to(e);
+    const Point m = place_of_split(e);
+    if (!has_room(e, m)) {
+      stuck_.insert(key_of(a, b));
+      examine_touched();
+      for (const MeshEdge side : {e, mesh_.twin(e)}) examine(triangle_of(side));
+      return false;
+    }
+    const std::int32_t step = step_along(a, b);
+    const std::int32_t slot = editor_.add_slot();
+    editor_.insert_at({MeshLocation::Where::kOnEdge, e}, m, slot);
+    step_of_.push_back(step);
+    is_free_.push_back(false);
+    splits_.push_back({a, b, slot});
+    examine_touched();
+    return true;
+  }
+
+  // Remove points put inside the surface that lie in the circle on the segment; returns the
+  // segment's edge as it is then.
+  MeshEdge without_free_points(MeshEdge e) {
+    const std::int32_t a = mesh_.from(e), b = mesh_.to(e);
+    for (int side = 0; side < 2; ++side, e = mesh_.twin(e)) {
+      while (is_free_within(mesh_.corner(e), a, b)) {
+        const MeshEdge other_side = mesh_.twin(e);  // which stays as it is
+        editor_.remove(mesh_.corner(e));
+        e = mesh_.twin(other_side);
+      }
+    }
+    return e;
+  }
+
+  bool is_free_within(std::int32_t c, std::int32_t a, std::int32_t b) const {
+    return c != kGhost && is_free(c) && dot_product(point(c), point(a), point(b)) < 0.0;
+  }
+  bool is_free(std::int32_t v) const { return v >= input_count_ && is_free_[v - input_count_]; }
+
+  // Halfway; from a vertex where another segment makes an angle, at a power of two.
+  Point place_of_split(MeshEdge e) const {
+    const Point a = point(mesh_.from(e)), b = point(mesh_.to(e));
+    const bool is_angle_at_a = is_beside_segment(Mesh::before(e), Mesh::after(mesh_.twin(e)));
+    const bool is_angle_at_b = is_beside_segment(Mesh::after(e), Mesh::before(mesh_.twin(e)));
+    if (is_angle_at_a == is_angle_at_b) return midpoint(a, b);
+    return is_angle_at_a ? on_circle(a, b) : on_circle(b, a);
+  }
+
+  bool is_beside_segment(MeshEdge left, MeshEdge right) const {
+    return is_segment_of_surface(left) || is_segment_of_surface(right);
+  }
+  bool is_segment_of_surface(MeshEdge e) const {
+    return !mesh_.is_ghost(triangle_of(e)) && mesh_.is_fixed(e);
+  }
+
+  // Between a third and two thirds of the way.
+  static Point on_circle(Point center, Point end) {
+    const double length = std::sqrt(squared_distance(center, end));
+    const double radius = std::exp2(std::floor(std::log2(length / 1.5)));
+    const double share = radius / length;
+    return {center.x + share * (end.x - center.x), center.y + share * (end.y - center.y)};
+  }
+
+  // Whether m, rounded, makes triangles on both sides that are turned the right way.
+  bool has_room(MeshEdge e, Point m) const {
+    const Point a = point(mesh_.from(e)), b = point(mesh_.to(e));
+    if (squared_distance(a, m) < squared_floor_ || squared_distance(m, b) < squared_floor_) {
+      return false;
+    }
+    for (const MeshEdge side : {e, mesh_.twin(e)}) {
+      if (mesh_.corner(side) == kGhost) continue;
+      const Point from = point(mesh_.from(side)), to = point(mesh_.to(side));
+      const Point c = point(mesh_.corner(side));
+      if (orientation(from, m, c) <= 0 || orientation(m, to, c) <= 0) return false;
+    }
+    return true;
+  }
+
+  // The segment of the input that the one from a to b is a part of.
+  std::int32_t step_along(std::int32_t a, std::int32_t b) {
+    if (step_of_[a] != kNoStep) return step_of_[a];
+    if (step_of_[b] != kNoStep) return step_of_[b];
+    steps_.push_back({a, b});
+    return static_cast<std::int32_t>(steps_.size() - 1);
+  }
+
+  bool is_stuck(MeshEdge e) const {
+    return !stuck_.empty() && stuck_.count(key_of(mesh_.from(e), mesh_.to(e))) > 0;
+  }
+  static std::uint64_t key_of(std::int32_t a, std::int32_t b) {
+    return static_cast<std::uint64_t>(std::min(a, b)) << 32 |
+           static_cast<std::uint32_t>(std::max(a, b));
+  }
+
+  // ---------------------------------------------------------------- triangles
+
+  void serve(const TriangleWork& work) {
+    const std::uint32_t t = work.triangle;
+    if (!is_surface(t)) return;
+    const auto& v = work.vertex;
+    const auto& c = mesh_[t].corner;
+    if (!std::is_permutation(v, v + 3, c)) return;
+    const TurnedTriangle turned = turned_of(t);
+    const Point p = shape_.remedy(turned);
+    if (squared_distance(p, turned.p) < squared_floor_) return;
+    const Found found = walk(t, p);
+    if (found.is_blocked) {
+      if (make_way({found.at.edge})) triangles_.push(work);
+    } else if (found.at.where != MeshLocation::Where::kAtVertex) {
+      const std::vector<MeshEdge> hurt = encroached_by(p, triangle_of(found.at.edge));
+      if (hurt.empty()) {
+        insert(found.at, p);
+      } else if (make_way(hurt)) {
+        triangles_.push(work);
+      }
+    }
+  }
+
+  void insert(const MeshLocation& at, Point p) {
+    const std::int32_t slot = editor_.add_slot();
+    step_of_.push_back(kNoStep);
+    is_free_.push_back(true);
+    editor_.insert_at(at, p, slot);
+    examine_touched();
+  }
+
+  // Split segments instead; whether all could be. They are told by their ends, for the edges of
+  // those to come may change with the first.
+  bool make_way(const std::vector<MeshEdge>& segments) {
+    for (const MeshEdge e : segments) {
+      if (is_stuck(e)) return false;
+    }
+    if (segments.size() == 1) return split(segments[0]);
+    for (const MeshEdge e : segments) put_off(e, true);
+    return true;
+  }
+
+  struct Found {
+    MeshLocation at;
+    bool is_blocked;  // by the segment at.edge
+  };
+
+  // From triangle to triangle towards p, across edges that are no segments. Every step goes to a
+  // circle of smaller power about p, because such edges are Delaunay: the walk ends.
+  Found walk(std::uint32_t t, Point p) const {
+    while (true) {
+      MeshEdge blocking = kNoMeshEdge, on = kNoMeshEdge, across = kNoMeshEdge;
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const MeshEdge e = mesh_edge(t, k);
+        const Point from = point(mesh_.from(e)), to = point(mesh_.to(e));
+        if (p == from) return {{MeshLocation::Where::kAtVertex, e}, false};
+        const int side = orientation(from, to, p);
+        if (side == 0) on = e;
+        if (side >= 0) continue;
+        MeshEdge& kind = mesh_.is_fixed(e) ? blocking : across;
+        if (kind == kNoMeshEdge || is_apex_before(e, kind)) kind = e;
+      }
+      if (across != kNoMeshEdge) {
+        t = triangle_of(mesh_.twin(across));
+      } else if (blocking != kNoMeshEdge) {
+        return {{MeshLocation::Where::kOnEdge, blocking}, true};
+      } else if (on != kNoMeshEdge) {
+        return {{MeshLocation::Where::kOnEdge, on}, mesh_.is_fixed(on)};
+      } else {
+        return {{MeshLocation::Where::kInside, mesh_edge(t, 0)}, false};
+      }
+    }
+  }
+
+  bool is_apex_before(MeshEdge e, MeshEdge f) const {
+    return lexicographically_before(point(mesh_.corner(e)), point(mesh_.corner(f)));
+  }
+
+  // The segments that p, put into triangle t, would see under too large an angle: they lie around
+  // the triangles whose circles hold p.
+  std::vector<MeshEdge> encroached_by(Point p, std::uint32_t t) {
+    std::vector<MeshEdge> found;
+    cavity_.assign(1, t);
+    for (std::size_t i = 0; i < cavity_.size(); ++i) {
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const MeshEdge e = mesh_edge(cavity_[i], k);
+        if (mesh_.is_fixed(e)) {
+          if (shape_.encroaches(p, point(mesh_.from(e)), point(mesh_.to(e)))) found.push_back(e);
+          continue;
+        }
+        const std::uint32_t u = triangle_of(mesh_.twin(e));
+        const auto& c = mesh_[u].corner;
+        if (std::find(cavity_.begin(), cavity_.end(), u) == cavity_.end() &&
+            is_in_circle(point(c[0]), point(c[1]), point(c[2]), p)) {
+          cavity_.push_back(u);
+        }
+      }
+    }
+    return found;
+  }
+
+  MeshEditor& editor_;
+  const Mesh& mesh_;
+  ShapeTest shape_;
+  std::int32_t input_count_;
+  double squared_floor_ = 0.0;
+  std::vector<std::int32_t> step_of_;                // of vertices put on segments
+  std::vector<std::array<std::int32_t, 2>> steps_;   // ends of the input's segments that were split
+  std::vector<bool> is_free_;                        // of the vertices put in: inside the surface
+  std::vector<Split> splits_;
+  std::vector<std::uint32_t> cavity_;
+  std::unordered_set<std::uint64_t> stuck_;          // segments that have no room for a point
+  Urgency urgency_;
+  WorkQueue<SegmentWork> segments_;
+  WorkQueue<TriangleWork> triangles_;
+};
+
+}  // namespace tinsmith
