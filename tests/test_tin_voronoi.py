@@ -225,6 +225,18 @@ def test_cocircular_points_share_one_corner():
     np.testing.assert_array_equal(np.add.reduceat(at_centre, diagram.offsets[:-1]), 1)
 
 
+@settings(max_examples=200, deadline=None)
+@given(st.integers(1, 500), st.integers(1, 500), st.integers(1, 500))
+def test_the_four_cells_of_a_trapezoid_have_one_corner_though_it_is_rounded(half, more, height):
+    """Symmetric trapezoids are cocircular; the centre's northing is a fraction of any kind."""
+    low, high = half + more, half
+    points = np.array([[-low, 0], [low, 0], [high, height], [-high, height]])
+    diagram = triangulate(flat(points)).voronoi(pad=1e6)
+    wall = (np.abs(diagram.coords) > 5e5).any(axis=1)
+    assert len(np.unique(diagram.coords[~wall], axis=0)) == 1
+    np.testing.assert_array_equal(np.add.reduceat(~wall, diagram.offsets[:-1]), 1)
+
+
 # ------------------------------------------------------------------ the smallest
 
 
