@@ -127,6 +127,15 @@ _BUILT_IN = (
         extra="view",
         sniff=signatures.is_vtk_xml,
     ),
+    Format(
+        name="gmsh",
+        description="Gmsh mesh, with the edges of rim and lines (for finite element programs)",
+        suffixes=(".msh",),
+        read="tinsmith.io.gmsh:read",
+        write="tinsmith.io.gmsh:write",
+        extra="mesh",
+        sniff=signatures.is_gmsh,
+    ),
 )
 
 

@@ -8,6 +8,7 @@ __all__ = [
     "HEAD_BYTES",
     "foreign_kind",
     "is_geojson",
+    "is_gmsh",
     "is_obj",
     "is_ply",
     "is_raster",
@@ -92,6 +93,11 @@ def is_stl(head: bytes) -> bool:
 def is_vtk_xml(head: bytes) -> bool:
     """Whether the file is a VTK XML file."""
     return b"<VTKFile" in head[:1024]
+
+
+def is_gmsh(head: bytes) -> bool:
+    """Whether the file is a Gmsh mesh."""
+    return head.lstrip().startswith(b"$MeshFormat")
 
 
 def is_geojson(head: bytes) -> bool:

@@ -4,6 +4,7 @@ from .check import CheckResult, check
 from .errors import CheckError, LinesError, MissingExtraError, PointsError, TinsmithError
 from .lines import Breakline, Lines, Water
 from .quality import Quality, quality
+from .refine import refine
 from .report import Merge, Report
 from .surface import TIN
 from .survey import Survey
@@ -31,5 +32,6 @@ __all__ = [
     "Water",
     "check",
     "quality",
+    "refine",
     "triangulate",
 ]

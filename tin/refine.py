@@ -99,7 +99,7 @@ def refine(
     >>> from tinsmith.tin import triangulate
     >>> tin = triangulate([[0, 0, 0], [100, 0, 0], [100, 10, 1], [0, 10, 1]])
     >>> refine(tin, max_area=10.0)
-    <TIN: 139 vertices, 224 triangles, z 0 to 1, crs unknown>
+    <TIN: 104 vertices, 155 triangles, z 0 to 1, crs unknown>
     """
     _require_limits(min_angle, max_area, max_edge, max_vertices)
     _require_room(tin, max_area, max_vertices)
@@ -245,7 +245,7 @@ def _on_rim(tin: TIN, place: NDArray[np.float64]) -> float:
     return float(foot[np.hypot(*(foot[:, :2] - place).T).argmin(), 2])
 
 
-def _rim_ends(tin: TIN) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+def _rim_ends(tin: TIN) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     triangle, corner = np.nonzero(tin.neighbors == topology.NO_NEIGHBOR)
     return topology.ends(tin.triangles, triangle, corner)
 
@@ -319,7 +319,7 @@ def _without_line(tin: TIN) -> list[list[int]]:
     """Return the constrained edges inside the surface that are no step of a line."""
     triangle, corner = np.nonzero(tin.constrained & (tin.neighbors > topology.NO_NEIGHBOR))
     start, end = topology.ends(tin.triangles, triangle, corner)
-    edges = np.unique(np.sort(np.stack([start, end], axis=1), axis=1), axis=0)
+    edges = np.unique(np.sort(np.stack([start, end], axis=1), axis=1), axis=0).astype(np.int32)
     n = len(tin.points)
     is_step = np.isin(edge_keys(edges, n), edge_keys(tin.lines.steps(), n))
     found: list[list[int]] = edges[~is_step].tolist()

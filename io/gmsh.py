@@ -1,0 +1,179 @@
+"""Gmsh meshes (``.msh``) through meshio, for finite element programs.
+
+The file is MSH 2.2 in text, which they all read. Triangles are in the physical group ``surface``.
+Edges of the rim and of lines are line elements for boundary conditions: of the rim in the group
+``boundary``, of a line in one with its name, else its kind and number. MSH has no place for a CRS.
+"""
+
+from __future__ import annotations
+
+import re
+from contextlib import redirect_stderr, redirect_stdout
+from importlib import import_module
+from io import StringIO
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ..tin import MissingExtraError
+from ..tin.topology import NO_NEIGHBOR, ends
+from .atomic import replacing_path
+from .errors import ReadError
+from .meshes import chosen_crs, require_tin, survey_of, tin_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from ..tin import TIN, Survey
+
+__all__ = ["read", "write"]
+
+SURFACE = "surface"
+BOUNDARY = "boundary"
+UNNAMED = "constrained"
+
+_DIGITS = ".17g"
+_ODD_LETTERS = re.compile(r'["\r\n]')
+
+
+class _Edges(NamedTuple):
+    """Edges of rim and lines, each once, and the name of the group of each."""
+
+    pairs: NDArray[np.int64]
+    names: list[str]
+
+
+def read(path: Path, *, crs: str | None = None) -> TIN | Survey:
+    """Read the triangles of a Gmsh file; line elements along their edges become constrained.
+
+    Parameters
+    ----------
+    path : Path
+    crs : str, optional
+        CRS of the coordinates, which the file cannot tell.
+
+    Returns
+    -------
+    TIN or Survey
+        A survey where the file has no triangles.
+
+    Raises
+    ------
+    MissingExtraError
+        If meshio is not installed.
+    ReadError
+        If the file is damaged, or its triangles are no TIN.
+    CrsError
+        If PROJ does not know the CRS.
+    """
+    mesh = _mesh(path)
+    points = np.asarray(mesh.points, np.float64)
+    triangles = _cells(mesh, "triangle", 3)
+    system = chosen_crs(crs, None)
+    if len(triangles) == 0:
+        return survey_of(points, path, crs=system)
+    flags = _flags(triangles, _cells(mesh, "line", 2), len(points))
+    return tin_of(points, triangles, path, constrained=flags, crs=system)
+
+
+def _meshio(purpose: str) -> Any:
+    try:
+        return import_module("meshio")
+    except ImportError as error:
+        raise MissingExtraError("meshio", extra="mesh", purpose=purpose) from error
+
+
+def _mesh(path: Path) -> Any:
+    meshio = _meshio("Reading Gmsh files")
+    said = StringIO()
+    try:
+        with redirect_stderr(said), redirect_stdout(said):
+            mesh = meshio.gmsh.read(str(path))
+    except OSError as error:
+        raise ReadError(f"Cannot read '{path}': {error.strerror or error}.", path=path) from error
+    except Exception as error:  # meshio lets through whatever a damaged file leads to
+        reason = str(error).strip().rstrip(".") or type(error).__name__
+        raise ReadError(f"'{path}' is a damaged Gmsh file: {reason}.", path=path) from error
+    if "not closed" in said.getvalue():
+        raise ReadError(f"'{path}' is a Gmsh file that was cut short.", path=path)
+    return mesh
+
+
+def _cells(mesh: Any, kind: str, size: int) -> NDArray[np.int64]:
+    found = [np.asarray(block.data, np.int64) for block in mesh.cells if block.type == kind]
+    return np.concatenate([np.empty((0, size), np.int64), *found])
+
+
+def _flags(
+    triangles: NDArray[np.int64], lines: NDArray[np.int64], n_points: int
+) -> NDArray[np.bool_]:
+    flags = np.zeros(triangles.shape, np.bool_)
+    given = _keys(lines, n_points)
+    for corner in range(3):
+        edge = np.stack([triangles[:, (corner + 1) % 3], triangles[:, (corner + 2) % 3]], axis=1)
+        flags[:, corner] = np.isin(_keys(edge, n_points), given)
+    return flags
+
+
+def _keys(pairs: NDArray[np.int64], n_points: int) -> NDArray[np.int64]:
+    keys: NDArray[np.int64] = pairs.min(axis=1) * n_points + pairs.max(axis=1)
+    return keys
+
+
+def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None = None) -> None:
+    """Write a TIN as a Gmsh file, MSH 2.2 in text.
+
+    Parameters
+    ----------
+    surface : TIN
+    path : Path
+    progress : callable, optional
+        Called with 1.0 at the end.
+
+    Raises
+    ------
+    FormatError
+        If ``surface`` is no TIN.
+    MissingExtraError
+        If meshio is not installed.
+    WriteError
+        If the file cannot be written.
+    """
+    tin = require_tin(surface, path, format_name="Gmsh")
+    meshio = _meshio("Writing Gmsh files")
+    edges = _edges(tin)
+    number_of = {name: i for i, name in enumerate(dict.fromkeys([SURFACE, *edges.names]), start=1)}
+    numbers = [np.array([number_of[name] for name in edges.names], np.int32),
+               np.full(len(tin.triangles), number_of[SURFACE], np.int32)]  # fmt: skip
+    mesh = meshio.Mesh(
+        tin.points,
+        [("line", edges.pairs), ("triangle", tin.triangles.astype(np.int64))],
+        cell_data={"gmsh:physical": numbers, "gmsh:geometrical": numbers},
+        field_data={
+            name: np.array([number, 2 if name == SURFACE else 1])
+            for name, number in number_of.items()
+        },
+    )
+    with replacing_path(path) as beside:
+        meshio.gmsh.write(str(beside), mesh, fmt_version="2.2", binary=False, float_fmt=_DIGITS)
+    if progress is not None:
+        progress(1.0)
+
+
+def _edges(tin: TIN) -> _Edges:
+    """Gather edges by group, the rim first: an element has one group only."""
+    triangle, corner = np.nonzero(tin.neighbors == NO_NEIGHBOR)
+    groups = [(np.stack(ends(tin.triangles, triangle, corner), axis=1), BOUNDARY)]
+    for number, chain in enumerate(tin.lines.chains()):
+        name = tin.lines.names[number] or f"{tin.lines.kinds[number]} {tin.lines.sources[number]}"
+        groups.append((np.stack([chain[:-1], chain[1:]], axis=1), _ODD_LETTERS.sub("_", name)))
+    triangle, corner = np.nonzero(tin.constrained)
+    groups.append((np.stack(ends(tin.triangles, triangle, corner), axis=1), UNNAMED))
+    pairs = np.concatenate([pairs for pairs, _ in groups]).astype(np.int64)
+    names = [name for pairs, name in groups for _ in range(len(pairs))]
+    _, first = np.unique(_keys(pairs, len(tin.points)), return_index=True)
+    first.sort()
+    return _Edges(pairs[first], [names[i] for i in first.tolist()])

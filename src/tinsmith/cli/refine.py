@@ -1,0 +1,127 @@
+"""``tinsmith refine``: a mesh for finite elements."""
+
+from __future__ import annotations
+
+from time import perf_counter
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ..tin import quality
+from .console import plain
+from .options import (
+    console_options,
+    input_file,
+    output_files,
+    reading_options,
+    triangulating_options,
+    writing_options,
+)
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from ..tin import TIN
+    from .console import Console, Field
+    from .options import Reading, Triangulating, Writing
+
+__all__ = ["refine"]
+
+
+@click.command(short_help="Make a finite element mesh of a TIN.")
+@input_file("file")
+@output_files
+@click.option(
+    "--min-angle",
+    metavar="DEGREES",
+    type=float,
+    default=25.0,
+    show_default=True,
+    help="Least angle of a triangle, up to 33.",
+)
+@click.option(
+    "--max-area", metavar="AREA", type=float, help="Largest triangle, in CRS units squared."
+)
+@click.option(
+    "--max-side",
+    metavar="LENGTH",
+    type=float,
+    help="Longest side of a triangle, in CRS units. (--max-edge trims the TIN before.)",
+)
+@reading_options
+@triangulating_options
+@writing_options
+@console_options
+def refine(
+    file: Path,
+    outputs: tuple[Path, ...],
+    min_angle: float,
+    max_area: float | None,
+    max_side: float | None,
+    reading: Reading,
+    how: Triangulating,
+    writing: Writing,
+    console: Console,
+) -> None:
+    """Add points to the TIN in FILE, or that of the points in it, until its triangles are good.
+
+    Rim, boundary, holes and breaklines stay, and the new points lie on the surface.
+
+    \b
+    Example:
+      tinsmith refine sample_data/site_survey.csv --codes --max-area 20 -o site.msh -o site.vtu
+    """  # noqa: D301 - click reads the control character
+    from ..tin.refine import refine as refine_tin
+    from .files import plan_outputs, read_tin, write_outputs
+
+    started = perf_counter()
+    planned = plan_outputs(outputs, writing, source=file)
+    tin, _ = read_tin(file, reading, how, console)
+    with console.steps() as steps, steps.step(f"Refining {len(tin.triangles):,} triangles"):
+        refined = refine_tin(
+            tin, min_angle=min_angle, max_area=max_area, max_edge=max_side, threads=how.threads
+        )
+    write_outputs(refined, planned, console)
+    written = [str(one.path) for one in planned]
+    console.summarise(
+        [
+            ("Read", _counts(tin)),
+            ("Mesh", _counts(refined)),
+            *_angles(tin, refined, min_angle),
+            ("Written", "\n".join(written)),
+            ("Time", f"{perf_counter() - started:.2f} s"),
+        ]
+    )
+    if console.as_json:
+        console.emit(plain(_facts(file, refined, written)))
+
+
+def _counts(tin: TIN) -> str:
+    return f"{len(tin.points):,} vertices, {len(tin.triangles):,} triangles"
+
+
+def _angles(tin: TIN, refined: TIN, min_angle: float) -> list[Field]:
+    before, after = quality(tin).min_angle, quality(refined).min_angle
+    left = int((after < min_angle * (1 - 1e-9)).sum())
+    fields = [("Angles", f"from {after.min():.1f}° on, before from {before.min():.1f}°")]
+    if left:
+        fields.append(
+            (
+                "",
+                f"{left:,} triangles stay below {min_angle:g}°: lines or the rim meet there under "
+                "a small angle, or only far shorter edges would help",
+            )
+        )
+    return fields
+
+
+def _facts(file: Path, refined: TIN, outputs: list[str]) -> dict[str, Any]:
+    from .facts import tin_facts
+
+    shapes = quality(refined).summary()
+    return {
+        "input": str(file),
+        "tin": tin_facts(refined) | {"quality": shapes},
+        "report": refined.report.to_dict(),
+        "outputs": outputs,
+    }
