@@ -1,4 +1,4 @@
-"""Which triangles of a heap are at fault: those with a point in their circle, those that overlap."""
+"""Faults of triangles in a heap: a point in the circle, an overlap, a small angle."""
 
 from __future__ import annotations
 

@@ -76,7 +76,10 @@ class MeshEditor {
 
   // From now on remember every triangle that is made or changed.
   void watch() { is_watched_ = true; }
-  std::vector<std::uint32_t> take_touched() { return std::exchange(touched_, {}); }
+  void take_touched(std::vector<std::uint32_t>& taken) {
+    taken.clear();
+    taken.swap(touched_);
+  }
 
   // Whether the surface would still have a triangle without v.
   bool can_remove(std::int32_t v) const {

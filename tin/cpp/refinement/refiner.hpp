@@ -18,6 +18,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <set>
 #include <unordered_set>
 #include <utility>
 #include <vector>
@@ -42,12 +43,9 @@ class Refiner {
         mesh_(editor.mesh()),
         shape_(goal),
         input_count_(editor.slots()),
-        step_of_(editor.slots(), kNoStep),
-        segments_(editor),
-        triangles_(editor) {
+        step_of_(editor.slots(), kNoStep) {
     editor_.legalize_all();
     editor_.watch();
-    urgency_ = Urgency(extreme(false), extreme(true));
     squared_floor_ = kFloor * kFloor *
                      std::min({squared_shortest_edge(), goal.largest_area,
                                goal.longest_edge * goal.longest_edge});
@@ -98,26 +96,15 @@ class Refiner {
     return least;
   }
 
-  // The corner of the box around all points that is lowest, or highest.
-  Point extreme(bool is_highest) const {
-    Point found = point(0);
-    for (std::int32_t v = 1; v < input_count_; ++v) {
-      const Point p = point(v);
-      found.x = is_highest ? std::max(found.x, p.x) : std::min(found.x, p.x);
-      found.y = is_highest ? std::max(found.y, p.y) : std::min(found.y, p.y);
-    }
-    return found;
-  }
-
   bool is_surface(std::uint32_t t) const { return !mesh_.is_free(t) && !mesh_.is_ghost(t); }
 
   // ------------------------------------------------------------------ finding
 
   void examine_touched() {
-    std::vector<std::uint32_t> touched = editor_.take_touched();
-    std::sort(touched.begin(), touched.end());
-    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-    for (const std::uint32_t t : touched) examine(t);
+    editor_.take_touched(touched_);
+    std::sort(touched_.begin(), touched_.end());
+    touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
+    for (const std::uint32_t t : touched_) examine(t);
   }
 
   void examine(std::uint32_t t) {
@@ -132,7 +119,13 @@ class Refiner {
     }
     if (is_segment_split) return;  // the triangle goes with the segment
     const TurnedTriangle turned = turned_of(t);
-    if (is_bad(t, turned)) put_off(t, turned);
+    if (is_bad(t, turned) && !is_given_up(t)) put_off(t, turned);
+  }
+
+  bool is_given_up(std::uint32_t t) const {
+    if (given_up_.empty()) return false;
+    const auto& c = mesh_[t].corner;
+    return given_up_.count(key_of({t, {c[0], c[1], c[2]}})) > 0;
   }
 
   bool must_split(MeshEdge e) const {
@@ -147,11 +140,7 @@ class Refiner {
 
   void put_off(MeshEdge e, bool is_ordered) {
     const std::int32_t a = mesh_.from(e), b = mesh_.to(e);
-    const bool is_forward = lexicographically_before(point(a), point(b));
-    const std::int32_t low = is_forward ? a : b, high = is_forward ? b : a;
-    const double squared_length = squared_distance(point(a), point(b));
-    segments_.push(
-        {urgency_.of_longest(squared_length, point(low)), e, {low, high}, is_ordered});
+    segments_.push(rank_of_long(squared_distance(point(a), point(b))), {e, a, b, is_ordered});
   }
 
   TurnedTriangle turned_of(std::uint32_t t) const {
@@ -160,9 +149,8 @@ class Refiner {
   }
 
   void put_off(std::uint32_t t, const TurnedTriangle& turned) {
-    const MeshEdge base = mesh_edge(t, static_cast<std::uint32_t>(turned.place_of_apex));
-    triangles_.push({urgency_.of_shortest(squared_distance(turned.p, turned.q), turned.p), t,
-                     {mesh_.from(base), mesh_.to(base), mesh_.corner(base)}});
+    const auto& c = mesh_[t].corner;
+    triangles_.push(rank_of_short(squared_distance(turned.p, turned.q)), {t, {c[0], c[1], c[2]}});
   }
 
   bool is_bad(std::uint32_t t, const TurnedTriangle& turned) const {
@@ -192,14 +180,13 @@ class Refiner {
   // ----------------------------------------------------------------- segments
 
   void serve(const SegmentWork& work) {
-    if (!is_segment(work.edge, work.vertex[0], work.vertex[1])) return;
+    if (!is_segment(work.edge, work.from, work.to)) return;
     if (work.is_ordered || must_split(work.edge)) split(work.edge);
   }
 
   bool is_segment(MeshEdge e, std::int32_t a, std::int32_t b) const {
-    if (mesh_.is_free(triangle_of(e)) || !mesh_.is_fixed(e) || is_stuck(e)) return false;
-    const std::int32_t from = mesh_.from(e), to = mesh_.to(e);
-    return (from == a && to == b) || (from == b && to == a);
+    return !mesh_.is_free(triangle_of(e)) && mesh_.from(e) == a && mesh_.to(e) == b &&
+           mesh_.is_fixed(e) && !is_stuck(e);
   }
 
   // False if there is no room for a point on the segment.
@@ -301,43 +288,65 @@ class Refiner {
 
   void serve(const TriangleWork& work) {
     const std::uint32_t t = work.triangle;
-    if (!is_surface(t)) return;
-    const auto& v = work.vertex;
-    const auto& c = mesh_[t].corner;
-    if (!std::is_permutation(v, v + 3, c)) return;
+    if (!is_triangle(work)) return;
     const TurnedTriangle turned = turned_of(t);
     const Point p = shape_.remedy(turned);
     if (squared_distance(p, turned.p) < squared_floor_) return;
     const Found found = walk(t, p);
     if (found.is_blocked) {
-      if (make_way({found.at.edge})) triangles_.push(work);
-    } else if (found.at.where != MeshLocation::Where::kAtVertex) {
-      const std::vector<MeshEdge> hurt = encroached_by(p, triangle_of(found.at.edge));
-      if (hurt.empty()) {
-        insert(found.at, p);
-      } else if (make_way(hurt)) {
-        triangles_.push(work);
-      }
+      if (!is_stuck(found.at.edge) && split(found.at.edge) && is_triangle(work)) examine(t);
+    } else if (found.at.where != MeshLocation::Where::kAtVertex && !insert(found.at, p)) {
+      given_up_.insert(key_of(work));
+      examine_touched();
     }
   }
 
-  void insert(const MeshLocation& at, Point p) {
+  bool is_triangle(const TriangleWork& work) const {
+    return is_surface(work.triangle) &&
+           std::equal(work.vertex, work.vertex + 3, mesh_[work.triangle].corner);
+  }
+
+  using TriangleKey = std::array<std::int32_t, 3>;
+  static TriangleKey key_of(const TriangleWork& work) {
+    TriangleKey key{work.vertex[0], work.vertex[1], work.vertex[2]};
+    std::sort(key.begin(), key.end());
+    return key;
+  }
+
+  // Put a point in, unless it would encroach upon segments: then they are split instead. False if
+  // neither can be; triangles around may have been made anew.
+  bool insert(const MeshLocation& at, Point p) {
     const std::int32_t slot = editor_.add_slot();
     step_of_.push_back(kNoStep);
     is_free_.push_back(true);
     editor_.insert_at(at, p, slot);
+    const std::vector<MeshEdge> beyond = beyond_encroached(slot);
+    if (!beyond.empty()) {
+      editor_.remove(slot);
+      for (const MeshEdge e : beyond) {
+        if (is_stuck(e)) return false;
+      }
+      for (const MeshEdge e : beyond) put_off(mesh_.twin(e), true);
+    }
     examine_touched();
+    return true;
   }
 
-  // Split segments instead; whether all could be. They are told by their ends, for the edges of
-  // those to come may change with the first.
-  bool make_way(const std::vector<MeshEdge>& segments) {
-    for (const MeshEdge e : segments) {
-      if (is_stuck(e)) return false;
-    }
-    if (segments.size() == 1) return split(segments[0]);
-    for (const MeshEdge e : segments) put_off(e, true);
-    return true;
+  // Segments that a vertex sees under too large an angle, as seen from beyond them: so they are
+  // still called when the vertex is gone.
+  std::vector<MeshEdge> beyond_encroached(std::int32_t v) const {
+    std::vector<MeshEdge> found;
+    const MeshEdge first = mesh_.leaving(v);
+    MeshEdge e = first;
+    do {
+      const MeshEdge opposite = Mesh::after(e);
+      if (mesh_.is_fixed(opposite) && shape_.encroaches(point(v), point(mesh_.from(opposite)),
+                                                        point(mesh_.to(opposite)))) {
+        found.push_back(mesh_.twin(opposite));
+      }
+      e = mesh_.next_leaving(e);
+    } while (e != first);
+    return found;
   }
 
   struct Found {
@@ -376,29 +385,6 @@ class Refiner {
     return lexicographically_before(point(mesh_.corner(e)), point(mesh_.corner(f)));
   }
 
-  // The segments that p, put into triangle t, would see under too large an angle: they lie around
-  // the triangles whose circles hold p.
-  std::vector<MeshEdge> encroached_by(Point p, std::uint32_t t) {
-    std::vector<MeshEdge> found;
-    cavity_.assign(1, t);
-    for (std::size_t i = 0; i < cavity_.size(); ++i) {
-      for (std::uint32_t k = 0; k < 3; ++k) {
-        const MeshEdge e = mesh_edge(cavity_[i], k);
-        if (mesh_.is_fixed(e)) {
-          if (shape_.encroaches(p, point(mesh_.from(e)), point(mesh_.to(e)))) found.push_back(e);
-          continue;
-        }
-        const std::uint32_t u = triangle_of(mesh_.twin(e));
-        const auto& c = mesh_[u].corner;
-        if (std::find(cavity_.begin(), cavity_.end(), u) == cavity_.end() &&
-            is_in_circle(point(c[0]), point(c[1]), point(c[2]), p)) {
-          cavity_.push_back(u);
-        }
-      }
-    }
-    return found;
-  }
-
   MeshEditor& editor_;
   const Mesh& mesh_;
   ShapeTest shape_;
@@ -408,9 +394,9 @@ class Refiner {
   std::vector<std::array<std::int32_t, 2>> steps_;   // ends of the input's segments that were split
   std::vector<bool> is_free_;                        // of the vertices put in: inside the surface
   std::vector<Split> splits_;
-  std::vector<std::uint32_t> cavity_;
   std::unordered_set<std::uint64_t> stuck_;          // segments that have no room for a point
-  Urgency urgency_;
+  std::vector<std::uint32_t> touched_;
+  std::set<TriangleKey> given_up_;                   // triangles that cannot be mended
   WorkQueue<SegmentWork> segments_;
   WorkQueue<TriangleWork> triangles_;
 };
