@@ -1,5 +1,6 @@
 """The meaning room: what a terrain surface says. Knows no files."""
 
+from .comparison import comparison_picture
 from .errors import OptionError, RenderError
 from .histogram import histogram
 from .lift import lift
@@ -10,6 +11,7 @@ __all__ = [
     "OptionError",
     "RenderError",
     "aspect",
+    "comparison_picture",
     "histogram",
     "lift",
     "preview",

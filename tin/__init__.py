@@ -1,6 +1,8 @@
 """The shape room: points become triangles. Knows no files, no CRS, no pictures."""
 
+from . import paper
 from .check import CheckResult, check
+from .compare import Comparison, Outcome, compare
 from .errors import CheckError, LinesError, MissingExtraError, PointsError, TinsmithError
 from .lines import Breakline, Lines, Water
 from .quality import Quality, quality
@@ -18,11 +20,13 @@ __all__ = [
     "Breakline",
     "CheckError",
     "CheckResult",
+    "Comparison",
     "Grid",
     "Lines",
     "LinesError",
     "Merge",
     "MissingExtraError",
+    "Outcome",
     "PointsError",
     "Quality",
     "Report",
@@ -31,6 +35,8 @@ __all__ = [
     "Voronoi",
     "Water",
     "check",
+    "compare",
+    "paper",
     "quality",
     "refine",
     "triangulate",

@@ -19,7 +19,7 @@ from .failures import Failure, failures_as_sentences
 
 __all__ = ["main"]
 
-_BUILT_IN = ("build", "info", "check", "view", "refine", "edit", "convert", "formats")
+_BUILT_IN = ("build", "info", "check", "view", "compare", "refine", "edit", "convert", "formats")
 _ENTRY_POINTS = "tinsmith.commands"
 
 
