@@ -62,9 +62,9 @@ def compare(
     found = read_input(file, reading, console)
     if isinstance(found, TIN):
         raise Failure(f"'{file}' holds a TIN: 'tinsmith compare' needs points.")
-    points = found.points if sample is None else _sampled(found.points, sample)
+    points = _sampled(found.points, sample)
     with console.steps() as steps, steps.step(f"Comparing on {len(points):,} points"):
-        result = compare_points(points, limit=_limit(sample))
+        result = compare_points(points, limit=len(points))
     facts = {"input": str(file)} | result.to_dict()
     if output is not None:
         _draw(result, file, output, console)
@@ -79,16 +79,19 @@ def _require_picture(output: Path, source: Path) -> None:
         raise Failure(f"Cannot write a picture to '{output}': its name must end in .png.")
 
 
-def _limit(sample: int | None) -> int:
-    from ..tin.compare import MOST_POINTS
-
-    return MOST_POINTS if sample is None else max(sample, MOST_POINTS)
-
-
-def _sampled(points: NDArray[Any], count: int) -> NDArray[Any]:
-    """Return some of the points, in their order."""
+def _sampled(points: NDArray[Any], count: int | None) -> NDArray[Any]:
+    """Return some of the points, in their order; all of them if no number is given."""
     import numpy as np
 
+    from ..tin.compare import MOST_POINTS
+
+    if count is None:
+        if len(points) > MOST_POINTS:
+            raise Failure(
+                f"{len(points):,} points would take too long, for the paper's algorithms take "
+                f"quadratic time: --sample {MOST_POINTS} takes so many of them."
+            )
+        return points
     if count > len(points):
         raise Failure(
             f"--sample {count:,} asks for more than the {len(points):,} points there are."
