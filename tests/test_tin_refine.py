@@ -345,7 +345,7 @@ def test_any_small_survey_ends_sound(places, lines, min_angle):
         ({"max_vertices": 0}, "Invalid max_vertices 0"),
         ({"max_vertices": 1.5}, "Invalid max_vertices 1.5"),
         ({"max_vertices": 5}, "more than 5 vertices"),
-        ({"max_area": 1e-9}, "more than 20,000,000 vertices"),
+        ({"max_area": 1e-9}, "more than 10,000,000 vertices"),
         ({"max_edge": 0.5, "max_vertices": 2000}, "more than 2,000 vertices"),
     ],
 )

@@ -28,8 +28,8 @@ __all__ = ["LARGEST_MIN_ANGLE", "refine"]
 LARGEST_MIN_ANGLE = 33.0
 """Degrees; beyond about 34 refinement as good as never ends [1]_ in :func:`refine`."""
 
-MOST_VERTICES = 20_000_000
-"""What a mesh may have unless the caller says otherwise: some ten gigabytes of memory."""
+MOST_VERTICES = 10_000_000
+"""What a mesh may have unless the caller says otherwise: some five gigabytes of memory."""
 
 
 def refine(
@@ -82,8 +82,8 @@ def refine(
     Notes
     -----
     About three microseconds a point. Edges are never made shorter than a 64th of the shortest one
-    at the beginning, or of the size asked for; where only this would help, a triangle stays as it
-    is.
+    at the beginning, or of the size asked for, or than a thousand times the rounding of coordinates;
+    where only this would help, a triangle stays as it is.
 
     References
     ----------

@@ -18,6 +18,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <set>
 #include <unordered_set>
 #include <utility>
@@ -46,9 +47,10 @@ class Refiner {
         step_of_(editor.slots(), kNoStep) {
     editor_.legalize_all();
     editor_.watch();
-    squared_floor_ = kFloor * kFloor *
-                     std::min({squared_shortest_edge(), goal.largest_area,
-                               goal.longest_edge * goal.longest_edge});
+    const double squared_size = std::min({squared_shortest_edge(), goal.largest_area,
+                                          goal.longest_edge * goal.longest_edge});
+    const double floor = std::max(kFloor * std::sqrt(squared_size), kRoom * rounding());
+    squared_floor_ = floor * floor;
   }
 
   template <typename KeepGoing>
@@ -80,6 +82,17 @@ class Refiner {
   // size asked for. Where the angles of the input are not small, a least angle of 20.7 degrees
   // never needs it.
   static constexpr double kFloor = 1.0 / 64.0;
+
+  // So many times the rounding of coordinates an edge must be long, or there is no telling angles.
+  static constexpr double kRoom = 1024.0;
+
+  double rounding() const {
+    double largest = 0.0;
+    for (std::int32_t v = 0; v < input_count_; ++v) {
+      largest = std::max({largest, std::abs(point(v).x), std::abs(point(v).y)});
+    }
+    return largest * std::numeric_limits<double>::epsilon();
+  }
 
   bool has_work() const { return !segments_.is_empty() || !triangles_.is_empty(); }
   Point point(std::int32_t v) const { return editor_.point(v); }
@@ -133,9 +146,14 @@ class Refiner {
     if (shape_.is_long(a, b)) return true;
     for (const MeshEdge side : {e, mesh_.twin(e)}) {
       const std::int32_t c = mesh_.corner(side);
-      if (c != kGhost && shape_.encroaches(point(c), a, b)) return true;
+      if (c != kGhost && encroaches(point(c), a, b)) return true;
     }
     return false;
+  }
+
+  // A corner that as good as lies on the segment is not one that splitting could get rid of.
+  bool encroaches(Point c, Point a, Point b) const {
+    return shape_.encroaches(c, a, b) && squared_height(c, a, b) >= squared_floor_;
   }
 
   void put_off(MeshEdge e, bool is_ordered) {
@@ -291,7 +309,8 @@ class Refiner {
     if (!is_triangle(work)) return;
     const TurnedTriangle turned = turned_of(t);
     const Point p = shape_.remedy(turned);
-    if (squared_distance(p, turned.p) < squared_floor_) return;
+    const double squared_radius = squared_distance(p, turned.p);
+    if (!std::isfinite(squared_radius) || squared_radius < squared_floor_) return;
     const Found found = walk(t, p);
     if (found.is_blocked) {
       if (!is_stuck(found.at.edge) && split(found.at.edge) && is_triangle(work)) examine(t);
@@ -340,8 +359,8 @@ class Refiner {
     MeshEdge e = first;
     do {
       const MeshEdge opposite = Mesh::after(e);
-      if (mesh_.is_fixed(opposite) && shape_.encroaches(point(v), point(mesh_.from(opposite)),
-                                                        point(mesh_.to(opposite)))) {
+      if (mesh_.is_fixed(opposite) &&
+          encroaches(point(v), point(mesh_.from(opposite)), point(mesh_.to(opposite)))) {
         found.push_back(mesh_.twin(opposite));
       }
       e = mesh_.next_leaving(e);

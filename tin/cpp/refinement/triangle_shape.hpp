@@ -25,6 +25,12 @@ inline double dot_product(Point c, Point a, Point b) {
   return (a.x - c.x) * (b.x - c.x) + (a.y - c.y) * (b.y - c.y);
 }
 
+// Of c above the line through a and b.
+inline double squared_height(Point c, Point a, Point b) {
+  const double cross = (a.x - c.x) * (b.y - c.y) - (a.y - c.y) * (b.x - c.x);
+  return cross * cross / squared_distance(a, b);
+}
+
 inline Point midpoint(Point a, Point b) {
   return {a.x + 0.5 * (b.x - a.x), a.y + 0.5 * (b.y - a.y)};
 }
@@ -87,7 +93,8 @@ class ShapeTest {
   }
 
   // Where a point mends the triangle: the centre of its circle, or nearer to the shortest edge the
-  // place that sees it under just the least angle [Ungor 2004].
+  // place that sees it under just the least angle [Ungor 2004]. Not finite for a triangle so thin
+  // that its area is rounded away, if there is no least angle.
   Point remedy(const TurnedTriangle& t) const {
     const double px = t.p.x - t.apex.x, py = t.p.y - t.apex.y;
     const double qx = t.q.x - t.apex.x, qy = t.q.y - t.apex.y;
@@ -97,8 +104,8 @@ class ShapeTest {
     if (!std::isfinite(off_center_)) return {t.apex.x + dx, t.apex.y + dy};
     const double ox = 0.5 * (px + qx) - off_center_ * (qy - py);
     const double oy = 0.5 * (py + qy) + off_center_ * (qx - px);
-    const bool is_nearer = square(ox - px, oy - py) < square(dx - px, dy - py);
-    return is_nearer ? Point{t.apex.x + ox, t.apex.y + oy} : Point{t.apex.x + dx, t.apex.y + dy};
+    const bool is_center = square(dx - px, dy - py) <= square(ox - px, oy - py);  // not if NaN
+    return is_center ? Point{t.apex.x + dx, t.apex.y + dy} : Point{t.apex.x + ox, t.apex.y + oy};
   }
 
  private:
