@@ -125,7 +125,7 @@ def _add_legend(figure: Any) -> None:
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
-    edge = {"edgecolor": _EDGE, "linewidth": 0.8}
+    edge: dict[str, Any] = {"edgecolor": _EDGE, "linewidth": 0.8}
     figure.legend(
         handles=[
             Patch(facecolor=_SOUND, label="empty circle", **edge),

@@ -202,8 +202,8 @@ def compare(points: Survey | ArrayLike, *, limit: int = MOST_POINTS) -> Comparis
 
     Examples
     --------
-    >>> compare([[0, 0, 5], [0, 1, 6], [0, 2, 7], [1, 3, 8], [3, 3, 9]])
-    <Comparison: 5 points, 3 triangles due; original 3, improved 3, improved (open) 1, exact 3>
+    >>> compare([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8], [2, 1, 9]])
+    <Comparison: 5 points, 4 triangles due; original 4, improved 4, improved (open) 1, exact 4>
     """
     rows = as_points(points.points if isinstance(points, Survey) else points)
     if len(rows) > limit:

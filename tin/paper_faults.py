@@ -43,7 +43,8 @@ def violating(points: NDArray[np.float64], triangles: NDArray[np.int32]) -> NDAr
         points_ = np.tile(everywhere, len(block))
         other = (block[which] != points_[:, None]).all(axis=1)
         which, points_ = which[other], points_[other]
-        inside = in_circle(xy, *block[which].T, points_) > 0
+        a, b, c = block[which].T
+        inside = in_circle(xy, a, b, c, points_) > 0
         found[start + which[inside]] = True
     return found
 

@@ -72,7 +72,7 @@ class Lists:
         others = self.searched[(self.searched != p1) & (self.searched != p2)]
         self.searches += 1
         self.candidates += len(others)
-        across = others[sides(self.xy, p1, p2, others) < 0]
+        across: NDArray[np.int64] = others[sides(self.xy, p1, p2, others) < 0]
         closed = list(self._used_twice[p1] | self._used_twice[p2])
         return across[~np.isin(across, closed)] if closed else across
 
