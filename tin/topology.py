@@ -117,31 +117,35 @@ def boundary_rings(
     At a vertex where two rings touch, they are kept apart by turning about the vertex through
     the triangles inside, so that every ring is one walk along the surface's rim.
     """
-    outer_triangle, outer_corner = np.nonzero(neighbors == NO_NEIGHBOR)
-    following = {
-        (int(t), int(k)): _next_on_rim(triangles, neighbors, int(t), int(k))
-        for t, k in zip(outer_triangle, outer_corner, strict=True)
-    }
+    triangle, corner = np.nonzero(neighbors == NO_NEIGHBOR)
+    start = triangles[triangle, (corner + 1) % 3]
+    place = np.searchsorted(3 * triangle + corner, _next_on_rim(triangles, neighbors))
+    following = place.tolist()
+    is_left = [True] * len(following)
     rings: list[NDArray[np.int32]] = []
-    while following:
-        slot, _ = next(iter(following.items()))
-        ring = []
-        while slot in following:
-            triangle, corner = slot
-            ring.append(triangles[triangle, (corner + 1) % 3])
-            slot = following.pop(slot)
-        rings.append(np.array(ring, np.int32))
+    for first in range(len(following)):
+        ring, here = [], first
+        while is_left[here]:
+            is_left[here] = False
+            ring.append(here)
+            here = following[here]
+        if ring:
+            rings.append(start[ring])
     return rings
 
 
-def _next_on_rim(
-    triangles: NDArray[np.int32], neighbors: NDArray[np.int32], triangle: int, corner: int
-) -> tuple[int, int]:
-    """Turn about the end of a rim edge, through the triangles inside, to the next rim edge."""
+def _next_on_rim(triangles: NDArray[np.int32], neighbors: NDArray[np.int32]) -> NDArray[np.int64]:
+    """Return for every rim edge the next one, both as 3 * triangle + corner.
+
+    It is found by turning about the end of the edge, through the triangles inside.
+    """
+    triangle, corner = np.nonzero(neighbors == NO_NEIGHBOR)
     pivot = triangles[triangle, (corner + 2) % 3]
     edge = (corner + 1) % 3
-    while neighbors[triangle, edge] != NO_NEIGHBOR:
-        triangle = int(neighbors[triangle, edge])
-        here = int(np.flatnonzero(triangles[triangle] == pivot)[0])
-        edge = (here + 2) % 3
-    return triangle, edge
+    turning = np.arange(len(triangle))
+    while len(turning):
+        across = neighbors[triangle[turning], edge[turning]]
+        turning, across = turning[across != NO_NEIGHBOR], across[across != NO_NEIGHBOR]
+        here = np.argmax(triangles[across] == pivot[turning, None], axis=1)
+        triangle[turning], edge[turning] = across, (here + 2) % 3
+    return 3 * triangle + edge
