@@ -55,6 +55,16 @@ def test_triangles_that_stay_bad_are_counted(tmp_path):
     assert "triangles stay below 25°" in out.stderr
 
 
+def test_degrees_are_refused(tmp_path):
+    corners = [[-84.1, 36.3, 300], [-84.0, 36.3, 310], [-84.0, 36.4, 320]]
+    tin = ts.tin.TIN.from_triangles(corners, [[0, 1, 2]], crs="EPSG:4326")
+    path = ts.write(tin, tmp_path / "degrees.ply")
+    out = run("refine", path, "-o", tmp_path / "a.msh")
+    assert out.exit_code == 1
+    assert "is in degrees" in out.stderr
+    assert not (tmp_path / "a.msh").exists()
+
+
 @pytest.mark.parametrize(
     ("options", "code", "words"),
     [

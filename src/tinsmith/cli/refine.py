@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ..io.crs import is_geographic
 from ..tin import quality
 from .console import plain
+from .failures import Failure
 from .options import (
     console_options,
     input_file,
@@ -77,6 +79,7 @@ def refine(
     started = perf_counter()
     planned = plan_outputs(outputs, writing, source=file)
     tin, _ = read_tin(file, reading, how, console)
+    _require_lengths(tin, file)
     with console.steps() as steps, steps.step(f"Refining {len(tin.triangles):,} triangles"):
         refined = refine_tin(
             tin, min_angle=min_angle, max_area=max_area, max_edge=max_side, threads=how.threads
@@ -94,6 +97,14 @@ def refine(
     )
     if console.as_json:
         console.emit(plain(_facts(file, refined, written)))
+
+
+def _require_lengths(tin: TIN, file: Path) -> None:
+    if is_geographic(tin.crs):
+        raise Failure(
+            f"'{file}' is in degrees, where angles and areas are not those on the ground: build "
+            "the TIN in a projected CRS, such as EPSG:32616."
+        )
 
 
 def _counts(tin: TIN) -> str:
