@@ -220,6 +220,27 @@ def test_open_reading_stops_where_all_circles_are_empty():
     assert len(paper.improved(points).triangles) == 7
 
 
+# ------------------------------------------------------------------ the criteria
+
+
+def smallest_angle(corners):
+    angles = []
+    for k in range(3):
+        (x, y), (bx, by), (cx, cy) = corners[k], corners[(k + 1) % 3], corners[(k + 2) % 3]
+        angles.append(math.atan2(by - y, bx - x) - math.atan2(cy - y, cx - x))
+    return math.degrees(min(min(abs(a), 2 * math.pi - abs(a)) for a in angles))
+
+
+def test_delaunay_has_the_largest_smallest_angle_but_not_the_largest_sum_of_them():
+    a, b, c, d = places = [(0, 0), (0, 1), (1, 2), (2, 0)]
+    delaunay = [[places[v] for v in one] for one in paper.original(flat(places)).triangles.tolist()]
+    others = [[a, d, c], [a, c, b]]
+    assert {frozenset(one) for one in delaunay}.isdisjoint({frozenset(one) for one in others})
+    right, wrong = ([smallest_angle(one) for one in two] for two in (delaunay, others))
+    assert min(right) > min(wrong) + 8
+    assert sum(right) < sum(wrong) - 8
+
+
 # ------------------------------------------------------------------ removal
 
 
