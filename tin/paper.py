@@ -168,7 +168,7 @@ def improved(
         Delete points from the search once all their edges are used twice (step 6).
     most_triangles : int, optional
         As for :func:`original`. Overlaps breed overlaps: of 2,000 random points become 10,000 to
-        100,000 triangles.
+        150,000 triangles.
 
     Returns
     -------
