@@ -82,8 +82,8 @@ def refine(
     Notes
     -----
     About three microseconds a point. Edges are never made shorter than a 64th of the shortest one
-    at the beginning, or of the size asked for, or than a thousand times the rounding of coordinates;
-    where only this would help, a triangle stays as it is.
+    at the beginning, or of the size asked for, or than a thousand times the rounding of
+    coordinates; where only this would help, a triangle stays as it is.
 
     References
     ----------
@@ -99,7 +99,7 @@ def refine(
     >>> from tinsmith.tin import triangulate
     >>> tin = triangulate([[0, 0, 0], [100, 0, 0], [100, 10, 1], [0, 10, 1]])
     >>> refine(tin, max_area=10.0)
-    <TIN: 104 vertices, 155 triangles, z 0 to 1, crs unknown>
+    <TIN: 104 vertices, 158 triangles, z 0 to 1, crs unknown>
     """
     _require_limits(min_angle, max_area, max_edge, max_vertices)
     _require_room(tin, max_area, max_vertices)
