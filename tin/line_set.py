@@ -129,6 +129,45 @@ def gather_lines(
     """
     if not (len(breaklines) or len(boundary) or len(holes) or len(water)):
         return _NONE
+    found = None if boundary or holes or water else _arrays_alone(breaklines)
+    if found is None:
+        found = _gathered(breaklines, boundary, holes, water)
+    _require_exact_range(found)
+    _require_length(found)
+    return found
+
+
+def _arrays_alone(breaklines: Sequence[Any]) -> LineSet | None:
+    """Return sound (k, 3) arrays as hard breaklines, all at once; None for anything else."""
+    if not (isinstance(breaklines, list | tuple) and all(map(_is_array_of_vertices, breaklines))):
+        return None
+    coords = np.concatenate(breaklines)
+    if not np.isfinite(coords).all():
+        return None
+    coords += 0.0  # no -0.0: equal coordinates are equal bytes
+    n = len(breaklines)
+    return LineSet(
+        np.ascontiguousarray(coords[:, :2]),
+        coords[:, 2],
+        offsets=np.concatenate([[0], np.cumsum([len(c) for c in breaklines], dtype=np.int64)]),
+        kinds=("hard",) * n,
+        sources=np.arange(n, dtype=np.int32),
+        priorities=np.zeros(n),
+        names=("",) * n,
+    )
+
+
+def _is_array_of_vertices(line: Any) -> bool:
+    is_array = isinstance(line, np.ndarray) and line.dtype == np.float64
+    return is_array and line.ndim == 2 and line.shape[1] == 3 and len(line) >= 2
+
+
+def _gathered(
+    breaklines: Sequence[Breakline | ArrayLike],
+    boundary: Sequence[ArrayLike],
+    holes: Sequence[ArrayLike],
+    water: Sequence[Water],
+) -> LineSet:
     lines = [
         line if isinstance(line, Breakline) else Breakline(line)
         for line in as_sequence(breaklines, "breaklines")
@@ -146,7 +185,7 @@ def gather_lines(
     kinds: list[LineKind] = [line.kind for line in lines]
     kinds += [kind for kind, _ in rings]
     kinds += ["water" for _ in ponds]
-    found = LineSet(
+    return LineSet(
         *_stacked(coords),
         offsets=np.concatenate([[0], np.cumsum([len(c) for c in coords], dtype=np.int64)]),
         kinds=tuple(kinds),
@@ -161,9 +200,6 @@ def gather_lines(
         ),
         names=(*(line.name for line in lines), *("" for _ in rings), *(p.name for p in ponds)),
     )
-    _require_exact_range(found)
-    _require_length(found)
-    return found
 
 
 def gather_rings(rings: Sequence[ArrayLike], what: str) -> list[NDArray[np.float64]]:

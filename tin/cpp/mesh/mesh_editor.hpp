@@ -385,13 +385,14 @@ class MeshEditor {
 
   // The edge that leaves a along the way to b, or the first edge across it (from right to left).
   MeshEdge first_towards(std::int32_t a, std::int32_t b) const {
+    const MeshEdge there = edge_between(a, b);
+    if (there != kNoMeshEdge) return there;
     const bool is_forward = lexicographically_before(points_[a], points_[b]);
     const MeshEdge first = mesh_.leaving(a);
     MeshEdge e = first;
     int side = side_of(a, b, mesh_.to(e));
     do {
       const std::int32_t right = mesh_.to(e), left = mesh_.corner(e);
-      if (right == b) return e;
       if (side == 0 && right != kGhost &&
           lexicographically_before(points_[a], points_[right]) == is_forward) {
         return e;
