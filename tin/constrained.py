@@ -254,6 +254,8 @@ def _flooded(
         With the heights that gave way to the water's.
     """
     wet = np.zeros(len(points), np.bool_)
+    if not (lines.priorities == ABOVE_ALL).any():
+        return pieces, wet, overruled
     is_ring = np.array([kind in ("boundary", "hole") for kind in lines.kinds], np.bool_)
     given = pieces
     for line in np.flatnonzero(lines.priorities == ABOVE_ALL).tolist():

@@ -38,6 +38,8 @@ class Pieces(NamedTuple):
 
     def kept(self, keep: NDArray[np.bool_]) -> Pieces:
         """Return the pieces that are left when only some steps are kept."""
+        if keep.all() and (np.diff(self.offsets) > 1).all():
+            return self
         is_start = np.ones(len(self.vertices), np.bool_)
         is_start[self.offsets[1:] - 1] = False
         goes_on = np.zeros(len(self.vertices), np.bool_)
