@@ -17,7 +17,7 @@ from tinsmith.cli.options import DUPLICATES, KINDS
 SAMPLES = Path(__file__).parents[1] / "sample_data"
 SURVEY = str(SAMPLES / "site_survey.csv")
 UTM = ("--crs", "EPSG:32616")
-COMMANDS = ("build", "info", "check", "view", "edit", "convert", "formats")
+COMMANDS = ("build", "info", "check", "view", "refine", "compare", "edit", "convert", "formats")
 
 
 def run(*arguments, code=0):
