@@ -146,11 +146,12 @@ def _arrays_alone(breaklines: Sequence[Any]) -> LineSet | None:
         return None
     coords += 0.0  # no -0.0: equal coordinates are equal bytes
     n = len(breaklines)
+    kind: LineKind = "hard"
     return LineSet(
         np.ascontiguousarray(coords[:, :2]),
         coords[:, 2],
         offsets=np.concatenate([[0], np.cumsum([len(c) for c in breaklines], dtype=np.int64)]),
-        kinds=("hard",) * n,
+        kinds=(kind,) * n,
         sources=np.arange(n, dtype=np.int32),
         priorities=np.zeros(n),
         names=("",) * n,

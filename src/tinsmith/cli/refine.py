@@ -7,8 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..io.crs import is_geographic
-from ..tin import quality
 from .console import plain
 from .failures import Failure
 from .options import (
@@ -100,6 +98,8 @@ def refine(
 
 
 def _require_lengths(tin: TIN, file: Path) -> None:
+    from ..io.crs import is_geographic
+
     if is_geographic(tin.crs):
         raise Failure(
             f"'{file}' is in degrees, where angles and areas are not those on the ground: build "
@@ -112,6 +112,8 @@ def _counts(tin: TIN) -> str:
 
 
 def _angles(tin: TIN, refined: TIN, min_angle: float) -> list[Field]:
+    from ..tin import quality
+
     before, after = quality(tin).min_angle, quality(refined).min_angle
     left = int((after < min_angle * (1 - 1e-9)).sum())
     fields = [("Angles", f"from {after.min():.1f}° on, before from {before.min():.1f}°")]
@@ -127,6 +129,7 @@ def _angles(tin: TIN, refined: TIN, min_angle: float) -> list[Field]:
 
 
 def _facts(file: Path, refined: TIN, outputs: list[str]) -> dict[str, Any]:
+    from ..tin import quality
     from .facts import tin_facts
 
     shapes = quality(refined).summary()
