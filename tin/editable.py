@@ -288,6 +288,8 @@ class Editable:
 
     def _forget(self) -> None:
         """Drop arrays that an edit made old; they come back when they are looked at."""
+        if "triangles" not in self.__dict__:
+            return  # nobody has looked since the last edit
         self.__dict__.setdefault("report_before", self.__dict__.get("report"))
         for name in (*_RENEWED, *_derived(type(self))):  # type: ignore[arg-type]
             self.__dict__.pop(name, None)

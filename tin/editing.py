@@ -159,13 +159,16 @@ class History:
         return result
 
     def _slots(self, vertices: ArrayLike) -> NDArray[np.int32]:
+        count = self._editor.count
+        only = vertices[0] if isinstance(vertices, list) and len(vertices) == 1 else vertices
+        if type(only) is int and 0 <= only < count:  # most edits: no arrays for one number
+            return self._editor.slots(np.array([only], np.int64))
         try:
             numbers = np.atleast_1d(np.asarray(vertices))
         except ValueError:
             numbers = np.empty(0, np.float64)
         if numbers.ndim != 1 or numbers.dtype.kind not in "iu":
             raise PointsError(f"Invalid vertices {vertices!r}: whole numbers are needed.")
-        count = self._editor.count
         wrong = (numbers < 0) | (numbers >= count)
         if wrong.any():
             raise PointsError(
@@ -188,7 +191,7 @@ class History:
 
     def _remove(self, _: list[str], vertices: ArrayLike) -> None:
         slots = self._slots(vertices)
-        if len(np.unique(slots)) < len(slots):
+        if len(slots) > 1 and len(np.unique(slots)) < len(slots):
             raise PointsError("A vertex is named twice: it can be removed once.")
         self._editor.remove(slots)
 

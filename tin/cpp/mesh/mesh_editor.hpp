@@ -13,6 +13,7 @@
 
 #include "../predicates/predicates.hpp"
 #include "corridor.hpp"
+#include "landmarks.hpp"
 #include "mesh.hpp"
 #include "mesh_walk.hpp"
 
@@ -52,7 +53,8 @@ class MeshEditor {
 
   // The vertex at p, which is `slot` if there was none; a fixed edge through p is split.
   std::int32_t insert(Point p, std::int32_t slot) {
-    return insert_at(MeshWalk(mesh_, points_, count_, state_).locate(p, last_), p, slot);
+    return insert_at(MeshWalk(mesh_, points_, count_, state_).locate(p, last_, landmark_near(p)), p,
+                     slot);
   }
 
   // The same where it is known in which triangle or on which edge p lies. A point that is only near
@@ -218,6 +220,13 @@ class MeshEditor {
   }
 
  private:
+  // Worth setting up in a large mesh only.
+  std::int32_t landmark_near(Point p) {
+    if (slots() < Landmarks::kDrawn) return kGhost;
+    if (!landmarks_.are_set()) landmarks_.set(mesh_, points_);
+    return landmarks_.near(p);
+  }
+
   int turn(std::int32_t a, std::int32_t b, std::int32_t c) const {
     return orientation(points_[a], points_[b], points_[c]);
   }
@@ -417,6 +426,7 @@ class MeshEditor {
   std::vector<MeshEdge> pending_;
   std::vector<std::uint32_t> changed_;
   Corridor corridor_;
+  Landmarks landmarks_;
   bool is_watched_ = false;
   std::vector<std::uint32_t> touched_;
 };

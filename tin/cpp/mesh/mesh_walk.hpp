@@ -27,9 +27,9 @@ class MeshWalk {
            std::uint64_t& state)
       : mesh_(mesh), points_(points), count_(vertex_count), state_(state) {}
 
-  // `last` is an edge that may be near, or kNoMeshEdge.
-  MeshLocation locate(Point p, MeshEdge last) {
-    MeshEdge e = nearest_start(p, last);
+  // `last` is an edge that may be near, or kNoMeshEdge; `landmark` a vertex that may be, or kGhost.
+  MeshLocation locate(Point p, MeshEdge last, std::int32_t landmark) {
+    MeshEdge e = nearest_start(p, last, landmark);
     if (mesh_.is_ghost(triangle_of(e))) e = real_side(triangle_of(e));
     std::uint32_t t = triangle_of(e);
     std::uint32_t entry = kNoPlace;
@@ -46,13 +46,17 @@ class MeshWalk {
  private:
   static constexpr std::uint32_t kNoPlace = 3;
 
-  // The walk begins at the last change, or at the nearest of a few vertices drawn at random: as
-  // many as make the walk from there as short as the drawing.
-  MeshEdge nearest_start(Point p, MeshEdge last) {
+  // The walk begins at the last change, at the landmark, or at the nearest of a few vertices drawn
+  // at random: as many as make the walk from there as short as the drawing.
+  MeshEdge nearest_start(Point p, MeshEdge last, std::int32_t landmark) {
     MeshEdge best = last;
     if (best == kNoMeshEdge || mesh_.is_free(triangle_of(best))) best = first_edge();
     double nearest = distance_to(p, best);
     if (nearest <= kShortWalk * square_of(best)) return best;
+    if (landmark != kGhost && mesh_.is_alive(landmark)) {
+      const MeshEdge there = mesh_.leaving(landmark);
+      return distance_to(p, there) < nearest ? there : best;
+    }
     const auto draws = static_cast<std::int32_t>(0.5 * std::cbrt(static_cast<double>(count_)));
     for (std::int32_t i = 0; i < draws; ++i) {
       const auto v = static_cast<std::int32_t>(random() % points_.size());
