@@ -48,6 +48,14 @@ __all__ = ["refine"]
     type=float,
     help="Longest side of a triangle, in CRS units. (--max-edge trims the TIN before.)",
 )
+@click.option(
+    "--max-vertices",
+    metavar="N",
+    type=int,
+    default=10_000_000,
+    show_default=True,
+    help="So many vertices are allowed.",
+)
 @reading_options
 @triangulating_options
 @writing_options
@@ -58,6 +66,7 @@ def refine(
     min_angle: float,
     max_area: float | None,
     max_side: float | None,
+    max_vertices: int,
     reading: Reading,
     how: Triangulating,
     writing: Writing,
@@ -80,7 +89,12 @@ def refine(
     _require_lengths(tin, file)
     with console.steps() as steps, steps.step(f"Refining {len(tin.triangles):,} triangles"):
         refined = refine_tin(
-            tin, min_angle=min_angle, max_area=max_area, max_edge=max_side, threads=how.threads
+            tin,
+            min_angle=min_angle,
+            max_area=max_area,
+            max_edge=max_side,
+            max_vertices=max_vertices,
+            threads=how.threads,
         )
     write_outputs(refined, planned, console)
     written = [str(one.path) for one in planned]
