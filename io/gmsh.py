@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import re
 from contextlib import redirect_stderr, redirect_stdout
-from importlib import import_module
 from io import StringIO
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..tin import MissingExtraError
+from ..terrain import extras
+from ..tin.regions import edge_keys
 from ..tin.topology import NO_NEIGHBOR, ends
 from .atomic import replacing_path
 from .errors import ReadError
@@ -42,7 +42,7 @@ _ODD_LETTERS = re.compile(r'["\r\n]')
 class _Edges(NamedTuple):
     """Edges of rim and lines, each once, and the name of the group of each."""
 
-    pairs: NDArray[np.int64]
+    pairs: NDArray[np.int32]
     names: list[str]
 
 
@@ -79,15 +79,8 @@ def read(path: Path, *, crs: str | None = None) -> TIN | Survey:
     return tin_of(points, triangles, path, constrained=flags, crs=system)
 
 
-def _meshio(purpose: str) -> Any:
-    try:
-        return import_module("meshio")
-    except ImportError as error:
-        raise MissingExtraError("meshio", extra="mesh", purpose=purpose) from error
-
-
 def _mesh(path: Path) -> Any:
-    meshio = _meshio("Reading Gmsh files")
+    meshio = extras.meshio("Reading Gmsh files")
     said = StringIO()
     try:
         with redirect_stderr(said), redirect_stdout(said):
@@ -102,25 +95,20 @@ def _mesh(path: Path) -> Any:
     return mesh
 
 
-def _cells(mesh: Any, kind: str, size: int) -> NDArray[np.int64]:
-    found = [np.asarray(block.data, np.int64) for block in mesh.cells if block.type == kind]
-    return np.concatenate([np.empty((0, size), np.int64), *found])
+def _cells(mesh: Any, kind: str, size: int) -> NDArray[np.int32]:
+    found = [np.asarray(block.data, np.int32) for block in mesh.cells if block.type == kind]
+    return np.concatenate([np.empty((0, size), np.int32), *found])
 
 
 def _flags(
-    triangles: NDArray[np.int64], lines: NDArray[np.int64], n_points: int
+    triangles: NDArray[np.int32], lines: NDArray[np.int32], n_points: int
 ) -> NDArray[np.bool_]:
     flags = np.zeros(triangles.shape, np.bool_)
-    given = _keys(lines, n_points)
+    given = edge_keys(lines, n_points)
     for corner in range(3):
         edge = np.stack([triangles[:, (corner + 1) % 3], triangles[:, (corner + 2) % 3]], axis=1)
-        flags[:, corner] = np.isin(_keys(edge, n_points), given)
+        flags[:, corner] = np.isin(edge_keys(edge, n_points), given)
     return flags
-
-
-def _keys(pairs: NDArray[np.int64], n_points: int) -> NDArray[np.int64]:
-    keys: NDArray[np.int64] = pairs.min(axis=1) * n_points + pairs.max(axis=1)
-    return keys
 
 
 def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None = None) -> None:
@@ -143,14 +131,14 @@ def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None 
         If the file cannot be written.
     """
     tin = require_tin(surface, path, format_name="Gmsh")
-    meshio = _meshio("Writing Gmsh files")
+    meshio = extras.meshio("Writing Gmsh files")
     edges = _edges(tin)
     number_of = {name: i for i, name in enumerate(dict.fromkeys([SURFACE, *edges.names]), start=1)}
     numbers = [np.array([number_of[name] for name in edges.names], np.int32),
                np.full(len(tin.triangles), number_of[SURFACE], np.int32)]  # fmt: skip
     mesh = meshio.Mesh(
         tin.points,
-        [("line", edges.pairs), ("triangle", tin.triangles.astype(np.int64))],
+        [("line", edges.pairs), ("triangle", tin.triangles)],
         cell_data={"gmsh:physical": numbers, "gmsh:geometrical": numbers},
         field_data={
             name: np.array([number, 2 if name == SURFACE else 1])
@@ -172,8 +160,8 @@ def _edges(tin: TIN) -> _Edges:
         groups.append((np.stack([chain[:-1], chain[1:]], axis=1), _ODD_LETTERS.sub("_", name)))
     triangle, corner = np.nonzero(tin.constrained)
     groups.append((np.stack(ends(tin.triangles, triangle, corner), axis=1), UNNAMED))
-    pairs = np.concatenate([pairs for pairs, _ in groups]).astype(np.int64)
+    pairs = np.concatenate([pairs for pairs, _ in groups]).astype(np.int32)
     names = [name for pairs, name in groups for _ in range(len(pairs))]
-    _, first = np.unique(_keys(pairs, len(tin.points)), return_index=True)
+    _, first = np.unique(edge_keys(pairs, len(tin.points)), return_index=True)
     first.sort()
     return _Edges(pairs[first], [names[i] for i in first.tolist()])

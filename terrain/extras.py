@@ -7,7 +7,7 @@ from typing import Any
 
 from ..tin import MissingExtraError
 
-__all__ = ["matplotlib", "pyvista"]
+__all__ = ["matplotlib", "meshio", "pyvista"]
 
 
 def matplotlib(purpose: str) -> Any:
@@ -26,6 +26,22 @@ def matplotlib(purpose: str) -> Any:
         If matplotlib is not installed.
     """
     return _module("matplotlib.figure", "plot", purpose)
+
+
+def meshio(purpose: str) -> Any:
+    """Return the meshio module, or name the extra that brings it.
+
+    Parameters
+    ----------
+    purpose : str
+        Subject of the sentence: what needs the library.
+
+    Raises
+    ------
+    MissingExtraError
+        If meshio is not installed.
+    """
+    return _module("meshio", "mesh", purpose)
 
 
 def pyvista(purpose: str) -> Any:

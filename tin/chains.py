@@ -49,12 +49,7 @@ class ChainTable:
         """Return all chains as arrays."""
         if self._pieces is not None:
             return self._pieces
-        counts = [len(vertices) for vertices in self._vertices.values()]
-        return Pieces(
-            np.array([v for vertices in self._vertices.values() for v in vertices], np.int32),
-            np.concatenate([[0], np.cumsum(counts)]).astype(np.int32),
-            np.array(list(self._line.values()), np.int32),
-        )
+        return Pieces.of_chains(list(self._vertices.values()), list(self._line.values()))
 
     # ------------------------------------------------------------------ reading
 

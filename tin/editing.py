@@ -308,14 +308,9 @@ def _model_of(tin: TIN) -> Model:
     if not is_whole:
         chains += [[*ring.tolist(), int(ring[0])] for ring in tin.rings]
         infos += [LineInfo("boundary") for _ in tin.rings]
-    counts = [len(chain) for chain in chains]
     return Model(
         points=tin.points,
-        pieces=Pieces(
-            np.array([v for chain in chains for v in chain], np.int32),
-            np.concatenate([[0], np.cumsum(counts)]).astype(np.int32),
-            np.arange(len(chains), dtype=np.int32),
-        ),
+        pieces=Pieces.of_chains(chains, range(len(chains))),
         infos=tuple(infos),
         clip=Clip(has_rim=not is_whole),
         vertex_of=tin.vertex_of,

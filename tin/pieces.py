@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
 __all__ = ["Pieces"]
@@ -24,6 +26,16 @@ class Pieces(NamedTuple):
         """Return no pieces."""
         empty = np.empty(0, np.int32)
         return cls(empty, np.zeros(1, np.int32), empty)
+
+    @classmethod
+    def of_chains(cls, chains: Sequence[Sequence[int]], lines: Sequence[int]) -> Pieces:
+        """Return chains of vertices, each of the line named."""
+        counts = [len(chain) for chain in chains]
+        return cls(
+            np.array([v for chain in chains for v in chain], np.int32),
+            np.concatenate([[0], np.cumsum(counts)]).astype(np.int32),
+            np.array(lines, np.int32),
+        )
 
     def steps(self) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
         """Return every step, as (s, 2) vertex pairs, and the line of each."""

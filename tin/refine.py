@@ -301,14 +301,9 @@ def _model(tin: TIN, points: NDArray[np.float64], splits: _Splits) -> Model:
     chains += rings
     infos += [LineInfo("boundary") for _ in rings]
     split = [splits.along(chain) for chain in chains]
-    counts = [len(chain) for chain in split]
     return Model(
         points=points,
-        pieces=Pieces(
-            np.array([v for chain in split for v in chain], np.int32),
-            np.concatenate([[0], np.cumsum(counts)]).astype(np.int32),
-            np.arange(len(split), dtype=np.int32),
-        ),
+        pieces=Pieces.of_chains(split, range(len(split))),
         infos=tuple(infos),
         clip=Clip(has_rim=True),
         vertex_of=tin.vertex_of,

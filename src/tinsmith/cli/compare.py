@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .failures import Failure, note_written
+from .failures import Failure
 from .options import console_options, input_file, reading_options
 
 if TYPE_CHECKING:
@@ -55,10 +55,10 @@ def compare(
     """  # noqa: D301 - click reads the control character
     from ..tin import TIN
     from ..tin import compare as compare_points
-    from .files import read_input
+    from .files import read_input, require_picture
 
     if output is not None:
-        _require_picture(output, file)
+        require_picture(output, source=file)
     found = read_input(file, reading, console)
     if isinstance(found, TIN):
         raise Failure(f"'{file}' holds a TIN: 'tinsmith compare' needs points.")
@@ -70,13 +70,6 @@ def compare(
         _draw(result, file, output, console)
         facts["output"] = str(output)
     console.answer(_fields(file, result, output), facts)
-
-
-def _require_picture(output: Path, source: Path) -> None:
-    if output.resolve() == source.resolve():
-        raise click.UsageError(f"'{output}' is the input: it cannot be the output too.")
-    if output.suffix.lower() != ".png":
-        raise Failure(f"Cannot write a picture to '{output}': its name must end in .png.")
 
 
 def _sampled(points: NDArray[Any], count: int | None) -> NDArray[Any]:
@@ -102,15 +95,13 @@ def _sampled(points: NDArray[Any], count: int | None) -> NDArray[Any]:
 
 def _draw(result: Comparison, file: Path, output: Path, console: Console) -> None:
     """Write the picture, whole or not at all."""
-    from ..io.atomic import replacing
     from ..terrain import comparison_picture
+    from .files import write_figure
 
     title = f"{file.stem.replace('_', ' ')}: {len(result.points):,} points"
     with console.steps() as steps, steps.step("Drawing"):
         figure = comparison_picture(result, title=title)
-        with replacing(output) as picture:
-            figure.savefig(picture, format="png", dpi=120, metadata={"Software": None})
-    note_written(output)
+        write_figure(figure, output, dpi=120)
 
 
 # ---------------------------------------------------------------- for people

@@ -134,6 +134,31 @@ def plan_outputs(paths: Sequence[Path], writing: Writing, *, source: Path) -> li
     ]
 
 
+def require_picture(path: Path, *, source: Path) -> None:
+    """Refuse a picture that would overwrite the input, or is no PNG.
+
+    Raises
+    ------
+    click.UsageError
+        If the picture is the input.
+    Failure
+        If its name does not end in .png.
+    """
+    if path.resolve() == source.resolve():
+        raise click.UsageError(f"'{path}' is the input: it cannot be the output too.")
+    if path.suffix.lower() != ".png":
+        raise Failure(f"Cannot write a picture to '{path}': its name must end in .png.")
+
+
+def write_figure(figure: Any, path: Path, *, dpi: int) -> None:
+    """Write a figure of matplotlib, whole or not at all, with no version in its bytes."""
+    from ..io.atomic import replacing
+
+    with replacing(path) as picture:
+        figure.savefig(picture, format="png", dpi=dpi, metadata={"Software": None})
+    note_written(path)
+
+
 def _require_distinct(paths: Sequence[Path]) -> None:
     places = [path.resolve() for path in paths]
     for place, path in zip(places[:-1], paths[:-1], strict=True):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from .failures import Failure, note_written
+from .failures import Failure
 from .options import console_options, input_file, reading_options
 
 if TYPE_CHECKING:
@@ -41,10 +41,10 @@ def info(file: Path, plot: Path | None, reading: Reading, console: Console) -> N
     """  # noqa: D301 - click reads the control character
     from ..tin import TIN
     from .facts import survey_facts, survey_fields
-    from .files import read_input
+    from .files import read_input, require_picture
 
     if plot is not None:
-        _require_picture(plot, file)
+        require_picture(plot, source=file)
     found = read_input(file, reading, console)
     if isinstance(found, TIN):
         _describe(found, file, plot, console)
@@ -55,13 +55,6 @@ def info(file: Path, plot: Path | None, reading: Reading, console: Console) -> N
         )
     facts = {"input": str(file)} | survey_facts(found)
     console.answer([("File", str(file)), *survey_fields(found)], facts)
-
-
-def _require_picture(plot: Path, source: Path) -> None:
-    if plot.resolve() == source.resolve():
-        raise click.UsageError(f"'{plot}' is the input: it cannot be the picture too.")
-    if plot.suffix.lower() != ".png":
-        raise Failure(f"Cannot write a picture to '{plot}': its name must end in .png.")
 
 
 def _describe(tin: TIN, file: Path, plot: Path | None, console: Console) -> None:
@@ -80,9 +73,9 @@ def _describe(tin: TIN, file: Path, plot: Path | None, console: Console) -> None
 
 def _plot(shapes: Quality | None, tin: TIN, file: Path, plot: Path, console: Console) -> None:
     """Write the histograms, whole or not at all."""
-    from ..io.atomic import replacing
     from ..terrain import histogram
     from .facts import units
+    from .files import write_figure
 
     if shapes is None:
         raise Failure(
@@ -92,6 +85,4 @@ def _plot(shapes: Quality | None, tin: TIN, file: Path, plot: Path, console: Con
     with console.steps() as steps, steps.step("Drawing"):
         title = f"Triangle quality: {file.stem.replace('_', ' ')}"
         figure = histogram(shapes, title=title, unit=units(tin.crs)[0].strip())
-        with replacing(plot) as picture:
-            figure.savefig(picture, format="png", dpi=150, metadata={"Software": None})
-    note_written(plot)
+        write_figure(figure, plot, dpi=150)

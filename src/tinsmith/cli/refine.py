@@ -21,7 +21,7 @@ from .options import (
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ..tin import TIN
+    from ..tin import TIN, Quality
     from .console import Console, Field
     from .options import Reading, Triangulating, Writing
 
@@ -80,7 +80,8 @@ def refine(
     Example:
       tinsmith refine sample_data/site_survey.csv --codes --max-area 20 -o site.msh -o site.vtu
     """  # noqa: D301 - click reads the control character
-    from ..tin.refine import refine as refine_tin
+    from ..tin import quality
+    from ..tin import refine as refine_tin
     from .files import plan_outputs, read_tin, write_outputs
 
     started = perf_counter()
@@ -97,18 +98,19 @@ def refine(
             threads=how.threads,
         )
     write_outputs(refined, planned, console)
+    shapes = quality(refined)
     written = [str(one.path) for one in planned]
     console.summarise(
         [
             ("Read", _counts(tin)),
             ("Mesh", _counts(refined)),
-            *_angles(tin, refined, min_angle),
+            *_angles(quality(tin), shapes, min_angle),
             ("Written", "\n".join(written)),
             ("Time", f"{perf_counter() - started:.2f} s"),
         ]
     )
     if console.as_json:
-        console.emit(plain(_facts(file, refined, written)))
+        console.emit(plain(_facts(file, refined, shapes, written)))
 
 
 def _require_lengths(tin: TIN, file: Path) -> None:
@@ -125,10 +127,8 @@ def _counts(tin: TIN) -> str:
     return f"{len(tin.points):,} vertices, {len(tin.triangles):,} triangles"
 
 
-def _angles(tin: TIN, refined: TIN, min_angle: float) -> list[Field]:
-    from ..tin import quality
-
-    before, after = quality(tin).min_angle, quality(refined).min_angle
+def _angles(given: Quality, refined: Quality, min_angle: float) -> list[Field]:
+    before, after = given.min_angle, refined.min_angle
     left = int((after < min_angle * (1 - 1e-9)).sum())
     fields = [("Angles", f"from {after.min():.1f}° on, before from {before.min():.1f}°")]
     if left:
@@ -142,14 +142,12 @@ def _angles(tin: TIN, refined: TIN, min_angle: float) -> list[Field]:
     return fields
 
 
-def _facts(file: Path, refined: TIN, outputs: list[str]) -> dict[str, Any]:
-    from ..tin import quality
+def _facts(file: Path, refined: TIN, shapes: Quality, outputs: list[str]) -> dict[str, Any]:
     from .facts import tin_facts
 
-    shapes = quality(refined).summary()
     return {
         "input": str(file),
-        "tin": tin_facts(refined) | {"quality": shapes},
+        "tin": tin_facts(refined) | {"quality": shapes.summary()},
         "report": refined.report.to_dict(),
         "outputs": outputs,
     }
