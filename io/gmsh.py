@@ -88,7 +88,8 @@ def _mesh(path: Path) -> Any:
     except OSError as error:
         raise ReadError(f"Cannot read '{path}': {error.strerror or error}.", path=path) from error
     except Exception as error:  # meshio lets through whatever a damaged file leads to
-        reason = str(error).strip().rstrip(".") or type(error).__name__
+        told = str(error).strip().rstrip(".") if isinstance(error, meshio.ReadError) else ""
+        reason = told or "it ends early, or holds something else than the format asks for"
         raise ReadError(f"'{path}' is a damaged Gmsh file: {reason}.", path=path) from error
     if "not closed" in said.getvalue():
         raise ReadError(f"'{path}' is a Gmsh file that was cut short.", path=path)
