@@ -8,14 +8,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..crs import CRS, Unit
 from ..tin import TIN, Survey
 from .atomic import replacing
-from .crs import as_crs, is_geographic, normalised, transform_points
+from .crs import is_geographic, transform_points
 from .delimited_layout import find_layout
 from .delimited_lines import read_lines
 from .delimited_table import read_table
 from .errors import CrsError, WriteError
-from .placing import placed
+from .placing import place, settle_unit
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from ..crs import CrsLike, UnitLike
     from .delimited_layout import Layout
 
 __all__ = ["read", "write"]
@@ -37,22 +39,25 @@ _AREA_MARGIN_DEGREES = 2.0
 def read(
     path: Path,
     *,
-    crs: str | None = None,
+    crs: CrsLike | None = None,
+    z_unit: UnitLike | None = None,
     columns: str | Sequence[str] | Mapping[str, str | int] | None = None,
     delimiter: str | None = None,
     decimal: str | None = None,
     comment: str | None = None,
     encoding: str | None = None,
-    source_crs: str | None = None,
+    source_crs: CrsLike | None = None,
 ) -> Survey:
     """Read survey points.
 
     Parameters
     ----------
     path : Path
-    crs : str, optional
+    crs : CRS, str, int or pyproj.CRS, optional
         CRS of the coordinates. Where the file has longitude and latitude (WGS 84), or
         ``source_crs`` is another, points are reprojected to it.
+    z_unit : Unit or str, optional
+        Unit of the elevations, if the header does not give it.
     columns : str, sequence of str, or mapping of str to str or int, optional
         What the columns are; default by header, else by content. Letters in their order
         (``"PNEZD"``: P point number, N northing, E easting, Z elevation, D description, X
@@ -66,7 +71,7 @@ def read(
         What comment lines start with; default by looking (``# // ; ! %``), "" for none.
     encoding : str, optional
         Default by looking: UTF-8, UTF-16, else Windows-1252.
-    source_crs : str, optional
+    source_crs : CRS, str, int or pyproj.CRS, optional
         CRS in which the file's coordinates are, if not ``crs``.
 
     Returns
@@ -84,6 +89,8 @@ def read(
         If an option has a value that it cannot have.
     CrsError
         If a CRS is unknown, or the points do not fit it.
+    OptionError
+        If ``z_unit`` is unknown, or another than the header gives.
 
     Notes
     -----
@@ -101,23 +108,26 @@ def read(
         lines, path, columns=columns, delimiter=delimiter, decimal=decimal, comment=comment
     )
     table = read_table(lines, layout, path)
-    source = _source(layout, normalised(source_crs), crs)
-    points, notes = _understood(table.points, layout, source or crs)
-    placed_points, placed_crs = placed(points, source=source, target=crs, path=path)
+    target = CRS.of(crs)
+    source = _source(layout, CRS.of(source_crs), target)
+    points, notes = _understood(table.points, layout, source or target)
+    unit = settle_unit(Unit.of(z_unit), Unit.of(getattr(layout, "elevation_unit", None)), path)
+    placed = place(points, source=source, target=target, path=path, unit=unit)
     return Survey(
-        points=placed_points,
+        points=placed.points,
         attributes=table.attributes,
-        crs=placed_crs,
+        crs=placed.crs,
+        elevation_unit=placed.elevation_unit,
         source=path.name,
         skipped=layout.skipped,
-        notes=notes,
+        notes=[*notes, *placed.notes],
     )
 
 
-def _source(layout: Layout, source_crs: str | None, crs: str | None) -> str | None:
+def _source(layout: Layout, source_crs: CRS | None, crs: CRS | None) -> CRS | None:
     """Return the CRS of the coordinates in the file, None if it is the one declared."""
     if source_crs is None and layout.columns.is_degrees and not is_geographic(crs):
-        return _WGS84
+        return CRS.of(_WGS84)
     return source_crs
 
 
@@ -125,7 +135,7 @@ def _source(layout: Layout, source_crs: str | None, crs: str | None) -> str | No
 
 
 def _understood(
-    points: NDArray[np.float64], layout: Layout, crs: str | None
+    points: NDArray[np.float64], layout: Layout, crs: CRS | None
 ) -> tuple[NDArray[np.float64], list[str]]:
     """Return points whose easting and northing are the right way round, and what was assumed."""
     if layout.columns.is_degrees:
@@ -140,14 +150,14 @@ def _understood(
     return points, [f"No header: the columns are taken as {columns.layout}{reason}."]
 
 
-def _only_swapped_fits(points: NDArray[np.float64], crs: str) -> bool:
+def _only_swapped_fits(points: NDArray[np.float64], crs: CRS) -> bool:
     middle = np.median(points, axis=0)
     return not _lies_in_area(middle, crs) and _lies_in_area(middle[[1, 0, 2]], crs)
 
 
-def _lies_in_area(point: NDArray[np.float64], crs: str) -> bool:
+def _lies_in_area(point: NDArray[np.float64], crs: CRS) -> bool:
     """Whether a point lies in the area of use of a CRS, or that area is not known."""
-    area = as_crs(crs).area_of_use
+    area = crs.area_of_use
     if area is None:
         return True
     try:

@@ -15,20 +15,21 @@ from importlib.metadata import entry_points
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..crs import CRS, Unit
 from ..tin import MissingExtraError
 from . import signatures
-from .crs import normalised
 from .errors import FormatError, ReadError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    from ..crs import CrsLike, UnitLike
     from ..tin import TIN, Survey
 
 __all__ = ["Format", "detect", "find_format", "known_formats", "read", "write"]
 
 _ENTRY_POINTS = "tinsmith.formats"
-_OWN_PARAMETERS = frozenset({"crs", "progress"})
+_OWN_PARAMETERS = frozenset({"crs", "z_unit", "progress"})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,8 +45,8 @@ class Format:
     suffixes : tuple of str
         Lower case, with the dot; a writer is chosen by them, a reader where the content is silent.
     read, write : str, optional
-        ``"module:function"``. A reader takes ``(path, *, crs=None, <options>)`` and returns a
-        Survey or a TIN; a writer takes ``(obj, path, *, <options>)``.
+        ``"module:function"``. A reader takes ``(path, *, crs=None, z_unit=None, <options>)``, a CRS
+        and a Unit or None, and returns a Survey or a TIN; a writer ``(obj, path, *, <options>)``.
     extra : str, optional
         The extra of this package that brings the library it needs.
     sniff : callable, optional
@@ -143,7 +144,8 @@ def read(
     path: str | os.PathLike[str],
     *,
     format: str | None = None,  # noqa: A002 - the word that users of the package know
-    crs: str | None = None,
+    crs: CrsLike | None = None,
+    z_unit: UnitLike | None = None,
     **options: Any,
 ) -> Survey | TIN:
     """Read elevation points or a TIN; the reader is chosen by content and suffix.
@@ -153,9 +155,13 @@ def read(
     path : path-like
     format : str, optional
         Name of a format, to choose it whatever the file looks like.
-    crs : str, optional
-        Coordinate reference system. It declares that of a file which has none; a raster with
-        another one is reprojected to it.
+    crs : CRS, str, int or pyproj.CRS, optional
+        Coordinate reference system. It declares that of a file which has none; points of a file
+        with another one are reprojected to it, a TIN with another one is refused.
+    z_unit : Unit or str, optional
+        Unit of the file's elevations ("m", "ft", "US survey foot"), where the file itself does not
+        say. After a reprojection they have the unit of ``crs``: see
+        :func:`tinsmith.io.transform_points`.
     **options
         Options of the reader, see :meth:`Format.options`.
 
@@ -171,12 +177,14 @@ def read(
     FormatError
         If no format fits, or the format has no such option.
     CrsError
-        If the CRS is unknown.
+        If the CRS is unknown, or another than that of a TIN.
+    OptionError
+        If the unit is unknown, or another than the one that the file gives.
     MissingExtraError
         If the library that reads the format is not installed.
     """
     file = Path(path)
-    declared = normalised(crs)
+    declared, unit = CRS.of(crs), Unit.of(z_unit)
     head = _head(file)
     chosen = detect(file, head) if format is None else find_format(format)
     if chosen.read is None:
@@ -186,6 +194,8 @@ def read(
             known=_known("read"),
         )
     reader = _load(chosen.read)
+    if unit is not None:
+        options["z_unit"] = unit
     _require_options(chosen, "read", reader, options)
     survey: Survey | TIN = reader(file, crs=declared, **options)
     return survey
@@ -425,7 +435,7 @@ def _require_options(
     chosen: Format, action: str, function: Callable[..., Any], options: Mapping[str, object]
 ) -> None:
     allowed = _options(function)
-    accepted = {*allowed, "progress"} & set(inspect.signature(function).parameters)
+    accepted = {*allowed, "progress", "z_unit"} & set(inspect.signature(function).parameters)
     unknown = [name for name in options if name not in accepted]
     if not unknown:
         return

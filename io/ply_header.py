@@ -82,6 +82,8 @@ class Header:
         In the order in which they follow.
     crs : str or None
         From the comment ``crs: ...``.
+    elevation_unit : str or None
+        From the comment ``elevation unit: ...``.
     size : int
         Bytes of the header.
     """
@@ -90,6 +92,7 @@ class Header:
     elements: list[Element]
     crs: str | None
     size: int
+    elevation_unit: str | None = None
 
 
 def parse_header(content: bytes, path: Path) -> Header:
@@ -104,6 +107,7 @@ def parse_header(content: bytes, path: Path) -> Header:
     byte_order: str | None = None
     elements: list[Element] = []
     crs: str | None = None
+    unit: str | None = None
     for number, line in enumerate(lines, start=1):
         words = line.split()
         match words:
@@ -111,6 +115,8 @@ def parse_header(content: bytes, path: Path) -> Header:
                 byte_order = _BYTE_ORDERS[encoding]
             case ["comment", "crs:", _, *_]:
                 crs = line.split("crs:", 1)[1].strip()
+            case ["comment", "elevation", "unit:", _, *_]:
+                unit = line.split("unit:", 1)[1].strip()
             case ["element", name, count] if count.isdecimal():
                 elements.append(Element(name, int(count)))
             case ["property", *rest] if elements and (found := _property(rest)) is not None:
@@ -125,7 +131,7 @@ def parse_header(content: bytes, path: Path) -> Header:
                 )
     if byte_order is None:
         raise ReadError(f"'{path}': the PLY header has no line 'format'.", path=path)
-    return Header(byte_order, elements, crs, size)
+    return Header(byte_order, elements, crs, size, unit)
 
 
 def _header_lines(content: bytes, path: Path) -> tuple[list[str], int]:

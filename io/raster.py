@@ -10,16 +10,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..crs import CRS, Unit
+from ..errors import OptionError
 from ..tin import Bounds, MissingExtraError, Survey
-from .crs import as_crs, crs_text
 from .errors import FormatError, ReadError
-from .placing import placed
+from .placing import place, settle_unit
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from pathlib import Path
 
     from numpy.typing import NDArray
+
+    from ..crs import CrsLike, UnitLike
 
 __all__ = ["read", "recognises"]
 
@@ -53,7 +56,8 @@ class _Cells:
 def read(
     path: Path,
     *,
-    crs: str | None = None,
+    crs: CrsLike | None = None,
+    z_unit: UnitLike | None = None,
     band: int | None = None,
     window: Sequence[int] | Bounds | None = None,
     stride: int = 1,
@@ -63,9 +67,12 @@ def read(
     Parameters
     ----------
     path : Path
-    crs : str, optional
+    crs : CRS, str, int or pyproj.CRS, optional
         CRS wanted. The points are transformed to it, nothing is resampled. It declares the CRS
         of a raster that has none.
+    z_unit : Unit or str, optional
+        Unit of the elevations, if neither the band nor the vertical axis of its CRS gives one; or
+        the one of the two that is right, if they differ.
     band : int, optional
         Band to read, from 1; default the first.
     window : (4,) sequence of int, or Bounds, optional
@@ -89,6 +96,8 @@ def read(
         If band, window or stride is not one that the raster has.
     CrsError
         If the points cannot be transformed.
+    OptionError
+        If ``z_unit`` is unknown, or another than the raster's own.
     MissingExtraError
         If rasterio is not installed.
 
@@ -100,9 +109,10 @@ def read(
     with _opened(path) as dataset:
         number = _band(dataset, band, path)
         _require_elevations(dataset, number, band is not None, path)
-        source = _crs_of(dataset)
+        target, source = CRS.of(crs), _crs_of(dataset)
+        unit, notes = _elevation_unit(dataset, number, source, Unit.of(z_unit), path)
         cells = _cells(dataset, window, stride, path)
-        placed(_middle(dataset), source=source, target=crs, path=path)
+        place(_middle(dataset), source=source, target=target, path=path)
         points, n_nodata = _points(dataset, number, cells, path)
     if len(points) == 0:
         raise ReadError(
@@ -110,9 +120,15 @@ def read(
             "all are nodata.",
             path=path,
         )
-    points, found = placed(points, source=source, target=crs, path=path)
-    skipped = {"nodata cells": n_nodata} if n_nodata else {}
-    return Survey(points=points, crs=found, source=path.name, skipped=skipped)
+    placed = place(points, source=source, target=target, path=path, unit=unit)
+    return Survey(
+        points=placed.points,
+        crs=placed.crs,
+        elevation_unit=placed.elevation_unit,
+        source=path.name,
+        skipped={"nodata cells": n_nodata} if n_nodata else {},
+        notes=[*notes, *placed.notes],
+    )
 
 
 def recognises(path: Path) -> bool:
@@ -188,10 +204,30 @@ def _require_elevations(dataset: Any, band: int, is_told: bool, path: Path) -> N
         )
 
 
-def _crs_of(dataset: Any) -> str | None:
-    if not dataset.crs:
-        return None
-    return crs_text(as_crs(dataset.crs.to_wkt()))
+def _crs_of(dataset: Any) -> CRS | None:
+    return CRS.of(dataset.crs.to_wkt()) if dataset.crs else None
+
+
+def _elevation_unit(
+    dataset: Any, band: int, source: CRS | None, declared: Unit | None, path: Path
+) -> tuple[Unit | None, list[str]]:
+    """Return the unit that band, vertical axis or caller give, and a note on one not understood."""
+    word = str(dataset.units[band - 1] or "").strip()
+    vertical = None if source is None else source.vertical_unit
+    try:
+        of_band = Unit.of(word or None)
+    except OptionError:
+        note = f"The unit of band {band}, '{word}', is no length: the elevations have none."
+        return settle_unit(declared, vertical, path), [] if declared or vertical else [note]
+    if of_band is None or vertical is None or of_band == vertical:
+        return settle_unit(declared, of_band or vertical, path), []
+    if declared in (of_band, vertical):
+        return declared, []
+    raise ReadError(
+        f"'{path}' gives its elevations two units: {of_band.name} (of band {band}) and "
+        f"{vertical.name} (of the vertical axis of its CRS); declare the one that is right.",
+        path=path,
+    )
 
 
 def _middle(dataset: Any) -> NDArray[np.float64]:

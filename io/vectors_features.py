@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ..crs import CRS
 from ..tin import MissingExtraError
-from .crs import normalised
 from .errors import ReadError
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ class Features(NamedTuple):
         Shapely geometries, none of them missing or empty.
     columns : dict of str to (n,) array
         By their names in lower case.
-    crs : str or None
+    crs : CRS or None
     notes : tuple of str
         What was left out.
     """
@@ -50,7 +50,7 @@ class Features(NamedTuple):
     numbers: NDArray[np.int64]
     geometries: NDArray[np.object_]
     columns: dict[str, NDArray[Any]]
-    crs: str | None
+    crs: CRS | None
     notes: tuple[str, ...]
 
     def label(self, row: int) -> str:
@@ -92,7 +92,7 @@ def read_features(path: Path, *, layer: str | None = None, where: str | None = N
             np.asarray(numbers, np.int64),
             _shapes(geometries, numbers, path),
             dict(zip(names, values, strict=True)),
-            normalised(meta["crs"]),
+            CRS.of(meta["crs"]),
             (),
         )
     )

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from ..crs import UnitLike
     from ..tin import Survey
 
     Source = str | os.PathLike[str]
@@ -39,6 +40,7 @@ def with_lines(
     water: Sequence[Source] = (),
     water_z: float | str | None = None,
     drape: bool = False,
+    z_unit: UnitLike | None = None,
 ) -> Survey:
     """Add the lines of vector files to a survey, in its CRS.
 
@@ -52,6 +54,8 @@ def with_lines(
     drape : bool
         Take the heights of breaklines, boundary and holes from the surface, whatever the files
         say.
+    z_unit : Unit or str, optional
+        Unit of the elevations in the files, where their CRS has no vertical axis that tells.
 
     Returns
     -------
@@ -70,12 +74,17 @@ def with_lines(
     <Survey: 3 points, crs unknown>
     """
     notes = list(survey.notes)
+    units: dict[str, Any] = {
+        "crs": survey.crs,
+        "elevation_unit": survey.elevation_unit,
+        "z_unit": z_unit,
+    }
 
     def read(reader: Callable[..., list[Any]], sources: Iterable[Source], **how: Any) -> list[Any]:
         found = []
         for source in sources:
             path, layer = _path_and_layer(source)
-            lines = reader(path, crs=survey.crs, layer=layer, notes=notes, **how)
+            lines = reader(path, layer=layer, notes=notes, **units, **how)
             _require_near(survey, [_coords_of(line) for line in lines], path)
             found += lines
         return found

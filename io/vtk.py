@@ -2,7 +2,8 @@
 
 Coordinates are written in the CRS as doubles, with nothing subtracted. Cell data are ``slope`` and
 ``aspect`` (degrees) and ``constrained`` (three flags, of the edge opposite each corner); field data
-``crs`` and ``origin``, what a reader must add to the coordinates: zeros.
+``crs`` and ``elevation_unit`` ("" if not known), and ``origin``, what a reader must add to the
+coordinates: zeros.
 """
 
 from __future__ import annotations
@@ -18,7 +19,16 @@ from ..terrain import extras
 from ..terrain.slope import aspect, slope
 from .atomic import replacing_path
 from .errors import ReadError, WriteError
-from .meshes import chosen_crs, fans, file_content, one_line, require_tin, survey_of, tin_of
+from .meshes import (
+    choose_reference,
+    fans,
+    file_content,
+    one_line,
+    require_tin,
+    survey_of,
+    tin_of,
+    unit_text,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -26,6 +36,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from ..crs import CrsLike, UnitLike
     from ..tin import TIN, Survey
 
 __all__ = ["read", "write"]
@@ -36,21 +47,24 @@ _CLOSEST_PACKING = 1100  # zlib packs no tighter than 1032 to 1
 _COUNTS = re.compile(rb'NumberOf\w+="(\d+)"')
 
 
-def read(path: Path, *, crs: str | None = None) -> TIN | Survey:
+def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN | Survey:
     """Read a VTK XML file of faces.
 
     Parameters
     ----------
     path : Path
-    crs : str, optional
+    crs : CRS, str, int or pyproj.CRS, optional
         Declares the CRS; default the field data ``crs``.
+    z_unit : Unit or str, optional
+        Declares the unit of the elevations; default the one in the field
+        data ``elevation_unit``.
 
     Returns
     -------
     TIN or Survey
         A survey where the file has no faces, its one-column numeric point data as attributes.
         Polygons are cut into triangles. Field data ``origin`` is added to the coordinates, and
-        ``exaggeration`` taken out of the heights first.
+        ``exaggeration`` and ``elevation_scale`` taken out of the elevations first.
 
     Raises
     ------
@@ -59,17 +73,25 @@ def read(path: Path, *, crs: str | None = None) -> TIN | Survey:
     ReadError
         If the file is damaged or holds cells that are no faces, or its faces are no TIN.
     CrsError
-        If PROJ does not know the CRS.
+        If PROJ does not know the CRS, or the file names another.
+    OptionError
+        If the unit is unknown, or the file names another.
     """
     mesh = _mesh(path)
     points = _true_points(mesh)
-    system = chosen_crs(crs, _text_field(mesh, "crs"))
+    reference = choose_reference(
+        crs,
+        z_unit,
+        path,
+        found_crs=_text_field(mesh, "crs"),
+        found_unit=_text_field(mesh, "elevation_unit"),
+    )
     faces = _faces_of(mesh, path)
     if len(faces.cells) == 0:
-        return survey_of(points, path, attributes=_attributes(mesh), crs=system)
+        return survey_of(points, path, attributes=_attributes(mesh), reference=reference)
     made = fans(faces.corners, faces.offsets, points, path)
     flags = _flags(mesh, faces.cells, len(made.triangles))
-    return tin_of(points, made.triangles, path, constrained=flags, crs=system)
+    return tin_of(points, made.triangles, path, constrained=flags, reference=reference)
 
 
 class _Faces(NamedTuple):
@@ -143,9 +165,10 @@ def _require_likely_counts(content: bytes, path: Path) -> None:
 
 def _true_points(mesh: Any) -> NDArray[np.float64]:
     points = np.array(mesh.points, np.float64).reshape(-1, 3)
-    exaggeration = _number_field(mesh, "exaggeration", 1)
-    if exaggeration is not None and exaggeration[0] > 0:
-        points[:, 2] /= exaggeration[0]
+    for name in ("exaggeration", "elevation_scale"):
+        factor = _number_field(mesh, name, 1)
+        if factor is not None and factor[0] > 0:
+            points[:, 2] /= factor[0]
     origin = _number_field(mesh, "origin", 3)
     return points if origin is None else points + origin
 
@@ -264,5 +287,6 @@ def _poly_data(tin: TIN, pv: Any) -> Any:
     mesh.cell_data["aspect"] = aspect(tin)
     mesh.cell_data["constrained"] = tin.constrained.astype(np.uint8)
     mesh.field_data["crs"] = ["" if tin.crs is None else one_line(tin.crs)]
+    mesh.field_data["elevation_unit"] = [unit_text(tin)]
     mesh.field_data["origin"] = np.zeros(3)
     return mesh

@@ -48,6 +48,7 @@ def _plain(recipe: Recipe) -> TIN:
         vertex_of=merged.vertex_of,
         report=_report(recipe, len(merged.points), len(growth.triangles), merged.account),
         crs=recipe.crs,
+        elevation_unit=recipe.elevation_unit,
     )
     tin.remember(
         Model(
@@ -114,6 +115,7 @@ def _with_lines(recipe: Recipe) -> TIN:
             is_whole=surface is made.surface,
         ),
         crs=recipe.crs,
+        elevation_unit=recipe.elevation_unit,
     )
     tin.remember(model)
     return tin

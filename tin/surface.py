@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
+from ..crs import CRS, Unit, require_one_unit, scale_elevations, shorten_crs
 from . import _kernel, topology
 from .editable import Editable
 from .errors import PointsError
@@ -19,6 +20,7 @@ from .types import Bounds
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from ..crs import CrsLike, UnitLike
     from .voronoi import Voronoi
 
 
@@ -50,8 +52,10 @@ class TIN(Editable):
         What became of every input row.
     lines : Lines
         Breaklines, boundary, holes and water, as chains of vertices.
-    crs : str or None
-        Coordinate reference system, as authority code or WKT.
+    crs : CRS or None
+        Coordinate reference system.
+    elevation_unit : Unit or None
+        Unit of elevations; None if it is not known.
     """
 
     points: NDArray[np.float64]
@@ -61,9 +65,13 @@ class TIN(Editable):
     vertex_of: NDArray[np.int32]
     report: Report = field(repr=False)
     lines: Lines = field(default_factory=Lines, repr=False)
-    crs: str | None = None
+    crs: CRS | None = None
+    elevation_unit: Unit | None = None
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "crs", CRS.of(self.crs))
+        unit = require_one_unit(self.crs, Unit.of(self.elevation_unit))
+        object.__setattr__(self, "elevation_unit", unit)
         self.seal()
 
     @classmethod
@@ -73,7 +81,8 @@ class TIN(Editable):
         triangles: ArrayLike,
         *,
         constrained: ArrayLike | None = None,
-        crs: str | None = None,
+        crs: CrsLike | None = None,
+        z_unit: UnitLike | None = None,
     ) -> TIN:
         """Make a TIN of triangles that exist already, for example those of a file.
 
@@ -84,10 +93,16 @@ class TIN(Editable):
             Vertex numbers; clockwise triangles are turned round.
         constrained : (m, 3) bool array, optional
             Flags of the edge opposite each corner as given; default none.
-        crs : str, optional
+        crs : CRS, str, int or pyproj.CRS, optional
+        z_unit : Unit or str, optional
+            Unit of the elevations; default that of the CRS's vertical axis, else not known.
 
         Raises
         ------
+        CrsError
+            If the CRS is unknown.
+        OptionError
+            If ``z_unit`` is unknown, or another than that of the CRS's vertical axis.
         PointsError
             If a vertex number is out of range, a triangle has no area, or triangles overlap
             along an edge.
@@ -98,6 +113,8 @@ class TIN(Editable):
         >>> tin
         <TIN: 3 vertices, 1 triangle, z 1 to 3, crs unknown>
         """
+        system = CRS.of(crs)
+        unit = require_one_unit(system, Unit.of(z_unit))
         xyz = as_points(points)
         corners = _as_triangles(triangles, len(xyz))
         flags = _as_flags(constrained, len(corners))
@@ -109,7 +126,8 @@ class TIN(Editable):
             constrained=flags,
             vertex_of=np.arange(len(xyz), dtype=np.int32),
             report=Report(n_rows=len(xyz), n_vertices=len(xyz), n_triangles=len(corners)),
-            crs=crs,
+            crs=system,
+            elevation_unit=unit,
         )
 
     # ---------------------------------------------------------------- measures
@@ -144,8 +162,12 @@ class TIN(Editable):
 
     @cached_property
     def triangle_surface_areas(self) -> NDArray[np.float64]:
-        """Area of each triangle in space, (m,) array, CRS units squared."""
-        first, second = self._edge_vectors()
+        """Area of each triangle in space, (m,) array, CRS units squared, elevations converted.
+
+        Raises CrsError where coordinates are longitude and latitude.
+        """
+        scale = (1.0, 1.0, scale_elevations(self.crs, self.elevation_unit))
+        first, second = (vectors * scale for vectors in self._edge_vectors())
         return _read_only(0.5 * np.linalg.norm(np.cross(first, second), axis=1))
 
     @property
@@ -155,7 +177,7 @@ class TIN(Editable):
 
     @property
     def surface_area(self) -> float:
-        """Area in space, CRS units squared."""
+        """Area in space, CRS units squared, elevations converted to them."""
         return float(self.triangle_surface_areas.sum())
 
     def _edge_vectors(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -269,10 +291,9 @@ class TIN(Editable):
     def __repr__(self) -> str:
         count = len(self.triangles)
         z = self.points[:, 2]
-        crs = "unknown" if self.crs is None else self.crs
         return (
             f"<TIN: {len(self.points)} vertices, {count} triangle{'s' * (count != 1)}, "
-            f"z {z.min():g} to {z.max():g}, crs {crs if len(crs) <= 24 else crs[:21] + '...'}>"
+            f"z {z.min():g} to {z.max():g}, crs {shorten_crs(self.crs)}>"
         )
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..crs import CRS, Unit, require_one_unit, shorten_crs
 from .lines import Breakline, Water
 from .types import Bounds
 
@@ -24,7 +25,7 @@ class Survey:
     Attributes
     ----------
     points : (n, 3) float64 array
-        Easting, northing, elevation; CRS units, elevation in metres unless the CRS says otherwise.
+        Easting and northing in CRS units, elevation in ``elevation_unit``.
     breaklines : sequence of Breakline or (k, 3) or (k, 2) arrays
         Polylines that must be edges of the surface; with two columns draped on it.
     boundary : sequence of (k, 3) or (k, 2) arrays
@@ -37,14 +38,24 @@ class Survey:
         Flat polygons.
     attributes : mapping of str to (n,) array
         Further columns, one value a point (for example ``"number"`` and ``"description"``).
-    crs : str, optional
-        Coordinate reference system: an authority code ("EPSG:32616") or WKT.
+    crs : CRS, optional
+        Coordinate reference system; given as a code ("EPSG:32616"), number, WKT or ``pyproj.CRS``.
+    elevation_unit : Unit, optional
+        Unit of all elevations, those of lines included; given as Unit or text ("m", "US survey
+        foot"). Default that of the CRS's vertical axis; None if it is not known.
     source : str, optional
         Name of the file that the points come from.
     skipped : mapping of str to int
         What the reader left out and how often, for example ``{"nodata cells": 12}``.
     notes : sequence of str
         What the reader assumed, in sentences.
+
+    Raises
+    ------
+    CrsError
+        If the CRS is unknown.
+    OptionError
+        If the unit is unknown, or another than that of the CRS's vertical axis.
     """
 
     points: NDArray[np.float64]
@@ -54,10 +65,17 @@ class Survey:
     erase: Sequence[NDArray[np.float64]] = ()
     water: Sequence[Water] = ()
     attributes: Mapping[str, NDArray[Any]] = field(default_factory=dict)
-    crs: str | None = None
+    crs: CRS | None = None
+    elevation_unit: Unit | None = None
     source: str | None = None
     skipped: Mapping[str, int] = field(default_factory=dict)
     notes: Sequence[str] = ()
+
+    def __post_init__(self) -> None:
+        crs = CRS.of(self.crs)
+        object.__setattr__(self, "crs", crs)
+        unit = require_one_unit(crs, Unit.of(self.elevation_unit))
+        object.__setattr__(self, "elevation_unit", unit)
 
     @property
     def bounds(self) -> Bounds:
@@ -75,11 +93,4 @@ class Survey:
     def __repr__(self) -> str:
         origin = f" from {self.source}" if self.source else ""
         names = f", attributes {', '.join(self.attributes)}" if self.attributes else ""
-        return f"<Survey: {len(self)} points{origin}{names}, crs {_short(self.crs)}>"
-
-
-def _short(crs: str | None) -> str:
-    """Shorten a CRS text to fit a one-line repr."""
-    if crs is None:
-        return "unknown"
-    return crs if len(crs) <= 24 else crs[:21] + "..."
+        return f"<Survey: {len(self)} points{origin}{names}, crs {shorten_crs(self.crs)}>"

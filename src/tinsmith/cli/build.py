@@ -100,7 +100,7 @@ def _fields(
         *merge_field(tin.report, survey),
         *line_fields(survey, tin),
         ("TIN", tin_counts(tin)),
-        *extent_fields(tin.points, tin.crs),
+        *extent_fields(tin),
         crs_field(tin.crs),
         ("Written", sizes),
         ("Time", f"{seconds:.2f} s"),

@@ -43,7 +43,7 @@ def convert(
       tinsmith convert sample_data/site_survey.csv -o site.xyz
     """  # noqa: D301 - click reads the control character
     from ..tin import Survey
-    from .facts import file_size, reading_fields
+    from .facts import file_size, reading_fields, unit_note
     from .files import plan_outputs, read_input, write_outputs
 
     planned = plan_outputs(outputs, writing, source=file)
@@ -51,6 +51,8 @@ def convert(
     write_outputs(found, planned, console)
     sizes = "\n".join(f"{one.path} ({file_size(one.path)})" for one in planned)
     notes = reading_fields(found) if isinstance(found, Survey) else []
+    if note := unit_note(found):
+        notes = [*notes, ("Elevation", note)]
     console.summarise([("Read", f"{_what(found)} from {file}"), *notes, ("Written", sizes)])
     if console.as_json:
         console.emit(plain({"input": str(file), "outputs": [str(one.path) for one in planned]}))
