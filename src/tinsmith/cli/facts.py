@@ -100,21 +100,29 @@ def _place_facts(found: Survey | TIN) -> dict[str, Any]:
     z, crs = found.points[:, 2], found.crs
     return {
         "bounds": asdict(Bounds.of(found.points)),
-        "elevation": {"min": float(z.min()), "max": float(z.max()), "mean": float(z.mean())},
+        "elevation": {
+            "min": float(z.min()),
+            "max": float(z.max()),
+            "mean": float(z.mean()),
+            "unit_assumed": _assumed_unit(found),
+        },
         "crs": None if crs is None else str(crs),
         "crs_name": None if crs is None else crs.name,
         "units": _unit_names(found),
     }
 
 
-def _unit_names(found: Survey | TIN) -> dict[str, str | None]:
-    """Name the units; ``vertical_assumed`` is what elevations are taken to have if not known."""
-    known, usual = found.elevation_unit, assume_elevation_unit(found.crs, None)
+def _unit_names(found: Survey | TIN) -> dict[str, str]:
     return {
         "horizontal": "unknown" if found.crs is None else found.crs.horizontal_unit.name,
-        "vertical": "unknown" if known is None else known.name,
-        "vertical_assumed": usual.name if known is None and usual is not None else None,
+        "vertical": "unknown" if found.elevation_unit is None else found.elevation_unit.name,
     }
+
+
+def _assumed_unit(found: Survey | TIN) -> str | None:
+    """Name what elevations are taken to be measured in where that is not known."""
+    usual = assume_elevation_unit(found.crs, None)
+    return usual.name if found.elevation_unit is None and usual is not None else None
 
 
 def _ground_facts(tin: TIN) -> dict[str, Any]:
