@@ -13,6 +13,7 @@ import numpy as np
 from ..tin import MissingExtraError
 from .crs import normalised
 from .errors import ReadError
+from .spooling import as_sentence, ordinary_file
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -76,6 +77,15 @@ def read_features(path: Path, *, layer: str | None = None, where: str | None = N
     ReadError
         If the file or layer is missing, damaged, empty, or no vector file.
     """
+    with ordinary_file(path) as local:
+        features = _read_layer(local, layer, where)
+    if local == path:
+        return features
+    notes = tuple(note.replace(local.name, path.name) for note in features.notes)
+    return features._replace(path=path, notes=notes)
+
+
+def _read_layer(path: Path, layer: str | None, where: str | None) -> Features:
     raw = _pyogrio().raw
     _require_whole_file(path)
     with _gdal_sentences(path):
@@ -118,10 +128,10 @@ def _require_whole_file(path: Path) -> None:
         size = path.stat().st_size
         with path.open("rb") as file:
             head = file.read(28)
-    except FileNotFoundError as error:
-        raise ReadError(f"There is no file '{path}'.", path=path) from error
+    except ReadError:
+        raise
     except OSError as error:
-        raise ReadError(f"'{path}' may not be read: {error.strerror}.", path=path) from error
+        raise as_sentence(path, error) from error
     if size == 0:
         raise ReadError(f"'{path}' is empty: there are no lines in it.", path=path)
     if head.startswith(_SHAPEFILE) and len(head) == 28:
@@ -163,7 +173,7 @@ def _chosen_layer(path: Path, layer: str | None) -> str:
     if layer is None and len(layers) > 1:
         raise ReadError(
             f"'{path}' has {len(layers)} layers: name one of {', '.join(layers)} "
-            f"(layer={layers[0]!r}, on the command line '{path}:{layers[0]}').",
+            f"('{path}:{layers[0]}', or the option layer).",
             path=path,
         )
     if layer is not None and layer not in layers:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     Source = str | os.PathLike[str]
 
-__all__ = ["with_lines"]
+__all__ = ["path_and_layer", "with_lines"]
 
 _FAR = 10.0
 """Lines further from the points than this many diagonals of their extent are somewhere else."""
@@ -74,7 +74,7 @@ def with_lines(
     def read(reader: Callable[..., list[Any]], sources: Iterable[Source], **how: Any) -> list[Any]:
         found = []
         for source in sources:
-            path, layer = _path_and_layer(source)
+            path, layer = path_and_layer(source)
             lines = reader(path, crs=survey.crs, layer=layer, notes=notes, **how)
             _require_near(survey, [_coords_of(line) for line in lines], path)
             found += lines
@@ -95,7 +95,7 @@ def with_lines(
     )
 
 
-def _path_and_layer(source: Source) -> tuple[Path, str | None]:
+def path_and_layer(source: Source) -> tuple[Path, str | None]:
     """Split a layer's name off a path, unless a file of the whole name exists."""
     path = Path(source)
     before, colon, layer = str(source).rpartition(":")

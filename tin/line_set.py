@@ -295,9 +295,10 @@ def _require_exact_range(lines: LineSet) -> None:
     if wrong.any():
         row = int(np.argmax(wrong))
         line = int(lines.line_of[row])
+        label, (x, y) = lines.label(line), lines.xy[row].tolist()
         raise LinesError(
-            f"{lines.label(line)} has a vertex outside the exact range "
-            f"(x {lines.xy[row, 0]!r}, y {lines.xy[row, 1]!r}): magnitudes from {smallest:.0e} to "
-            f"{largest:.0e}, or 0, are allowed.".capitalize(),
+            f"{label[0].upper() + label[1:]} has a vertex outside the exact range "
+            f"(x {x!r}, y {y!r}): magnitudes from {smallest:.0e} to {largest:.0e}, or 0, are "
+            "allowed.",
             lines=[line],
         )

@@ -12,6 +12,7 @@ import click
 
 from .console import Console
 from .line_options import LINE_OPTIONS
+from .paths import INPUT
 
 __all__ = [
     "Reading",
@@ -82,6 +83,11 @@ class Triangulating:
         return given | {"water_z": self.water_z, "drape": self.drape} if any(given.values()) else {}
 
     @property
+    def line_files(self) -> dict[str, tuple[Path, ...]]:
+        """Files of lines, by the flag that names them."""
+        return {f"--{name.replace('_', '-')}": getattr(self, name) for name in _FILES}
+
+    @property
     def shaping(self) -> list[str]:
         """Names of the options given that need points to build from."""
         names = ("max_edge", "codes", "conforming", *_FILES)
@@ -134,7 +140,7 @@ def _as_columns(
 
 def input_file(name: str) -> Decorator:
     """Return the argument for the file to read."""
-    return click.argument(name, type=click.Path(path_type=Path))
+    return click.argument(name, type=INPUT)
 
 
 output_files: Decorator = click.option(
@@ -142,10 +148,11 @@ output_files: Decorator = click.option(
     "--output",
     "outputs",
     metavar="FILE",
-    type=click.Path(path_type=Path),
+    type=INPUT,
     multiple=True,
     required=True,
-    help="File to write; its suffix chooses the format. May be given several times.",
+    help="File to write; its suffix chooses the format, and one that is there is replaced. "
+    "- is standard output, with --output-format. May be given several times.",
 )
 
 reading_options = _gathered(
