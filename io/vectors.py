@@ -249,6 +249,6 @@ def _level(
     found = f"heights from {ring[:, 2].min():g} to {ring[:, 2].max():g}" if has_heights else "none"
     raise ReadError(
         f"{features.label(row)} needs one height and has {found}: water gets it from a column "
-        f"({', '.join(_WATER_COLUMNS)}), from corners of one height, or for all (z=, --water-z).",
+        f"({', '.join(_WATER_COLUMNS)}), from corners of one height, or for all (z=).",
         path=features.path,
     )
