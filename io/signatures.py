@@ -84,7 +84,7 @@ def is_raster(head: bytes) -> bool:
 
 def is_ply(head: bytes) -> bool:
     """Whether the file is a PLY mesh."""
-    return re.match(rb"ply\s*\n|ply\r", head) is not None
+    return re.match(rb"ply[ \t]*[\r\n]", head) is not None
 
 
 def is_obj(head: bytes) -> bool:

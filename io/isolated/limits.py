@@ -15,7 +15,7 @@ __all__ = [
     "limits_for",
 ]
 
-LEAST_SECONDS = 10.0
+LEAST_SECONDS = 5.0
 """Seconds of processor time that any file gets; small sound ones take some milliseconds."""
 
 BYTES_PER_SECOND = 1_000_000
@@ -63,7 +63,7 @@ def limits_for(n_bytes: int) -> Limits:
     Examples
     --------
     >>> limits_for(5_000_000).seconds
-    15.0
+    10.0
     """
     return Limits(
         LEAST_SECONDS + n_bytes / BYTES_PER_SECOND, LEAST_MEMORY + MEMORY_PER_BYTE * n_bytes

@@ -28,6 +28,9 @@ _START = (
     "import json, sys; sys.path[:] = json.loads(sys.argv[1]);"
     "from tinsmith.io.isolated.child import main; main()"
 )
+_SOUND_ENDS = frozenset({"end", "refusal"})
+"""Answers after which a child may read a further file."""
+
 _ODD_LETTERS = re.compile(r"[\x00-\x1f\x7f-\x9f]+")
 _LONGEST_REASON = 200
 
@@ -107,7 +110,7 @@ class _Worker:
         while True:
             answer = self._next(seconds, path, limits)
             kind = answer.value.get("kind")
-            if kind in ("end", "refusal"):
+            if kind in _SOUND_ENDS:
                 self.is_sound = True
             if kind == "end":
                 return
