@@ -19,6 +19,7 @@ from ..tin import MissingExtraError, Survey, TinsmithError
 from . import signatures
 from .crs import normalised
 from .errors import FormatError, ReadError
+from .raster_virtual import is_virtual
 from .spooling import as_sentence, ordinary_file, spooled
 
 if TYPE_CHECKING:
@@ -348,21 +349,24 @@ def detect(path: Path, head: bytes) -> Format:
     Notes
     -----
     1. A signature in the content decides, whatever the suffix.
-    2. A table of numbers is delimited text where the suffix names a format that the content
+    2. A text that names other files or services, or of a format that is not read, is refused;
+       a virtual raster is read under its own suffix.
+    3. A table of numbers is delimited text where the suffix names a format that the content
        would have shown, so that an ``.asc`` may be a grid or a list of points.
-    3. Otherwise the suffix decides.
-    4. A file of unknown suffix is a raster if GDAL says so.
+    4. Otherwise the suffix decides.
+    5. A file of unknown suffix is a raster if GDAL says so.
     """
     for one in known_formats():
         if one.sniff is not None and one.sniff(head):
             return one
+    if is_virtual(path):
+        return find_format("raster")
+    _require_not_foreign(path, head)
     by_suffix = _with_suffix(path.suffix.lower(), "read")
     if by_suffix is not None and (by_suffix.sniff is None or not _is_table(head)):
-        _require_not_foreign(path, head)
         return by_suffix
     if by_suffix is not None:
         return _DELIMITED
-    _require_not_foreign(path, head)
     if _is_binary(head) and _gdal_recognises(path):
         return find_format("raster")
     return _by_suffix(path, "read")

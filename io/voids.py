@@ -64,9 +64,7 @@ def _border(valid: NDArray[np.bool_]) -> tuple[NDArray[np.int64], NDArray[np.int
     return start, end
 
 
-def _moved(
-    flags: NDArray[np.bool_], *, rows: int = 0, columns: int = 0
-) -> NDArray[np.bool_]:
+def _moved(flags: NDArray[np.bool_], *, rows: int = 0, columns: int = 0) -> NDArray[np.bool_]:
     """Return the flags of the squares one further up, down, left or right; False beyond."""
     moved = np.zeros_like(flags)
     if rows == 1:
@@ -85,7 +83,8 @@ def _cycles(start: NDArray[np.int64], end: NDArray[np.int64]) -> Iterator[NDArra
     order = np.argsort(start, kind="stable")
     ends = end[order].tolist()
     cells, first, counts = np.unique(start[order], return_index=True, return_counts=True)
-    slots = dict(zip(cells.tolist(), zip(first.tolist(), (first + counts).tolist()), strict=True))
+    bounds = zip(first.tolist(), (first + counts).tolist(), strict=True)
+    slots = dict(zip(cells.tolist(), bounds, strict=True))
     following = {cell: ends[low:high] for cell, (low, high) in slots.items()}
     for begin in cells.tolist():
         while following[begin]:

@@ -48,6 +48,8 @@ class Reading:
     band: int | None = None
     window: tuple[float, float, float, float] | None = None
     stride: int | None = None
+    nodata: tuple[float, ...] | None = None
+    fill: bool | None = None
 
 
 @dataclass(frozen=True)
@@ -138,6 +140,15 @@ def _as_columns(
     }
 
 
+def _as_given(
+    ctx: click.Context,  # noqa: ARG001 - click's signature
+    param: click.Parameter,  # noqa: ARG001 - click's signature
+    value: tuple[float, ...],
+) -> tuple[float, ...] | None:
+    """Return None for none."""
+    return value or None
+
+
 def input_file(name: str) -> Decorator:
     """Return the argument for the file to read."""
     return click.argument(name, type=INPUT)
@@ -187,6 +198,17 @@ reading_options = _gathered(
         help="Part of a raster to read, in the units of its own CRS.",
     ),
     click.option("--stride", metavar="N", type=int, help="Take every Nth cell of a raster."),
+    click.option(
+        "--nodata",
+        metavar="VALUE",
+        type=float,
+        multiple=True,
+        callback=_as_given,
+        help="Elevation that stands for no data. May be given several times.",
+    ),
+    click.option(
+        "--fill", is_flag=True, default=None, help="Let the surface span the voids of a raster."
+    ),
 )
 
 triangulating_options = _gathered(
