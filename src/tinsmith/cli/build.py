@@ -62,6 +62,7 @@ def build(
       tinsmith build sample_data/site_survey.csv --crs EPSG:32616 --codes -o site.geojson
       tinsmith build sample_data/jacksboro.tif --stride 4 -o hills.ply -o hills.stl
     """  # noqa: D301 - click reads the control character
+    from ..terrain.gaps import describe_gaps
     from .facts import report_facts
     from .files import (
         inputs_of,
@@ -79,13 +80,14 @@ def build(
     )
     survey = with_lines(_as_survey(read_input(points, reading, console), points), how, console)
     tin = triangulated(survey, how, console)
+    gaps = [] if how.max_edge is not None else describe_gaps(tin)
     write_outputs(tin, planned, console)
     if report is not None:
-        write_text(report, plain(report_facts(tin.report, survey)) + "\n")
+        write_text(report, plain(report_facts(tin.report, survey, gaps)) + "\n")
     seconds = perf_counter() - started
-    console.summarise(_fields(points, survey, tin, planned, seconds))
+    console.summarise(_fields(points, survey, tin, gaps, planned, seconds))
     if console.as_json:
-        console.emit(plain(_facts(points, survey, tin, planned, seconds)))
+        console.emit(plain(_facts(points, survey, tin, gaps, planned, seconds)))
 
 
 def _as_survey(found: Survey | TIN, path: Path) -> Survey:
@@ -100,7 +102,7 @@ def _as_survey(found: Survey | TIN, path: Path) -> Survey:
 
 
 def _fields(
-    points: Path, survey: Survey, tin: TIN, outputs: list[Output], seconds: float
+    points: Path, survey: Survey, tin: TIN, gaps: list[str], outputs: list[Output], seconds: float
 ) -> list[Field]:
     from .facts import crs_field, extent_fields, merge_field, reading_fields
     from .files import written_text
@@ -112,6 +114,7 @@ def _fields(
         *merge_field(tin.report, survey),
         *line_fields(survey, tin),
         ("TIN", tin_counts(tin)),
+        *(("Gaps", gap) for gap in gaps),
         *extent_fields(tin.points, tin.crs),
         crs_field(tin.crs),
         ("Written", written_text(outputs)),
@@ -120,7 +123,7 @@ def _fields(
 
 
 def _facts(
-    points: Path, survey: Survey, tin: TIN, outputs: list[Output], seconds: float
+    points: Path, survey: Survey, tin: TIN, gaps: list[str], outputs: list[Output], seconds: float
 ) -> dict[str, Any]:
     from .facts import report_facts, survey_facts, tin_facts
     from .line_facts import line_counts
@@ -130,7 +133,7 @@ def _facts(
         "survey": survey_facts(survey),
         "tin": tin_facts(tin),
         "counts": line_counts(tin.report),
-        "report": report_facts(tin.report, survey),
+        "report": report_facts(tin.report, survey, gaps),
         "outputs": [
             {"path": str(one.path), "format": one.format.name, "bytes": one.path.stat().st_size}
             for one in outputs

@@ -15,6 +15,7 @@ from .console import count
 from .line_facts import constrained_edges, given_lines, given_lines_text, tin_counts
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -76,9 +77,10 @@ def quality_of(tin: TIN) -> Quality | None:
     return None if is_geographic(tin.crs) else quality(tin)
 
 
-def report_facts(report: Report, survey: Survey) -> dict[str, Any]:
-    """Return the report, every merge with the point numbers of its rows where there are any."""
+def report_facts(report: Report, survey: Survey, gaps: Sequence[str] = ()) -> dict[str, Any]:
+    """Return the report, with the gaps found, and the point numbers of merged rows."""
     facts = report.to_dict()
+    facts["notes"] += gaps
     numbers = survey.attributes.get("number")
     if numbers is not None:
         for merge in facts["merges"]:
