@@ -65,8 +65,7 @@ def wgs84_places(surface: TIN | Survey) -> Places:
     if crs is None:
         raise CrsError(
             "The CRS of these points is not known, and GeoJSON is in WGS 84: declare it, for "
-            'example crs="EPSG:32616" (--crs), or keep the coordinates as they are with '
-            "projected=True (--projected)."
+            'example crs="EPSG:32616", or keep the coordinates as they are with projected=True.'
         )
     has_datum = crs.vertical_unit is not None
     target = CRS.of("EPSG:4979" if has_datum else "OGC:CRS84")

@@ -8,19 +8,20 @@ and units.
 
 from __future__ import annotations
 
+import os
 import re
-from contextlib import redirect_stderr, redirect_stdout
-from io import StringIO
-from typing import TYPE_CHECKING, Any, NamedTuple
+from importlib.util import find_spec
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ..terrain import extras
+from ..tin import MissingExtraError
 from ..tin.regions import edge_keys
 from ..tin.topology import NO_NEIGHBOR, ends
 from .atomic import replacing_path
-from .errors import ReadError
-from .meshes import choose_reference, require_tin, survey_of, tin_of
+from .isolated import run_isolated
+from .meshes import choose_reference, file_content, require_tin, survey_of, tin_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -75,36 +76,18 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     OptionError
         If the unit is unknown, or the file names another.
     """
-    mesh = _mesh(path)
-    points = np.asarray(mesh.points, np.float64)
-    triangles = _cells(mesh, "triangle", 3)
+    if find_spec("meshio") is None:
+        raise MissingExtraError("meshio", extra="mesh", purpose="Reading Gmsh files")
+    if not path.is_file():
+        file_content(path)  # says why it cannot be read
+    where = {"path": os.path.abspath(path), "shown": str(path)}  # noqa: PTH100 - links stay
+    arrays = run_isolated(f"{__package__}.gmsh_meshio:mesh", where, path=path).arrays
+    points, triangles = arrays["points"], arrays["triangles"]
     reference = choose_reference(crs, z_unit, path)
     if len(triangles) == 0:
         return survey_of(points, path, reference=reference)
-    flags = _flags(triangles, _cells(mesh, "line", 2), len(points))
+    flags = _flags(triangles, arrays["lines"], len(points))
     return tin_of(points, triangles, path, constrained=flags, reference=reference)
-
-
-def _mesh(path: Path) -> Any:
-    meshio = extras.meshio("Reading Gmsh files")
-    said = StringIO()
-    try:
-        with redirect_stderr(said), redirect_stdout(said):
-            mesh = meshio.gmsh.read(str(path))
-    except OSError as error:
-        raise ReadError(f"Cannot read '{path}': {error.strerror or error}.", path=path) from error
-    except Exception as error:  # meshio lets through whatever a damaged file leads to
-        told = str(error).strip().rstrip(".") if isinstance(error, meshio.ReadError) else ""
-        reason = told or "it ends early, or holds something else than the format asks for"
-        raise ReadError(f"'{path}' is a damaged Gmsh file: {reason}.", path=path) from error
-    if "not closed" in said.getvalue():
-        raise ReadError(f"'{path}' is a Gmsh file that was cut short.", path=path)
-    return mesh
-
-
-def _cells(mesh: Any, kind: str, size: int) -> NDArray[np.int32]:
-    found = [np.asarray(block.data, np.int32) for block in mesh.cells if block.type == kind]
-    return np.concatenate([np.empty((0, size), np.int32), *found])
 
 
 def _flags(

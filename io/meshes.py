@@ -188,10 +188,10 @@ def survey_of(
         raise ReadError(f"'{path}' holds no points.", path=path)
     wrong = ~np.isfinite(points).all(axis=1)
     if wrong.any():
-        row = int(np.argmax(wrong))
+        row, count = int(np.argmax(wrong)), int(wrong.sum())
         raise ReadError(
-            f"'{path}': {int(wrong.sum())} points are not finite (first: point {row}, "
-            f"{points[row].tolist()}).",
+            f"'{path}': {count} {'point is' if count == 1 else 'points are'} not finite (first: "
+            f"point {row}, {points[row].tolist()}).",
             path=path,
         )
     return Survey(
@@ -224,7 +224,9 @@ def fans(
     if (lengths < 3).any():
         row = int(np.argmax(lengths < 3))
         raise ReadError(
-            f"'{path}': face {row} has {lengths[row]} corners: 3 or more are needed.", path=path
+            f"'{path}': face {row} has {lengths[row]} "
+            f"corner{'' if lengths[row] == 1 else 's'}: 3 or more are needed.",
+            path=path,
         )
     wrong = (corners < 0) | (corners >= len(points))
     if wrong.any():

@@ -106,11 +106,10 @@ def settle_unit(declared: Unit | None, found: Unit | None, path: Path) -> Unit |
 
 def _refuse_degrees(points: NDArray[np.float64], wanted: CRS, source: CRS, path: Path) -> NoReturn:
     suggestion = _suggestion(points, source)
-    fitting = f"'{suggestion}'" if suggestion else "a projected CRS"
-    code = suggestion or "CODE"
+    fitting = f"crs='{suggestion}'" if suggestion else "the option crs"
     raise ReadError(
         f"'{path}': {wanted.label} measures in degrees, and a TIN needs a projected CRS: "
-        f"pass crs={fitting} (--crs {code}) to reproject from longitude and latitude.",
+        f"give {fitting} to reproject from longitude and latitude.",
         path=path,
     )
 

@@ -102,7 +102,7 @@ def _face_list(table: Table | None) -> Ragged | None:
 
 
 def _whole_numbers(items: NDArray[Any], path: Path) -> NDArray[np.int64]:
-    if items.dtype.kind == "f" and not (np.abs(items) < 2**53).all():
+    if items.dtype.kind == "f" and not (np.abs(items) < 2.0**53).all():
         raise ReadError(f"'{path}': a face names a vertex that is no number.", path=path)
     whole = items.astype(np.int64)
     if (whole != items).any():
