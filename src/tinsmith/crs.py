@@ -256,10 +256,7 @@ class CRS:
     @property
     def horizontal(self) -> CRS:
         """The CRS without its vertical part."""
-        crs = _parsed(self._text)
-        if crs.is_compound:
-            crs = crs.sub_crs_list[0]
-        return _made(crs.to_2d() if len(crs.axis_info) > 2 else crs)
+        return _restored(_horizontal(self._text))
 
     # ------------------------------------------------------------------ other forms
 
@@ -278,6 +275,8 @@ class CRS:
 
     def to_authority(self) -> tuple[str, str] | None:
         """Return authority and code; None if there are none that mean exactly this."""
+        if self._text == self.to_wkt():  # a code would have been found when it was made
+            return None
         found = _parsed(self._text).to_authority(min_confidence=100)
         return None if found is None else (str(found[0]), str(found[1]))
 
@@ -321,10 +320,6 @@ def _restored(text: str) -> CRS:
     return crs
 
 
-def _made(parsed: pyproj.CRS) -> CRS:
-    return _restored(_text_of(parsed))
-
-
 def _text_for(value: object) -> str:
     """Return the text that stands for whatever names a CRS."""
     if isinstance(value, CRS):
@@ -342,8 +337,25 @@ def _looked_up(text: str) -> str:
     return _text_of(_parse(text))
 
 
+@lru_cache(maxsize=128)
+def _horizontal(text: str) -> str:
+    crs = _parsed(text)
+    if not crs.axis_info[2:]:
+        return text
+    if crs.is_compound:
+        crs = crs.sub_crs_list[0]
+    return _text_of(crs.to_2d() if crs.axis_info[2:] else crs)
+
+
 def _text_of(parsed: pyproj.CRS) -> str:
     """Return the authority code of a CRS if it has one that means exactly this, else its WKT."""
+    return _text_of_wkt(parsed.to_wkt())
+
+
+@lru_cache(maxsize=128)
+def _text_of_wkt(wkt: str) -> str:
+    """Look for a code in all of PROJ's data base, which takes up to a second."""
+    parsed = _parse(wkt)
     authority = parsed.to_authority(min_confidence=100)
     if authority:
         return ":".join(authority)
@@ -351,7 +363,7 @@ def _text_of(parsed: pyproj.CRS) -> str:
         parts = [part.to_authority(min_confidence=100) for part in parsed.sub_crs_list]
         if all(part and part[0] == "EPSG" for part in parts):
             return "EPSG:" + "+".join(str(part[1]) for part in parts if part)
-    return str(parsed.to_wkt())
+    return wkt
 
 
 @lru_cache(maxsize=128)
