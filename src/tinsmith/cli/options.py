@@ -44,6 +44,8 @@ class Reading:
     columns: str | dict[str, str | int] | None = None
     delimiter: str | None = None
     decimal: str | None = None
+    nodata: float | None = None
+    skip_bad: bool | None = None
     band: int | None = None
     window: tuple[float, float, float, float] | None = None
     stride: int | None = None
@@ -171,6 +173,18 @@ reading_options = _gathered(
     click.option("--delimiter", metavar="TEXT", help="What separates the columns of a text file."),
     click.option(
         "--decimal", type=click.Choice([".", ","]), help="Decimal mark of the numbers in it."
+    ),
+    click.option(
+        "--nodata",
+        metavar="ELEVATION",
+        type=float,
+        help="Elevation that stands for no data in a text file, such as -9999.",
+    ),
+    click.option(
+        "--skip-bad",
+        is_flag=True,
+        default=None,
+        help="Leave out the rows of a text file that cannot be read, and name them.",
     ),
     click.option("--band", metavar="N", type=int, help="Band of a raster, counted from 1."),
     click.option(
