@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 from ..tin import MissingExtraError
 from . import signatures
 from .crs import normalised
-from .errors import FormatError, ReadError
+from .errors import CrsError, FormatError, ReadError, printable
 from .raster_virtual import is_virtual
 
 if TYPE_CHECKING:
@@ -188,8 +188,17 @@ def read(
         )
     reader = _load(chosen.read)
     _require_options(chosen, "read", reader, options)
-    survey: Survey | TIN = reader(file, crs=declared, **options)
+    try:
+        survey: Survey | TIN = reader(file, crs=declared, **options)
+    except CrsError as error:
+        raise _of_file(error, file) from error
     return survey
+
+
+def _of_file(error: CrsError, file: Path) -> CrsError:
+    """Return an error of a CRS with the name of the file that it stands in."""
+    sentence = str(error) if str(file) in str(error) else f"'{file}': {error}"
+    return CrsError(printable(sentence), crs=error.crs)
 
 
 def write(

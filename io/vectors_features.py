@@ -11,7 +11,7 @@ import numpy as np
 
 from ..tin import MissingExtraError
 from .crs import normalised
-from .errors import ReadError
+from .errors import CrsError, ReadError
 from .isolated import limits_for, run_isolated
 from .signatures import HEAD_BYTES, reference_kind
 
@@ -93,10 +93,17 @@ def read_features(path: Path, *, layer: str | None = None, where: str | None = N
             arrays["numbers"],
             _shapes(arrays, path),
             _columns(value, arrays),
-            normalised(value["crs"]),
+            _crs_of(value["crs"], path),
             (),
         )
     )
+
+
+def _crs_of(text: str | None, path: Path) -> str | None:
+    try:
+        return normalised(text)
+    except CrsError as error:
+        raise CrsError(f"'{path}': {error}", crs=text) from error
 
 
 def _columns(value: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
