@@ -19,6 +19,7 @@ from ..tin import MissingExtraError
 from . import signatures
 from .crs import normalised
 from .errors import CrsError, FormatError, ReadError, printable
+from .local import require_local
 from .raster_virtual import is_virtual
 
 if TYPE_CHECKING:
@@ -176,6 +177,7 @@ def read(
     MissingExtraError
         If the library that reads the format is not installed.
     """
+    require_local(path)
     file = Path(path)
     declared = normalised(crs)
     head = _head(file)

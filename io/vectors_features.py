@@ -13,6 +13,7 @@ from ..tin import MissingExtraError
 from .crs import normalised
 from .errors import CrsError, ReadError
 from .isolated import limits_for, run_isolated
+from .local import require_local
 from .signatures import HEAD_BYTES, reference_kind
 
 if TYPE_CHECKING:
@@ -75,6 +76,7 @@ def read_features(path: Path, *, layer: str | None = None, where: str | None = N
     ReadError
         If the file or layer is missing, damaged, empty, or no vector file.
     """
+    require_local(path)
     if find_spec("pyogrio") is None:
         raise MissingExtraError("pyogrio", extra="vector", purpose="Reading vector files")
     _require_whole_file(path)
