@@ -266,7 +266,7 @@ def _built(tin: TIN, points: NDArray[np.float64], splits: _Splits, n_new: int, t
         n_triangles=len(surface.triangles),
         notes=(*tin.report.notes, _note(n_new, len(splits.middle))),
     )
-    refined = TIN(
+    return TIN(
         points=surface.points,
         triangles=surface.triangles,
         neighbors=surface.neighbors,
@@ -275,9 +275,8 @@ def _built(tin: TIN, points: NDArray[np.float64], splits: _Splits, n_new: int, t
         report=report,
         lines=lines_in(model.pieces, model.infos, number_of, surface, is_whole=False),
         crs=tin.crs,
+        inputs=model,
     )
-    refined.remember(model)
-    return refined
 
 
 def _note(n_new: int, n_on_segments: int) -> str:
