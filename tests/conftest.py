@@ -3,6 +3,11 @@
 from __future__ import annotations
 
 import pytest
+from no_skips import (  # noqa: F401 - hooks
+    pytest_addoption,
+    pytest_make_collect_report,
+    pytest_runtest_makereport,
+)
 
 from tinsmith.terrain import opengl
 from tinsmith.tin import TinsmithError
@@ -20,6 +25,6 @@ def can_draw():
 def pytest_collection_modifyitems(config, items):
     if "proof" in config.option.markexpr:
         return
-    proofs = [item for item in items if "proof" in item.keywords]
+    proofs = [item for item in items if item.get_closest_marker("proof")]
     config.hook.pytest_deselected(items=proofs)
-    items[:] = [item for item in items if "proof" not in item.keywords]
+    items[:] = [item for item in items if not item.get_closest_marker("proof")]
