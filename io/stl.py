@@ -63,8 +63,8 @@ def read(path: Path, *, crs: str | None = None) -> TIN:
             f"'{path}' records the origin {origin.tolist()}: three finite numbers are needed.",
             path=path,
         )
-    points, triangles = _merged(facets["corners"].reshape(-1, 3))
-    with np.errstate(over="ignore"):  # what is not finite then is refused
+    with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused
+        points, triangles = _merged(facets["corners"].reshape(-1, 3))
         places = points + origin
     return tin_of(places, triangles, path, crs=chosen_crs(crs, found))
 

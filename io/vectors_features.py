@@ -11,8 +11,9 @@ import numpy as np
 
 from ..tin import MissingExtraError
 from .crs import normalised
-from .errors import ReadError
+from .errors import CrsError, ReadError
 from .isolated import limits_for, run_isolated
+from .local import require_local
 from .signatures import HEAD_BYTES, reference_kind
 from .spooling import as_sentence, ordinary_file
 
@@ -76,6 +77,7 @@ def read_features(path: Path, *, layer: str | None = None, where: str | None = N
     ReadError
         If the file or layer is missing, damaged, empty, or no vector file.
     """
+    require_local(path)
     with ordinary_file(path) as local:
         features = _read_layer(local, layer, where)
     if local == path:
@@ -103,10 +105,17 @@ def _read_layer(path: Path, layer: str | None, where: str | None) -> Features:
             arrays["numbers"],
             _shapes(arrays, path),
             _columns(value, arrays),
-            normalised(value["crs"]),
+            _crs_of(value["crs"], path),
             (),
         )
     )
+
+
+def _crs_of(text: str | None, path: Path) -> str | None:
+    try:
+        return normalised(text)
+    except CrsError as error:
+        raise CrsError(f"'{path}': {error}", crs=text) from error
 
 
 def _columns(value: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:

@@ -246,8 +246,8 @@ def _death(code: int | None, timed_out: bool, path: Path, limits: Limits) -> Rea
     too_long = timed_out or code == -getattr(signal, "SIGXCPU", 0)
     if too_long:
         return ReadError(
-            f"'{path}' cannot be read, it may be damaged: after {limits.seconds:.0f} seconds, "
-            "the limit for a file of this size, there was no end.",
+            f"'{path}' cannot be read, it may be damaged: after {limits.seconds:.0f} "
+            f"{'second' if round(limits.seconds) == 1 else 'seconds'}, the limit for a file of this size, there was no end.",
             path=path,
         )
     if code == -getattr(signal, "SIGKILL", 0):
