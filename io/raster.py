@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.util import find_spec
 from numbers import Integral, Real
 from pathlib import Path
@@ -15,8 +15,10 @@ from ..tin import Bounds, MissingExtraError, Survey
 from .crs import as_crs, crs_text
 from .errors import FormatError, ReadError
 from .isolated import Limits, limits_for, run_isolated, stream_isolated
+from .nodata import describe_suspects, find_suspect_elevations
 from .placing import placed
 from .raster_virtual import is_virtual, require_plain_sources
+from .voids import rings_around
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -65,6 +67,8 @@ def read(
     band: int | None = None,
     window: Sequence[int] | Bounds | None = None,
     stride: int = 1,
+    nodata: float | Sequence[float] | None = None,
+    fill: bool = False,
 ) -> Survey:
     """Read a raster as points, one at the centre of every cell that has an elevation.
 
@@ -81,6 +85,11 @@ def read(
         bounds in the raster's own CRS, which hold the centres of the cells wanted.
     stride : int
         Read every ``stride``-th row and column only.
+    nodata : float or sequence of float, optional
+        Elevations that stand for no data, besides the one that the raster declares.
+    fill : bool
+        Let the surface span the voids. Otherwise it ends at the cells around them, along the
+        rings of ``Survey.extent``.
 
     Returns
     -------
@@ -94,7 +103,7 @@ def read(
         If GDAL cannot read the file, it is a picture or has no georeference, its CRS is in
         degrees and no other is wanted, or no cell has an elevation.
     FormatError
-        If band, window or stride is not one that the raster has.
+        If band, window or stride is not one that the raster has, or nodata is no number.
     CrsError
         If the points cannot be transformed.
     MissingExtraError
@@ -110,9 +119,10 @@ def read(
     _require_elevations(dataset, number, band is not None, path)
     source = _crs_of(dataset)
     cells = _cells(dataset, window, stride, path)
+    marks = _as_numbers(nodata)
     _require_room(cells, path)
     placed(_middle(dataset), source=source, target=crs, path=path)
-    points, n_nodata = _points(dataset, number, cells)
+    points, valid, n_nodata = _points(dataset, number, cells, marks)
     if len(points) == 0:
         raise ReadError(
             f"'{path}': none of the {n_nodata} cells of band {number} has an elevation, "
@@ -120,9 +130,36 @@ def read(
             path=path,
         )
     _require_finite(points, number, path)
+    notes = describe_suspects(find_suspect_elevations(points[:, 2]), "cell")
     points, found = placed(points, source=source, target=crs, path=path)
     skipped = {"nodata cells": n_nodata} if n_nodata else {}
-    return Survey(points=points, crs=found, source=path.name, skipped=skipped)
+    survey = Survey(points=points, crs=found, source=path.name, skipped=skipped, notes=notes)
+    return survey if fill or valid.all() else _with_voids(survey, valid)
+
+
+def _as_numbers(nodata: float | Sequence[float] | None) -> NDArray[np.float64]:
+    try:
+        return np.atleast_1d(np.asarray([] if nodata is None else nodata, np.float64)).ravel()
+    except (TypeError, ValueError) as error:
+        raise FormatError(
+            f"Invalid nodata '{nodata}': a number, or several, are needed."
+        ) from error
+
+
+def _with_voids(survey: Survey, valid: NDArray[np.bool_]) -> Survey:
+    """Return the survey with the rings at which its surface ends."""
+    rings = rings_around(valid)
+    if not rings:
+        raise ReadError(
+            f"'{survey.source}': no three cells side by side have an elevation, so there is no "
+            "surface between voids: the option fill spans them."
+        )
+    note = (
+        "Voids of the raster stay: the surface ends at the cells around them; the option fill "
+        "spans them."
+    )
+    extent = [survey.points[ring] for ring in rings]
+    return replace(survey, extent=extent, notes=[*survey.notes, note])
 
 
 def recognises(path: Path) -> bool:
@@ -377,12 +414,15 @@ def _free_memory() -> int:
 # ------------------------------------------------------------------ points
 
 
-def _points(dataset: _Header, band: int, cells: _Cells) -> tuple[NDArray[np.float64], int]:
-    """Return the points of valid cells, and how many cells had none."""
+def _points(
+    dataset: _Header, band: int, cells: _Cells, marks: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.bool_], int]:
+    """Return the points of valid cells, which cells are valid, and how many have no elevation."""
     strips = _strips_of_rows(dataset, cells)
     window = {"band": band, "column": cells.column, "width": cells.width, "stride": cells.stride}
     ends = [[int(rows[0]), int(rows[-1])] for rows in strips]
     found: list[NDArray[np.float64]] = []
+    kept: list[NDArray[np.bool_]] = []
     n_nodata = 0
     with stream_isolated(
         f"{_reader(dataset.path)}:strips",
@@ -391,12 +431,13 @@ def _points(dataset: _Header, band: int, cells: _Cells) -> tuple[NDArray[np.floa
         limits=dataset.limits,
     ) as answers:
         for rows, answer in zip(strips, answers, strict=False):
-            points, missing = _strip(dataset, band, cells, rows, answer.arrays)
+            points, keep, missing = _strip(dataset, band, cells, rows, answer.arrays, marks)
             found.append(points)
+            kept.append(keep)
             n_nodata += missing
     if not any(map(len, found)) and n_nodata == 0:
         raise FormatError(f"Window {cells.bounds} holds no cell centre of '{dataset.path}'.")
-    return np.concatenate(found), n_nodata
+    return np.concatenate(found), np.concatenate(kept), n_nodata
 
 
 def _strips_of_rows(dataset: _Header, cells: _Cells) -> list[NDArray[np.int64]]:
@@ -421,7 +462,8 @@ def _strip(
     cells: _Cells,
     rows: NDArray[np.int64],
     arrays: Mapping[str, NDArray[Any]],
-) -> tuple[NDArray[np.float64], int]:
+    marks: NDArray[np.float64],
+) -> tuple[NDArray[np.float64], NDArray[np.bool_], int]:
     values, has_value = arrays["values"], arrays["valid"] != 0
     x, y = _centres(dataset, cells.columns, rows)
     wanted = _within(cells.bounds, x, y)
@@ -432,7 +474,10 @@ def _strip(
         with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused
             elevation = elevation * scale + offset
     points = np.stack([x[keep], y[keep], elevation], axis=1)
-    return points, int(np.count_nonzero(wanted & ~has_value))
+    if len(marks):
+        is_value = ~np.isin(elevation, marks)
+        points, keep[keep] = points[is_value], is_value
+    return points, keep, int(np.count_nonzero(wanted & ~keep))
 
 
 def _require_finite(points: NDArray[np.float64], band: int, path: Path) -> None:

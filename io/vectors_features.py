@@ -15,6 +15,7 @@ from .errors import CrsError, ReadError
 from .isolated import limits_for, run_isolated
 from .local import require_local
 from .signatures import HEAD_BYTES, reference_kind
+from .spooling import as_sentence, ordinary_file
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -77,6 +78,15 @@ def read_features(path: Path, *, layer: str | None = None, where: str | None = N
         If the file or layer is missing, damaged, empty, or no vector file.
     """
     require_local(path)
+    with ordinary_file(path) as local:
+        features = _read_layer(local, layer, where)
+    if local == path:
+        return features
+    notes = tuple(note.replace(local.name, path.name) for note in features.notes)
+    return features._replace(path=path, notes=notes)
+
+
+def _read_layer(path: Path, layer: str | None, where: str | None) -> Features:
     if find_spec("pyogrio") is None:
         raise MissingExtraError("pyogrio", extra="vector", purpose="Reading vector files")
     _require_whole_file(path)
@@ -135,10 +145,10 @@ def _require_whole_file(path: Path) -> None:
         size = path.stat().st_size
         with path.open("rb") as file:
             head = file.read(HEAD_BYTES)
-    except FileNotFoundError as error:
-        raise ReadError(f"There is no file '{path}'.", path=path) from error
+    except ReadError:
+        raise
     except OSError as error:
-        raise ReadError(f"'{path}' may not be read: {error.strerror}.", path=path) from error
+        raise as_sentence(path, error) from error
     if size == 0:
         raise ReadError(f"'{path}' is empty: there are no lines in it.", path=path)
     kind = reference_kind(head)
