@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, get_args
 
 import numpy as np
@@ -190,7 +189,7 @@ def _measures(tin: TIN) -> _Measures:
         return _Measures(*np.full((3, len(tin.triangles)), np.nan))
     along, up = unit_metres(tin.crs)
     along, up = along or 1.0, up or along or 1.0
-    scaled = tin if along == up else replace(tin, points=tin.points * (1.0, 1.0, up / along))
+    scaled = tin if along == up else tin.replace(points=tin.points * (1.0, 1.0, up / along))
     # As written, a hair west of north must not become the full circle.
     falls = np.round(aspect(scaled), 4) % 360.0
     return _Measures(slope(scaled), falls, tin.triangle_areas * along**2)

@@ -40,7 +40,7 @@ def _plain(recipe: Recipe) -> TIN:
         xyz if kept_row is None else _kept(xyz, kept_row), threads=options.threads
     )
     merged = merge_rows(xyz, growth.kept_row if kept_row is None else kept_row, options.duplicates)
-    tin = TIN(
+    return TIN(
         points=merged.points,
         triangles=growth.triangles,
         neighbors=growth.neighbors,
@@ -48,17 +48,14 @@ def _plain(recipe: Recipe) -> TIN:
         vertex_of=merged.vertex_of,
         report=_report(recipe, len(merged.points), len(growth.triangles), merged.account),
         crs=recipe.crs,
-    )
-    tin.remember(
-        Model(
+        inputs=Model(
             points=merged.points,
             pieces=Pieces.none(),
             infos=(),
             clip=Clip(),
             vertex_of=merged.vertex_of,
-        )
+        ),
     )
-    return tin
 
 
 def _kept(xyz: NDArray[np.float64], kept_row: NDArray[np.int32]) -> NDArray[np.float64]:
@@ -99,7 +96,7 @@ def _with_lines(recipe: Recipe) -> TIN:
     surface, number_of = model.surface(made.surface)
     vertex_of = _numbered(model.vertex_of, number_of)
     account = _account(recipe, made, number_of, is_erased, vertex_of, ground)
-    tin = TIN(
+    return TIN(
         points=surface.points,
         triangles=surface.triangles,
         neighbors=surface.neighbors,
@@ -114,9 +111,8 @@ def _with_lines(recipe: Recipe) -> TIN:
             is_whole=surface is made.surface,
         ),
         crs=recipe.crs,
+        inputs=model,
     )
-    tin.remember(model)
-    return tin
 
 
 def _model(recipe: Recipe, ground: _Ground, made: Draft, rows: NDArray[np.int64]) -> Model:

@@ -1,76 +1,92 @@
-"""Editable: the methods of a TIN that change it in place, and how its arrays follow.
+"""Editable: the methods of a TIN that change it, its copies, and who may do what at a time.
 
-The arrays of a TIN are attributes. An edit drops them, and they are made anew when they are next
-looked at; arrays that were handed out before stay as they were.
+A TIN holds a version, an immutable value, and since its first edit a session. An edit changes the
+session alone; the next version is made of it when one is looked at, and takes the place of the old
+one in one assignment. A reader holds on to one version, so it never sees half of an edit; a lock
+lets one thread at a time into the session.
 """
 
 from __future__ import annotations
 
-from functools import cache, cached_property
-from typing import TYPE_CHECKING, Any, cast
-
-import numpy as np
+from threading import RLock
+from typing import TYPE_CHECKING, Any, Self, cast
 
 if TYPE_CHECKING:
+    import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
     from .constrained import CrossingPolicy
     from .duplicates import DuplicatePolicy
-    from .editing import Edit, History
-    from .lines import BreaklineKind, Lines
+    from .editing import Edit, Session
+    from .lines import BreaklineKind
     from .model import Model
-    from .regions import Surface
-    from .report import Report
     from .surface import TIN
+    from .version import Version
 
 __all__ = ["Editable"]
 
-_RENEWED = (
-    "points",
-    "triangles",
-    "neighbors",
-    "constrained",
-    "vertex_of",
-    "lines",
-    "report",
-)
-
-
-@cache
-def _derived(owner: type) -> tuple[str, ...]:
-    """Return the names of what a class computes once from its arrays."""
-    return tuple(
-        name
-        for base in owner.__mro__
-        for name, value in vars(base).items()
-        if isinstance(value, cached_property)
-    )
-
 
 class Editable:
-    """What a TIN can have done to it."""
+    """What a TIN can have done to it.
 
-    points: NDArray[np.float64]
-    triangles: NDArray[np.int32]
-    neighbors: NDArray[np.int32]
-    constrained: NDArray[np.bool_]
-    vertex_of: NDArray[np.int32]
+    Parameters
+    ----------
+    version : Version
+    inputs : Recipe or None
+        What it was built from; None for one of existing triangles.
+    """
 
-    def seal(self) -> None:
-        """Make the arrays read-only (for builders)."""
-        for array in (
-            self.points,
-            self.triangles,
-            self.neighbors,
-            self.constrained,
-            self.vertex_of,
-        ):
-            array.flags.writeable = False
+    __slots__ = ("_inputs", "_lock", "_session", "_version")
+
+    def __init__(self, version: Version, inputs: Model | None) -> None:
+        self._version: Version | None = version
+        self._session: Session | None = None
+        self._inputs = inputs
+        self._lock = RLock()
+
+    @property
+    def _current(self) -> Version:
+        """The TIN between two edits."""
+        version = self._version
+        if version is not None:
+            return version
+        with self._lock:
+            if self._version is None:
+                self._version = cast("Session", self._session).version()
+            return self._version
 
     @property
     def edits(self) -> tuple[Edit, ...]:
         """What was done to the TIN since it was built, in order."""
-        return tuple(self._history.edits) if "_history" in self.__dict__ else ()
+        session = self._session
+        return () if session is None else tuple(session.edits)
+
+    # ------------------------------------------------------------------- copies
+
+    def __copy__(self) -> Self:
+        other = type(self).__new__(type(self))
+        other.__setstate__(self.__getstate__())
+        return other
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Self:
+        return self.__copy__()
+
+    def __getstate__(self) -> dict[str, Any]:
+        with self._lock:
+            session = None if self._session is None else self._session.copy()
+            return {
+                "_version": self._current,
+                "_session": session,
+                "_inputs": self._inputs,
+                **getattr(self, "__dict__", {}),  # of a subclass
+            }
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        for name, value in state.items():
+            setattr(self, name, value)
+        self._lock = RLock()
+
+    # -------------------------------------------------------------------- edits
 
     def insert(
         self, points: ArrayLike, *, duplicates: DuplicatePolicy = "last"
@@ -235,68 +251,19 @@ class Editable:
         PointsError
             If there are not so many.
         """
-        history = self._open_history()
-        try:
-            history.undo(count)
-        finally:
-            self._forget()
+        with self._lock:
+            self._open_session().undo(count)
+            self._version = None
 
     def _edit(self, operation: str, **arguments: Any) -> Any:
-        history = self._open_history()
-        try:
-            return history.do(operation, arguments)
-        finally:
-            self._forget()
+        with self._lock:
+            result = self._open_session().do(operation, arguments)
+            self._version = None
+            return result
 
-    def _open_history(self) -> History:
-        if "_history" not in self.__dict__:
-            from .editing import History
+    def _open_session(self) -> Session:
+        if self._session is None:
+            from .editing import Session
 
-            self.__dict__["_history"] = History(cast("TIN", self), self.__dict__.get("_model"))
-        history: History = self.__dict__["_history"]
-        return history
-
-    @property
-    def _history(self) -> History:
-        return self._open_history()
-
-    def remember(self, model: Model) -> None:
-        """Keep what the TIN was built from, for edits (for builders)."""
-        self.__dict__["_model"] = model
-
-    def renew(
-        self,
-        surface: Surface,
-        lines: Lines,
-        vertex_of: NDArray[np.int32],
-        *,
-        edits: tuple[Edit, ...],
-    ) -> None:
-        """Take the arrays that edits led to (for the history)."""
-        before: Report = self.__dict__["report_before"]
-        report = before.after_edits(vertex_of, len(surface.points), len(surface.triangles), edits)
-        self.__dict__.update(
-            points=surface.points,
-            triangles=surface.triangles,
-            neighbors=surface.neighbors,
-            constrained=surface.constrained,
-            vertex_of=vertex_of,
-            lines=lines,
-            report=report,
-        )
-        self.seal()
-
-    def _forget(self) -> None:
-        """Drop arrays that an edit made old; they come back when they are looked at."""
-        if "triangles" not in self.__dict__:
-            return  # nobody has looked since the last edit
-        self.__dict__.setdefault("report_before", self.__dict__.get("report"))
-        for name in (*_RENEWED, *_derived(type(self))):  # type: ignore[arg-type]
-            self.__dict__.pop(name, None)
-
-    def __getattr__(self, name: str) -> Any:
-        """Make an array that an edit made old."""
-        if name in _RENEWED and "_history" in self.__dict__:
-            self.__dict__["_history"].refresh(self)
-            return self.__dict__[name]
-        raise AttributeError(f"'TIN' object has no attribute '{name}'")
+            self._session = Session(cast("TIN", self), self._inputs)
+        return self._session

@@ -7,6 +7,7 @@ are next looked at.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from copy import copy
 from typing import TYPE_CHECKING, Any, NamedTuple, get_args
 
 import numpy as np
@@ -23,13 +24,15 @@ from .pieces import Pieces
 from .points import as_points
 from .regions import Surface
 from .threads import thread_count
+from .triangulation import Triangulation
+from .version import Version
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from .surface import TIN
 
-__all__ = ["OPERATIONS", "Edit", "History", "apply_edits"]
+__all__ = ["OPERATIONS", "Edit", "Session", "apply_edits"]
 
 OPERATIONS = (
     "insert",
@@ -72,7 +75,7 @@ def _plain(value: Any) -> Any:
     return value
 
 
-class History:
+class Session:
     """The edits of a TIN: its editor, what was done, and where it began.
 
     Parameters
@@ -85,6 +88,7 @@ class History:
 
     def __init__(self, tin: TIN, model: Model | None) -> None:
         self.edits: list[Edit] = []
+        self._report = tin.report
         self._threads = thread_count(None, len(tin.points))
         hull = Surface(tin.points, tin.triangles, tin.neighbors, tin.constrained)
         self._begin = _model_of(tin) if model is None else model
@@ -98,13 +102,35 @@ class History:
         if not is_whole:
             self._editor.refreshed()
 
+    def copy(self) -> Session:
+        """Return a session that goes on from here on its own."""
+        other = copy(self)
+        other.edits = list(self.edits)
+        other._restore()
+        return other
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in vars(self).items() if name != "_editor"}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        vars(self).update(state)
+        self._restore()
+
     # ------------------------------------------------------------------ for TIN
 
-    def refresh(self, tin: TIN) -> None:
-        """Give the TIN its arrays after the edits."""
+    def version(self) -> Version:
+        """Return the TIN after the edits."""
         found = self._editor.refreshed()
         self._kept, self._done_since = found.model, len(self.edits)
-        tin.renew(found.surface, found.lines, found.vertex_of, edits=tuple(self.edits))
+        surface, vertex_of = found.surface, found.vertex_of
+        return Version(
+            triangulation=Triangulation(**surface._asdict()),
+            vertex_of=vertex_of,
+            lines=found.lines,
+            report=self._report.after_edits(
+                vertex_of, len(surface.points), len(surface.triangles), tuple(self.edits)
+            ),
+        )
 
     def do(self, operation: str, arguments: dict[str, Any]) -> Any:
         """Do one edit and remember it; one that fails leaves everything as it was.

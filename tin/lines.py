@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Literal, get_args
 import numpy as np
 
 from .errors import LinesError
+from .frozen import Frozen
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -124,7 +125,7 @@ def _no_numbers() -> NDArray[np.int32]:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Lines:
+class Lines(Frozen):
     """The lines in a TIN: chains of vertices, every step of which is an edge of the TIN.
 
     Chain ``i`` is ``vertices[offsets[i]:offsets[i + 1]]``, in the direction of the line that it
@@ -149,10 +150,6 @@ class Lines:
     kinds: tuple[LineKind, ...] = ()
     sources: NDArray[np.int32] = field(default_factory=_no_numbers)
     names: tuple[str, ...] = ()
-
-    def __post_init__(self) -> None:
-        for array in (self.vertices, self.offsets, self.sources):
-            array.flags.writeable = False
 
     def __len__(self) -> int:
         return len(self.kinds)

@@ -358,7 +358,7 @@ def _more_kept_whole(
 def _refined(
     tin: TIN, model: Model, surface: Surface, number_of: NDArray[np.int32], found: _Found
 ) -> TIN:
-    refined = TIN(
+    return TIN(
         points=surface.points,
         triangles=surface.triangles,
         neighbors=surface.neighbors,
@@ -367,9 +367,8 @@ def _refined(
         report=_report(tin, surface, found),
         lines=lines_in(model.pieces, model.infos, number_of, surface, is_whole=False),
         crs=tin.crs,
+        inputs=model,
     )
-    refined.remember(model)
-    return refined
 
 
 def _report(tin: TIN, surface: Surface, found: _Found) -> Report:

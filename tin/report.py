@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from .frozen import Frozen
 from .unmended import Unmended
 
 if TYPE_CHECKING:
@@ -114,7 +115,7 @@ def _no_numbers() -> NDArray[np.float64]:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Report:
+class Report(Frozen):
     """What the triangulation did with the input, row by row.
 
     Merges are ragged: rows ``merged_rows[merged_offsets[i]:merged_offsets[i + 1]]`` became

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from functools import cached_property
-from typing import TYPE_CHECKING, TypeVar
+from dataclasses import Field, FrozenInstanceError, make_dataclass
+from typing import TYPE_CHECKING, Any, ClassVar, Never
 
 import numpy as np
 
@@ -14,25 +13,36 @@ from .errors import PointsError
 from .lines import Lines
 from .points import as_points, as_xy
 from .report import Report
-from .types import Bounds
+from .triangulation import Triangulation
+from .version import Version
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from .model import Model
+    from .types import Bounds
     from .voronoi import Voronoi
 
 
 __all__ = ["TIN"]
 
-Scalar = TypeVar("Scalar", bound=np.generic)
+_ARGUMENTS = (
+    "points",
+    "triangles",
+    "neighbors",
+    "constrained",
+    "vertex_of",
+    "report",
+    "lines",
+    "crs",
+)
 
 
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class TIN(Editable):
     """A triangulated irregular network: one height for every place inside its hull.
 
     Built by :func:`tinsmith.triangulate`, or from existing triangles by
-    :meth:`TIN.from_triangles`. All arrays are read-only.
+    :meth:`TIN.from_triangles`. All arrays are read-only; edits replace them by others.
 
     Attributes
     ----------
@@ -52,19 +62,46 @@ class TIN(Editable):
         Breaklines, boundary, holes and water, as chains of vertices.
     crs : str or None
         Coordinate reference system, as authority code or WKT.
+
+    Notes
+    -----
+    Several threads may read and edit one TIN. Each attribute and each method sees the TIN as it was
+    between two edits; for several attributes that belong together take ``tin.triangulation``, or a
+    copy first. Copies (``copy.copy``, ``copy.deepcopy``, pickles) share nothing that changes: each
+    is edited on its own, and takes back the edits made before it was copied.
     """
 
-    points: NDArray[np.float64]
-    triangles: NDArray[np.int32]
-    neighbors: NDArray[np.int32]
-    constrained: NDArray[np.bool_]
-    vertex_of: NDArray[np.int32]
-    report: Report = field(repr=False)
-    lines: Lines = field(default_factory=Lines, repr=False)
-    crs: str | None = None
+    __slots__ = ("__weakref__", "_crs")
 
-    def __post_init__(self) -> None:
-        self.seal()
+    # ``dataclasses.replace(tin, crs=...)`` makes a TIN that differs in some arguments.
+    __dataclass_fields__: ClassVar[dict[str, Field[Any]]] = vars(
+        make_dataclass("Arguments", _ARGUMENTS, kw_only=True)
+    )["__dataclass_fields__"]
+
+    def __init__(
+        self,
+        *,
+        points: NDArray[np.float64],
+        triangles: NDArray[np.int32],
+        neighbors: NDArray[np.int32],
+        constrained: NDArray[np.bool_],
+        vertex_of: NDArray[np.int32],
+        report: Report,
+        lines: Lines | None = None,
+        crs: str | None = None,
+        inputs: Model | None = None,
+    ) -> None:
+        triangulation = Triangulation(
+            points=points, triangles=triangles, neighbors=neighbors, constrained=constrained
+        )
+        version = Version(
+            triangulation=triangulation,
+            vertex_of=vertex_of,
+            report=report,
+            lines=Lines() if lines is None else lines,
+        )
+        super().__init__(version, inputs)
+        self._crs = crs
 
     @classmethod
     def from_triangles(
@@ -112,41 +149,106 @@ class TIN(Editable):
             crs=crs,
         )
 
+    def __setattr__(self, name: str, value: Never) -> None:
+        if not name.startswith("_"):
+            raise FrozenInstanceError(f"cannot assign to '{name}' of a TIN: edits change it")
+        super().__setattr__(name, value)
+
+    # ---------------------------------------------------------------- arrays
+
+    @property
+    def triangulation(self) -> Triangulation:
+        """Points, triangles, neighbours and flags that belong together; never changed."""
+        return self._current.triangulation
+
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """Easting, northing, elevation of the vertices, (n, 3) array."""
+        return self._current.triangulation.points
+
+    @property
+    def triangles(self) -> NDArray[np.int32]:
+        """Vertices of each triangle, counter-clockwise, (m, 3) array."""
+        return self._current.triangulation.triangles
+
+    @property
+    def neighbors(self) -> NDArray[np.int32]:
+        """The triangle across the edge opposite each corner, (m, 3) array; -1 outside."""
+        return self._current.triangulation.neighbors
+
+    @property
+    def constrained(self) -> NDArray[np.bool_]:
+        """Whether that edge is a breakline, boundary or hole, (m, 3) array."""
+        return self._current.triangulation.constrained
+
+    @property
+    def vertex_of(self) -> NDArray[np.int32]:
+        """The vertex that stands for each input row, (n_input,) array; -1 for none."""
+        return self._current.vertex_of
+
+    @property
+    def report(self) -> Report:
+        """What became of every input row."""
+        return self._current.report
+
+    @property
+    def lines(self) -> Lines:
+        """Breaklines, boundary, holes and water, as chains of vertices."""
+        return self._current.lines
+
+    @property
+    def crs(self) -> str | None:
+        """Coordinate reference system, as authority code or WKT."""
+        return self._crs
+
+    def __getstate__(self) -> dict[str, Any]:
+        return super().__getstate__() | {"_crs": self._crs}
+
+    def replace(self, **changes: Any) -> TIN:
+        """Return a TIN that differs in some arguments of the constructor; it has no edits.
+
+        Examples
+        --------
+        >>> tin = TIN.from_triangles([[0, 0, 1], [1, 0, 2], [0, 1, 3]], [[0, 1, 2]])
+        >>> tin.replace(crs="EPSG:32616").crs
+        'EPSG:32616'
+        """
+        version = self._current
+        given = {name: getattr(version.triangulation, name) for name in _ARGUMENTS[:4]}
+        given |= {name: getattr(version, name) for name in _ARGUMENTS[4:7]}
+        return type(self)(**(given | {"crs": self._crs} | changes))
+
     # ---------------------------------------------------------------- measures
 
-    @cached_property
+    @property
     def bounds(self) -> Bounds:
         """Bounds of the vertices."""
-        return Bounds.of(self.points)
+        return self._current.triangulation.bounds
 
-    @cached_property
+    @property
     def edges(self) -> NDArray[np.int32]:
         """Every edge once, (k, 2) vertex pairs."""
-        return _read_only(topology.edges(self.triangles, self.neighbors))
+        return self._current.triangulation.edges
 
-    @cached_property
+    @property
     def rings(self) -> list[NDArray[np.int32]]:
         """Boundary rings as vertex numbers, the surface on the left; the outer one first."""
-        rings = topology.boundary_rings(self.triangles, self.neighbors)
-        west = [self.points[ring, 0].min() for ring in rings]
-        return [_read_only(rings[i]) for i in np.argsort(west, kind="stable")]
+        return list(self._current.triangulation.rings)
 
     @property
     def hull(self) -> NDArray[np.int32]:
         """Vertices of the outer boundary, counter-clockwise, each once."""
-        return self.rings[0]
+        return self._current.triangulation.rings[0]
 
-    @cached_property
+    @property
     def triangle_areas(self) -> NDArray[np.float64]:
         """Area of each triangle in the plane, (m,) array, CRS units squared."""
-        first, second = self._edge_vectors()
-        return _read_only(0.5 * (first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]))
+        return self._current.triangulation.triangle_areas
 
-    @cached_property
+    @property
     def triangle_surface_areas(self) -> NDArray[np.float64]:
         """Area of each triangle in space, (m,) array, CRS units squared."""
-        first, second = self._edge_vectors()
-        return _read_only(0.5 * np.linalg.norm(np.cross(first, second), axis=1))
+        return self._current.triangulation.triangle_surface_areas
 
     @property
     def area(self) -> float:
@@ -157,13 +259,6 @@ class TIN(Editable):
     def surface_area(self) -> float:
         """Area in space, CRS units squared."""
         return float(self.triangle_surface_areas.sum())
-
-    def _edge_vectors(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        origin = self.points[self.triangles[:, 0]]
-        return (
-            self.points[self.triangles[:, 1]] - origin,
-            self.points[self.triangles[:, 2]] - origin,
-        )
 
     # ---------------------------------------------------------------- queries
 
@@ -185,7 +280,7 @@ class TIN(Editable):
         PointsError
             If ``xy`` has another shape, or a coordinate is infinite or too large. NaN is outside.
         """
-        return self._locator.locate(as_xy(xy))
+        return self._current.triangulation.locator.locate(as_xy(xy))
 
     def interpolate(self, xy: ArrayLike) -> NDArray[np.float64]:
         """Interpolate the elevation linearly at each place.
@@ -204,7 +299,7 @@ class TIN(Editable):
         PointsError
             As :meth:`locate`.
         """
-        return self._locator.interpolate(as_xy(xy))
+        return self._current.triangulation.locator.interpolate(as_xy(xy))
 
     # ---------------------------------------------------------------- dual
 
@@ -262,23 +357,15 @@ class TIN(Editable):
 
         return voronoi(self, boundary=boundary, pad=pad)
 
-    @cached_property
-    def _locator(self) -> _kernel.Locator:
-        return _kernel.Locator(self.points, self.triangles, self.neighbors)
-
     def __repr__(self) -> str:
-        count = len(self.triangles)
-        z = self.points[:, 2]
+        surface = self._current.triangulation
+        count = len(surface.triangles)
+        z = surface.points[:, 2]
         crs = "unknown" if self.crs is None else self.crs
         return (
-            f"<TIN: {len(self.points)} vertices, {count} triangle{'s' * (count != 1)}, "
+            f"<TIN: {len(surface.points)} vertices, {count} triangle{'s' * (count != 1)}, "
             f"z {z.min():g} to {z.max():g}, crs {crs if len(crs) <= 24 else crs[:21] + '...'}>"
         )
-
-
-def _read_only(array: NDArray[Scalar]) -> NDArray[Scalar]:
-    array.flags.writeable = False
-    return array
 
 
 def _as_triangles(triangles: ArrayLike, n_vertices: int) -> NDArray[np.int32]:

@@ -120,7 +120,7 @@ def _with_one_unit(tin: TIN) -> TIN:
     across, up = length_unit(tin.crs).metres, elevation_unit(tin.crs).metres
     if across is None or up is None or across == up:
         return tin
-    return replace(tin, points=tin.points * [1.0, 1.0, up / across])
+    return tin.replace(points=tin.points * [1.0, 1.0, up / across])
 
 
 # ---------------------------------------------------------------- for people
