@@ -138,7 +138,8 @@ def test_needle_and_letter_lie_to_the_north(view):
     tip = left[0]
     np.testing.assert_array_equal(tip, right[0])
     np.testing.assert_allclose(tip - center, 1.25 * 32.0 * axes[1], atol=1e-6)
-    letter = overlay.place_of("N") + (0.0, 6.0) - center
+    letter = overlay.place_of("N") - center
+    letter[1] += 6.0
     assert letter @ axes[1] > (tip - center) @ axes[1]
     assert letter[0] * axes[1][1] - letter[1] * axes[1][0] == pytest.approx(0.0, abs=1e-6)
     west = left[1] - center
