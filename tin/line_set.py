@@ -10,6 +10,7 @@ import numpy as np
 from . import _kernel
 from .errors import LinesError
 from .lines import Breakline, LineKind, Water, as_ring
+from .options import shown
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -230,7 +231,8 @@ def as_sequence(lines: Any, what: str) -> list[Any]:
         return list(lines)
     except TypeError:
         raise LinesError(
-            f"Invalid {what} {lines!r}: a sequence of lines is needed, each an array of vertices."
+            f"Invalid {what} {shown(lines)}: a sequence of lines is needed, each an array of "
+            "vertices."
         ) from None
 
 
@@ -295,9 +297,10 @@ def _require_exact_range(lines: LineSet) -> None:
     if wrong.any():
         row = int(np.argmax(wrong))
         line = int(lines.line_of[row])
+        label = lines.label(line)
+        x, y = lines.xy[row].tolist()
         raise LinesError(
-            f"{lines.label(line)} has a vertex outside the exact range "
-            f"(x {lines.xy[row, 0]!r}, y {lines.xy[row, 1]!r}): magnitudes from {smallest:.0e} to "
-            f"{largest:.0e}, or 0, are allowed.".capitalize(),
+            f"{label[0].upper() + label[1:]} has a vertex outside the exact range (x {x!r}, "
+            f"y {y!r}): magnitudes from {smallest:.0e} to {largest:.0e}, or 0, are allowed.",
             lines=[line],
         )
