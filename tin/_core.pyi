@@ -75,11 +75,12 @@ def refine(
     triangles: NDArray[np.int32],
     neighbors: NDArray[np.int32],
     fixed: NDArray[np.bool_],
+    kept_whole: NDArray[np.int32],
     least_angle: float,
     largest_area: float,
     longest_edge: float,
     most: int,
-) -> tuple[NDArray[np.float64], NDArray[np.int32], bool]: ...
+) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int32], int, bool]: ...
 def regions(
     xy: NDArray[np.float64],
     triangles: NDArray[np.int32],

@@ -13,7 +13,7 @@ from .duplicates import merge_rows
 from .line_set import LineSet
 from .model import Clip, LineInfo, Model, lines_in
 from .pieces import Pieces
-from .regions import in_rings
+from .regions import BOUNDARY, EXTENT, HOLES, in_rings
 from .report import LEFT_OUT, Crossings, Overruled, Report
 from .surface import TIN
 
@@ -95,7 +95,8 @@ def _with_lines(recipe: Recipe) -> TIN:
     rows = np.flatnonzero(~is_erased)
     ground = _draped(rows, recipe)
     made, model = _made(recipe, ground, rows)
-    if not (recipe.boundary or recipe.holes) and model.loses_vertices_at_rim(made.surface):
+    has_rings = bool(recipe.boundary or recipe.extent or recipe.holes)
+    if not has_rings and model.loses_vertices_at_rim(made.surface):
         ground = ground.without_rim()
         made, model = _made(recipe, ground, rows)
     surface, number_of = model.surface(made.surface)
@@ -139,11 +140,13 @@ def _model(recipe: Recipe, ground: _Ground, made: Draft, rows: NDArray[np.int64]
                 lines.sources.tolist(),
                 lines.names,
                 lines.priorities.tolist(),
+                _groups(recipe, lines),
                 strict=True,
             )
         ),
         clip=Clip(
             boundary=recipe.boundary,
+            extent=recipe.extent,
             holes=recipe.holes,
             has_rim=ground.has_rim,
             max_edge=recipe.max_edge,
@@ -151,6 +154,20 @@ def _model(recipe: Recipe, ground: _Ground, made: Draft, rows: NDArray[np.int64]
         ),
         vertex_of=vertex_of,
     )
+
+
+def _groups(recipe: Recipe, lines: LineSet) -> list[int]:
+    """Return the group of each line among the rings; that of other lines says nothing."""
+    of_ring = [
+        *([BOUNDARY] * len(recipe.boundary)),
+        *([EXTENT] * len(recipe.extent)),
+    ]
+    of_hole = [HOLES + number for number, rings in enumerate(recipe.holes) for _ in rings]
+    groups: dict[str, list[int]] = {"boundary": of_ring, "hole": of_hole}
+    return [
+        groups[kind][source] if kind in groups and source >= 0 else BOUNDARY
+        for kind, source in zip(lines.kinds, lines.sources.tolist(), strict=True)
+    ]
 
 
 def _numbered(vertices: NDArray[np.int32], number_of: NDArray[np.int32]) -> NDArray[np.int32]:
@@ -164,8 +181,8 @@ def _erased(recipe: Recipe) -> NDArray[np.bool_]:
     is_erased = np.zeros(len(recipe.points), np.bool_)
     if recipe.is_masked is not None:
         is_erased |= recipe.is_masked
-    for ring in recipe.erase:
-        is_erased |= in_rings(recipe.points[:, :2], [ring]) > 0
+    for rings in recipe.erase:
+        is_erased |= in_rings(recipe.points[:, :2], rings) > 0
     return is_erased
 
 
@@ -207,7 +224,7 @@ def _account(
     return account | {
         "left_out_rows": left_out,
         "left_out_why": _reasons(recipe, left_out, is_erased, made),
-        "n_lines": len(recipe.lines.kinds),
+        "n_lines": len(recipe.lines.kinds) - len(recipe.extent),
         "line_labels": tuple(labels),
         "crossings": _crossings(made, final),
         "overruled": Overruled(
@@ -253,10 +270,11 @@ def _reasons(
     """Return why each row was left out, as places in ``LEFT_OUT``."""
     xy = recipe.points[rows, :2]
     why = np.full(len(rows), LEFT_OUT.index("trimmed"), np.int8)
-    for hole in recipe.holes:
-        why[in_rings(xy, [hole]) >= 0] = LEFT_OUT.index("in a hole")
-    if recipe.boundary and len(rows):
-        why[in_rings(xy, recipe.boundary) <= 0] = LEFT_OUT.index("outside the boundary")
+    for rings in recipe.holes:
+        why[in_rings(xy, rings) >= 0] = LEFT_OUT.index("in a hole")
+    for outer in (recipe.extent, recipe.boundary):
+        if outer and len(rows):
+            why[in_rings(xy, outer) <= 0] = LEFT_OUT.index("outside the boundary")
     drowned = np.zeros(len(is_erased), np.bool_)
     drowned[np.flatnonzero(~is_erased)[made.vertex_of < 0]] = True
     why[drowned[rows]] = LEFT_OUT.index("in water")

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from .frozen import Frozen
+from .unmended import Unmended
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -154,6 +155,8 @@ class Report(Frozen):
         What the reader assumed, a sentence each.
     edits : sequence of Edit
         What was done to the TIN since.
+    unmended : Unmended
+        Triangles that refinement had to leave. None after an edit, which numbers triangles anew.
     """
 
     n_rows: int
@@ -176,6 +179,7 @@ class Report(Frozen):
     skipped: Mapping[str, int] = field(default_factory=dict)
     notes: Sequence[str] = ()
     edits: Sequence[Edit] = ()
+    unmended: Unmended = field(default_factory=Unmended.none)
 
     def after_edits(
         self, vertex_of: NDArray[np.int32], n_vertices: int, n_triangles: int, edits: Sequence[Edit]
@@ -195,6 +199,7 @@ class Report(Frozen):
             left_out_rows=lost,
             left_out_why=why,
             edits=edits,
+            unmended=Unmended.none(),
         )
 
     def merges(self) -> Iterator[Merge]:
@@ -225,6 +230,7 @@ class Report(Frozen):
             "skipped": dict(self.skipped),
             "notes": list(self.notes),
             "edits": [edit.to_dict() for edit in self.edits],
+            "unmended": self.unmended.to_list(),
         }
 
     def _left_out(self) -> dict[str, list[int]]:

@@ -66,7 +66,10 @@ class MeshEditor {
     ++count_;
     if (at.where == Where::kOnEdge) {
       fixed_splits_ += mesh_.is_fixed(at.edge);
-      for (const MeshEdge e : mesh_.split_edge(at.edge, slot).edge) put_off(e);
+      for (const MeshEdge e : mesh_.split_edge(at.edge, slot).edge) {
+        put_off(e);
+        put_off(Mesh::after(e));  // Delaunay if p is on the edge, and perhaps not if only near it
+      }
     } else {
       const auto around = mesh_.split_triangle(triangle_of(at.edge), slot);
       for (const MeshEdge e : around.edge) put_off(e);
