@@ -18,7 +18,8 @@ from typing import IO, TYPE_CHECKING, Any
 from ..crs import CRS, Unit
 from ..tin import MissingExtraError, Survey, TinsmithError
 from . import signatures
-from .errors import FormatError, ReadError
+from .errors import CrsError, FormatError, ReadError, printable
+from .local import require_local
 from .raster_virtual import is_virtual
 from .spooling import as_sentence, ordinary_file, spooled
 
@@ -185,6 +186,7 @@ def read(
     MissingExtraError
         If the library that reads the format is not installed.
     """
+    require_local(path)
     file = Path(path)
     declared = _declared(crs, z_unit)
     with ordinary_file(file) as local:
@@ -237,6 +239,8 @@ def _read_file(
     _require_options(chosen, "read", reader, of_file)
     try:
         survey: Survey | TIN = reader(file, crs=declared["crs"], **of_file)
+    except CrsError as error:
+        raise _of_file(error, file) from error
     except OSError as error:  # a file that vanishes, a disk that fails
         if isinstance(error, TinsmithError):
             raise
@@ -250,6 +254,12 @@ def _renamed(found: Survey | TIN, copy: Path, file: Path) -> Survey | TIN:
         return found
     notes = [note.replace(copy.name, file.name) for note in found.notes]
     return replace(found, source=file.name, notes=notes)
+
+
+def _of_file(error: CrsError, file: Path) -> CrsError:
+    """Return an error of a CRS with the name of the file that it stands in."""
+    sentence = str(error) if str(file) in str(error) else f"'{file}': {error}"
+    return CrsError(printable(sentence), crs=error.crs)
 
 
 def write(

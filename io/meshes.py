@@ -257,7 +257,8 @@ def _quads_from_inner_diagonal(
     slots = starts[:, None] + np.arange(4)
     quads = corners[slots]
     a, b, c, d = (points[quads[:, k], :2] for k in range(4))
-    outside = _cross(b - a, c - a) * _cross(c - a, d - a) < 0
+    with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused later
+        outside = _cross(b - a, c - a) * _cross(c - a, d - a) < 0
     corners = corners.copy()
     corners[slots[outside]] = np.roll(quads[outside], -1, axis=1)
     return corners

@@ -84,7 +84,7 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     vertices = tables.get("vertex")
     if vertices is None or not set(_COORDINATES) <= vertices.columns.keys():
         raise ReadError(f"'{path}' has no element 'vertex' with x, y and z.", path=path)
-    points = np.stack([vertices.columns[name] for name in _COORDINATES], axis=1).astype(np.float64)
+    points = _points(vertices)
     reference = choose_reference(
         crs, z_unit, path, found_crs=header.crs, found_unit=header.elevation_unit
     )
@@ -94,6 +94,12 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     made = fans(_whole_numbers(faces.items, path), faces.offsets, points, path)
     flags = _flags(tables["face"], len(made.triangles))
     return tin_of(points, made.triangles, path, constrained=flags, reference=reference)
+
+
+def _points(vertices: Table) -> NDArray[np.float64]:
+    columns = [vertices.columns[name] for name in _COORDINATES]
+    with np.errstate(invalid="ignore"):  # what is not finite is refused
+        return np.stack(columns, axis=1).astype(np.float64)
 
 
 def _face_list(table: Table | None) -> Ragged | None:

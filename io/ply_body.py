@@ -112,7 +112,7 @@ class _Body:
         if rest >= max(_least(element, self), _LINE_END if self.byte_order else 1):
             raise ReadError(
                 f"'{self.path}' goes on behind its last element: its header promises "
-                f"{element.count} rows of '{element.name}', and more follow.",
+                f"{_rows(element)}, and more follow.",
                 path=self.path,
             )
 
@@ -124,8 +124,8 @@ class _Body:
 
     def _truncated(self, element: Element) -> ReadError:
         return ReadError(
-            f"'{self.path}' ends too early: its header promises {element.count} rows of "
-            f"'{element.name}', more than the file holds.",
+            f"'{self.path}' ends too early: its header promises {_rows(element)}, more than the "
+            "file holds.",
             path=self.path,
         )
 
@@ -209,6 +209,10 @@ class _Body:
         within = np.arange(offsets[-1]) - np.repeat(offsets[:-1], lengths)
         cells = np.repeat(starts, lengths) + within * self.width(type_name)
         return Ragged(self.picked(cells, type_name), offsets)
+
+
+def _rows(element: Element) -> str:
+    return f"{element.count} {'row' if element.count == 1 else 'rows'} of '{element.name}'"
 
 
 def _least(element: Element, body: _Body) -> int:

@@ -70,8 +70,8 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
             path=path,
         )
     reference = choose_reference(crs, z_unit, path, found_crs=found_crs, found_unit=found_unit)
-    points, triangles = _merged(facets["corners"].reshape(-1, 3))
-    with np.errstate(over="ignore"):  # what is not finite then is refused
+    with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused
+        points, triangles = _merged(facets["corners"].reshape(-1, 3))
         places = points + origin
     return tin_of(places, triangles, path, reference=reference)
 

@@ -11,8 +11,9 @@ import numpy as np
 
 from ..crs import CRS
 from ..tin import MissingExtraError
-from .errors import ReadError
+from .errors import CrsError, ReadError
 from .isolated import limits_for, run_isolated
+from .local import require_local
 from .signatures import HEAD_BYTES, reference_kind
 from .spooling import as_sentence, ordinary_file
 
@@ -76,6 +77,7 @@ def read_features(path: Path, *, layer: str | None = None, where: str | None = N
     ReadError
         If the file or layer is missing, damaged, empty, or no vector file.
     """
+    require_local(path)
     with ordinary_file(path) as local:
         features = _read_layer(local, layer, where)
     if local == path:
@@ -103,10 +105,17 @@ def _read_layer(path: Path, layer: str | None, where: str | None) -> Features:
             arrays["numbers"],
             _shapes(arrays, path),
             _columns(value, arrays),
-            CRS.of(value["crs"]),
+            _crs_of(value["crs"], path),
             (),
         )
     )
+
+
+def _crs_of(text: str | None, path: Path) -> CRS | None:
+    try:
+        return CRS.of(text)
+    except CrsError as error:
+        raise CrsError(f"'{path}': {error}", crs=text) from error
 
 
 def _columns(value: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
@@ -164,7 +173,8 @@ def _shapes(arrays: dict[str, NDArray[Any]], path: Path) -> NDArray[np.object_]:
     ends = np.cumsum(np.maximum(lengths, 0))
     parts = zip((ends - np.maximum(lengths, 0)).tolist(), ends.tolist(), strict=True)
     geometries = np.array([wkb[start:end] or None for start, end in parts], object)
-    shapes: NDArray[np.object_] = shapely.from_wkb(geometries, on_invalid="ignore")
+    with np.errstate(invalid="ignore"):  # what is not finite is refused later
+        shapes: NDArray[np.object_] = shapely.from_wkb(geometries, on_invalid="ignore")
     wrong = shapely.is_missing(shapes) & (lengths >= 0)
     if wrong.any():
         raise ReadError(

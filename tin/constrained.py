@@ -15,7 +15,7 @@ from .conforming import conform
 from .duplicates import DuplicatePolicy, merge_rows
 from .errors import PointsError
 from .line_set import ABOVE_ALL, BELOW_ALL, LineSet
-from .model import force, mesh_of_growth
+from .model import force, mesh_of, mesh_of_growth
 from .noding import Chains, Noded, node, untouched
 from .pieces import Pieces
 from .regions import Surface, edge_keys, in_rings
@@ -77,9 +77,14 @@ class _Merged(NamedTuple):
 
 
 def draft(
-    xyz: NDArray[np.float64], lines: LineSet, options: LineOptions, *, conforming: bool = False
+    points: NDArray[np.float64],
+    rows: NDArray[np.int64],
+    lines: LineSet,
+    options: LineOptions,
+    *,
+    conforming: bool = False,
 ) -> Draft:
-    """Triangulate points and lines; all lines have heights.
+    """Triangulate rows of points, and lines; all lines have heights.
 
     Raises
     ------
@@ -88,7 +93,8 @@ def draft(
     LinesError
         If lines cross that must not.
     """
-    merged = _merge(xyz, lines, options)
+    xyz = points[rows]
+    merged = _merge(xyz, rows, lines, options)
     mesh, noded = mesh_of_growth(merged.points, merged.growth), untouched(merged.chains)
     is_simple = options.snap == 0.0 and not (lines.priorities == ABOVE_ALL).any()
     is_forced = is_simple and _is_forced(mesh, _as_pieces(noded.chains))
@@ -105,15 +111,19 @@ def draft(
     if not is_forced:
         mesh.remove(np.flatnonzero(wet).astype(np.int32))
         force(mesh, pieces)
-    if conforming:
-        points, pieces = conform(mesh, points, pieces)
-        wet = np.append(wet, np.zeros(len(points) - len(wet), np.bool_))
-    triangles, neighbors, constrained = mesh.arrays(options.threads)
     number_of = np.where(wet, -1, np.cumsum(~wet) - 1).astype(np.int32)
+    points, pieces = points[~wet], pieces.renumbered(number_of)
+    if conforming:
+        if wet.any():  # numbers without gaps
+            mesh = mesh_of(points, pieces, threads=options.threads)
+        mesh, points, pieces = conform(
+            mesh, points, pieces, lines.priorities, threads=options.threads
+        )
+    triangles, neighbors, constrained = mesh.arrays(options.threads)
     return Draft(
-        Surface(points[~wet], triangles, neighbors, constrained),
+        Surface(points, triangles, neighbors, constrained),
         number_of[merged.vertex_of[: len(xyz)]],
-        pieces.renumbered(number_of),
+        pieces,
         merged.merges,
         noded,
         overruled,
@@ -148,7 +158,9 @@ def _as_pieces(chains: Chains) -> Pieces:
 # ------------------------------------------------------------------------- rows
 
 
-def _merge(xyz: NDArray[np.float64], lines: LineSet, options: LineOptions) -> _Merged:
+def _merge(
+    xyz: NDArray[np.float64], rows_of: NDArray[np.int64], lines: LineSet, options: LineOptions
+) -> _Merged:
     """Make one vertex of all rows at one place; a line's height counts more than a point's."""
     n = len(xyz)
     if n + len(lines.xy) < 3:
@@ -165,7 +177,7 @@ def _merge(xyz: NDArray[np.float64], lines: LineSet, options: LineOptions) -> _M
     is_kept = place == own
     vertex_of = (np.cumsum(is_kept, dtype=np.int32) - np.int32(1))[place]
     points = rows[is_kept]
-    merges = _merge_points(xyz, vertex_of[:n], points, options.duplicates)
+    merges = _merge_points(xyz, rows_of, vertex_of[:n], points, options.duplicates)
     overruled = _line_heights(points, vertex_of, n, lines)
     chains = Chains(vertex_of[n:], lines.offsets.astype(np.int32), lines.heights)
     return _Merged(points, vertex_of, chains, growth, merges, overruled)
@@ -173,6 +185,7 @@ def _merge(xyz: NDArray[np.float64], lines: LineSet, options: LineOptions) -> _M
 
 def _merge_points(
     xyz: NDArray[np.float64],
+    rows_of: NDArray[np.int64],
     vertex_of: NDArray[np.int32],
     points: NDArray[np.float64],
     policy: DuplicatePolicy,
@@ -181,7 +194,7 @@ def _merge_points(
     n = len(xyz)
     first = np.full(len(points), n, np.int32)
     np.minimum.at(first, vertex_of, np.arange(n, dtype=np.int32))
-    merged = merge_rows(xyz, first[vertex_of], policy)
+    merged = merge_rows(xyz, first[vertex_of], policy, rows_of)
     of_vertex = np.flatnonzero(first < n)
     of_vertex = of_vertex[np.argsort(first[of_vertex], kind="stable")].astype(np.int32)
     points[:, 2] = np.nan
@@ -191,16 +204,17 @@ def _merge_points(
         account["merged_vertices"] = of_vertex[account["merged_vertices"]]
         moved = xyz[account["merged_rows"], :2] - points[vertex_of[account["merged_rows"]], :2]
         account["merged_shifts"] = np.hypot(*moved.T)
+        account["merged_rows"] = rows_of[account["merged_rows"]].astype(np.int32)
     return account
 
 
 def _line_heights(
     points: NDArray[np.float64], vertex_of: NDArray[np.int32], n: int, lines: LineSet
 ) -> Overruled:
-    """Give vertices on lines the height of the line that counts most there."""
+    """Give vertices on lines the height of the line that counts most there, its lowest."""
     vertices, line_of = vertex_of[n:], lines.line_of
     priority = lines.priorities[line_of]
-    order = np.lexsort((line_of, -priority, vertices))
+    order = np.lexsort((lines.heights, line_of, -priority, vertices))
     is_first = np.append(True, np.diff(vertices[order]) > 0)[: len(order)]
     best = order[is_first]
     before = points[vertices[best], 2].copy()

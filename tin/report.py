@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from .frozen import Frozen
+from .unmended import Unmended
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -24,6 +25,7 @@ LEFT_OUT = (
     "in a hole",
     "trimmed",
     "removed by an edit",
+    "masked",
 )
 """Why a row of points has no vertex; ``Report.left_out_why`` holds places in this list."""
 
@@ -153,6 +155,8 @@ class Report(Frozen):
         What the reader assumed, a sentence each.
     edits : sequence of Edit
         What was done to the TIN since.
+    unmended : Unmended
+        Triangles that refinement had to leave. None after an edit, which numbers triangles anew.
     """
 
     n_rows: int
@@ -175,6 +179,7 @@ class Report(Frozen):
     skipped: Mapping[str, int] = field(default_factory=dict)
     notes: Sequence[str] = ()
     edits: Sequence[Edit] = ()
+    unmended: Unmended = field(default_factory=Unmended.none)
 
     def after_edits(
         self, vertex_of: NDArray[np.int32], n_vertices: int, n_triangles: int, edits: Sequence[Edit]
@@ -194,6 +199,7 @@ class Report(Frozen):
             left_out_rows=lost,
             left_out_why=why,
             edits=edits,
+            unmended=Unmended.none(),
         )
 
     def merges(self) -> Iterator[Merge]:
@@ -224,6 +230,7 @@ class Report(Frozen):
             "skipped": dict(self.skipped),
             "notes": list(self.notes),
             "edits": [edit.to_dict() for edit in self.edits],
+            "unmended": self.unmended.to_list(),
         }
 
     def _left_out(self) -> dict[str, list[int]]:
