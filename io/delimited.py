@@ -14,6 +14,7 @@ from ..tin import TIN, Survey
 from .area import AreaOfUse
 from .atomic import replacing
 from .crs import is_geographic
+from .delimited_columns import unit_of
 from .delimited_content import columns_by_content
 from .delimited_findings import (
     describe_faults,
@@ -293,17 +294,26 @@ def write(
 
     Notes
     -----
-    Every number is written so that it reads back as the same float64.
+    Every number is written so that it reads back as the same float64. The header names the unit of
+    elevations, ``elevation (ft)``, if it is known.
     """
     is_bare = path.suffix.lower() in _BARE_SUFFIXES
     table = _columns_to_write(obj, columns, is_bare, path)
     separator = delimiter or _SUFFIX_DELIMITERS.get(path.suffix.lower(), ",")
     if len(separator) != 1 or separator in '"\n\r.' or separator.isalnum():
         raise WriteError(f"Cannot write '{path}': '{delimiter}' is no delimiter.", path=path)
-    names = [] if (is_bare if header is None else not header) else [list(table)]
+    names = [] if (is_bare if header is None else not header) else [_header(table, obj)]
     with replacing(path, binary=False) as file:
         writer = csv.writer(file, delimiter=separator, lineterminator="\n")
         writer.writerows(chain(names, _rows(list(table.values()), progress)))
+
+
+def _header(table: Mapping[str, NDArray[Any]], obj: TIN | Survey) -> list[str]:
+    """Return the names of the columns, that of elevations with their unit if readers know it."""
+    unit = obj.elevation_unit
+    named = None if unit is None else f"elevation ({unit.symbol})"
+    is_read = named is not None and unit_of(named) is not None
+    return [str(named) if name == "elevation" and is_read else name for name in table]
 
 
 def _columns_to_write(

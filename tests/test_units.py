@@ -5,6 +5,8 @@ from __future__ import annotations
 import copy
 import json
 import pickle
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -372,6 +374,27 @@ def test_crs_and_unit_survive_a_file(suffix, ground, tmp_path):
     assert again.points[:, 2] == pytest.approx(tin.points[:, 2], abs=1e-4)
 
 
+@pytest.mark.parametrize("unit", [None, "m", "ft", "US survey foot"])
+def test_the_unit_survives_the_header_of_a_text_file(unit, tmp_path):
+    points = np.array([[500_000.0, 4e6, 1], [500_010, 4e6, 2], [500_000, 4_000_010, 3]])
+    survey = Survey(points=points, crs=32616, elevation_unit=unit)
+    ts.write(survey, tmp_path / "a.csv")
+    again = ts.read(tmp_path / "a.csv", crs=32616)
+    assert again.elevation_unit == survey.elevation_unit
+    assert np.array_equal(again.points, points)
+
+
+def test_a_header_in_feet_is_honoured_and_not_overruled(tmp_path):
+    path = tmp_path / "a.csv"
+    path.write_text("easting,northing,elev (USft)\n751428,4020862,1032\n751438,4020862,1031\n")
+    assert ts.read(path, crs=32616).elevation_unit == US_SURVEY_FOOT
+    assert ts.read(path, source_crs=32616, crs=32617).points[0, 2] == pytest.approx(1032 * US_FOOT)
+    vertical = ts.read(path, crs="EPSG:32616+5703")
+    assert vertical.points[0, 2] == pytest.approx(1032 * US_FOOT)
+    with pytest.raises(OptionError, match="US survey foot, as"):
+        ts.read(path, crs=32616, z_unit="m")
+
+
 @pytest.mark.parametrize("unit", [None, "ft", "Clarke's foot"])
 def test_a_lifted_mesh_comes_back_in_its_own_unit(unit, tmp_path):
     pytest.importorskip("pyvista")
@@ -521,3 +544,12 @@ def test_the_legend_says_what_is_known_of_the_unit():
     assert captions["feet up from metres"] == "ft"
     assert captions["nothing known"] == ""
     assert captions["feet up from nothing known"] == "ft"
+
+
+def test_the_examples_of_the_page_run(capsys):
+    """Each line that prints says in a comment what it prints."""
+    page = (Path(__file__).parents[1] / "docs" / "units.md").read_text(encoding="utf-8")
+    (block,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    exec(block, {})
+    expected = re.findall(r"^print\(.*\)  # (.*)$", block, re.MULTILINE)
+    assert capsys.readouterr().out.splitlines() == expected
