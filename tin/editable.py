@@ -19,8 +19,7 @@ if TYPE_CHECKING:
     from .duplicates import DuplicatePolicy
     from .editing import Edit, Session
     from .lines import BreaklineKind
-    from .model import Model
-    from .surface import TIN
+    from .recipe import Recipe
     from .version import Version
 
 __all__ = ["Editable"]
@@ -38,7 +37,7 @@ class Editable:
 
     __slots__ = ("_inputs", "_lock", "_session", "_version")
 
-    def __init__(self, version: Version, inputs: Model | None) -> None:
+    def __init__(self, version: Version, inputs: Recipe | None) -> None:
         self._version: Version | None = version
         self._session: Session | None = None
         self._inputs = inputs
@@ -265,5 +264,5 @@ class Editable:
         if self._session is None:
             from .editing import Session
 
-            self._session = Session(cast("TIN", self), self._inputs)
+            self._session = Session(cast("Version", self._version), self._inputs)
         return self._session

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
@@ -12,7 +12,7 @@ from . import _kernel
 from .constrained import CrossingPolicy, LineOptions
 from .duplicates import DuplicatePolicy
 from .errors import LinesError, PointsError
-from .line_set import LineSet, as_sequence, gather_lines, gather_rings
+from .line_set import LineSet, as_sequence, gather_lines, gather_rings, require_length
 from .points import as_points
 from .survey import Survey
 from .threads import thread_count
@@ -39,6 +39,8 @@ class Recipe:
         Rings, the first corner not repeated.
     max_edge : float
         Infinity for none.
+    has_rim : bool
+        Whether some of the lines are edges of the rim of existing triangles.
     """
 
     points: NDArray[np.float64]
@@ -51,6 +53,7 @@ class Recipe:
     conforming: bool
     options: LineOptions
     crs: str | None
+    has_rim: bool = False
     skipped: Mapping[str, int] = field(default_factory=dict)
     notes: Sequence[str] = ()
 
@@ -58,6 +61,29 @@ class Recipe:
     def is_plain(self) -> bool:
         """Whether there are only points, and all of the hull is the surface."""
         return not (self.lines.kinds or self.erase or np.isfinite(self.max_edge))
+
+    @property
+    def is_clipped(self) -> bool:
+        """Whether only a part of the hull may be the surface."""
+        has_rings = bool(self.boundary or self.holes or self.has_rim)
+        return has_rings or bool(np.isfinite(self.max_edge))
+
+    def with_lines(self, lines: LineSet) -> Recipe:
+        """Return the recipe with other lines, rings among them.
+
+        Raises
+        ------
+        LinesError
+            If all vertices of a line are at one place, or a ring crosses itself.
+        """
+        require_length(lines)
+        _require_simple_rings(lines)
+        rings: dict[str, list[NDArray[np.float64]]] = {"boundary": [], "hole": []}
+        for line, kind in enumerate(() if self.has_rim else lines.kinds):
+            if kind in rings:
+                rows = slice(lines.offsets[line], lines.offsets[line + 1] - 1)
+                rings[kind].append(lines.xy[rows])
+        return replace(self, lines=lines, boundary=rings["boundary"], holes=rings["hole"])
 
 
 def recipe_of(
@@ -137,7 +163,7 @@ def _require_options(
 
 def _require_simple_rings(lines: LineSet) -> None:
     for line, kind in enumerate(lines.kinds):
-        if kind in ("hard", "soft"):
+        if kind in ("hard", "soft") or lines.sources[line] < 0:
             continue
         rows = np.arange(lines.offsets[line], lines.offsets[line + 1], dtype=np.int32)
         corners = np.append(rows[:-1], rows[0]) - rows[0]

@@ -275,7 +275,6 @@ def _built(tin: TIN, points: NDArray[np.float64], splits: _Splits, n_new: int, t
         report=report,
         lines=lines_in(model.pieces, model.infos, number_of, surface, is_whole=False),
         crs=tin.crs,
-        inputs=model,
     )
 
 

@@ -19,7 +19,7 @@ from .version import Version
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from .model import Model
+    from .recipe import Recipe
     from .types import Bounds
     from .voronoi import Voronoi
 
@@ -89,7 +89,7 @@ class TIN(Editable):
         report: Report,
         lines: Lines | None = None,
         crs: str | None = None,
-        inputs: Model | None = None,
+        inputs: Recipe | None = None,
     ) -> None:
         triangulation = Triangulation(
             points=points, triangles=triangles, neighbors=neighbors, constrained=constrained
