@@ -11,7 +11,7 @@ export PIP_CONSTRAINT := $(CURDIR)/constraints.txt
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test check bench proof format clean
+.PHONY: help setup demo test check bench proof fuzz format clean
 
 help: ## List the commands
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-8s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -49,6 +49,12 @@ bench: $(READY) ## Time kernel, lines, edits, queries, readers, writers beside t
 
 proof: $(READY) ## Run the long proofs
 	$(BIN)/python -m pytest -q -m proof
+
+# make fuzz CASES=100000 CAMPAIGN="edits lines" SEED=7, or MINUTES=60; finds are kept in build/fuzz.
+SEED ?= 1
+FUZZ := PYTHONPATH=tests $(BIN)/python -m fuzz
+fuzz: $(READY) ## Run random campaigns: MINUTES= or CASES=, SEED=, CAMPAIGN=
+	$(FUZZ) --seed $(SEED) $(addprefix --campaign ,$(CAMPAIGN)) $(if $(CASES),--cases $(CASES)) $(addprefix --minutes ,$(MINUTES))
 
 format: $(READY) ## Format the code
 	$(BIN)/ruff format .

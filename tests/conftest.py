@@ -20,6 +20,6 @@ def can_draw():
 def pytest_collection_modifyitems(config, items):
     if "proof" in config.option.markexpr:
         return
-    proofs = [item for item in items if "proof" in item.keywords]
+    proofs = [item for item in items if item.get_closest_marker("proof")]
     config.hook.pytest_deselected(items=proofs)
-    items[:] = [item for item in items if "proof" not in item.keywords]
+    items[:] = [item for item in items if not item.get_closest_marker("proof")]

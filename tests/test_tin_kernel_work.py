@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
-from kernel_ways import DATASETS, Method, dataset
+from kernel_ways import DATASETS, Method, dataset, require_same_growth, require_sound, with_heights
 
+import tinsmith as ts
 from tinsmith.tin import _kernel
 
 N = 20_000
@@ -117,3 +119,43 @@ def test_insertion_searches_nothing():
     counts = _kernel.count_work(dataset("uniform", N), method=Method.INSERTION)
     assert counts["triangles"] > N
     assert counts["searches"] == counts["candidates"] == counts["cell_rows"] == 0
+
+
+SLOPES = [1 / 3, 1 / 7, -1 / 3, 0.1, 0.3717, 4711.3]
+
+
+def slanted_line(n, slope, east=0.0):
+    """Rows on a straight line but for the rounding of their northings."""
+    x = np.arange(n) + east
+    return with_heights(np.column_stack([x, x * slope]))
+
+
+@pytest.mark.parametrize("slope", SLOPES)
+def test_points_in_line_but_for_rounding_are_found_by_short_walks(slope):
+    """Vertices with thousands of slivers about them lie along such a line.
+
+    A walk that may cross any edge with the point beyond it goes round them: 500 steps a point at
+    50,000 points, 1,700 at 200,000.
+    """
+    points = slanted_line(100_000, slope)
+    counts = _kernel.count_work(points, method=Method.INSERTION)
+    assert 0 < counts["walk_steps"] / len(points) < 20
+
+
+@pytest.mark.parametrize("slope", SLOPES)
+def test_points_in_line_but_for_rounding_have_one_triangulation(slope):
+    """Growth looks at all points in every search here, so the long line is only checked."""
+    points = slanted_line(1_000, slope, east=0.1)
+    inserted = _kernel.grow(points, method=Method.INSERTION)
+    require_same_growth(inserted, _kernel.grow(points, method=Method.GROWTH))
+    require_sound(slanted_line(20_000, slope, east=0.1))
+
+
+@pytest.mark.parametrize("slope", SLOPES[:3])
+def test_points_in_line_but_for_rounding_are_inserted_by_edits(slope):
+    points = slanted_line(20_000, slope)
+    tin = ts.triangulate(points[::2])
+    tin.insert(points[1:1000:2])
+    order = np.r_[0:20_000:2, 1:1000:2]
+    fresh = ts.triangulate(points[order])
+    np.testing.assert_array_equal(tin.triangles, fresh.triangles)

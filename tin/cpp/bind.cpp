@@ -65,6 +65,7 @@ nb::dict count_work(const Points& points, tinsmith::Method method, int threads,
   counts["candidates"] = made.counts.candidates;
   counts["cell_rows"] = made.counts.cell_rows;
   counts["exact_decisions"] = made.counts.exact_decisions;
+  counts["walk_steps"] = made.counts.walk_steps;
   return counts;
 }
 

@@ -181,6 +181,7 @@ class Triangulator {
     const auto keep_going = [this] { return team_.keeps_going(0); };
     Insertion insertion(grid);
     if (!insertion.run(keep_going)) return;
+    result_.counts.walk_steps = insertion.walk_steps();
     allocate();
     if (!CanonicalOrder(grid, insertion.mesh()).write(result_.arrays(), keep_going)) return;
     number_by_rows();

@@ -21,6 +21,7 @@
 #include "cavity.hpp"
 #include "ghost_mesh.hpp"
 #include "insertion_order.hpp"
+#include "straight_walk.hpp"
 
 namespace tinsmith {
 
@@ -46,6 +47,9 @@ class Insertion {
   }
 
   GhostMesh& mesh() { return mesh_; }
+
+  // Triangles that were walked through to find where points go.
+  std::int64_t walk_steps() const { return walk_steps_; }
 
  private:
   // By vertex, with a place for the ghost in front.
@@ -114,7 +118,7 @@ class Insertion {
   }
 
   // Walk towards p across edges that separate it, to a triangle whose circle holds it.
-  std::uint32_t find_conflict(Point p, std::uint32_t triangle) const {
+  std::uint32_t find_conflict(Point p, std::uint32_t triangle) {
     const GhostTriangle* const triangles = mesh_.triangles.get();
     const GhostTriangle* here = &triangles[triangle];
     // p is not right of the edge from `right` to `left`, seen from the triangle to search.
@@ -124,11 +128,11 @@ class Insertion {
       edge = here->twin[0];
       std::swap(left, right);
     }
-    while (true) {
+    for (int steps = 1; steps < kMostSteps; ++steps) {
       here = &triangles[triangle_of(edge)];
       const std::uint32_t place = place_of(edge);
       const std::int32_t vertex = here->corner[place];
-      if (vertex == kGhost) return triangle_of(edge);
+      if (vertex == kGhost) return arrive(edge, steps);
       const Sight apex = sight(vertex, p);
       if (is_right_of(left, apex, p)) {
         edge = here->twin[place_after(place)];
@@ -137,9 +141,26 @@ class Insertion {
         edge = here->twin[place_before(place)];
         left = apex;
       } else {
-        return triangle_of(edge);
+        return arrive(edge, steps);
       }
     }
+    return find_straight(p, triangle);
+  }
+
+  std::uint32_t arrive(std::uint32_t edge, int steps) {
+    walk_steps_ += steps;
+    return triangle_of(edge);
+  }
+
+  TINSMITH_RARE std::uint32_t find_straight(Point p, std::uint32_t triangle) {
+    const auto triangle_at = [this](std::uint32_t t) -> const GhostTriangle& {
+      return mesh_.triangles[t];
+    };
+    const auto point_at = [this](std::int32_t vertex) { return points_[vertex]; };
+    StraightWalk walk(triangle_at, point_at);
+    const std::uint32_t found = walk.find(p, triangle);
+    walk_steps_ += walk.steps();
+    return found;
   }
 
   struct Sight {  // a vertex as seen from p
@@ -167,6 +188,8 @@ class Insertion {
     sweep_of_.release();
   }
 
+  // Most walks take three or four steps; one that takes so many has strayed among slivers.
+  static constexpr int kMostSteps = 300;
   static constexpr std::int32_t kStartVertices = 3;
   static constexpr std::uint32_t kStartTriangles = 4;
 
@@ -175,6 +198,7 @@ class Insertion {
   WithGhost<std::int32_t> sweep_of_;  // by place on the curve, which is the number of a vertex here
   WithGhost<Point> points_;           // likewise
   GhostMesh mesh_;
+  std::int64_t walk_steps_ = 0;
 };
 
 }  // namespace tinsmith

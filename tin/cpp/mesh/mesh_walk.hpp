@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "../base/arrays.hpp"
+#include "../insertion/straight_walk.hpp"
 #include "../predicates/predicates.hpp"
 #include "mesh.hpp"
 
@@ -19,7 +20,7 @@ struct MeshLocation {
   MeshEdge edge;  // of the triangle; the edge; one that leaves the vertex; of the ghost
 };
 
-// One walk: exact, and never longer than the distance asks for.
+// One walk: exact, and no longer than a few times what the distance asks for.
 class MeshWalk {
  public:
   // `state` of the random choices, which never show in the result.
@@ -31,9 +32,10 @@ class MeshWalk {
   MeshLocation locate(Point p, MeshEdge last, std::int32_t landmark) {
     MeshEdge e = nearest_start(p, last, landmark);
     if (mesh_.is_ghost(triangle_of(e))) e = real_side(triangle_of(e));
-    std::uint32_t t = triangle_of(e);
+    const std::uint32_t start = triangle_of(e);
+    std::uint32_t t = start;
     std::uint32_t entry = kNoPlace;
-    while (true) {
+    for (int steps = most_steps(); steps > 0; --steps) {
       const std::uint32_t place = place_beyond(p, t, entry);
       if (place == kNoPlace) return location_in(p, t);
       const MeshEdge across = mesh_.twin(mesh_edge(t, place));
@@ -41,6 +43,7 @@ class MeshWalk {
       t = triangle_of(across);
       entry = place_of(across);
     }
+    return locate_straight(p, start);
   }
 
  private:
@@ -97,6 +100,28 @@ class MeshWalk {
     std::uint32_t place = 0;
     while (mesh_[ghost].corner[place] != kGhost) ++place;
     return mesh_[ghost].twin[place];
+  }
+
+  // From a start within a share of the landmarks' cells a walk takes some dozen steps, from one of
+  // the drawn vertices a few times the cube root of all; one that takes more has strayed among
+  // slivers.
+  int most_steps() const { return 100 + static_cast<int>(8.0 * std::cbrt(static_cast<double>(count_))); }
+
+  MeshLocation locate_straight(Point p, std::uint32_t start) const {
+    const auto triangle_at = [this](std::uint32_t t) -> const GhostTriangle& { return mesh_[t]; };
+    const auto point_at = [this](std::int32_t vertex) { return points_[vertex]; };
+    const std::uint32_t t = StraightWalk(triangle_at, point_at).find(p, start);
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      if (mesh_[t].corner[k] == kGhost) return outside_or_on(p, mesh_edge(t, k));
+    }
+    return location_in(p, t);
+  }
+
+  // p is beyond the hull edge of a ghost, or on it.
+  MeshLocation outside_or_on(Point p, MeshEdge ghost) const {
+    const bool is_on = orientation(points_[mesh_.from(ghost)], points_[mesh_.to(ghost)], p) == 0;
+    if (is_on) return location_in(p, triangle_of(mesh_.twin(ghost)));
+    return {MeshLocation::Where::kOutside, ghost};
   }
 
   // The place of an edge that has p on its other side, or kNoPlace. The edges are tried from a

@@ -12,6 +12,7 @@ struct SearchCounts {
   std::int64_t full_candidates = 0;  // points looked at by full searches
   std::int64_t cell_rows = 0;        // rows of cells entered by full searches
   std::int64_t exact_decisions = 0;  // beyond the error bound
+  std::int64_t walk_steps = 0;       // triangles walked through by insertion
 
   // What the full searches and the exact decisions cost, in units of one candidate: the rest
   // costs the same on all data.
@@ -24,6 +25,7 @@ struct SearchCounts {
     full_candidates += other.full_candidates;
     cell_rows += other.cell_rows;
     exact_decisions += other.exact_decisions;
+    walk_steps += other.walk_steps;
     return *this;
   }
 };
