@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from copy import deepcopy
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple, cast, get_args
 
@@ -50,6 +49,8 @@ OPERATIONS = (
 )
 """Names of the methods of a TIN that change it."""
 
+
+_ON_MESH = ("insert", "remove", "move", "set_z")
 
 FLIP = "flip"
 """Name of the soft breakline that keeps a flipped edge."""
@@ -259,9 +260,9 @@ class Session:
 
     def _on_mesh(self, operation: str, arguments: dict[str, Any]) -> _Done | None:
         """Do an edit in the mesh; None if it reaches a line, or may."""
-        edit = getattr(self, f"_{operation}_on_mesh", None)
-        if edit is None:
+        if operation not in _ON_MESH:
             return None
+        edit = getattr(self, f"_{operation}_on_mesh")
         if self._editor is None:
             inputs = self._inputs_now()
             if not is_local(inputs.recipe):
@@ -422,7 +423,9 @@ class _Done(NamedTuple):
 
 def _kept(value: Any) -> Any:
     """Return an argument so that the caller's further use of it changes nothing."""
-    return deepcopy(value) if isinstance(value, np.ndarray | list) else value
+    if isinstance(value, list):
+        return [_kept(one) if isinstance(one, list) else one for one in value]
+    return value.copy() if isinstance(value, np.ndarray) else value
 
 
 def _policy(policy: str) -> DuplicatePolicy:

@@ -115,8 +115,8 @@ class Editor:
 
     def slots(self, vertices: NDArray[np.int64]) -> NDArray[np.int32]:
         """Return the slots of vertices, which must exist."""
-        rows, inserted, lines = self._counts()
-        if lines and inserted:
+        if self._n_rows < self._n_base:
+            rows, inserted, lines = self._counts()
             back = np.where(vertices < rows + inserted, lines, -inserted)
             vertices = vertices + np.where(vertices < rows, 0, back)
         removed = self._removed
@@ -139,9 +139,9 @@ class Editor:
 
     def _reordered(self, ranks: NDArray[np.int32]) -> NDArray[np.int32]:
         """Return the numbers of vertices that are numbered by slot, without gaps."""
-        rows, inserted, lines = self._counts()
-        if not (lines and inserted):
+        if self._n_rows == self._n_base:
             return ranks
+        rows, inserted, lines = self._counts()
         on = np.where(ranks < rows + lines, np.int32(inserted), np.int32(-lines))
         return ranks + np.where(ranks < rows, np.int32(0), on)
 
@@ -167,10 +167,11 @@ class Editor:
         slots = self._grown_with(xyz) if is_large else self._inserted(xyz)
         is_new = slots == np.arange(first, first + len(xyz), dtype=np.int32)
         try:
+            heights: dict[int, float] = {}
             if not is_new.all():
                 self._require_in_order(slots, first)
-            old = np.flatnonzero(~is_new).tolist()
-            heights = self._merged_elevations(xyz, slots, old, policy)
+                old = np.flatnonzero(~is_new).tolist()
+                heights = self._merged_elevations(xyz, slots, old, policy)
             if self._has_lines:
                 self._require_clear(slots)
         except (PointsError, NotLocal):
@@ -240,18 +241,20 @@ class Editor:
     ) -> Change:
         first = len(self._points)
         self._points.extend(xyz)
-        self._removed.extend((first + np.flatnonzero(~is_new)).tolist())
         row = self._n_first_rows + self._n_new
-        moved = [self._put_elevation(slot, height) for slot, height in heights.items()]
+        moved = []
+        if heights:
+            self._removed.extend((first + np.flatnonzero(~is_new)).tolist())
+            moved = [self._put_elevation(slot, height) for slot, height in heights.items()]
         for number, slot in enumerate(slots.tolist(), row):
             self._more_rows.setdefault(slot, []).append(number)
         self._new_slots.extend(slots)
         self._n_new += len(xyz)
-        added = xyz
-        if heights:
-            added = xyz.copy()
-            for slot, height in heights.items():
-                added[slots == slot, 2] = height
+        if not heights:
+            return Change(added=xyz)
+        added = xyz.copy()
+        for slot, height in heights.items():
+            added[slots == slot, 2] = height
         return _joined(moved)._replace(added=added)
 
     def _is_large(self, count: int) -> bool:
@@ -360,8 +363,9 @@ class Editor:
         return self._moved(slot, point)
 
     def _moved(self, slot: int, point: NDArray[np.float64]) -> Change:
-        rows = self._rows_at(slot)
-        return Change(moved=np.array(rows, np.int64), places=np.tile(point, (len(rows), 1)))
+        rows = np.array(self._rows_at(slot), np.int64)
+        places = point[None] if len(rows) == 1 else np.tile(point, (len(rows), 1))
+        return Change(moved=rows, places=places)
 
     # ------------------------------------------------------------------- result
 
