@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["read_lines", "read_rings", "read_water"]
+__all__ = ["read_lines", "read_polygons", "read_rings", "read_water"]
 
 _WATER_COLUMNS = ("z", "level", "elevation", "height")
 
@@ -116,6 +116,41 @@ def read_rings(
     features = read_features(Path(path), layer=layer, where=where)
     parts = parts_of(features, crs=crs, drape=drape, notes=notes)
     return [_ring(part, features) for part in parts]
+
+
+def read_polygons(
+    path: str | os.PathLike[str],
+    *,
+    crs: str | None = None,
+    layer: str | None = None,
+    where: str | None = None,
+    drape: bool = False,
+    notes: list[str] | None = None,
+) -> list[list[NDArray[np.float64]]]:
+    """Read polygons with their islands, as ``holes`` and ``erase`` of a survey take them.
+
+    Parameters
+    ----------
+    path, crs, layer, where, drape, notes
+        As in :func:`read_lines`.
+
+    Returns
+    -------
+    list of lists of (k, 2) or (k, 3) float64 arrays
+        Of each polygon the outer ring, then those of its islands; a closed line is one ring.
+
+    Raises
+    ------
+    MissingExtraError, ReadError, CrsError, LinesError
+        As :func:`read_rings`.
+    """
+    features = read_features(Path(path), layer=layer, where=where)
+    polygons: list[list[NDArray[np.float64]]] = []
+    for part in parts_of(features, crs=crs, drape=drape, notes=notes):
+        if part.ring == 0:
+            polygons.append([])
+        polygons[-1].append(_ring(part, features))
+    return polygons
 
 
 def read_water(
@@ -249,6 +284,7 @@ def _level(
     found = f"heights from {ring[:, 2].min():g} to {ring[:, 2].max():g}" if has_heights else "none"
     raise ReadError(
         f"{features.label(row)} needs one height and has {found}: water gets it from a column "
-        f"({', '.join(_WATER_COLUMNS)}), from corners of one height, or for all (z=, --water-z).",
+        f"({', '.join(_WATER_COLUMNS)}), from corners of one height, or for all from the option "
+        "water_z.",
         path=features.path,
     )

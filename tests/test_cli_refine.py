@@ -52,7 +52,7 @@ def test_triangles_that_stay_bad_are_counted(tmp_path):
     points.write_text("0 0 1\n100 0 1\n100 2 1\n")
     out = run("refine", points, "-o", tmp_path / "a.ply")
     assert out.exit_code == 0
-    assert "triangles stay below 25°" in out.stderr
+    assert "1 triangle stays below 25°" in out.stderr
 
 
 def test_degrees_are_refused(tmp_path):
@@ -68,8 +68,8 @@ def test_degrees_are_refused(tmp_path):
 @pytest.mark.parametrize(
     ("options", "code", "words"),
     [
-        (["--min-angle", "40"], 1, "Invalid min_angle 40.0"),
-        (["--max-area", "-2"], 1, "Invalid max_area -2.0"),
+        (["--min-angle", "40"], 1, "Invalid --min-angle 40.0"),
+        (["--max-area", "-2"], 1, "Invalid --max-area -2.0"),
         (["--max-area", "1e-9"], 1, "more than 10,000,000 vertices"),
         (["--max-vertices", "2000"], 1, "more than 2,000 vertices"),
         (["--max-side", "x"], 2, "'x' is not a valid float"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from fractions import Fraction
 
 import numpy as np
@@ -206,6 +207,83 @@ def test_scaled_points_have_scaled_cells(scale):
     areas = triangulate(flat(points)).voronoi(pad=0).areas
     scaled = triangulate(flat(points * scale)).voronoi(pad=0).areas
     np.testing.assert_allclose(scaled / scale**2, areas, rtol=1e-6)
+
+
+# ------------------------------------------------------------------ tiling
+
+
+def assert_tiles(diagram):
+    """Two cells walk each side, once each way; sides that only one walks lie on the box."""
+    low, high = diagram.boundary.min(axis=0), diagram.boundary.max(axis=0)
+    walks = Counter(
+        (tuple(a), tuple(b))
+        for ring in rings(diagram)
+        for a, b in zip(ring.tolist(), np.roll(ring, -1, axis=0).tolist(), strict=True)
+    )
+    for (a, b), times in walks.items():
+        on_wall = any(a[k] == b[k] and a[k] in (low[k], high[k]) for k in range(2))
+        assert on_wall or walks[b, a] == times
+    assert (diagram.areas >= 0).all()
+    assert diagram.areas.sum() == pytest.approx(np.prod(high - low), rel=1e-12)
+
+
+ULP = np.spacing(1.0)
+HARD = {
+    "two hull vertices a rounding apart": [
+        [-0.18787969354847417, 1.4601214758378258],
+        [1.1206314478250745, 0.3921423623286639],
+        [1.1206314478250745, 0.39214236232866406],
+    ],
+    "four vertices a rounding apart": [
+        [1, 1], [1 + ULP, 1], [1, 1 + ULP], [1 + ULP, 1 + ULP], [7, 3], [2, 9]
+    ],
+    "one flat triangle": [[0, 0], [1, 1 / 3], [2, np.nextafter(2 / 3, 1)]],
+    "on a slanted line but for rounding": [[x / 7, x / 21] for x in range(12)],
+    "on a line but for one": [[0, 0], [1, 1], [2, 2], [3, 3], [0, 1e-12]],
+    "on a circle but for rounding": circle(12, 1 / 3),
+    "a raster of tenths at UTM size": grid(4, 3, 0.1, UTM),
+    "from the tiny to the huge": [[1e-55, 0], [3, 1e-50], [1e40, 2e40], [-7e60, 5], [0, -1e60]],
+    "on the box, with a corner where four meet": [[0, 0], [2, 0], [2, 2], [0, 2]],
+    "whose circumcentre is a corner of the box": [[0, 1], [1, 0], [4, 1], [1, 4]],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("pad", [0.0, None])
+@pytest.mark.parametrize("name", HARD)
+def test_cells_tile_the_box_and_are_the_exact_ones_rounded(name, pad):
+    points = np.asarray(HARD[name], float)
+    diagram = triangulate(flat(points)).voronoi(pad=pad)
+    assert_tiles(diagram)
+    rounding = 8 * np.spacing(np.abs(diagram.boundary).max())
+    perimeter = 2 * np.ptp(diagram.boundary, axis=0).sum()
+    for ring, area, cell in zip(
+        rings(diagram), diagram.areas, cut_exactly(points, diagram.boundary), strict=True
+    ):
+        assert abs(area - exact_area(cell)) <= rounding * perimeter
+        corners = np.array([[float(x), float(y)] for x, y in cell])
+        for corner in ring:
+            assert np.abs(corners - corner).max(axis=1).min() <= rounding
+
+
+@pytest.mark.parametrize("name", [*CASES])
+@pytest.mark.parametrize("pad", [0.0, None])
+def test_cells_tile_the_box(name, pad):
+    assert_tiles(triangulate(flat(CASES[name])).voronoi(pad=pad))
+
+
+def test_corners_are_the_doubles_nearest_to_the_exact_ones_where_the_box_cuts():
+    points = scattered(9, 11)
+    diagram = triangulate(flat(points)).voronoi(pad=0)
+    for ring, cell in zip(rings(diagram), cut_exactly(points, diagram.boundary), strict=True):
+        assert set(map(tuple, ring.tolist())) <= {(float(x), float(y)) for x, y in cell}
+
+
+def test_a_hull_vertex_with_thousands_of_neighbours_takes_no_quadratic_time():
+    turn = np.linspace(0.1, 1.4, 4000)
+    arc = 100 * np.column_stack([np.cos(turn), np.sin(turn)])
+    diagram = triangulate(flat(np.concatenate([[[0.3, 0.2]], arc]))).voronoi()
+    assert_tiles(diagram)
+    assert np.diff(diagram.offsets)[0] > 3000
 
 
 # ------------------------------------------------------------------ ties

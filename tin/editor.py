@@ -320,6 +320,8 @@ class Editor:
         PointsError
             If another vertex stands there, or no triangle would be left.
         """
+        if self._has_lines and self._mesh.has_fixed_edge(slot):
+            raise NotLocal
         if (self._points.at(slot)[:2] != point[:2]).any():
             self._move_in_plane(slot, float(point[0]), float(point[1]))
         self._points.put(slot, point)

@@ -62,6 +62,7 @@ def recipe_of_triangles(version: Version) -> Recipe:
             sources.astype(np.int32),
         ),
         boundary=[],
+        extent=[],
         holes=[],
         erase=[],
         max_edge=np.inf,

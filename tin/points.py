@@ -93,9 +93,10 @@ def _require_exact_range(xy: NDArray[np.float64], what: str) -> None:
     wrong = ((size > largest) | ((size < smallest) & (size > 0))).any(axis=1)
     if wrong.any():
         row = int(np.argmax(wrong))
+        x, y = xy[row, :2].tolist()
         raise PointsError(
             f"{what} have {int(wrong.sum())} rows outside the exact range (first: row {row}, "
-            f"x {xy[row, 0]!r}, y {xy[row, 1]!r}): magnitudes from {smallest:.0e} to "
+            f"x {x!r}, y {y!r}): magnitudes from {smallest:.0e} to "
             f"{largest:.0e}, or 0, are allowed.",
             rows=np.flatnonzero(wrong)[:SHOWN],
         )

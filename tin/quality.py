@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
     from .surface import TIN
 
-__all__ = ["Quality", "quality"]
+__all__ = ["Quality", "quality", "smallest_angles"]
 
 _QUANTILES = {"min": 0.0, "q05": 0.05, "median": 0.5, "q95": 0.95, "max": 1.0}
 _SMALL_ANGLES = (1.0, 10.0, 20.0, 30.0)
@@ -161,6 +161,14 @@ def quality(tin: TIN, *, space: bool = False) -> Quality:
         radius_edge=circumradius / shortest,
         space=bool(space),
     )
+
+
+def smallest_angles(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the smallest angle of each triangle, degrees, from (m, 3, 2) corners."""
+    edges = np.roll(corners, 1, axis=1) - np.roll(corners, -1, axis=1)
+    lengths = np.sqrt(np.einsum("tkx,tkx->tk", edges, edges))
+    angles: NDArray[np.float64] = _angles(edges, _doubled_areas(edges, lengths)).min(axis=1)
+    return angles
 
 
 def _doubled_areas(edges: NDArray[np.float64], lengths: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 
@@ -12,7 +12,15 @@ from . import _kernel
 from .constrained import CrossingPolicy, LineOptions
 from .duplicates import DuplicatePolicy
 from .errors import LinesError, PointsError
-from .line_set import LineSet, as_sequence, gather_lines, gather_rings, require_length
+from .line_set import (
+    LineSet,
+    as_sequence,
+    gather_extent,
+    gather_lines,
+    gather_regions,
+    gather_rings,
+    require_length,
+)
 from .points import as_points
 from .survey import Survey
 from .threads import thread_count
@@ -35,8 +43,10 @@ class Recipe:
     ----------
     points : (n, 3) float64 array
     lines : LineSet
-    boundary, holes, erase : list of (k, 2) float64 arrays
+    boundary, extent : list of (k, 2) float64 arrays
         Rings, the first corner not repeated.
+    holes, erase : list of lists of (k, 2) float64 arrays
+        The rings of each region: the outer one, then its islands.
     max_edge : float
         Infinity for none.
     has_rim : bool
@@ -46,8 +56,9 @@ class Recipe:
     points: NDArray[np.float64]
     lines: LineSet
     boundary: list[NDArray[np.float64]]
-    holes: list[NDArray[np.float64]]
-    erase: list[NDArray[np.float64]]
+    extent: list[NDArray[np.float64]]
+    holes: list[list[NDArray[np.float64]]]
+    erase: list[list[NDArray[np.float64]]]
     max_edge: float
     trim: TrimPolicy
     conforming: bool
@@ -65,7 +76,7 @@ class Recipe:
     @property
     def is_clipped(self) -> bool:
         """Whether only a part of the hull may be the surface."""
-        has_rings = bool(self.boundary or self.holes or self.has_rim)
+        has_rings = bool(self.boundary or self.extent or self.holes or self.has_rim)
         return has_rings or bool(np.isfinite(self.max_edge))
 
     def with_lines(self, lines: LineSet) -> Recipe:
@@ -78,21 +89,35 @@ class Recipe:
         """
         require_length(lines)
         _require_simple_rings(lines)
-        rings: dict[str, list[NDArray[np.float64]]] = {"boundary": [], "hole": []}
-        for line, kind in enumerate(() if self.has_rim else lines.kinds):
-            if kind in rings:
-                rows = slice(lines.offsets[line], lines.offsets[line + 1] - 1)
-                rings[kind].append(lines.xy[rows])
-        return replace(self, lines=lines, boundary=rings["boundary"], holes=rings["hole"])
+        if self.has_rim:
+            return replace(self, lines=lines)
+        rings = {kind: _rings_of(lines, kind) for kind in ("boundary", "hole")}
+        corners = iter(rings["hole"])
+        return replace(
+            self,
+            lines=lines,
+            boundary=rings["boundary"][: len(self.boundary)],
+            extent=rings["boundary"][len(self.boundary) :],
+            holes=[[next(corners) for _ in hole] for hole in self.holes],
+        )
+
+
+def _rings_of(lines: LineSet, kind: str) -> list[NDArray[np.float64]]:
+    """Return the rings of a kind, the first corner not repeated."""
+    return [
+        lines.xy[lines.offsets[line] : lines.offsets[line + 1] - 1]
+        for line, own in enumerate(lines.kinds)
+        if own == kind
+    ]
 
 
 def recipe_of(
     points: Survey | ArrayLike,
     *,
     breaklines: Sequence[Breakline | ArrayLike],
-    boundary: Sequence[ArrayLike],
-    holes: Sequence[ArrayLike],
-    erase: Sequence[ArrayLike],
+    boundary: Sequence[Any],
+    holes: Sequence[Any],
+    erase: Sequence[Any],
     water: Sequence[Water],
     max_edge: float | None,
     trim: TrimPolicy,
@@ -127,12 +152,16 @@ def recipe_of(
             f"{len(xyz)} points cannot make a TIN: at least three not collinear ones are needed."
         )
     _require_simple_rings(lines)
+    rings = gather_rings(outer, "boundary")
+    if own.extent:
+        lines = LineSet.joined([lines, gather_extent(own.extent, len(rings))])
     return Recipe(
         points=xyz,
         lines=lines,
-        boundary=gather_rings(outer, "boundary"),
-        holes=gather_rings(inner, "hole"),
-        erase=gather_rings([*own.erase, *as_sequence(erase, "erase")], "erase"),
+        boundary=rings,
+        extent=gather_rings(own.extent, "extent"),
+        holes=gather_regions(inner, "hole"),
+        erase=gather_regions([*own.erase, *as_sequence(erase, "erase")], "erase"),
         max_edge=np.inf if max_edge is None else float(max_edge),
         trim=trim,
         conforming=bool(conforming),

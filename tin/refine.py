@@ -14,16 +14,22 @@ import numpy as np
 
 from . import _kernel, topology
 from .errors import PointsError
-from .model import Clip, LineInfo, Model, lines_in, mesh_of
+from .model import Clip, LineInfo, Model, lines_in, mesh_of_growth
 from .pieces import Pieces
 from .regions import Surface, edge_keys
 from .surface import TIN
 from .threads import thread_count
+from .unmended import find_unmended
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from .report import Report
+
 __all__ = ["LARGEST_MIN_ANGLE", "refine"]
+
+_MOST_ATTEMPTS = 5
+"""The last one but one splits no edge of the rim where splitting some was not to be had."""
 
 LARGEST_MIN_ANGLE = 33.0
 """Degrees; beyond about 34 refinement as good as never ends [1]_ in :func:`refine`."""
@@ -103,22 +109,24 @@ def refine(
     """
     _require_limits(min_angle, max_area, max_edge, max_vertices)
     _require_room(tin, max_area, max_vertices)
-    fixed = tin.constrained | (tin.neighbors == topology.NO_NEIGHBOR)
-    xy, flat, is_too_many = _kernel.refine(
-        tin.points,
-        tin.triangles,
-        tin.neighbors,
-        fixed,
+    goal = _Goal(
         math.radians(min_angle),
         math.inf if max_area is None else float(max_area),
         math.inf if max_edge is None else float(max_edge),
         max_vertices,
     )
-    if is_too_many:
-        raise PointsError(_too_many(max_vertices))
-    splits = _Splits.of(flat.reshape(-1, 3))
-    points = np.concatenate([tin.points, _lifted(tin, xy, splits)])
-    return _built(tin, points, splits, len(xy), thread_count(threads, len(points)))
+    kept_whole = np.empty((0, 2), np.int32)
+    for attempt in range(_MOST_ATTEMPTS):
+        found = _find_points(tin, goal, kept_whole)
+        refined = _build(tin, found, thread_count(threads, len(tin.points) + len(found.xy)))
+        if isinstance(refined, TIN):
+            return refined
+        in_the_way = refined if attempt < _MOST_ATTEMPTS - 2 else None
+        kept_whole = _more_kept_whole(tin, kept_whole, in_the_way)
+    raise PointsError(
+        "The TIN cannot be refined: parts of its rim or of its lines lie nearer to each other than "
+        "coordinates are rounded, or overlap."
+    )
 
 
 # ----------------------------------------------------------------------- options
@@ -186,6 +194,15 @@ class _Splits(NamedTuple):
         table = {_key(a, b): middle for a, b, middle in triples.tolist()}
         return cls(triples[:, :2], triples[:, 2], table)
 
+    def segments_of(self, vertices: NDArray[np.int64]) -> set[tuple[int, int]]:
+        """Return the segments, as they were before any split, that vertices were put on."""
+        segment_of: dict[int, tuple[int, int]] = {}
+        for (a, b), middle in zip(self.ends.tolist(), self.middle.tolist(), strict=True):
+            # An end that was put there itself was put on the same segment.
+            whole = segment_of.get(a) or segment_of.get(b) or _key(a, b)
+            segment_of[middle] = whole
+        return {segment_of[v] for v in vertices.tolist() if v in segment_of}
+
     def along(self, chain: list[int]) -> list[int]:
         """Return a chain with all vertices that came between its own."""
         walked = [chain[0]]
@@ -250,31 +267,118 @@ def _rim_ends(tin: TIN) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     return topology.ends(tin.triangles, triangle, corner)
 
 
+# ------------------------------------------------------------------------- points
+
+
+class _Goal(NamedTuple):
+    """What triangles must be, as the core takes it; an angle in radians."""
+
+    least_angle: float
+    largest_area: float
+    longest_edge: float
+    most_vertices: int
+
+
+class _Found(NamedTuple):
+    """What the core found.
+
+    Attributes
+    ----------
+    xy : (k, 2) float64 array
+        New points.
+    splits : _Splits
+    left : (l, 4) int32 array
+        Triangles that miss the goal, corners and why.
+    n_triangles : int
+    """
+
+    xy: NDArray[np.float64]
+    splits: _Splits
+    left: NDArray[np.int32]
+    n_triangles: int
+
+
+def _find_points(tin: TIN, goal: _Goal, kept_whole: NDArray[np.int32]) -> _Found:
+    fixed = tin.constrained | (tin.neighbors == topology.NO_NEIGHBOR)
+    xy, splits, left, n_triangles, is_too_many = _kernel.refine(
+        tin.points, tin.triangles, tin.neighbors, fixed, kept_whole, *goal
+    )
+    if is_too_many:
+        raise PointsError(_too_many(goal.most_vertices))
+    return _Found(xy, _Splits.of(splits.reshape(-1, 3)), left.reshape(-1, 4), n_triangles)
+
+
 # ------------------------------------------------------------------------- result
 
 
-def _built(tin: TIN, points: NDArray[np.float64], splits: _Splits, n_new: int, threads: int) -> TIN:
-    """Build the TIN of all points, with the rim and the lines as they were split."""
-    model = _model(tin, points, splits)
-    mesh = mesh_of(points, model.pieces, threads=threads)
+def _build(tin: TIN, found: _Found, threads: int) -> TIN | set[tuple[int, int]]:
+    """Build the TIN of all points, with the rim and the lines as they were split.
+
+    The core sees the surface only. Vertices on the rim are rounded, and beyond it, across a gap as
+    narrow as that, there can be another part of the rim: then it returns the segments of ``tin``
+    that are in the way of each other when they are split.
+    """
+    points = np.concatenate([tin.points, _lifted(tin, found.xy, found.splits)])
+    model = _model(tin, points, found.splits)
+    growth = _kernel.grow(points, threads=threads)
+    if growth.kept_row is not None:
+        return found.splits.segments_of(np.flatnonzero(growth.kept_row != np.arange(len(points))))
+    mesh = mesh_of_growth(points, growth)
+    in_the_way = _force(mesh, model, found.splits)
+    if in_the_way is not None:
+        return in_the_way
     surface, number_of = model.surface(Surface(points, *mesh.arrays(threads)))
-    if len(surface.points) != len(points):
-        raise AssertionError("refinement put points outside the surface")
-    report = replace(
-        tin.report,
-        n_vertices=len(points),
-        n_triangles=len(surface.triangles),
-        notes=(*tin.report.notes, _note(n_new, len(splits.middle))),
-    )
+    if len(surface.points) != len(points) or len(surface.triangles) != found.n_triangles:
+        return set()
+    return _refined(tin, model, surface, number_of, found)
+
+
+def _force(mesh: _kernel.Mesh, model: Model, splits: _Splits) -> set[tuple[int, int]] | None:
+    """Fix all steps of lines; return the segments in the way of that, None if there are none."""
+    steps, _ = model.pieces.steps()
+    passed, blocked = mesh.force(steps)
+    if not (len(passed) or len(blocked)):
+        return None
+    crossed = mesh.crossed(np.ascontiguousarray(steps[blocked]), only_fixed=True).reshape(-1, 3)
+    through = passed.reshape(-1, 2)
+    ends = np.concatenate([steps[blocked], crossed[:, 1:], steps[through[:, 0]]])
+    return splits.segments_of(np.concatenate([ends.ravel(), through[:, 1]]))
+
+
+def _more_kept_whole(
+    tin: TIN, kept_whole: NDArray[np.int32], in_the_way: set[tuple[int, int]] | None
+) -> NDArray[np.int32]:
+    """Add the segments in the way; or the whole rim, if none are known that are not kept yet."""
+    news = (in_the_way or set()) - set(map(tuple, kept_whole.tolist()))
+    if news:
+        return np.concatenate([kept_whole, np.array(sorted(news), np.int32)])
+    return np.sort(np.stack(_rim_ends(tin), axis=1), axis=1).astype(np.int32)
+
+
+def _refined(
+    tin: TIN, model: Model, surface: Surface, number_of: NDArray[np.int32], found: _Found
+) -> TIN:
     return TIN(
         points=surface.points,
         triangles=surface.triangles,
         neighbors=surface.neighbors,
         constrained=surface.constrained,
         vertex_of=tin.vertex_of,
-        report=report,
+        report=_report(tin, surface, found),
         lines=lines_in(model.pieces, model.infos, number_of, surface, is_whole=False),
         crs=tin.crs,
+    )
+
+
+def _report(tin: TIN, surface: Surface, found: _Found) -> Report:
+    unmended = find_unmended(surface.points, surface.triangles, found.left)
+    added = _note(len(found.xy), len(found.splits.middle))
+    return replace(
+        tin.report,
+        n_vertices=len(surface.points),
+        n_triangles=len(surface.triangles),
+        notes=(*tin.report.notes, added, *unmended.sentences()),
+        unmended=unmended,
     )
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from .frozen import Frozen
+from .unmended import Unmended
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -152,6 +153,8 @@ class Report(Frozen):
         What the reader assumed, a sentence each.
     edits : sequence of Edit
         What was done to the TIN since.
+    unmended : Unmended
+        Triangles that refinement had to leave. None after an edit, which numbers triangles anew.
     """
 
     n_rows: int
@@ -174,6 +177,7 @@ class Report(Frozen):
     skipped: Mapping[str, int] = field(default_factory=dict)
     notes: Sequence[str] = ()
     edits: Sequence[Edit] = ()
+    unmended: Unmended = field(default_factory=Unmended.none)
 
     def after_edits(
         self, vertex_of: NDArray[np.int32], n_vertices: int, n_triangles: int, edits: Sequence[Edit]
@@ -186,6 +190,7 @@ class Report(Frozen):
             n_triangles=n_triangles,
             merged_vertices=vertex_of[self.merged_rows[self.merged_offsets[:-1]]],
             edits=edits,
+            unmended=Unmended.none(),
         )
         return report.with_removed(vertex_of)
 
@@ -280,6 +285,7 @@ class Report(Frozen):
             "skipped": dict(self.skipped),
             "notes": list(self.notes),
             "edits": [edit.to_dict() for edit in self.edits],
+            "unmended": self.unmended.to_list(),
         }
 
     def _left_out(self) -> dict[str, list[int]]:

@@ -18,6 +18,7 @@ import numpy as np
 
 from . import _kernel, topology
 from .topology import NO_NEIGHBOR
+from .voronoi_exact import ExactPlane
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -43,30 +44,29 @@ class _HalfEdges(NamedTuple):
     twin: NDArray[np.int64]
 
 
-class _Triangles(NamedTuple):
-    """Twice the areas (m,) and circumcentres (m, 2), equal for cocircular neighbours."""
+class _Centres(NamedTuple):
+    """Circumcentres, (m, 2), and where they lie: inside the box, outside, or in doubt.
 
-    doubled: NDArray[np.float64]
-    centres: NDArray[np.float64]
-
-
-class _Sides(NamedTuple):
-    """Where the side of each half-edge ends, as a row of ``places``, and whether it is seen."""
+    To the bit equal for triangles of one circle.
+    """
 
     places: NDArray[np.float64]
-    ends: NDArray[np.int64]
-    on_wall: NDArray[np.bool_]
-    seen: NDArray[np.bool_]
+    where: NDArray[np.int8]
 
 
 def cells_in_box(xy: NDArray[np.float64], growth: Growth, box: Bounds) -> Rings:
     """Return the Voronoi cell of each place within a box that holds them all.
 
     1. Turn about every vertex: its half-edges in order, by walking from twin to twin.
-    2. Circumcentres, one for all triangles of a circle, which exact predicates find.
-    3. Sides that leave the box are cut at its walls; those that never enter it fall away.
-    4. What is left of the sides, end to end, is the cell; a corner of the box belongs to the
-       nearest vertex.
+    2. Circumcentres, one for all triangles of a circle, which exact predicates find. Those that
+       doubles leave in doubt, or know badly, are computed exactly and rounded.
+    3. A cell whose circumcentres all lie strictly inside the box has them as corners, in turn.
+    4. Any other cell is cut out of the box by the bisectors with its Delaunay neighbours, exactly;
+       its corners are rounded at the end.
+
+    A corner is one place, rounded once, whichever cell it is asked for: neighbours share it to the
+    bit, and so the cells tile the box, however near to each other vertices lie and however far out
+    circumcentres do.
 
     Parameters
     ----------
@@ -79,13 +79,22 @@ def cells_in_box(xy: NDArray[np.float64], growth: Growth, box: Bounds) -> Rings:
     Returns
     -------
     Rings
-        n rings, counter-clockwise, the first corner not repeated; no two corners in a row equal.
+        n rings, counter-clockwise, the first corner not repeated; no two corners in a row equal. A
+        cell narrower than the rounding of coordinates can be empty.
     """
+    plane = ExactPlane(xy, box)
     edges = _half_edges(growth.triangles, growth.neighbors)
     order = _turning_order(edges, len(xy), len(growth.triangles))
-    sides = _sides(xy, growth.triangles, edges, box)
-    rings = _without_repeats(*_walked(edges, sides, order), len(xy))
-    return _with_area(_with_corners(rings, xy, box))
+    centres, is_cut = _centres_and_cut_cells(xy, growth.triangles, edges, box, plane)
+    cut = _cut_cells(plane, edges, order, is_cut)
+    inner = order[~is_cut[edges.start[order]]]
+    counts = np.bincount(edges.start[inner], minlength=len(xy))
+    counts[is_cut] = cut.counts
+    is_of_cut = np.repeat(is_cut, counts)
+    coords = np.empty((len(is_of_cut), 2))
+    coords[is_of_cut] = cut.coords
+    coords[~is_of_cut] = centres[edges.left[inner]]
+    return _with_area(_without_repeats(coords, np.repeat(np.arange(len(xy)), counts), len(xy)))
 
 
 def signed_areas(rings: Rings) -> NDArray[np.float64]:
@@ -146,14 +155,67 @@ def _turning_order(edges: _HalfEdges, n_vertices: int, n_triangles: int) -> NDAr
 
 # ---------------------------------------------------------------- circumcentres
 
+_INSIDE, _DOUBTFUL, _BEYOND = 1, 0, -1
 
-def _circles(
-    xy: NDArray[np.float64], triangles: NDArray[np.int32], edges: _HalfEdges
-) -> _Triangles:
-    """Return areas and circumcentres, taken from the corner between the two shorter sides.
+_LARGEST_CONDITION = 64.0
+"""By which the rounding of a circumcentre may be larger than that of its coordinates."""
 
-    There the rounding of the area is least, relative to the longest side. An area that rounds to
-    nothing leaves no circumcentre: NaN, which is nowhere.
+_LARGEST_TOLD = 2.0**45
+"""Condition up to which the bound of a circumcentre's error holds."""
+
+_ROUNDING = 16 * np.finfo(np.float64).eps
+"""Of a circumcentre in doubles, relative to its terms; amply above what they add up to."""
+
+
+def _centres_and_cut_cells(
+    xy: NDArray[np.float64],
+    triangles: NDArray[np.int32],
+    edges: _HalfEdges,
+    box: Bounds,
+    plane: ExactPlane,
+) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    """Return the circumcentres of all triangles, and which vertices' cells the box may cut.
+
+    Corners of cells that are cut are exact; so must be those that other cells share with them.
+    """
+    first = _on_one_circle(xy, triangles, edges)
+    found = _circles(xy, triangles, box)
+    centres = _Centres(found.places[first], found.where[first])
+    is_exact = centres.where == _DOUBTFUL
+    _set_exactly(centres, first, is_exact, triangles, plane)
+    is_cut = np.zeros(len(xy), np.bool_)
+    is_cut[triangles[centres.where == _BEYOND]] = True
+    rim = np.arange(triangles.size, len(edges.start))
+    is_cut[edges.start[rim]] = is_cut[edges.start[edges.twin[rim]]] = True
+    corners = is_cut[triangles].sum(axis=1)
+    is_shared = np.bincount(first, (corners > 0) & (corners < 3), len(triangles)) > 0
+    is_shared = is_shared[first] & ~is_exact & (centres.where == _INSIDE)
+    _set_exactly(centres, first, is_shared, triangles, plane)
+    return centres.places, is_cut
+
+
+def _set_exactly(
+    centres: _Centres,
+    first: NDArray[np.int64],
+    which: NDArray[np.bool_],
+    triangles: NDArray[np.int32],
+    plane: ExactPlane,
+) -> None:
+    """Compute some circumcentres exactly, and where they lie; ``which`` holds whole circles."""
+    for t in np.flatnonzero(which & (first == np.arange(len(first)))).tolist():
+        place = plane.centre(*triangles[t].tolist())
+        centres.where[t] = _BEYOND if place is None else _INSIDE
+        if place is not None:
+            centres.places[t] = place
+    centres.places[which] = centres.places[first[which]]
+    centres.where[which] = centres.where[first[which]]
+
+
+def _circles(xy: NDArray[np.float64], triangles: NDArray[np.int32], box: Bounds) -> _Centres:
+    """Return circumcentres, and what is sure of where they lie; doubtful if not known well.
+
+    They are computed from the corner between the two shorter sides, where the rounding of the area
+    is least, relative to the longest side.
     """
     corners = [xy[triangles[:, k]] for k in range(3)]
     lengths = [((corners[k - 2] - corners[k - 1]) ** 2).sum(axis=1) for k in range(3)]
@@ -161,12 +223,24 @@ def _circles(
     rows = np.arange(len(triangles))
     origin, one, other = (xy[triangles[rows, (apex + k) % 3]] for k in range(3))
     u, w = one - origin, other - origin
-    doubled = u[:, 0] * w[:, 1] - u[:, 1] * w[:, 0]
-    weighted = u * (w**2).sum(axis=1)[:, None] - w * (u**2).sum(axis=1)[:, None]
-    turned = np.stack([-weighted[:, 1], weighted[:, 0]], axis=1)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        centres = origin + turned / (2.0 * doubled)[:, None]
-    return _Triangles(doubled, centres[_on_one_circle(xy, triangles, edges)])
+    left, right = u[:, 0] * w[:, 1], u[:, 1] * w[:, 0]
+    uu, ww = (u**2).sum(axis=1), (w**2).sum(axis=1)
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        condition = (np.abs(left) + np.abs(right)) / (left - right)
+        half = 0.5 / (left - right)
+        x = origin[:, 0] + half * (w[:, 1] * uu - u[:, 1] * ww)
+        y = origin[:, 1] + half * (u[:, 0] * ww - w[:, 0] * uu)
+        longer = np.maximum(uu, ww)
+        terms = 2.0 * condition * longer * np.sqrt(longer) * half
+        error = _ROUNDING * (terms + np.maximum(np.abs(x), np.abs(y)))
+        depth = np.minimum(
+            np.minimum(x - box.xmin, box.xmax - x), np.minimum(y - box.ymin, box.ymax - y)
+        )
+        is_told = (condition > 0) & (condition < _LARGEST_TOLD)
+        is_inside = is_told & (depth > error) & (condition < _LARGEST_CONDITION)
+        is_beyond = is_told & (depth < -error)
+    where = is_inside.astype(np.int8) - is_beyond.astype(np.int8)
+    return _Centres(np.stack([x, y], axis=1), where)
 
 
 def _on_one_circle(
@@ -197,97 +271,55 @@ def _first_of_group(
             first = first[first]
 
 
-# ---------------------------------------------------------------- the walls of the box
-
-
-def _sides(
-    xy: NDArray[np.float64], triangles: NDArray[np.int32], edges: _HalfEdges, box: Bounds
-) -> _Sides:
-    circles = _circles(xy, triangles, edges)
-    low, high = np.array([box.xmin, box.ymin]), np.array([box.xmax, box.ymax])
-    within = np.all((circles.centres >= low) & (circles.centres <= high), axis=1)
-    is_in = np.append(within, False)[edges.left]
-    crossing = ~(is_in & is_in[edges.twin])
-    one = np.flatnonzero(crossing & (edges.twin > np.arange(len(edges.twin))))
-    other = edges.twin[one]
-    middle, normal = _bisectors(xy[edges.start[one]], xy[edges.start[other]])
-    until, last = _at_wall(middle, normal, low, high)
-    since, first = _at_wall(middle, -normal, low, high)
-    begin = np.maximum(-since, -_reach(xy, triangles, circles.doubled, edges, other))
-    end = np.minimum(until, _reach(xy, triangles, circles.doubled, edges, one))
-    seen = np.ones(len(edges.twin), np.bool_)
-    seen[one] = seen[other] = is_in[one] | is_in[other] | (begin < end)
-    ends = edges.left.copy()
-    for half, row in ((one, len(within)), (other, len(within) + len(one))):
-        ends[half] = np.where(is_in[half], ends[half], row + np.arange(len(one)))
-    return _Sides(np.concatenate([circles.centres, last, first]), ends, ~is_in, seen)
-
-
-def _bisectors(
-    start: NDArray[np.float64], end: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the middles of edges, and the edges turned to the left."""
-    step = end - start
-    return start + 0.5 * step, np.stack([-step[:, 1], step[:, 0]], axis=1)
-
-
-def _reach(
-    xy: NDArray[np.float64],
-    triangles: NDArray[np.int32],
-    doubled: NDArray[np.float64],
-    edges: _HalfEdges,
-    half: NDArray[np.int64],
-) -> NDArray[np.float64]:
-    """Return how far along its bisector the circumcentre on the left of each half-edge lies.
-
-    In lengths of the edge: half the cotangent of the angle opposite. Infinite on the outer side
-    of the hull, and where the triangle's area rounds to nothing.
-    """
-    reach = np.full(len(half), np.inf)
-    is_met = edges.left[half] != _OUTSIDE
-    half = half[is_met]
-    apex = xy[triangles.ravel()[half]]
-    one, other = xy[edges.start[half]] - apex, xy[edges.start[edges.twin[half]]] - apex
-    with np.errstate(divide="ignore"):
-        twice = (one * other).sum(axis=1) / np.maximum(doubled[edges.left[half]], 0.0)
-    reach[is_met] = 0.5 * twice
-    return reach
-
-
-def _at_wall(
-    middle: NDArray[np.float64],
-    normal: NDArray[np.float64],
-    low: NDArray[np.float64],
-    high: NDArray[np.float64],
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return where rays from inside a box meet its wall: how far along, and the place."""
-    wall = np.where(normal > 0, high, low)
-    along = np.full(normal.shape, np.inf)
-    np.divide(wall - middle, normal, out=along, where=normal != 0)
-    axis = np.argmin(along, axis=1)
-    rows = np.arange(len(along))
-    reach = along[rows, axis]
-    places = np.clip(middle + normal * reach[:, None], low, high)
-    places[rows, axis] = wall[rows, axis]
-    return reach, places
-
-
 # ---------------------------------------------------------------- rings
 
 
-def _walked(
-    edges: _HalfEdges, sides: _Sides, order: NDArray[np.int64]
-) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Return the corners of the cells: ends of sides, and beginnings of those that enter the box.
+class _CutCells(NamedTuple):
+    """Corners of cells one after the other, and how many each has."""
 
-    The second array tells the cell of each.
-    """
-    order = order[sides.seen[order]]
-    before = edges.twin[order]
-    stops = np.stack([sides.ends[before], sides.ends[order]], axis=1).ravel()
-    is_corner = np.stack([sides.on_wall[before], np.ones(len(order), np.bool_)], axis=1).ravel()
-    cell = np.repeat(edges.start[order], 2)
-    return sides.places[stops[is_corner]], cell[is_corner]
+    coords: NDArray[np.float64]
+    counts: list[int]
+
+
+def _cut_cells(
+    plane: ExactPlane,
+    edges: _HalfEdges,
+    order: NDArray[np.int64],
+    is_cut: NDArray[np.bool_],
+) -> _CutCells:
+    """Return the cells that the box may cut, in the order of their vertices."""
+    mine = order[is_cut[edges.start[order]]]
+    neighbors = edges.start[edges.twin[mine]].tolist()
+    ends = np.cumsum(np.bincount(edges.start[mine], minlength=len(is_cut)))[is_cut].tolist()
+    coords: list[tuple[float, float]] = []
+    counts = []
+    for vertex, begin, end in zip(
+        np.flatnonzero(is_cut).tolist(), [0, *ends[:-1]], ends, strict=True
+    ):
+        ring = _without_spikes(plane.cell(vertex, neighbors[begin:end]))
+        coords += ring
+        counts.append(len(ring))
+    return _CutCells(np.array(coords, np.float64).reshape(-1, 2), counts)
+
+
+def _without_spikes(ring: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Drop corners that rounding made equal, and those to which a ring goes out and back again."""
+    kept: list[tuple[float, float]] = []
+    for corner in ring:
+        _add_corner(kept, corner)
+    while len(kept) >= 2 and (kept[0] == kept[-1] or kept[1] == kept[-1] or kept[0] == kept[-2]):
+        if kept[1] == kept[-1] and kept[0] != kept[-1]:
+            kept.pop(0)
+        else:
+            kept.pop()
+    return kept
+
+
+def _add_corner(ring: list[tuple[float, float]], corner: tuple[float, float]) -> None:
+    if len(ring) >= 2 and ring[-2] == corner:
+        ring.pop()
+    elif not ring or ring[-1] != corner:
+        ring.append(corner)
 
 
 def _without_repeats(coords: NDArray[np.float64], cell: NDArray[np.int64], n_cells: int) -> Rings:
@@ -313,26 +345,3 @@ def _following(offsets: NDArray[np.int64]) -> NDArray[np.int64]:
     is_full = np.diff(offsets) > 0
     following[offsets[1:][is_full] - 1] = offsets[:-1][is_full]
     return following
-
-
-def _with_corners(rings: Rings, xy: NDArray[np.float64], box: Bounds) -> Rings:
-    """Add each corner of the box to the cell of the nearest vertex."""
-    coords, offsets = rings
-    for x in (box.xmin, box.xmax):
-        for y in (box.ymin, box.ymax):
-            corner = np.array([x, y])
-            owner = int(np.argmin(((xy - corner) ** 2).sum(axis=1)))
-            part = slice(offsets[owner], offsets[owner + 1])
-            if (coords[part] == corner).all(axis=1).any():
-                continue
-            ring = _around_mean(np.concatenate([coords[part], [corner]]))
-            coords = np.concatenate([coords[: part.start], ring, coords[part.stop :]])
-            offsets = offsets + (np.arange(len(offsets)) > owner)
-    return Rings(coords, offsets)
-
-
-def _around_mean(coords: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Sort the corners of a convex polygon counter-clockwise."""
-    x, y = (coords - coords[0] - (coords - coords[0]).mean(axis=0)).T
-    turned: NDArray[np.float64] = coords[np.argsort(np.arctan2(y, x), kind="stable")]
-    return turned

@@ -9,9 +9,10 @@
 //      encroach upon one, that segment is split instead.
 //
 // At an input vertex with a small angle, segments are split on circles around it whose radii are
-// powers of two, so that both sides are cut alike and do not cut each other on and on. Triangles
-// that only the angles of the input make bad are left, and so are those that could only be mended
-// by edges much shorter than any of the input: this is why it always ends.
+// powers of two, so that both sides are cut alike and do not cut each other on and on [Ruppert 1995].
+// A triangle whose shortest edge joins two such segments at one circle, across the mouth of an angle
+// below 60 degrees, is left [Miller, Pav, Walkington 2003], and so is one that only edges much
+// shorter than any of the input could mend: this is why it always ends.
 #pragma once
 
 #include <algorithm>
@@ -74,6 +75,22 @@ class Refiner {
 
   // In order; the halves of a segment come after it.
   const std::vector<Split>& splits() const { return splits_; }
+
+  // Never split the segment between two vertices.
+  void keep_whole(std::int32_t a, std::int32_t b) { stuck_.insert(key_of(a, b)); }
+
+  // Why a triangle stays that misses the goal.
+  enum class Why : std::int32_t { kAngleBetweenSegments, kNoRoom, kSegmentInTheWay };
+
+  // Call `visit(t, why)` for every triangle of the surface that misses the goal.
+  template <typename Visit>
+  void visit_left(Visit&& visit) const {
+    for (std::uint32_t t = 0; t < mesh_.triangle_slots(); ++t) {
+      if (!is_surface(t)) continue;
+      const TurnedTriangle turned = turned_of(t);
+      if (shape_.is_large(turned) || shape_.has_small_angle(turned)) visit(t, why_left(t, turned));
+    }
+  }
 
  private:
   static constexpr std::int32_t kNoStep = -1;
@@ -176,6 +193,15 @@ class Refiner {
     return shape_.has_small_angle(turned) && !is_angle_given(t, turned.place_of_apex);
   }
 
+  Why why_left(std::uint32_t t, const TurnedTriangle& turned) const {
+    if (!is_bad(t, turned)) return Why::kAngleBetweenSegments;
+    const Point p = shape_.remedy(turned);
+    const double squared_radius = squared_distance(p, turned.p);
+    if (!std::isfinite(squared_radius) || squared_radius < squared_floor_) return Why::kNoRoom;
+    const bool is_in_the_way = is_given_up(t) || walk(t, p).is_blocked;
+    return is_in_the_way ? Why::kSegmentInTheWay : Why::kNoRoom;
+  }
+
   // Whether the small angle is one between segments that meet, seen from their own vertex or, on
   // one of the circles around it, from elsewhere.
   bool is_angle_given(std::uint32_t t, int place_of_apex) const {
@@ -188,18 +214,24 @@ class Refiner {
       if (common != steps_[u][0] && common != steps_[u][1]) continue;
       const double one = squared_distance(point(common), point(mesh_.from(base)));
       const double other = squared_distance(point(common), point(mesh_.to(base)));
-      if (std::abs(one - other) <= kSameCircle * one) return true;
+      const double dot = dot_product(point(common), point(mesh_.from(base)), point(mesh_.to(base)));
+      if (std::abs(one - other) <= kSameCircle * one && dot > kSmallAngle * one) return true;
     }
     return false;
   }
 
   static constexpr double kSameCircle = 0.001;  // far beyond rounding, far below a power of two
+  static constexpr double kSmallAngle = 0.5;    // cosine: wider ones do no harm [Ruppert 1995]
 
   // ----------------------------------------------------------------- segments
 
   void serve(const SegmentWork& work) {
     if (!is_segment(work.edge, work.from, work.to)) return;
-    if (work.is_ordered || must_split(work.edge)) split(work.edge);
+    if (work.is_ordered || must_split(work.edge)) {
+      split(work.edge);
+    } else {  // what was beside it is gone, and its triangles were left to it
+      for (const MeshEdge side : {work.edge, mesh_.twin(work.edge)}) examine(triangle_of(side));
+    }
   }
 
   bool is_segment(MeshEdge e, std::int32_t a, std::int32_t b) const {
