@@ -23,6 +23,7 @@ from .inputs import (
     PutVertices,
     SetElevations,
     count_breaklines,
+    has_own_heights,
 )
 from .lines import Breakline
 from .points import as_points
@@ -506,7 +507,7 @@ def _with_elevations(
     places = inputs.recipe.points[np.searchsorted(inputs.rows, rows)]
     places[:, 2] = wanted[rows]
     of_lines = height_of[state.line_vertices(inputs)]
-    on_lines = np.flatnonzero(~np.isnan(of_lines) & ~np.isnan(inputs.recipe.lines.heights))
+    on_lines = np.flatnonzero(~np.isnan(of_lines) & has_own_heights(inputs.recipe.lines))
     lines = (SetElevations(on_lines, of_lines[on_lines]),) if len(on_lines) else ()
     return Change(moved=rows, places=places, lines=lines)
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from .errors import LinesError
 from .frozen import Frozen
-from .line_set import LineSet, gather_lines
+from .line_set import ABOVE_ALL, LineSet, gather_lines
 from .lines import Breakline
 
 if TYPE_CHECKING:
@@ -34,6 +34,7 @@ __all__ = [
     "PutVertices",
     "SetElevations",
     "count_breaklines",
+    "has_own_heights",
 ]
 
 NO_ROWS = np.empty(0, np.int64)
@@ -131,6 +132,13 @@ def count_breaklines(lines: LineSet) -> int:
     return is_other.index(True) if any(is_other) else len(is_other)
 
 
+def has_own_heights(lines: LineSet) -> NDArray[np.bool_]:
+    """Tell which vertices of lines have heights that can change: not draped ones, nor water's."""
+    is_level = (lines.priorities == ABOVE_ALL)[lines.line_of]
+    has_own: NDArray[np.bool_] = ~np.isnan(lines.heights) & ~is_level
+    return has_own
+
+
 class AddLine(NamedTuple):
     """A breakline behind the others."""
 
@@ -167,8 +175,7 @@ class PutVertices(NamedTuple):
         """Return the changed lines."""
         xy, heights = lines.xy.copy(), lines.heights.copy()
         xy[self.rows] = self.point[:2]
-        has_height = self.rows[~np.isnan(heights[self.rows])]
-        heights[has_height] = self.point[2]
+        heights[self.rows[has_own_heights(lines)[self.rows]]] = self.point[2]
         return lines._replace(xy=xy, heights=heights)
 
 

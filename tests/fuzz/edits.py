@@ -48,7 +48,9 @@ class Tracked:
         there = [row for row in self.rows if row is not None]
         points = np.array(there, float).reshape(-1, 3)
         lines = [ts.Breakline(**line) for line in self.lines]
-        return ts.triangulate(points, breaklines=lines, **self.rings, **self.options)
+        rings = dict(self.rings)
+        rings["water"] = [ts.Water(ring, 3.0) for ring in rings.get("water", [])]
+        return ts.triangulate(points, breaklines=lines, **rings, **self.options)
 
     def changed(self) -> Tracked:
         """Return a copy to be changed; it remembers this one."""
@@ -62,7 +64,7 @@ class Tracked:
     def chains(self) -> list[list[list[float]]]:
         """All lists of vertices of lines and rings, to be changed in place."""
         return [line["coords"] for line in self.lines] + [
-            ring for kind in ("boundary", "holes") for ring in self.rings.get(kind, [])
+            ring for kind in ("boundary", "holes", "water") for ring in self.rings.get(kind, [])
         ]
 
 
@@ -104,7 +106,7 @@ def generate(rng: np.random.Generator) -> Case:
         low, high = np.min(pool, axis=0), np.max(pool, axis=0)
         cut = low + (high - low) * 0.3
         ring = [[cut[0], cut[1]], [high[0], cut[1]], [high[0], high[1]], [cut[0], high[1]]]
-        kind_of_ring = str(rng.choice(["boundary", "holes", "erase"]))
+        kind_of_ring = str(rng.choice(["boundary", "holes", "erase", "water"]))
         case["rings"] = {kind_of_ring: [[[float(x) for x in corner] for corner in ring]]}
     if rng.random() < 0.1:
         case["options"]["max_edge"] = float(side * rng.uniform(0.3, 1.0)) or 1.0
@@ -275,7 +277,7 @@ def _remove(tin: ts.TIN, new: Tracked, vertices: list[int], edit: dict[str, Any]
         new.rows[row] = None
     for line in new.lines:
         line["coords"] = _without(line["coords"], places, can_close=True)
-    for kind in ("boundary", "holes"):
+    for kind in ("boundary", "holes", "water"):
         rings = new.rings.get(kind, [])
         new.rings |= {kind: [_without(r, places, can_close=False) for r in rings]} if rings else {}
     return new, lambda one: one.remove(vertices), True
