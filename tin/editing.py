@@ -26,8 +26,10 @@ from .inputs import (
     has_own_heights,
 )
 from .lines import Breakline
-from .points import as_points
+from .options import is_one_of, is_whole_number, shown
+from .points import as_elevations, as_points
 from .state import State, build_state
+from .tables import as_table
 from .version import Version
 
 if TYPE_CHECKING:
@@ -205,8 +207,8 @@ class Session:
         PointsError
             If there are not so many.
         """
-        if isinstance(count, bool) or not isinstance(count, int) or count < 1:
-            raise PointsError(f"Invalid count {count!r}: a whole number >= 1 is needed.")
+        if not is_whole_number(count) or count < 1:
+            raise PointsError(f"Invalid count {shown(count)}: a whole number >= 1 is needed.")
         if count > len(self.edits):
             raise PointsError(f"{count} edits cannot be taken back: {len(self.edits)} were made.")
         left = len(self.edits) - count
@@ -239,10 +241,11 @@ class Session:
             return np.array([only], np.int64)
         try:
             numbers = np.atleast_1d(np.asarray(vertices))
-        except ValueError:
+        except Exception:
             numbers = np.empty(0, np.float64)
-        if numbers.ndim != 1 or numbers.dtype.kind not in "iu":
-            raise PointsError(f"Invalid vertices {vertices!r}: whole numbers are needed.")
+        is_masked = isinstance(vertices, np.ma.MaskedArray)
+        if is_masked or numbers.ndim != 1 or numbers.dtype.kind not in "iu":
+            raise PointsError(f"Invalid vertices {shown(vertices)}: whole numbers are needed.")
         wrong = (numbers < 0) | (numbers >= count)
         if wrong.any():
             raise PointsError(
@@ -388,8 +391,8 @@ class Session:
         crossing: str = "split",
     ) -> _Done:
         line = Breakline(coords, kind=kind, priority=priority, name=name)  # type: ignore[arg-type]
-        if crossing not in ("split", "error"):
-            raise LinesError(f"Invalid crossing '{crossing}': one of split, error.")
+        if not is_one_of(crossing, ("split", "error")):
+            raise LinesError(f"Invalid crossing {shown(crossing)}: one of split, error.")
         change = Change(lines=(AddLine(line),))
         inputs = self._inputs_now().after([change])
         found = build_state(inputs)
@@ -402,8 +405,8 @@ class Session:
         return _Done(change, found, notes=tuple(met))
 
     def _remove_breakline(self, number: int) -> _Done:
-        if isinstance(number, bool) or not isinstance(number, int | np.integer):
-            raise LinesError(f"Invalid breakline {number!r}: a whole number is needed.")
+        if not is_whole_number(number):
+            raise LinesError(f"Invalid breakline {shown(number)}: a whole number is needed.")
         if not 0 <= number < count_breaklines(self._inputs_now().recipe.lines):
             raise LinesError(f"There is no breakline {number}.")
         change = Change(lines=(DropLines((int(number),)),))
@@ -430,9 +433,9 @@ def _kept(value: Any) -> Any:
 
 
 def _policy(policy: str) -> DuplicatePolicy:
-    if policy not in get_args(DuplicatePolicy):
+    if not is_one_of(policy, get_args(DuplicatePolicy)):
         allowed = ", ".join(get_args(DuplicatePolicy))
-        raise PointsError(f"Invalid duplicates '{policy}': one of {allowed}.")
+        raise PointsError(f"Invalid duplicates {shown(policy)}: one of {allowed}.")
     return cast("DuplicatePolicy", policy)
 
 
@@ -442,36 +445,26 @@ def _distinct(vertices: NDArray[np.int64]) -> NDArray[np.int64]:
     return vertices
 
 
-def _one_point(point: ArrayLike) -> NDArray[np.float64]:
-    try:
-        row = np.atleast_2d(np.asarray(point))
-    except ValueError:
-        row = np.empty((0, 0))
-    if row.shape != (1, 3):
+def _one_point(point: Any) -> NDArray[np.float64]:
+    """Return a point given alone, or as a table of one row."""
+    values, is_masked = as_table(point, "Points")
+    if is_masked is not None:
+        raise PointsError("The point is masked: one, easting, northing, elevation, is needed.")
+    rows = as_points(np.atleast_2d(values))
+    if len(rows) != 1:
         raise PointsError(
-            f"Invalid point {point!r}: three numbers are needed, easting, northing, elevation."
+            f"There are {len(rows)} points: one, easting, northing, elevation, is needed."
         )
-    place: NDArray[np.float64] = as_points(row)[0]
-    return place
+    return rows[0]
 
 
 def _elevations(z: ArrayLike, count: int) -> NDArray[np.float64]:
-    try:
-        heights = np.asarray(z, np.float64) + 0.0  # no -0.0
-    except (TypeError, ValueError, OverflowError):
-        raise PointsError(f"Invalid heights {_shown(z)}: numbers are needed.") from None
-    if heights.ndim > 1 or (heights.ndim == 1 and len(heights) != count):
+    heights = as_elevations(z) + 0.0  # no -0.0
+    if heights.ndim == 1 and len(heights) != count:
         raise PointsError(
             f"{heights.size} heights for {count} vertices: one each, or one for all, is needed."
         )
-    if not np.isfinite(heights).all():
-        raise PointsError("A height is not finite: every coordinate must be a finite number.")
     return heights
-
-
-def _shown(value: object) -> str:
-    text = str(value) if isinstance(value, str) else type(value).__name__
-    return text if len(text) < 40 else f"{text[:40]}..."
 
 
 # -------------------------------------------------------------------------- steps
@@ -593,6 +586,6 @@ def _taken_apart(edit: Edit | Mapping[str, Any], number: int) -> tuple[str, dict
     operation = edit.get("op")
     if operation not in OPERATIONS:
         raise PointsError(
-            f"Edit {number} has op {operation!r}: one of {', '.join(OPERATIONS)} is needed."
+            f"Edit {number} has op {shown(operation)}: one of {', '.join(OPERATIONS)} is needed."
         )
     return operation, arguments

@@ -48,7 +48,8 @@ class NotLocal(Exception):
 def is_local(recipe: Recipe) -> bool:
     """Tell whether an edit away from the lines changes the triangulation there alone."""
     lines, options = recipe.lines, recipe.options
-    is_simple = options.snap == 0.0 and not recipe.erase and not recipe.conforming
+    has_all_rows = not recipe.erase and recipe.is_masked is None
+    is_simple = options.snap == 0.0 and has_all_rows and not recipe.conforming
     has_own_heights = bool(np.isfinite(lines.priorities).all() and np.isfinite(lines.heights).all())
     return is_simple and has_own_heights and not recipe.is_clipped
 

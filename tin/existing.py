@@ -54,6 +54,7 @@ def recipe_of_triangles(version: Version) -> Recipe:
     )
     return Recipe(
         points=as_points(surface.points),
+        is_masked=None,
         lines=_line_set(
             surface.points,
             [chain for _, _, chain in ordered] + rim,

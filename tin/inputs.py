@@ -108,6 +108,9 @@ class Inputs(Frozen):
         n_rows = self.n_rows + sum(len(change.added) for change in changes)
         points, is_there = np.empty((n_rows, 3)), np.zeros(n_rows, np.bool_)
         points[self.rows], is_there[self.rows] = self.recipe.points, True
+        is_masked = np.zeros(n_rows, np.bool_)
+        if self.recipe.is_masked is not None:
+            is_masked[self.rows] = self.recipe.is_masked
         end, lines = self.n_rows, self.recipe.lines
         for change in changes:
             points[end : end + len(change.added)] = change.added
@@ -117,7 +120,8 @@ class Inputs(Frozen):
             is_there[change.removed] = False
             for line_change in change.lines:
                 lines = line_change.apply(lines)
-        recipe = replace(self.recipe, points=points[is_there])
+        masked = is_masked[is_there] if is_masked[is_there].any() else None
+        recipe = replace(self.recipe, points=points[is_there], is_masked=masked)
         if lines is not self.recipe.lines:
             recipe = recipe.with_lines(lines)
         return Inputs(recipe=recipe, rows=np.flatnonzero(is_there), n_rows=n_rows)
