@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
@@ -21,6 +21,7 @@ from .line_set import (
     gather_lines,
     gather_regions,
     gather_rings,
+    require_length,
 )
 from .options import is_finite_number, is_one_of, shown
 from .points import as_masked_points
@@ -54,6 +55,8 @@ class Recipe:
         The rings of each region: the outer one, then its islands.
     max_edge : float
         Infinity for none.
+    has_rim : bool
+        Whether some of the lines are edges of the rim of existing triangles.
     """
 
     points: NDArray[np.float64]
@@ -69,6 +72,7 @@ class Recipe:
     options: LineOptions
     crs: CRS | None
     elevation_unit: Unit | None = None
+    has_rim: bool = False
     skipped: Mapping[str, int] = field(default_factory=dict)
     notes: Sequence[str] = ()
 
@@ -77,6 +81,43 @@ class Recipe:
         """Whether there are only points, all of which count, and all of the hull is the surface."""
         is_whole = not (self.lines.kinds or self.erase or np.isfinite(self.max_edge))
         return is_whole and self.is_masked is None
+
+    @property
+    def is_clipped(self) -> bool:
+        """Whether only a part of the hull may be the surface."""
+        has_rings = bool(self.boundary or self.extent or self.holes or self.has_rim)
+        return has_rings or bool(np.isfinite(self.max_edge))
+
+    def with_lines(self, lines: LineSet) -> Recipe:
+        """Return the recipe with other lines, rings among them.
+
+        Raises
+        ------
+        LinesError
+            If all vertices of a line are at one place, or a ring crosses itself.
+        """
+        require_length(lines)
+        _require_simple_rings(lines)
+        if self.has_rim:
+            return replace(self, lines=lines)
+        rings = {kind: _rings_of(lines, kind) for kind in ("boundary", "hole")}
+        corners = iter(rings["hole"])
+        return replace(
+            self,
+            lines=lines,
+            boundary=rings["boundary"][: len(self.boundary)],
+            extent=rings["boundary"][len(self.boundary) :],
+            holes=[[next(corners) for _ in hole] for hole in self.holes],
+        )
+
+
+def _rings_of(lines: LineSet, kind: str) -> list[NDArray[np.float64]]:
+    """Return the rings of a kind, the first corner not repeated."""
+    return [
+        lines.xy[lines.offsets[line] : lines.offsets[line + 1] - 1]
+        for line, own in enumerate(lines.kinds)
+        if own == kind
+    ]
 
 
 def recipe_of(
@@ -186,7 +227,7 @@ def _require_options(
 
 def _require_simple_rings(lines: LineSet) -> None:
     for line, kind in enumerate(lines.kinds):
-        if kind in ("hard", "soft"):
+        if kind in ("hard", "soft") or lines.sources[line] < 0:
             continue
         rows = np.arange(lines.offsets[line], lines.offsets[line + 1], dtype=np.int32)
         corners = np.append(rows[:-1], rows[0]) - rows[0]

@@ -372,7 +372,6 @@ def _refined(
         lines=lines_in(model.pieces, model.infos, number_of, surface, is_whole=False),
         crs=tin.crs,
         elevation_unit=tin.elevation_unit,
-        inputs=model,
     )
 
 
