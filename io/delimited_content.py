@@ -188,7 +188,7 @@ def _objections(candidate: _Candidate, columns: Sequence[Column]) -> Iterator[st
     points = candidate.coordinates(columns)
     used = columns[candidate.start : candidate.start + 3]
     if len(points) and not plausible_elevations(points[:, 2]):
-        low, high = np.percentile(points[:, 2], [5, 95])
+        low, high = np.percentile(points[:, 2], [5, 95], method="nearest")
         yield f"would have elevations of {low:,.0f} to {high:,.0f}"
     if any(column.is_padded for column in used):
         yield "would have coordinates with leading zeros"
@@ -231,8 +231,8 @@ def relief_and_extent(points: NDArray[np.float64]) -> tuple[float, float]:
     """Return relief and extent, outliers aside."""
     if len(points) == 0:
         return 0.0, 0.0
-    low, high = np.percentile(points, [5, 95], axis=0)
-    with np.errstate(over="ignore"):
+    low, high = np.percentile(points, [5, 95], axis=0, method="nearest")
+    with np.errstate(over="ignore", invalid="ignore"):
         span = high - low
         return float(span[2]), float(np.hypot(span[0], span[1]))
 
@@ -262,10 +262,12 @@ def _customary(
     xyz = next((one for one in left if one.start == 0 and not one.is_northing_first), None)
     if xyz is None or len(left) < 2:
         return None, ""
-    if is_scan:
+    is_numbered = any(one.start > 0 for one in left)
+    first, second, third = (column.is_whole for column in columns[:3])
+    if is_scan and (not is_numbered or (first == second != third)):
         return xyz, ", the custom for files of this kind"
     may_be_code = len(columns) in (4, 5) and columns[3].is_whole
-    has_other = any(one.start > 0 for one in left) or xyz.word != "XYZ" or may_be_code
+    has_other = is_numbered or xyz.word != "XYZ" or may_be_code
     return (None, "") if has_other else (xyz, ", the custom for columns of numbers alone")
 
 

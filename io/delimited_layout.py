@@ -14,6 +14,7 @@ from .delimited_columns import (
     Columns,
     columns_by_header,
     columns_by_word,
+    list_names,
     meanings,
     role_of,
     unit_of,
@@ -435,7 +436,7 @@ def _fitted_header(
     if wishes.columns is not None and not isinstance(wishes.columns, Mapping):
         return []
     raise ReadError(
-        f"the header names {len(header)} columns ({', '.join(header)}), but rows have {count}: "
+        f"the header names {len(header)} columns ({list_names(header)}), but rows have {count}: "
         "say with the option columns what they are, and check delimiter and decimal mark."
     )
 
@@ -448,9 +449,9 @@ def _columns_by_name(
         return columns_by_word(wishes.columns, header, count, units)
     columns = columns_by_header(header, units)
     if columns is None:
-        found = [f"{role_of(name)} '{name}'" for name in header if role_of(name)]
+        found = [f"{role_of(name)} '{name}'" for name in header[:_TOP_LINES] if role_of(name)]
         raise ReadError(
-            f"the header ({', '.join(header)}) does not name easting, northing and elevation "
+            f"the header ({list_names(header)}) does not name easting, northing and elevation "
             f"(known: {', '.join(found) or 'none of it'}): say with the option columns which "
             "columns they are."
         )

@@ -100,7 +100,10 @@ def _count_numbers(cells: Sequence[str], delimiter: str) -> int:
     """Count the cells that are numbers with either decimal mark, or stand in place of one."""
     marks = "." if delimiter == "," else ".,"
     return sum(
-        bool(cell) and not _clings(cell) and any(is_number_like(cell, mark) for mark in marks)
+        bool(cell)
+        and not _clings(cell)
+        and not (delimiter == "," and " " in cell)  # what groups 4 024 240 is no comma
+        and any(is_number_like(cell, mark) for mark in marks)
         for cell in cells
     )
 

@@ -45,7 +45,6 @@ class Reading:
     columns: str | dict[str, str | int] | None = None
     delimiter: str | None = None
     decimal: str | None = None
-    nodata: float | None = None
     skip_bad: bool | None = None
     band: int | None = None
     window: tuple[float, float, float, float] | None = None
@@ -191,12 +190,6 @@ reading_options = _gathered(
     click.option("--delimiter", metavar="TEXT", help="What separates the columns of a text file."),
     click.option(
         "--decimal", type=click.Choice([".", ","]), help="Decimal mark of the numbers in it."
-    ),
-    click.option(
-        "--nodata",
-        metavar="ELEVATION",
-        type=float,
-        help="Elevation that stands for no data in a text file, such as -9999.",
     ),
     click.option(
         "--skip-bad",
