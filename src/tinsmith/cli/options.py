@@ -207,11 +207,11 @@ reading_options = _gathered(
     click.option("--stride", metavar="N", type=int, help="Take every Nth cell of a raster."),
     click.option(
         "--nodata",
-        metavar="VALUE",
+        metavar="ELEVATION",
         type=float,
         multiple=True,
         callback=_as_given,
-        help="Elevation that stands for no data. May be given several times.",
+        help="Elevation that stands for no data, such as -9999. May be given several times.",
     ),
     click.option(
         "--fill", is_flag=True, default=None, help="Let the surface span the voids of a raster."
