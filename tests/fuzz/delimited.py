@@ -82,7 +82,7 @@ def generate(rng: np.random.Generator) -> Case:
         "told": bool(rng.random() < 0.15),
         "header": header(rng, layout) if rng.random() < 0.4 else [],
         "is_quoted": bool(rng.random() < 0.7),
-        "groups": bool(rng.random() < 0.1),
+        "groups": bool(digits and rng.random() < 0.1),  # 4.024 is no thousand to anyone
         "suffix": choose(rng, (".csv", ".txt", ".txt", ".xyz", ".asc")),
         "rows": [[columns[letter][row] for letter in layout] for row in range(count)],
     }
