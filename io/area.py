@@ -66,7 +66,7 @@ class AreaOfUse:
             Easting (longitude), northing (latitude).
         """
         longitude, latitude = _degrees(self.source, xy)
-        inside = np.isfinite(longitude) & np.isfinite(latitude)
+        inside: NDArray[np.bool_] = np.isfinite(longitude) & np.isfinite(latitude)
         for crs in self.targets:
             inside &= _lies_in(_area(crs), longitude, latitude)
         return inside
@@ -86,7 +86,7 @@ class AreaOfUse:
 def _outermost(xy: NDArray[np.float64]) -> list[int]:
     """Return the rows of the corners of the octagon around the points, and some between."""
     x, y = xy.T
-    with np.errstate(over="ignore"):
+    with np.errstate(over="ignore", invalid="ignore"):
         sides = (x, y, x + y, x - y)
         corners = [int(f(side)) for side in sides for f in (np.argmin, np.argmax)]
     return [*corners, *range(0, len(xy), max(1, len(xy) // _SPREAD))]
@@ -113,9 +113,11 @@ def _to_angles(source: CRS) -> tuple[pyproj.Transformer, float, float]:
     base = crs.geodetic_crs or CRS.of(_WGS84).to_pyproj()
     degrees = float(np.degrees(base.to_2d().axis_info[0].unit_conversion_factor))
     prime = base.prime_meridian
-    meridian = np.degrees(prime.longitude * prime.unit_conversion_factor) if prime else 0.0
+    meridian = 0.0
+    if prime is not None:
+        meridian = float(np.degrees(prime.longitude * float(prime.unit_conversion_factor)))
     transformer = pyproj.Transformer.from_crs(crs.to_2d(), base.to_2d(), always_xy=True)
-    return transformer, degrees, float(meridian)
+    return transformer, degrees, meridian
 
 
 def _area(crs: CRS) -> Any:

@@ -204,7 +204,9 @@ def _columns(
         return layout.columns, []
     try:
         columns = describe_columns(cells, layout)
-        found, note = columns_by_content(columns, area, is_scan=layout.is_scan)
+        found, note = columns_by_content(
+            columns, area, is_scan=layout.is_scan, is_announced=layout.is_announced
+        )
     except ReadError as error:
         raise ReadError(f"'{path}': {error}", path=path) from None
     return found, [note]
