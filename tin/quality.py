@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .options import as_flag, require_tin
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -143,7 +145,8 @@ def quality(tin: TIN, *, space: bool = False) -> Quality:
     >>> quality(tin).circumradius
     array([2.5])
     """
-    corners = tin.points[:, : 3 if space else 2][tin.triangles]
+    require_tin(tin)
+    corners = tin.points[:, : 3 if as_flag("space", space) else 2][tin.triangles]
     edges = np.roll(corners, 1, axis=1) - np.roll(corners, -1, axis=1)
     lengths = np.sqrt(np.einsum("tkx,tkx->tk", edges, edges))
     doubled = _doubled_areas(edges, lengths)
