@@ -48,6 +48,8 @@ class Survey:
         Name of the file that the points come from.
     skipped : mapping of str to int
         What the reader left out and how often, for example ``{"nodata cells": 12}``.
+    skipped_lines : mapping of str to sequence of int
+        Of a text file, the lines of the rows that were left out, counted from 1 as an editor does.
     notes : sequence of str
         What the reader assumed, in sentences.
     """
@@ -63,6 +65,7 @@ class Survey:
     crs: str | None = None
     source: str | None = None
     skipped: Mapping[str, int] = field(default_factory=dict)
+    skipped_lines: Mapping[str, Sequence[int]] = field(default_factory=dict)
     notes: Sequence[str] = ()
 
     def __post_init__(self) -> None:

@@ -97,9 +97,9 @@ def triangulate(
     Raises
     ------
     PointsError
-        If names of columns do not tell the coordinates, if a coordinate is not finite or outside the exact range, if fewer than three places are
-        distinct, if all are collinear, or (``duplicates="error"``) if two rows coincide; if an
-        option is none of the allowed.
+        If names of columns do not tell the coordinates, if a coordinate is not finite or outside
+        the exact range, if fewer than three places are distinct, if all are collinear, or
+        (``duplicates="error"``) if two rows coincide; if an option is none of the allowed.
     LinesError
         If a line has too few vertices or coordinates that are not finite, if a ring crosses
         itself, if lines cross and must not, if a hole lies outside, or if no triangle is left.
