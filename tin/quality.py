@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..crs import scale_elevations
+from .options import as_flag, require_tin
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -150,7 +151,9 @@ def quality(tin: TIN, *, space: bool = False) -> Quality:
     >>> quality(tin).circumradius
     array([2.5])
     """
-    corners = _corners_in_space(tin) if space else tin.points[:, :2][tin.triangles]
+    require_tin(tin)
+    in_space = as_flag("space", space)
+    corners = _corners_in_space(tin) if in_space else tin.points[:, :2][tin.triangles]
     edges = np.roll(corners, 1, axis=1) - np.roll(corners, -1, axis=1)
     lengths = np.sqrt(np.einsum("tkx,tkx->tk", edges, edges))
     doubled = _doubled_areas(edges, lengths)

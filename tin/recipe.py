@@ -23,7 +23,7 @@ from .line_set import (
     gather_rings,
     require_length,
 )
-from .options import is_finite_number, is_one_of, shown
+from .options import as_flag, is_finite_number, is_one_of, shown
 from .points import as_masked_points
 from .survey import Survey
 from .threads import thread_count
@@ -178,7 +178,7 @@ def recipe_of(
         erase=gather_regions([*own.erase, *as_sequence(erase, "erase")], "erase"),
         max_edge=np.inf if max_edge is None else float(max_edge),
         trim=trim,
-        conforming=bool(conforming),
+        conforming=as_flag("conforming", conforming),
         options=LineOptions(duplicates, float(snap), crossing, thread_count(threads, len(xyz))),
         crs=system,
         elevation_unit=unit,

@@ -49,7 +49,10 @@ def triangulate(
     Parameters
     ----------
     points : Survey or (n, 3) array
-        Easting and northing in CRS units, elevation. A survey's own lines are used as well.
+        Easting and northing in CRS units, elevation. A survey's own lines are used as well. A
+        structured array, data frame or mapping is taken by its columns' names (x, y, z; easting,
+        northing, elevation; lon, lat, height), shapely's points by their coordinates. Masked rows
+        are left out, and named in the report.
     breaklines : sequence of Breakline or arrays
         Polylines that must be edges: (k, 3) arrays hard ones, (k, 2) arrays draped on the surface
         of everything that has heights, with a vertex wherever they cross an edge of it.
@@ -72,9 +75,11 @@ def triangulate(
         Drop them from the outside inwards only, or wherever they are.
     crossing : {"split", "error"}
         Where lines cross between their vertices, make a vertex with the height of the line of
-        higher priority, or of the first; or refuse. Both heights are in the report.
+        higher priority, or of the first; of a line that crosses itself the lower one; or refuse.
+        Both heights are in the report.
     conforming : bool
-        Split the steps of lines until every edge is Delaunay, constrained or not.
+        Split the steps of lines until every edge is Delaunay, constrained or not. Refused if that
+        takes more than 50 new vertices for each vertex, and 20,000 in all.
     duplicates : {"mean", "first", "last", "lowest", "highest", "error"}
         Elevation of the vertex that stands for several rows at one place. A line with heights of
         its own counts more than the points.
@@ -98,9 +103,9 @@ def triangulate(
     Raises
     ------
     PointsError
-        If a coordinate is not finite or outside the exact range, if fewer than three places are
-        distinct, if all are collinear, or (``duplicates="error"``) if two rows coincide; if an
-        option is none of the allowed.
+        If names of columns do not tell the coordinates, if a coordinate is not finite or outside
+        the exact range, if fewer than three places are distinct, if all are collinear, or
+        (``duplicates="error"``) if two rows coincide; if an option is none of the allowed.
     CrsError
         If the CRS is unknown, or another than the survey's own.
     OptionError
