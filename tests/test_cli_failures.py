@@ -69,7 +69,7 @@ def program(*arguments, **options):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("x,y,z\n0,0,1\n4,0,nan\n4,3,3\n0,3,4\n", ["line 3"]),
+        ("x,y,z\n0,0,1\n4,nan,2\n4,3,3\n0,3,4\n", ["line 3"]),
         ("x,y,z\n0,0,1\n4,0,2\n4,inf,3\n0,3,4\n", ["line 4"]),
         ("x,y,z\n0,0,1\n-Infinity,0,2\n4,1,3\n0,3,4\n", ["line 3"]),
         ("", ["empty"]),
@@ -141,11 +141,28 @@ def test_columns_by_role_take_names_and_numbers(folder):
 
 
 def test_assumed_layout_is_told(folder):
-    code, _, stderr = build("1,0,0,5,GS\n2,4,0,6,GS\n3,4,3,7,MH\n")
+    rows = "1,4024240,752700,5,GS\n2,4024240,752704,6,GS\n3,4024243,752704,7,MH\n"
+    code, _, stderr = build(rows, "--crs", "EPSG:32616")
     assert code == 0
     assert re.search(
         r"^Note +No header: the columns are taken as number, northing", stderr, re.MULTILINE
     )
+
+
+def test_a_layout_that_may_be_two_is_refused(folder):
+    rows = "1,4024240,752700,5,GS\n2,4024240,752704,6,GS\n3,4024243,752704,7,MH\n"
+    assert_sentence(*build(rows), "PNEZD", "PENZD")
+    assert build(rows, "--columns", "PNEZD")[0] == 0
+
+
+def test_bad_rows_and_nodata_are_left_out_on_request(folder):
+    rows = SQUARE + "1,1,x\n2,2,-9999\n"
+    assert_sentence(*build(rows), "line 6")
+    code, _, stderr = build(rows, "--skip-bad", "--nodata", "-9999")
+    assert code == 0
+    assert re.search(r"^Note +1 bad row is left out \(line 6", stderr, re.MULTILINE)
+    assert re.search(r"^Skipped +1 bad rows, 1 nodata points$", stderr, re.MULTILINE)
+    assert "4 vertices" in stderr
 
 
 def test_unknown_crs(folder):
