@@ -129,6 +129,7 @@ def read(
             "all are nodata.",
             path=path,
         )
+    _require_finite(points, number, path)
     notes = describe_suspects(find_suspect_elevations(points[:, 2]), "cell")
     points, found = placed(points, source=source, target=crs, path=path)
     skipped = {"nodata cells": n_nodata} if n_nodata else {}
@@ -233,7 +234,8 @@ class _Header(NamedTuple):
     def bounds(self) -> tuple[float, float, float, float]:
         """West, south, east, north of an upright box around all cells."""
         columns = np.array([0, self.width, 0, self.width])
-        x, y = self.transform.apply(columns, np.array([0, 0, self.height, self.height]))
+        with np.errstate(over="ignore", invalid="ignore"):
+            x, y = self.transform.apply(columns, np.array([0, 0, self.height, self.height]))
         return float(x.min()), float(y.min()), float(x.max()), float(y.max())
 
 
@@ -290,10 +292,25 @@ def _require_elevations(dataset: _Header, band: int, is_told: bool, path: Path) 
         )
     if dataset.dtypes[band - 1].startswith("complex"):
         raise ReadError(f"'{path}': band {band} holds complex numbers, no elevations.", path=path)
+    _require_place(dataset, path)
+
+
+def _require_place(dataset: _Header, path: Path) -> None:
+    """Refuse a raster whose cells have no place, or one that is no area."""
     if dataset.transform == _NOWHERE:
         raise ReadError(
             f"'{path}' has no georeference, so the coordinates of its cells are unknown: add a "
             "world file or set the transform with a GIS.",
+            path=path,
+        )
+    a, b, _, d, e, _ = dataset.transform
+    if (
+        not np.isfinite([*dataset.transform, *dataset.bounds, a * e - b * d]).all()
+        or a * e == b * d
+    ):
+        raise ReadError(
+            f"'{path}' has the georeference {tuple(dataset.transform)}, in which a cell has no "
+            "size, or none that is finite.",
             path=path,
         )
 
@@ -454,12 +471,25 @@ def _strip(
     elevation = values[keep].astype(np.float64)
     scale, offset = dataset.scales[band - 1], dataset.offsets[band - 1]
     if (scale, offset) != (1.0, 0.0):
-        elevation = elevation * scale + offset
+        with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused
+            elevation = elevation * scale + offset
     points = np.stack([x[keep], y[keep], elevation], axis=1)
     if len(marks):
         is_value = ~np.isin(elevation, marks)
         points, keep[keep] = points[is_value], is_value
     return points, keep, int(np.count_nonzero(wanted & ~keep))
+
+
+def _require_finite(points: NDArray[np.float64], band: int, path: Path) -> None:
+    wrong = ~np.isfinite(points[:, 2])
+    if wrong.any():
+        count, first = int(wrong.sum()), points[int(np.argmax(wrong))].tolist()
+        raise ReadError(
+            f"'{path}': {count} {'cell' if count == 1 else 'cells'} of band {band} would have an "
+            f"elevation that is not finite (first at {first[0]:.10g}, {first[1]:.10g}): its scale "
+            "or offset is wrong.",
+            path=path,
+        )
 
 
 def _centres(

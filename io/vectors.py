@@ -24,6 +24,10 @@ if TYPE_CHECKING:
 
 __all__ = ["read_lines", "read_polygons", "read_rings", "read_water"]
 
+LARGEST_PRIORITY = 2**31 - 1
+"""Priorities of lines that a file can give: whole numbers of 32 bits."""
+
+_SHOWN_LETTERS = 60
 _WATER_COLUMNS = ("z", "level", "elevation", "height")
 
 
@@ -217,8 +221,8 @@ def _kinds(features: Features) -> list[BreaklineKind]:
         chosen = allowed.get(text.lower() or "hard")
         if chosen is None:
             raise ReadError(
-                f"{features.label(row)} has the kind '{text}': {' or '.join(allowed)}, or none, "
-                "is allowed.",
+                f"{features.label(row)} has the kind '{_shown(text)}': "
+                f"{' or '.join(allowed)}, or none, is allowed.",
                 path=features.path,
             )
         kinds.append(chosen)
@@ -229,9 +233,10 @@ def _priorities(features: Features) -> list[int]:
     priorities = []
     for row, text in enumerate(_texts(features, "priority")):
         value = _number(text or "0")
-        if value is None or value != round(value):
+        if value is None or value != round(value) or abs(value) > LARGEST_PRIORITY:
             raise ReadError(
-                f"{features.label(row)} has the priority '{text}': a whole number is needed.",
+                f"{features.label(row)} has the priority '{_shown(text)}': a whole number from "
+                f"-{LARGEST_PRIORITY} to {LARGEST_PRIORITY} is needed.",
                 path=features.path,
             )
         priorities.append(int(value))
@@ -244,6 +249,10 @@ def _texts(features: Features, name: str) -> list[str]:
     if column is None:
         return [""] * len(features.numbers)
     return ["" if _is_missing(value) else str(value).strip() for value in column.tolist()]
+
+
+def _shown(text: str) -> str:
+    return text if len(text) <= _SHOWN_LETTERS else f"{text[:_SHOWN_LETTERS]}..."
 
 
 def _is_missing(value: object) -> bool:

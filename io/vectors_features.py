@@ -173,7 +173,8 @@ def _shapes(arrays: dict[str, NDArray[Any]], path: Path) -> NDArray[np.object_]:
     ends = np.cumsum(np.maximum(lengths, 0))
     parts = zip((ends - np.maximum(lengths, 0)).tolist(), ends.tolist(), strict=True)
     geometries = np.array([wkb[start:end] or None for start, end in parts], object)
-    shapes: NDArray[np.object_] = shapely.from_wkb(geometries, on_invalid="ignore")
+    with np.errstate(invalid="ignore"):  # what is not finite is refused later
+        shapes: NDArray[np.object_] = shapely.from_wkb(geometries, on_invalid="ignore")
     wrong = shapely.is_missing(shapes) & (lengths >= 0)
     if wrong.any():
         raise ReadError(

@@ -306,3 +306,13 @@ def test_error_policy_with_snap_or_lines_and_no_duplicates(options):
     assert len(tin.points) == 4
     with pytest.raises(ts.PointsError, match="1 of 5 rows repeat the place"):
         ts.triangulate([*points, [5, 5, 2]], duplicates="error", **options)
+
+
+@pytest.mark.parametrize(
+    ("heights", "mean"),
+    [([1.7e308, -1.7e308], 0.0), ([1.7e308] * 5, 1.7e308), ([1e308, 1.5e308, 1.7e308], 1.4e308)],
+)
+def test_mean_of_the_largest_elevations_does_not_overflow(heights, mean):
+    corners = [[4.0, 0.0, 1.0], [0.0, 4.0, 2.0]]
+    tin = ts.triangulate([*corners, *([0.0, 0.0, z] for z in heights)])
+    assert tin.points[2, 2] == pytest.approx(mean, rel=1e-15)

@@ -1,6 +1,6 @@
 """Children that read: started when first needed, used again after sound files, ended with limits.
 
-A child that crashed, took too long or met a damaged file is not used again. Each is asked by one
+A child that crashed, or took too long or too much memory, is not used again. Each is asked by one
 thread at a time; a second thread gets a child of its own.
 """
 
@@ -28,7 +28,7 @@ _START = (
     "import json, sys; sys.path[:] = json.loads(sys.argv[1]);"
     "from tinsmith.io.isolated.child import main; main()"
 )
-_SOUND_ENDS = frozenset({"end", "refusal"})
+_SOUND_ENDS = frozenset({"end", "refusal", "fault"})
 """Answers after which a child may read a further file."""
 
 _ODD_LETTERS = re.compile(r"[\x00-\x1f\x7f-\x9f]+")
@@ -247,7 +247,8 @@ def _death(code: int | None, timed_out: bool, path: Path, limits: Limits) -> Rea
     if too_long:
         return ReadError(
             f"'{path}' cannot be read, it may be damaged: after {limits.seconds:.0f} "
-            f"{'second' if round(limits.seconds) == 1 else 'seconds'}, the limit for a file of this size, there was no end.",
+            f"{'second' if round(limits.seconds) == 1 else 'seconds'}, the limit for a file of "
+            "this size, there was no end.",
             path=path,
         )
     if code == -getattr(signal, "SIGKILL", 0):
