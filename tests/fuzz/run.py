@@ -16,7 +16,6 @@ from .campaign import Campaign, Case
 from .child import Child, Outcome
 from .minimise import minimise
 
-
 MOST_LABELS = 6  # of a campaign in the summary
 
 
