@@ -186,16 +186,10 @@ def test_centres_on_the_bounds_of_a_window_are_within(raster, transform):
     bounds = ts.Bounds(x[4], y[5], x[9], y[12])
     path = raster(array, transform=transform)
     assert len(read(path, window=bounds).points) == 6 * 8
-    for k, value in enumerate(
-        (
-            np.nextafter(x[4], x[5]),
-            np.nextafter(y[5], y[6]),
-            np.nextafter(x[9], x[8]),
-            np.nextafter(y[12], y[11]),
-        )  # fmt: skip
-    ):
+    closer = ((x[4], x[5]), (y[5], y[6]), (x[9], x[8]), (y[12], y[11]))
+    for k, (limit, inner) in enumerate(closer):
         limits = [bounds.xmin, bounds.ymin, bounds.xmax, bounds.ymax]
-        limits[k] = value
+        limits[k] = np.nextafter(limit, inner)
         survey = read(path, window=ts.Bounds(*limits))
         assert len(survey.points) == (5 * 8 if k in (0, 2) else 6 * 7)
 
