@@ -26,7 +26,9 @@ _UNEXTENDED = "#1f5fbf"
 _VEIL = 0.22
 """Opacity of an overlapping triangle: the more of them, the darker."""
 
-_WIDTH = 14.0
+_COLUMNS = 3
+
+_WIDTH = 17.0
 """Of the picture, inches."""
 
 _CROWD = 300
@@ -58,17 +60,18 @@ def comparison_picture(comparison: Comparison, *, title: str | None = None) -> A
     >>> from tinsmith.tin import compare
     >>> found = compare([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8], [2, 1, 9]])
     >>> len(comparison_picture(found).axes)
-    4
+    5
     """
     xy = comparison.points[:, :2] - comparison.points[:, :2].min(axis=0)
     width, height = xy.max(axis=0)
-    panel = _WIDTH / 2 * min(max(height / width, 0.3), 1.5)
+    panel = _WIDTH / _COLUMNS * min(max(height / width, 0.3), 1.5)
     size = (_WIDTH, 2 * panel + 1.6)
     figure = extras.matplotlib(_PURPOSE).Figure(figsize=size, layout="constrained")
     heading = " ".join((title or f"{len(xy):,} points").split())
     figure.suptitle(heading, fontsize=15, color=_INK, parse_math=False)
-    grid = figure.subplots(2, 2)
-    for axes, outcome in zip(grid.ravel(), comparison.outcomes, strict=True):
+    *grid, last = figure.subplots(2, _COLUMNS).ravel()
+    last.remove()
+    for axes, outcome in zip(grid, comparison.outcomes, strict=True):
         _draw(axes, xy, comparison.hull, outcome)
         axes.set_title(_caption(outcome, comparison.expected), fontsize=11, color=_INK)
     _add_legend(figure)

@@ -22,8 +22,8 @@ _FAR = 5.0
 """An edge is long beyond so many times the length that 95 % of the edges do not exceed."""
 
 _STEEP = 30.0
-_STEEPER = 4.0
-"""A sliver is steep above 30 degrees, if its gradient is 4 times that of 99 % of the triangles."""
+_STEEPER = 5.0
+"""A sliver is steep above 30 degrees, if its gradient is 5 times that of 90 % of the triangles."""
 
 _SAMPLE = 20_000
 
@@ -108,7 +108,7 @@ def _slivers(tin: TIN, squares: NDArray[np.float64], stays: NDArray[np.bool_]) -
     """Tell of triangles along the hull that are far steeper than the ground."""
     is_outer = (tin.neighbors == NO_NEIGHBOR) & ~tin.constrained
     outer = np.flatnonzero(is_outer.any(axis=1) & stays)
-    usual = np.percentile(_gradients(tin, slice(None, None, max(1, len(stays) // _SAMPLE))), 99)
+    usual = np.percentile(_gradients(tin, slice(None, None, max(1, len(stays) // _SAMPLE))), 90)
     slivers = outer[_gradients(tin, outer) > _STEEPER * usual]
     if len(slivers):
         degrees = slope(tin)

@@ -13,6 +13,7 @@ from click.testing import CliRunner
 
 import tinsmith as ts
 from tinsmith.cli import main
+from tinsmith.cli.compare import _sampled
 from tinsmith.terrain import comparison_picture
 from tinsmith.terrain.comparison import _GAP, _SOUND, _VIOLATING
 
@@ -71,15 +72,25 @@ def test_sample_is_the_same_every_time_and_part_of_the_points():
     assert facts[0]["area"] == facts[1]["area"] < ts.triangulate(ts.read(SURVEY)).area
 
 
+def test_sampled_points_keep_their_order():
+    points = ts.read(SURVEY).points
+    rows = {tuple(point): row for row, point in enumerate(points.tolist())}
+    taken = [rows[tuple(point)] for point in _sampled(points, 200).tolist()]
+    assert taken == sorted(set(taken))
+    assert len(taken) == 200
+
+
 def test_picture_marks_what_is_at_fault(tmp_path):
     table, picture = tmp_path / "points.csv", tmp_path / "out.png"
     np.savetxt(table, np.random.default_rng(1).random((75, 3)), delimiter=",", header="x,y,z")
     assert f"Written     {picture}" in run(table, "-o", picture).stdout
     pixels = (matplotlib.image.imread(picture)[..., :3] * 255).round().astype(int)
     upper, lower = np.array_split(pixels, 2)
-    original, improved = np.array_split(upper, 2, axis=1)
-    only_one, exact = np.array_split(lower[: int(0.9 * len(lower))], 2, axis=1)
+    original, improved, only_one = np.array_split(upper, 3, axis=1)
+    ties, exact, _ = np.array_split(lower[: int(0.9 * len(lower))], 3, axis=1)
     assert share(original, _VIOLATING) == share(exact, _VIOLATING) == 0.0
+    assert share(ties, _VIOLATING) == share(ties, _GAP) == 0.0
+    assert share(ties, _SOUND) > 0.5
     assert share(improved, _VIOLATING) > 0.001
     assert share(only_one, _GAP) > 0.5
     assert share(exact, _GAP) == 0.0
@@ -145,3 +156,13 @@ def test_tin_is_refused(tmp_path):
     path = tmp_path / "tin.ply"
     ts.io.write(ts.triangulate([[0, 0, 0], [4, 0, 0], [0, 4, 0]]), path)
     assert "needs points" in run(path, code=1).stderr
+
+
+def test_a_sample_keeps_the_order_of_the_points():
+    from tinsmith.cli.compare import _sampled
+
+    points = np.random.default_rng(2).random((50, 3))
+    sample = _sampled(points, 20)
+    rows = [int(np.flatnonzero((points == one).all(axis=1))[0]) for one in sample]
+    assert rows == sorted(set(rows))
+    assert len(rows) == 20

@@ -47,12 +47,19 @@ def test_a_tin_is_refined_as_it_is(tmp_path):
     assert ts.check(fine, level=3).ok
 
 
-def test_triangles_that_stay_bad_are_counted(tmp_path):
+def test_triangles_that_stay_bad_are_told_with_their_numbers_and_why(tmp_path):
     points = tmp_path / "needle.xyz"
     points.write_text("0 0 1\n100 0 1\n100 2 1\n")
-    out = run("refine", points, "-o", tmp_path / "a.ply")
+    out = run("refine", points, "-o", tmp_path / "a.ply", "--json")
     assert out.exit_code == 0
-    assert "1 triangle stays below 25°" in out.stderr
+    (group,) = json.loads(out.stdout)["report"]["unmended"]
+    assert group["why"] == "lines or the rim meet there under a small angle"
+    angles = ts.tin.quality(ts.read(tmp_path / "a.ply")).min_angle
+    assert group["triangles"] == np.flatnonzero(angles < 25).tolist()
+    assert group["count"] == len(group["triangles"]) > 0
+    assert group["least_angle"] == pytest.approx(angles.min())
+    assert f"{group['count']} triangle" in out.stderr
+    assert "under a small angle" in out.stderr
 
 
 def test_degrees_are_refused(tmp_path):

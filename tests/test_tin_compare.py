@@ -17,7 +17,7 @@ from tinsmith.tin.paper_cover import cover
 from tinsmith.tin.paper_faults import minimum_angles, overlapping, violating
 
 SURVEY = Path(__file__).parents[1] / "sample_data" / "site_survey.csv"
-NAMES = ("original", "improved", "improved (open)", "exact")
+NAMES = ("original", "improved", "improved (open)", "improved (ties)", "exact")
 WHOLE = 75, 1  # points and seed of which the improved algorithm makes a triangulation
 OVERLAPS = 75, 2  # and of which it does not
 
@@ -141,6 +141,7 @@ def test_comparison_holds_the_four_outcomes(compared):
     assert tuple(one.name for one in compared.outcomes) == NAMES
     networks = [paper.original(points), paper.improved(points)]
     networks.append(paper.improved(points, empty="open"))
+    networks.append(paper.improved(points, distance="ties"))
     for outcome, network in zip(compared.outcomes, networks, strict=False):
         np.testing.assert_array_equal(outcome.triangles, network.triangles)
         assert outcome.tests == network.tests

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import itertools
 import math
+from fractions import Fraction
+from functools import partial
 
 import numpy as np
 import oracles
@@ -14,9 +16,11 @@ from scipy.spatial import Delaunay
 
 import tinsmith as ts
 from tinsmith.tin import PointsError, paper
+from tinsmith.tin.paper_rules import _cotangents, widest_angle, widest_angle_then_closest
 
 BOTH = [paper.original, paper.improved]
-ALL = [*BOTH, lambda points, **options: paper.improved(points, empty="open", **options)]
+TIES = partial(paper.improved, distance="ties")
+ALL = [*BOTH, partial(paper.improved, empty="open"), TIES]
 
 CLOSEST_IS_NOT_DELAUNAY = [(0, 0), (0, 1), (0, 2), (1, 3), (3, 3)]
 ANGLE_RULE_CROSSES_ITSELF = [(3, 0), (0, 2), (3, 3), (1, 2), (2, 2), (2, 1)]
@@ -94,6 +98,24 @@ def closest(places, p1, p2, qualified):
     return None if best is None else best[1]
 
 
+def widest_then_closest(places, p1, p2, qualified):
+    """Section 5's reason, point by point: a larger angle wins, of equal ones the closer point."""
+    best = None
+    for point in qualified:
+        wider = (
+            1 if best is None else oracles.in_circle(*(places[v] for v in (p2, p1, best, point)))
+        )
+        if wider > 0 or (wider == 0 and above(places, p1, p2, point) < above(places, p1, p2, best)):
+            best = point
+    return best
+
+
+def above(places, p1, p2, point):
+    """The height of a point above an edge, in lengths of the edge."""
+    (ax, ay), (bx, by), (x, y) = (places[v] for v in (p1, p2, point))
+    return abs((Fraction(bx) - ax) * (Fraction(y) - ay) - (Fraction(by) - ay) * (Fraction(x) - ax))
+
+
 def closest_or_widest(places, p1, p2, qualified):
     point = closest(places, p1, p2, qualified)
     return widest(places, p1, p2, qualified) if point is None else point
@@ -129,7 +151,9 @@ def finished(uses):
 
 @pytest.mark.parametrize("removal", [True, False])
 @pytest.mark.parametrize(
-    ("grow", "rule"), list(zip(ALL, [widest, closest_or_widest, closest], strict=True))
+    ("grow", "rule"),
+    list(zip(ALL, [widest, closest_or_widest, closest, widest_then_closest], strict=True)),
+    ids=["original", "improved", "open", "ties"],
 )
 @settings(max_examples=60, deadline=None)
 @given(
@@ -218,6 +242,45 @@ def test_open_reading_stops_where_all_circles_are_empty():
     assert len(network.triangles) == 1
     assert len(network.unextended) == 3
     assert len(paper.improved(points).triangles) == 7
+
+
+# ------------------------------------------------------------------ distance breaks ties
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_ties_by_distance_are_delaunay_of_points_in_general_position(seed):
+    points = random_points(100, seed)
+    grown = oracles.canonical(TIES(points).triangles)
+    assert grown == oracles.canonical(ts.triangulate(points).triangles)
+    np.testing.assert_array_equal(TIES(points).triangles, paper.original(points).triangles)
+
+
+def test_of_equal_angles_the_closer_point_is_taken_whatever_the_order():
+    edge, near, far = [(0, 0), (8, 0)], (9, 3), (4, 8)  # on the circle about (4, 3)
+    assert oracles.in_circle(*edge, near, far) == 0
+    for order in ([near, far], [far, near]):
+        points = flat([*edge, *order])
+        xy = points[:, 0].copy(), points[:, 1].copy()
+        choice = widest_angle_then_closest(xy, 0, 1, np.array([2, 3]))
+        assert order[choice.point - 2] == near
+        assert choice.tests == 1
+        assert widest_angle(xy, 0, 1, np.array([2, 3])).point == 2
+
+
+def test_of_equal_angles_the_first_is_taken_though_rounded_cotangents_differ():
+    circle = [
+        (x, y) for x, y in itertools.product(range(-65, 66), repeat=2) if x * x + y * y == 4225
+    ]
+    left = [place for place in circle if place[1] > 16]
+    rng, differ = np.random.default_rng(3), 0
+    for _ in range(40):
+        # So large that products are rounded, while the places stay exact, and on a circle.
+        places = 3.0**17 * np.array([(-63, 16), (63, 16), *rng.permutation(left)])
+        xy = places[:, 0].copy(), places[:, 1].copy()
+        qualified = np.arange(2, len(places))
+        differ += int(np.argmin(_cotangents(xy, 0, 1, qualified))) != 0
+        assert widest_angle(xy, 0, 1, qualified).point == 2
+    assert differ > 10
 
 
 # ------------------------------------------------------------------ the criteria

@@ -3,6 +3,7 @@
 from itertools import pairwise
 
 import numpy as np
+import oracles
 import pytest
 import triangle
 from hypothesis import given, settings
@@ -11,6 +12,7 @@ from shapely.geometry import LineString, Point, Polygon
 
 import tinsmith as ts
 from tinsmith.tin.refine import refine
+from tinsmith.tin.unmended import UNMENDED_WHY
 
 UTM = np.array([500_000.0, 4_000_000.0, 300.0])
 
@@ -252,6 +254,12 @@ def test_the_report_goes_on():
 
 def triangles_of_triangle(tin, options):
     """Refine with Triangle; return its triangles and its smallest angle."""
+    angles = angles_of_triangle(tin, options)
+    return len(angles), angles.min()
+
+
+def angles_of_triangle(tin, options):
+    """Refine with Triangle; return the smallest angle of each of its triangles."""
     segments = tin.constrained | (tin.neighbors < 0)
     t, k = np.nonzero(segments)
     graph = {
@@ -265,7 +273,7 @@ def triangles_of_triangle(tin, options):
     mesh = ts.tin.TIN.from_triangles(
         np.column_stack([made["vertices"], np.zeros(len(made["vertices"]))]), made["triangles"]
     )
-    return len(made["triangles"]), corner_angles(mesh).min()
+    return corner_angles(mesh).min(axis=1)
 
 
 @pytest.mark.parametrize("make", [random_points, square, with_lines, with_boundary_and_hole])
@@ -282,8 +290,158 @@ def test_as_good_as_triangle_with_as_few_triangles(make, min_angle, area):
 # ------------------------------------------------------------------------ always ends
 
 
+def require_told(mesh, min_angle):
+    """The report lists the triangles below the least angle, all of them and no other."""
+    told = mesh.report.unmended
+    small = corner_angles(mesh).min(axis=1)
+    np.testing.assert_array_equal(told.triangles, np.flatnonzero(small < min_angle - 1e-7))
+    np.testing.assert_allclose(told.angles, small[told.triangles], rtol=1e-6, atol=1e-6)
+    groups = told.to_list()
+    assert sum(group["count"] for group in groups) == len(told.triangles)
+    for group in groups:
+        assert any(f"{group['count']:,} triangle" in note for note in mesh.report.notes)
+        assert any(group["why"] in note for note in mesh.report.notes)
+
+
+def two_lines(degrees, length=40.0):
+    way = np.radians(degrees)
+    return ts.triangulate(
+        [[0, 0, 0], [100, 0, 0], [100, 100, 0], [0, 100, 0]],
+        breaklines=[
+            [[50, 50, 0], [50 + length, 50, 0]],
+            [[50, 50, 0], [50 + length * np.cos(way), 50 + length * np.sin(way), 0]],
+        ],
+    )
+
+
+@pytest.mark.parametrize("degrees", [0.1, 1, 5, 10, 15])
+@pytest.mark.parametrize("min_angle", [20, 30])
+def test_what_stays_lies_across_a_small_angle_and_is_no_more_than_in_triangle(degrees, min_angle):
+    tin = two_lines(degrees)
+    mesh = refine(tin, min_angle=min_angle)
+    require_sound(mesh)
+    require_told(mesh, min_angle)
+    assert set(mesh.report.unmended.why) == {0}
+    left = mesh.triangles[mesh.report.unmended.triangles]
+    middle = mesh.points[left, :2].mean(axis=1) - 50
+    way = np.degrees(np.arctan2(*middle.T[::-1]))
+    assert ((way > 0) & (way < degrees)).all()
+    on_lines = set(np.concatenate([*mesh.lines.chains()][:2]).tolist())
+    for corners in left.tolist():  # the shortest side goes from line to line
+        assert sum(v in on_lines for v in corners) >= 2
+    theirs = angles_of_triangle(tin, f"q{min_angle}")
+    assert len(left) <= np.count_nonzero(theirs < min_angle - 1e-7)
+
+
+def test_lines_at_a_small_angle_are_split_at_powers_of_two():
+    mesh = refine(two_lines(10, length=41.3), min_angle=25, max_edge=15.0)
+    first, second = [*mesh.lines.chains()][:2]
+    radii = [np.hypot(*(mesh.points[chain, :2] - 50).T) for chain in (first, second)]
+    for own in radii:
+        inner = np.sort(own)[1:-1]
+        assert len(inner) >= 2
+        exponents = np.log2(inner[inner < 17])
+        np.testing.assert_allclose(exponents, np.round(exponents), atol=1e-9)
+    assert len(mesh.points) < 150  # without circles the lines cut each other on and on
+
+
+def test_no_more_points_than_triangle_puts():
+    for make, options in ((random_points, "q25"), (with_lines, "q25"), (square, "q25a30")):
+        tin = make()
+        area = 30.0 if "a" in options else None
+        ours = refine(tin, min_angle=25, max_area=area)
+        theirs, _ = triangles_of_triangle(tin, options)
+        assert len(ours.triangles) <= 1.1 * theirs
+
+
+def test_the_report_says_where_only_shorter_edges_would_help():
+    strip = [[0, 0, 0], [1e-3, 0, 0], [1e-3, 1e-7, 0], [0, 1e-7, 0]]
+    mesh = refine(ts.triangulate(np.add(UTM, strip)), min_angle=33)
+    require_sound(mesh)
+    told = mesh.report.unmended
+    np.testing.assert_array_equal(told.triangles, np.arange(len(mesh.triangles)))
+    assert {group["why"] for group in told.to_list()} <= set(UNMENDED_WHY[1:])
+
+
+def test_a_mesh_without_small_angles_has_nothing_unmended():
+    mesh = refine(random_points(), min_angle=20)
+    require_told(mesh, 20)
+    assert len(mesh.report.unmended.triangles) == 0
+    assert mesh.report.to_dict()["unmended"] == []
+
+
+def test_an_edit_makes_the_list_of_what_stays_void():
+    mesh = refine(two_lines(5), min_angle=30)
+    assert len(mesh.report.unmended.triangles) > 0
+    mesh.insert([[20.0, 30.0, 0.0]])
+    assert len(mesh.report.unmended.triangles) == 0
+
+
+NARROW = {
+    "a triangle with a hole of rounding width": (
+        [
+            [491.6666666666666, 499.99999999999994, 1.0],
+            [497.66666666666663, 492.0, -2.0],
+            [505.0000000000001, 506.6666666666666, -2.0],
+        ],
+        {
+            "holes": [
+                [
+                    [502.3333333333334, 492.00000000000006, 3.0],
+                    [492.00000000000006, 502.3333333333334, 3.0],
+                    [502.33333333333337, 492.00000000000006, 2.0],
+                ]
+            ]
+        },
+        {"min_angle": 30.0, "max_area": 108.88888888889008},
+    ),
+    "lines over a slanted line but for rounding": (
+        [
+            [66666.66666666666, 23.099999999999998, 619.03],
+            [0.30000000000000004, 0.6666666666666663, 334.04],
+            [33333.33333333334, 15.400000000000002, 426.47],
+            [66666.66666666666, 15.400000000000002, 241.0],
+            [0.09999999999999998, 0.3333333333333335, 16.11],
+            [0.09999999999999999, 0.33333333333333315, 112.93],
+            [33333.33333333336, 7.699999999999999, 84.38],
+            [66666.6666666667, 15.400000000000002, 774.91],
+            [33333.33333333336, 15.4, 536.27],
+        ],
+        {
+            "breaklines": [
+                [
+                    [66666.6666666667, 15.400000000000002, 8.0],
+                    [0.09999999999999998, 0.3333333333333335, 3.0],
+                ],
+                [
+                    [0.09999999999999999, 0.33333333333333315, 6.0],
+                    [33333.33333333336, 7.699999999999999, 2.0],
+                ],
+                [
+                    [0.09999999999999999, 0.33333333333333315, 5.0],
+                    [66666.6666666667, 15.400000000000002, 4.0],
+                ],
+            ]
+        },
+        {"min_angle": 33.0, "max_area": 1333329333.3363345},
+    ),
+}
+
+
+@pytest.mark.parametrize("name", NARROW)
+def test_boundaries_and_lines_that_are_nearly_collinear(name):
+    points, lines, limits = NARROW[name]
+    tin = ts.triangulate(points, **lines)
+    mesh = refine(tin, **limits)
+    require_sound(mesh)
+    n = len(tin.points)
+    np.testing.assert_array_equal(mesh.points[:n], tin.points)
+    small = ts.tin.quality(mesh).min_angle < limits["min_angle"] - 1e-6
+    assert set(np.flatnonzero(small)) <= set(mesh.report.unmended.triangles.tolist())
+
+
 @pytest.mark.parametrize("angle", [0.01, 1, 10, 30, 59])
-def test_small_angles_of_the_input_stay_alone(angle):
+def test_small_angles_of_the_input_stay_between_their_lines(angle):
     ways = np.radians([0, angle, 90, 200])
     tips = np.column_stack([np.cos(ways), np.sin(ways), ways]) * [100, 70, 1]
     tin = ts.triangulate(
@@ -320,7 +478,9 @@ def test_any_small_survey_ends_sound(places, lines, min_angle):
     try:
         tin = ts.triangulate(points, breaklines=breaklines)
     except ts.PointsError:
-        return  # collinear
+        ends = [p for line in breaklines for p in line]
+        assert oracles.are_collinear([*places, *ends])
+        return
     refined = refine(tin, min_angle=min_angle)
     require_sound(refined)
     assert len(refined.points) < 20_000

@@ -42,6 +42,7 @@ _ALGORITHMS: dict[str, Callable[..., Network]] = {
     "original": original,
     "improved": improved,
     "improved (open)": partial(improved, empty="open"),
+    "improved (ties)": partial(improved, distance="ties"),
 }
 
 Result = TypeVar("Result")
@@ -54,7 +55,7 @@ class Outcome:
     Attributes
     ----------
     name : str
-        ``"original"``, ``"improved"``, ``"improved (open)"`` or ``"exact"``.
+        ``"original"``, ``"improved"``, ``"improved (open)"``, ``"improved (ties)"`` or ``"exact"``.
     triangles : (m, 3) int32 array
         Counter-clockwise, numbers of ``Comparison.points``.
     unextended : (k, 2) int32 array
@@ -143,7 +144,7 @@ class Comparison:
     area : float
         Area of the hull, CRS units squared.
     outcomes : tuple of Outcome
-        Original, improved in both readings, exact.
+        Original, improved in three readings, exact.
     """
 
     points: NDArray[np.float64]
@@ -173,7 +174,7 @@ class Comparison:
 
 
 def compare(points: Survey | ArrayLike, *, limit: int = MOST_POINTS) -> Comparison:
-    """Triangulate points by the paper's algorithms and by the exact kernel, and judge the results.
+    r"""Triangulate points by the paper's algorithms and by the exact kernel, and judge the results.
 
     Parameters
     ----------
@@ -194,7 +195,7 @@ def compare(points: Survey | ArrayLike, *, limit: int = MOST_POINTS) -> Comparis
 
     Notes
     -----
-    Time grows with the square of the number of points: 2,000 take about 10 to 20 seconds.
+    Time grows with the square of the number of points: 2,000 take about 10 to 25 seconds.
 
     See Also
     --------
@@ -203,7 +204,8 @@ def compare(points: Survey | ArrayLike, *, limit: int = MOST_POINTS) -> Comparis
     Examples
     --------
     >>> compare([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8], [2, 1, 9]])
-    <Comparison: 5 points, 4 triangles due; original 4, improved 4, improved (open) 1, exact 4>
+    <Comparison: 5 points, 4 triangles due; original 4, improved 4, improved (open) 1, \
+improved (ties) 4, exact 4>
     """
     rows = as_points(points.points if isinstance(points, Survey) else points)
     if len(rows) > limit:

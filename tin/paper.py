@@ -22,6 +22,8 @@ Where the paper is silent or contradicts itself, this is what is done:
 - *Angle*: step 4 keeps "lower" degrees, condition 4 "as large as possible". The largest is kept.
 - *Ties*: step 4 replaces the last-found point only by a better one, so the first in the list stays.
 - *Circle*: points on its rim are in it. Within it the distances to the edge and to its line agree.
+- *Distance*: read as deciding among the points in the circle, or only among those of an equal
+  angle, as section 5 has it, see :func:`improved`.
 - *Empty circle*: read in two ways, see :func:`improved`.
 - *Overlap*: no step asks whether a new triangle covers an old one, so none does here.
 - *Duplicates*: rows at one place count as one point, the first of them.
@@ -45,6 +47,7 @@ from .paper_rules import (
     closest_in_circle,
     closest_in_circle_or_widest_angle,
     widest_angle,
+    widest_angle_then_closest,
 )
 from .points import as_points
 
@@ -55,9 +58,10 @@ if TYPE_CHECKING:
 
     from .exact import Columns
 
-__all__ = ["EmptyCircle", "Network", "improved", "original"]
+__all__ = ["Distance", "EmptyCircle", "Network", "improved", "original"]
 
 EmptyCircle = Literal["angle", "open"]
+Distance = Literal["circle", "ties"]
 
 _RULES: dict[EmptyCircle, Rule] = {
     "angle": closest_in_circle_or_widest_angle,
@@ -150,10 +154,13 @@ def improved(
     points: ArrayLike,
     *,
     empty: EmptyCircle = "angle",
+    distance: Distance = "circle",
     removal: bool = True,
     most_triangles: int | None = None,
 ) -> Network:
     """Triangulate by the paper's improved algorithm: the closest point in the circle wins.
+
+    Or, in another reading, the closest of the points that see the edge under equal angles.
 
     Parameters
     ----------
@@ -164,6 +171,10 @@ def improved(
         adds the circle "during the Third in the original algorithm", which leaves the Fourth in
         force: "angle". Its own account of the improvement knows no other point than those
         searched "on the circle": "open".
+    distance : {"circle", "ties"}
+        Distance decides among all points in the circle; or "under the condition of an equal
+        angle", as section 5 gives its reason, it only breaks the ties of the original algorithm,
+        which are exact here: there is no circle then.
     removal : bool
         Delete points from the search once all their edges are used twice (step 6).
     most_triangles : int, optional
@@ -174,11 +185,12 @@ def improved(
     -------
     Network
         In general not Delaunay, with overlaps; with ``empty="open"`` most of the plane is left out.
+        With ``distance="ties"`` as :func:`original` with no four points on a circle, so Delaunay.
 
     Raises
     ------
     PointsError
-        As :func:`original`; or if ``empty`` is none of the allowed.
+        As :func:`original`; or if ``empty`` or ``distance`` is none of the allowed.
 
     Examples
     --------
@@ -188,7 +200,11 @@ def improved(
     if empty not in _RULES:
         allowed = " or ".join(repr(name) for name in get_args(EmptyCircle))
         raise PointsError(f"Invalid empty {empty!r}: it must be {allowed}.")
-    return _grown(as_points(points), _RULES[empty], removal=removal, most=most_triangles)
+    if distance not in get_args(Distance):
+        allowed = " or ".join(repr(name) for name in get_args(Distance))
+        raise PointsError(f"Invalid distance {distance!r}: it must be {allowed}.")
+    rule = _RULES[empty] if distance == "circle" else widest_angle_then_closest
+    return _grown(as_points(points), rule, removal=removal, most=most_triangles)
 
 
 def _grown(rows: NDArray[np.float64], rule: Rule, *, removal: bool, most: int | None) -> Network:

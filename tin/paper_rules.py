@@ -1,8 +1,9 @@
-"""The paper's rules for the third point of an edge: widest angle, or closest in the circle."""
+"""The paper's rules for the third point of an edge: by the angle, by the distance, by both."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -18,6 +19,7 @@ __all__ = [
     "closest_in_circle",
     "closest_in_circle_or_widest_angle",
     "widest_angle",
+    "widest_angle_then_closest",
 ]
 
 
@@ -47,8 +49,27 @@ def widest_angle(xy: Columns, p1: int, p2: int, qualified: NDArray[np.int64]) ->
     Whether P sees the edge under a larger angle than P' is whether P lies in the circle through
     p1, p2 and P'. Cotangents in doubles propose, exact tests decide.
     """
+    widest = _widest(xy, p1, p2, qualified)
+    return Choice(int(widest[0]) if len(widest) else None, max(len(qualified) - 1, 0))
+
+
+def widest_angle_then_closest(
+    xy: Columns, p1: int, p2: int, qualified: NDArray[np.int64]
+) -> Choice:
+    """Choose as :func:`widest_angle`; of equals the closest to p1-p2, of these the first.
+
+    Points of one angle lie on one arc from p1 to p2. From either end up to its middle the distance
+    to the edge grows, and so does that to its line: they order such points alike. Exact.
+    """
+    widest = _widest(xy, p1, p2, qualified).tolist()
+    closest = min(widest, key=lambda p: _doubled_area(xy, p1, p2, p), default=None)
+    return Choice(closest, max(len(qualified) - 1, 0))
+
+
+def _widest(xy: Columns, p1: int, p2: int, qualified: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the points that see p1-p2 under the largest angle, in the order of the list."""
     if len(qualified) == 0:
-        return Choice(None, 0)
+        return qualified
     cotangent = _cotangents(xy, p1, p2, qualified)
     rivals = np.arange(len(qualified))
     while len(rivals):
@@ -56,7 +77,15 @@ def widest_angle(xy: Columns, p1: int, p2: int, qualified: NDArray[np.int64]) ->
         side = _sides_of_circle(xy, p1, p2, int(qualified[best]), np.delete(qualified, best))
         side = np.insert(side, best, 0)
         rivals = np.flatnonzero(side > 0)
-    return Choice(int(qualified[np.argmax(side == 0)]), len(qualified) - 1)
+    return qualified[side == 0]
+
+
+def _doubled_area(xy: Columns, *corners: int) -> Fraction:
+    """Return twice the area of a triangle: of several on one edge, the distances to its line."""
+    (ax, bx, cx), (ay, by, cy) = (
+        [Fraction(float(column[corner])) for corner in corners] for column in xy
+    )
+    return abs((bx - ax) * (cy - ay) - (by - ay) * (cx - ax))
 
 
 def closest_in_circle(xy: Columns, p1: int, p2: int, qualified: NDArray[np.int64]) -> Choice:

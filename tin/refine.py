@@ -62,7 +62,8 @@ def refine(
     min_angle : float
         Least angle of a triangle, degrees in the plane, from 0 (any) to 33. It is reached for sure
         up to 20.7 degrees if no lines meet under less than 60; beyond, nearly always up to 30.
-        Small angles between lines themselves stay.
+        Where lines or the rim meet under a small angle, triangles between them stay below it: the
+        one at the meeting, and those across, whose shortest edge joins the two.
     max_area : float, optional
         Largest area of a triangle in the plane, CRS units squared.
     max_edge : float, optional
@@ -77,13 +78,14 @@ def refine(
     TIN
         Vertices of ``tin`` first, as they were; then those on rim and lines and those inside.
         ``lines`` are those of ``tin`` with more vertices, and the rim as ``boundary`` if there was
-        none. ``report.notes`` tells how many points came and which triangles could not be mended.
+        none. ``report.unmended`` lists the triangles that miss what was asked for, and why;
+        ``report.notes`` tells how many points came, and counts those triangles.
 
     Raises
     ------
     PointsError
-        For a least angle above 33 degrees, other limits that are not positive numbers, or a mesh of
-        more than ``max_vertices``.
+        For a least angle above 33 degrees, other limits that are not positive numbers, a mesh of
+        more than ``max_vertices``, or a TIN that overlaps itself.
 
     Notes
     -----
@@ -99,6 +101,8 @@ def refine(
        on Computational Geometry (1993), doi:10.1145/160985.161150.
     .. [3] A. Ungor, Off-centers: a new type of Steiner points for computing size-optimal
        quality-guaranteed Delaunay triangulations, LATIN 2004, doi:10.1007/978-3-540-24698-5_19.
+    .. [4] G. L. Miller, S. E. Pav, N. J. Walkington, When and why Ruppert's algorithm works, 12th
+       International Meshing Roundtable (2003): what is left at small angles.
 
     Examples
     --------

@@ -72,7 +72,9 @@ def examine(case: Case) -> str:
     return "refined" if len(mesh.report.unmended.triangles) == 0 else "refined in part"
 
 
-def require_goal(mesh: Any, *, min_angle: float, max_area: float = np.inf, max_edge: float = np.inf) -> None:
+def require_goal(
+    mesh: Any, *, min_angle: float, max_area: float = np.inf, max_edge: float = np.inf
+) -> None:
     """Each triangle that misses the goal is told, and no other."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")

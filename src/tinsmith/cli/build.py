@@ -62,7 +62,6 @@ def build(
       tinsmith build sample_data/site_survey.csv --crs EPSG:32616 --codes -o site.geojson
       tinsmith build sample_data/jacksboro.tif --stride 4 -o hills.ply -o hills.stl
     """  # noqa: D301 - click reads the control character
-    from ..terrain.gaps import describe_gaps
     from .facts import report_facts
     from .files import (
         inputs_of,
@@ -80,7 +79,7 @@ def build(
     )
     survey = with_lines(_as_survey(read_input(points, reading, console), points), how, console)
     tin = triangulated(survey, how, console)
-    gaps = [] if how.max_edge is not None else describe_gaps(tin)
+    gaps = _gaps(tin, how, console)
     write_outputs(tin, planned, console)
     if report is not None:
         write_text(report, plain(report_facts(tin.report, survey, gaps)) + "\n")
@@ -88,6 +87,16 @@ def build(
     console.summarise(_fields(points, survey, tin, gaps, planned, seconds))
     if console.as_json:
         console.emit(plain(_facts(points, survey, tin, gaps, planned, seconds)))
+
+
+def _gaps(tin: TIN, how: Triangulating, console: Console) -> list[str]:
+    """Tell of gaps that the surface spans, unless the user has said how far it may."""
+    from ..terrain.gaps import describe_gaps
+
+    if how.max_edge is not None:
+        return []
+    with console.steps() as steps, steps.step("Looking for gaps"):
+        return describe_gaps(tin)
 
 
 def _as_survey(found: Survey | TIN, path: Path) -> Survey:

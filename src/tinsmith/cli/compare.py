@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 __all__ = ["compare"]
 
-_COLUMN = 17
+_COLUMN = 16
 
 
 @click.command(short_help="Compare the paper's algorithms with the exact kernel.")

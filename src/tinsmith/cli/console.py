@@ -123,4 +123,6 @@ def _finite(value: Any) -> Any:
         return {key: _finite(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
         return [_finite(item) for item in value]
+    if hasattr(value, "item"):  # a number of numpy
+        value = value.item()
     return None if isinstance(value, float) and not math.isfinite(value) else value

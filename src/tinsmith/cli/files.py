@@ -45,11 +45,12 @@ _TEXT_FORMATS = ("delimited", "geojson", "obj")
 
 @dataclass(frozen=True)
 class Output:
-    """A file to write: where, as what, and how."""
+    """A file to write: where, as what, how; standard output also stands for a suffix."""
 
     path: Path
     format: Format
     options: dict[str, Any]
+    suffix: str = ""
 
 
 def read_input(path: Path, reading: Reading, console: Console) -> Survey | TIN:
@@ -187,7 +188,7 @@ def plan_outputs(
     _require_taken(set(given).difference(*taken) if taken else set(given))
     _require_free_stdout(paths, formats, console)
     return [
-        Output(path, one, {name: given[name] for name in names})
+        Output(path, one, {name: given[name] for name in names}, _suffix(one, writing))
         for path, one, names in zip(paths, formats, taken, strict=True)
     ]
 
@@ -230,6 +231,12 @@ def write_figure(figure: Any, path: Path, *, dpi: int) -> None:
     with replacing(path) as picture:
         figure.savefig(picture, format="png", dpi=dpi, metadata={"Software": None})
     note_written(path)
+
+
+def _suffix(one: Format, writing: Writing) -> str:
+    """Return the suffix that --output-format names, or the first of the format."""
+    named = f".{(writing.output_format or '').strip().lower().lstrip('.')}"
+    return named if named in one.suffixes else one.suffixes[0]
 
 
 def _require_free_stdout(paths: Sequence[Path], formats: list[Format], console: Console) -> None:
@@ -297,7 +304,7 @@ def _write_file(obj: TIN | Survey, path: Path, one: Format, options: dict[str, A
 def _write_to_stdout(obj: TIN | Survey, output: Output, options: dict[str, Any]) -> None:
     """Write a whole file first, so that nothing comes if it fails."""
     with tempfile.TemporaryDirectory(prefix="tinsmith-") as folder:
-        path = Path(folder) / f"output{output.format.suffixes[0]}"
+        path = Path(folder) / f"output{output.suffix}"
         _write_file(obj, path, output.format, options)
         emit_file(path)
 

@@ -45,6 +45,7 @@ class Reading:
     columns: str | dict[str, str | int] | None = None
     delimiter: str | None = None
     decimal: str | None = None
+    skip_bad: bool | None = None
     band: int | None = None
     window: tuple[float, float, float, float] | None = None
     stride: int | None = None
@@ -190,6 +191,12 @@ reading_options = _gathered(
     click.option(
         "--decimal", type=click.Choice([".", ","]), help="Decimal mark of the numbers in it."
     ),
+    click.option(
+        "--skip-bad",
+        is_flag=True,
+        default=None,
+        help="Leave out the rows of a text file that cannot be read, and name them.",
+    ),
     click.option("--band", metavar="N", type=int, help="Band of a raster, counted from 1."),
     click.option(
         "--window",
@@ -200,11 +207,11 @@ reading_options = _gathered(
     click.option("--stride", metavar="N", type=int, help="Take every Nth cell of a raster."),
     click.option(
         "--nodata",
-        metavar="VALUE",
+        metavar="ELEVATION",
         type=float,
         multiple=True,
         callback=_as_given,
-        help="Elevation that stands for no data. May be given several times.",
+        help="Elevation that stands for no data, such as -9999. May be given several times.",
     ),
     click.option(
         "--fill", is_flag=True, default=None, help="Let the surface span the voids of a raster."

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ..tin import TIN, Quality
+    from ..tin.unmended import Unmended
     from .console import Console, Field
     from .options import Reading, Triangulating, Writing
 
@@ -109,7 +110,7 @@ def refine(
         [
             ("Read", mesh_counts(tin)),
             ("Mesh", mesh_counts(refined)),
-            *_angles(quality(tin), shapes, min_angle),
+            *_angles(quality(tin), shapes, refined.report.unmended),
             ("Written", written_text(planned)),
             ("Time", f"{perf_counter() - started:.2f} s"),
         ]
@@ -128,19 +129,10 @@ def _require_lengths(tin: TIN, file: Path) -> None:
         )
 
 
-def _angles(given: Quality, refined: Quality, min_angle: float) -> list[Field]:
+def _angles(given: Quality, refined: Quality, unmended: Unmended) -> list[Field]:
     before, after = given.min_angle, refined.min_angle
-    left = int((after < min_angle * (1 - 1e-9)).sum())
     fields = [("Angles", f"from {after.min():.1f}° on, before from {before.min():.1f}°")]
-    if left:
-        fields.append(
-            (
-                "",
-                f"{count(left, 'triangle stays', 'triangles stay')} below {min_angle:g}°: lines or "
-                "the rim meet there under a small angle, or only far shorter edges would help",
-            )
-        )
-    return fields
+    return fields + [("", sentence) for sentence in unmended.sentences()]
 
 
 def _facts(file: Path, refined: TIN, shapes: Quality, outputs: list[str]) -> dict[str, Any]:
