@@ -196,7 +196,10 @@ def _triangles(tin: TIN, places: Places) -> Iterator[tuple[int, str]]:
     positions = texts(places.xyz)
     measures = _measures(tin)
     for done, part in _batches(len(tin.triangles)):
-        first, second, third = _counter_clockwise(tin.triangles[part], places.xyz).T
+        triangles = tin.triangles[part]
+        if places.crs_member is None:  # else the coordinates, and so the order, are the TIN's own
+            triangles = _counter_clockwise(triangles, places.xyz)
+        first, second, third = triangles.T
         start = positions[first].tolist()
         rows = zip(
             range(part.start, part.stop),

@@ -227,7 +227,8 @@ _NOWHERE = _Affine(1.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 """What GDAL tells of a raster without a georeference."""
 
 
-class _Header(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class _Header:
     """What a raster says of itself, and how its cells are read; see raster_gdal.header."""
 
     path: Path

@@ -55,7 +55,10 @@ def mesh(path: str, shown: str, *, kind: str) -> Answer:
     found = pv.wrap(reader.GetOutput())
     faces = _faces_of_poly_data(found, shown) if kind == "PolyData" else _faces_of(found, shown)
     attributes = _attributes(found)
-    arrays = {"points": np.array(found.points, np.float64).reshape(-1, 3), **faces}
+    arrays: dict[str, NDArray[Any]] = {
+        "points": np.array(found.points, np.float64).reshape(-1, 3),
+        **faces,
+    }
     arrays |= {f"attribute {k}": values for k, values in enumerate(attributes.values())}
     arrays |= _number_fields(found) | _flags(found, faces["cells"])
     texts = {name: _text_field(found, name) for name in ("crs", "elevation_unit")}

@@ -44,7 +44,7 @@ def send(stream: IO[bytes], answer: Answer) -> None:
     stream.write(head)
     for array in arrays.values():
         if array.size:
-            stream.write(memoryview(array).cast("B"))
+            stream.write(array.data.cast("B"))
     stream.flush()
 
 
@@ -69,7 +69,7 @@ def receive(stream: IO[bytes], *, most_bytes: int) -> Answer:
         raise BrokenMessageError
     for array in announced.values():
         if array.size:
-            _fill(stream, memoryview(array).cast("B"))
+            _fill(stream, array.data.cast("B"))
     return Answer(value, announced)
 
 

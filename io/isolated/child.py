@@ -10,7 +10,6 @@ import contextlib
 import faulthandler
 import math
 import os
-import sys
 from collections.abc import Iterator
 from importlib import import_module
 from typing import IO, Any
@@ -104,9 +103,7 @@ def _parts(function: Any, arguments: dict[str, Any], limits: Limits) -> Iterator
 
 def _limit_time(limits: Limits) -> None:
     """End this process when a part takes too long, also when the program is gone by then."""
-    faulthandler.dump_traceback_later(
-        limits.waiting_seconds + _MARGIN_SECONDS, exit=True, file=sys.__stderr__
-    )
+    faulthandler.dump_traceback_later(limits.waiting_seconds + _MARGIN_SECONDS, exit=True, file=2)
     with contextlib.suppress(ImportError, ValueError, OSError):
         import resource
 

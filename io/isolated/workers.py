@@ -14,7 +14,7 @@ import signal
 import subprocess
 import sys
 import threading
-from collections.abc import Iterator, Mapping
+from collections.abc import Generator, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -100,7 +100,9 @@ class _Worker:
             start_new_session=True,  # Ctrl-C is for the program, which then ends the child
         )
 
-    def ask(self, request: dict[str, Any], path: Path, limits: Limits) -> Iterator[Answer]:
+    def ask(
+        self, request: dict[str, Any], path: Path, limits: Limits
+    ) -> Generator[Answer, None, None]:
         """Yield the parts of the answer; anything but a sound end leaves the child unsound."""
         self.is_sound = False
         with contextlib.suppress(BrokenPipeError):
