@@ -4,7 +4,7 @@ from .codes import lines_from_codes
 from .crs import LengthUnit, length_unit, transform_points
 from .errors import CrsError, FormatError, ReadError, WriteError
 from .formats import Format, find_format, known_formats, read, write
-from .vectors import read_lines, read_rings, read_water
+from .vectors import read_lines, read_polygons, read_rings, read_water
 from .vectors_survey import with_lines
 
 __all__ = [
@@ -20,6 +20,7 @@ __all__ = [
     "lines_from_codes",
     "read",
     "read_lines",
+    "read_polygons",
     "read_rings",
     "read_water",
     "transform_points",

@@ -8,13 +8,17 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Literal, overload
 
+from ..tin import TinsmithError
 from .errors import WriteError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from contextlib import AbstractContextManager
 
-__all__ = ["replacing", "replacing_path"]
+__all__ = ["replacing", "replacing_path", "require_writable"]
+
+_STEM = 40
+"""Letters of a name that the name of the file beside it begins with: names have 255 bytes."""
 
 
 @overload
@@ -64,20 +68,55 @@ def replacing_path(path: Path) -> Iterator[Path]:
     WriteError
         As :func:`replacing`.
     """
-    try:
-        target = Path(os.path.realpath(path))
+    with _faults_as_sentences(path):
+        target = _target(path)
         _require_replaceable(path, target)
-        beside = _empty_file_beside(target)
-        try:
+        beside = _path_beside(target)
+        try:  # begins before the file is there, so that no signal can come in between
+            _create(beside, target)
             yield beside
             beside.replace(target)
         finally:
             beside.unlink(missing_ok=True)
-    except WriteError:
+
+
+def require_writable(path: Path) -> None:
+    """Find out, before any work is done, whether a file can be written at ``path``.
+
+    Raises
+    ------
+    WriteError
+        If there is no such folder, it may not be written to, or what is there is a folder, a
+        device or read-only.
+    """
+    with _faults_as_sentences(path):
+        target = _target(path)
+        _require_replaceable(path, target)
+        if not os.access(target.parent, os.W_OK | os.X_OK):
+            raise WriteError(
+                f"Cannot write '{path}': the folder '{path.parent}' may not be written to.",
+                path=path,
+            )
+
+
+@contextmanager
+def _faults_as_sentences(path: Path) -> Iterator[None]:
+    """Turn what the system says into a sentence."""
+    try:
+        yield
+    except TinsmithError:
         raise
     except OSError as error:
         reason = error.strerror or str(error) or type(error).__name__
         raise WriteError(f"Cannot write '{path}': {reason}.", path=path) from error
+
+
+def _target(path: Path) -> Path:
+    """Follow links, so that the file itself is replaced and not the link to it."""
+    try:
+        return Path(os.path.realpath(path))
+    except ValueError as error:
+        raise WriteError(f"Cannot write {str(path)!r}: {error}.", path=path) from error
 
 
 def _require_replaceable(path: Path, target: Path) -> None:
@@ -96,11 +135,14 @@ def _require_replaceable(path: Path, target: Path) -> None:
         raise WriteError(f"Cannot write '{path}': the file there is read-only.", path=path)
 
 
-def _empty_file_beside(target: Path) -> Path:
+def _path_beside(target: Path) -> Path:
+    """Return a new name in the folder of the target: hidden, with its suffix."""
+    return target.with_name(f".{target.stem[:_STEM]}-{secrets.token_hex(4)}{target.suffix}")
+
+
+def _create(beside: Path, target: Path) -> None:
     """Create the file with the permissions that the target has, or that a new file gets."""
-    beside = target.with_name(f".{target.stem[:100]}-{secrets.token_hex(4)}{target.suffix}")
     descriptor = os.open(beside, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666)
     os.close(descriptor)
     if target.exists():
         beside.chmod(target.stat().st_mode & 0o777)
-    return beside

@@ -75,13 +75,14 @@ def lines_from_codes(survey: Survey, rules: Mapping[str, LineRole] | None = None
     Returns
     -------
     Survey
-        With the lines added to its own. Water is level at the median of its points.
+        With the lines added to its own. Water is level at the median of its points. ``notes``
+        names marks that are unknown, and are taken for a remark, and lines that are left out, of
+        one point or rings of fewer than three.
 
     Raises
     ------
     LinesError
-        If there are no descriptions or no line codes, if a mark is unknown, if a line has one
-        point, or a ring fewer than three.
+        If there are no descriptions or no line codes.
 
     Examples
     --------
@@ -94,8 +95,9 @@ def lines_from_codes(survey: Survey, rules: Mapping[str, LineRole] | None = None
     [<Breakline: hard, 3 vertices, 'EP1'>]
     """
     roles = _checked_rules(RULES if rules is None else rules)
-    runs = _runs(survey, roles)
-    _require_lengths(survey, runs)
+    found, notes = _runs(survey, roles)
+    runs = [run for run in found if len(run.rows) >= _least(run)]
+    notes += _short_notes(survey, [run for run in found if len(run.rows) < _least(run)])
     ponds = [_water(survey, run) for run in runs if run.role == "water"]
     return replace(
         survey,
@@ -107,7 +109,7 @@ def lines_from_codes(survey: Survey, rules: Mapping[str, LineRole] | None = None
         holes=[*survey.holes, *(survey.points[r.rows] for r in _of(runs, "hole"))],
         erase=[*survey.erase, *(survey.points[r.rows, :2] for r in _of(runs, "erase"))],
         water=[*survey.water, *ponds],
-        notes=[*survey.notes, *(_level_note(survey, r) for r in _of(runs, "water"))],
+        notes=[*survey.notes, *notes, *(_level_note(survey, r) for r in _of(runs, "water"))],
     )
 
 
@@ -128,8 +130,11 @@ def _of(runs: Iterable[_Run], *roles: LineRole) -> list[_Run]:
 # ------------------------------------------------------------------------- codes
 
 
-def _runs(survey: Survey, roles: Mapping[str, LineRole]) -> list[_Run]:
-    """Follow every line through the points, in the order of the first point of each."""
+def _runs(survey: Survey, roles: Mapping[str, LineRole]) -> tuple[list[_Run], list[str]]:
+    """Follow every line through the points, in the order of the first point of each.
+
+    Also say which marks are unknown.
+    """
     runs: list[_Run] = []
     running: dict[str, _Run] = {}
     unknown: list[tuple[int, str]] = []
@@ -143,10 +148,9 @@ def _runs(survey: Survey, roles: Mapping[str, LineRole]) -> list[_Run]:
         running[name].rows.append(row)
         if meaning in ("end", "close"):
             running.pop(name).is_closed = meaning == "close"
-    _require_marks(survey, unknown)
     if not runs:
         raise LinesError(f"No description begins with a line code: {', '.join(roles)} are known.")
-    return runs
+    return runs, _mark_notes(survey, unknown)
 
 
 def _coded(
@@ -182,30 +186,30 @@ def _point(survey: Survey, row: int) -> str:
     return f"row {row}" if numbers is None else f"point {numbers[row]}"
 
 
-def _require_marks(survey: Survey, unknown: list[tuple[int, str]]) -> None:
+def _mark_notes(survey: Survey, unknown: list[tuple[int, str]]) -> list[str]:
     if not unknown:
-        return
+        return []
     shown = ", ".join(f"'{mark}' at {_point(survey, row)}" for row, mark in unknown[:_SHOWN])
     more = " ..." if len(unknown) > _SHOWN else ""
-    raise LinesError(
-        f"{len(unknown)} unknown mark{'s' * (len(unknown) > 1)} behind line codes ({shown}{more}): "
-        f"one of {', '.join(MARKS)} is allowed; a note stands in quotes or behind a comma, / or ;."
-    )
+    marks = "mark behind line codes is" if len(unknown) == 1 else "marks behind line codes are"
+    return [
+        f"{len(unknown)} unknown {marks} taken for remarks ({shown}{more}): "
+        f"{', '.join(MARKS)} are known; a remark stands in quotes or behind a comma, / or ;."
+    ]
 
 
-def _require_lengths(survey: Survey, runs: list[_Run]) -> None:
-    short = [run for run in runs if len(run.rows) < _least(run)]
+def _short_notes(survey: Survey, short: list[_Run]) -> list[str]:
     if not short:
-        return
+        return []
     shown = ", ".join(
         f"{run.name}: {', '.join(_point(survey, row) for row in run.rows)}"
         for run in short[:_SHOWN]
     )
     more = " ..." if len(short) > _SHOWN else ""
-    have = "line has" if len(short) == 1 else "lines have"
-    raise LinesError(
+    have = "line is left out, which has" if len(short) == 1 else "lines are left out, which have"
+    return [
         f"{len(short)} {have} too few points ({shown}{more}): a line needs two, a closed one three."
-    )
+    ]
 
 
 def _least(run: _Run) -> int:

@@ -4,17 +4,26 @@ from __future__ import annotations
 
 import csv
 from itertools import chain
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from ..tin import TIN, Survey
+from .area import AreaOfUse
 from .atomic import replacing
-from .crs import as_crs, is_geographic, normalised, transform_points
+from .crs import is_geographic, normalised
+from .delimited_content import columns_by_content
+from .delimited_findings import (
+    describe_faults,
+    describe_left_out,
+    find_odd_elevations,
+    find_repeated_numbers,
+    require_in_area,
+)
 from .delimited_layout import find_layout
 from .delimited_lines import read_lines
-from .delimited_table import read_table
-from .errors import CrsError, WriteError
+from .delimited_table import describe_columns, faults_error, read_cells, read_table
+from .errors import FormatError, ReadError, WriteError
 from .placing import placed
 
 if TYPE_CHECKING:
@@ -23,7 +32,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from .delimited_columns import Columns
     from .delimited_layout import Layout
+    from .delimited_lines import TextLines
+    from .delimited_table import Cells, Fault, Table
 
 __all__ = ["read", "write"]
 
@@ -31,7 +43,6 @@ _WGS84 = "EPSG:4326"
 _CHUNK_ROWS = 100_000
 _SUFFIX_DELIMITERS = {".tsv": "\t", ".xyz": " ", ".pts": " "}
 _BARE_SUFFIXES = frozenset({".xyz", ".pts"})
-_AREA_MARGIN_DEGREES = 2.0
 
 
 def read(
@@ -44,6 +55,8 @@ def read(
     comment: str | None = None,
     encoding: str | None = None,
     source_crs: str | None = None,
+    nodata: float | Sequence[float] | None = None,
+    skip_bad: bool = False,
 ) -> Survey:
     """Read survey points.
 
@@ -68,96 +81,156 @@ def read(
         Default by looking: UTF-8, UTF-16, else Windows-1252.
     source_crs : str, optional
         CRS in which the file's coordinates are, if not ``crs``.
+    nodata : float or sequence of float, optional
+        Elevations that stand for "no data": their points are left out.
+    skip_bad : bool, optional
+        Whether rows with too few or too many cells, or a coordinate that is no number, are left
+        out, instead of the file being refused.
 
     Returns
     -------
     Survey
-        Other columns are ``attributes``: ``"number"``, ``"description"``, others by name.
-        ``skipped`` counts lines that are no rows; ``notes`` says what was assumed.
+        Other columns are ``attributes``: ``"number"``, ``"description"``, others by name. Points
+        without an elevation are left out. ``skipped`` counts what is left out, ``skipped_lines``
+        names the lines; ``notes`` says what was assumed, and what is odd.
 
     Raises
     ------
     ReadError
-        If there is no table, its columns cannot be told, a row has too few or too many cells,
-        a coordinate is no finite number, or the coordinates would be in degrees.
+        If there is no table, its columns cannot be told or may be told in two ways, a row is bad
+        (with ``skip_bad`` more than half of them), no point has an elevation, or the coordinates
+        would be in degrees.
     FormatError
         If an option has a value that it cannot have.
     CrsError
-        If a CRS is unknown, or the points do not fit it.
+        If a CRS is unknown, or the points lie in its area of use only with coordinates exchanged.
 
     Notes
     -----
-    Without a header and without ``columns``: first whole ascending numbers (or names), then
-    three columns of numbers, are taken as number, northing, easting, elevation (PNEZD); else
-    the first three columns as easting, northing, elevation (XYZ). Content cannot tell northing
-    from easting; if ``crs`` is given and only the exchanged coordinates lie where it applies,
-    they are exchanged. In either case ``notes`` says so.
+    Without a header and without ``columns`` all customary layouts are judged together, by what
+    the columns hold and by the area of use of the CRS; docs/survey-text.md has the rules. Where
+    two are plausible the file is refused with the two named, else ``notes`` says which was taken
+    and why. The area of use is looked at however the columns are found.
 
     A number is the float64 nearest to its text. One million rows take about half a second
     on one core, two seconds where quotes stand inside cells or descriptions hold blanks.
     """
+    left_out = _as_numbers(nodata)
+    declared = normalised(source_crs)
     lines = read_lines(path, encoding=encoding)
     layout = find_layout(
         lines, path, columns=columns, delimiter=delimiter, decimal=decimal, comment=comment
     )
-    table = read_table(lines, layout, path)
-    source = _source(layout, normalised(source_crs), crs)
-    points, notes = _understood(table.points, layout, source or crs)
-    placed_points, placed_crs = placed(points, source=source, target=crs, path=path)
+    cells = read_cells(lines, layout, path)
+    if cells.faults and not skip_bad:
+        raise faults_error(cells.faults, len(layout.rows), lines, layout, path)
+    source = _source(layout, declared, crs)
+    area = AreaOfUse.of(source, crs)
+    meaning, notes = _columns(cells, layout, area, path)
+    table = read_table(cells, layout, meaning, lines)
+    _require_few_faults(table.faults, lines, layout, path, skip_bad=skip_bad)
+    told = _accounted(table, left_out, path)
+    notes = [
+        *layout.notes,
+        *notes,
+        *told.notes,
+        *require_in_area(told.points, told.rows, meaning, area, path),
+        *find_odd_elevations(told.points),
+        *find_repeated_numbers(told.attributes.get("number"), told.rows),
+    ]
+    placed_points, placed_crs = placed(told.points, source=source, target=crs, path=path)
     return Survey(
         points=placed_points,
-        attributes=table.attributes,
+        attributes=told.attributes,
         crs=placed_crs,
         source=path.name,
-        skipped=layout.skipped,
+        skipped={**layout.skipped, **{what: len(at) for what, at in told.lines.items()}},
+        skipped_lines=told.lines,
         notes=notes,
     )
 
 
+def _as_numbers(nodata: float | Sequence[float] | None) -> NDArray[np.float64]:
+    """Return the elevations that stand for no data.
+
+    Raises
+    ------
+    FormatError
+        If they are no numbers.
+    """
+    try:
+        return np.atleast_1d(np.asarray([] if nodata is None else nodata, np.float64)).ravel()
+    except (TypeError, ValueError, OverflowError) as error:
+        raise FormatError(
+            f"Invalid nodata '{nodata}': a number, or several, are needed."
+        ) from error
+
+
 def _source(layout: Layout, source_crs: str | None, crs: str | None) -> str | None:
     """Return the CRS of the coordinates in the file, None if it is the one declared."""
-    if source_crs is None and layout.columns.is_degrees and not is_geographic(crs):
-        return _WGS84
-    return source_crs
+    in_degrees = layout.columns is not None and layout.columns.is_degrees
+    return _WGS84 if source_crs is None and in_degrees and not is_geographic(crs) else source_crs
 
 
-# ------------------------------------------------------------------ northing or easting first
-
-
-def _understood(
-    points: NDArray[np.float64], layout: Layout, crs: str | None
-) -> tuple[NDArray[np.float64], list[str]]:
-    """Return points whose easting and northing are the right way round, and what was assumed."""
-    if layout.columns.is_degrees:
-        return points, []
-    if not layout.is_assumed:
-        return points, []
-    columns = layout.columns
-    reason = ""
-    if crs is not None and _only_swapped_fits(points, crs):
-        points, columns = points[:, [1, 0, 2]], columns.swapped()
-        reason = ", because only then they lie where the CRS applies"
-    return points, [f"No header: the columns are taken as {columns.layout}{reason}."]
-
-
-def _only_swapped_fits(points: NDArray[np.float64], crs: str) -> bool:
-    middle = np.median(points, axis=0)
-    return not _lies_in_area(middle, crs) and _lies_in_area(middle[[1, 0, 2]], crs)
-
-
-def _lies_in_area(point: NDArray[np.float64], crs: str) -> bool:
-    """Whether a point lies in the area of use of a CRS, or that area is not known."""
-    area = as_crs(crs).area_of_use
-    if area is None:
-        return True
+def _columns(
+    cells: Cells, layout: Layout, area: AreaOfUse | None, path: Path
+) -> tuple[Columns, list[str]]:
+    """Return what the columns mean, by word or header, else by what is in them."""
+    if layout.columns is not None:
+        return layout.columns, []
     try:
-        longitude, latitude, _ = transform_points(point[None, :], crs, _WGS84)[0]
-    except CrsError:
-        return False
-    margin = _AREA_MARGIN_DEGREES
-    span = (area.east - area.west) % 360.0 or 360.0
-    is_between = (longitude - area.west + margin) % 360.0 <= span + 2 * margin
-    return bool(is_between and area.south - margin <= latitude <= area.north + margin)
+        columns = describe_columns(cells, layout)
+        found, note = columns_by_content(columns, area, is_scan=layout.is_scan)
+    except ReadError as error:
+        raise ReadError(f"'{path}': {error}", path=path) from None
+    return found, [note]
+
+
+# ------------------------------------------------------------------ rows that are left out
+
+
+def _require_few_faults(
+    faults: Sequence[Fault], lines: TextLines, layout: Layout, path: Path, *, skip_bad: bool
+) -> None:
+    """Refuse bad rows that are not to be skipped, or are most of the rows."""
+    if faults and (not skip_bad or 2 * len(faults) > len(layout.rows)):
+        raise faults_error(faults, len(layout.rows), lines, layout, path)
+
+
+class _Accounted(NamedTuple):
+    """The points that are left, and the lines of those that are not."""
+
+    points: NDArray[np.float64]
+    rows: NDArray[np.int64]
+    attributes: dict[str, NDArray[Any]]
+    lines: dict[str, tuple[int, ...]]
+    notes: list[str]
+
+
+def _accounted(table: Table, nodata: NDArray[np.float64], path: Path) -> _Accounted:
+    """Leave out points without an elevation, and say what became of every row."""
+    z = table.points[:, 2]
+    is_flat = np.isnan(z)
+    is_nodata = np.isin(z, nodata) if len(nodata) else np.zeros(len(z), np.bool_)
+    if (is_flat | is_nodata).all():
+        raise ReadError(f"'{path}': none of its {len(z)} rows has an elevation.", path=path)
+    lines: dict[str, tuple[int, ...]] = {}
+    notes: list[str] = []
+    if table.n_grouped:
+        notes.append(f"Thousands separators were taken out of {table.n_grouped:,} coordinates.")
+    if table.faults:
+        lines["bad rows"] = tuple(fault.line + 1 for fault in table.faults)
+        notes.append(describe_faults(table.faults))
+    flat = ("points without elevation", "without an elevation", is_flat)
+    for what, why, is_out in (flat, ("nodata points", "with a nodata elevation", is_nodata)):
+        if is_out.any():
+            lines[what] = tuple((table.rows[is_out] + 1).tolist())
+            notes.append(describe_left_out(why, lines[what]))
+    if not lines or not (is_flat | is_nodata).any():
+        return _Accounted(table.points, table.rows, table.attributes, lines, notes)
+    kept = ~(is_flat | is_nodata)
+    attributes = {name: values[kept] for name, values in table.attributes.items()}
+    return _Accounted(table.points[kept], table.rows[kept], attributes, lines, notes)
 
 
 # ------------------------------------------------------------------ writing

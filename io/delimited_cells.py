@@ -7,20 +7,38 @@ import re
 
 __all__ = [
     "BLANKS",
+    "as_grouped",
     "as_number",
+    "is_grouped",
+    "is_missing",
     "is_number",
     "is_number_like",
+    "is_padded",
+    "may_group_or_divide",
+    "proves_groups",
     "split_line",
 ]
 
 BLANKS = " "
 """Stands for a delimiter of one or more spaces or tabs."""
 
+_LONGEST_NUMBER = 1_000
+"""Letters of a number: the exact decimals of a float64 have up to 767 digits."""
+
+# No pattern may try a text in more than a few ways: cells come from files that nobody vouches for.
 _NUMBER = {
-    ".": re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"),
-    ",": re.compile(r"[-+]?(?:[0-9]+,?[0-9]*|,[0-9]+)(?:[eE][-+]?[0-9]+)?"),
+    ".": re.compile(r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"),
+    ",": re.compile(r"[-+]?(?:[0-9]+(?:,[0-9]*)?|,[0-9]+)(?:[eE][-+]?[0-9]+)?"),
 }
-_NO_NUMBER = re.compile(r"[-+]?(?:nan|na|n/a|null|none|inf|infinity|-|\*+)?", re.IGNORECASE)
+_GROUPED = {
+    ".": re.compile(
+        r"[-+]?[0-9]{1,3}([,'\u2019 \u00a0\u202f])[0-9]{3}(?:\1[0-9]{3})*(?:\.[0-9]*)?"
+    ),
+    ",": re.compile(r"[-+]?[0-9]{1,3}([.'\u2019 \u00a0\u202f])[0-9]{3}(?:\1[0-9]{3})*(?:,[0-9]*)?"),
+}
+_GROUP_OR_DECIMALS = re.compile(r"[-+]?[1-9][0-9]{0,2},[0-9]{3}")
+_MISSING = re.compile(r"[-+]?(?:nan|na|n/a|null|none|-|\*+)?", re.IGNORECASE)
+_INFINITE = re.compile(r"[-+]?(?:inf|infinity)", re.IGNORECASE)
 
 
 def split_line(line: str, delimiter: str) -> list[str]:
@@ -36,15 +54,55 @@ def split_line(line: str, delimiter: str) -> list[str]:
 
 def is_number(cell: str, decimal: str) -> bool:
     """Whether a cell is a number with this decimal mark."""
-    return _NUMBER[decimal].fullmatch(cell) is not None
+    return len(cell) <= _LONGEST_NUMBER and _NUMBER[decimal].fullmatch(cell) is not None
+
+
+def is_missing(cell: str) -> bool:
+    """Whether a cell is empty or a word for "no number"."""
+    return len(cell) <= _LONGEST_NUMBER and _MISSING.fullmatch(cell) is not None
 
 
 def is_number_like(cell: str, decimal: str) -> bool:
     """Whether a cell stands where a number should: one, nothing, or a word for "no number"."""
-    return is_number(cell, decimal) or _NO_NUMBER.fullmatch(cell) is not None
+    return (
+        is_number(cell, decimal)
+        or is_missing(cell)
+        or _INFINITE.fullmatch(cell[:_LONGEST_NUMBER]) is not None
+        or is_grouped(cell, decimal)
+    )
+
+
+def is_grouped(cell: str, decimal: str) -> bool:
+    """Whether a cell is a number with thousands separators: 4,024,240.10 or 4'024'240,10."""
+    return len(cell) <= _LONGEST_NUMBER and _GROUPED[decimal].fullmatch(cell) is not None
+
+
+def proves_groups(cell: str, decimal: str) -> bool:
+    """Whether a grouped number cannot be read another way; 1,234 may be 1.234."""
+    marks = [letter for letter in cell.lstrip("+-") if not letter.isdecimal()]
+    return is_grouped(cell, decimal) and (len(marks) > 1 or marks[0] not in ".,")
+
+
+def may_group_or_divide(cell: str) -> bool:
+    """Whether the comma of a cell may separate thousands as well as decimals: 1,234."""
+    return _GROUP_OR_DECIMALS.fullmatch(cell) is not None
+
+
+def is_padded(cell: str) -> bool:
+    """Whether a cell is a whole number with leading zeros, as point numbers and codes have."""
+    return len(cell) > 1 and cell[0] == "0" and cell.isdecimal()
 
 
 def as_number(cell: str, decimal: str) -> float:
     """Return the nearest float64 of a cell, NaN if it is no number."""
     text = cell.strip()
     return float(text.replace(decimal, ".")) if is_number(text, decimal) else float("nan")
+
+
+def as_grouped(cell: str, decimal: str) -> float:
+    """Return the nearest float64 of a number with thousands separators, NaN if it is none."""
+    text = cell.strip()
+    if not is_grouped(text, decimal):
+        return float("nan")
+    digits = "".join(letter for letter in text if letter.isdecimal() or letter in "+-" + decimal)
+    return as_number(digits, decimal)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import unicodedata
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from .errors import FormatError, ReadError
@@ -13,7 +13,16 @@ from .errors import FormatError, ReadError
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-__all__ = ["COORDINATES", "Columns", "columns_by_header", "columns_by_word", "meanings", "role_of"]
+__all__ = [
+    "COORDINATES",
+    "Columns",
+    "columns_by_header",
+    "columns_by_word",
+    "meanings",
+    "numbered",
+    "role_of",
+    "unit_of",
+]
 
 COORDINATES = ("easting", "northing", "elevation")
 _ROLES = (*COORDINATES, "number", "description")
@@ -60,7 +69,27 @@ _DEGREES = {
     "easting": ("longitude", "long", "lon", "lng", "longitud", "lange", "laenge"),
     "northing": ("latitude", "lat", "latitud", "breite"),
 }
-_UNIT = re.compile(r"[\[(][^\])]*[\])]|(?<=.)_(?:m|ft|usft|metres?|meters?|feet)$", re.IGNORECASE)
+_UNIT_NAMES = (
+    *("m", "metre", "metres", "meter", "meters", "mm", "cm", "dm", "km", "ft", "foot", "feet"),
+    *("usft", "us ft", "us-ft", "ussft", "ftus", "ft us", "ft-us", "us foot", "us feet", "sft"),
+    *("us survey foot", "us survey feet", "survey foot", "survey feet", "usfoot", "usfeet"),
+    *("ift", "intft", "int ft", "international foot", "international feet", "ftint"),
+)
+# The brackets inside keep the pattern linear: a text of nothing but brackets is tried once.
+_UNIT = re.compile(
+    r"[\[(](?P<inside>[^\[\]()]*)[\])]"
+    rf"|(?<=[^\W_])[_ .-]+(?P<behind>{'|'.join(sorted(_UNIT_NAMES, key=len, reverse=True))})$",
+    re.IGNORECASE,
+)
+_LONGEST_NAME = 200
+"""Letters of a header cell that may be a name; a longer one is some other text."""
+_ROLE_LETTERS = {
+    "number": "P",
+    "northing": "N",
+    "easting": "E",
+    "elevation": "Z",
+    "description": "D",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,11 +105,17 @@ class Columns:
         ``"elevation"``, ``"number"``, ``"description"``.
     is_degrees : bool
         Whether easting and northing are called longitude and latitude.
+    units : mapping of str to str
+        Words that the header uses for the units of coordinates, by role; ``{}`` if none.
+    notes : tuple of str
+        What was assumed to understand the header, in sentences.
     """
 
     names: tuple[str, ...]
     roles: Mapping[str, int]
     is_degrees: bool = False
+    units: Mapping[str, str] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
 
     @property
     def coordinates(self) -> list[int]:
@@ -93,10 +128,23 @@ class Columns:
         place = f"column {column + 1}"
         return place if name in ("", place) else f"{place} ('{name}')"
 
-    def swapped(self) -> Columns:
-        """Return the same with easting and northing exchanged."""
-        easting, northing = self.roles["easting"], self.roles["northing"]
-        return replace(self, roles={**self.roles, "easting": northing, "northing": easting})
+    def permuted(self, order: Sequence[int]) -> Columns:
+        """Return the same with the columns of the coordinates exchanged.
+
+        Parameters
+        ----------
+        order : sequence of 3 int
+            ``[1, 0, 2]`` takes the northing for the easting and the easting for the northing.
+        """
+        moved = {role: self.coordinates[k] for role, k in zip(COORDINATES, order, strict=True)}
+        return replace(self, roles={**self.roles, **moved})
+
+    @property
+    def word(self) -> str:
+        """The letters that say the same as the option columns: "PNEZD"."""
+        meaning = {column: role for role, column in self.roles.items()}
+        letters = [_ROLE_LETTERS.get(meaning.get(i, ""), "-") for i in range(len(self.names))]
+        return "".join(letters).rstrip("-")
 
     @property
     def layout(self) -> str:
@@ -130,7 +178,7 @@ def role_of(name: str) -> str | None:
 
 def _rank(name: str) -> tuple[str, bool, int] | None:
     """Return role, whether in degrees, and how far down the list of synonyms a name stands."""
-    plain = _plain(name)
+    plain = _plain(name) if len(name) <= _LONGEST_NAME else ""
     for in_degrees, synonyms in ((False, _NAMES), (True, _DEGREES)):
         for role, known in synonyms.items():
             if plain in known:
@@ -147,46 +195,137 @@ def _plain(name: str) -> str:
     return re.sub(r"[^a-z0-9]", "", letters.replace("ß", "ss"))
 
 
-def columns_by_header(header: Sequence[str], *, strict: bool = True) -> Columns | None:
+def unit_of(name: str) -> str | None:
+    """Return the unit of length that a header cell names, as it is written; None if none.
+
+    Examples
+    --------
+    >>> unit_of("Elevation (USft)"), unit_of("elev_ft"), unit_of("Height (NAVD88)")
+    ('USft', 'ft', None)
+    """
+    if len(name) > _LONGEST_NAME:
+        return None
+    for found in _UNIT.finditer(name.strip()):
+        word = (found["inside"] or found["behind"] or "").strip()
+        if " ".join(re.split(r"[\s._]+", word.casefold())) in _UNIT_NAMES:
+            return word
+    return None
+
+
+def columns_by_header(
+    header: Sequence[str], units: Sequence[str] = (), *, strict: bool = True
+) -> Columns | None:
     """Find the columns by the names in the header; None if a coordinate is not among them.
+
+    Parameters
+    ----------
+    header : sequence of str
+    units : sequence of str, optional
+        Cells of the line of units below the header.
+    strict : bool, optional
+        Whether two equal names for a coordinate are refused.
 
     Raises
     ------
     ReadError
         If (``strict``) two columns have the same name for a coordinate.
     """
-    best = _best_by_role(header)
-    in_degrees = not {"easting", "northing"} <= best.keys() and {"lon", "lat"} <= best.keys()
-    if in_degrees:
-        best["easting"], best["northing"] = best["lon"], best["lat"]
-    roles = {role: best[role][1] for role in _ROLES if role in best}
+    found = _columns_by_role(header)
+    pair, in_degrees, notes = _best_pair(header, found)
+    roles = {role: columns[0] for role, columns in found.items() if role in _ROLES}
+    roles |= pair
     if not set(COORDINATES) <= roles.keys():
         return None
+    _give_number(header, roles)
     for role in COORDINATES if strict else ():
         same = [name for name in header if _plain(name) == _plain(header[roles[role]])]
         if len(same) > 1:
             raise ReadError(
-                f"The header has {len(same)} columns named '{same[0]}' for the {role}: "
+                f"the header has {len(same)} columns named '{same[0]}' for the {role}: "
                 "say with the option columns which is meant."
             )
-    return Columns(numbered(header, len(header)), roles, in_degrees)
+    notes += _elevation_notes(header, found["elevation"])
+    named = _units(header, units, roles)
+    return Columns(numbered(header, len(header)), roles, in_degrees, named, tuple(notes))
 
 
-def _best_by_role(header: Sequence[str]) -> dict[str, tuple[int, int]]:
-    """Return rank and column of the name that says most clearly what each role is."""
-    best: dict[str, tuple[int, int]] = {}
+def _units(header: Sequence[str], units: Sequence[str], roles: Mapping[str, int]) -> dict[str, str]:
+    """Return the words for the units of the coordinates, in the header or the line below it."""
+    found: dict[str, str] = {}
+    for role in COORDINATES:
+        column = roles[role]
+        name = header[column] if column < len(header) else ""
+        below = units[column].strip(" ()[]") if column < len(units) else ""
+        word = unit_of(name) or unit_of(f"({below})")
+        if word is not None:
+            found[role] = word
+    return found
+
+
+def _columns_by_role(header: Sequence[str]) -> dict[str, list[int]]:
+    """Return the columns of each role, those first whose names say most clearly what they are."""
+    ranked: dict[str, list[tuple[int, int]]] = {}
     for column, name in enumerate(header):
         rank = _rank(name)
-        if rank is None:
-            continue
-        role = rank[0] if not rank[1] else {"easting": "lon", "northing": "lat"}[rank[0]]
-        candidate = (rank[2], column)
-        best[role] = min(best.get(role, candidate), candidate)
-    return best
+        if rank is not None:
+            role = rank[0] if not rank[1] else {"easting": "lon", "northing": "lat"}[rank[0]]
+            ranked.setdefault(role, []).append((rank[2], column))
+    return {role: [column for _, column in sorted(pairs)] for role, pairs in ranked.items()}
+
+
+def _is_xy(name: str) -> bool:
+    """Whether a name of an easting or northing is one with X or Y."""
+    return any(letter in _plain(name) for letter in "xy")
+
+
+def _best_pair(
+    header: Sequence[str], found: Mapping[str, Sequence[int]]
+) -> tuple[dict[str, int], bool, list[str]]:
+    """Return the columns of easting and northing, whether in degrees, and what was assumed.
+
+    Names of one kind belong together: of N, X and Y the first is a number and no northing.
+    """
+    eastings, northings = found.get("easting", []), found.get("northing", [])
+    pairs = [(e, n) for e in eastings for n in northings if _is_xy(header[e]) == _is_xy(header[n])]
+    pairs = pairs or [(e, n) for e in eastings for n in northings if _plain(header[n]) != "n"]
+    if not pairs:
+        if not found.keys() >= {"lon", "lat"}:
+            return {}, False, []
+        return {"easting": found["lon"][0], "northing": found["lat"][0]}, True, []
+    chosen = min(pairs, key=lambda pair: _is_xy(header[pair[0]]))
+    notes = [
+        f"The header names two pairs of coordinates: '{header[chosen[0]]}' and "
+        f"'{header[chosen[1]]}' are taken, '{header[e]}' and '{header[n]}' are not."
+        for e, n in pairs
+        if e != chosen[0] and n != chosen[1]
+    ][:1]
+    if _is_xy(header[chosen[0]]) and chosen[1] < chosen[0]:
+        notes.append(
+            f"By the header '{header[chosen[0]]}' is the easting and '{header[chosen[1]]}' the "
+            "northing; where X points north it is the other way round."
+        )
+    return {"easting": chosen[0], "northing": chosen[1]}, False, notes
+
+
+def _give_number(header: Sequence[str], roles: dict[str, int]) -> None:
+    """Take a column N beside X and Y for the number of the point."""
+    column = next((i for i, name in enumerate(header) if _plain(name) == "n"), None)
+    if column is not None and column != roles["northing"] and "number" not in roles:
+        roles["number"] = column
+
+
+def _elevation_notes(header: Sequence[str], columns: Sequence[int]) -> list[str]:
+    if len({_plain(header[column]) for column in columns}) < 2:
+        return []
+    others = ", ".join(f"'{header[column]}'" for column in columns[1:])
+    return [f"The header's '{header[columns[0]]}' is taken as the elevation, not {others}."]
 
 
 def columns_by_word(
-    word: str | Sequence[str] | Mapping[str, str | int], header: Sequence[str], count: int
+    word: str | Sequence[str] | Mapping[str, str | int],
+    header: Sequence[str],
+    count: int,
+    units: Sequence[str] = (),
 ) -> Columns:
     """Find the columns by the caller's word.
 
@@ -198,6 +337,8 @@ def columns_by_word(
         Names in the file; empty if there are none.
     count : int
         Number of columns of the file.
+    units : sequence of str, optional
+        Cells of the line of units below the header.
 
     Raises
     ------
@@ -206,7 +347,12 @@ def columns_by_word(
     """
     if isinstance(word, Mapping):
         roles = {_checked_role(role): _column(which, header, count) for role, which in word.items()}
-        return Columns(numbered(header, count), _complete(roles, word))
+        _complete(roles, word)
+        _require_distinct(roles)
+        names = numbered(header, count)
+        notes = _contradictions(header, roles)
+        in_degrees = _are_degrees(names, roles)
+        return Columns(names, roles, in_degrees, _units(header, units, roles), notes)
     given = meanings(word)
     named = [meaning for meaning in given if meaning in _ROLES]
     twice = next((one for one in named if named.count(one) > 1), None)
@@ -218,7 +364,35 @@ def columns_by_word(
             f"The option columns names {len(given)} columns ({word}), but the file has {count}."
         )
     names = [_own_name(given, header, i) for i in range(count)]
-    return Columns(numbered(names, count), roles)
+    notes = _contradictions(header, roles)
+    in_degrees = _are_degrees(names, roles) or _are_degrees(_as_names(word), roles)
+    return Columns(numbered(names, count), roles, in_degrees, _units(names, units, roles), notes)
+
+
+def _are_degrees(names: Sequence[str], roles: Mapping[str, int]) -> bool:
+    """Whether easting and northing are called longitude and latitude."""
+    columns = [roles["easting"], roles["northing"]]
+    ranks = [_rank(names[column]) if column < len(names) else None for column in columns]
+    return all(rank is not None and rank[1] for rank in ranks)
+
+
+def _require_distinct(roles: Mapping[str, int]) -> None:
+    for role, column in roles.items():
+        same = [other for other, one in roles.items() if one == column and other != role]
+        if same:
+            raise FormatError(
+                f"The option columns names column {column + 1} twice: as {role} and {same[0]}."
+            )
+
+
+def _contradictions(header: Sequence[str], roles: Mapping[str, int]) -> tuple[str, ...]:
+    """Say where the caller takes a column for another coordinate than its name says."""
+    wrong = [
+        f"'{header[column]}' as the {role}"
+        for role, column in roles.items()
+        if column < len(header) and role_of(header[column]) in set(_ROLES) - {role}
+    ]
+    return (f"The option columns takes {_listed(wrong)}, against the header.",) if wrong else ()
 
 
 def _own_name(given: Sequence[str], header: Sequence[str], column: int) -> str:
@@ -230,11 +404,20 @@ def _own_name(given: Sequence[str], header: Sequence[str], column: int) -> str:
 
 def meanings(word: str | Sequence[str]) -> list[str]:
     """Return the role, or else the name, that letters or names give each column."""
+    if isinstance(word, str) and _is_letters(word):
+        return [_LETTERS[letter] for letter in word.upper()]
+    return [role_of(name) or name.strip() for name in _as_names(word)]
+
+
+def _is_letters(word: str) -> bool:
+    return "," not in word and all(letter in _LETTERS for letter in word.upper())
+
+
+def _as_names(word: str | Sequence[str]) -> list[str]:
+    """Return the names in the order of the columns; letters are none."""
     if isinstance(word, str):
-        if "," not in word and all(letter in _LETTERS for letter in word.upper()):
-            return [_LETTERS[letter] for letter in word.upper()]
-        word = word.split(",")
-    return [role_of(name) or name.strip() for name in word]
+        return [] if _is_letters(word) else word.split(",")
+    return list(word)
 
 
 def _checked_role(role: str) -> str:

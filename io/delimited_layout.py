@@ -9,15 +9,29 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .delimited_cells import BLANKS, is_number, is_number_like, split_line
-from .delimited_columns import Columns, columns_by_header, columns_by_word, meanings, role_of
-from .delimited_content import columns_by_content, require_no_split_decimals
+from .delimited_cells import BLANKS, is_number, is_number_like, is_padded, split_line
+from .delimited_columns import (
+    Columns,
+    columns_by_header,
+    columns_by_word,
+    meanings,
+    role_of,
+    unit_of,
+)
+from .delimited_content import require_no_split_decimals
 from .delimited_lines import COMMENT_PREFIXES
-from .delimited_marks import as_decimal, as_delimiter, decimal_of, delimiter_of
+from .delimited_marks import (
+    DecimalMark,
+    as_decimal,
+    as_delimiter,
+    decimal_between_digits,
+    decimal_of,
+    delimiter_of,
+)
 from .errors import ReadError
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -28,6 +42,8 @@ __all__ = ["Layout", "find_layout"]
 
 _TOP_LINES = 100
 _SPREAD_LINES = 200
+_MOST_COLUMNS = 1_000
+_SCAN_SUFFIXES = frozenset({".xyz", ".pts"})
 _UNIT_WORDS = frozenset(
     {*("m", "metre", "metres", "meter", "meters", "ft", "feet", "foot", "usft", "mm", "cm", "deg")}
     | {*("degrees", "text", "unit", "units", "number", "string", "float", "int", "-", "")}
@@ -44,32 +60,54 @@ class Layout:
         One letter; ``BLANKS`` for runs of spaces and tabs.
     decimal : str
         Decimal mark, "." or ",".
-    columns : Columns
+    is_decimal_told : bool
+        Whether the caller named the decimal mark.
+    count : int
+        Number of columns.
+    columns : Columns or None
+        What they mean, by the caller's word or the header; None if their content must tell.
     rows : (n,) int64 array
         Line numbers (from 0) of the rows.
     has_text_tail : bool
         Whether the last column is text that may itself hold the delimiter.
+    may_lack_tail : bool
+        Whether a row that is one cell short lacks this text: it is never a number.
     text_columns : frozenset of int
         Columns to be kept as text.
+    mostly_text : frozenset of int
+        Columns most of whose cells are no numbers.
+    padded : frozenset of int
+        Columns with whole numbers that have leading zeros.
+    divided : frozenset of int
+        Columns with a decimal mark or an exponent.
+    is_scan : bool
+        Whether the file itself says that it begins with x, y, z.
     skipped : mapping of str to int
         Lines that are no rows.
-    is_assumed : bool
-        Whether the meaning of the columns is neither told nor named.
+    notes : tuple of str
+        What was assumed, in sentences.
     """
 
     delimiter: str
     decimal: str
-    columns: Columns
+    is_decimal_told: bool
+    count: int
+    columns: Columns | None
     rows: NDArray[np.int64]
     has_text_tail: bool
+    may_lack_tail: bool
     text_columns: frozenset[int]
+    mostly_text: frozenset[int]
+    padded: frozenset[int]
+    divided: frozenset[int]
+    is_scan: bool
     skipped: Mapping[str, int]
-    is_assumed: bool = False
+    notes: tuple[str, ...] = ()
 
     @property
-    def count(self) -> int:
-        """Number of columns."""
-        return len(self.columns.names)
+    def elevation_unit(self) -> str | None:
+        """Word that the header uses for the unit of elevations, None if it names none."""
+        return None if self.columns is None else self.columns.units.get("elevation")
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,6 +125,7 @@ class _Top:
     """What stands above the first row of the table."""
 
     header: list[str] | None = None
+    units: list[str] = field(default_factory=list)
     n_lines: int = 0
     announced: int | None = None
     counts: Counter[str] = field(default_factory=Counter)
@@ -127,7 +166,8 @@ def find_layout(
     1. Lines that are blank or start with a comment prefix are set aside.
     2. The delimiter is the one that gives the most numbers a line, and the same count of cells.
     3. The lines above the first row are titles, the header, a line of units, or a point count.
-    4. Columns are found by the caller's word, else by the header, else by content.
+    4. Columns are found by the caller's word, else by the header; their content is judged when all
+       of it has been read.
     """
     wishes = _Wishes(columns, as_delimiter(delimiter), as_decimal(decimal), comment)
     data, skipped = _data_lines(lines, wishes)
@@ -145,11 +185,27 @@ def find_layout(
         )
     data, skipped = _without_fillers(lines, data, skipped, found, wishes)
     cells = [split_line(text, found) for text in lines.texts(_sampled(data))]
-    mark = wishes.decimal or decimal_of(cells, found)
     try:
-        return _table_layout(lines, data, skipped, cells, (found, mark), wishes)
+        mark = _decimal_mark(lines, data, cells, found, wishes)
+        return _table_layout(lines, data, skipped, cells, (found, mark), wishes, path)
     except ReadError as error:
         raise ReadError(f"'{path}': {error}", path=path, lines=error.lines) from None
+
+
+def _decimal_mark(
+    lines: TextLines,
+    data: NDArray[np.int64],
+    cells: list[list[str]],
+    delimiter: str,
+    wishes: _Wishes,
+) -> DecimalMark:
+    """Return the mark that the caller names, else that of the lines looked at, else of any."""
+    if wishes.decimal is not None:
+        return DecimalMark(wishes.decimal)
+    found = decimal_of(cells, delimiter)
+    if found is None and delimiter != ",":
+        found = DecimalMark(decimal_between_digits(lines.joined(data)))
+    return found or DecimalMark(".")
 
 
 def _table_layout(
@@ -157,11 +213,14 @@ def _table_layout(
     data: NDArray[np.int64],
     skipped: Counter[str],
     cells: list[list[str]],
-    marks: tuple[str, str],
+    marks: tuple[str, DecimalMark],
     wishes: _Wishes,
+    path: Path,
 ) -> Layout:
-    delimiter, decimal = marks
+    delimiter, (decimal, note) = marks
     count, has_text_tail = _column_count(cells, delimiter, decimal, wishes)
+    if count > _MOST_COLUMNS:
+        raise ReadError(f"its rows have {count:,} columns; at most {_MOST_COLUMNS:,} are read.")
     top = _top(cells[:_TOP_LINES], count, decimal)
     rows = data[top.n_lines :]
     if len(rows) == 0:
@@ -171,26 +230,46 @@ def _table_layout(
             f"the first line announces {top.announced} points, but {len(rows)} rows follow: "
             "the file may be truncated."
         )
-    header = top.header or _header_in_comment(lines, int(rows[0]), delimiter, count)
     body = [row for row in cells[top.n_lines :] if len(row) == count]
-    named = _fitted_header(header, count, body, wishes)
-    if not named and wishes.columns is None:
-        if wishes.decimal is None:
-            require_no_split_decimals(body, delimiter)
-        is_scan = top.announced is not None
-        columns, is_assumed = columns_by_content(body, count, decimal, is_scan=is_scan), True
-    else:
-        columns, is_assumed = _columns_by_name(named, count, wishes), False
+    columns = _told_columns(lines, top, int(rows[0]), (delimiter, count), body, wishes)
+    kinds = _Kinds.of(body, count, decimal)
+    is_described = columns is not None and columns.roles.get("description") == count - 1
     return Layout(
         delimiter=delimiter,
         decimal=decimal,
+        is_decimal_told=wishes.decimal is not None,
+        count=count,
         columns=columns,
         rows=rows,
-        has_text_tail=has_text_tail,
-        text_columns=_text_columns(columns, body, decimal),
+        has_text_tail=has_text_tail or is_described or count - 1 in kinds.mostly_text,
+        may_lack_tail=count - 1 not in kinds.has_numbers,
+        text_columns=_text_columns(columns, kinds),
+        mostly_text=kinds.mostly_text,
+        padded=kinds.padded,
+        divided=kinds.divided,
+        is_scan=top.announced is not None or path.suffix.lower() in _SCAN_SUFFIXES,
         skipped={what: many for what, many in (skipped + top.counts).items() if many},
-        is_assumed=is_assumed,
+        notes=((note,) if note else ()) + (() if columns is None else columns.notes),
     )
+
+
+def _told_columns(
+    lines: TextLines,
+    top: _Top,
+    first_row: int,
+    shape: tuple[str, int],
+    body: Sequence[Sequence[str]],
+    wishes: _Wishes,
+) -> Columns | None:
+    """Return what the caller or a header says of the columns; None if nobody does."""
+    delimiter, count = shape
+    header = top.header or _header_in_comment(lines, first_row, delimiter, count)
+    named = _fitted_header(header, count, body, wishes)
+    if named or wishes.columns is not None:
+        return _columns_by_name(named, top.units, count, wishes)
+    if wishes.decimal is None:
+        require_no_split_decimals(body, delimiter)
+    return None
 
 
 # ------------------------------------------------------------------ lines
@@ -245,17 +324,18 @@ def _sampled(data: NDArray[np.int64]) -> list[int]:
 def _column_count(
     rows: Sequence[Sequence[str]], delimiter: str, decimal: str, wishes: _Wishes
 ) -> tuple[int, bool]:
-    """Return the number of columns, and whether the last is text that may hold blanks."""
+    """Return the number of columns, and whether the last is text that may hold the delimiter."""
     body = [row for row in rows if sum(is_number(cell, decimal) for cell in row) >= 2] or rows
-    count = Counter(map(len, body)).most_common(1)[0][0]
-    if delimiter != BLANKS:
-        return count, False
+    counts = Counter(map(len, body))
+    count = counts.most_common(1)[0][0]
     told = _told_count(rows, wishes)
-    if told:
+    if told and (delimiter == BLANKS or told <= count):
         return told, True
     tails = Counter(_text_tail(row, decimal) for row in body)
     tail = tails.most_common(1)[0][0]
-    return (count, False) if tail is None else (tail + 1, True)
+    if tail is None or (delimiter != BLANKS and len(counts) == 1):
+        return count, False
+    return (tail + 1, True) if delimiter == BLANKS or tail + 1 <= count else (count, False)
 
 
 def _told_count(rows: Sequence[Sequence[str]], wishes: _Wishes) -> int | None:
@@ -295,6 +375,8 @@ def _top(rows: Sequence[Sequence[str]], count: int, decimal: str) -> _Top:
         if kind == "header lines" and not is_known:
             is_known = columns_by_header(row, strict=False) is not None
             top.header = list(row)
+        elif kind == "header lines":
+            top.units = list(row)
         top.counts[kind] += 1
         top.n_lines += 1
     return top
@@ -304,7 +386,10 @@ def _kind(row: Sequence[str], count: int, decimal: str, is_header_known: bool) -
     """Tell what a line above the first row is, or that it is the first row."""
     numbers = sum(is_number(cell, decimal) for cell in row)
     if is_header_known:
-        is_units = all(cell.strip("()[]").lower() in _UNIT_WORDS for cell in row)
+        is_units = all(
+            cell.strip("()[]").lower() in _UNIT_WORDS or unit_of(f"({cell.strip('()[]')})")
+            for cell in row
+        )
         return "header lines" if is_units and numbers == 0 else "row"
     if columns_by_header(row, strict=False) is not None:
         return "header lines"
@@ -355,11 +440,13 @@ def _fitted_header(
     )
 
 
-def _columns_by_name(header: list[str], count: int, wishes: _Wishes) -> Columns:
+def _columns_by_name(
+    header: list[str], units: Sequence[str], count: int, wishes: _Wishes
+) -> Columns:
     """Find the columns by the caller's word, else by the header."""
     if wishes.columns is not None:
-        return columns_by_word(wishes.columns, header, count)
-    columns = columns_by_header(header)
+        return columns_by_word(wishes.columns, header, count, units)
+    columns = columns_by_header(header, units)
     if columns is None:
         found = [f"{role_of(name)} '{name}'" for name in header if role_of(name)]
         raise ReadError(
@@ -370,12 +457,42 @@ def _columns_by_name(header: list[str], count: int, wishes: _Wishes) -> Columns:
     return columns
 
 
-def _text_columns(columns: Columns, body: Sequence[Sequence[str]], decimal: str) -> frozenset[int]:
+@dataclass(frozen=True, slots=True)
+class _Kinds:
+    """Columns by what their cells look like in the rows looked at."""
+
+    has_text: frozenset[int]
+    has_numbers: frozenset[int]
+    mostly_text: frozenset[int]
+    padded: frozenset[int]
+    divided: frozenset[int]
+
+    @classmethod
+    def of(cls, body: Sequence[Sequence[str]], count: int, decimal: str) -> _Kinds:
+        """Look at every cell of some rows."""
+        columns = [[row[i] for row in body] for i in range(count)]
+        texts = [[c for c in cells if not is_number_like(c, decimal)] for cells in columns]
+        marks = (decimal, "e", "E")
+
+        def where(which: Callable[[int], bool]) -> frozenset[int]:
+            return frozenset(filter(which, range(count)))
+
+        def are_divided(i: int) -> bool:
+            return any(m in c for c in columns[i] if is_number(c, decimal) for m in marks)
+
+        return cls(
+            has_text=where(lambda i: bool(texts[i])),
+            has_numbers=where(lambda i: any(is_number(c, decimal) for c in columns[i])),
+            mostly_text=where(lambda i: 2 * len(texts[i]) > len(body)),
+            padded=where(lambda i: any(map(is_padded, columns[i]))),
+            divided=where(are_divided),
+        )
+
+
+def _text_columns(columns: Columns | None, kinds: _Kinds) -> frozenset[int]:
     """Return description, point numbers with leading zeros, and other columns of text."""
-    text = {columns.roles["description"]} if "description" in columns.roles else set()
-    for i in range(len(columns.names)):
-        cells = [row[i] for row in body]
-        padded = any(len(cell) > 1 and cell[0] == "0" and cell.isdecimal() for cell in cells)
-        if padded or any(cell and not is_number_like(cell, decimal) for cell in cells):
-            text.add(i)
-    return frozenset(text - set(columns.coordinates))
+    text = kinds.has_text | kinds.padded
+    if columns is None:
+        return text
+    described = {columns.roles["description"]} if "description" in columns.roles else set()
+    return (text | described) - set(columns.coordinates)

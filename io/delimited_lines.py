@@ -30,6 +30,7 @@ _BOMS = (
 )
 _SPACE, _TAB, _LINE_FEED = 32, 9, 10
 _PROBE = 4096
+_LONGEST_LINE = 1_000_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,7 +141,22 @@ def read_lines(path: Path, *, encoding: str | None = None) -> TextLines:
     text = _as_utf8(data, encoding, path)
     if b"\x00" in text:
         raise ReadError(f"'{path}' holds binary data, not delimited text.", path=path)
-    return TextLines.of(text.rstrip(b"\x1a"))
+    lines = TextLines.of(text.rstrip(b"\x1a"))
+    _require_short(lines, path)
+    return lines
+
+
+def _require_short(lines: TextLines, path: Path) -> None:
+    """Refuse a line so long that it is no row, before anything tries to understand it."""
+    lengths = lines.ends - lines.starts
+    if len(lengths) and lengths.max() > _LONGEST_LINE:
+        line = int(lengths.argmax())
+        raise ReadError(
+            f"'{path}', line {line + 1}: {lengths[line]:,} bytes are no row of points; at most "
+            f"{_LONGEST_LINE:,} are read.",
+            path=path,
+            lines=[line + 1],
+        )
 
 
 def decoded(head: bytes) -> str | None:

@@ -4,20 +4,38 @@ from __future__ import annotations
 
 from collections import Counter
 from statistics import median_high
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
-from .delimited_cells import BLANKS, is_number, is_number_like, split_line
+import numpy as np
+
+from .delimited_cells import (
+    BLANKS,
+    is_grouped,
+    is_number,
+    is_number_like,
+    may_group_or_divide,
+    split_line,
+)
 from .delimited_columns import columns_by_header
 from .delimited_lines import COMMENT_PREFIXES, decoded
-from .errors import FormatError
+from .errors import FormatError, ReadError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-__all__ = ["as_decimal", "as_delimiter", "decimal_of", "delimiter_of", "looks_like_table"]
+__all__ = [
+    "DecimalMark",
+    "as_decimal",
+    "as_delimiter",
+    "decimal_between_digits",
+    "decimal_of",
+    "delimiter_of",
+    "looks_like_table",
+]
 
 _TOP_LINES = 100
 _DELIMITERS = ("\t", ";", "|", ",", BLANKS)
+_VISIBLE = (",", ";", "|")
 _SPOKEN = {
     "comma": ",",
     "semicolon": ";",
@@ -81,7 +99,15 @@ def as_decimal(word: str | None) -> str | None:
 def _count_numbers(cells: Sequence[str], delimiter: str) -> int:
     """Count the cells that are numbers with either decimal mark, or stand in place of one."""
     marks = "." if delimiter == "," else ".,"
-    return sum(bool(cell) and any(is_number_like(cell, mark) for mark in marks) for cell in cells)
+    return sum(
+        bool(cell) and not _clings(cell) and any(is_number_like(cell, mark) for mark in marks)
+        for cell in cells
+    )
+
+
+def _clings(cell: str) -> bool:
+    """Whether a cell begins or ends with what must be a delimiter: blanks stand beside it."""
+    return cell.startswith(_VISIBLE) or cell.endswith(_VISIBLE)
 
 
 def delimiter_of(sample: Sequence[str]) -> str | None:
@@ -92,22 +118,78 @@ def delimiter_of(sample: Sequence[str]) -> str | None:
 
 
 def _delimiter_score(sample: Sequence[str], delimiter: str) -> tuple[int, float, int]:
+    """Return how many numbers a line has, the share of lines that are even, and their cells."""
     rows = [split_line(line, delimiter) for line in sample]
-    count, times = Counter(map(len, rows)).most_common(1)[0]
+    counts = [_count_numbers(row, delimiter) for row in rows]
     numbers = max(
-        median_high(_count_numbers(row, delimiter) for row in rows),
+        median_high(counts),
         max(3 * (columns_by_header(row, strict=False) is not None) for row in rows[:_TOP_LINES]),
     )
     if numbers < 2 or max(map(len, rows)) < 3:
         return 0, 0.0, 0
+    even = [row for row in rows if delimiter != BLANKS or not any(map(_clings, row))]
+    count, times = Counter(map(len, even)).most_common(1)[0] if even else (0, 0)
     return min(numbers, 3), times / len(rows), count
 
 
-def decimal_of(rows: Iterable[Sequence[str]], delimiter: str) -> str:
-    """Choose the decimal mark that more of the cells have."""
-    if delimiter == ",":
-        return "."
+# ------------------------------------------------------------------ decimal marks
+
+
+class DecimalMark(NamedTuple):
+    """The decimal mark of a table, and what was assumed to tell it."""
+
+    mark: str
+    note: str = ""
+
+
+def decimal_of(rows: Iterable[Sequence[str]], delimiter: str) -> DecimalMark | None:
+    """Choose the decimal mark by the cells of some rows; None if no cell has one.
+
+    Raises
+    ------
+    ReadError
+        If every comma may be a decimal mark or separate thousands.
+
+    Notes
+    -----
+    A cell such as 4000,12 proves the decimal comma, one such as 4000.12 the point; 752,700 proves
+    nothing. Where both are proved the mark of more cells is taken, and the others are bad cells.
+    Between semicolons, which are delimiters because commas are decimal marks, the comma is taken.
+    """
     cells = [cell for row in rows for cell in row]
-    commas = sum("," in cell and is_number(cell, ",") for cell in cells)
-    points = sum("." in cell and is_number(cell, ".") for cell in cells)
-    return "," if commas > points else "."
+    commas = [cell for cell in cells if "," in cell and is_number(cell, ",")]
+    points = [cell for cell in cells if "." in cell and is_number(cell, ".")]
+    sure_commas = sum(not may_group_or_divide(cell) for cell in commas)
+    sure_points = sum(not may_group_or_divide(cell.replace(".", ",")) for cell in points)
+    if sure_commas or sure_points:
+        return DecimalMark("," if sure_commas > sure_points else ".")
+    if delimiter == "," or (points and not commas):
+        return DecimalMark(".") if points else None
+    if any(is_grouped(cell, ".") and cell.count(",") > 1 for cell in cells):
+        return DecimalMark(".")
+    return _assumed_comma(commas, delimiter) if commas else None
+
+
+def _assumed_comma(commas: Sequence[str], delimiter: str) -> DecimalMark:
+    if delimiter != ";":
+        raise ReadError(
+            f"its commas may be decimal marks or separate thousands ('{commas[0]}'): decimal=',' "
+            "or decimal='.' settles it."
+        )
+    return DecimalMark(
+        ",",
+        "The commas in its numbers are taken as decimal marks, as is usual between semicolons "
+        f"('{commas[0]}').",
+    )
+
+
+def decimal_between_digits(text: bytes) -> str:
+    """Choose the decimal mark by what stands between digits anywhere: "," where no point does."""
+    codes = np.frombuffer(text, np.uint8)
+    is_digit = (codes >= ord("0")) & (codes <= ord("9"))
+
+    def is_there(mark: str) -> bool:
+        places = np.flatnonzero(codes[1:-1] == ord(mark)) + 1
+        return bool((is_digit[places - 1] & is_digit[places + 1]).any())
+
+    return "," if is_there(",") and not is_there(".") else "."

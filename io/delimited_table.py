@@ -1,44 +1,101 @@
-"""The rows of a table become arrays: checked for shape, parsed by pandas, checked for numbers."""
+"""The rows of a table become arrays: checked for shape, parsed by pandas, checked for numbers.
+
+A row that is wrong is a fault with its line; whether faults are refused or left out is for the
+caller to say.
+"""
 
 from __future__ import annotations
 
 import csv
+from dataclasses import dataclass
 from io import BytesIO, StringIO
+from itertools import chain
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from .delimited_cells import BLANKS, as_number, split_line
+from .delimited_cells import (
+    BLANKS,
+    as_grouped,
+    as_number,
+    is_grouped,
+    is_missing,
+    is_number,
+    proves_groups,
+    split_line,
+)
 from .delimited_columns import COORDINATES
+from .delimited_content import Column
 from .errors import ReadError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
     from pathlib import Path
 
     import pandas as pd
     from numpy.typing import NDArray
 
+    from .delimited_columns import Columns
     from .delimited_layout import Layout
     from .delimited_lines import TextLines
 
-__all__ = ["Table", "read_table"]
+__all__ = [
+    "Cells",
+    "Fault",
+    "Table",
+    "describe_columns",
+    "faults_error",
+    "read_cells",
+    "read_table",
+]
 
 _SHOWN = 5
-_CHUNK_ROWS = 100_000
+_QUOTED_ROWS = 2_000
 _QUOTE, _SPACE, _TAB, _LINE_FEED = b'" \t\n'
 _REWRITTEN_DELIMITER = "\t"
+_GROUP_DIGITS = 3
+
+
+class Fault(NamedTuple):
+    """What is wrong with a row: its line (from 0), the kind of fault, and what is there."""
+
+    line: int
+    kind: str
+    what: str
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Cells:
+    """The rows of a table that have the right number of cells, and those that have not.
+
+    Attributes
+    ----------
+    frame : DataFrame
+    rows : (n,) int64 array
+        Line number (from 0) of each row of the frame.
+    faults : tuple of Fault
+    """
+
+    frame: pd.DataFrame
+    rows: NDArray[np.int64]
+    faults: tuple[Fault, ...] = ()
 
 
 class Table(NamedTuple):
-    """Coordinates, (n, 3) float64, and the other columns by name."""
+    """Coordinates, other columns by name, lines, and the rows that are left out.
+
+    Elevations are NaN where the row has none.
+    """
 
     points: NDArray[np.float64]
     attributes: dict[str, NDArray[Any]]
+    rows: NDArray[np.int64]
+    faults: tuple[Fault, ...]
+    n_grouped: int
 
 
-def read_table(lines: TextLines, layout: Layout, path: Path) -> Table:
-    """Read every row.
+def read_cells(lines: TextLines, layout: Layout, path: Path) -> Cells:
+    """Read the cells of every row.
 
     Parameters
     ----------
@@ -50,8 +107,7 @@ def read_table(lines: TextLines, layout: Layout, path: Path) -> Table:
     Raises
     ------
     ReadError
-        If a row has too few or too many cells, an open quote, or a coordinate that is no finite
-        number; with the line numbers in the file.
+        If not a single row has the right number of cells.
 
     Notes
     -----
@@ -60,25 +116,16 @@ def read_table(lines: TextLines, layout: Layout, path: Path) -> Table:
     nearest to its text.
     """
     data = lines.joined(layout.rows)
-    delimiter = layout.delimiter
-    if not _is_regular(data, layout):
-        data = _rewritten(lines, layout, path)
-        delimiter = _REWRITTEN_DELIMITER
-    frame = _parsed(data, delimiter, layout)
-    if len(frame) != len(layout.rows):
-        raise ReadError(
-            f"'{path}' has {len(layout.rows)} rows, but the parser made {len(frame)} of them: "
-            "check its quotes.",
-            path=path,
-        )
-    points = np.empty((len(frame), 3))
-    for k, column in enumerate(layout.columns.coordinates):
-        points[:, k] = _numbers(frame[column], layout.decimal)
-    _require_finite(points, lines, layout, path)
-    return Table(points, _attributes(frame, layout))
+    if _is_regular(data, layout):
+        return Cells(_parsed(data, layout.delimiter, layout, len(layout.rows), path), layout.rows)
+    data, rows, faults = _rewritten(lines, layout)
+    if len(rows) == 0:
+        raise faults_error(faults, len(layout.rows), lines, layout, path)
+    frame = _parsed(data, _REWRITTEN_DELIMITER, layout, len(rows), path)
+    return Cells(frame, rows, tuple(faults))
 
 
-def _parsed(data: bytes, delimiter: str, layout: Layout) -> pd.DataFrame:
+def _parsed(data: bytes, delimiter: str, layout: Layout, n_rows: int, path: Path) -> pd.DataFrame:
     import pandas as pd
 
     numbers = [i for i in range(layout.count) if i not in layout.text_columns]
@@ -101,7 +148,42 @@ def _parsed(data: bytes, delimiter: str, layout: Layout) -> pd.DataFrame:
         "low_memory": False,
     }
     frame: pd.DataFrame = pd.read_csv(BytesIO(data), **options)
+    if len(frame) != n_rows:
+        raise ReadError(
+            f"'{path}' has {n_rows} rows, but the parser made {len(frame)} of them: "
+            "check its quotes.",
+            path=path,
+        )
     return frame
+
+
+def faults_error(
+    faults: Sequence[Fault], n_rows: int, lines: TextLines, layout: Layout, path: Path
+) -> ReadError:
+    """Return the error that counts the rows at fault, and shows the first of the first kind."""
+    kind = "quote" if any(fault.kind == "quote" for fault in faults) else faults[0].kind
+    wrong = [fault for fault in faults if fault.kind == kind]
+    numbers = [fault.line + 1 for fault in wrong[:_SHOWN]]
+    if kind == "quote":
+        sentence = f"'{path}', line {numbers[0]}: {wrong[0].what}."
+        return ReadError(sentence, path=path, lines=numbers)
+    join = " " if kind == "columns" else ": "
+    shown = ", ".join(f"line {one.line + 1}{join}{one.what}" for one in wrong[:_SHOWN])
+    mark = "point" if layout.decimal == "." else "comma"
+    do, have = ("does", "has") if len(wrong) == 1 else ("do", "have")
+    fails = {
+        "columns": f"{do} not have {layout.count} columns",
+        "number": f"{have} a coordinate that is not a finite number with decimal {mark}",
+    }[kind]
+    is_cut = kind == "columns" and wrong[-1].line == len(lines) - 1 and not lines.is_whole
+    hint = "; the last line has no end, so the file may be truncated" if is_cut else ""
+    return ReadError(
+        f"'{path}': {len(wrong)} of {n_rows} rows {fails} "
+        f"({shown}{', ...' if len(wrong) > _SHOWN else ''}){hint}; the option skip_bad leaves "
+        "such rows out.",
+        path=path,
+        lines=numbers,
+    )
 
 
 # ------------------------------------------------------------------ shape
@@ -109,6 +191,8 @@ def _parsed(data: bytes, delimiter: str, layout: Layout) -> pd.DataFrame:
 
 def _is_regular(data: bytes, layout: Layout) -> bool:
     """Whether every row has the right number of cells by a count that pandas agrees with."""
+    if layout.delimiter == layout.decimal:
+        return False
     codes = np.frombuffer(data, np.uint8)
     ends = np.append(np.flatnonzero(codes == _LINE_FEED), len(codes))
     starts = np.append(0, ends[:-1] + 1)
@@ -169,130 +253,233 @@ def _outside(places: NDArray[np.int64], quotes: NDArray[np.int64]) -> NDArray[np
     return np.delete(places, np.repeat(first - running + counts, counts) + np.arange(total))
 
 
-def _rewritten(lines: TextLines, layout: Layout, path: Path) -> bytes:
-    """Write the rows anew with plain quotes.
-
-    Raises
-    ------
-    ReadError
-        If a row has too few or too many cells, or an open quote.
-    """
+def _rewritten(lines: TextLines, layout: Layout) -> tuple[bytes, NDArray[np.int64], list[Fault]]:
+    """Write the rows anew with plain quotes; leave those out that have not the right cells."""
     text = StringIO(newline="")
     writer = csv.writer(text, delimiter=_REWRITTEN_DELIMITER, lineterminator="\n")
-    wrong: list[tuple[int, int]] = []
-    for line, cells in _rows(lines, layout, path):
+    kept: list[int] = []
+    faults: list[Fault] = []
+    last = -1 if lines.is_whole else len(lines) - 1
+    for line, raw, cells in _rows(lines, layout):
+        if isinstance(cells, str):
+            faults.append(Fault(line, "quote", cells))
+            continue
+        if layout.has_text_tail:
+            cells = _with_tail(cells, raw, layout, line == last)
         if len(cells) == layout.count:
             writer.writerow(cells)
+            kept.append(line)
         else:
-            wrong.append((line, len(cells)))
-    if wrong:
-        raise _wrong_counts(wrong, lines, layout, path)
-    return text.getvalue().encode()
+            faults.append(Fault(line, "columns", f"has {len(cells)}"))
+    return text.getvalue().encode(), np.array(kept, np.int64), faults
 
 
-def _rows(lines: TextLines, layout: Layout, path: Path) -> Iterator[tuple[int, list[str]]]:
-    """Walk the rows: line number (from 0) and cells, a tail of text as one cell."""
-    delimiter = layout.delimiter
-    reader = csv.reader(_texts(lines, layout), delimiter=delimiter, skipinitialspace=True)
-    last = -1 if lines.is_whole else len(lines) - 1
-    for number, line in enumerate(layout.rows.tolist(), 1):
-        try:
-            cells = next(reader)
-        except csv.Error as error:
-            raise ReadError(
-                f"'{path}', line {line + 1}: {error}.", path=path, lines=[line + 1]
-            ) from error
-        if reader.line_num != number:
-            raise ReadError(
-                f"'{path}', line {line + 1}: a quote opens a cell and is not closed on the line; "
-                'a quote at the start of a cell must be doubled ("").',
-                path=path,
-                lines=[line + 1],
-            )
-        yield line, _with_tail(cells, layout.count, line == last) if layout.has_text_tail else cells
-
-
-def _texts(lines: TextLines, layout: Layout) -> Iterator[str]:
-    """Walk the texts of the rows, and an empty one that a quote left open would swallow."""
-    for start in range(0, len(layout.rows), _CHUNK_ROWS):
-        text = lines.joined(layout.rows[start : start + _CHUNK_ROWS]).decode()
+def _rows(lines: TextLines, layout: Layout) -> Iterator[tuple[int, str, list[str] | str]]:
+    """Walk the rows: line number (from 0), its text, and its cells or what is wrong with them."""
+    for start in range(0, len(layout.rows), _QUOTED_ROWS):
+        rows = layout.rows[start : start + _QUOTED_ROWS]
+        text = lines.joined(rows).decode()
         if layout.delimiter == BLANKS:
-            yield from (line.strip(" ") for line in text.replace("\t", " ").split("\n"))
+            texts = [line.strip(" ") for line in text.replace("\t", " ").split("\n")]
         else:
-            yield from text.split("\n")
-    yield ""
+            texts = text.split("\n")
+        split = _split(texts, layout.delimiter)
+        yield from zip(rows.tolist(), texts, split, strict=True)
 
 
-def _with_tail(cells: list[str], count: int, is_cut: bool) -> list[str]:
-    """Join the words of a description; a row that is whole may have none."""
-    if len(cells) == count - 1 and not is_cut:
+def _split(texts: Sequence[str], delimiter: str) -> Iterator[list[str] | str]:
+    """Split texts by the rules of CSV; begin anew behind one that is at fault."""
+    done = 0
+    while done < len(texts):
+        # An empty text at the end is what a quote left open would swallow.
+        reader = csv.reader(chain(texts[done:], [""]), delimiter=delimiter, skipinitialspace=True)
+        for number in range(1, len(texts) - done + 1):
+            try:
+                cells = next(reader)
+            except csv.Error as error:
+                yield str(error)
+                break
+            if reader.line_num != number:
+                yield (
+                    "a quote opens a cell and is not closed on the line; a quote at the start of "
+                    'a cell must be doubled ("")'
+                )
+                break
+            yield cells
+        done += number
+
+
+def _with_tail(cells: list[str], raw: str, layout: Layout, is_cut: bool) -> list[str]:
+    """Join the cells of a text that holds the delimiter; a row that is whole may have none."""
+    count = layout.count
+    if len(cells) == count - 1 and not is_cut and layout.may_lack_tail:
         return [*cells, ""]
-    return [*cells[: count - 1], " ".join(cells[count - 1 :])] if len(cells) > count else cells
+    if len(cells) <= count or _may_be_split_numbers(cells[count - 2 :], layout):
+        return cells
+    if layout.delimiter == BLANKS:
+        return [*cells[: count - 1], " ".join(cells[count - 1 :])]
+    if '"' in raw:
+        return [*cells[: count - 1], layout.delimiter.join(cells[count - 1 :])]
+    return [*cells[: count - 1], raw.split(layout.delimiter, count - 1)[-1].strip()]
 
 
-def _wrong_counts(
-    wrong: Sequence[tuple[int, int]], lines: TextLines, layout: Layout, path: Path
-) -> ReadError:
-    shown = ", ".join(f"line {line + 1} has {count}" for line, count in wrong[:_SHOWN])
-    is_cut = wrong[-1][0] == len(lines) - 1 and not lines.is_whole
-    hint = "; the last line has no end, so the file may be truncated" if is_cut else ""
-    return ReadError(
-        f"'{path}': {len(wrong)} of {len(layout.rows)} rows do not have {layout.count} columns "
-        f"({shown}{', ...' if len(wrong) > _SHOWN else ''}){hint}.",
-        path=path,
-        lines=[line + 1 for line, _ in wrong[:_SHOWN]],
-    )
+def _may_be_split_numbers(cells: Sequence[str], layout: Layout) -> bool:
+    """Whether a text that seems to hold the delimiter may be numbers that do: 1,032.5 or 2,50.
+
+    ``cells`` begin with the one before the text.
+    """
+    before, first, second = [cell.strip() for cell in (*cells, "", "")][:3]
+    mark = layout.decimal
+    if not is_number(first, mark):
+        return False
+    is_group = len(first.partition(mark)[0]) == _GROUP_DIGITS and before.lstrip("+-").isdecimal()
+    return is_group or layout.delimiter != BLANKS or is_number(second, mark)
 
 
 # ------------------------------------------------------------------ numbers
 
 
-def _numbers(column: pd.Series[Any], decimal: str) -> NDArray[np.float64]:
-    """Return a column as floats, NaN for what is none."""
+class _Numbers(NamedTuple):
+    """A column as floats, NaN for what is none; where cells are empty; how many were grouped."""
+
+    values: NDArray[np.float64]
+    is_missing: NDArray[np.bool_]
+    n_grouped: int = 0
+
+
+def _numbers(column: pd.Series[Any], layout: Layout, *, has_groups: bool) -> _Numbers:
+    """Read the numbers of a column, those with thousands separators where these are proved."""
     if column.dtype.kind in "fiu":
-        return column.to_numpy(np.float64)
+        values = column.to_numpy(np.float64)
+        return _Numbers(values, np.isnan(values))
     if column.dtype.kind == "b":
-        return np.full(len(column), np.nan)
-    cells = column.fillna("").astype(str)
-    return np.fromiter((as_number(cell, decimal) for cell in cells), np.float64, len(cells))
+        return _Numbers(np.full(len(column), np.nan), np.zeros(len(column), np.bool_))
+    cells = _texts(column)
+    decimal = layout.decimal
+    values = np.fromiter((as_number(cell, decimal) for cell in cells), np.float64, len(cells))
+    odd = np.flatnonzero(np.isnan(values)).tolist()
+    missing = np.zeros(len(cells), np.bool_)
+    missing[[i for i in odd if is_missing(cells[i])]] = True
+    grouped = [i for i in odd if has_groups and is_grouped(cells[i], decimal)]
+    values[grouped] = [as_grouped(cells[i], decimal) for i in grouped]
+    return _Numbers(values, missing, len(grouped))
 
 
-def _require_finite(
-    points: NDArray[np.float64], lines: TextLines, layout: Layout, path: Path
-) -> None:
+def _texts(column: pd.Series[Any]) -> list[str]:
+    return [cell.strip() for cell in column.fillna("").astype(str)]
+
+
+def _has_groups(frame: pd.DataFrame, columns: Iterable[int], layout: Layout) -> bool:
+    """Whether separators of thousands are proved: by the caller, the decimal mark, or a cell.
+
+    1,234 alone may be 1.234; beside 12.5 or 4,024,240 it is a thousand and more.
+    """
+    if layout.is_decimal_told or layout.divided.intersection(columns):
+        return True
+    mark = layout.decimal
+    return any(
+        proves_groups(cell, mark) or (mark in cell and is_number(cell, mark))
+        for i in columns
+        if frame[i].dtype.kind not in "fiub"
+        for cell in _texts(frame[i])
+    )
+
+
+def describe_columns(cells: Cells, layout: Layout) -> list[Column]:
+    """Describe what is in each column, to tell what it means."""
+    numeric = [i for i in range(layout.count) if i not in layout.mostly_text]
+    has_groups = _has_groups(cells.frame, numeric, layout)
+    return [
+        _described(cells.frame[i], i, layout, has_groups=has_groups) for i in range(layout.count)
+    ]
+
+
+def _described(column: pd.Series[Any], i: int, layout: Layout, *, has_groups: bool) -> Column:
+    if i in layout.mostly_text:
+        distinct = column.nunique() / len(column)
+        return Column(np.full(len(column), np.nan), is_text=True, distinct_share=distinct)
+    numbers = _numbers(column, layout, has_groups=has_groups)
+    values = numbers.values
+    is_there = ~np.isnan(values)
+    known = values if is_there.all() else values[is_there]
+    is_whole = i not in layout.divided and len(known) > 0 and _are_whole(known)
+    return Column(
+        values,
+        is_whole=is_whole,
+        is_padded=i in layout.padded,
+        text_share=float((~is_there & ~numbers.is_missing).mean()),
+        distinct_share=_distinct_share(known) if is_whole else 1.0,
+    )
+
+
+def _are_whole(values: NDArray[np.float64]) -> bool:
+    with np.errstate(invalid="ignore"):
+        return bool((values >= 0).all() and (np.floor(values) == values).all())
+
+
+def _distinct_share(values: NDArray[np.float64]) -> float:
+    if len(values) < 2 or (np.diff(values) > 0).all():
+        return 1.0
+    return len(np.unique(values)) / len(values)
+
+
+# ------------------------------------------------------------------ the table
+
+
+def read_table(cells: Cells, layout: Layout, columns: Columns, lines: TextLines) -> Table:
+    """Take the coordinates and the attributes of rows; rows with bad numbers become faults.
+
+    Parameters
+    ----------
+    cells : Cells
+    layout : Layout
+    columns : Columns
+        What the columns mean.
+    lines : TextLines
+        For sentences.
+    """
+    has_groups = _has_groups(cells.frame, columns.coordinates, layout)
+    numbers = [
+        _numbers(cells.frame[column], layout, has_groups=has_groups)
+        for column in columns.coordinates
+    ]
+    points = np.column_stack([one.values for one in numbers])
     is_bad = ~np.isfinite(points)
-    bad_rows = np.flatnonzero(is_bad.any(axis=1))
-    if len(bad_rows) == 0:
-        return
-    shown = ", ".join(
-        _fault(lines, layout, int(row), int(np.argmax(is_bad[row]))) for row in bad_rows[:_SHOWN]
-    )
-    mark = "point" if layout.decimal == "." else "comma"
-    raise ReadError(
-        f"'{path}': {len(bad_rows)} of {len(points)} rows have a coordinate that is not a finite "
-        f"number with decimal {mark} ({shown}{', ...' if len(bad_rows) > _SHOWN else ''}).",
-        path=path,
-        lines=(layout.rows[bad_rows[:_SHOWN]] + 1).tolist(),
+    is_bad[:, 2] &= ~numbers[2].is_missing
+    bad = np.flatnonzero(is_bad.any(axis=1))
+    faults = [
+        Fault(int(cells.rows[row]), "number", _fault(lines, layout, columns, line, k))
+        for row, line, k in zip(
+            bad, cells.rows[bad].tolist(), is_bad[bad].argmax(axis=1).tolist(), strict=True
+        )
+    ]
+    good = np.delete(np.arange(len(points)), bad) if len(bad) else slice(None)
+    attributes = _attributes(cells.frame, columns)
+    return Table(
+        points[good],
+        {name: values[good] for name, values in attributes.items()},
+        cells.rows[good],
+        tuple(sorted((*cells.faults, *faults))),
+        sum(one.n_grouped for one in numbers),
     )
 
 
-def _fault(lines: TextLines, layout: Layout, row: int, k: int) -> str:
+def _fault(lines: TextLines, layout: Layout, columns: Columns, line: int, k: int) -> str:
     """Say which cell of a row is at fault, and what is in it."""
-    line = int(layout.rows[row])
-    column = layout.columns.coordinates[k]
+    column = columns.coordinates[k]
     cell = split_line(lines.text(line), layout.delimiter)[column]
     value = f"is '{cell[:40]}'" if cell else "is empty"
-    return f"line {line + 1}: {COORDINATES[k]} in {layout.columns.label(column)} {value}"
+    return f"{COORDINATES[k]} in {columns.label(column)} {value}"
 
 
 # ------------------------------------------------------------------ attributes
 
 
-def _attributes(frame: pd.DataFrame, layout: Layout) -> dict[str, NDArray[Any]]:
+def _attributes(frame: pd.DataFrame, columns: Columns) -> dict[str, NDArray[Any]]:
     """Return the columns that are no coordinates, by role or name; empty unnamed ones are left."""
-    roles = {column: role for role, column in layout.columns.roles.items()}
+    roles = {column: role for role, column in columns.roles.items()}
     attributes: dict[str, NDArray[Any]] = {}
-    for column, name in enumerate(layout.columns.names):
+    for column, name in enumerate(columns.names):
         if roles.get(column) in COORDINATES:
             continue
         values = _values(frame[column])

@@ -10,7 +10,16 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-__all__ = ["CrsError", "FormatError", "ReadError", "WriteError"]
+_ODD_LETTER = "\N{REPLACEMENT CHARACTER}"
+
+__all__ = ["CrsError", "FormatError", "ReadError", "WriteError", "printable"]
+
+
+def printable(text: str) -> str:
+    """Return a text that a terminal shows as it is: a file may hold orders to terminals."""
+    if text.isprintable():
+        return text
+    return "".join(letter if letter.isprintable() else _ODD_LETTER for letter in text)
 
 
 class ReadError(TinsmithError, ValueError):
@@ -27,7 +36,7 @@ class ReadError(TinsmithError, ValueError):
     def __init__(
         self, message: str, *, path: Path | None = None, lines: Sequence[int] = ()
     ) -> None:
-        super().__init__(message)
+        super().__init__(printable(message))
         self.path = path
         self.lines = tuple(int(line) for line in lines)
 
@@ -61,7 +70,7 @@ class FormatError(TinsmithError, ValueError):
     """
 
     def __init__(self, message: str, *, known: Sequence[str] = ()) -> None:
-        super().__init__(message)
+        super().__init__(printable(message))
         self.known = tuple(known)
 
 

@@ -8,24 +8,27 @@ from __future__ import annotations
 
 import inspect
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from importlib import import_module
 from importlib.metadata import entry_points
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any
 
-from ..tin import MissingExtraError
+from ..tin import MissingExtraError, Survey, TinsmithError
 from . import signatures
 from .crs import normalised
-from .errors import FormatError, ReadError
+from .errors import CrsError, FormatError, ReadError, printable
+from .local import require_local
+from .raster_virtual import is_virtual
+from .spooling import as_sentence, ordinary_file, spooled
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from ..tin import TIN, Survey
+    from ..tin import TIN
 
-__all__ = ["Format", "detect", "find_format", "known_formats", "read", "write"]
+__all__ = ["Format", "detect", "find_format", "known_formats", "read", "read_stream", "write"]
 
 _ENTRY_POINTS = "tinsmith.formats"
 _OWN_PARAMETERS = frozenset({"crs", "progress"})
@@ -175,10 +178,41 @@ def read(
     MissingExtraError
         If the library that reads the format is not installed.
     """
+    require_local(path)
     file = Path(path)
     declared = normalised(crs)
+    with ordinary_file(file) as local:
+        found = _read_file(local, format, declared, options)
+    return found if local == file else _renamed(found, local, file)
+
+
+def read_stream(
+    stream: IO[bytes],
+    name: str,
+    *,
+    format: str | None = None,  # noqa: A002 - as in read
+    crs: str | None = None,
+    **options: Any,
+) -> Survey | TIN:
+    """Read elevation points or a TIN from a stream, such as standard input; as :func:`read`.
+
+    Parameters
+    ----------
+    stream : binary file object
+    name : str
+        What reports and errors call it.
+    """
+    source = Path(name)
+    declared = normalised(crs)
+    with spooled(stream, source) as local:
+        return _renamed(_read_file(local, format, declared, options), local, source)
+
+
+def _read_file(
+    file: Path, name: str | None, crs: str | None, options: Mapping[str, Any]
+) -> Survey | TIN:
     head = _head(file)
-    chosen = detect(file, head) if format is None else find_format(format)
+    chosen = detect(file, head) if name is None else find_format(name)
     if chosen.read is None:
         raise FormatError(
             f"'{file}' is {chosen.description}, a format that is written, not read: "
@@ -187,8 +221,29 @@ def read(
         )
     reader = _load(chosen.read)
     _require_options(chosen, "read", reader, options)
-    survey: Survey | TIN = reader(file, crs=declared, **options)
+    try:
+        survey: Survey | TIN = reader(file, crs=crs, **options)
+    except CrsError as error:
+        raise _of_file(error, file) from error
+    except OSError as error:  # a file that vanishes, a disk that fails
+        if isinstance(error, TinsmithError):
+            raise
+        raise as_sentence(file, error) from error
     return survey
+
+
+def _renamed(found: Survey | TIN, copy: Path, file: Path) -> Survey | TIN:
+    """Return what was read from a copy as if it had been read from the file."""
+    if not isinstance(found, Survey):
+        return found
+    notes = [note.replace(copy.name, file.name) for note in found.notes]
+    return replace(found, source=file.name, notes=notes)
+
+
+def _of_file(error: CrsError, file: Path) -> CrsError:
+    """Return an error of a CRS with the name of the file that it stands in."""
+    sentence = str(error) if str(file) in str(error) else f"'{file}': {error}"
+    return CrsError(printable(sentence), crs=error.crs)
 
 
 def write(
@@ -304,21 +359,24 @@ def detect(path: Path, head: bytes) -> Format:
     Notes
     -----
     1. A signature in the content decides, whatever the suffix.
-    2. A table of numbers is delimited text where the suffix names a format that the content
+    2. A text that names other files or services, or of a format that is not read, is refused;
+       a virtual raster is read under its own suffix.
+    3. A table of numbers is delimited text where the suffix names a format that the content
        would have shown, so that an ``.asc`` may be a grid or a list of points.
-    3. Otherwise the suffix decides.
-    4. A file of unknown suffix is a raster if GDAL says so.
+    4. Otherwise the suffix decides.
+    5. A file of unknown suffix is a raster if GDAL says so.
     """
     for one in known_formats():
         if one.sniff is not None and one.sniff(head):
             return one
+    if is_virtual(path):
+        return find_format("raster")
+    _require_not_foreign(path, head)
     by_suffix = _with_suffix(path.suffix.lower(), "read")
     if by_suffix is not None and (by_suffix.sniff is None or not _is_table(head)):
-        _require_not_foreign(path, head)
         return by_suffix
     if by_suffix is not None:
         return _DELIMITED
-    _require_not_foreign(path, head)
     if _is_binary(head) and _gdal_recognises(path):
         return find_format("raster")
     return _by_suffix(path, "read")
@@ -394,13 +452,10 @@ def _head(path: Path) -> bytes:
             head = file.read(signatures.HEAD_BYTES)
     except ReadError:
         raise
-    except FileNotFoundError as error:
-        raise ReadError(f"There is no file '{path}'.", path=path) from error
-    except PermissionError as error:
-        raise ReadError(f"'{path}' may not be read: permission denied.", path=path) from error
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise ReadError(f"Cannot read '{path}': {reason}.", path=path) from error
+    except OSError as error:
+        raise as_sentence(path, error) from error
+    except ValueError as error:
+        raise ReadError(f"Cannot read {str(path)!r}: {error}.", path=path) from error
     if not head:
         raise ReadError(f"'{path}' is empty: there are no points in it.", path=path)
     return head

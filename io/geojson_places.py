@@ -59,8 +59,7 @@ def wgs84_places(points: NDArray[np.float64], crs: str | None) -> Places:
     if crs is None:
         raise CrsError(
             "The CRS of these points is not known, and GeoJSON is in WGS 84: declare it, for "
-            'example crs="EPSG:32616" (--crs), or keep the coordinates as they are with '
-            "projected=True (--projected)."
+            'example crs="EPSG:32616", or keep the coordinates as they are with projected=True.'
         )
     # Of CRSs of the same kind PROJ changes heights only between systems that both have them.
     target = "EPSG:4979" if _has_heights(crs) else "OGC:CRS84"

@@ -7,19 +7,20 @@ Edges of the rim and of lines are line elements for boundary conditions: of the 
 
 from __future__ import annotations
 
+import os
 import re
-from contextlib import redirect_stderr, redirect_stdout
-from io import StringIO
-from typing import TYPE_CHECKING, Any, NamedTuple
+from importlib.util import find_spec
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ..terrain import extras
+from ..tin import MissingExtraError
 from ..tin.regions import edge_keys
 from ..tin.topology import NO_NEIGHBOR, ends
 from .atomic import replacing_path
-from .errors import ReadError
-from .meshes import chosen_crs, require_tin, survey_of, tin_of
+from .isolated import run_isolated
+from .meshes import chosen_crs, file_content, require_tin, survey_of, tin_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -69,36 +70,18 @@ def read(path: Path, *, crs: str | None = None) -> TIN | Survey:
     CrsError
         If PROJ does not know the CRS.
     """
-    mesh = _mesh(path)
-    points = np.asarray(mesh.points, np.float64)
-    triangles = _cells(mesh, "triangle", 3)
+    if find_spec("meshio") is None:
+        raise MissingExtraError("meshio", extra="mesh", purpose="Reading Gmsh files")
+    if not path.is_file():
+        file_content(path)  # says why it cannot be read
+    where = {"path": os.path.abspath(path), "shown": str(path)}  # noqa: PTH100 - links stay
+    arrays = run_isolated(f"{__package__}.gmsh_meshio:mesh", where, path=path).arrays
+    points, triangles = arrays["points"], arrays["triangles"]
     system = chosen_crs(crs, None)
     if len(triangles) == 0:
         return survey_of(points, path, crs=system)
-    flags = _flags(triangles, _cells(mesh, "line", 2), len(points))
+    flags = _flags(triangles, arrays["lines"], len(points))
     return tin_of(points, triangles, path, constrained=flags, crs=system)
-
-
-def _mesh(path: Path) -> Any:
-    meshio = extras.meshio("Reading Gmsh files")
-    said = StringIO()
-    try:
-        with redirect_stderr(said), redirect_stdout(said):
-            mesh = meshio.gmsh.read(str(path))
-    except OSError as error:
-        raise ReadError(f"Cannot read '{path}': {error.strerror or error}.", path=path) from error
-    except Exception as error:  # meshio lets through whatever a damaged file leads to
-        told = str(error).strip().rstrip(".") if isinstance(error, meshio.ReadError) else ""
-        reason = told or "it ends early, or holds something else than the format asks for"
-        raise ReadError(f"'{path}' is a damaged Gmsh file: {reason}.", path=path) from error
-    if "not closed" in said.getvalue():
-        raise ReadError(f"'{path}' is a Gmsh file that was cut short.", path=path)
-    return mesh
-
-
-def _cells(mesh: Any, kind: str, size: int) -> NDArray[np.int32]:
-    found = [np.asarray(block.data, np.int32) for block in mesh.cells if block.type == kind]
-    return np.concatenate([np.empty((0, size), np.int32), *found])
 
 
 def _flags(

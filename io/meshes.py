@@ -129,10 +129,10 @@ def survey_of(
         raise ReadError(f"'{path}' holds no points.", path=path)
     wrong = ~np.isfinite(points).all(axis=1)
     if wrong.any():
-        row = int(np.argmax(wrong))
+        row, count = int(np.argmax(wrong)), int(wrong.sum())
         raise ReadError(
-            f"'{path}': {int(wrong.sum())} points are not finite (first: point {row}, "
-            f"{points[row].tolist()}).",
+            f"'{path}': {count} {'point is' if count == 1 else 'points are'} not finite (first: "
+            f"point {row}, {points[row].tolist()}).",
             path=path,
         )
     return Survey(points=points, attributes=attributes or {}, crs=crs, source=path.name)
@@ -159,7 +159,9 @@ def fans(
     if (lengths < 3).any():
         row = int(np.argmax(lengths < 3))
         raise ReadError(
-            f"'{path}': face {row} has {lengths[row]} corners: 3 or more are needed.", path=path
+            f"'{path}': face {row} has {lengths[row]} "
+            f"corner{'' if lengths[row] == 1 else 's'}: 3 or more are needed.",
+            path=path,
         )
     wrong = (corners < 0) | (corners >= len(points))
     if wrong.any():
@@ -190,7 +192,8 @@ def _quads_from_inner_diagonal(
     slots = starts[:, None] + np.arange(4)
     quads = corners[slots]
     a, b, c, d = (points[quads[:, k], :2] for k in range(4))
-    outside = _cross(b - a, c - a) * _cross(c - a, d - a) < 0
+    with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused later
+        outside = _cross(b - a, c - a) * _cross(c - a, d - a) < 0
     corners = corners.copy()
     corners[slots[outside]] = np.roll(quads[outside], -1, axis=1)
     return corners

@@ -5,6 +5,7 @@ A comment ``# crs: EPSG:32616`` keeps the CRS. Which edges are constrained is lo
 
 from __future__ import annotations
 
+import re
 import warnings
 from typing import TYPE_CHECKING, Any
 
@@ -26,6 +27,11 @@ __all__ = ["read", "write"]
 
 _BATCH = 65_536
 _SHOWN_LETTERS = 60
+_MOST_DIGITS = 18
+_CLAMPED = 2**63 - 1
+"""What NumPy makes of a larger number."""
+
+_VERTEX_NUMBER = re.compile(r"([-+]?)([0-9]+)(?:/|$)")
 
 
 def read(path: Path, *, crs: str | None = None) -> TIN | Survey:
@@ -124,7 +130,7 @@ def _faces(
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Return the vertex numbers, from 0 on, of all faces, and the offsets of each."""
     plain = _plain_numbers([lines[i] for i in face_lines], np.int64)
-    if plain is not None and plain.min() > 0:
+    if plain is not None and plain.min() > 0 and plain.max() < _CLAMPED:
         return plain.ravel() - 1, np.arange(0, plain.size + 1, 3)
     corners: list[int] = []
     offsets = [0]
@@ -138,13 +144,17 @@ def _faces(
 
 def _vertex_number(word: str, n_before: int, lines: Sequence[str], i: int, path: Path) -> int:
     """Turn ``7``, ``7/1``, ``7//2`` or ``-1`` (the vertex just before) into a number from 0 on."""
-    try:
-        number = int(word.partition("/")[0])
-    except ValueError:
-        raise _fault(lines, i, f"'{word}' names no vertex", path) from None
-    if number == 0 or number < -n_before:
-        raise _fault(lines, i, f"'{word}' names no vertex: they count from 1", path)
-    return number - 1 if number > 0 else n_before + number
+    shown = word if len(word) <= _SHOWN_LETTERS else f"{word[:_SHOWN_LETTERS]}..."
+    found = _VERTEX_NUMBER.match(word)
+    if found is None:
+        raise _fault(lines, i, f"'{shown}' names no vertex", path)
+    digits = found[2].lstrip("0")
+    if len(digits) > _MOST_DIGITS:
+        raise _fault(lines, i, f"'{shown}' names no vertex: the file has fewer", path)
+    number = int(digits or "0")
+    if number == 0 or (found[1] == "-" and number > n_before):
+        raise _fault(lines, i, f"'{shown}' names no vertex: they count from 1", path)
+    return n_before - number if found[1] == "-" else number - 1
 
 
 def _fault(lines: Sequence[str], i: int, what: str, path: Path) -> ReadError:

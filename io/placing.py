@@ -63,11 +63,10 @@ def _is_same(source: str, target: str) -> bool:
 
 def _refuse_degrees(points: NDArray[np.float64], wanted: str, source: str, path: Path) -> NoReturn:
     suggestion = _suggestion(points, source)
-    fitting = f"'{suggestion}'" if suggestion else "a projected CRS"
-    code = suggestion or "CODE"
+    fitting = f"crs='{suggestion}'" if suggestion else "the option crs"
     raise ReadError(
         f"'{path}': {crs_label(wanted)} measures in degrees, and a TIN needs a projected CRS: "
-        f"pass crs={fitting} (--crs {code}) to reproject from longitude and latitude.",
+        f"give {fitting} to reproject from longitude and latitude.",
         path=path,
     )
 

@@ -68,7 +68,7 @@ def read(path: Path, *, crs: str | None = None) -> TIN | Survey:
     vertices = tables.get("vertex")
     if vertices is None or not set(_COORDINATES) <= vertices.columns.keys():
         raise ReadError(f"'{path}' has no element 'vertex' with x, y and z.", path=path)
-    points = np.stack([vertices.columns[name] for name in _COORDINATES], axis=1).astype(np.float64)
+    points = _points(vertices)
     system = chosen_crs(crs, header.crs)
     faces = _face_list(tables.get("face"))
     if faces is None or len(faces.offsets) == 1:
@@ -78,13 +78,19 @@ def read(path: Path, *, crs: str | None = None) -> TIN | Survey:
     return tin_of(points, made.triangles, path, constrained=flags, crs=system)
 
 
+def _points(vertices: Table) -> NDArray[np.float64]:
+    columns = [vertices.columns[name] for name in _COORDINATES]
+    with np.errstate(invalid="ignore"):  # what is not finite is refused
+        return np.stack(columns, axis=1).astype(np.float64)
+
+
 def _face_list(table: Table | None) -> Ragged | None:
     lists = {} if table is None else table.lists
     return next((lists[name] for name in _FACE_LISTS if name in lists), None)
 
 
 def _whole_numbers(items: NDArray[Any], path: Path) -> NDArray[np.int64]:
-    if items.dtype.kind == "f" and not (np.abs(items) < 2**53).all():
+    if items.dtype.kind == "f" and not (np.abs(items) < 2.0**53).all():
         raise ReadError(f"'{path}': a face names a vertex that is no number.", path=path)
     whole = items.astype(np.int64)
     if (whole != items).any():

@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 
     from .ply_header import Element, Header
 
+_LINE_END = 3
+"""Bytes behind the last row that may be ends of lines."""
+
 __all__ = ["Ragged", "Table", "read_tables"]
 
 
@@ -55,10 +58,11 @@ def read_tables(content: bytes, header: Header, path: Path) -> dict[str, Table]:
     """
     wanted = [i for i, element in enumerate(header.elements) if element.name in ("vertex", "face")]
     body = _Body(content, header, path)
-    return {
-        element.name: body.table(element)
-        for element in header.elements[: max(wanted, default=-1) + 1]
-    }
+    read = header.elements[: max(wanted, default=-1) + 1]
+    tables = {element.name: body.table(element) for element in read}
+    if read and len(read) == len(header.elements):
+        body.require_end(read[-1])
+    return tables
 
 
 class _Body:
@@ -102,17 +106,26 @@ class _Body:
         table = self._even_table(element) if element.count else None
         return self._uneven_table(element) if table is None else table
 
+    def require_end(self, element: Element) -> None:
+        """Refuse a file that holds further rows: its header tells too small a count."""
+        rest = len(self.cells) - self.cursor
+        if rest >= max(_least(element, self), _LINE_END if self.byte_order else 1):
+            raise ReadError(
+                f"'{self.path}' goes on behind its last element: its header promises "
+                f"{_rows(element)}, and more follow.",
+                path=self.path,
+            )
+
     def _require_room(self, element: Element) -> None:
         """Refuse a count that the file cannot hold before anything is allocated for it."""
-        least = sum(self.width(prop.count_type or prop.type) for prop in element.properties)
         room = len(self.cells) - self.cursor
-        if element.count * max(least, 1) > room:
+        if element.count * max(_least(element, self), 1) > room:
             raise self._truncated(element)
 
     def _truncated(self, element: Element) -> ReadError:
         return ReadError(
-            f"'{self.path}' ends too early: its header promises {element.count} rows of "
-            f"'{element.name}', more than the file holds.",
+            f"'{self.path}' ends too early: its header promises {_rows(element)}, more than the "
+            "file holds.",
             path=self.path,
         )
 
@@ -133,7 +146,7 @@ class _Body:
         if start + self.width(count_type) > len(self.cells):
             raise self._truncated(element)
         length = self.block(start, 1, (1, 1), count_type)[0, 0]
-        if not 0 <= length < len(self.cells):
+        if not (0 <= length < len(self.cells) and length == int(length)):
             raise ReadError(
                 f"'{self.path}': a list of '{element.name}' has the length {length}.",
                 path=self.path,
@@ -196,6 +209,15 @@ class _Body:
         within = np.arange(offsets[-1]) - np.repeat(offsets[:-1], lengths)
         cells = np.repeat(starts, lengths) + within * self.width(type_name)
         return Ragged(self.picked(cells, type_name), offsets)
+
+
+def _rows(element: Element) -> str:
+    return f"{element.count} {'row' if element.count == 1 else 'rows'} of '{element.name}'"
+
+
+def _least(element: Element, body: _Body) -> int:
+    """Return the cells of the shortest row that an element can have."""
+    return sum(body.width(prop.count_type or prop.type) for prop in element.properties)
 
 
 def _numbers(text: bytes, path: Path) -> NDArray[np.float64]:

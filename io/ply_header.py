@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from .errors import ReadError
+from .signatures import is_ply
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -34,6 +36,9 @@ SCALARS = {
 
 LONGEST_HEADER = 1 << 20
 """Bytes searched for the end of the header; a WKT takes some thousand."""
+
+_COUNT = re.compile(r"[0-9]{1,100}")  # all that a disk holds, and a sentence about more
+_LONGEST_FIRST_LINE = 200
 
 _BYTE_ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
 
@@ -107,13 +112,14 @@ def parse_header(content: bytes, path: Path) -> Header:
     for number, line in enumerate(lines, start=1):
         words = line.split()
         match words:
-            case ["format", encoding, _] if encoding in _BYTE_ORDERS:
+            case ["format", encoding, _] if encoding in _BYTE_ORDERS and byte_order is None:
                 byte_order = _BYTE_ORDERS[encoding]
             case ["comment", "crs:", _, *_]:
                 crs = line.split("crs:", 1)[1].strip()
-            case ["element", name, count] if count.isdecimal():
+            case ["element", name, count] if _is_new(name, elements) and _COUNT.fullmatch(count):
                 elements.append(Element(name, int(count)))
             case ["property", *rest] if elements and (found := _property(rest)) is not None:
+                _require_new(found, elements[-1], number, path)
                 elements[-1].properties.append(found)
             case [] | ["ply" | "comment" | "obj_info" | "end_header", *_]:
                 pass
@@ -129,14 +135,27 @@ def parse_header(content: bytes, path: Path) -> Header:
 
 
 def _header_lines(content: bytes, path: Path) -> tuple[list[str], int]:
-    if content[:4] not in (b"ply\n", b"ply\r"):
+    if not is_ply(content[:_LONGEST_FIRST_LINE]):
         raise ReadError(f"'{path}' is no PLY file: it does not begin with 'ply'.", path=path)
     mark = content.find(b"\nend_header", 0, LONGEST_HEADER)
     line_end = content.find(b"\n", mark + 1) if mark >= 0 else -1
     if line_end < 0:
         raise ReadError(f"'{path}': the PLY header does not end with 'end_header'.", path=path)
     text = content[:line_end].decode("utf-8", errors="replace")
-    return [line.rstrip("\r") for line in text.split("\n")], line_end + 1
+    return [line.rstrip() for line in text.split("\n")], line_end + 1
+
+
+def _is_new(name: str, elements: list[Element]) -> bool:
+    return name not in [element.name for element in elements]
+
+
+def _require_new(added: Property, element: Element, number: int, path: Path) -> None:
+    if added.name in [one.name for one in element.properties]:
+        raise ReadError(
+            f"'{path}', line {number}: '{element.name}' has the property '{added.name}' twice.",
+            path=path,
+            lines=[number],
+        )
 
 
 def _property(words: list[str]) -> Property | None:

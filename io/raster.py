@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
-import warnings
-from contextlib import contextmanager
-from dataclasses import dataclass
+import os
+from dataclasses import dataclass, replace
+from importlib.util import find_spec
 from numbers import Integral, Real
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from ..tin import Bounds, MissingExtraError, Survey
 from .crs import as_crs, crs_text
 from .errors import FormatError, ReadError
+from .isolated import Limits, limits_for, run_isolated, stream_isolated
+from .nodata import describe_suspects, find_suspect_elevations
 from .placing import placed
+from .raster_virtual import is_virtual, require_plain_sources
+from .voids import rings_around
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-    from pathlib import Path
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -25,6 +29,12 @@ __all__ = ["read", "recognises"]
 
 _STRIP_CELLS = 4_000_000
 """Cells read at a time, so that memory holds little but the points."""
+
+LARGEST_RASTER = 2**31 - 1
+"""Cells that can be read at most: the vertices of a TIN are numbered with 32 bits."""
+
+BYTES_PER_CELL = 48
+"""Memory for a cell: its three coordinates, once in strips and once in one array."""
 
 _COLOURS = ("red", "green", "blue", "palette", "cyan", "magenta", "yellow", "black")
 
@@ -57,6 +67,8 @@ def read(
     band: int | None = None,
     window: Sequence[int] | Bounds | None = None,
     stride: int = 1,
+    nodata: float | Sequence[float] | None = None,
+    fill: bool = False,
 ) -> Survey:
     """Read a raster as points, one at the centre of every cell that has an elevation.
 
@@ -73,6 +85,11 @@ def read(
         bounds in the raster's own CRS, which hold the centres of the cells wanted.
     stride : int
         Read every ``stride``-th row and column only.
+    nodata : float or sequence of float, optional
+        Elevations that stand for no data, besides the one that the raster declares.
+    fill : bool
+        Let the surface span the voids. Otherwise it ends at the cells around them, along the
+        rings of ``Survey.extent``.
 
     Returns
     -------
@@ -86,7 +103,7 @@ def read(
         If GDAL cannot read the file, it is a picture or has no georeference, its CRS is in
         degrees and no other is wanted, or no cell has an elevation.
     FormatError
-        If band, window or stride is not one that the raster has.
+        If band, window or stride is not one that the raster has, or nodata is no number.
     CrsError
         If the points cannot be transformed.
     MissingExtraError
@@ -97,22 +114,52 @@ def read(
     Scale and offset of the band are applied. The raster is read in strips; memory is 48 bytes
     for each valid cell at most, and a strip.
     """
-    with _opened(path) as dataset:
-        number = _band(dataset, band, path)
-        _require_elevations(dataset, number, band is not None, path)
-        source = _crs_of(dataset)
-        cells = _cells(dataset, window, stride, path)
-        placed(_middle(dataset), source=source, target=crs, path=path)
-        points, n_nodata = _points(dataset, number, cells, path)
+    dataset = _header(path)
+    number = _band(dataset, band, path)
+    _require_elevations(dataset, number, band is not None, path)
+    source = _crs_of(dataset)
+    cells = _cells(dataset, window, stride, path)
+    marks = _as_numbers(nodata)
+    _require_room(cells, path)
+    placed(_middle(dataset), source=source, target=crs, path=path)
+    points, valid, n_nodata = _points(dataset, number, cells, marks)
     if len(points) == 0:
         raise ReadError(
             f"'{path}': none of the {n_nodata} cells of band {number} has an elevation, "
             "all are nodata.",
             path=path,
         )
+    _require_finite(points, number, path)
+    notes = describe_suspects(find_suspect_elevations(points[:, 2]), "cell")
     points, found = placed(points, source=source, target=crs, path=path)
     skipped = {"nodata cells": n_nodata} if n_nodata else {}
-    return Survey(points=points, crs=found, source=path.name, skipped=skipped)
+    survey = Survey(points=points, crs=found, source=path.name, skipped=skipped, notes=notes)
+    return survey if fill or valid.all() else _with_voids(survey, valid)
+
+
+def _as_numbers(nodata: float | Sequence[float] | None) -> NDArray[np.float64]:
+    try:
+        return np.atleast_1d(np.asarray([] if nodata is None else nodata, np.float64)).ravel()
+    except (TypeError, ValueError) as error:
+        raise FormatError(
+            f"Invalid nodata '{nodata}': a number, or several, are needed."
+        ) from error
+
+
+def _with_voids(survey: Survey, valid: NDArray[np.bool_]) -> Survey:
+    """Return the survey with the rings at which its surface ends."""
+    rings = rings_around(valid)
+    if not rings:
+        raise ReadError(
+            f"'{survey.source}': no three cells side by side have an elevation, so there is no "
+            "surface between voids: the option fill spans them."
+        )
+    note = (
+        "Voids of the raster stay: the surface ends at the cells around them; the option fill "
+        "spans them."
+    )
+    extent = [survey.points[ring] for ring in rings]
+    return replace(survey, extent=extent, notes=[*survey.notes, note])
 
 
 def recognises(path: Path) -> bool:
@@ -124,37 +171,102 @@ def recognises(path: Path) -> bool:
         If rasterio is not installed.
     """
     try:
-        with _opened(path):
-            return True
+        _header(path)
     except ReadError:
         return False
+    return True
 
 
 # ------------------------------------------------------------------ the dataset
 
 
-@contextmanager
-def _opened(path: Path) -> Iterator[Any]:
-    """Open a raster; every fault of GDAL inside the block becomes a ReadError."""
-    try:
-        import rasterio
-        from rasterio.errors import NotGeoreferencedWarning, RasterioError
-    except ImportError as error:
-        raise MissingExtraError("rasterio", extra="raster", purpose="Reading a raster") from error
-    try:
-        with warnings.catch_warnings(), rasterio.Env():
-            warnings.simplefilter("ignore", NotGeoreferencedWarning)
-            with rasterio.open(path) as dataset:
-                yield dataset
-    except RasterioError as error:
-        reason = str(error.__cause__ or error).rstrip(".").replace("\n", " ")
-        raise ReadError(
-            f"'{path}' cannot be read as a raster, it may be damaged or truncated: {reason}.",
-            path=path,
-        ) from error
+class _Affine(NamedTuple):
+    """Easting is ``a * column + b * row + c``, northing ``d * column + e * row + f``."""
+
+    a: float
+    b: float
+    c: float
+    d: float
+    e: float
+    f: float
+
+    def apply(self, column: Any, row: Any) -> tuple[Any, Any]:
+        """Return easting and northing of places counted in columns and rows."""
+        return (
+            column * self.a + row * self.b + self.c,
+            column * self.d + row * self.e + self.f,
+        )
+
+    def inverse(self) -> _Affine:
+        """Return the transform from easting and northing to columns and rows."""
+        a, b, c, d, e, f = self
+        area = a * e - b * d
+        return _Affine(
+            *(e / area, -b / area, (b * f - c * e) / area),
+            *(-d / area, a / area, (c * d - a * f) / area),
+        )
 
 
-def _band(dataset: Any, band: int | None, path: Path) -> int:
+_NOWHERE = _Affine(1.0, 0.0, 0.0, 0.0, 1.0, 0.0)
+"""What GDAL tells of a raster without a georeference."""
+
+
+class _Header(NamedTuple):
+    """What a raster says of itself, and how its cells are read; see raster_gdal.header."""
+
+    path: Path
+    count: int
+    subdatasets: list[str]
+    colours: list[str]
+    dtypes: list[str]
+    width: int
+    height: int
+    transform: _Affine
+    block_height: int
+    block_width: int
+    scales: list[float]
+    offsets: list[float]
+    units: list[str | None]
+    crs: str | None
+    limits: Limits
+
+    @property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """West, south, east, north of an upright box around all cells."""
+        columns = np.array([0, self.width, 0, self.width])
+        with np.errstate(over="ignore", invalid="ignore"):
+            x, y = self.transform.apply(columns, np.array([0, 0, self.height, self.height]))
+        return float(x.min()), float(y.min()), float(x.max()), float(y.max())
+
+
+def _header(path: Path) -> _Header:
+    """Let a child open a raster, and return what it says of itself."""
+    if find_spec("rasterio") is None:
+        raise MissingExtraError("rasterio", extra="raster", purpose="Reading a raster")
+    limits = limits_for(_bytes_of(path))
+    found = run_isolated(f"{_reader(path)}:header", _where(path), path=path, limits=limits).value
+    transform = _Affine(*found.pop("transform"))
+    return _Header(path=path, transform=transform, limits=limits, **found)
+
+
+def _reader(path: Path) -> str:
+    return (
+        f"{__package__}.raster_virtual_gdal" if is_virtual(path) else f"{__package__}.raster_gdal"
+    )
+
+
+def _where(path: Path) -> dict[str, Any]:
+    """Return what names the file to GDAL: an absolute path is never a scheme or a prefix."""
+    return {"path": os.path.abspath(path), "is_virtual": is_virtual(path)}  # noqa: PTH100 - links stay
+
+
+def _bytes_of(path: Path) -> int:
+    """Return the bytes of a raster, those of the sources of a virtual one included."""
+    sources = require_plain_sources(path) if is_virtual(path) else []
+    return sum(one.stat().st_size for one in [path, *sources] if one.is_file())
+
+
+def _band(dataset: _Header, band: int | None, path: Path) -> int:
     if dataset.count == 0:
         parts = ", ".join(dataset.subdatasets[:5])
         raise ReadError(
@@ -169,9 +281,9 @@ def _band(dataset: Any, band: int | None, path: Path) -> int:
     return int(number)
 
 
-def _require_elevations(dataset: Any, band: int, is_told: bool, path: Path) -> None:
+def _require_elevations(dataset: _Header, band: int, is_told: bool, path: Path) -> None:
     """Refuse pictures, complex numbers and rasters whose place is unknown."""
-    meaning = dataset.colorinterp[band - 1].name
+    meaning = dataset.colours[band - 1]
     if meaning in _COLOURS and not is_told:
         raise ReadError(
             f"'{path}' is a picture (band 1 is its {meaning}), not a raster of elevations: name "
@@ -180,35 +292,44 @@ def _require_elevations(dataset: Any, band: int, is_told: bool, path: Path) -> N
         )
     if dataset.dtypes[band - 1].startswith("complex"):
         raise ReadError(f"'{path}': band {band} holds complex numbers, no elevations.", path=path)
-    if dataset.transform.is_identity:
+    _require_place(dataset, path)
+
+
+def _require_place(dataset: _Header, path: Path) -> None:
+    """Refuse a raster whose cells have no place, or one that is no area."""
+    if dataset.transform == _NOWHERE:
         raise ReadError(
             f"'{path}' has no georeference, so the coordinates of its cells are unknown: add a "
             "world file or set the transform with a GIS.",
             path=path,
         )
+    a, b, _, d, e, _ = dataset.transform
+    if (
+        not np.isfinite([*dataset.transform, *dataset.bounds, a * e - b * d]).all()
+        or a * e == b * d
+    ):
+        raise ReadError(
+            f"'{path}' has the georeference {tuple(dataset.transform)}, in which a cell has no "
+            "size, or none that is finite.",
+            path=path,
+        )
 
 
-def _crs_of(dataset: Any) -> str | None:
-    if not dataset.crs:
-        return None
-    return crs_text(as_crs(dataset.crs.to_wkt()))
+def _crs_of(dataset: _Header) -> str | None:
+    return None if dataset.crs is None else crs_text(as_crs(dataset.crs))
 
 
-def _middle(dataset: Any) -> NDArray[np.float64]:
-    x, y = _applied(dataset.transform, dataset.width / 2, dataset.height / 2)
+def _middle(dataset: _Header) -> NDArray[np.float64]:
+    x, y = dataset.transform.apply(dataset.width / 2, dataset.height / 2)
     return np.array([[x, y, 0.0]])
-
-
-def _applied(transform: Any, column: Any, row: Any) -> tuple[Any, Any]:
-    """Apply an affine transform; its own operator for that differs between versions."""
-    a, b, c, d, e, f = transform[:6]
-    return column * a + row * b + c, column * d + row * e + f
 
 
 # ------------------------------------------------------------------ which cells
 
 
-def _cells(dataset: Any, window: Sequence[int] | Bounds | None, stride: int, path: Path) -> _Cells:
+def _cells(
+    dataset: _Header, window: Sequence[int] | Bounds | None, stride: int, path: Path
+) -> _Cells:
     bounds = None
     if window is None:
         part = (0, 0, dataset.width, dataset.height)
@@ -226,7 +347,9 @@ def _cells(dataset: Any, window: Sequence[int] | Bounds | None, stride: int, pat
     return _Cells(*part, int(stride), bounds)
 
 
-def _part_of_window(dataset: Any, window: Sequence[int], path: Path) -> tuple[int, int, int, int]:
+def _part_of_window(
+    dataset: _Header, window: Sequence[int], path: Path
+) -> tuple[int, int, int, int]:
     size = f"the raster has {dataset.width} columns and {dataset.height} rows"
     try:
         numbers = tuple(window)
@@ -244,14 +367,14 @@ def _part_of_window(dataset: Any, window: Sequence[int], path: Path) -> tuple[in
     return column, row, width, height
 
 
-def _part_of_bounds(dataset: Any, bounds: Bounds, path: Path) -> tuple[int, int, int, int]:
+def _part_of_bounds(dataset: _Header, bounds: Bounds, path: Path) -> tuple[int, int, int, int]:
     """Return the cells of the smallest upright window that covers the bounds."""
     limits = (bounds.xmin, bounds.ymin, bounds.xmax, bounds.ymax)
     if not all(isinstance(one, Real) and np.isfinite(one) for one in limits):
         raise FormatError(f"Invalid window {bounds}: four finite numbers are needed.")
     x = np.array([bounds.xmin, bounds.xmin, bounds.xmax, bounds.xmax])
     y = np.array([bounds.ymin, bounds.ymax, bounds.ymin, bounds.ymax])
-    columns, rows = _applied(~dataset.transform, x, y)
+    columns, rows = dataset.transform.inverse().apply(x, y)
     column, row = max(0, int(np.floor(columns.min()))), max(0, int(np.floor(rows.min())))
     right = min(dataset.width, int(np.ceil(columns.max())))
     bottom = min(dataset.height, int(np.ceil(rows.max())))
@@ -264,71 +387,116 @@ def _part_of_bounds(dataset: Any, bounds: Bounds, path: Path) -> tuple[int, int,
     return column, row, right - column, bottom - row
 
 
+def _require_room(cells: _Cells, path: Path) -> None:
+    """Refuse more cells than can be read, before memory is asked for."""
+    count = -(-cells.width // cells.stride) * -(-cells.height // cells.stride)
+    memory = _free_memory()
+    most = min(LARGEST_RASTER, memory // BYTES_PER_CELL)
+    if count > most:
+        raise ReadError(
+            f"'{path}': {count:,} cells are to be read, and {most:,} are the most that "
+            + ("a TIN" if most == LARGEST_RASTER else f"{memory / (1 << 30):.1f} GiB of memory")
+            + " can hold: read a part of it (window) or every n-th row and column (stride).",
+            path=path,
+        )
+
+
+def _free_memory() -> int:
+    """Return the bytes of memory that are available, where the system tells."""
+    try:
+        with Path("/proc/meminfo").open(encoding="ascii") as file:
+            found = next(line for line in file if line.startswith("MemAvailable:"))
+        return int(found.split()[1]) * 1024
+    except (OSError, StopIteration, ValueError, IndexError):
+        return LARGEST_RASTER * BYTES_PER_CELL
+
+
 # ------------------------------------------------------------------ points
 
 
-def _points(dataset: Any, band: int, cells: _Cells, path: Path) -> tuple[NDArray[np.float64], int]:
-    """Return the points of valid cells, and how many cells had none."""
-    strips: list[NDArray[np.float64]] = []
+def _points(
+    dataset: _Header, band: int, cells: _Cells, marks: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.bool_], int]:
+    """Return the points of valid cells, which cells are valid, and how many have no elevation."""
+    strips = _strips_of_rows(dataset, cells)
+    window = {"band": band, "column": cells.column, "width": cells.width, "stride": cells.stride}
+    ends = [[int(rows[0]), int(rows[-1])] for rows in strips]
+    found: list[NDArray[np.float64]] = []
+    kept: list[NDArray[np.bool_]] = []
     n_nodata = 0
-    height = _strip_height(dataset, cells)
-    for start in range(cells.row, cells.row + cells.height, height):
-        stop = min(start + height, cells.row + cells.height)
-        rows = cells.rows(start, stop)
-        if len(rows):
-            points, missing = _strip(dataset, band, cells, rows)
-            strips.append(points)
+    with stream_isolated(
+        f"{_reader(dataset.path)}:strips",
+        {**_where(dataset.path), **window, "rows": ends},
+        path=dataset.path,
+        limits=dataset.limits,
+    ) as answers:
+        for rows, answer in zip(strips, answers, strict=False):
+            points, keep, missing = _strip(dataset, band, cells, rows, answer.arrays, marks)
+            found.append(points)
+            kept.append(keep)
             n_nodata += missing
-    if not any(map(len, strips)) and n_nodata == 0:
-        raise FormatError(f"Window {cells.bounds} holds no cell centre of '{path}'.")
-    return np.concatenate(strips), n_nodata
+    if not any(map(len, found)) and n_nodata == 0:
+        raise FormatError(f"Window {cells.bounds} holds no cell centre of '{dataset.path}'.")
+    return np.concatenate(found), np.concatenate(kept), n_nodata
 
 
-def _strip_height(dataset: Any, cells: _Cells) -> int:
+def _strips_of_rows(dataset: _Header, cells: _Cells) -> list[NDArray[np.int64]]:
+    """Cut the rows wanted into strips."""
+    height = _strip_height(dataset, cells)
+    end = cells.row + cells.height
+    strips = [
+        cells.rows(start, min(start + height, end)) for start in range(cells.row, end, height)
+    ]
+    return [rows for rows in strips if len(rows)]
+
+
+def _strip_height(dataset: _Header, cells: _Cells) -> int:
     """Return a number of rows that are whole blocks of the file, of some million cells."""
-    block = max(1, int(dataset.block_shapes[0][0]))
+    block = max(1, dataset.block_height)
     return max(1, _STRIP_CELLS // (block * cells.width)) * block
 
 
 def _strip(
-    dataset: Any, band: int, cells: _Cells, rows: NDArray[np.int64]
-) -> tuple[NDArray[np.float64], int]:
-    from rasterio.windows import Window
-
-    first, last = int(rows[0]), int(rows[-1])
-    window = Window(cells.column, first, cells.width, last - first + 1)
-    taken = (slice(None, None, cells.stride), slice(None, None, cells.stride))
-    values = dataset.read(band, window=window)[taken]
-    has_value = _has_value(dataset, band, window, values, taken)
+    dataset: _Header,
+    band: int,
+    cells: _Cells,
+    rows: NDArray[np.int64],
+    arrays: Mapping[str, NDArray[Any]],
+    marks: NDArray[np.float64],
+) -> tuple[NDArray[np.float64], NDArray[np.bool_], int]:
+    values, has_value = arrays["values"], arrays["valid"] != 0
     x, y = _centres(dataset, cells.columns, rows)
     wanted = _within(cells.bounds, x, y)
     keep = has_value & wanted
     elevation = values[keep].astype(np.float64)
     scale, offset = dataset.scales[band - 1], dataset.offsets[band - 1]
     if (scale, offset) != (1.0, 0.0):
-        elevation = elevation * scale + offset
+        with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused
+            elevation = elevation * scale + offset
     points = np.stack([x[keep], y[keep], elevation], axis=1)
-    return points, int(np.count_nonzero(wanted & ~has_value))
+    if len(marks):
+        is_value = ~np.isin(elevation, marks)
+        points, keep[keep] = points[is_value], is_value
+    return points, keep, int(np.count_nonzero(wanted & ~keep))
 
 
-def _has_value(
-    dataset: Any, band: int, window: Any, values: NDArray[Any], taken: tuple[slice, slice]
-) -> NDArray[np.bool_]:
-    """Whether cells are valid: not masked, not nodata, finite."""
-    valid: NDArray[np.bool_] = dataset.read_masks(band, window=window)[taken] != 0
-    if values.dtype.kind == "f":
-        valid &= np.isfinite(values)
-    nodata = dataset.nodatavals[band - 1]
-    if nodata is not None and not np.isnan(nodata):
-        valid &= values != nodata
-    return valid
+def _require_finite(points: NDArray[np.float64], band: int, path: Path) -> None:
+    wrong = ~np.isfinite(points[:, 2])
+    if wrong.any():
+        count, first = int(wrong.sum()), points[int(np.argmax(wrong))].tolist()
+        raise ReadError(
+            f"'{path}': {count} {'cell' if count == 1 else 'cells'} of band {band} would have an "
+            f"elevation that is not finite (first at {first[0]:.10g}, {first[1]:.10g}): its scale "
+            "or offset is wrong.",
+            path=path,
+        )
 
 
 def _centres(
-    dataset: Any, columns: NDArray[np.int64], rows: NDArray[np.int64]
+    dataset: _Header, columns: NDArray[np.int64], rows: NDArray[np.int64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return easting and northing of the cell centres, (rows, columns) arrays."""
-    x, y = _applied(dataset.transform, columns[None, :] + 0.5, rows[:, None] + 0.5)
+    x, y = dataset.transform.apply(columns[None, :] + 0.5, rows[:, None] + 0.5)
     return x, y
 
 

@@ -14,6 +14,7 @@ __all__ = [
     "is_raster",
     "is_stl",
     "is_vtk_xml",
+    "reference_kind",
 ]
 
 HEAD_BYTES = 65536
@@ -36,7 +37,6 @@ _RASTER_STARTS = (
     b"CDF\x05",
     b"\x89HDF\r\n\x1a\n",
     b"RUU CROSS SYSTEM MAP FORMAT",  # PCRaster
-    b"<VRTDataset",
     b"binterr1.",
     b"GRIB",
     b"NITF0",
@@ -60,11 +60,20 @@ _FOREIGN_STARTS = {
     b"AC10": "a DWG drawing",
     b"{\\rtf": "an RTF document",
 }
+_PROLOGUE = ((b"<?xml", b"?>"), (b"<!--", b"-->"), (b"999\n", b"\n"), (b"999\r\n", b"\n"))
+"""Beginnings and ends of what may stand before the content of XML and DXF."""
+
+_REFERENCES = (
+    (re.compile(rb"<VRTDataset"), "a virtual raster (VRT) without its suffix .vrt"),
+    (re.compile(rb"<OGRVRT"), "a virtual vector file (OGR VRT), which names other files"),
+    (re.compile(rb"<(?:GDAL_WMS|WCS_GDAL|OGRWFS)"), "a description of a service in the network"),
+)
 _FOREIGN_TEXTS = (
-    (re.compile(rb"\s*<(?:!doctype )?html", re.I), "an HTML page"),
-    (re.compile(rb"\s*(?:<\?xml[^>]*>\s*)?(?:<!--.*?-->\s*)*<LandXML", re.S), "a LandXML file"),
-    (re.compile(rb"\s*<\?xml"), "an XML document"),
-    (re.compile(rb"(?:\s*999\r?\n[^\n]*\n)*\s*0\r?\n\s*SECTION\r?\n"), "a DXF drawing"),
+    *_REFERENCES,
+    (re.compile(rb"<(?:!doctype )?html", re.I), "an HTML page"),
+    (re.compile(rb"<LandXML"), "a LandXML file"),
+    (re.compile(rb"<[?!]?[A-Za-z_-]"), "an XML document"),
+    (re.compile(rb"0\r?\n\s*SECTION\r?\n"), "a DXF drawing"),
 )
 
 
@@ -75,7 +84,7 @@ def is_raster(head: bytes) -> bool:
 
 def is_ply(head: bytes) -> bool:
     """Whether the file is a PLY mesh."""
-    return re.match(rb"ply\s*\n|ply\r", head) is not None
+    return re.match(rb"ply[ \t]*[\r\n]", head) is not None
 
 
 def is_obj(head: bytes) -> bool:
@@ -112,7 +121,22 @@ def foreign_kind(head: bytes) -> str | None:
     for start, kind in _FOREIGN_STARTS.items():
         if head.startswith(start):
             return kind
-    for pattern, kind in _FOREIGN_TEXTS:
-        if pattern.match(head):
-            return kind
-    return None
+    content = _after_prologue(head)
+    return next((kind for pattern, kind in _FOREIGN_TEXTS if pattern.match(content)), None)
+
+
+def reference_kind(head: bytes) -> str | None:
+    """Name a text that tells where data are instead of holding them; None if it is no such."""
+    content = _after_prologue(head)
+    return next((kind for pattern, kind in _REFERENCES if pattern.match(content)), None)
+
+
+def _after_prologue(head: bytes) -> bytes:
+    """Skip the byte order mark, the declaration and the comments before the content of a text."""
+    rest = head.removeprefix(b"\xef\xbb\xbf").lstrip()
+    while found := next((mark for mark in _PROLOGUE if rest.startswith(mark[0])), None):
+        _, end, after = rest.partition(found[1])
+        if not end:
+            return rest
+        rest = after.lstrip()
+    return rest

@@ -58,14 +58,22 @@ def read(path: Path, *, crs: str | None = None) -> TIN:
     content = file_content(path)
     facets = _facets(content, path)
     origin, found = _recorded(content[:_HEADER_BYTES])
-    points, triangles = _merged(facets["corners"].reshape(-1, 3))
-    return tin_of(points + origin, triangles, path, crs=chosen_crs(crs, found))
+    if not np.isfinite(origin).all():
+        raise ReadError(
+            f"'{path}' records the origin {origin.tolist()}: three finite numbers are needed.",
+            path=path,
+        )
+    with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused
+        points, triangles = _merged(facets["corners"].reshape(-1, 3))
+        places = points + origin
+    return tin_of(places, triangles, path, crs=chosen_crs(crs, found))
 
 
 def _facets(content: bytes, path: Path) -> NDArray[Any]:
     body = _HEADER_BYTES + 4
     count = int.from_bytes(content[_HEADER_BYTES:body], "little")
-    if len(content) >= body + count * _FACET.itemsize and len(content) > body and count:
+    room = (len(content) - body) // _FACET.itemsize
+    if room == count > 0:
         return np.frombuffer(content, _FACET, count, body)
     if content.lstrip().startswith(b"solid"):
         raise ReadError(
@@ -76,9 +84,10 @@ def _facets(content: bytes, path: Path) -> NDArray[Any]:
         raise ReadError(f"'{path}' is no STL file: it is shorter than a header.", path=path)
     if count == 0:
         raise ReadError(f"'{path}' holds no facets.", path=path)
+    fault = "ends too early" if room < count else "goes on behind its last facet"
     raise ReadError(
-        f"'{path}' ends too early: its header promises {count} facets, and there is room for "
-        f"{(len(content) - body) // _FACET.itemsize}.",
+        f"'{path}' {fault}: its header promises {count} "
+        f"facet{'' if count == 1 else 's'}, and there is room for {room}.",
         path=path,
     )
 

@@ -22,8 +22,12 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["read_lines", "read_rings", "read_water"]
+__all__ = ["read_lines", "read_polygons", "read_rings", "read_water"]
 
+LARGEST_PRIORITY = 2**31 - 1
+"""Priorities of lines that a file can give: whole numbers of 32 bits."""
+
+_SHOWN_LETTERS = 60
 _WATER_COLUMNS = ("z", "level", "elevation", "height")
 
 
@@ -118,6 +122,41 @@ def read_rings(
     return [_ring(part, features) for part in parts]
 
 
+def read_polygons(
+    path: str | os.PathLike[str],
+    *,
+    crs: str | None = None,
+    layer: str | None = None,
+    where: str | None = None,
+    drape: bool = False,
+    notes: list[str] | None = None,
+) -> list[list[NDArray[np.float64]]]:
+    """Read polygons with their islands, as ``holes`` and ``erase`` of a survey take them.
+
+    Parameters
+    ----------
+    path, crs, layer, where, drape, notes
+        As in :func:`read_lines`.
+
+    Returns
+    -------
+    list of lists of (k, 2) or (k, 3) float64 arrays
+        Of each polygon the outer ring, then those of its islands; a closed line is one ring.
+
+    Raises
+    ------
+    MissingExtraError, ReadError, CrsError, LinesError
+        As :func:`read_rings`.
+    """
+    features = read_features(Path(path), layer=layer, where=where)
+    polygons: list[list[NDArray[np.float64]]] = []
+    for part in parts_of(features, crs=crs, drape=drape, notes=notes):
+        if part.ring == 0:
+            polygons.append([])
+        polygons[-1].append(_ring(part, features))
+    return polygons
+
+
 def read_water(
     path: str | os.PathLike[str],
     *,
@@ -182,8 +221,8 @@ def _kinds(features: Features) -> list[BreaklineKind]:
         chosen = allowed.get(text.lower() or "hard")
         if chosen is None:
             raise ReadError(
-                f"{features.label(row)} has the kind '{text}': {' or '.join(allowed)}, or none, "
-                "is allowed.",
+                f"{features.label(row)} has the kind '{_shown(text)}': "
+                f"{' or '.join(allowed)}, or none, is allowed.",
                 path=features.path,
             )
         kinds.append(chosen)
@@ -194,9 +233,10 @@ def _priorities(features: Features) -> list[int]:
     priorities = []
     for row, text in enumerate(_texts(features, "priority")):
         value = _number(text or "0")
-        if value is None or value != round(value):
+        if value is None or value != round(value) or abs(value) > LARGEST_PRIORITY:
             raise ReadError(
-                f"{features.label(row)} has the priority '{text}': a whole number is needed.",
+                f"{features.label(row)} has the priority '{_shown(text)}': a whole number from "
+                f"-{LARGEST_PRIORITY} to {LARGEST_PRIORITY} is needed.",
                 path=features.path,
             )
         priorities.append(int(value))
@@ -209,6 +249,10 @@ def _texts(features: Features, name: str) -> list[str]:
     if column is None:
         return [""] * len(features.numbers)
     return ["" if _is_missing(value) else str(value).strip() for value in column.tolist()]
+
+
+def _shown(text: str) -> str:
+    return text if len(text) <= _SHOWN_LETTERS else f"{text[:_SHOWN_LETTERS]}..."
 
 
 def _is_missing(value: object) -> bool:
@@ -249,6 +293,7 @@ def _level(
     found = f"heights from {ring[:, 2].min():g} to {ring[:, 2].max():g}" if has_heights else "none"
     raise ReadError(
         f"{features.label(row)} needs one height and has {found}: water gets it from a column "
-        f"({', '.join(_WATER_COLUMNS)}), from corners of one height, or for all (z=, --water-z).",
+        f"({', '.join(_WATER_COLUMNS)}), from corners of one height, or for all from the option "
+        "water_z.",
         path=features.path,
     )

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-import re
+import os
 import struct
-import warnings
-from contextlib import contextmanager
+from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from ..tin import MissingExtraError
 from .crs import normalised
-from .errors import ReadError
+from .errors import CrsError, ReadError
+from .isolated import limits_for, run_isolated
+from .local import require_local
+from .signatures import HEAD_BYTES, reference_kind
+from .spooling import as_sentence, ordinary_file
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -26,7 +28,6 @@ _FOLDERS = (".gdb",)
 """Suffixes of formats that are folders."""
 
 _SHAPEFILE = b"\x00\x00\x27\x0a"
-_GDAL_SOURCE = re.compile(r"^\S+\.cpp, \d+: ")
 
 
 class Features(NamedTuple):
@@ -76,36 +77,62 @@ def read_features(path: Path, *, layer: str | None = None, where: str | None = N
     ReadError
         If the file or layer is missing, damaged, empty, or no vector file.
     """
-    raw = _pyogrio().raw
+    require_local(path)
+    with ordinary_file(path) as local:
+        features = _read_layer(local, layer, where)
+    if local == path:
+        return features
+    notes = tuple(note.replace(local.name, path.name) for note in features.notes)
+    return features._replace(path=path, notes=notes)
+
+
+def _read_layer(path: Path, layer: str | None, where: str | None) -> Features:
+    if find_spec("pyogrio") is None:
+        raise MissingExtraError("pyogrio", extra="vector", purpose="Reading vector files")
     _require_whole_file(path)
-    with _gdal_sentences(path):
-        chosen = _chosen_layer(path, layer)
-        meta, numbers, geometries, values = raw.read(
-            path, layer=chosen, where=where, return_fids=True
-        )
-    if len(numbers) == 0:
-        raise ReadError(f"'{path}' has no features{_where_text(chosen, where)}.", path=path)
-    names = [str(name).lower() for name in meta["fields"]]
+    where_it_is = {"path": os.path.abspath(path), "shown": str(path)}  # noqa: PTH100 - links stay
+    value, arrays = run_isolated(
+        f"{__package__}.vectors_gdal:features",
+        {**where_it_is, "layer": layer, "where": where},
+        path=path,
+        limits=limits_for(_bytes_of(path)),
+    )
+    if len(arrays["numbers"]) == 0:
+        raise ReadError(f"'{path}' has no features{_where_text(value['layer'], where)}.", path=path)
     return _with_geometry(
         Features(
             path,
-            np.asarray(numbers, np.int64),
-            _shapes(geometries, numbers, path),
-            dict(zip(names, values, strict=True)),
-            normalised(meta["crs"]),
+            arrays["numbers"],
+            _shapes(arrays, path),
+            _columns(value, arrays),
+            _crs_of(value["crs"], path),
             (),
         )
     )
 
 
-def _pyogrio() -> Any:
+def _crs_of(text: str | None, path: Path) -> str | None:
     try:
-        import pyogrio
-    except ImportError as error:
-        raise MissingExtraError(
-            "pyogrio", extra="vector", purpose="Reading vector files"
-        ) from error
-    return pyogrio
+        return normalised(text)
+    except CrsError as error:
+        raise CrsError(f"'{path}': {error}", crs=text) from error
+
+
+def _columns(value: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
+    """Return the columns by their names in lower case."""
+    columns = {}
+    for k, name in enumerate(value["names"]):
+        texts = value["texts"].get(str(k))
+        column = arrays[f"column {k}"] if texts is None else np.array(texts, object)
+        columns[name.lower()] = column
+    return columns
+
+
+def _bytes_of(path: Path) -> int:
+    """Return the bytes of a file, or of all files of a format that is a folder."""
+    if not path.is_dir():
+        return path.stat().st_size
+    return sum(file.stat().st_size for file in path.iterdir() if file.is_file())
 
 
 def _require_whole_file(path: Path) -> None:
@@ -117,78 +144,42 @@ def _require_whole_file(path: Path) -> None:
             raise ReadError(f"'{path}' is a folder: name a file in it.", path=path)
         size = path.stat().st_size
         with path.open("rb") as file:
-            head = file.read(28)
-    except FileNotFoundError as error:
-        raise ReadError(f"There is no file '{path}'.", path=path) from error
+            head = file.read(HEAD_BYTES)
+    except ReadError:
+        raise
     except OSError as error:
-        raise ReadError(f"'{path}' may not be read: {error.strerror}.", path=path) from error
+        raise as_sentence(path, error) from error
     if size == 0:
         raise ReadError(f"'{path}' is empty: there are no lines in it.", path=path)
-    if head.startswith(_SHAPEFILE) and len(head) == 28:
-        (words,) = struct.unpack(">i", head[24:])  # the length is counted in 16-bit words
+    kind = reference_kind(head)
+    if kind is not None:
+        raise ReadError(f"'{path}' is {kind}: only files of lines themselves are read.", path=path)
+    if head.startswith(_SHAPEFILE) and len(head) >= 28:
+        (words,) = struct.unpack(">i", head[24:28])  # the length is counted in 16-bit words
         if size < 2 * words:
             raise ReadError(
                 f"'{path}' is cut short: it has {size} of {2 * words} bytes.", path=path
             )
 
 
-@contextmanager
-def _gdal_sentences(path: Path) -> Iterator[None]:
-    """Turn what GDAL raises or warns of damage into a sentence."""
-    from pyogrio.errors import DataSourceError
-
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            yield
-    except DataSourceError as error:
-        if "not recognized" in str(error):
-            raise ReadError(f"'{path}' is no vector file that GDAL knows.", path=path) from error
-        raise ReadError(f"'{path}' cannot be read: {_reason(error)}.", path=path) from error
-    except (RuntimeError, ValueError, IndexError) as error:
-        if isinstance(error, ReadError):
-            raise
-        raise ReadError(f"'{path}' cannot be read: {_reason(error)}.", path=path) from error
-
-
-def _reason(error: Exception) -> str:
-    text = " ".join(str(error).split("; ")[-1].split())
-    return _GDAL_SOURCE.sub("", text).rstrip(".") or type(error).__name__
-
-
-def _chosen_layer(path: Path, layer: str | None) -> str:
-    layers = [str(name) for name, kind in _pyogrio().list_layers(path) if kind is not None]
-    if not layers:
-        raise ReadError(f"'{path}' has no layer with geometry, or is damaged.", path=path)
-    if layer is None and len(layers) > 1:
-        raise ReadError(
-            f"'{path}' has {len(layers)} layers: name one of {', '.join(layers)} "
-            f"(layer={layers[0]!r}, on the command line '{path}:{layers[0]}').",
-            path=path,
-        )
-    if layer is not None and layer not in layers:
-        raise ReadError(
-            f"'{path}' has no layer '{layer}' with geometry: there is {', '.join(layers)}.",
-            path=path,
-        )
-    return layers[0] if layer is None else layer
-
-
 def _where_text(layer: str, where: str | None) -> str:
     return f" in layer '{layer}'" if where is None else f" where {where}"
 
 
-def _shapes(
-    geometries: NDArray[np.object_], numbers: NDArray[np.int64], path: Path
-) -> NDArray[np.object_]:
+def _shapes(arrays: dict[str, NDArray[Any]], path: Path) -> NDArray[np.object_]:
     import shapely
 
-    shapes: NDArray[np.object_] = shapely.from_wkb(geometries, on_invalid="ignore")
-    wrong = shapely.is_missing(shapes) & np.array([one is not None for one in geometries])
+    wkb, lengths = arrays["wkb"].tobytes(), arrays["lengths"]
+    ends = np.cumsum(np.maximum(lengths, 0))
+    parts = zip((ends - np.maximum(lengths, 0)).tolist(), ends.tolist(), strict=True)
+    geometries = np.array([wkb[start:end] or None for start, end in parts], object)
+    with np.errstate(invalid="ignore"):  # what is not finite is refused later
+        shapes: NDArray[np.object_] = shapely.from_wkb(geometries, on_invalid="ignore")
+    wrong = shapely.is_missing(shapes) & (lengths >= 0)
     if wrong.any():
         raise ReadError(
-            f"'{path}': feature {numbers[np.argmax(wrong)]} has a geometry of another kind: "
-            "lines or polygons are needed.",
+            f"'{path}': feature {arrays['numbers'][np.argmax(wrong)]} has a geometry of another "
+            "kind: lines or polygons are needed.",
             path=path,
         )
     return shapes

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +11,8 @@ import numpy as np
 
 from ..tin import Bounds, Breakline, Water
 from .errors import ReadError
-from .vectors import read_lines, read_rings, read_water
+from .vectors import read_lines, read_polygons, read_water
+from .vectors_nesting import nesting_notes
 
 if TYPE_CHECKING:
     import os
@@ -22,7 +24,7 @@ if TYPE_CHECKING:
 
     Source = str | os.PathLike[str]
 
-__all__ = ["with_lines"]
+__all__ = ["path_and_layer", "with_lines"]
 
 _FAR = 10.0
 """Lines further from the points than this many diagonals of their extent are somewhere else."""
@@ -46,7 +48,8 @@ def with_lines(
     ----------
     survey : Survey
     breaklines, soft_breaklines, boundary, holes, erase, water : sequence of path-like
-        Files; ``"plan.gpkg:kerbs"`` names a layer. The survey's own lines come first.
+        Files; ``"plan.gpkg:kerbs"`` names a layer. The survey's own lines come first. The islands
+        of polygons stay: they are no part of a hole, are not erased, and lie outside a boundary.
     water_z : float or str, optional
         Height of the water, or the column that holds it.
     drape : bool
@@ -61,7 +64,8 @@ def with_lines(
     Raises
     ------
     MissingExtraError, ReadError, CrsError, LinesError
-        As :func:`tinsmith.io.read_lines`; ReadError also if lines lie far away from the points.
+        As :func:`tinsmith.io.read_lines`; ReadError also if lines lie far away from the points, or
+        if polygons of a boundary overlap.
 
     Examples
     --------
@@ -74,9 +78,11 @@ def with_lines(
     def read(reader: Callable[..., list[Any]], sources: Iterable[Source], **how: Any) -> list[Any]:
         found = []
         for source in sources:
-            path, layer = _path_and_layer(source)
+            path, layer = path_and_layer(source)
             lines = reader(path, crs=survey.crs, layer=layer, notes=notes, **how)
-            _require_near(survey, [_coords_of(line) for line in lines], path)
+            _require_near(survey, [xy for line in lines for xy in _coords_of(line)], path)
+            if reader is read_polygons and sources is boundary:
+                notes.extend(nesting_notes(lines, path))
             found += lines
         return found
 
@@ -87,15 +93,20 @@ def with_lines(
             *read(read_lines, breaklines, drape=drape),
             *read(read_lines, soft_breaklines, kind="soft", drape=drape),
         ],
-        boundary=[*survey.boundary, *read(read_rings, boundary, drape=drape)],
-        holes=[*survey.holes, *read(read_rings, holes, drape=drape)],
-        erase=[*survey.erase, *read(read_rings, erase, drape=True)],
+        boundary=[*survey.boundary, *chain(*read(read_polygons, boundary, drape=drape))],
+        holes=[*survey.holes, *map(_plain, read(read_polygons, holes, drape=drape))],
+        erase=[*survey.erase, *map(_plain, read(read_polygons, erase, drape=True))],
         water=[*survey.water, *read(read_water, water, z=water_z)],
         notes=notes,
     )
 
 
-def _path_and_layer(source: Source) -> tuple[Path, str | None]:
+def _plain(rings: list[NDArray[np.float64]]) -> NDArray[np.float64] | list[NDArray[np.float64]]:
+    """Return a polygon without islands as its ring."""
+    return rings[0] if len(rings) == 1 else rings
+
+
+def path_and_layer(source: Source) -> tuple[Path, str | None]:
     """Split a layer's name off a path, unless a file of the whole name exists."""
     path = Path(source)
     before, colon, layer = str(source).rpartition(":")
@@ -104,10 +115,10 @@ def _path_and_layer(source: Source) -> tuple[Path, str | None]:
     return path, None
 
 
-def _coords_of(line: Breakline | Water | NDArray[np.float64]) -> NDArray[np.float64]:
-    if isinstance(line, Breakline):
-        return line.coords
-    return line.ring if isinstance(line, Water) else line
+def _coords_of(line: Breakline | Water | list[NDArray[np.float64]]) -> list[NDArray[np.float64]]:
+    if isinstance(line, list):
+        return line
+    return [line.coords if isinstance(line, Breakline) else line.ring]
 
 
 def _require_near(survey: Survey, coords: Sequence[NDArray[np.float64]], path: Path) -> None:

@@ -7,31 +7,35 @@ Coordinates are written in the CRS as doubles, with nothing subtracted. Cell dat
 
 from __future__ import annotations
 
+import os
 import re
-from contextlib import contextmanager
-from importlib import import_module
-from typing import TYPE_CHECKING, Any, NamedTuple
+from importlib.util import find_spec
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..terrain import extras
 from ..terrain.slope import aspect, slope
+from ..tin import MissingExtraError
 from .atomic import replacing_path
 from .errors import ReadError, WriteError
+from .isolated import run_isolated
 from .meshes import chosen_crs, fans, file_content, one_line, require_tin, survey_of, tin_of
+from .vtk_library import errors_caught, vtk_class
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Mapping
     from pathlib import Path
 
     from numpy.typing import NDArray
 
     from ..tin import TIN, Survey
+    from .isolated import Answer
 
 __all__ = ["read", "write"]
 
-_NO_FACES = frozenset({0, 1, 2, 3, 4})  # empty cell, vertices, lines
-_FACES = frozenset({5, 7, 9})  # triangle, polygon, quadrilateral
+_KINDS = ("PolyData", "UnstructuredGrid")
+_SHOWN_LETTERS = 60
 _CLOSEST_PACKING = 1100  # zlib packs no tighter than 1032 to 1
 _COUNTS = re.compile(rb'NumberOf\w+="(\d+)"')
 
@@ -61,158 +65,61 @@ def read(path: Path, *, crs: str | None = None) -> TIN | Survey:
     CrsError
         If PROJ does not know the CRS.
     """
-    mesh = _mesh(path)
-    points = _true_points(mesh)
-    system = chosen_crs(crs, _text_field(mesh, "crs"))
-    faces = _faces_of(mesh, path)
-    if len(faces.cells) == 0:
-        return survey_of(points, path, attributes=_attributes(mesh), crs=system)
-    made = fans(faces.corners, faces.offsets, points, path)
-    flags = _flags(mesh, faces.cells, len(made.triangles))
-    return tin_of(points, made.triangles, path, constrained=flags, crs=system)
+    value, arrays = _found(path)
+    points = _true_points(arrays)
+    system = chosen_crs(crs, value["crs"])
+    cells = arrays["cells"]
+    if len(cells) == 0:
+        attributes = {name: arrays[f"attribute {k}"] for k, name in enumerate(value["attributes"])}
+        return survey_of(points, path, attributes=attributes, crs=system)
+    made = fans(arrays["corners"], arrays["offsets"], points, path)
+    flags = arrays.get("flags") if len(cells) == len(made.triangles) else None
+    is_flagged = None if flags is None else flags != 0
+    return tin_of(points, made.triangles, path, constrained=is_flagged, crs=system)
 
 
-class _Faces(NamedTuple):
-    """Corners of faces, one face after the other, and the number of the cell that each is."""
+def _true_points(arrays: Mapping[str, NDArray[Any]]) -> NDArray[np.float64]:
+    """Take an exaggeration out of the elevations, and add the origin."""
+    points = arrays["points"]
+    exaggeration, origin = arrays.get("exaggeration"), arrays.get("origin")
+    with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused later
+        if exaggeration is not None and exaggeration[0] > 0:
+            points[:, 2] /= exaggeration[0]
+        return points if origin is None else points + origin
 
-    corners: NDArray[np.int64]
-    offsets: NDArray[np.int64]
-    cells: NDArray[np.int64]
 
-
-def _mesh(path: Path) -> Any:
-    pv = extras.pyvista("Reading VTK files")
-    readers = {
-        b"PolyData": "vtkXMLPolyDataReader",
-        b"UnstructuredGrid": "vtkXMLUnstructuredGridReader",
-    }
+def _found(path: Path) -> Answer:
+    """Let a child read the file, once its beginning and end are those of a whole one."""
+    if find_spec("pyvista") is None:
+        raise MissingExtraError("pyvista", extra="view", purpose="Reading VTK files")
     content = file_content(path)
     if b"</VTKFile>" not in content[-200:]:
         raise ReadError(f"'{path}' is no whole VTK XML file: '</VTKFile>' is missing.", path=path)
     _require_likely_counts(content, path)
     kind = re.search(rb'<VTKFile\b[^>]*\btype="(\w+)"', content[:2000])
-    if kind is None or kind[1] not in readers:
+    if kind is None or kind[1].decode() not in _KINDS:
         found = "of no type" if kind is None else f"of type {kind[1].decode()}"
         raise ReadError(
             f"'{path}' is a VTK file {found}: PolyData and UnstructuredGrid can be read.", path=path
         )
-    reader = _vtk_class(readers[kind[1]])()
-    reader.SetFileName(str(path))
-    with _errors_caught(pv) as errors:
-        reader.Update()
-    if errors or reader.GetErrorCode():
-        raise ReadError(f"'{path}' is a damaged VTK XML file.", path=path)
-    return pv.wrap(reader.GetOutput())
-
-
-def _vtk_class(name: str) -> Any:
-    return getattr(import_module("vtkmodules.vtkIOXML"), name)
-
-
-def _whole(array: Any) -> NDArray[np.int64]:
-    """Return a VTK array of numbers of points or cells."""
-    numbers: NDArray[np.int64] = import_module("pyvista").convert_array(array).astype(np.int64)
-    return numbers
-
-
-@contextmanager
-def _errors_caught(pv: Any) -> Iterator[list[Any]]:
-    """Collect what VTK would print to the terminal."""
-    from vtkmodules.vtkCommonCore import vtkLogger
-
-    before = vtkLogger.GetCurrentVerbosityCutoff()
-    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
-    errors: list[Any] = []
-    try:
-        with pv.VtkErrorCatcher(raise_errors=False, send_to_logging=False) as catcher:
-            yield errors
-        errors.extend(catcher.error_events)
-    finally:
-        vtkLogger.SetStderrVerbosity(before)
+    return run_isolated(
+        f"{__package__}.vtk_library:mesh",
+        {"path": os.path.abspath(path), "shown": str(path), "kind": kind[1].decode()},  # noqa: PTH100
+        path=path,
+    )
 
 
 def _require_likely_counts(content: bytes, path: Path) -> None:
     """Refuse counts that no file of this size can hold, before memory is asked for."""
+    most = len(content) * _CLOSEST_PACKING
     for found in _COUNTS.finditer(content):
-        if int(found[1]) > len(content) * _CLOSEST_PACKING:
+        digits = found[1].lstrip(b"0")
+        if len(digits) > len(str(most)) or int(digits or b"0") > most:
+            said = found[0].decode()
+            shown = said if len(said) <= _SHOWN_LETTERS else f"{said[:_SHOWN_LETTERS]}..."
             raise ReadError(
-                f"'{path}' is a damaged VTK XML file: it cannot hold {found[0].decode()}.",
-                path=path,
+                f"'{path}' is a damaged VTK XML file: it cannot hold {shown}.", path=path
             )
-
-
-def _true_points(mesh: Any) -> NDArray[np.float64]:
-    points = np.array(mesh.points, np.float64).reshape(-1, 3)
-    exaggeration = _number_field(mesh, "exaggeration", 1)
-    if exaggeration is not None and exaggeration[0] > 0:
-        points[:, 2] /= exaggeration[0]
-    origin = _number_field(mesh, "origin", 3)
-    return points if origin is None else points + origin
-
-
-def _number_field(mesh: Any, name: str, size: int) -> NDArray[np.float64] | None:
-    if name not in mesh.field_data:
-        return None
-    values = np.asarray(mesh.field_data[name])
-    fits = values.size == size and values.dtype.kind in "iuf" and np.isfinite(values).all()
-    return values.ravel().astype(np.float64) if fits else None
-
-
-def _text_field(mesh: Any, name: str) -> str | None:
-    if name not in mesh.field_data:
-        return None
-    values = np.asarray(mesh.field_data[name]).ravel()
-    return (str(values[0]).strip() or None) if len(values) else None
-
-
-def _faces_of(mesh: Any, path: Path) -> _Faces:
-    from pyvista import PolyData
-
-    if isinstance(mesh, PolyData):
-        if mesh.n_strips:
-            raise ReadError(f"'{path}' holds triangle strips, which are not read.", path=path)
-        polys = mesh.GetPolys()
-        first = mesh.GetVerts().GetNumberOfCells() + mesh.GetLines().GetNumberOfCells()
-        cells = np.arange(first, first + polys.GetNumberOfCells())
-        if len(cells) == 0:
-            return _Faces(np.empty(0, np.int64), np.zeros(1, np.int64), cells)
-        offsets = _whole(polys.GetOffsetsArray())
-        corners = _whole(polys.GetConnectivityArray())
-        return _Faces(corners, offsets, cells)
-    return _faces_of_grid(mesh, path)
-
-
-def _faces_of_grid(mesh: Any, path: Path) -> _Faces:
-    types = np.asarray(mesh.celltypes)
-    odd = ~np.isin(types, list(_NO_FACES | _FACES))
-    if odd.any():
-        raise ReadError(
-            f"'{path}' holds {int(odd.sum())} cells that are no faces (first: cell "
-            f"{int(np.argmax(odd))} of VTK type {types[np.argmax(odd)]}): triangles, "
-            "quadrilaterals and polygons can be read.",
-            path=path,
-        )
-    cells = np.flatnonzero(np.isin(types, list(_FACES)))
-    every = _whole(mesh.GetCells().GetOffsetsArray())
-    starts, lengths = every[cells], np.diff(every)[cells]
-    offsets = np.zeros(len(cells) + 1, np.int64)
-    np.cumsum(lengths, out=offsets[1:])
-    slots = np.repeat(starts - offsets[:-1], lengths) + np.arange(offsets[-1])
-    corners = _whole(mesh.GetCells().GetConnectivityArray())
-    return _Faces(corners[slots], offsets, cells)
-
-
-def _flags(mesh: Any, cells: NDArray[np.int64], n_triangles: int) -> NDArray[np.bool_] | None:
-    """Return the edge flags if the file has them and every face is a triangle."""
-    if "constrained" not in mesh.cell_data or len(cells) != n_triangles:
-        return None
-    flags = np.asarray(mesh.cell_data["constrained"])
-    return flags[cells] != 0 if flags.ndim == 2 and flags.shape[1] == 3 else None
-
-
-def _attributes(mesh: Any) -> dict[str, NDArray[Any]]:
-    arrays = {str(name): np.array(values) for name, values in mesh.point_data.items()}
-    return {name: a for name, a in arrays.items() if a.ndim == 1 and a.dtype.kind in "biuf"}
 
 
 def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None = None) -> None:
@@ -239,14 +146,14 @@ def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None 
     mesh, class_name = _poly_data(tin, pv), "vtkXMLPolyDataWriter"
     if path.suffix.lower() == ".vtu":
         mesh, class_name = mesh.cast_to_unstructured_grid(), "vtkXMLUnstructuredGridWriter"
-    writer = _vtk_class(class_name)()
+    writer = vtk_class(class_name)()
     writer.SetInputData(mesh)
     writer.SetHeaderTypeToUInt64()  # arrays beyond 4 GB
     writer.SetByteOrderToLittleEndian()
     writer.SetCompressionLevel(1)  # twice as fast as the default, and 3 % larger
     with replacing_path(path) as beside:
         writer.SetFileName(str(beside))
-        with _errors_caught(pv) as errors:
+        with errors_caught(pv) as errors:
             written = writer.Write()
         if not written or writer.GetErrorCode() or errors:
             raise WriteError(

@@ -3,6 +3,11 @@
 from __future__ import annotations
 
 import pytest
+from no_skips import (  # noqa: F401 - hooks
+    pytest_addoption,
+    pytest_make_collect_report,
+    pytest_runtest_makereport,
+)
 
 from tinsmith.terrain import opengl
 from tinsmith.tin import TinsmithError

@@ -336,3 +336,19 @@ def test_formats_names_the_extras():
     shown = " ".join(run("formats").stdout.split())
     assert "tinsmith[raster]" in shown
     assert "tinsmith[view]" in shown
+
+
+def test_mean_slope_is_weighted_by_area(tmp_path):
+    """A level square of 10 by 10, and beside it a strip of 1 by 10 that rises by 1."""
+    points = [[0, 0, 0], [10, 0, 0], [10, 10, 0], [0, 10, 0], [11, 0, 1], [11, 10, 1]]
+    ts.write(ts.triangulate(points, crs="EPSG:32616"), tmp_path / "a.ply")
+    found = json.loads(run("info", tmp_path / "a.ply", "--json").stdout)["slope"]
+    assert found["mean"] == pytest.approx(45 * 10 / 110, rel=1e-9)
+    assert (found["min"], found["max"]) == (pytest.approx(0), pytest.approx(45))
+
+
+def test_json_knows_no_infinity_and_no_numpy():
+    from tinsmith.cli.console import plain
+
+    given = {"a": float("inf"), "b": [float("nan"), np.float64("-inf")], "c": np.int32(3)}
+    assert json.loads(plain(given)) == {"a": None, "b": [None, None], "c": 3}

@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from io import StringIO
 from pathlib import Path
 
 import numpy as np
@@ -68,7 +69,7 @@ def program(*arguments, **options):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("x,y,z\n0,0,1\n4,0,nan\n4,3,3\n0,3,4\n", ["line 3"]),
+        ("x,y,z\n0,0,1\n4,nan,2\n4,3,3\n0,3,4\n", ["line 3"]),
         ("x,y,z\n0,0,1\n4,0,2\n4,inf,3\n0,3,4\n", ["line 4"]),
         ("x,y,z\n0,0,1\n-Infinity,0,2\n4,1,3\n0,3,4\n", ["line 3"]),
         ("", ["empty"]),
@@ -140,11 +141,28 @@ def test_columns_by_role_take_names_and_numbers(folder):
 
 
 def test_assumed_layout_is_told(folder):
-    code, _, stderr = build("1,0,0,5,GS\n2,4,0,6,GS\n3,4,3,7,MH\n")
+    rows = "1,4024240,752700,5,GS\n2,4024240,752704,6,GS\n3,4024243,752704,7,MH\n"
+    code, _, stderr = build(rows, "--crs", "EPSG:32616")
     assert code == 0
     assert re.search(
         r"^Note +No header: the columns are taken as number, northing", stderr, re.MULTILINE
     )
+
+
+def test_a_layout_that_may_be_two_is_refused(folder):
+    rows = "1,4024240,752700,5,GS\n2,4024240,752704,6,GS\n3,4024243,752704,7,MH\n"
+    assert_sentence(*build(rows), "PNEZD", "PENZD")
+    assert build(rows, "--columns", "PNEZD")[0] == 0
+
+
+def test_bad_rows_and_nodata_are_left_out_on_request(folder):
+    rows = SQUARE + "1,1,x\n2,2,-9999\n"
+    assert_sentence(*build(rows), "line 6")
+    code, _, stderr = build(rows, "--skip-bad", "--nodata", "-9999")
+    assert code == 0
+    assert re.search(r"^Note +1 bad row is left out \(line 6", stderr, re.MULTILINE)
+    assert re.search(r"^Skipped +1 bad rows, 1 nodata points$", stderr, re.MULTILINE)
+    assert "4 vertices" in stderr
 
 
 def test_unknown_crs(folder):
@@ -244,6 +262,129 @@ def test_closed_pipe_is_quiet(folder):
     assert result.stderr == ""
 
 
+# ------------------------------------------------------------------ standard streams
+
+
+def shell(command):
+    """Run a command line of the shell, in which `tinsmith` is this program."""
+    script = f'tinsmith() {{ "{sys.executable}" -m tinsmith "$@"; }}\n{command}'
+    return subprocess.run(
+        ["bash", "-c", script], capture_output=True, text=True, check=False, timeout=60
+    )
+
+
+def test_a_result_with_nowhere_to_go_is_a_failure(folder):
+    Path("in.csv").write_text(SQUARE)
+    result = shell("tinsmith info in.csv >&-")
+    assert result.returncode == 1
+    assert result.stderr == "Error: Cannot write to standard output: it is closed.\n"
+
+
+@pytest.mark.parametrize("streams", ["2>&-", ">&- 2>&-", ">&- 2>&- <&-", "2>/dev/full"])
+def test_a_build_needs_no_standard_stream(folder, streams):
+    Path("in.csv").write_text(SQUARE)
+    result = shell(f"tinsmith build in.csv -o out.ply {streams}")
+    assert (result.returncode, result.stdout, result.stderr) == (0, "", "")
+    assert len(ts.read("out.ply").triangles) == 2  # nothing that was said went into the file
+
+
+@pytest.mark.parametrize("streams", ["2>&-", "2>/dev/full"])
+def test_an_error_that_cannot_be_told_keeps_its_exit_code(folder, streams):
+    assert shell(f"tinsmith info none.csv {streams}").returncode == 1
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "word"),
+    [
+        (["info", "none.csv", "--json"], 1, "There is no file 'none.csv'."),
+        (["--json", "info"], 2, "--json"),
+        (["check", "in.csv", "--level", "9", "--json"], 2, "'--level'"),
+        (["build", "in.csv", "-o", "out.zzz", "--json"], 1, ".zzz"),
+    ],
+)
+def test_failures_are_json_on_request(folder, arguments, code, word):
+    Path("in.csv").write_text(SQUARE)
+    result = CliRunner().invoke(main, arguments)
+    found = json.loads(result.stdout)
+    assert set(found) == {"error", "exit_code"}
+    assert (result.exit_code, found["exit_code"]) == (code, code)
+    assert word in found["error"]
+    assert found["error"] in result.stderr
+
+
+def test_a_file_called_json_is_no_option(folder):
+    result = CliRunner().invoke(main, ["info", "--", "--json"])
+    assert (result.exit_code, result.stdout) == (1, "")
+
+
+def test_no_second_object_follows_the_answer(folder):
+    """The answer of check is on stdout, with what is wrong; the failure is on stderr alone."""
+    Path("twice.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n")
+    whole = Path("twice.obj").read_text()
+    Path("twice.obj").write_text(whole.replace("v 0 1 0", "v 0.9 0.2 0"))
+    result = CliRunner().invoke(main, ["check", "twice.obj", "--json"])
+    assert result.exit_code == 1
+    assert isinstance(json.loads(result.stdout), dict)
+
+
+# ------------------------------------------------------------------ sentences
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["build", "in.csv", "-o", "a.ply", "--snap", "nan"], "Invalid --snap nan"),
+        (["build", "in.csv", "-o", "a.ply", "--max-edge", "0"], "Invalid --max-edge 0.0"),
+        (["refine", "in.csv", "-o", "a.ply", "--max-side", "-1"], "Invalid --max-side -1.0"),
+        (["build", "in.csv", "-o", "a.ply", "--stride", "2"], "its options are --columns, "),
+        (["build", "in.csv", "-o", "a.ply", "--crs", "EPSG:4326"], "give --crs 'EPSG:"),
+        (["build", "in.csv", "-o", "a.geojson"], "with --projected."),
+    ],
+)
+def test_sentences_name_flags_and_no_python(folder, arguments, words):
+    Path("in.csv").write_text(SQUARE)
+    result = CliRunner().invoke(main, arguments)
+    assert result.exit_code == 1
+    assert words in result.stderr
+    assert "None" not in result.stderr
+    assert "=" not in result.stderr
+
+
+def test_numbers_in_sentences_are_plain(folder):
+    code, _, stderr = build("x,y,z\n0,0,1\n1e200,0,2\n4,1,3\n")
+    assert code == 1
+    assert "x 1e+200" in stderr
+    assert "np.float64" not in stderr
+
+
+def test_names_of_lines_keep_their_capitals():
+    lines = [ts.Breakline([[0, 0, 1], [1e200, 0, 1]], name="Kerb NORTH")]
+    with pytest.raises(ts.LinesError, match=r"^Breakline 0 'Kerb NORTH' has a vertex outside"):
+        ts.triangulate([[0, 0, 0], [1, 0, 0], [0, 1, 0]], breaklines=lines)
+
+
+def test_one_thing_is_singular(folder):
+    _, _, stderr = build("x,y,z\n0,0,1\n4,0,2\n4,3,3\n")
+    assert "3 vertices, 1 triangle\n" in stderr
+    result = CliRunner().invoke(main, ["convert", "out.ply", "-o", "out.obj"])
+    assert "a TIN of 1 triangle from" in result.stderr
+
+
+def test_a_name_that_would_break_the_line_is_escaped(folder):
+    result = CliRunner().invoke(main, ["info", "no\nsuch\x1b[31m.csv"])
+    assert result.stderr == "Error: There is no file 'no\\nsuch\\x1b[31m.csv'.\n"
+    Path("new\nline.csv").write_text(SQUARE)
+    result = CliRunner().invoke(main, ["build", "new\nline.csv", "-o", "out.ply"])
+    assert "4 from new\\nline.csv\n" in result.stderr
+
+
+def test_format_that_cannot_be_written_is_refused_by_name(folder):
+    Path("in.csv").write_text(SQUARE)
+    arguments = ["build", "in.csv", "-o", "out.ply", "--output-format", "raster"]
+    result = CliRunner().invoke(main, arguments)
+    assert result.stderr == "Error: The format raster can be read, not written.\n"
+
+
 # ------------------------------------------------------------------ wrong usage
 
 
@@ -275,7 +416,8 @@ def test_wrong_usage_exits_with_two(folder, arguments):
 # ------------------------------------------------------------------ interruption and bugs
 
 
-def test_interrupt_while_writing_leaves_nothing(folder):
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_while_writing_leaves_nothing(folder, number):
     points = np.random.default_rng(1).random((150_000, 3)) * [500_000, 500_000, 100]
     np.savetxt("in.csv", points, delimiter=",", fmt="%.3f")
     run = subprocess.Popen(
@@ -283,14 +425,14 @@ def test_interrupt_while_writing_leaves_nothing(folder):
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+        preexec_fn=lambda: signal.signal(number, signal.SIG_DFL),
     )
     deadline = time.monotonic() + 50
     while len(names()) < 2 and run.poll() is None and time.monotonic() < deadline:
         time.sleep(0.01)
-    run.send_signal(signal.SIGINT)
+    run.send_signal(number)
     stdout, stderr = run.communicate(timeout=30)
-    assert (run.returncode, stdout) == (130, "")
+    assert (run.returncode, stdout) == (128 + number, "")
     assert stderr == "Interrupted; nothing was written.\n"
     assert names() == ["in.csv"]
 
@@ -407,6 +549,23 @@ with steps.Steps(quiet={quiet}) as shown, shown.step("Growing") as progress:
         progress(fraction)
         time.sleep(0.2)
 """
+
+
+def test_progress_shows_the_fraction_done(monkeypatch):
+    from rich.console import Console
+    from rich.progress import Progress
+
+    from tinsmith.cli import steps
+
+    bar = Progress(console=Console(file=StringIO()))
+    monkeypatch.setattr(steps, "_progress_bar", lambda: bar)
+    monkeypatch.setattr(steps, "_is_terminal", lambda: True)
+    with steps.Steps() as shown, shown.step("Growing") as progress:
+        seen = []
+        for fraction in (0.2, 0.9, 1.0):
+            progress(fraction)
+            seen.append(bar.tasks[0].percentage)
+    assert seen == [20, 90, 100]
 
 
 @pytest.mark.parametrize(("quiet", "is_shown"), [(False, True), (True, False)])

@@ -10,7 +10,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
 from fuzz import coordinates, minimise
 
 TESTS = Path(__file__).parent

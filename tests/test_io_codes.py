@@ -118,15 +118,35 @@ def test_lines_are_added_to_those_that_there_are():
 
 
 def test_faults_are_counted_and_named_by_point():
-    refused("1 line has too few points .EP1: point 7.", "EP1 B", "GS", numbers=[7, 8])
-    refused("2 lines have too few points .EP1: row 0, EP2: row 1.", "EP1", "EP2")
-    refused("WE1: row 0, row 1", "WE1", "WE1")
-    refused("BLDG1: row 0, row 1.: a line needs two, a closed one three", "BLDG1", "BLDG1 C")
-    refused("2 unknown marks .* .'X' at point 3, 'STOP' at point 4.", "EP1 X", "EP1 STOP",
-            numbers=[3, 4])  # fmt: skip
-    refused("1 unknown mark behind", "EP1 X", "EP1")
     refused("No description begins with a line code: RDG", "GS", "TR")
     refused("Invalid rule 'wall' for the code 'W'", "W1", rules={"W": "wall"})
+
+
+def warned(words, *descriptions, **given):
+    """Return names and vertex counts of the lines, and require one note with the words."""
+    before = survey(*descriptions, **given)
+    made = lines_from_codes(before)
+    (note,) = made.notes
+    assert re.search(words, note)
+    assert note.endswith(".")
+    assert made.points is before.points
+    return [(line.name, len(line.coords)) for line in made.breaklines]
+
+
+def test_lines_of_too_few_points_are_left_out_and_named():
+    words = "1 line is left out, which has too few points .EP1: point 7."
+    assert warned(words, "EP1 B", "GS", numbers=[7, 8]) == []
+    words = "2 lines are left out, which have too few points .EP1: row 0, EP2: row 1."
+    assert warned(words, "EP1", "EP2", "CL1", "CL1") == [("CL1", 2)]
+    assert warned("WE1: row 0, row 1", "WE1", "WE1") == []
+    words = "BLDG1: row 0, row 1.: a line needs two, a closed one three"
+    assert warned(words, "BLDG1", "BLDG1 C") == []
+
+
+def test_unknown_marks_are_remarks_and_named():
+    words = "2 unknown marks .* .'X' at point 3, 'STOP' at point 4."
+    assert warned(words, "EP1 X", "EP1 STOP", numbers=[3, 4]) == [("EP1", 2)]
+    assert warned("1 unknown mark behind .* is taken for", "EP1 X", "EP1") == [("EP1", 2)]
 
 
 def test_a_survey_without_descriptions():

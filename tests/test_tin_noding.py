@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from line_oracle import places_of, steps_of
 
-from tinsmith.tin import _kernel, noding
+from tinsmith.tin import _kernel, noding, splitting
 from tinsmith.tin.errors import LinesError
 from tinsmith.tin.noding import Chains, node
 
@@ -331,7 +331,7 @@ def test_cascade_of_nearly_parallel_lines(unit):
 
 
 def test_cascade_that_is_cut_short_says_so(monkeypatch):
-    monkeypatch.setattr(noding, "MOST_ROUNDS", 1)
+    monkeypatch.setattr(splitting, "MOST_ROUNDS", 1)
     with pytest.raises(LinesError, match="still meet at new places after"):
         noded(CROSS, TWO)
 

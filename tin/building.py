@@ -13,7 +13,7 @@ from .duplicates import merge_rows
 from .line_set import LineSet
 from .model import Clip, LineInfo, Model, lines_in
 from .pieces import Pieces
-from .regions import in_rings
+from .regions import BOUNDARY, EXTENT, HOLES, in_rings
 from .report import LEFT_OUT, Crossings, Overruled, Report
 from .surface import TIN
 
@@ -129,11 +129,13 @@ def _model(recipe: Recipe, ground: _Ground, made: Draft, rows: NDArray[np.int64]
                 lines.sources.tolist(),
                 lines.names,
                 lines.priorities.tolist(),
+                _groups(recipe, lines),
                 strict=True,
             )
         ),
         clip=Clip(
             boundary=recipe.boundary,
+            extent=recipe.extent,
             holes=recipe.holes,
             has_rim=ground.has_rim,
             max_edge=recipe.max_edge,
@@ -141,6 +143,20 @@ def _model(recipe: Recipe, ground: _Ground, made: Draft, rows: NDArray[np.int64]
         ),
         vertex_of=vertex_of,
     )
+
+
+def _groups(recipe: Recipe, lines: LineSet) -> list[int]:
+    """Return the group of each line among the rings; that of other lines says nothing."""
+    of_ring = [
+        *([BOUNDARY] * len(recipe.boundary)),
+        *([EXTENT] * len(recipe.extent)),
+    ]
+    of_hole = [HOLES + number for number, rings in enumerate(recipe.holes) for _ in rings]
+    groups: dict[str, list[int]] = {"boundary": of_ring, "hole": of_hole}
+    return [
+        groups[kind][source] if kind in groups and source >= 0 else BOUNDARY
+        for kind, source in zip(lines.kinds, lines.sources.tolist(), strict=True)
+    ]
 
 
 def _numbered(vertices: NDArray[np.int32], number_of: NDArray[np.int32]) -> NDArray[np.int32]:
@@ -151,8 +167,8 @@ def _numbered(vertices: NDArray[np.int32], number_of: NDArray[np.int32]) -> NDAr
 
 def _erased(recipe: Recipe) -> NDArray[np.bool_]:
     is_erased = np.zeros(len(recipe.points), np.bool_)
-    for ring in recipe.erase:
-        is_erased |= in_rings(recipe.points[:, :2], [ring]) > 0
+    for rings in recipe.erase:
+        is_erased |= in_rings(recipe.points[:, :2], rings) > 0
     return is_erased
 
 
@@ -194,7 +210,7 @@ def _account(
     return account | {
         "left_out_rows": left_out,
         "left_out_why": _reasons(recipe, left_out, is_erased, made),
-        "n_lines": len(recipe.lines.kinds),
+        "n_lines": len(recipe.lines.kinds) - len(recipe.extent),
         "line_labels": tuple(labels),
         "crossings": _crossings(made, final),
         "overruled": Overruled(
@@ -240,10 +256,11 @@ def _reasons(
     """Return why each row was left out, as places in ``LEFT_OUT``."""
     xy = recipe.points[rows, :2]
     why = np.full(len(rows), LEFT_OUT.index("trimmed"), np.int8)
-    for hole in recipe.holes:
-        why[in_rings(xy, [hole]) >= 0] = LEFT_OUT.index("in a hole")
-    if recipe.boundary and len(rows):
-        why[in_rings(xy, recipe.boundary) <= 0] = LEFT_OUT.index("outside the boundary")
+    for rings in recipe.holes:
+        why[in_rings(xy, rings) >= 0] = LEFT_OUT.index("in a hole")
+    for outer in (recipe.extent, recipe.boundary):
+        if outer and len(rows):
+            why[in_rings(xy, outer) <= 0] = LEFT_OUT.index("outside the boundary")
     drowned = np.zeros(len(is_erased), np.bool_)
     drowned[np.flatnonzero(~is_erased)[made.vertex_of < 0]] = True
     why[drowned[rows]] = LEFT_OUT.index("in water")

@@ -122,6 +122,7 @@ def check(
     level: int = 3,
     points: Survey | ArrayLike | None = None,
     breaklines: Sequence[Breakline | ArrayLike] = (),
+    conforming: bool = False,
 ) -> CheckResult:
     """Check a TIN, exactly and without the kernel that made it.
 
@@ -142,6 +143,9 @@ def check(
         and no more off the course than snapping and rounding can explain.
     breaklines : sequence of Breakline or arrays, optional
         Those that the TIN was made of besides the survey's own, all of them if ``points`` is none.
+    conforming : bool
+        At level 3, check constrained inner edges too: so the TIN is Delaunay without its lines, as
+        ``triangulate(..., conforming=True)`` makes it.
 
     Returns
     -------
@@ -175,7 +179,7 @@ def check(
         if level >= 2:
             check_shape(tin, found)
         if level >= 3:
-            check_delaunay(tin, found)
+            check_delaunay(tin, found, conforming=bool(conforming))
             _check_given(tin, rows, lines, found)
     elif level >= 2:
         found.note(

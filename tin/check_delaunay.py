@@ -1,4 +1,4 @@
-"""Level 3 of a check: every free edge is Delaunay."""
+"""Level 3 of a check: every edge is Delaunay that is not constrained, or every one at all."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ if TYPE_CHECKING:
 __all__ = ["check_delaunay"]
 
 
-def check_delaunay(tin: TIN, found: Findings) -> None:
-    """Check every inner edge that is not constrained against the triangle across."""
+def check_delaunay(tin: TIN, found: Findings, *, conforming: bool = False) -> None:
+    """Check every inner edge against the triangle across; constrained ones if it is conforming."""
     xy = columns(tin.points)
     wrong, against_rule = [], []
     n_ties = 0
     for block in blocks(len(tin.triangles)):
-        triangle, *quad = _quads(tin, block)
+        triangle, *quad = _quads(tin, block, conforming)
         side = in_circle(xy, *quad)
         tied = np.flatnonzero(side == 0)
         n_ties += len(tied)
@@ -47,14 +47,16 @@ def check_delaunay(tin: TIN, found: Findings) -> None:
     found.counts["ties_against_rule"] = sum(len(triangles) for triangles in against_rule)
 
 
-def _quads(tin: TIN, block: slice) -> tuple[NDArray[np.int64], ...]:
-    """Return triangle, its corners from the one opposite a free inner edge, and the far corner.
+def _quads(tin: TIN, block: slice, conforming: bool) -> tuple[NDArray[np.int64], ...]:
+    """Return triangle, its corners from the one opposite an inner edge, and the far corner.
 
     Every edge comes once, and only if both triangles are counter-clockwise does its sign mean
     anything: level 2 tells.
     """
     own = np.arange(block.start, block.stop)[:, None]
-    is_once = (tin.neighbors[block] > own) & ~tin.constrained[block]
+    is_once = tin.neighbors[block] > own
+    if not conforming:
+        is_once &= ~tin.constrained[block]
     row, corner = np.nonzero(is_once)
     triangle = row + block.start
     a = tin.triangles[triangle, corner].astype(np.int64)

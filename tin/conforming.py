@@ -1,114 +1,175 @@
-"""Conforming: steps of lines are split until every edge of the surface is Delaunay."""
+"""Conforming: segments of lines are split until every edge of the surface is Delaunay.
+
+Rounds, each a function of the sets of points and segments:
+
+1. Every segment that is not Delaunay is split. A segment is halved; next to a vertex that was
+   there before it is cut at a power of two from there [1]_, so that segments that meet under an
+   acute angle do not split each other for ever.
+2. A split point is rounded to coordinates, so its segment bends, by a unit in the last place. If it
+   meets another vertex or segment then, all lines are noded again, exactly, and the points are
+   triangulated anew.
+
+A round makes segments shorter and never joins any. How many it takes depends on angles and
+distances, not on the number of points; so new vertices are limited in number.
+
+References
+----------
+.. [1] J. Ruppert, A Delaunay Refinement Algorithm for Quality 2-Dimensional Mesh Generation,
+   Journal of Algorithms 18 (1995), doi:10.1006/jagm.1995.1021.
+"""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from . import _kernel
 from .errors import LinesError
+from .model import mesh_of
+from .noding import Chains, node_again
 from .pieces import Pieces
 from .regions import edge_keys
+from .splitting import interpolate_linearly, is_before
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from . import _kernel
-
 __all__ = ["conform"]
 
-_MOST_ROUNDS = 200
+_MOST_ROUNDS = 1000  # from the largest coordinate to the smallest are some 450 halvings
+_LEAST_LIMIT = 20_000  # of new vertices, for any few lines
+_NEW_PER_VERTEX = 50  # the limit for many
 
 
 def conform(
-    mesh: _kernel.Mesh, points: NDArray[np.float64], pieces: Pieces
-) -> tuple[NDArray[np.float64], Pieces]:
-    """Split steps that are not Delaunay, in the mesh too.
-
-    A step is halved; next to a vertex of the lines it is cut at a power of two from there [1]_, so
-    that steps that meet under an acute angle do not split each other for ever.
+    mesh: _kernel.Mesh,
+    points: NDArray[np.float64],
+    pieces: Pieces,
+    priorities: NDArray[Any],
+    *,
+    threads: int,
+) -> tuple[_kernel.Mesh, NDArray[np.float64], Pieces]:
+    """Split segments that are not Delaunay.
 
     Parameters
     ----------
     mesh : Mesh
-        With the steps of all pieces fixed.
+        Of the points, with the segments of all pieces fixed. Not to be used any more.
     points : (n, 3) float64 array
-        Of every slot of the mesh.
     pieces : Pieces
+        Noded.
+    priorities : (l,) array
+        Of the lines that the pieces belong to: whose elevation counts where two meet anew.
+    threads : int
 
     Returns
     -------
+    mesh : Mesh
     points : (n + s, 3) float64 array
-        With the new vertices, heights linear along the steps.
+        With the new vertices, elevations linear along the segments.
     pieces : Pieces
 
     Raises
     ------
     LinesError
-        If a step is too short to be split.
-
-    References
-    ----------
-    .. [1] J. Ruppert, A Delaunay Refinement Algorithm for Quality 2-Dimensional Mesh Generation,
-       Journal of Algorithms 18 (1995), doi:10.1006/jagm.1995.1021.
+        If a segment is too short to be split, or too many vertices would be needed.
     """
-    n_given = len(points)
+    n_given, most = len(points), max(_LEAST_LIMIT, _NEW_PER_VERTEX * len(points))
     for _ in range(_MOST_ROUNDS):
-        steps = _once(pieces, len(points))
-        bad = steps[~mesh.is_delaunay(steps)]
+        bad = _segments_to_split(mesh, points)
         if not len(bad):
-            return points, pieces
-        middle = _split_points(points, bad, n_given)
-        mesh.release(bad)
-        vertex = mesh.insert(np.ascontiguousarray(middle[:, :2]))
-        points = np.concatenate([points, middle])
-        halves = np.concatenate(
-            [np.stack([bad[:, 0], vertex], 1), np.stack([vertex, bad[:, 1]], 1)]
-        )
-        passed, blocked = mesh.force(np.ascontiguousarray(halves))
-        if len(passed) or len(blocked):
-            raise LinesError(
-                "The lines cannot be made conforming: they come closer to each other than "
-                "coordinates can tell apart."
-            )
-        pieces = _with_middles(pieces, bad, vertex, len(points))
-    raise LinesError(
-        f"The lines are not conforming after {_MOST_ROUNDS} rounds of splitting: they meet under "
-        "too small angles."
+            return mesh, points, pieces
+        if len(points) + len(bad) - n_given > most:
+            raise _hopeless(f"{most} new vertices", points, bad)
+        points, pieces, is_noded = _split(mesh, points, pieces, bad, n_given)
+        if not is_noded:
+            mesh, points, pieces = _node_again(mesh, points, pieces, priorities, threads)
+    raise _hopeless(f"{_MOST_ROUNDS} rounds of splitting", points, bad)
+
+
+def _hopeless(what: str, points: NDArray[np.float64], bad: NDArray[np.int32]) -> LinesError:
+    x, y, _ = points[bad[0, 0]].tolist()
+    return LinesError(
+        f"The lines are not conforming after {what}: {len(bad)} segments (first: at x {x!r}, "
+        f"y {y!r}) still run too close to others, or meet them under too small an angle."
     )
 
 
-def _once(pieces: Pieces, n: int) -> NDArray[np.int32]:
-    steps, _ = pieces.steps()
-    steps = np.sort(steps, axis=1)
-    _, first = np.unique(edge_keys(steps, n), return_index=True)
-    return np.ascontiguousarray(steps[first])
+def _segments_to_split(mesh: _kernel.Mesh, points: NDArray[np.float64]) -> NDArray[np.int32]:
+    """Return the segments that are not Delaunay, as pairs of ends, in order of their places."""
+    ends = mesh.illegal_fixed_edges().reshape(-1, 2)
+    start, end = points[ends[:, 0], :2], points[ends[:, 1], :2]
+    is_backward = is_before(end, start)
+    ends = np.where(is_backward[:, None], ends[:, ::-1], ends)
+    start, end = points[ends[:, 0], :2], points[ends[:, 1], :2]
+    order = np.lexsort((*end.T, *start.T))
+    return np.ascontiguousarray(ends[order])
+
+
+def _split(
+    mesh: _kernel.Mesh,
+    points: NDArray[np.float64],
+    pieces: Pieces,
+    bad: NDArray[np.int32],
+    n_given: int,
+) -> tuple[NDArray[np.float64], Pieces, bool]:
+    """Split segments in the mesh too; tell whether the lines are still noded.
+
+    If not, a split point fell on a vertex or another segment, or something is in the way of the
+    halves: only the new points and pieces are right then, not the mesh.
+    """
+    middle = _split_points(points, bad, n_given)
+    splits_before = mesh.fixed_splits
+    mesh.release(bad)
+    vertex = mesh.insert(np.ascontiguousarray(middle[:, :2]))
+    is_noded = bool((vertex == len(points) + np.arange(len(middle))).all())
+    points = np.concatenate([points, middle])
+    pieces = _with_middles(pieces, bad, vertex, len(points))
+    halves = np.concatenate([np.stack([bad[:, 0], vertex], 1), np.stack([vertex, bad[:, 1]], 1)])
+    passed, blocked = mesh.force(np.ascontiguousarray(halves))
+    is_noded &= mesh.fixed_splits == splits_before and not (len(passed) or len(blocked))
+    return points, pieces, is_noded
 
 
 def _split_points(
-    points: NDArray[np.float64], steps: NDArray[np.int32], n_given: int
+    points: NDArray[np.float64], segments: NDArray[np.int32], n_given: int
 ) -> NDArray[np.float64]:
-    start, end = points[steps[:, 0]], points[steps[:, 1]]
+    start, end = points[segments[:, 0]], points[segments[:, 1]]
     length = np.hypot(*(end - start)[:, :2].T)
     shell = np.exp2(np.round(np.log2(length / 2))) / length
-    is_given = steps < n_given
+    is_given = segments < n_given
     share = np.where(is_given[:, 0], shell, np.where(is_given[:, 1], 1 - shell, 0.5))
     share = np.where(is_given.all(axis=1), 0.5, share)
-    middle = start + share[:, None] * (end - start)
-    stuck = (middle[:, :2] == start[:, :2]).all(axis=1) | (middle[:, :2] == end[:, :2]).all(axis=1)
+    middle = np.empty_like(start)
+    middle[:, :2] = _in_exact_range(start[:, :2] + share[:, None] * (end - start)[:, :2])
+    middle[:, 2] = interpolate_linearly(start[:, 2], end[:, 2], share)
+    _require_between(middle[:, :2], start[:, :2], end[:, :2])
+    return middle
+
+
+def _in_exact_range(xy: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Round to 0 what is too small for the predicates."""
+    smallest, _ = _kernel.EXACT_RANGE
+    return np.where(np.abs(xy) < smallest, 0.0, xy)
+
+
+def _require_between(
+    middle: NDArray[np.float64], start: NDArray[np.float64], end: NDArray[np.float64]
+) -> None:
+    stuck = (middle == start).all(axis=1) | (middle == end).all(axis=1)
     if stuck.any():
-        x, y, _ = middle[np.argmax(stuck)]
+        x, y = middle[np.argmax(stuck)].tolist()
         raise LinesError(
-            f"The lines cannot be made conforming at x {x!r}, y {y!r}: an edge there is too short "
-            "to be split."
+            f"The lines cannot be made conforming at x {x!r}, y {y!r}: a segment there is too "
+            "short to be split."
         )
-    return np.asarray(middle, np.float64)
 
 
 def _with_middles(
     pieces: Pieces, split: NDArray[np.int32], vertex: NDArray[np.int32], n: int
 ) -> Pieces:
-    """Put a vertex between the ends of some steps, wherever a piece takes them."""
+    """Put a vertex between the ends of some segments, wherever a piece takes them."""
     keys = edge_keys(split, n)
     order = np.argsort(keys)
     steps, _ = pieces.steps()
@@ -125,3 +186,20 @@ def _with_middles(
         (pieces.offsets + added).astype(np.int32),
         pieces.lines,
     )
+
+
+def _node_again(
+    mesh: _kernel.Mesh,
+    points: NDArray[np.float64],
+    pieces: Pieces,
+    priorities: NDArray[Any],
+    threads: int,
+) -> tuple[_kernel.Mesh, NDArray[np.float64], Pieces]:
+    """Node the pieces exactly, and triangulate the vertices anew, numbered without gaps."""
+    alive = mesh.alive()
+    number_of = (np.cumsum(alive) - 1).astype(np.int32)
+    points, pieces = points[alive], pieces.renumbered(number_of)
+    chains = Chains(pieces.vertices, pieces.offsets, points[pieces.vertices, 2])
+    points, chains = node_again(points, chains, priorities[pieces.lines], threads=threads)
+    pieces = Pieces(chains.vertices, chains.offsets, pieces.lines)
+    return mesh_of(points, pieces, threads=threads), points, pieces

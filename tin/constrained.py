@@ -15,7 +15,7 @@ from .conforming import conform
 from .duplicates import DuplicatePolicy, merge_rows
 from .errors import PointsError
 from .line_set import ABOVE_ALL, BELOW_ALL, LineSet
-from .model import force, mesh_of_growth
+from .model import force, mesh_of, mesh_of_growth
 from .noding import Chains, Noded, node, untouched
 from .pieces import Pieces
 from .regions import Surface, edge_keys, in_rings
@@ -105,15 +105,19 @@ def draft(
     if not is_forced:
         mesh.remove(np.flatnonzero(wet).astype(np.int32))
         force(mesh, pieces)
-    if conforming:
-        points, pieces = conform(mesh, points, pieces)
-        wet = np.append(wet, np.zeros(len(points) - len(wet), np.bool_))
-    triangles, neighbors, constrained = mesh.arrays(options.threads)
     number_of = np.where(wet, -1, np.cumsum(~wet) - 1).astype(np.int32)
+    points, pieces = points[~wet], pieces.renumbered(number_of)
+    if conforming:
+        if wet.any():  # numbers without gaps
+            mesh = mesh_of(points, pieces, threads=options.threads)
+        mesh, points, pieces = conform(
+            mesh, points, pieces, lines.priorities, threads=options.threads
+        )
+    triangles, neighbors, constrained = mesh.arrays(options.threads)
     return Draft(
-        Surface(points[~wet], triangles, neighbors, constrained),
+        Surface(points, triangles, neighbors, constrained),
         number_of[merged.vertex_of[: len(xyz)]],
-        pieces.renumbered(number_of),
+        pieces,
         merged.merges,
         noded,
         overruled,
@@ -197,10 +201,10 @@ def _merge_points(
 def _line_heights(
     points: NDArray[np.float64], vertex_of: NDArray[np.int32], n: int, lines: LineSet
 ) -> Overruled:
-    """Give vertices on lines the height of the line that counts most there."""
+    """Give vertices on lines the height of the line that counts most there, its lowest."""
     vertices, line_of = vertex_of[n:], lines.line_of
     priority = lines.priorities[line_of]
-    order = np.lexsort((line_of, -priority, vertices))
+    order = np.lexsort((lines.heights, line_of, -priority, vertices))
     is_first = np.append(True, np.diff(vertices[order]) > 0)[: len(order)]
     best = order[is_first]
     before = points[vertices[best], 2].copy()

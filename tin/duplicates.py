@@ -51,7 +51,7 @@ def merge_rows(
     vertex_at = np.cumsum(is_kept, dtype=np.int32) - np.int32(1)
     vertex_of = vertex_at[kept_row]
     rows, offsets, vertices = _groups(vertex_of, kept_row, is_kept)
-    if policy == "error":
+    if policy == "error" and len(rows):
         _refuse(xyz, rows, offsets)
     points = xyz[is_kept]
     heights = _chosen_heights(xyz[rows, 2], offsets, policy)

@@ -10,6 +10,7 @@ import numpy as np
 from . import _kernel
 from .errors import LinesError
 from .lines import Breakline, LineKind, Water, as_ring
+from .polygons import rings_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -19,7 +20,9 @@ __all__ = [
     "BELOW_ALL",
     "LineSet",
     "as_sequence",
+    "gather_extent",
     "gather_lines",
+    "gather_regions",
     "gather_rings",
     "gather_water",
 ]
@@ -116,7 +119,7 @@ _NONE = LineSet(
 def gather_lines(
     breaklines: Sequence[Breakline | ArrayLike],
     boundary: Sequence[ArrayLike],
-    holes: Sequence[ArrayLike],
+    holes: Sequence[Any],
     water: Sequence[Water],
 ) -> LineSet:
     """Put all lines into one set: breaklines, then boundary rings, holes and water.
@@ -165,8 +168,8 @@ def _is_array_of_vertices(line: Any) -> bool:
 
 def _gathered(
     breaklines: Sequence[Breakline | ArrayLike],
-    boundary: Sequence[ArrayLike],
-    holes: Sequence[ArrayLike],
+    boundary: Sequence[Any],
+    holes: Sequence[Any],
     water: Sequence[Water],
 ) -> LineSet:
     lines = [
@@ -203,12 +206,31 @@ def _gathered(
     )
 
 
-def gather_rings(rings: Sequence[ArrayLike], what: str) -> list[NDArray[np.float64]]:
-    """Return rings as (k, 2) arrays, the first corner not repeated."""
-    return [
-        as_ring(ring, f"{what} ring {number}")[:, :2]
-        for number, ring in enumerate(as_sequence(rings, what))
-    ]
+def gather_extent(extent: Sequence[ArrayLike], n_boundary: int) -> LineSet:
+    """Return the rings within which there is data as lines, numbered behind those given."""
+    rings = [_closed(as_ring(ring, f"extent ring {number}")) for number, ring in enumerate(extent)]
+    n = len(rings)
+    if n == 0:
+        return _NONE
+    kind: LineKind = "boundary"
+    return LineSet(
+        *_stacked(rings),
+        offsets=np.concatenate([[0], np.cumsum([len(ring) for ring in rings], dtype=np.int64)]),
+        kinds=(kind,) * n,
+        sources=np.arange(n_boundary, n_boundary + n, dtype=np.int32),
+        priorities=np.where([ring.shape[1] == 2 for ring in rings], BELOW_ALL, 0.0),
+        names=("",) * n,
+    )
+
+
+def gather_rings(rings: Sequence[Any], what: str) -> list[NDArray[np.float64]]:
+    """Return rings, and those of polygons, as (k, 2) arrays, the first corner not repeated."""
+    return [ring for region in gather_regions(rings, what) for ring in region]
+
+
+def gather_regions(regions: Sequence[Any], what: str) -> list[list[NDArray[np.float64]]]:
+    """Return the rings of each region: one, or those of a polygon with islands."""
+    return [[ring[:, :2] for ring in rings] for rings in rings_of(as_sequence(regions, what), what)]
 
 
 def gather_water(water: Sequence[Water]) -> list[Water]:
@@ -222,7 +244,7 @@ def gather_water(water: Sequence[Water]) -> list[Water]:
 
 def as_sequence(lines: Any, what: str) -> list[Any]:
     """Return several lines; one line alone is told apart by its rows being numbers."""
-    if isinstance(lines, Breakline | Water):
+    if isinstance(lines, Breakline | Water) or hasattr(lines, "__geo_interface__"):
         return [lines]
     if isinstance(lines, np.ndarray) and lines.ndim == 2 and lines.dtype != object:
         return [lines]
@@ -234,13 +256,9 @@ def as_sequence(lines: Any, what: str) -> list[Any]:
         ) from None
 
 
-def _rings(
-    rings: Sequence[ArrayLike], kind: LineKind
-) -> list[tuple[LineKind, NDArray[np.float64]]]:
-    return [
-        (kind, as_ring(ring, f"{kind} ring {number}"))
-        for number, ring in enumerate(as_sequence(rings, kind))
-    ]
+def _rings(regions: Sequence[Any], kind: LineKind) -> list[tuple[LineKind, NDArray[np.float64]]]:
+    found = rings_of(as_sequence(regions, kind), kind)
+    return [(kind, ring) for rings in found for ring in rings]
 
 
 def _level(pond: Water) -> NDArray[np.float64]:
@@ -295,9 +313,10 @@ def _require_exact_range(lines: LineSet) -> None:
     if wrong.any():
         row = int(np.argmax(wrong))
         line = int(lines.line_of[row])
+        label, (x, y) = lines.label(line), lines.xy[row].tolist()
         raise LinesError(
-            f"{lines.label(line)} has a vertex outside the exact range "
-            f"(x {lines.xy[row, 0]!r}, y {lines.xy[row, 1]!r}): magnitudes from {smallest:.0e} to "
-            f"{largest:.0e}, or 0, are allowed.".capitalize(),
+            f"{label[0].upper() + label[1:]} has a vertex outside the exact range "
+            f"(x {x!r}, y {y!r}): magnitudes from {smallest:.0e} to {largest:.0e}, or 0, are "
+            "allowed.",
             lines=[line],
         )

@@ -15,7 +15,16 @@ from . import _kernel, topology
 from .errors import LinesError
 from .lines import LineKind, Lines
 from .pieces import Pieces
-from .regions import BOUNDARY, RIM, RingSteps, Surface, clipped, edge_keys, is_inside, trimmed
+from .regions import (
+    BOUNDARY,
+    RIM,
+    RingSteps,
+    Surface,
+    clipped,
+    edge_keys,
+    is_inside,
+    trimmed,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -24,12 +33,16 @@ __all__ = ["Clip", "LineInfo", "Model", "force", "lines_in", "mesh_of", "mesh_of
 
 
 class LineInfo(NamedTuple):
-    """What a line is; source -1 is an edge of the rim that was cut."""
+    """What a line is; source -1 is an edge of the rim that was cut.
+
+    Of a ring, ``group`` tells whose side it changes, as in :mod:`tinsmith.tin.regions`.
+    """
 
     kind: LineKind
     source: int = -1
     name: str = ""
     priority: float = 0.0
+    group: int = BOUNDARY
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -38,8 +51,10 @@ class Clip:
 
     Attributes
     ----------
-    boundary, holes : lists of (k, 2) float64 arrays
+    boundary, extent : lists of (k, 2) float64 arrays
         Rings.
+    holes : list of lists of (k, 2) float64 arrays
+        The rings of each, the outer one and its islands.
     has_rim : bool
         Whether there are lines of the rim, beyond which there is no surface.
     max_edge : float
@@ -48,7 +63,8 @@ class Clip:
     """
 
     boundary: list[NDArray[np.float64]] = field(default_factory=list)
-    holes: list[NDArray[np.float64]] = field(default_factory=list)
+    extent: list[NDArray[np.float64]] = field(default_factory=list)
+    holes: list[list[NDArray[np.float64]]] = field(default_factory=list)
     has_rim: bool = False
     max_edge: float = np.inf
     is_trimmed_everywhere: bool = False
@@ -60,7 +76,7 @@ class Clip:
 
     @property
     def _has_rings(self) -> bool:
-        return bool(self.boundary or self.holes or self.has_rim)
+        return bool(self.boundary or self.extent or self.holes or self.has_rim)
 
     def keeps(self, surface: Surface, ring_steps: RingSteps) -> NDArray[np.bool_]:
         """Tell which triangles are kept.
@@ -72,7 +88,7 @@ class Clip:
         """
         keep = np.ones(len(surface.triangles), np.bool_)
         if self._has_rings:
-            keep = is_inside(surface, ring_steps, self.boundary, self.holes)
+            keep = is_inside(surface, ring_steps, self.boundary, self.extent, self.holes)
             _require_triangles(keep, "The boundary and the holes leave no triangle of the surface")
         if np.isfinite(self.max_edge):
             everywhere = self.is_trimmed_everywhere
@@ -122,9 +138,9 @@ class Model:
 
 
 def _group_of(info: LineInfo) -> int:
-    if info.kind == "boundary":
-        return RIM if info.source < 0 else BOUNDARY
-    return info.source + 1 if info.kind == "hole" else RIM - 1
+    if info.kind not in ("boundary", "hole"):
+        return RIM - 1
+    return RIM if info.source < 0 else info.group
 
 
 def mesh_of(points: NDArray[np.float64], pieces: Pieces, *, threads: int) -> _kernel.Mesh:

@@ -27,12 +27,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from .errors import LinesError
-from .splitting import MOST_ROUNDS, Splitting, Walk, endless
+from .splitting import Splitting, Walk
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Chains", "Crossings", "Noded", "Touches", "node", "untouched"]
+__all__ = ["Chains", "Crossings", "Noded", "Touches", "node", "node_again", "untouched"]
 
 
 class Chains(NamedTuple):
@@ -143,7 +143,7 @@ def node(
         Repeated vertices in a row count once.
     priority : (l,) int array
         At a vertex made by crossing lines, the height of the line with the highest priority is
-        taken, among equals of the first line, and of one line its first visit; of a line without
+        taken, among equals of the first line, and of one line its lowest; of a line without
         heights only if no other has any.
     snap : float
         A vertex within this distance bends a line onto itself, CRS units. Not one that is also
@@ -185,16 +185,41 @@ def node(
     heights = np.asarray(chains.heights, np.float64)
     walk = Walk.along(np.asarray(chains.vertices, np.int32), chains.offsets, heights)
     work = Splitting(np.ascontiguousarray(xy, np.float64), walk, float(snap), threads)
-    work.split_at_touches()
-    for _ in range(MOST_ROUNDS):
-        pairs = work.find_crossings()
-        if len(pairs) == 0:
-            return _account(work, len(chains.offsets) - 1, np.asarray(priority))
-        if crossing == "error":
-            raise _crossing_error(work, pairs, names)
-        work.split_at_crossings(pairs)
-        work.split_at_touches()
-    raise endless()
+    work.split_everywhere(
+        None if crossing == "split" else lambda pairs: _crossing_error(work, pairs, names)
+    )
+    return _account(work, len(chains.offsets) - 1, np.asarray(priority))
+
+
+def node_again(
+    points: NDArray[np.float64],
+    chains: Chains,
+    priority: NDArray[Any],
+    *,
+    threads: int,
+) -> tuple[NDArray[np.float64], Chains]:
+    """Node lines that were bent by a rounding; a vertex keeps its height.
+
+    Parameters
+    ----------
+    points : (n, 3) float64 array
+        Distinct places.
+    chains : Chains
+    priority : (l,) int array
+        As for :func:`node`.
+    threads : int
+
+    Returns
+    -------
+    points : (n + s, 3) float64 array
+        With the vertices made where lines cross.
+    chains : Chains
+    """
+    walk = Walk.along(chains.vertices, chains.offsets, chains.heights)
+    work = Splitting(np.ascontiguousarray(points[:, :2]), walk, 0.0, threads)
+    work.split_everywhere()
+    noded = _account(work, len(chains.offsets) - 1, priority)
+    return np.concatenate([points, noded.new_points]), noded.chains
 
 
 # -------------------------------------------------------------------- account
@@ -220,7 +245,7 @@ def _visits(walk: Walk, at: NDArray[np.int64]) -> _Visits:
         walk.line[at],
         walk.vertices[at],
     )
-    order = np.lexsort(keys)
+    order = np.lexsort((walk.heights[at], *keys))  # of the same steps the lowest way counts
     is_first = np.ones(len(at), np.bool_)
     is_first[1:] = np.any([np.diff(key[order]) != 0 for key in keys], axis=0)
     at = np.sort(at[order[is_first]])
@@ -256,7 +281,7 @@ def _crossings(
 ) -> tuple[Crossings, _Visits]:
     """Return the crossings, and whose height counts at each vertex, by vertex."""
     vertex, line, height = _visits(walk, np.flatnonzero(is_crossing[walk.vertices]))
-    best = np.lexsort((line, -priority[line], np.isnan(height), vertex))
+    best = np.lexsort((height, line, -priority[line], np.isnan(height), vertex))
     vertex, line, height = vertex[best], line[best], height[best]
     is_winner = np.ones(len(vertex), np.bool_)
     is_winner[1:] = np.diff(vertex) != 0

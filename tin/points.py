@@ -92,10 +92,12 @@ def _require_exact_range(xy: NDArray[np.float64], what: str) -> None:
     size = np.abs(xy)
     wrong = ((size > largest) | ((size < smallest) & (size > 0))).any(axis=1)
     if wrong.any():
-        row = int(np.argmax(wrong))
+        row, count = int(np.argmax(wrong)), int(wrong.sum())
+        x, y = xy[row, :2].tolist()
         raise PointsError(
-            f"{what} have {int(wrong.sum())} rows outside the exact range (first: row {row}, "
-            f"x {xy[row, 0]!r}, y {xy[row, 1]!r}): magnitudes from {smallest:.0e} to "
+            f"{what} have {count} {'row' if count == 1 else 'rows'} outside the exact range "
+            f"(first: row {row}, "
+            f"x {x!r}, y {y!r}): magnitudes from {smallest:.0e} to "
             f"{largest:.0e}, or 0, are allowed.",
             rows=np.flatnonzero(wrong)[:SHOWN],
         )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 
@@ -12,7 +12,14 @@ from . import _kernel
 from .constrained import CrossingPolicy, LineOptions
 from .duplicates import DuplicatePolicy
 from .errors import LinesError, PointsError
-from .line_set import LineSet, as_sequence, gather_lines, gather_rings
+from .line_set import (
+    LineSet,
+    as_sequence,
+    gather_extent,
+    gather_lines,
+    gather_regions,
+    gather_rings,
+)
 from .points import as_points
 from .survey import Survey
 from .threads import thread_count
@@ -35,8 +42,10 @@ class Recipe:
     ----------
     points : (n, 3) float64 array
     lines : LineSet
-    boundary, holes, erase : list of (k, 2) float64 arrays
+    boundary, extent : list of (k, 2) float64 arrays
         Rings, the first corner not repeated.
+    holes, erase : list of lists of (k, 2) float64 arrays
+        The rings of each region: the outer one, then its islands.
     max_edge : float
         Infinity for none.
     """
@@ -44,8 +53,9 @@ class Recipe:
     points: NDArray[np.float64]
     lines: LineSet
     boundary: list[NDArray[np.float64]]
-    holes: list[NDArray[np.float64]]
-    erase: list[NDArray[np.float64]]
+    extent: list[NDArray[np.float64]]
+    holes: list[list[NDArray[np.float64]]]
+    erase: list[list[NDArray[np.float64]]]
     max_edge: float
     trim: TrimPolicy
     conforming: bool
@@ -64,9 +74,9 @@ def recipe_of(
     points: Survey | ArrayLike,
     *,
     breaklines: Sequence[Breakline | ArrayLike],
-    boundary: Sequence[ArrayLike],
-    holes: Sequence[ArrayLike],
-    erase: Sequence[ArrayLike],
+    boundary: Sequence[Any],
+    holes: Sequence[Any],
+    erase: Sequence[Any],
     water: Sequence[Water],
     max_edge: float | None,
     trim: TrimPolicy,
@@ -101,12 +111,16 @@ def recipe_of(
             f"{len(xyz)} points cannot make a TIN: at least three not collinear ones are needed."
         )
     _require_simple_rings(lines)
+    rings = gather_rings(outer, "boundary")
+    if own.extent:
+        lines = LineSet.joined([lines, gather_extent(own.extent, len(rings))])
     return Recipe(
         points=xyz,
         lines=lines,
-        boundary=gather_rings(outer, "boundary"),
-        holes=gather_rings(inner, "hole"),
-        erase=gather_rings([*own.erase, *as_sequence(erase, "erase")], "erase"),
+        boundary=rings,
+        extent=gather_rings(own.extent, "extent"),
+        holes=gather_regions(inner, "hole"),
+        erase=gather_regions([*own.erase, *as_sequence(erase, "erase")], "erase"),
         max_edge=np.inf if max_edge is None else float(max_edge),
         trim=trim,
         conforming=bool(conforming),

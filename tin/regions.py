@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "BOUNDARY",
+    "EXTENT",
+    "HOLES",
     "RIM",
     "RingSteps",
     "Surface",
@@ -53,7 +55,13 @@ RIM = -1
 """Group of the steps of a rim: the surface is on their left, and nothing on their right."""
 
 BOUNDARY = 0
-"""Group of the steps of all boundary rings together; hole ``k`` has group ``k + 1``."""
+"""Group of the steps of all boundary rings together."""
+
+EXTENT = 1
+"""Group of the steps of all rings together within which there is data."""
+
+HOLES = 2
+"""Group of the steps of the first hole, its islands included; hole ``k`` has ``HOLES + k``."""
 
 
 class RingSteps(NamedTuple):
@@ -67,9 +75,12 @@ def is_inside(
     surface: Surface,
     steps: RingSteps,
     boundary: Sequence[NDArray[np.float64]],
-    holes: Sequence[NDArray[np.float64]],
+    extent: Sequence[NDArray[np.float64]],
+    holes: Sequence[Sequence[NDArray[np.float64]]],
 ) -> NDArray[np.bool_]:
-    """Tell which triangles lie inside the boundary and in no hole.
+    """Tell which triangles lie inside the boundary, where there is data, and in no hole.
+
+    Inside is what an odd number of rings of a group holds, so the islands of a hole stay.
 
     The triangles between the rings are regions. Where the largest triangle of all lies is found by
     comparing its middle with the rings, which leaves no doubt. From there on every ring that is
@@ -86,7 +97,7 @@ def is_inside(
     is_out[region[half.triangle[half.is_behind_rim]]] = True
     toggles = _toggles(steps, len(surface.points))
     place = _center(surface, largest)
-    side = _Sides(boundary, holes)
+    side = _Sides(boundary, extent, holes)
     bits = _spread(surface, region, half, toggles, is_out, largest, place, side)
     keep = ~is_out & np.array([side.is_kept(own) for own in bits])
     _require_all_cut(bits, is_out, side)
@@ -136,26 +147,27 @@ class _Sides:
     """Which rings hold a place, as bits by group."""
 
     def __init__(
-        self, boundary: Sequence[NDArray[np.float64]], holes: Sequence[NDArray[np.float64]]
+        self,
+        boundary: Sequence[NDArray[np.float64]],
+        extent: Sequence[NDArray[np.float64]],
+        holes: Sequence[Sequence[NDArray[np.float64]]],
     ) -> None:
-        self._boundary = list(boundary)
-        self.holes = list(holes)
+        self._groups = {BOUNDARY: boundary, EXTENT: extent, **dict(enumerate(holes, HOLES))}
+        self._needed = sum(1 << group for group in (BOUNDARY, EXTENT) if self._groups[group])
+        self.n_holes = len(holes)
 
     def at(self, place: NDArray[np.float64]) -> int:
-        xy = place[None]
         bits = 0
-        if self._boundary and in_rings(xy, self._boundary)[0] > 0:
-            bits |= 1 << BOUNDARY
-        for number, hole in enumerate(self.holes):
-            if in_rings(xy, [hole])[0] > 0:
-                bits |= 1 << (number + 1)
+        for group, rings in self._groups.items():
+            if len(rings) and in_rings(place[None], rings)[0] > 0:
+                bits |= 1 << group
         return bits
 
     def is_within(self, bits: int) -> bool:
-        return not self._boundary or bool(bits & 1)
+        return bits & self._needed == self._needed
 
     def is_kept(self, bits: int) -> bool:
-        return self.is_within(bits) and bits >> 1 == 0
+        return self.is_within(bits) and bits >> HOLES == 0
 
 
 def _spread(
@@ -213,8 +225,8 @@ def _require_all_cut(bits: list[int], is_out: NDArray[np.bool_], side: _Sides) -
     for own, out in zip(bits, is_out.tolist(), strict=True):
         if not out and side.is_within(own):
             cut |= own
-    for number in range(len(side.holes)):
-        if not cut >> (number + 1) & 1:
+    for number in range(side.n_holes):
+        if not cut >> (number + HOLES) & 1:
             raise LinesError(
                 f"Hole {number} lies outside the surface: it must cut away a part of it.",
                 lines=[number],

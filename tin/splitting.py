@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -12,7 +13,7 @@ from .errors import LinesError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Splitting", "Steps", "Walk"]
+__all__ = ["Splitting", "Steps", "Walk", "interpolate_linearly", "is_before"]
 
 MOST_ROUNDS = 1000  # cascades of roundings end after a few
 
@@ -52,7 +53,7 @@ class Steps(NamedTuple):
             _key_of(np.minimum(a, b), np.maximum(a, b)), return_index=True, return_inverse=True
         )
         ends = np.stack(_numbers_of(keys), axis=1).astype(np.int32)
-        swapped = _is_before(xy[ends[:, 1]], xy[ends[:, 0]])
+        swapped = is_before(xy[ends[:, 1]], xy[ends[:, 0]])
         ends[swapped] = ends[swapped, ::-1]
         return cls(start, segment, ends[segment, 0] != a, keys, ends, first_step)
 
@@ -136,6 +137,27 @@ class Splitting:
         self._untouched = np.empty(0, np.int64)  # segments that the first vertices do not touch
         self._n_touched = 0  # the number of those vertices
         self._uncrossed = np.empty(0, np.int64)  # segments that do not cross one another
+
+    def split_everywhere(
+        self, refuse: Callable[[NDArray[np.int64]], LinesError] | None = None
+    ) -> None:
+        """Split steps where they touch and cross until nothing does.
+
+        Parameters
+        ----------
+        refuse : callable, optional
+            Makes the error of pairs of segments that cross, if they must not.
+        """
+        self.split_at_touches()
+        for _ in range(MOST_ROUNDS):
+            pairs = self.find_crossings()
+            if len(pairs) == 0:
+                return
+            if refuse is not None:
+                raise refuse(pairs)
+            self.split_at_crossings(pairs)
+            self.split_at_touches()
+        raise endless()
 
     # ---------------------------------------------------------------- touches
 
@@ -300,8 +322,7 @@ class Splitting:
         a, b = self.xy[first], self.xy[second]
         z_a = self.walk.heights[start + backward]
         z_b = self.walk.heights[start + ~backward]
-        share = _projection(a, b, places) / _square(a, b)
-        return np.clip(z_a + share * (z_b - z_a), np.minimum(z_a, z_b), np.maximum(z_a, z_b))
+        return interpolate_linearly(z_a, z_b, _projection(a, b, places) / _square(a, b))
 
 
 def endless() -> LinesError:
@@ -313,6 +334,14 @@ def endless() -> LinesError:
 
 
 # -------------------------------------------------------------------- measures
+
+
+def interpolate_linearly(
+    start: NDArray[np.float64], end: NDArray[np.float64], share: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return elevations between two, never beyond either; halved so that nothing overflows."""
+    between = 2.0 * (start / 2 + share * (end / 2 - start / 2))
+    return np.clip(between, np.minimum(start, end), np.maximum(start, end))
 
 
 def _projection(
@@ -335,7 +364,7 @@ def _square(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float6
     return square
 
 
-def _is_before(p: NDArray[np.float64], q: NDArray[np.float64]) -> NDArray[np.bool_]:
+def is_before(p: NDArray[np.float64], q: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Tell which places come before others by x, then y."""
     before: NDArray[np.bool_] = (p[:, 0] < q[:, 0]) | ((p[:, 0] == q[:, 0]) & (p[:, 1] < q[:, 1]))
     return before

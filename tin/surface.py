@@ -412,9 +412,9 @@ def _turned_counter_clockwise(
     turn = _kernel.orientation(*(np.ascontiguousarray(xy[triangles[:, k]]) for k in range(3)))
     flat = turn == 0
     if flat.any():
-        row = int(np.argmax(flat))
+        row, count = int(np.argmax(flat)), int(flat.sum())
         raise PointsError(
-            f"{int(flat.sum())} triangles have no area in the plane (first: triangle {row}, "
+            f"{count} {'triangle has' if count == 1 else 'triangles have'} no area in the plane (first: triangle {row}, "
             f"vertices {triangles[row].tolist()}): a TIN needs triangles seen from above.",
             rows=np.flatnonzero(flat)[:5],
         )

@@ -27,14 +27,17 @@ class Survey:
         Easting, northing, elevation; CRS units, elevation in metres unless the CRS says otherwise.
     breaklines : sequence of Breakline or (k, 3) or (k, 2) arrays
         Polylines that must be edges of the surface; with two columns draped on it.
-    boundary : sequence of (k, 3) or (k, 2) arrays
+    boundary : sequence of (k, 3) or (k, 2) arrays, or polygons
         Outer rings: the surface ends there.
-    holes : sequence of (k, 3) or (k, 2) arrays
-        Rings without surface inside.
-    erase : sequence of (k, 2) arrays
+    holes : sequence of (k, 3) or (k, 2) arrays, or polygons
+        Rings without surface inside; a polygon's islands stay.
+    erase : sequence of (k, 2) arrays, or polygons
         Rings inside which points are left out; the surface spans them.
     water : sequence of Water
         Flat polygons.
+    extent : sequence of (k, 3) arrays
+        Rings around the data, such as those a raster's voids leave: there is surface only where an
+        odd number of them holds the place.
     attributes : mapping of str to (n,) array
         Further columns, one value a point (for example ``"number"`` and ``"description"``).
     crs : str, optional
@@ -43,20 +46,24 @@ class Survey:
         Name of the file that the points come from.
     skipped : mapping of str to int
         What the reader left out and how often, for example ``{"nodata cells": 12}``.
+    skipped_lines : mapping of str to sequence of int
+        Of a text file, the lines of the rows that were left out, counted from 1 as an editor does.
     notes : sequence of str
         What the reader assumed, in sentences.
     """
 
     points: NDArray[np.float64]
     breaklines: Sequence[Breakline | NDArray[np.float64]] = ()
-    boundary: Sequence[NDArray[np.float64]] = ()
-    holes: Sequence[NDArray[np.float64]] = ()
-    erase: Sequence[NDArray[np.float64]] = ()
+    boundary: Sequence[Any] = ()
+    holes: Sequence[Any] = ()
+    erase: Sequence[Any] = ()
     water: Sequence[Water] = ()
+    extent: Sequence[NDArray[np.float64]] = ()
     attributes: Mapping[str, NDArray[Any]] = field(default_factory=dict)
     crs: str | None = None
     source: str | None = None
     skipped: Mapping[str, int] = field(default_factory=dict)
+    skipped_lines: Mapping[str, Sequence[int]] = field(default_factory=dict)
     notes: Sequence[str] = ()
 
     @property

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from .building import build
 from .constrained import CrossingPolicy
@@ -24,9 +24,9 @@ def triangulate(
     points: Survey | ArrayLike,
     *,
     breaklines: Sequence[Breakline | ArrayLike] = (),
-    boundary: Sequence[ArrayLike] = (),
-    holes: Sequence[ArrayLike] = (),
-    erase: Sequence[ArrayLike] = (),
+    boundary: Sequence[Any] = (),
+    holes: Sequence[Any] = (),
+    erase: Sequence[Any] = (),
     water: Sequence[Water] = (),
     max_edge: float | None = None,
     trim: TrimPolicy = "perimeter",
@@ -51,13 +51,16 @@ def triangulate(
     breaklines : sequence of Breakline or arrays
         Polylines that must be edges: (k, 3) arrays hard ones, (k, 2) arrays draped on the surface
         of everything that has heights, with a vertex wherever they cross an edge of it.
-    boundary : sequence of (k, 2) or (k, 3) arrays
+    boundary : sequence of (k, 2) or (k, 3) arrays, or polygons
         Rings: only the surface inside is kept; a ring within a ring cuts out an island. Draped if
         without heights; what lies beyond the surface of the points is left out.
-    holes : sequence of (k, 2) or (k, 3) arrays
-        Rings: the surface inside is cut away.
-    erase : sequence of (k, 2) arrays
-        Rings: the points strictly inside are left out, and the surface spans them.
+    holes : sequence of (k, 2) or (k, 3) arrays, or polygons
+        Rings: the surface inside is cut away. Each ring is a region of its own; one with islands,
+        which stay, is a polygon: of shapely or whatever has a ``__geo_interface__``, or a sequence
+        of rings, inside being what an odd number of them holds.
+    erase : sequence of (k, 2) arrays, or polygons
+        Rings: the points strictly inside are left out, and the surface spans them. As for holes, a
+        polygon's islands stay.
     water : sequence of Water
         Flat polygons: points and parts of breaklines inside are left out, all vertices on the ring
         are put at its height.

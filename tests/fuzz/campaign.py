@@ -52,6 +52,6 @@ def make_case(campaign: Campaign, seed: int, number: int) -> Case:
 
 
 def as_written(case: Case) -> Case:
-    """Return a case as it comes back from its file, so that a replay is the same to the last bit."""
+    """Return a case as it comes back from its file, so that a replay is the same exactly."""
     plain: Case = json.loads(json.dumps(case))
     return plain

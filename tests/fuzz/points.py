@@ -6,8 +6,8 @@ from collections import defaultdict
 from typing import Any
 
 import numpy as np
-
 import oracles
+
 import tinsmith as ts
 
 from .campaign import Campaign, Case

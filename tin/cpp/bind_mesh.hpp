@@ -160,17 +160,18 @@ class HeldMesh {
     return hand_over(editor_.corners_beside(a, b));
   }
 
-  // Whether the edge along each segment is Delaunay.
-  FlagRow is_delaunay(const GivenPairs& segments) const {
-    auto flags = streamed_array<bool>(segments.shape(0));
-    for (std::size_t i = 0; i < segments.shape(0); ++i) {
-      const std::int32_t a = segments.data()[2 * i], b = segments.data()[2 * i + 1];
-      require_vertex(a);
-      require_vertex(b);
-      flags[i] = editor_.is_delaunay(a, b);
+  // The fixed edges that are not Delaunay, as (from, to) pairs.
+  auto illegal_fixed_edges() {
+    std::vector<std::int32_t> illegal;
+    {
+      nb::gil_scoped_release release;
+      editor_.visit_illegal_fixed_edges(
+          [&](std::int32_t from, std::int32_t to) { illegal.insert(illegal.end(), {from, to}); });
     }
-    return hand_over<FlagRow>(std::move(flags), {segments.shape(0)});
+    return hand_over(illegal);
   }
+
+  std::int64_t fixed_splits() const { return editor_.fixed_splits(); }
 
   // The number of segments that were fixed edges.
   std::int32_t release(const GivenPairs& segments) {
@@ -252,6 +253,8 @@ inline void bind_mesh(nb::module_& m) {
            "fixed"_a.noconvert() = nb::none())
       .def_prop_ro("slots", &HeldMesh::slots, "Vertices that are or were there.")
       .def_prop_ro("count", &HeldMesh::count, "Vertices that are there.")
+      .def_prop_ro("fixed_splits", &HeldMesh::fixed_splits,
+                   "How often a vertex was put on a fixed edge.")
       .def("alive", &HeldMesh::alive, "Which slots hold a vertex.")
       .def("has_fixed_edge", &HeldMesh::has_fixed_edge, "vertex"_a)
       .def("insert", &HeldMesh::insert, "xy"_a.noconvert(),
@@ -262,8 +265,8 @@ inline void bind_mesh(nb::module_& m) {
            "Remove vertices; False if one could not be, for no triangle would be left.")
       .def("force", &HeldMesh::force, "segments"_a.noconvert(),
            "Fix edges along segments; (segment, vertex) pairs passed, and segments blocked.")
-      .def("is_delaunay", &HeldMesh::is_delaunay, "segments"_a.noconvert(),
-           "Whether the edge along each segment would stay if it were not fixed.")
+      .def("illegal_fixed_edges", &HeldMesh::illegal_fixed_edges,
+           "Fixed edges that are not Delaunay, flat pairs of vertices.")
       .def("fixed_neighbors", &HeldMesh::fixed_neighbors, "vertex"_a,
            "The other ends of the fixed edges at a vertex.")
       .def("corners_beside", &HeldMesh::corners_beside, "a"_a, "b"_a,

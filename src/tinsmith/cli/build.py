@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
@@ -17,8 +16,11 @@ from .options import (
     triangulating_options,
     writing_options,
 )
+from .paths import OUTPUT, name_of
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from ..tin import TIN, Survey
     from .console import Console, Field
     from .files import Output
@@ -36,7 +38,7 @@ __all__ = ["build"]
 @click.option(
     "--report",
     metavar="FILE",
-    type=click.Path(path_type=Path),
+    type=OUTPUT,
     help="JSON file that accounts for every row merged or left out, and every crossing of lines.",
 )
 @console_options
@@ -61,19 +63,40 @@ def build(
       tinsmith build sample_data/jacksboro.tif --stride 4 -o hills.ply -o hills.stl
     """  # noqa: D301 - click reads the control character
     from .facts import report_facts
-    from .files import plan_outputs, read_input, triangulated, with_lines, write_outputs, write_text
+    from .files import (
+        inputs_of,
+        plan_outputs,
+        read_input,
+        triangulated,
+        with_lines,
+        write_outputs,
+        write_text,
+    )
 
     started = perf_counter()
-    planned = plan_outputs(outputs, writing, source=points)
+    planned = plan_outputs(
+        outputs, writing, inputs=inputs_of(points, how), console=console, report=report
+    )
     survey = with_lines(_as_survey(read_input(points, reading, console), points), how, console)
     tin = triangulated(survey, how, console)
+    gaps = _gaps(tin, how, console)
     write_outputs(tin, planned, console)
     if report is not None:
-        write_text(report, plain(report_facts(tin.report, survey)) + "\n")
+        write_text(report, plain(report_facts(tin.report, survey, gaps)) + "\n")
     seconds = perf_counter() - started
-    console.summarise(_fields(points, survey, tin, planned, seconds))
+    console.summarise(_fields(points, survey, tin, gaps, planned, seconds))
     if console.as_json:
-        console.emit(plain(_facts(points, survey, tin, planned, seconds)))
+        console.emit(plain(_facts(points, survey, tin, gaps, planned, seconds)))
+
+
+def _gaps(tin: TIN, how: Triangulating, console: Console) -> list[str]:
+    """Tell of gaps that the surface spans, unless the user has said how far it may."""
+    from ..terrain.gaps import describe_gaps
+
+    if how.max_edge is not None:
+        return []
+    with console.steps() as steps, steps.step("Looking for gaps"):
+        return describe_gaps(tin)
 
 
 def _as_survey(found: Survey | TIN, path: Path) -> Survey:
@@ -88,27 +111,28 @@ def _as_survey(found: Survey | TIN, path: Path) -> Survey:
 
 
 def _fields(
-    points: Path, survey: Survey, tin: TIN, outputs: list[Output], seconds: float
+    points: Path, survey: Survey, tin: TIN, gaps: list[str], outputs: list[Output], seconds: float
 ) -> list[Field]:
-    from .facts import crs_field, extent_fields, file_size, merge_field, reading_fields
+    from .facts import crs_field, extent_fields, merge_field, reading_fields
+    from .files import written_text
     from .line_facts import line_fields, tin_counts
 
-    sizes = "\n".join(f"{one.path} ({file_size(one.path)})" for one in outputs)
     return [
-        ("Points", f"{len(survey):,} from {points}"),
+        ("Points", f"{len(survey):,} from {name_of(points)}"),
         *reading_fields(survey),
         *merge_field(tin.report, survey),
         *line_fields(survey, tin),
         ("TIN", tin_counts(tin)),
+        *(("Gaps", gap) for gap in gaps),
         *extent_fields(tin.points, tin.crs),
         crs_field(tin.crs),
-        ("Written", sizes),
+        ("Written", written_text(outputs)),
         ("Time", f"{seconds:.2f} s"),
     ]
 
 
 def _facts(
-    points: Path, survey: Survey, tin: TIN, outputs: list[Output], seconds: float
+    points: Path, survey: Survey, tin: TIN, gaps: list[str], outputs: list[Output], seconds: float
 ) -> dict[str, Any]:
     from .facts import report_facts, survey_facts, tin_facts
     from .line_facts import line_counts
@@ -118,7 +142,7 @@ def _facts(
         "survey": survey_facts(survey),
         "tin": tin_facts(tin),
         "counts": line_counts(tin.report),
-        "report": report_facts(tin.report, survey),
+        "report": report_facts(tin.report, survey, gaps),
         "outputs": [
             {"path": str(one.path), "format": one.format.name, "bytes": one.path.stat().st_size}
             for one in outputs

@@ -6,8 +6,10 @@ from typing import TYPE_CHECKING
 
 import click
 
+from .console import count
 from .failures import Failure
 from .options import console_options, input_file, reading_options, triangulating_options
+from .paths import name_of
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -51,7 +53,7 @@ def check(file: Path, level: int, reading: Reading, how: Triangulating, console:
     from .files import read_tin
 
     tin, survey = read_tin(file, reading, how, console)
-    with console.steps() as steps, steps.step(f"Checking {len(tin.triangles):,} triangles"):
+    with console.steps() as steps, steps.step(f"Checking {count(len(tin.triangles), 'triangle')}"):
         result = check_tin(tin, level=level, points=survey)
     console.answer(_fields(file, result), {"input": str(file)} | result.to_dict())
     if not result.ok:
@@ -60,13 +62,13 @@ def check(file: Path, level: int, reading: Reading, how: Triangulating, console:
 
 def _fields(file: Path, result: CheckResult) -> list[Field]:
     counts = ", ".join(
-        f"{result.counts[name]:,} {name}"
-        for name in ("vertices", "triangles", "edges")
+        count(result.counts[name], one, name)
+        for name, one in (("vertices", "vertex"), ("triangles", "triangle"), ("edges", "edge"))
         if name in result.counts
     )
     verdict = _PROVED[result.level] if result.ok else f"failed: {_kinds(result)}"
     return [
-        ("File", str(file)),
+        ("File", name_of(file)),
         ("Counted", counts),
         (f"Level {result.level}", verdict),
         *(("Problem", problem.sentence) for problem in result.problems),

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from .console import count
 from .failures import Failure
 from .options import console_options, input_file, reading_options
+from .paths import OUTPUT, name_of, title_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from pathlib import Path
 
     from numpy.typing import NDArray
 
@@ -30,7 +32,7 @@ _COLUMN = 16
     "-o",
     "--output",
     metavar="FILE",
-    type=click.Path(path_type=Path),
+    type=OUTPUT,
     help="Picture to write (.png): the triangles side by side, faults marked.",
 )
 @click.option(
@@ -55,15 +57,15 @@ def compare(
     """  # noqa: D301 - click reads the control character
     from ..tin import TIN
     from ..tin import compare as compare_points
-    from .files import read_input, require_picture
+    from .files import inputs_of, read_input, require_picture
 
     if output is not None:
-        require_picture(output, source=file)
+        require_picture(output, place="--output", inputs=inputs_of(file))
     found = read_input(file, reading, console)
     if isinstance(found, TIN):
         raise Failure(f"'{file}' holds a TIN: 'tinsmith compare' needs points.")
     points = _sampled(found.points, sample)
-    with console.steps() as steps, steps.step(f"Comparing on {len(points):,} points"):
+    with console.steps() as steps, steps.step(f"Comparing on {count(len(points), 'point')}"):
         result = compare_points(points, limit=len(points))
     facts = {"input": str(file)} | result.to_dict()
     if output is not None:
@@ -98,7 +100,7 @@ def _draw(result: Comparison, file: Path, output: Path, console: Console) -> Non
     from ..terrain import comparison_picture
     from .files import write_figure
 
-    title = f"{file.stem.replace('_', ' ')}: {len(result.points):,} points"
+    title = f"{title_of(file) or 'points'}: {len(result.points):,} points"
     with console.steps() as steps, steps.step("Drawing"):
         figure = comparison_picture(result, title=title)
         write_figure(figure, output, dpi=120)
@@ -112,7 +114,7 @@ def _fields(file: Path, result: Comparison, output: Path | None) -> list[Field]:
 
     hull = f"{len(result.points):,} points, {len(result.hull):,} of them on the hull"
     due = f"2n - 2 - h = {result.expected:,} triangles make a triangulation"
-    fields = [("File", str(file)), ("Points", f"{hull}: {due}"), ("", "")]
+    fields = [("File", name_of(file)), ("Points", f"{hull}: {due}"), ("", "")]
     fields += [_row(label, result, text) for label, text in _ROWS]
     if output is not None:
         fields.append(("Written", f"{output} ({file_size(output)})"))

@@ -4,21 +4,23 @@ from __future__ import annotations
 
 import json
 import math
-import os
+import shutil
 import sys
 from dataclasses import dataclass
-from io import TextIOWrapper
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from .failures import Failure
+from .failures import Failure, note_answer
+from .flags import name_flags
 from .steps import Steps
+from .streams import escape_unprintable, silence, tell
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
+    from pathlib import Path
 
-__all__ = ["Console", "Field", "accept_any_text", "plain"]
+__all__ = ["Console", "Field", "count", "emit_file", "plain"]
 
 Field = tuple[str, str]
 """A label and what it says; further lines stand under the first."""
@@ -48,7 +50,7 @@ class Console:
     def summarise(self, fields: Iterable[Field]) -> None:
         """Write a summary to stderr."""
         if not self.quiet:
-            click.echo(_lines(fields), err=True)
+            tell(_lines(fields))
 
     def answer(self, fields: Iterable[Field], facts: Mapping[str, Any]) -> None:
         """Write the result to stdout: fields for people, or facts as JSON."""
@@ -62,35 +64,53 @@ class Console:
         Failure
             If it cannot be written, for example to a full disk.
         """
+        if sys.stdout is None:
+            raise Failure("Cannot write to standard output: it is closed.")
+        note_answer()
         try:
             click.echo(text)
             sys.stdout.flush()
         except BrokenPipeError:
             raise
         except OSError as error:
-            _drop_stdout()
+            silence(sys.stdout)
             raise Failure(f"Cannot write to standard output: {error.strerror}.") from error
 
 
-def _drop_stdout() -> None:
-    """Send what is still buffered nowhere, or Python fails once more when it exits."""
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, sys.stdout.fileno())
+def emit_file(path: Path) -> None:
+    """Copy a file to stdout, to the last byte.
+
+    Raises
+    ------
+    Failure
+        As :meth:`Console.emit`.
+    """
+    if sys.stdout is None:
+        raise Failure("Cannot write to standard output: it is closed.")
+    try:
+        with path.open("rb") as file:
+            shutil.copyfileobj(file, sys.stdout.buffer)
+        sys.stdout.buffer.flush()
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        silence(sys.stdout)
+        raise Failure(f"Cannot write to standard output: {error.strerror}.") from error
 
 
 def _lines(fields: Iterable[Field]) -> str:
     indent = "\n" + " " * (_LABEL_WIDTH + 1)
     return "\n".join(
-        click.style(f"{label:<{_LABEL_WIDTH}}", bold=True) + " " + text.replace("\n", indent)
+        click.style(f"{label:<{_LABEL_WIDTH}}", bold=True)
+        + " "
+        + indent.join(map(escape_unprintable, name_flags(text).split("\n")))
         for label, text in fields
     )
 
 
-def accept_any_text() -> None:
-    """Let stdout and stderr escape letters that the terminal's encoding does not have."""
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, TextIOWrapper):
-            stream.reconfigure(errors="backslashreplace")
+def count(number: int, noun: str, plural: str | None = None) -> str:
+    """Return a number with its noun: ``1 triangle``, ``2,000 vertices``."""
+    return f"{number:,} {noun if number == 1 else plural or noun + 's'}"
 
 
 def plain(facts: Mapping[str, Any]) -> str:
@@ -103,4 +123,6 @@ def _finite(value: Any) -> Any:
         return {key: _finite(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
         return [_finite(item) for item in value]
+    if hasattr(value, "item"):  # a number of numpy
+        value = value.item()
     return None if isinstance(value, float) and not math.isfinite(value) else value

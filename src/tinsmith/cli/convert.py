@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from .console import plain
+from .console import count, plain
 from .options import (
     console_options,
     input_file,
@@ -14,6 +14,7 @@ from .options import (
     reading_options,
     writing_options,
 )
+from .paths import name_of
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -43,15 +44,15 @@ def convert(
       tinsmith convert sample_data/site_survey.csv -o site.xyz
     """  # noqa: D301 - click reads the control character
     from ..tin import Survey
-    from .facts import file_size, reading_fields
-    from .files import plan_outputs, read_input, write_outputs
+    from .facts import reading_fields
+    from .files import inputs_of, plan_outputs, read_input, write_outputs, written_text
 
-    planned = plan_outputs(outputs, writing, source=file)
+    planned = plan_outputs(outputs, writing, inputs=inputs_of(file), console=console)
     found = read_input(file, reading, console)
     write_outputs(found, planned, console)
-    sizes = "\n".join(f"{one.path} ({file_size(one.path)})" for one in planned)
     notes = reading_fields(found) if isinstance(found, Survey) else []
-    console.summarise([("Read", f"{_what(found)} from {file}"), *notes, ("Written", sizes)])
+    read = ("Read", f"{_what(found)} from {name_of(file)}")
+    console.summarise([read, *notes, ("Written", written_text(planned))])
     if console.as_json:
         console.emit(plain({"input": str(file), "outputs": [str(one.path) for one in planned]}))
 
@@ -60,5 +61,5 @@ def _what(found: TIN | Survey) -> str:
     from ..tin import TIN
 
     if isinstance(found, TIN):
-        return f"a TIN of {len(found.triangles):,} triangles"
-    return f"{len(found):,} points"
+        return f"a TIN of {count(len(found.triangles), 'triangle')}"
+    return count(len(found), "point")

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from .console import plain
+from .console import count, plain
 from .options import (
     console_options,
     input_file,
@@ -19,8 +18,11 @@ from .options import (
     triangulating_options,
     writing_options,
 )
+from .paths import INPUT, OUTPUT, STANDARD, name_of
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from ..tin import TIN
     from .console import Console
     from .options import Reading, Triangulating, Writing
@@ -30,7 +32,7 @@ __all__ = ["edit"]
 
 @click.command(short_help="Change a TIN by a script of edits.")
 @input_file("file")
-@click.argument("script", type=click.Path(path_type=Path))
+@click.argument("script", type=INPUT)
 @output_files
 @reading_options
 @triangulating_options
@@ -38,7 +40,7 @@ __all__ = ["edit"]
 @click.option(
     "--report",
     metavar="FILE",
-    type=click.Path(path_type=Path),
+    type=OUTPUT,
     help="JSON file that accounts for every row and every edit.",
 )
 @console_options
@@ -70,25 +72,32 @@ def edit(
        {"op": "add_breakline", "coords": [[752650, 4024200, 321], [752700, 4024300, 323]]}]
     """  # noqa: D301 - click reads the control character
     from ..tin.editing import apply_edits
-    from .files import plan_outputs, read_tin, write_outputs, write_text
+    from .files import inputs_of, plan_outputs, read_tin, write_outputs, write_text, written_text
+    from .line_facts import mesh_counts
 
     started = perf_counter()
-    planned = plan_outputs(outputs, writing, source=file)
+    planned = plan_outputs(
+        outputs,
+        writing,
+        inputs=inputs_of(file, how, script=script),
+        console=console,
+        report=report,
+    )
     edits = _read_script(script)
     tin, _ = read_tin(file, reading, how, console)
-    before = len(tin.points), len(tin.triangles)
-    with console.steps() as steps, steps.step(f"Making {len(edits):,} edits"):
+    before = mesh_counts(tin)
+    with console.steps() as steps, steps.step(f"Making {count(len(edits), 'edit')}"):
         apply_edits(tin, edits)
     write_outputs(tin, planned, console)
     if report is not None:
         write_text(report, plain(tin.report.to_dict()) + "\n")
     console.summarise(
         [
-            ("Read", f"a TIN of {before[0]:,} vertices, {before[1]:,} triangles from {file}"),
+            ("Read", f"a TIN of {before} from {name_of(file)}"),
             ("Edits", _counted(tin)),
-            ("TIN", f"{len(tin.points):,} vertices, {len(tin.triangles):,} triangles"),
+            ("TIN", mesh_counts(tin)),
             *(("Note", note) for one in tin.edits for note in one.notes),
-            ("Written", "\n".join(str(one.path) for one in planned)),
+            ("Written", written_text(planned)),
             ("Time", f"{perf_counter() - started:.2f} s"),
         ]
     )
@@ -119,7 +128,7 @@ def _read_script(path: Path) -> list[dict[str, Any]]:
 
     wanted = 'a list of edits is needed, such as [{"op": "remove", "vertices": [3]}]'
     try:
-        content = json.loads(path.read_text(encoding="utf-8"))
+        content = json.loads(_content(path).decode("utf-8-sig"))
     except json.JSONDecodeError as error:
         raise Failure(
             f"'{path}' is no JSON (line {error.lineno}: {error.msg}): {wanted}."
@@ -130,3 +139,16 @@ def _read_script(path: Path) -> list[dict[str, Any]]:
     if not isinstance(edits, list) or not all(isinstance(one, dict) for one in edits):
         raise Failure(f"'{path}' holds something else: {wanted}.")
     return edits
+
+
+def _content(path: Path) -> bytes:
+    from ..io.spooling import as_sentence, ordinary_file
+    from .files import standard_input
+
+    if path == STANDARD:
+        return standard_input().read()
+    with ordinary_file(path) as local:
+        try:
+            return local.read_bytes()
+        except OSError as error:
+            raise as_sentence(path, error) from error

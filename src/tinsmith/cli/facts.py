@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any
 
@@ -10,9 +11,11 @@ import numpy as np
 from ..io.crs import as_crs, elevation_unit, is_geographic, length_unit
 from ..terrain import slope
 from ..tin import TIN, Bounds, Survey, quality
+from .console import count
 from .line_facts import constrained_edges, given_lines, given_lines_text, tin_counts
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -74,9 +77,10 @@ def quality_of(tin: TIN) -> Quality | None:
     return None if is_geographic(tin.crs) else quality(tin)
 
 
-def report_facts(report: Report, survey: Survey) -> dict[str, Any]:
-    """Return the report, every merge with the point numbers of its rows where there are any."""
+def report_facts(report: Report, survey: Survey, gaps: Sequence[str] = ()) -> dict[str, Any]:
+    """Return the report, with the gaps found, and the point numbers of merged rows."""
     facts = report.to_dict()
+    facts["notes"] += gaps
     numbers = survey.attributes.get("number")
     if numbers is not None:
         for merge in facts["merges"]:
@@ -207,9 +211,18 @@ def crs_field(crs: str | None) -> Field:
 
 def reading_fields(survey: Survey) -> list[Field]:
     """Say what the reader left out and what it assumed, if anything."""
-    skipped = [f"{count:,} {what}" for what, count in survey.skipped.items() if what != _EXPECTED]
+    skipped = [
+        count(number, _singular(what), what)
+        for what, number in survey.skipped.items()
+        if what != _EXPECTED
+    ]
     fields = [("Skipped", ", ".join(skipped))] if skipped else []
     return [*fields, *(("Note", note) for note in survey.notes)]
+
+
+def _singular(what: str) -> str:
+    """Return what was skipped as one thing: "nodata cells", "rows without an elevation"."""
+    return re.sub(r"\b(cell|row|line|point)s\b", r"\1", what, count=1)
 
 
 def merge_field(report: Report, survey: Survey) -> list[Field]:
@@ -217,7 +230,7 @@ def merge_field(report: Report, survey: Survey) -> list[Field]:
     surplus = len(report.merged_rows) - len(report.merged_vertices)
     if surplus == 0:
         return []
-    text = f"{_count(surplus, 'row')} at {_count(len(report.merged_vertices), 'place')}"
+    text = f"{count(surplus, 'row')} at {count(len(report.merged_vertices), 'place')}"
     starts = report.merged_offsets[:-1]
     spread = np.maximum.reduceat(report.merged_heights, starts) - np.minimum.reduceat(
         report.merged_heights, starts
@@ -232,7 +245,7 @@ def merge_field(report: Report, survey: Survey) -> list[Field]:
         ("Merged", f"{text}, elevation by '{report.duplicates}'"),
         (
             "",
-            f"elevations differ at {_count(differing, 'place')}, most by {spread[worst]:.3f}{up}: "
+            f"elevations differ at {count(differing, 'place')}, most by {spread[worst]:.3f}{up}: "
             f"{_rows_text(merge, survey)}",
         ),
     ]
@@ -262,10 +275,6 @@ def _rows_text(merge: Merge, survey: Survey) -> str:
     )
     more = "" if len(merge.rows) <= 4 else " ..."
     return f"{'rows' if numbers is None else 'points'} {shown}{more}"
-
-
-def _count(number: int, noun: str) -> str:
-    return f"{number:,} {noun}{'' if number == 1 else 's'}"
 
 
 def file_size(path: Path) -> str:

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import sys
+import tempfile
 from dataclasses import asdict, dataclass
 from inspect import signature
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, Any
 
 import click
 
+from .console import count, emit_file
 from .failures import Failure, note_written
+from .paths import STANDARD, Named, name_of, require_separate
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
     from ..io import Format
     from ..tin import TIN, Survey
@@ -21,35 +25,62 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Output",
+    "inputs_of",
     "plan_outputs",
     "read_input",
     "read_tin",
+    "require_picture",
+    "standard_input",
     "triangulated",
     "with_lines",
+    "write_figure",
     "write_outputs",
     "write_text",
+    "written_text",
 ]
+
+_TEXT_FORMATS = ("delimited", "geojson", "obj")
+"""Formats that a terminal can show."""
 
 
 @dataclass(frozen=True)
 class Output:
-    """A file to write: where, as what, and how."""
+    """A file to write: where, as what, how; standard output also stands for a suffix."""
 
     path: Path
     format: Format
     options: dict[str, Any]
+    suffix: str = ""
 
 
 def read_input(path: Path, reading: Reading, console: Console) -> Survey | TIN:
     """Read points or a TIN, showing progress."""
     from ..io import read
+    from ..io.formats import read_stream
     from ..tin import Bounds
 
     options = {name: value for name, value in asdict(reading).items() if value is not None}
     if reading.window is not None:
         options["window"] = Bounds(*reading.window)
-    with console.steps() as steps, steps.step(f"Reading {path.name}"):
+    with console.steps() as steps, steps.step(f"Reading {name_of(Path(path.name))}"):
+        if path == STANDARD:
+            return read_stream(standard_input(), name_of(path), **options)
         return read(path, **options)
+
+
+def standard_input() -> IO[bytes]:
+    """Return standard input, to be read once.
+
+    Raises
+    ------
+    Failure
+        If it is closed or a terminal.
+    """
+    if sys.stdin is None:
+        raise Failure("Standard input is closed: pipe the data in, or name a file.")
+    if sys.stdin.isatty():
+        raise Failure("Standard input is a terminal: pipe the data in, or name a file.")
+    return sys.stdin.buffer
 
 
 def with_lines(survey: Survey, how: Triangulating, console: Console) -> Survey:
@@ -78,7 +109,7 @@ def triangulated(survey: Survey, how: Triangulating, console: Console) -> TIN:
     from ..tin import PointsError, triangulate
 
     try:
-        with console.steps() as steps, steps.step(f"Triangulating {len(survey):,} points"):
+        with console.steps() as steps, steps.step(f"Triangulating {count(len(survey), 'point')}"):
             return triangulate(survey, **how.method)
     except PointsError as error:
         raise Failure(f"{error}{_row_names(survey, error.rows)}") from error
@@ -111,43 +142,86 @@ def read_tin(
     return triangulated(survey, how, console), survey
 
 
-def plan_outputs(paths: Sequence[Path], writing: Writing, *, source: Path) -> list[Output]:
-    """Choose the format of every output before any work is done.
+def inputs_of(
+    file: Path, how: Triangulating | None = None, *, script: Path | None = None
+) -> list[Named]:
+    """Return all files that a command reads."""
+    from ..io.vectors_survey import path_and_layer
+
+    inputs = [Named(file, "the input")]
+    if script is not None:
+        inputs.append(Named(script, "the script"))
+    given = {} if how is None else how.line_files
+    for flag, paths in given.items():
+        inputs += [Named(path_and_layer(path)[0], f"the file of {flag}") for path in paths]
+    return inputs
+
+
+def plan_outputs(
+    paths: Sequence[Path],
+    writing: Writing,
+    *,
+    inputs: Sequence[Named],
+    console: Console,
+    report: Path | None = None,
+) -> list[Output]:
+    """Choose the format of every output, and compare all paths, before any work is done.
 
     Raises
     ------
     FormatError
         If a suffix is unknown, a format cannot be written, or none takes an option given.
+    WriteError
+        If an output cannot be written where it should be.
     click.UsageError
-        If an output is named twice, or is the input.
+        If a file is named twice, or standard output gets more than one thing.
     """
-    _require_distinct([*paths, source])
+    outputs = [Named(path, "--output") for path in paths]
+    if report is not None:
+        outputs.append(Named(report, "--report"))
+    require_separate(inputs, outputs)
     formats = [_output_format(path, writing.output_format) for path in paths]
     given: dict[str, Any] = {} if writing.kind is None else {"kind": writing.kind}
     if writing.projected:
         given["projected"] = True
     taken = [set(given).intersection(one.options("write")) for one in formats]
     _require_taken(set(given).difference(*taken) if taken else set(given))
+    _require_free_stdout(paths, formats, console)
     return [
-        Output(path, one, {name: given[name] for name in names})
+        Output(path, one, {name: given[name] for name in names}, _suffix(one, writing))
         for path, one, names in zip(paths, formats, taken, strict=True)
     ]
 
 
-def require_picture(path: Path, *, source: Path) -> None:
-    """Refuse a picture that would overwrite the input, or is no PNG.
+def require_picture(
+    path: Path,
+    *,
+    place: str,
+    inputs: Sequence[Named],
+    suffixes: Sequence[str] = (".png",),
+) -> None:
+    """Refuse a picture that would overwrite an input, has another suffix, or cannot be written.
+
+    Parameters
+    ----------
+    path : Path
+    place : str
+        The option that names it.
+    inputs : sequence of Named
+    suffixes : sequence of str
 
     Raises
     ------
     click.UsageError
-        If the picture is the input.
-    Failure
-        If its name does not end in .png.
+        If the picture is an input.
+    Failure, WriteError
+        If its name ends otherwise, or it cannot be written there.
     """
-    if path.resolve() == source.resolve():
-        raise click.UsageError(f"'{path}' is the input: it cannot be the output too.")
-    if path.suffix.lower() != ".png":
-        raise Failure(f"Cannot write a picture to '{path}': its name must end in .png.")
+    require_separate(inputs, [Named(path, place)])
+    if path.suffix.lower() not in suffixes:
+        raise Failure(
+            f"Cannot write a picture to '{path}': its name must end in {', '.join(suffixes)}."
+        )
 
 
 def write_figure(figure: Any, path: Path, *, dpi: int) -> None:
@@ -159,13 +233,23 @@ def write_figure(figure: Any, path: Path, *, dpi: int) -> None:
     note_written(path)
 
 
-def _require_distinct(paths: Sequence[Path]) -> None:
-    places = [path.resolve() for path in paths]
-    for place, path in zip(places[:-1], paths[:-1], strict=True):
-        if place == places[-1]:
-            raise click.UsageError(f"'{path}' is the input: it cannot be the output too.")
-        if places.count(place) > 1:
-            raise click.UsageError(f"'{path}' is named twice as output.")
+def _suffix(one: Format, writing: Writing) -> str:
+    """Return the suffix that --output-format names, or the first of the format."""
+    named = f".{(writing.output_format or '').strip().lower().lstrip('.')}"
+    return named if named in one.suffixes else one.suffixes[0]
+
+
+def _require_free_stdout(paths: Sequence[Path], formats: list[Format], console: Console) -> None:
+    """Refuse more than one thing on standard output, and bytes on a terminal."""
+    chosen = [one for path, one in zip(paths, formats, strict=True) if path == STANDARD]
+    if not chosen:
+        return
+    if console.as_json:
+        raise click.UsageError("--json and '-o -' both write to standard output: choose one.")
+    if chosen[0].name not in _TEXT_FORMATS and sys.stdout is not None and sys.stdout.isatty():
+        raise click.UsageError(
+            f"{chosen[0].name} is no text for a terminal: send standard output to a file or a pipe."
+        )
 
 
 def _require_taken(left_over: set[str]) -> None:
@@ -177,7 +261,12 @@ def _output_format(path: Path, name: str | None) -> Format:
     from ..io import FormatError, find_format, known_formats
 
     if name is not None:
-        return find_format(name)
+        chosen = find_format(name)
+        if chosen.write is None:
+            raise FormatError(f"The format {chosen.name} can be read, not written.")
+        return chosen
+    if path == STANDARD:
+        raise click.UsageError("'-o -' needs --output-format: standard output has no suffix.")
     able = [one for one in known_formats() if one.write is not None]
     for one in able:
         if path.suffix.lower() in one.suffixes:
@@ -193,16 +282,41 @@ def _output_format(path: Path, name: str | None) -> Format:
 
 def write_outputs(obj: TIN | Survey, outputs: Sequence[Output], console: Console) -> None:
     """Write every output, showing progress."""
-    from ..io import write
-
     with console.steps() as steps:
         for output in outputs:
             with steps.step(f"Writing {output.path.name}") as progress:
                 options = dict(output.options)
                 if _shows_progress(output.format):
                     options["progress"] = progress
-                write(obj, output.path, format=output.format.name, **options)
+                if output.path == STANDARD:
+                    _write_to_stdout(obj, output, options)
+                    continue
+                _write_file(obj, output.path, output.format, options)
             note_written(output.path)
+
+
+def _write_file(obj: TIN | Survey, path: Path, one: Format, options: dict[str, Any]) -> None:
+    from ..io import write
+
+    write(obj, path, format=one.name, **options)
+
+
+def _write_to_stdout(obj: TIN | Survey, output: Output, options: dict[str, Any]) -> None:
+    """Write a whole file first, so that nothing comes if it fails."""
+    with tempfile.TemporaryDirectory(prefix="tinsmith-") as folder:
+        path = Path(folder) / f"output{output.suffix}"
+        _write_file(obj, path, output.format, options)
+        emit_file(path)
+
+
+def written_text(outputs: Sequence[Output]) -> str:
+    """Return what was written for a summary, a line each."""
+    from .facts import file_size
+
+    return "\n".join(
+        "standard output" if one.path == STANDARD else f"{one.path} ({file_size(one.path)})"
+        for one in outputs
+    )
 
 
 def _shows_progress(one: Format) -> bool:

@@ -6,16 +6,27 @@ names a :class:`click.Command`.
 
 from __future__ import annotations
 
+import signal
+import sys
 from functools import cache
 from importlib import import_module
 from importlib.metadata import EntryPoint, entry_points
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from .. import __version__
-from .console import accept_any_text
-from .failures import Failure, failures_as_sentences
+from .failures import Failure, failures_as_sentences, show_failure
+from .streams import (
+    Terminated,
+    accept_any_text,
+    reserve_standard_streams,
+    signals_as_exceptions,
+    silence,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 __all__ = ["main"]
 
@@ -40,6 +51,31 @@ class _Commands(click.Group):
             return built_in
         entry = _plug_ins().get(cmd_name)
         return None if entry is None else _plugged_in(entry)
+
+    def main(
+        self, args: Sequence[str] | None = None, *more: Any, **how: Any
+    ) -> Any:  # not NoReturn, which click's own is not either where it is called with a context
+        """Run; click's own ``main``, but for failures, signals and streams that are closed."""
+        if not how.pop("standalone_mode", True):
+            return super().main(args, *more, standalone_mode=False, **how)
+        arguments = sys.argv[1:] if args is None else list(args)
+        reserve_standard_streams()
+        with signals_as_exceptions():
+            sys.exit(self._exit_code(arguments, *more, **how))
+
+    def _exit_code(self, arguments: list[str], *more: Any, **how: Any) -> int:
+        try:
+            code = super().main(arguments, *more, standalone_mode=False, **how)
+        except click.ClickException as error:
+            return show_failure(error, arguments)
+        except BrokenPipeError:
+            silence(sys.stdout)
+            return 1
+        except (click.Abort, KeyboardInterrupt):
+            return 128 + signal.SIGINT
+        except Terminated as ended:
+            return 128 + ended.number
+        return code if isinstance(code, int) else 0
 
     def invoke(self, ctx: click.Context) -> Any:
         accept_any_text()

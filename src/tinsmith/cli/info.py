@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from .failures import Failure
 from .options import console_options, input_file, reading_options
+from .paths import OUTPUT, name_of, title_of
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from ..tin import TIN, Quality
     from .console import Console, Field
     from .options import Reading
@@ -23,7 +25,7 @@ __all__ = ["info"]
 @click.option(
     "--plot",
     metavar="FILE",
-    type=click.Path(path_type=Path),
+    type=OUTPUT,
     help="Picture (.png) to write: histograms of angles, aspect ratios and edge lengths of a TIN.",
 )
 @reading_options
@@ -41,10 +43,10 @@ def info(file: Path, plot: Path | None, reading: Reading, console: Console) -> N
     """  # noqa: D301 - click reads the control character
     from ..tin import TIN
     from .facts import survey_facts, survey_fields
-    from .files import read_input, require_picture
+    from .files import inputs_of, read_input, require_picture
 
     if plot is not None:
-        require_picture(plot, source=file)
+        require_picture(plot, place="--plot", inputs=inputs_of(file))
     found = read_input(file, reading, console)
     if isinstance(found, TIN):
         _describe(found, file, plot, console)
@@ -54,14 +56,14 @@ def info(file: Path, plot: Path | None, reading: Reading, console: Console) -> N
             f"'{file}' holds points, and --plot needs a TIN: 'tinsmith build' makes one of them."
         )
     facts = {"input": str(file)} | survey_facts(found)
-    console.answer([("File", str(file)), *survey_fields(found)], facts)
+    console.answer([("File", name_of(file)), *survey_fields(found)], facts)
 
 
 def _describe(tin: TIN, file: Path, plot: Path | None, console: Console) -> None:
     from .facts import file_size, quality_fields, quality_of, tin_facts, tin_fields
 
     shapes = quality_of(tin)
-    fields: list[Field] = [("File", str(file)), *tin_fields(tin), *quality_fields(shapes)]
+    fields: list[Field] = [("File", name_of(file)), *tin_fields(tin), *quality_fields(shapes)]
     facts = {"input": str(file)} | tin_facts(tin)
     facts["quality"] = None if shapes is None else shapes.summary()
     if plot is not None:
@@ -83,6 +85,6 @@ def _plot(shapes: Quality | None, tin: TIN, file: Path, plot: Path, console: Con
             "--plot needs a projected CRS, such as UTM."
         )
     with console.steps() as steps, steps.step("Drawing"):
-        title = f"Triangle quality: {file.stem.replace('_', ' ')}"
+        title = f"Triangle quality: {title_of(file)}".rstrip(": ")
         figure = histogram(shapes, title=title, unit=units(tin.crs)[0].strip())
         write_figure(figure, plot, dpi=150)

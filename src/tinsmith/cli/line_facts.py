@@ -8,6 +8,7 @@ import numpy as np
 
 from ..io.crs import elevation_unit
 from ..tin.report import LEFT_OUT
+from .console import count
 
 if TYPE_CHECKING:
     from ..tin import TIN, Report, Survey
@@ -19,6 +20,7 @@ __all__ = [
     "given_lines_text",
     "line_counts",
     "line_fields",
+    "mesh_counts",
     "tin_counts",
 ]
 
@@ -45,17 +47,21 @@ def given_lines(survey: Survey) -> dict[str, int]:
 def given_lines_text(survey: Survey) -> str:
     """Count the lines of a survey, in words."""
     return ", ".join(
-        f"{count:,} {_NOUNS[name][count != 1]}"
-        for name, count in given_lines(survey).items()
-        if count
+        count(number, *_NOUNS[name]) for name, number in given_lines(survey).items() if number
     )
 
 
 def tin_counts(tin: TIN) -> str:
     """Count vertices and triangles, and constrained edges if there are any, in words."""
     fixed = constrained_edges(tin)
-    lines = f", {fixed:,} constrained edge{'s' * (fixed != 1)}" if fixed else ""
-    return f"{len(tin.points):,} vertices, {len(tin.triangles):,} triangles{lines}"
+    lines = f", {count(fixed, 'constrained edge')}" if fixed else ""
+    return f"{mesh_counts(tin)}{lines}"
+
+
+def mesh_counts(tin: TIN) -> str:
+    """Count vertices and triangles, in words."""
+    vertices = count(len(tin.points), "vertex", "vertices")
+    return f"{vertices}, {count(len(tin.triangles), 'triangle')}"
 
 
 def line_counts(report: Report) -> dict[str, Any]:
@@ -72,7 +78,7 @@ def line_counts(report: Report) -> dict[str, Any]:
 
 def _left_out(report: Report) -> dict[str, int]:
     counts = np.bincount(report.left_out_why, minlength=len(LEFT_OUT)).tolist()
-    return {why: count for why, count in zip(LEFT_OUT, counts, strict=True) if count}
+    return {why: number for why, number in zip(LEFT_OUT, counts, strict=True) if number}
 
 
 def line_fields(survey: Survey, tin: TIN) -> list[Field]:
@@ -83,8 +89,8 @@ def line_fields(survey: Survey, tin: TIN) -> list[Field]:
     if len(report.overruled.vertices):
         fields.append(("Heights", _overruled_text(report, survey)))
     if len(report.left_out_rows):
-        reasons = ", ".join(f"{count:,} {why}" for why, count in _left_out(report).items())
-        fields.append(("Left out", f"{_rows(len(report.left_out_rows))}: {reasons}"))
+        reasons = ", ".join(f"{number:,} {why}" for why, number in _left_out(report).items())
+        fields.append(("Left out", f"{count(len(report.left_out_rows), 'row')}: {reasons}"))
     return fields
 
 
@@ -92,8 +98,7 @@ def _crossing_fields(report: Report, survey: Survey) -> list[Field]:
     met = report.crossings
     if len(met.vertices) == 0:
         return []
-    count = len(met.vertices)
-    places = f"at {count:,} place{'s' * (count != 1)}"
+    places = f"at {count(len(met.vertices), 'place')}"
     apart = np.abs(np.diff(met.heights, axis=1)[:, 0])
     worst = int(np.argmax(apart))
     if apart[worst] == 0:
@@ -113,9 +118,5 @@ def _crossing_fields(report: Report, survey: Survey) -> list[Field]:
 def _overruled_text(report: Report, survey: Survey) -> str:
     gave_way = report.overruled
     most = float(np.abs(gave_way.heights - gave_way.taken).max())
-    count, up = len(gave_way.vertices), elevation_unit(survey.crs).symbol
-    return f"{count:,} gave way to lines of more weight, the most by {most:.3f} {up}"
-
-
-def _rows(count: int) -> str:
-    return f"{count:,} row{'s' * (count != 1)}"
+    number, up = len(gave_way.vertices), elevation_unit(survey.crs).symbol
+    return f"{number:,} gave way to lines of more weight, the most by {most:.3f} {up}"

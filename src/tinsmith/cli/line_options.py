@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import click
+
+from .paths import LINES
 
 __all__ = ["CROSSINGS", "LINE_OPTIONS", "TRIMS"]
 
@@ -17,7 +18,7 @@ def _files(name: str, words: str) -> Any:
     return click.option(
         name,
         metavar="FILE",
-        type=click.Path(path_type=Path),
+        type=LINES,
         multiple=True,
         help=f"{words} May be given several times; FILE:LAYER names a layer.",
     )

@@ -12,6 +12,7 @@ import click
 
 from .console import Console
 from .line_options import LINE_OPTIONS
+from .paths import INPUT
 
 __all__ = [
     "Reading",
@@ -44,9 +45,13 @@ class Reading:
     columns: str | dict[str, str | int] | None = None
     delimiter: str | None = None
     decimal: str | None = None
+    nodata: float | None = None
+    skip_bad: bool | None = None
     band: int | None = None
     window: tuple[float, float, float, float] | None = None
     stride: int | None = None
+    nodata: tuple[float, ...] | None = None
+    fill: bool | None = None
 
 
 @dataclass(frozen=True)
@@ -80,6 +85,11 @@ class Triangulating:
         """Options of :func:`tinsmith.io.with_lines`; empty if there are no files."""
         given = {name: getattr(self, name) for name in _FILES}
         return given | {"water_z": self.water_z, "drape": self.drape} if any(given.values()) else {}
+
+    @property
+    def line_files(self) -> dict[str, tuple[Path, ...]]:
+        """Files of lines, by the flag that names them."""
+        return {f"--{name.replace('_', '-')}": getattr(self, name) for name in _FILES}
 
     @property
     def shaping(self) -> list[str]:
@@ -132,9 +142,18 @@ def _as_columns(
     }
 
 
+def _as_given(
+    ctx: click.Context,  # noqa: ARG001 - click's signature
+    param: click.Parameter,  # noqa: ARG001 - click's signature
+    value: tuple[float, ...],
+) -> tuple[float, ...] | None:
+    """Return None for none."""
+    return value or None
+
+
 def input_file(name: str) -> Decorator:
     """Return the argument for the file to read."""
-    return click.argument(name, type=click.Path(path_type=Path))
+    return click.argument(name, type=INPUT)
 
 
 output_files: Decorator = click.option(
@@ -142,10 +161,11 @@ output_files: Decorator = click.option(
     "--output",
     "outputs",
     metavar="FILE",
-    type=click.Path(path_type=Path),
+    type=INPUT,
     multiple=True,
     required=True,
-    help="File to write; its suffix chooses the format. May be given several times.",
+    help="File to write; its suffix chooses the format, and one that is there is replaced. "
+    "- is standard output, with --output-format. May be given several times.",
 )
 
 reading_options = _gathered(
@@ -172,6 +192,18 @@ reading_options = _gathered(
     click.option(
         "--decimal", type=click.Choice([".", ","]), help="Decimal mark of the numbers in it."
     ),
+    click.option(
+        "--nodata",
+        metavar="ELEVATION",
+        type=float,
+        help="Elevation that stands for no data in a text file, such as -9999.",
+    ),
+    click.option(
+        "--skip-bad",
+        is_flag=True,
+        default=None,
+        help="Leave out the rows of a text file that cannot be read, and name them.",
+    ),
     click.option("--band", metavar="N", type=int, help="Band of a raster, counted from 1."),
     click.option(
         "--window",
@@ -180,6 +212,17 @@ reading_options = _gathered(
         help="Part of a raster to read, in the units of its own CRS.",
     ),
     click.option("--stride", metavar="N", type=int, help="Take every Nth cell of a raster."),
+    click.option(
+        "--nodata",
+        metavar="VALUE",
+        type=float,
+        multiple=True,
+        callback=_as_given,
+        help="Elevation that stands for no data. May be given several times.",
+    ),
+    click.option(
+        "--fill", is_flag=True, default=None, help="Let the surface span the voids of a raster."
+    ),
 )
 
 triangulating_options = _gathered(

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .console import plain
+from .console import count, plain
 from .failures import Failure
+from .flags import name_flags
 from .options import (
     console_options,
     input_file,
@@ -81,32 +82,36 @@ def refine(
     Example:
       tinsmith refine sample_data/site_survey.csv --codes --max-area 20 -o site.msh -o site.vtu
     """  # noqa: D301 - click reads the control character
-    from ..tin import quality
+    from ..tin import TinsmithError, quality
     from ..tin import refine as refine_tin
-    from .files import plan_outputs, read_tin, write_outputs
+    from .files import inputs_of, plan_outputs, read_tin, write_outputs, written_text
+    from .line_facts import mesh_counts
 
     started = perf_counter()
-    planned = plan_outputs(outputs, writing, source=file)
+    planned = plan_outputs(outputs, writing, inputs=inputs_of(file, how), console=console)
     tin, _ = read_tin(file, reading, how, console)
     _require_lengths(tin, file)
-    with console.steps() as steps, steps.step(f"Refining {len(tin.triangles):,} triangles"):
-        refined = refine_tin(
-            tin,
-            min_angle=min_angle,
-            max_area=max_area,
-            max_edge=max_side,
-            max_vertices=max_vertices,
-            threads=how.threads,
-        )
+    with console.steps() as steps, steps.step(f"Refining {count(len(tin.triangles), 'triangle')}"):
+        try:
+            refined = refine_tin(
+                tin,
+                min_angle=min_angle,
+                max_area=max_area,
+                max_edge=max_side,
+                max_vertices=max_vertices,
+                threads=how.threads,
+            )
+        except TinsmithError as error:  # its max_edge is not --max-edge, which trims
+            raise Failure(name_flags(str(error), max_edge="--max-side")) from error
     write_outputs(refined, planned, console)
     shapes = quality(refined)
     written = [str(one.path) for one in planned]
     console.summarise(
         [
-            ("Read", _counts(tin)),
-            ("Mesh", _counts(refined)),
+            ("Read", mesh_counts(tin)),
+            ("Mesh", mesh_counts(refined)),
             *_angles(quality(tin), shapes, refined.report.unmended),
-            ("Written", "\n".join(written)),
+            ("Written", written_text(planned)),
             ("Time", f"{perf_counter() - started:.2f} s"),
         ]
     )
@@ -122,10 +127,6 @@ def _require_lengths(tin: TIN, file: Path) -> None:
             f"'{file}' is in degrees, where angles and areas are not those on the ground: build "
             "the TIN in a projected CRS, such as EPSG:32616."
         )
-
-
-def _counts(tin: TIN) -> str:
-    return f"{len(tin.points):,} vertices, {len(tin.triangles):,} triangles"
 
 
 def _angles(given: Quality, refined: Quality, unmended: Unmended) -> list[Field]:

@@ -28,7 +28,7 @@ class Steps:
     """A context in which steps follow each other; what they showed vanishes with it."""
 
     def __init__(self, *, quiet: bool = False) -> None:
-        self._bar = None if quiet or not sys.stderr.isatty() else _progress_bar()
+        self._bar = None if quiet or not _is_terminal() else _progress_bar()
         self._is_shown = False
         self._timer = Timer(PATIENCE, self._show)
         self._timer.daemon = True
@@ -67,6 +67,10 @@ class Steps:
             yield lambda fraction: bar.update(task, total=1.0, completed=fraction)
         finally:
             bar.remove_task(task)
+
+
+def _is_terminal() -> bool:
+    return sys.stderr is not None and sys.stderr.isatty()
 
 
 def _progress_bar() -> Progress:

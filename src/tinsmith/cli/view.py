@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from .failures import note_written
 from .options import console_options, input_file, reading_options, triangulating_options
+from .paths import OUTPUT, title_of
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from .console import Console, Field
     from .options import Reading, Triangulating
 
@@ -23,7 +25,7 @@ __all__ = ["view"]
     "-o",
     "--output",
     metavar="FILE",
-    type=click.Path(path_type=Path),
+    type=OUTPUT,
     help="Picture to write (.png, .jpg, .tif) instead of opening a window.",
 )
 @click.option(
@@ -53,11 +55,17 @@ def view(
       tinsmith view sample_data/site_survey.csv --crs EPSG:32616 --codes -o site.png
     """  # noqa: D301 - click reads the control character
     from ..terrain import preview
-    from .files import read_tin
+    from ..terrain.preview import PICTURE_SUFFIXES
+    from .files import inputs_of, read_tin, require_picture
+
+    if output is not None:
+        require_picture(
+            output, place="--output", inputs=inputs_of(file, how), suffixes=PICTURE_SUFFIXES
+        )
 
     tin, _ = read_tin(file, reading, how, console)
     top = drawing.pop("top")
-    drawing["title"] = drawing["title"] or file.stem.replace("_", " ")
+    drawing["title"] = drawing["title"] or title_of(file)
     with console.steps() as steps, steps.step("Drawing"):
         preview(tin, output=output, view="top" if top else "oblique", **drawing)  # type: ignore[arg-type]
     if output is not None:

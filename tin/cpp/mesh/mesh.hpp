@@ -92,6 +92,9 @@ class Mesh {
   // A mark stays until the triangle is made anew.
   void mark(std::uint32_t t) { fixed_[t] |= kMark; }
   bool is_marked(std::uint32_t t) const { return (fixed_[t] & kMark) != 0; }
+  // Likewise: every fixed edge of the triangle was found to be Delaunay.
+  void set_proven(std::uint32_t t) { fixed_[t] |= kProven; }
+  bool is_proven(std::uint32_t t) const { return (fixed_[t] & kProven) != 0; }
 
   void join(MeshEdge e, MeshEdge f) {
     triangles_[triangle_of(e)].twin[place_of(e)] = f;
@@ -200,7 +203,7 @@ class Mesh {
 
  private:
   static constexpr std::int32_t kFree = -2;
-  static constexpr std::uint8_t kMark = 8;  // beyond the bits of the three edges
+  static constexpr std::uint8_t kMark = 8, kProven = 16;  // beyond the bits of the three edges
 
   struct Side {  // what lies beyond an edge
     MeshEdge twin;

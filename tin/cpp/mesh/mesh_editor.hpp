@@ -65,6 +65,7 @@ class MeshEditor {
     points_[slot] = p;
     ++count_;
     if (at.where == Where::kOnEdge) {
+      fixed_splits_ += mesh_.is_fixed(at.edge);
       for (const MeshEdge e : mesh_.split_edge(at.edge, slot).edge) {
         put_off(e);
         put_off(Mesh::after(e));  // Delaunay if p is on the edge, and perhaps not if only near it
@@ -184,11 +185,28 @@ class MeshEditor {
     return true;
   }
 
-  // Whether the edge between two vertices would stay if it were not fixed. True if there is none.
-  bool is_delaunay(std::int32_t a, std::int32_t b) const {
-    const MeshEdge e = edge_between(a, b);
-    return e == kNoMeshEdge || !is_in_far_circle(e);
+  // Call `visit(from, to)` once for every fixed edge that would not stay if it were not fixed.
+  // Only triangles made since the last time are looked at: an edge that was fixed in triangles made
+  // before was Delaunay then.
+  template <typename Visit>
+  void visit_illegal_fixed_edges(Visit&& visit) {
+    for (std::uint32_t t = 0; t < mesh_.triangle_slots(); ++t) {
+      if (mesh_.is_free(t)) continue;
+      bool is_proven = true;
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const MeshEdge e = mesh_edge(t, k), f = mesh_.twin(e);
+        if (!mesh_.is_fixed(e)) continue;
+        if (mesh_.is_proven(t) && mesh_.is_proven(triangle_of(f))) continue;
+        if (!is_in_far_circle(e)) continue;
+        is_proven = false;
+        if (e < f) visit(mesh_.from(e), mesh_.to(e));
+      }
+      if (is_proven) mesh_.set_proven(t);
+    }
   }
+
+  // How often a point was put on a fixed edge.
+  std::int64_t fixed_splits() const { return fixed_splits_; }
 
   MeshEdge edge_between(std::int32_t a, std::int32_t b) const {
     const MeshEdge first = mesh_.leaving(a);
@@ -424,6 +442,7 @@ class MeshEditor {
   Mesh mesh_;
   MeshPoints points_;
   std::int32_t count_ = 0;
+  std::int64_t fixed_splits_ = 0;
   MeshEdge last_ = kNoMeshEdge;  // near the last change
   std::uint64_t state_ = 0;      // of the random walk, which never shows in the result
   std::vector<MeshEdge> pending_;

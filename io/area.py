@@ -1,0 +1,143 @@
+"""Do coordinates lie where their CRS applies? What tells northing from easting, and nonsense."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .crs import as_crs, crs_label
+
+if TYPE_CHECKING:
+    import pyproj
+    from numpy.typing import NDArray
+
+__all__ = ["AreaOfUse"]
+
+_WGS84 = "EPSG:4326"
+_MARGIN_DEGREES = 2.0
+"""Surveys at the edge of a zone keep its CRS some way beyond; two degrees are a third of a zone."""
+_SPREAD = 64
+
+
+@dataclass(frozen=True, slots=True)
+class AreaOfUse:
+    """The areas of use of the CRS of some coordinates, and of the one that they are moved to.
+
+    Attributes
+    ----------
+    source : str
+        CRS of the coordinates.
+    targets : tuple of str
+        CRSs whose areas count, without those whose area is not known.
+    """
+
+    source: str
+    targets: tuple[str, ...]
+
+    @classmethod
+    def of(cls, source: str | None, target: str | None) -> AreaOfUse | None:
+        """Return the areas to look at; None if nothing is known of them."""
+        declared = source or target
+        if declared is None:
+            return None
+        targets = {crs: None for crs in (declared, target) if crs is not None}
+        known = tuple(crs for crs in targets if _area(crs) is not None)
+        return cls(declared, known) if known else None
+
+    @property
+    def label(self) -> str:
+        """The CRSs and the narrowest of their areas in degrees, for a sentence."""
+        names = " and ".join(crs_label(crs) for crs in self.targets)
+        area = min((_area(crs) for crs in self.targets), key=_width)
+        return (
+            f"{names} (longitude {area.west:g} to {area.east:g}, "
+            f"latitude {area.south:g} to {area.north:g})"
+        )
+
+    def covers(self, xy: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Whether each point lies in all areas, a margin of two degrees around them included.
+
+        Parameters
+        ----------
+        xy : (n, 2) float64 array
+            Easting (longitude), northing (latitude).
+        """
+        longitude, latitude = _degrees(self.source, xy)
+        inside = np.isfinite(longitude) & np.isfinite(latitude)
+        for crs in self.targets:
+            inside &= _lies_in(_area(crs), longitude, latitude)
+        return inside
+
+    def covers_most(self, xy: NDArray[np.float64]) -> bool:
+        """Whether more than half of some points, spread over all of them, lie in the areas."""
+        some = xy[:: max(1, len(xy) // _SPREAD)]
+        return bool(2 * self.covers(some).sum() > len(some))
+
+    def outside(self, xy: NDArray[np.float64]) -> NDArray[np.int64]:
+        """Return the rows that lie outside; all are looked at only if the outermost do not fit."""
+        if len(xy) == 0 or self.covers(xy[_outermost(xy)]).all():
+            return np.empty(0, np.int64)
+        return np.flatnonzero(~self.covers(xy))
+
+
+def _outermost(xy: NDArray[np.float64]) -> list[int]:
+    """Return the rows of the corners of the octagon around the points, and some between."""
+    x, y = xy.T
+    with np.errstate(over="ignore"):
+        sides = (x, y, x + y, x - y)
+        corners = [int(f(side)) for side in sides for f in (np.argmin, np.argmax)]
+    return [*corners, *range(0, len(xy), max(1, len(xy) // _SPREAD))]
+
+
+def _degrees(source: str, xy: NDArray[np.float64]) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Return longitude from Greenwich and latitude, infinite where there is no image.
+
+    They are those of the CRS's own datum, which are found fast and near enough for a margin of
+    degrees.
+    """
+    to_angles, degrees, meridian = _to_angles(source)
+    longitude, latitude = to_angles.transform(xy[:, 0], xy[:, 1])
+    return np.asarray(longitude) * degrees + meridian, np.asarray(latitude) * degrees
+
+
+@lru_cache(maxsize=8)
+def _to_angles(source: str) -> tuple[pyproj.Transformer, float, float]:
+    """Return what makes longitude and latitude, the degrees of their unit, and the meridian."""
+    import pyproj
+
+    crs = as_crs(source)
+    crs = crs.sub_crs_list[0] if crs.is_compound else crs
+    base = crs.geodetic_crs or as_crs(_WGS84)
+    degrees = float(np.degrees(base.to_2d().axis_info[0].unit_conversion_factor))
+    prime = base.prime_meridian
+    meridian = np.degrees(prime.longitude * prime.unit_conversion_factor) if prime else 0.0
+    transformer = pyproj.Transformer.from_crs(crs.to_2d(), base.to_2d(), always_xy=True)
+    return transformer, degrees, float(meridian)
+
+
+def _area(crs: str) -> Any:
+    """Return the area of use of a CRS, of its horizontal part if only that has one, or None."""
+    known = as_crs(crs)
+    if known.area_of_use is None and known.is_compound:
+        return known.sub_crs_list[0].area_of_use
+    return known.area_of_use
+
+
+def _width(area: pyproj.aoi.AreaOfUse) -> float:
+    return (float(area.east - area.west) % 360.0 or 360.0) * float(area.north - area.south)
+
+
+def _lies_in(
+    area: pyproj.aoi.AreaOfUse, longitude: NDArray[Any], latitude: NDArray[Any]
+) -> NDArray[np.bool_]:
+    margin = _MARGIN_DEGREES
+    span = (area.east - area.west) % 360.0 or 360.0
+    with np.errstate(invalid="ignore"):
+        is_between = (longitude - area.west + margin) % 360.0 <= span + 2 * margin
+        is_inside = is_between & (latitude >= area.south - margin)
+        is_inside &= (latitude <= area.north + margin) & (np.abs(latitude) <= 90.0)
+        inside: NDArray[np.bool_] = is_inside & (np.abs(longitude) <= 360.0)
+    return inside

@@ -1,0 +1,70 @@
+"""How long a native reader may take, and how much memory, for a file of a size."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+__all__ = [
+    "BYTES_PER_SECOND",
+    "LEAST_MEMORY",
+    "LEAST_SECONDS",
+    "MEMORY_PER_BYTE",
+    "START_SECONDS",
+    "WAITING_FACTOR",
+    "Limits",
+    "limits_for",
+]
+
+LEAST_SECONDS = 5.0
+"""Seconds of processor time that any file gets; small sound ones take some milliseconds."""
+
+BYTES_PER_SECOND = 1_000_000
+"""Bytes for which a file gets a further second; the slowest sound ones (Gmsh in text through
+meshio, GML through GDAL) are read at 5 to 10 MB in a second, so this is a margin of 5 or more."""
+
+WAITING_FACTOR = 6.0
+"""Seconds on the clock for each of the processor: a busy machine shares its cores."""
+
+LEAST_MEMORY = 1 << 30
+"""Bytes of memory, beyond those that the libraries take at rest, that any file gets."""
+
+MEMORY_PER_BYTE = 64
+"""Bytes of memory that each byte of a file gets: VTK takes about 150 bytes for a vertex that is
+30 bytes in a compressed file, GeoJSON through GDAL about 20 bytes for one."""
+
+START_SECONDS = 120.0
+"""Seconds on the clock for starting Python and loading a library in it; VTK from a cold disk
+takes some ten."""
+
+
+class Limits(NamedTuple):
+    """What reading one file may take.
+
+    Attributes
+    ----------
+    seconds : float
+        Of processor time, until the next part of the answer.
+    memory : int
+        Bytes beyond those that the libraries take at rest, and bytes of a part of the answer.
+    """
+
+    seconds: float
+    memory: int
+
+    @property
+    def waiting_seconds(self) -> float:
+        """Seconds on the clock."""
+        return self.seconds * WAITING_FACTOR
+
+
+def limits_for(n_bytes: int) -> Limits:
+    """Return what a file of so many bytes gets.
+
+    Examples
+    --------
+    >>> limits_for(5_000_000).seconds
+    10.0
+    """
+    return Limits(
+        LEAST_SECONDS + n_bytes / BYTES_PER_SECOND, LEAST_MEMORY + MEMORY_PER_BYTE * n_bytes
+    )

@@ -1,0 +1,107 @@
+"""Voids of a raster: where its surface ends, as rings through the centres of its cells.
+
+Four neighbouring cell centres make a square. Where all four have an elevation the square is
+surface, where three have it half of the square is; elsewhere there is a void. The rings run along
+the border of that, so no triangle reaches across a cell without an elevation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["rings_around"]
+
+
+def rings_around(valid: NDArray[np.bool_]) -> list[NDArray[np.int64]]:
+    """Return the rings around the cells that have elevations.
+
+    Parameters
+    ----------
+    valid : (rows, columns) bool array
+
+    Returns
+    -------
+    list of (k,) int64 arrays
+        Numbers of cells among the valid ones, in the order of rows; no cell twice in a ring. A
+        place is surface if an odd number of rings holds it.
+
+    Examples
+    --------
+    >>> [ring.tolist() for ring in rings_around(np.array([[True, True], [True, False]]))]
+    [[0, 2, 1]]
+    """
+    start, end = _border(valid)
+    number = np.cumsum(valid.ravel()) - 1
+    return [number[ring] for ring in _cycles(start, end)]
+
+
+def _border(valid: NDArray[np.bool_]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return the directed edges between cells that have surface on their left only."""
+    cells = np.arange(valid.size).reshape(valid.shape)
+    a, b = cells[:-1, :-1], cells[:-1, 1:]  # northwest, northeast
+    d, c = cells[1:, :-1], cells[1:, 1:]  # southwest, southeast
+    has = {"a": valid[:-1, :-1], "b": valid[:-1, 1:], "c": valid[1:, 1:], "d": valid[1:, :-1]}
+    count = sum(part.astype(np.int8) for part in has.values())
+    is_part = np.asarray(count) >= 3
+    north, south = is_part & has["a"] & has["b"], is_part & has["d"] & has["c"]
+    west, east = is_part & has["a"] & has["d"], is_part & has["b"] & has["c"]
+    edges = [
+        (d, c, south & ~_moved(north, rows=-1)),
+        (b, a, north & ~_moved(south, rows=1)),
+        (a, d, west & ~_moved(east, columns=1)),
+        (c, b, east & ~_moved(west, columns=-1)),
+    ]
+    for missing, (one, other) in {"a": (b, d), "b": (c, a), "c": (d, b), "d": (a, c)}.items():
+        edges.append((one, other, is_part & ~has[missing]))
+    start = np.concatenate([one[chosen] for one, _, chosen in edges])
+    end = np.concatenate([other[chosen] for _, other, chosen in edges])
+    return start, end
+
+
+def _moved(flags: NDArray[np.bool_], *, rows: int = 0, columns: int = 0) -> NDArray[np.bool_]:
+    """Return the flags of the squares one further up, down, left or right; False beyond."""
+    moved = np.zeros_like(flags)
+    if rows == 1:
+        moved[1:] = flags[:-1]
+    elif rows == -1:
+        moved[:-1] = flags[1:]
+    elif columns == 1:
+        moved[:, 1:] = flags[:, :-1]
+    else:
+        moved[:, :-1] = flags[:, 1:]
+    return moved
+
+
+def _cycles(start: NDArray[np.int64], end: NDArray[np.int64]) -> Iterator[NDArray[np.int64]]:
+    """Walk directed edges, as many into a cell as out of it, as cycles without a cell twice."""
+    order = np.argsort(start, kind="stable")
+    ends = end[order].tolist()
+    cells, first, counts = np.unique(start[order], return_index=True, return_counts=True)
+    bounds = zip(first.tolist(), (first + counts).tolist(), strict=True)
+    slots = dict(zip(cells.tolist(), bounds, strict=True))
+    following = {cell: ends[low:high] for cell, (low, high) in slots.items()}
+    for begin in cells.tolist():
+        while following[begin]:
+            yield from _cycles_from(begin, following)
+
+
+def _cycles_from(begin: int, following: dict[int, list[int]]) -> Iterator[NDArray[np.int64]]:
+    """Follow edges from a cell until there are none, cutting off a cycle at each cell met again."""
+    path, place_of = [begin], {begin: 0}
+    while following[path[-1]]:
+        cell = following[path[-1]].pop()
+        place = place_of.get(cell)
+        if place is None:
+            place_of[cell] = len(path)
+            path.append(cell)
+            continue
+        yield np.array(path[place:], np.int64)
+        for gone in path[place + 1 :]:
+            del place_of[gone]
+        del path[place + 1 :]

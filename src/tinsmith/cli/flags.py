@@ -1,0 +1,59 @@
+"""Options in sentences: the library calls them by their Python names, here they are flags."""
+
+from __future__ import annotations
+
+import re
+
+import click
+
+__all__ = ["name_flags"]
+
+
+def name_flags(text: str, **renamed: str) -> str:
+    """Return a sentence of the library with flags in place of the names of its options.
+
+    Only what cannot be taken for another word is replaced: ``the option crs``, ``Invalid snap``,
+    ``max_edge``, ``crs='EPSG:32616'``.
+
+    Parameters
+    ----------
+    text : str
+    **renamed : str
+        Flags of options that the library calls by another name.
+    """
+    context = click.get_current_context(silent=True)
+    if context is None:
+        return text
+    flags = _flags(_running(context)) | renamed
+    text = text.replace(", or None, is", " is")
+    text = re.sub(r"(?<=its options are )[\w, ]+", lambda found: _known(found[0], flags), text)
+    for name, flag in flags.items():
+        text = re.sub(rf"\b[Tt]he option '?{name}\b'?", flag, text)
+        text = re.sub(rf"\b(Invalid|Unknown option) '?{name}\b'?", rf"\1 {flag}", text)
+        text = re.sub(rf"(?<![\w-]){name}=True\b", flag, text)
+        text = re.sub(rf"(?<![\w-]){name}=(?=['\"\w.-])", f"{flag} ", text)
+        if "_" in name:
+            text = re.sub(rf"(?<![\w'\"./-]){name}(?![\w'\"/-])(?!\.\w)", flag, text)
+    return text
+
+
+def _known(names: str, flags: dict[str, str]) -> str:
+    """Return the flags of those options in a list that have one here."""
+    return ", ".join(flags[name] for name in names.split(", ") if name in flags)
+
+
+def _running(context: click.Context) -> click.Command:
+    """Return the command that runs, also when it has failed and only its group is left."""
+    command = context.command
+    if isinstance(command, click.Group) and context.invoked_subcommand:
+        return command.get_command(context, context.invoked_subcommand) or command
+    return command
+
+
+def _flags(command: click.Command) -> dict[str, str]:
+    """Return the flag for each name that the library may use, longest names first."""
+    flags = {}
+    for option in command.params:
+        if isinstance(option, click.Option) and option.opts[0].startswith("--") and option.name:
+            flags[option.opts[0].removeprefix("--").replace("-", "_")] = option.opts[0]
+    return dict(sorted(flags.items(), key=lambda item: -len(item[0])))

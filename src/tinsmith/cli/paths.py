@@ -1,0 +1,170 @@
+"""Paths of a command: compared with each other before anything is read or written."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import click
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+__all__ = [
+    "INPUT",
+    "LINES",
+    "OUTPUT",
+    "STANDARD",
+    "Named",
+    "name_of",
+    "require_separate",
+    "title_of",
+]
+
+STANDARD = Path("-")
+"""Standard input or output; a file of that name is ``./-``."""
+
+_RASTER = (".prj", ".hdr", ".aux", ".ovr", ".msk", ".tfw", ".wld", ".stx", ".clr", ".rrd")
+_PARTS = {
+    ".shp": (".shx", ".dbf", ".prj", ".cpg", ".qpj", ".sbn", ".sbx", ".qix", ".idx"),
+    ".tab": (".dat", ".map", ".id", ".ind"),
+    ".mif": (".mid",),
+    ".obj": (".mtl",),
+    **dict.fromkeys((".tif", ".tiff", ".img", ".bil", ".bip", ".bsq", ".flt", ".asc"), _RASTER),
+    **dict.fromkeys((".png", ".jpg", ".jp2"), (*_RASTER, ".pgw", ".jgw", ".j2w")),
+}
+"""Suffixes of files that stand beside one and belong to it."""
+_MORE_PARTS = (".aux.xml", ".xml", ".ovr", ".msk", "-wal", "-shm", "-journal")
+"""What is appended to the whole name of the file that they belong to."""
+
+
+def name_of(path: Path) -> str:
+    """Return what a file to read is called in summaries."""
+    return "standard input" if path == STANDARD else str(path)
+
+
+def title_of(path: Path) -> str:
+    """Return the title of a picture of what is in a file."""
+    return "" if path == STANDARD else path.stem.replace("_", " ")
+
+
+class Named(NamedTuple):
+    """A path and where on the command line it stands, such as ``the input`` or ``--report``."""
+
+    path: Path
+    place: str
+
+
+class _Name(click.ParamType):
+    """A file's name, of which ``-`` means the standard stream, and ``./-`` a file called so."""
+
+    name = "file"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Path:
+        """Return the path."""
+        text = os.fsdecode(value)
+        if not text or "\0" in text:
+            self.fail("a name is needed, and there is none.", param, ctx)
+        path = Path(text)
+        if path == STANDARD and text != "-":
+            return Path.cwd() / "-"
+        return path
+
+
+class _File(_Name):
+    """A file's name where no standard stream can stand."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Path:
+        """Return the path."""
+        path = super().convert(value, param, ctx)
+        if path == STANDARD:
+            self.fail("'-' is a standard stream: name a file ('./-' if it is called so).")
+        return path
+
+
+INPUT = _Name()
+OUTPUT = _File()
+LINES = _File()
+
+
+def require_separate(inputs: Iterable[Named], outputs: Sequence[Named]) -> None:
+    """Refuse outputs that would overwrite an input, a part of one, or each other.
+
+    Files are compared by what they are, not by what they are called: links, other ways to the same
+    folder, and capitals where the system does not tell them apart.
+
+    Raises
+    ------
+    click.UsageError
+    WriteError
+        If an output cannot be written where it should be.
+    """
+    from ..io.atomic import require_writable
+
+    taken: dict[object, Named] = {}
+    for one in _files(inputs, "input"):
+        for path in [one.path, *_parts(one.path)]:
+            for key in _keys(path):
+                taken.setdefault(key, one)
+    files = _files(outputs, "output")
+    for one in files:
+        keys = _keys(one.path)
+        for before in (taken[key] for key in keys if key in taken):
+            raise click.UsageError(_collision(one, before, is_input=before not in files))
+        taken.update(dict.fromkeys(keys, one))
+    for one in files:
+        require_writable(one.path)
+
+
+def _files(named: Iterable[Named], what: str) -> list[Named]:
+    """Leave a standard stream aside, which can be named once."""
+    given = list(named)
+    files = [one for one in given if one.path != STANDARD]
+    if len(given) - len(files) > 1:
+        raise click.UsageError(f"'-' is named twice: there is one standard {what}.")
+    return files
+
+
+def _collision(one: Named, before: Named, *, is_input: bool) -> str:
+    if not is_input:
+        if one.place == before.place:
+            return f"'{one.path}' is named twice as output."
+        return f"'{one.path}' is named twice as output, by {before.place} and by {one.place}."
+    part = "" if _keys(one.path) & _keys(before.path) else f" a part of '{before.path}',"
+    return f"'{one.path}' is{part} {before.place}: it cannot be the output too ({one.place})."
+
+
+def _keys(path: Path) -> set[object]:
+    """Return what identifies a file: its place, and its number in the file system."""
+    place = Path(os.path.realpath(path))
+    name = place.name.casefold() if _folds_case(place.parent) else place.name
+    keys: set[object] = {(str(place.parent), name)}
+    try:
+        found = place.stat()
+    except (OSError, ValueError):
+        return keys
+    if found.st_ino:
+        keys.add((found.st_dev, found.st_ino))
+    return keys
+
+
+def _folds_case(folder: Path) -> bool:
+    """Whether the system takes capitals in names for small letters, as far as the folder shows."""
+    if not folder.name:
+        return False
+    other = folder.with_name(folder.name.swapcase())
+    try:
+        return other != folder and other.samefile(folder)
+    except (OSError, ValueError):
+        return False
+
+
+def _parts(path: Path) -> list[Path]:
+    """Return the files that belong to a file and are there, such as the parts of a shapefile."""
+    if not path.name:
+        return []
+    suffixes = _PARTS.get(path.suffix.lower(), ())
+    names = [path.with_name(path.name + more) for more in _MORE_PARTS]
+    names += [path.with_suffix(one) for low in suffixes for one in (low, low.upper())]
+    return [name for name in names if os.path.lexists(name)]

@@ -1,0 +1,193 @@
+"""Damaged files: every reader gives something sound or one clear sentence, and always in time."""
+
+from __future__ import annotations
+
+import re
+import tempfile
+import warnings
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import tinsmith as ts
+from tinsmith.io import read_lines
+from tinsmith.io.isolated import limits
+
+from .campaign import Campaign
+from .samples import sample_files
+
+KINDS = ("ply", "obj", "stl", "vtk", "gmsh", "raster", "vectors", "delimited")
+
+_NUMBER = re.compile(rb"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
+_NUMBERS = (
+    *("0", "1", "2", "-1", "-0", "1e400", "-1e308", "1.7e308", "nan", "inf", "1e-320", "0.1"),
+    *("2147483647", "2147483648", "4294967296", "9223372036854775807", "18446744073709551616"),
+    *("99999999", "1" * 400, "7" * 5000, "1_0", "0x10", "1,5", "3.0", "+4", ""),
+)
+_WORDS = (
+    *(" ", "\n", "\r", "\r\n", "\t", "\x00", "\xff", "#", '"', "'", "<", ">", "&", "{", "}", ","),
+    *("\xef\xbb\xbf", "<!--", "-->", "nan", "/", "-", "comment " + "x" * 3000 + "\n", "\\\n", "/>"),
+    *("property list uchar int vertex_index\n", "element vertex 3\n", "f 1 2 3\n", "v 1 2 3\n"),
+    *("<!DOCTYPE a>", "/vsicurl/http://127.0.0.1:9/a", "EOF\n", "  0\nSECTION\n"),
+)
+_OF_THE_FILE = frozenset({"unused", "hull", "boundary", "overlap", "euler", "constrained"})
+"""What a check tells of the meshes of other programs: concave, in pieces, folded over, with
+a flag on one side of an edge."""
+
+_LETTERS = "latin-1"
+
+
+# ------------------------------------------------------------------ how files are damaged
+
+
+def generate(rng: np.random.Generator, *, kind: str) -> dict[str, Any]:
+    """Choose a sound file and one to four damages."""
+    files = sample_files(kind)
+    name, content = files[int(rng.integers(len(files)))]
+    count = int(rng.choice([1, 1, 1, 2, 3, 4]))
+    return {"kind": kind, "name": name, "damages": [_damage(rng, content) for _ in range(count)]}
+
+
+def _damage(rng: np.random.Generator, content: bytes) -> list[Any]:
+    at = int(rng.integers(len(content)))
+    if rng.random() < 0.4:
+        at = int(rng.integers(min(len(content), 600)))  # headers are where counts are
+    length = int(2 ** rng.uniform(0, 8))
+    return [
+        ["flip", at, int(rng.integers(8))],
+        ["set", at, int(rng.choice([0, 1, 127, 128, 255, int(rng.integers(256))]))],
+        ["zero", at, int(rng.choice([1, 2, 4, 8, length]))],
+        ["cut", at, length],
+        ["repeat", at, length],
+        ["insert", at, str(rng.choice(_WORDS))],
+        ["number", int(rng.integers(12 if rng.random() < 0.5 else 200)), str(rng.choice(_NUMBERS))],
+        ["truncate", at],
+        ["join"],
+    ][int(rng.choice(9, p=[0.2, 0.12, 0.08, 0.1, 0.08, 0.12, 0.2, 0.07, 0.03]))]
+
+
+def damaged(content: bytes, damages: list[list[Any]]) -> bytes:
+    """Apply damages one after the other."""
+    for what, *how in damages:
+        content = _DAMAGES[what](content, *how) if content else content
+    return content
+
+
+def _flip(content: bytes, at: int, bit: int) -> bytes:
+    at %= len(content)
+    return content[:at] + bytes([content[at] ^ 1 << bit]) + content[at + 1 :]
+
+
+def _set(content: bytes, at: int, value: int) -> bytes:
+    at %= len(content)
+    return content[:at] + bytes([value]) + content[at + 1 :]
+
+
+def _zero(content: bytes, at: int, length: int) -> bytes:
+    at %= len(content)
+    return content[:at] + bytes(len(content[at : at + length])) + content[at + length :]
+
+
+def _cut(content: bytes, at: int, length: int) -> bytes:
+    at %= len(content)
+    return content[:at] + content[at + length :]
+
+
+def _repeat(content: bytes, at: int, length: int) -> bytes:
+    at %= len(content)
+    return content[: at + length] + content[at:]
+
+
+def _insert(content: bytes, at: int, text: str) -> bytes:
+    at %= len(content)
+    return content[:at] + text.encode(_LETTERS) + content[at:]
+
+
+def _number(content: bytes, which: int, text: str) -> bytes:
+    found = list(_NUMBER.finditer(content))
+    if not found:
+        return content
+    start, end = found[which % len(found)].span()
+    return content[:start] + text.encode(_LETTERS) + content[end:]
+
+
+def _truncate(content: bytes, at: int) -> bytes:
+    return content[: at % len(content)]
+
+
+def _join(content: bytes) -> bytes:
+    return content + content
+
+
+_DAMAGES = {
+    "flip": _flip,
+    "set": _set,
+    "zero": _zero,
+    "cut": _cut,
+    "repeat": _repeat,
+    "insert": _insert,
+    "number": _number,
+    "truncate": _truncate,
+    "join": _join,
+}
+
+
+# ------------------------------------------------------------------ what must hold
+
+
+def examine(case: dict[str, Any]) -> str:
+    """Read the damaged file: something sound, or a sentence."""
+    _hurry()
+    content = damaged(dict(sample_files(case["kind"]))[case["name"]], case["damages"])
+    with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings():
+        warnings.simplefilter("error")
+        path = Path(folder, case["name"])
+        path.write_bytes(content)
+        try:
+            found = read_lines(path) if case["kind"] == "vectors" else ts.read(path)
+        except ts.TinsmithError as error:
+            require_sentence(str(error), path)
+            return f"refused: {'crashed' if 'crashed' in str(error) else type(error).__name__}"
+    require_sound(found)
+    return "read"
+
+
+def _hurry() -> None:
+    """Give up early: a campaign has thousands of files."""
+    limits.LEAST_SECONDS = 2.0
+
+
+def require_sentence(message: str, path: Path) -> None:
+    """A message is one printable line that ends with a full stop, with no trace of Python."""
+    assert message.endswith("."), message
+    assert len(message) < 1500, message
+    assert message.replace(str(path), "").isprintable(), message
+    for word in ("np.", "Traceback", "object at 0x", "numpy", "1 points", "1 triangles", "1 rows"):
+        assert not re.search(rf"(?<!\d){re.escape(word)}", message), message
+    assert path.name in message, message
+
+
+def require_sound(found: Any) -> None:
+    """A TIN is sound but for what its file says itself; points and lines are finite."""
+    if isinstance(found, ts.TIN):
+        problems = ts.check(found, level=2).problems
+        assert {problem.kind for problem in problems} <= _OF_THE_FILE, problems
+    elif isinstance(found, ts.Survey):
+        assert np.isfinite(found.points).all()
+        assert len(found) > 0
+    else:
+        assert found
+        assert all(np.isfinite(line.coords).all() for line in found)
+
+
+CAMPAIGNS = tuple(
+    Campaign(
+        f"readers-{kind}",
+        f"damaged {kind} files are read soundly or refused in a sentence",
+        partial(generate, kind=kind),
+        examine,
+    )
+    for kind in KINDS
+)

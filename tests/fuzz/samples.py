@@ -1,0 +1,215 @@
+"""Sound files of every format that is read, made by our writers, other libraries and by hand."""
+
+from __future__ import annotations
+
+import tempfile
+import warnings
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import tinsmith as ts
+
+__all__ = ["sample_files"]
+
+CRS = "EPSG:32616"
+CORNER = np.array([752_640.0, 4_024_180.0, 300.0])
+
+
+@cache
+def sample_files(kind: str) -> tuple[tuple[str, bytes], ...]:
+    """Return names and contents of the sound files of a kind of format."""
+    with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return tuple(_MAKERS[kind](Path(folder)))
+
+
+def _tin() -> Any:
+    rng = np.random.default_rng(5)
+    points = CORNER + rng.random((14, 3)) * (40.0, 30.0, 9.0)
+    line = [points[0] + (1.0, 2.0, 0.5), points[5] + (0.25, 0.5, 0.0)]
+    return ts.triangulate(
+        ts.Survey(points=points.round(3), crs=CRS), breaklines=[ts.Breakline(np.round(line, 3))]
+    )
+
+
+def _ours(folder: Path, *names: str) -> list[tuple[str, bytes]]:
+    return [(name, ts.write(_tin(), folder / name).read_bytes()) for name in names]
+
+
+def _by_hand(kind: str, encoding: str) -> bytes:
+    order = ">" if "big" in encoding else "<"
+    tin = _tin()
+    head = (
+        f"{kind}\nformat {encoding} 1.0\ncomment made by hand\n"
+        f"element vertex {len(tin.points)}\nproperty double x\nproperty double y\n"
+        f"property double z\nproperty uchar class\nelement face {len(tin.triangles)}\n"
+        "property list uchar int vertex_index\nend_header\n"
+    ).encode()
+    if encoding == "ascii":
+        rows = [f"{x!r} {y!r} {z!r} 2" for x, y, z in tin.points.tolist()]
+        rows += [f"3 {a} {b} {c}" for a, b, c in tin.triangles.tolist()]
+        return head + ("\n".join(rows) + "\n").encode()
+    vertices = np.zeros(len(tin.points), [("xyz", f"{order}f8", 3), ("class", "u1")])
+    vertices["xyz"] = tin.points
+    faces = np.zeros(len(tin.triangles), [("n", "u1"), ("corners", f"{order}i4", 3)])
+    faces["n"], faces["corners"] = 3, tin.triangles
+    return head + vertices.tobytes() + faces.tobytes()
+
+
+def _ply(folder: Path) -> list[tuple[str, bytes]]:
+    import trimesh
+
+    tin = _tin()
+    mesh = trimesh.Trimesh(tin.points, tin.triangles, process=False)
+    cloud = ts.write(ts.Survey(points=tin.points, attributes={"id": np.arange(len(tin.points))}),
+                     folder / "cloud.ply").read_bytes()  # fmt: skip
+    return [
+        *_ours(folder, "ours.ply"),
+        ("trimesh.ply", mesh.export(file_type="ply")),
+        ("text.ply", _by_hand("ply", "ascii")),
+        ("pdal.ply", _by_hand("ply ", "binary_little_endian")),
+        ("big.ply", _by_hand("ply", "binary_big_endian")),
+        ("cloud.ply", cloud),
+    ]
+
+
+def _obj(folder: Path) -> list[tuple[str, bytes]]:
+    import trimesh
+
+    tin = _tin()
+    mesh = trimesh.Trimesh(tin.points, tin.triangles, process=False)
+    quads = b"# quads\nv 0 0 1\nv 1 0 2\nv 1 1 3\nv 0 1 4\nv 2 0 1\nv 2 1 1\n"
+    quads += b"f 1/1 2/2 3/3 4/4\nf -5 -2 \\\n-1 -4\n"
+    return [
+        *_ours(folder, "ours.obj"),
+        ("trimesh.obj", mesh.export(file_type="obj").encode()),
+        ("quads.obj", quads),
+    ]
+
+
+def _stl(folder: Path) -> list[tuple[str, bytes]]:
+    import trimesh
+
+    tin = _tin()
+    mesh = trimesh.Trimesh(tin.points - CORNER, tin.triangles, process=False)
+    return [*_ours(folder, "ours.stl"), ("trimesh.stl", mesh.export(file_type="stl"))]
+
+
+def _vtk(folder: Path) -> list[tuple[str, bytes]]:
+    import meshio
+    import pyvista
+
+    tin = _tin()
+    mesh = meshio.Mesh(tin.points, [("triangle", tin.triangles)])
+    for name, binary in (("meshio-text.vtu", False), ("meshio.vtu", True)):
+        meshio.vtu.write(str(folder / name), mesh, binary=binary)
+    pyvista.PolyData.from_regular_faces(tin.points, tin.triangles).save(
+        str(folder / "text.vtp"), binary=False
+    )
+    names = ("meshio-text.vtu", "meshio.vtu", "text.vtp")
+    others = [(name, (folder / name).read_bytes()) for name in names]
+    return [*_ours(folder, "ours.vtp", "ours.vtu"), *others]
+
+
+def _gmsh(folder: Path) -> list[tuple[str, bytes]]:
+    import meshio
+
+    tin = _tin()
+    mesh = meshio.Mesh(tin.points, [("triangle", tin.triangles)])
+    found = _ours(folder, "ours.msh")
+    for name, version, binary in (("b22.msh", "2.2", True), ("t41.msh", "4.1", False),
+                                  ("b41.msh", "4.1", True)):  # fmt: skip
+        meshio.gmsh.write(str(folder / name), mesh, fmt_version=version, binary=binary)
+        found.append((name, (folder / name).read_bytes()))
+    return found
+
+
+def _raster(folder: Path) -> list[tuple[str, bytes]]:
+    import rasterio
+    from rasterio.transform import Affine
+
+    place = {"transform": Affine(5, 0, CORNER[0], 0, -5, CORNER[1]), "crs": CRS, "count": 1}
+    cells = (np.arange(20 * 24).reshape(20, 24) * 7 % 50 + 300).astype("float32")
+    kinds = {
+        "plain.tif": ("GTiff", "float32", {}),
+        "tiled.tif": ("GTiff", "int16", {"tiled": True, "blockxsize": 16, "blockysize": 16,
+                                         "compress": "deflate", "predictor": 2, "nodata": 301}),
+        "lzw.tif": ("GTiff", "float32", {"compress": "lzw", "nodata": 301.0}),
+        "a.img": ("HFA", "float32", {}),
+        "a.bt": ("BT", "int16", {}),
+        "a.asc": ("AAIGrid", "float32", {}),
+        "a.rst": ("RST", "float32", {}),
+    }  # fmt: skip
+    for name, (driver, dtype, how) in kinds.items():
+        size = {"width": 24, "height": 20, "dtype": dtype}
+        with rasterio.open(folder / name, "w", driver=driver, **size, **place, **how) as dataset:
+            dataset.write(cells.astype(dtype), 1)
+    return [(name, (folder / name).read_bytes()) for name in kinds]
+
+
+def _vectors(folder: Path) -> list[tuple[str, bytes]]:
+    import pyogrio
+    import shapely
+
+    lines = [shapely.LineString(CORNER + np.array([[0, 0, 1], [9, k, 2], [20, 1, 3.5]]))
+             for k in range(4)]  # fmt: skip
+    drivers = {
+        ".gpkg": "GPKG",
+        ".shp": "ESRI Shapefile",
+        ".fgb": "FlatGeobuf",
+        ".dxf": "DXF",
+        ".geojson": "GeoJSON",
+        ".geojsons": "GeoJSONSeq",
+        ".gml": "GML",
+        ".kml": "KML",
+        ".gpx": "GPX",
+        ".mif": "MapInfo File",
+    }
+    for suffix, driver in drivers.items():
+        degrees = suffix in (".kml", ".gpx")
+        shapes = [shapely.force_2d(shapely.transform(line, lambda xyz: xyz * 1e-5)) if degrees
+                  else line for line in lines]  # fmt: skip
+        columns = (
+            {} if suffix in (".dxf", ".gpx") else {"name": list("abcd"), "priority": [0, 1, 2, 3]}
+        )
+        pyogrio.raw.write(
+            str(folder / f"a{suffix}"),
+            geometry=shapely.to_wkb(np.array(shapes, object)),
+            field_data=[
+                np.array(values, object if name == "name" else None)
+                for name, values in columns.items()
+            ],
+            fields=list(columns),
+            geometry_type="LineString" + (" Z" if shapes[0].has_z else ""),
+            crs="EPSG:4326" if degrees else CRS,
+            driver=driver,
+            **({"layer": "routes"} if suffix == ".gpx" else {}),
+        )
+    wkt = "\n".join(f'"{line.wkt}",{k}' for k, line in enumerate(lines))
+    found = [(f"a{suffix}", (folder / f"a{suffix}").read_bytes()) for suffix in drivers]
+    return [*found, ("a.csv", f"WKT,priority\n{wkt}\n".encode())]
+
+
+def _delimited(folder: Path) -> list[tuple[str, bytes]]:
+    rows = _tin().points.tolist()
+    csv = "id,easting,northing,elevation\n"
+    csv += "".join(f"{k},{x},{y},{z}\n" for k, (x, y, z) in enumerate(rows))
+    xyz = "".join(f"{x} {y} {z}\n" for x, y, z in rows)
+    comma = "x;y;z\n" + "".join(f"{x};{y};{z}\n".replace(".", ",") for x, y, z in rows)
+    texts = {"a.csv": csv, "a.xyz": xyz, "comma.txt": comma}
+    return [(name, text.encode()) for name, text in texts.items()]
+
+
+_MAKERS = {
+    "ply": _ply,
+    "obj": _obj,
+    "stl": _stl,
+    "vtk": _vtk,
+    "gmsh": _gmsh,
+    "raster": _raster,
+    "vectors": _vectors,
+    "delimited": _delimited,
+}

@@ -1,0 +1,207 @@
+"""Children that read: their answers, their limits, and what becomes of them."""
+
+import multiprocessing
+import os
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tinsmith.io import ReadError
+from tinsmith.io.isolated import Limits, limits_for, run_isolated, stream_isolated
+
+FILE = Path("some file")
+QUICK = Limits(1.0, 1 << 28)
+
+
+def run(name, limits=None, **arguments):
+    return run_isolated(f"isolated_functions:{name}", arguments, path=FILE, limits=limits)
+
+
+def refused(name, limits=QUICK, **arguments):
+    with pytest.raises(ReadError) as caught:
+        run(name, limits, **arguments)
+    text = str(caught.value)
+    assert text.isprintable()
+    assert text.endswith(".")
+    assert caught.value.path == FILE
+    return text
+
+
+def test_an_answer_comes_back_whatever_a_library_prints(capfd):
+    value, arrays = run("answer", text="a\n", number=1.5, nothing=None)
+    assert value == {"text": "a\n", "number": 1.5, "nothing": None}
+    assert arrays["numbers"].tolist() == [0, 1, 2]
+    assert arrays["none"].shape == (0, 2)
+    assert capfd.readouterr() == ("", "")
+
+
+def test_parts_come_one_by_one():
+    how = {"path": FILE, "limits": QUICK}
+    with stream_isolated("isolated_functions:parts", {"count": 5}, **how) as answers:
+        found = [(part.value, part.arrays["numbers"].sum()) for part in answers]
+    assert found == [(k, 200_000 * k) for k in range(5)]
+
+
+def test_an_answer_that_is_not_read_to_its_end_does_no_harm():
+
+    def leave_early():
+        how = {"path": FILE, "limits": QUICK}
+        with stream_isolated("isolated_functions:parts", {"count": 50}, **how) as answers:
+            next(answers)
+            raise KeyError
+
+    with pytest.raises(KeyError):
+        leave_early()
+    assert run("answer", a=1).value == {"a": 1}
+
+
+def test_a_sound_child_is_used_again_and_another_is_not():
+    first = run("process").value[0]
+    assert first != os.getpid()
+    assert run("process").value[0] == first
+    assert refused("refuse", text="No.") == "No."
+    assert run("process").value[0] == first
+    refused("fail", text="broken")
+    assert run("process").value[0] == first
+    refused("crash")
+    assert run("process").value[0] != first
+
+
+def test_errors_are_sentences_without_control_letters():
+    text = refused("fail", text="what\n\x1b[31m a library\x00 says " + "x" * 5000)
+    assert text.startswith(
+        "'some file' cannot be read, it may be damaged or truncated: what [31m a"
+    )
+    assert len(text) < 400
+
+
+@pytest.mark.parametrize("name", ["crash", "leave", "objects"])
+def test_a_crash_is_a_sentence(name):
+    text = refused(name)
+    assert "crashed" in text or "damaged" in text
+
+
+@pytest.mark.parametrize("name", ["spin", "wait"])
+def test_a_hang_ends_at_the_limit(name):
+    start = time.monotonic()
+    assert "after 1 second" in refused(name, Limits(1.0, 1 << 28))
+    assert time.monotonic() - start < 30
+
+
+@pytest.mark.parametrize("name", ["hoard", "hoard_slowly"])
+def test_memory_has_a_limit(name):
+    if not Path("/proc/self/statm").exists():
+        return  # only Linux lets a process limit itself; the limit of time holds everywhere
+    assert "0.2 GiB of memory" in refused(name, Limits(20.0, 1 << 28))
+
+
+def test_limits_grow_with_the_file():
+    small, large = limits_for(0), limits_for(100_000_000)
+    assert small.seconds == 5
+    assert large.seconds == 105
+    assert small.memory == 1 << 30
+    assert large.memory == (1 << 30) + 6_400_000_000
+    assert small.waiting_seconds == 30
+
+
+def test_threads_do_not_share_an_answer():
+    found = {}
+
+    def ask(k):
+        found[k] = [run("answer", k=k).value["k"] for _ in range(5)]
+
+    threads = [threading.Thread(target=ask, args=(k,)) for k in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert found == {k: [k] * 5 for k in range(4)}
+
+
+def _ask_after_fork(parent, answers):
+    answers.put((run("process").value[0] != parent, run("answer", k=7).value))
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork on this system")
+def test_a_forked_process_has_children_of_its_own():
+    ours = run("process").value[0]
+    context = multiprocessing.get_context("fork")
+    answers = context.Queue()
+    other = context.Process(target=_ask_after_fork, args=(ours, answers))
+    other.start()
+    assert answers.get(timeout=60) == (True, {"k": 7})
+    other.join()
+    assert run("process").value[0] == ours
+
+
+def test_modules_of_the_current_folder_are_not_loaded(tmp_path):
+    (tmp_path / "numpy.py").write_text("raise SystemExit('hostile')\n")
+    code = (
+        "import sys; sys.path.append(sys.argv[1]); sys.path.insert(0, '')\n"
+        "import os, numpy; os.chdir(sys.argv[2])\n"
+        "from pathlib import Path\n"
+        "from tinsmith.io.isolated import run_isolated\n"
+        "print(run_isolated('isolated_functions:answer', {'k': 1}, path=Path('f')).value)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code, str(Path(__file__).parent), tmp_path],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.stdout, done.stderr) == ("{'k': 1}\n", "")
+
+
+def test_the_child_ends_with_the_program(tmp_path):
+    code = (
+        "import sys; sys.path.append(sys.argv[1])\n"
+        "from pathlib import Path\n"
+        "from tinsmith.io.isolated import run_isolated\n"
+        "found = run_isolated('isolated_functions:process', {}, path=Path('f'))\n"
+        "print(found.value[0], flush=True)\n"
+        "import os; os.kill(os.getpid(), 9)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code, str(Path(__file__).parent)],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    child = int(done.stdout)
+    for _ in range(200):
+        try:
+            os.kill(child, 0)
+        except ProcessLookupError:
+            return
+        if (
+            Path(f"/proc/{child}/stat").exists()
+            and " Z " in Path(f"/proc/{child}/stat").read_text()
+        ):
+            return  # ended, and not yet collected by whoever inherited it
+        time.sleep(0.05)
+    pytest.fail("the child outlives the program")
+
+
+def test_numbers_keep_their_type_and_order():
+    from io import BytesIO
+
+    from tinsmith.io.isolated.answers import Answer, BrokenMessageError, receive, send
+
+    stream = BytesIO()
+    arrays = {"a": np.arange(6, dtype=">i2").reshape(2, 3), "b": np.array([np.nan, 1.0])}
+    send(stream, Answer({"x": [1, None]}, arrays))
+    whole = stream.getvalue()
+    value, found = receive(BytesIO(whole), most_bytes=1 << 20)
+    assert value == {"x": [1, None]}
+    assert found["a"].dtype == np.dtype(">i2")
+    assert np.array_equal(found["a"], arrays["a"])
+    for end in range(len(whole)):
+        with pytest.raises(BrokenMessageError):
+            receive(BytesIO(whole[:end]), most_bytes=1 << 20)
+    with pytest.raises(BrokenMessageError):
+        receive(BytesIO(whole), most_bytes=20)

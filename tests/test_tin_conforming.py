@@ -1,0 +1,165 @@
+"""Conforming TINs: every edge Delaunay, whatever the rounding of split points does to lines."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import tinsmith as ts
+from tinsmith.tin import conforming
+
+NONE = np.empty((0, 3))
+
+FAR_APART = [
+    [[0, 0, 0], [1e70, 1e70, 1]],
+    [[0, 1e-55, 0], [1e70, 1e69, 0]],
+    [[1e-55, 0, 0], [1e70, 9e69, 1]],
+]
+
+
+def require_conforming(tin, points=None, lines=()):
+    ts.check(tin, points=points, breaklines=lines, conforming=True).raise_if_failed()
+
+
+def faces(tin):
+    return {frozenset(map(tuple, rows)) for rows in tin.points[tin.triangles].tolist()}
+
+
+def test_split_point_on_another_segment():
+    """Rounded, the middle of one line lies on another one, which it splits."""
+    lines = [
+        [[1 / 6, 1.0, 5.0], [0.0, 0.0, -5.0]],
+        [[0.5, 0.75, -2.0], [0.0, 1.0, -1.0]],
+        [[0.0, 2 / 3], [0.0, 1.0], [0.5, 0.75]],
+    ]
+    require_conforming(ts.triangulate(NONE, breaklines=lines, conforming=True), lines=lines)
+
+
+def test_split_points_of_two_segments_at_one_place():
+    points = [
+        [499.9999999999999, 508.3333333333332, 0.0],
+        [508.0000000000001, 497.6666666666666, 2.0],
+    ]
+    line = [
+        [506.5904785324072, 509.7137127514814, -5.0],
+        [493.3333333333333, 495.00000000000006, 3.0],
+        [493.33333333333326, 494.9999999999999, -4.0],
+        [506.5904785324072, 509.7137127514814, 1.0],
+    ]
+    tin = ts.triangulate(points, breaklines=[line], conforming=True)
+    require_conforming(tin, points, [line])
+
+
+def test_split_point_at_a_vertex_that_is_there():
+    points = [
+        [11.999999999999996, 12.000000000000002, 1],
+        [12.000000000000007, 11.999999999999998, 0],
+    ]
+    line = [[11.999999999999995, 12.0, 1.0], [12.0, 12.000000000000004, 4.0]]
+    require_conforming(ts.triangulate(points, breaklines=[line], conforming=True), points, [line])
+
+
+def test_draped_rings_among_lines_of_ordinary_fractions():
+    lines = [
+        [[0.126266888929234, 0.36871122780773674], [0.8261743514597943, 0.4346365376320648]],
+        [
+            [0.0005686324696293488, 0.936975817109502, -1.0],
+            [0.66459299625531, 0.28648688849131454, -3.0],
+        ],
+        [
+            [0.40811083643408996, 0.15968274322058096, -4.0],
+            [0.8859344508505368, 0.936975817109502, -2.0],
+        ],
+    ]
+    rings = [
+        [
+            [0.2527565769925852, 0.4537765117057846],
+            [0.34737323524948444, 0.3134982398888508],
+            [0.6682504114790553, 0.4637664163984147],
+        ],
+        [
+            [0.44325154166008307, 0.5033165313640438],
+            [0.2219100870648562, 0.5033165313640438],
+            [0.66459299625531, 0.28648688849131454],
+        ],
+    ]
+    tin = ts.triangulate(NONE, breaklines=lines, boundary=rings, conforming=True)
+    require_conforming(tin, lines=lines)
+
+
+def test_split_point_on_a_segment_that_shares_its_other_half():
+    """A shore and a boundary ring run along each other but for a rounding."""
+    tin = ts.triangulate(
+        [[0.0, 1 / 3, -2.0]],
+        breaklines=[ts.Breakline([[0.1, 0.8], [0.06666666666666667, 0.1]], kind="soft")],
+        boundary=[[[0.0, 0.4], [0.0, 0.3], [0.8, 0.9]], [[0.2, 0.1], [0.7, 0.4], [0.0, 0.4]]],
+        water=[ts.Water([[0.0, 0.4], [0.2, 0.1], [0.0, 3.0]], 4.0)],
+        conforming=True,
+    )
+    require_conforming(tin)
+
+
+def test_magnitudes_far_apart_come_to_an_end():
+    tin = ts.triangulate(NONE, breaklines=FAR_APART, conforming=True)
+    require_conforming(tin, lines=FAR_APART)
+    assert len(tin.points) > 300
+
+
+def test_lines_that_would_need_too_many_vertices_are_refused(monkeypatch):
+    monkeypatch.setattr(conforming, "_LEAST_LIMIT", 200)
+    monkeypatch.setattr(conforming, "_NEW_PER_VERTEX", 1)
+    with pytest.raises(ts.LinesError, match=r"not conforming after 200 new vertices: \d+ segments"):
+        ts.triangulate(NONE, breaklines=FAR_APART, conforming=True)
+
+
+def test_rounds_are_limited(monkeypatch):
+    monkeypatch.setattr(conforming, "_MOST_ROUNDS", 3)
+    with pytest.raises(ts.LinesError, match="not conforming after 3 rounds of splitting"):
+        ts.triangulate(NONE, breaklines=FAR_APART, conforming=True)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_same_for_any_order_of_rows_and_direction_of_lines(seed):
+    """The middle of a segment is the same from both ends, whatever their numbers."""
+    rng = np.random.default_rng(seed)
+    points = np.c_[rng.random((20, 2)) * 10 / 3, rng.integers(0, 9, 20)]
+    lines = [np.c_[rng.random((3, 2)) * 10 / 3, rng.integers(0, 9, 3)] for _ in range(3)]
+    tin = ts.triangulate(points, breaklines=lines, conforming=True)
+    other = ts.triangulate(
+        points[rng.permutation(20)], breaklines=[line[::-1] for line in lines], conforming=True
+    )
+    assert len(tin.points) > len(ts.triangulate(points, breaklines=lines).points)
+    assert faces(tin) == faces(other)
+
+
+def test_elevation_where_a_line_folds_back_on_itself_has_no_direction():
+    line = [
+        [0.8177492862984986, 2.7985726447850454, 1.0],
+        [0.7009599389946548, 2.4131677986823608, -5.0],
+        [0.746337581631955, 2.562914019385451, -5.0],
+    ]
+    point = [[32578.0669116157, 110859.35563720524, -3.0]]
+    tins = [ts.triangulate(point, breaklines=[way], conforming=True) for way in (line, line[::-1])]
+    assert faces(tins[0]) == faces(tins[1])
+
+
+def test_vertices_made_in_water_and_lines_keep_their_numbers():
+    """Points in water leave gaps in the numbers, which splitting closes."""
+    rng = np.random.default_rng(1)
+    points = np.c_[rng.random((60, 2)) * 10, rng.random(60)]
+    pond = ts.Water([[3, 3], [7, 3.1], [6.9, 7], [3.1, 6.9]], 0.5)
+    line = [[0, 1, 1], [10, 1.3, 2]]
+    tin = ts.triangulate(points, breaklines=[line], water=[pond], conforming=True)
+    require_conforming(tin, ts.Survey(points=points, water=[pond]), [line])
+    assert (tin.vertex_of < 0).any()
+    np.testing.assert_allclose(tin.interpolate([[5.0, 5.0]]), 0.5)
+
+
+def test_check_asks_constrained_edges_too_if_they_are_to_conform():
+    points = [[0, 0, 1], [10, 0, 1], [5, 1, 1], [5, -1, 1]]
+    plain = ts.triangulate(points, breaklines=[[[0, 0, 1], [10, 0, 1]]])
+    assert ts.check(plain).ok
+    (problem,) = ts.check(plain, conforming=True).problems
+    assert problem.kind == "delaunay"
+    assert problem.count == 1
+    assert ts.check(plain, level=2, conforming=True).ok

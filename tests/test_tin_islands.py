@@ -1,0 +1,122 @@
+"""Polygons with islands: what lies on an island stays, however the polygon is given."""
+
+import numpy as np
+import pytest
+import shapely
+
+import tinsmith as ts
+
+SIDE = np.arange(0.0, 11.0)
+GRID = np.array([[x, y, x / 10] for x in SIDE for y in SIDE])
+OUTER, INNER = [[2, 2], [8, 2], [8, 8], [2, 8]], [[4, 4], [6, 4], [6, 6], [4, 6]]
+DONUT = shapely.Polygon(OUTER, [INNER])
+NEST = shapely.MultiPolygon([DONUT, shapely.box(4.5, 4.5, 5.5, 5.5)])
+
+
+class Interface:
+    """Something with polygons that is not of shapely."""
+
+    __geo_interface__ = {  # noqa: RUF012 - as libraries have it
+        "type": "FeatureCollection",
+        "features": [{"type": "Feature", "geometry": shapely.geometry.mapping(DONUT)}],
+    }
+
+
+FORMS = {
+    "polygon": DONUT,
+    "list of polygons": [DONUT],
+    "multipolygon": [shapely.MultiPolygon([DONUT])],
+    "collection": [shapely.GeometryCollection([DONUT])],
+    "geo interface": Interface(),
+    "rings": [[OUTER, INNER]],
+    "rings run the same way": [[OUTER[::-1], INNER[::-1]]],
+    "closed rings": [[[*OUTER, OUTER[0]], [*INNER, INNER[0]]]],
+    "tuples": [(tuple(map(tuple, OUTER)), tuple(map(tuple, INNER)))],
+    "arrays": [[np.array(OUTER, float), np.array(INNER, float)]],
+    "one array": [np.array([OUTER, INNER], float)],
+}
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_the_island_of_a_hole_stays(form):
+    tin = ts.triangulate(GRID, holes=FORMS[form])
+    assert tin.area == pytest.approx(100 - 32, rel=1e-12)
+    assert np.isfinite(tin.interpolate([[5.0, 5.0]])).all()
+    assert np.isnan(tin.interpolate([[3.0, 5.0]])).all()
+    assert ts.check(tin).ok
+    assert tin.lines.kinds == ("hole", "hole")
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_the_island_of_an_erased_part_stays(form):
+    tin = ts.triangulate(GRID, erase=FORMS[form])
+    inside = shapely.contains(DONUT, shapely.points(GRID[:, :2]))
+    np.testing.assert_array_equal(tin.vertex_of < 0, inside)
+    assert tin.report.to_dict()["left_out"] == {"erased": np.flatnonzero(inside).tolist()}
+    assert tin.area == 100
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_the_island_of_a_boundary_is_cut_out(form):
+    assert ts.triangulate(GRID, boundary=FORMS[form]).area == pytest.approx(32, rel=1e-12)
+
+
+def test_rings_alone_are_regions_of_their_own():
+    assert ts.triangulate(GRID, holes=[OUTER, INNER]).area == pytest.approx(100 - 36, rel=1e-12)
+    erased = ts.triangulate(GRID, erase=[OUTER, INNER]).vertex_of < 0
+    np.testing.assert_array_equal(
+        erased, shapely.contains(shapely.Polygon(OUTER), shapely.points(GRID[:, :2]))
+    )
+
+
+def test_a_polygon_on_an_island_is_cut_too():
+    assert ts.triangulate(GRID, holes=[NEST]).area == pytest.approx(100 - 32 - 1, rel=1e-12)
+    assert ts.triangulate(GRID, boundary=[NEST]).area == pytest.approx(32 + 1, rel=1e-12)
+    rings = [OUTER, INNER, [[4.5, 4.5], [5.5, 4.5], [5.5, 5.5], [4.5, 5.5]]]
+    assert ts.triangulate(GRID, holes=[rings]).area == pytest.approx(100 - 32 - 1, rel=1e-12)
+
+
+def test_an_island_may_touch_the_ring_around_it():
+    corner = [[2, 2], [5, 4], [4, 5]]
+    tin = ts.triangulate(GRID, holes=[[OUTER, corner]])
+    assert tin.area == pytest.approx(100 - 36 + shapely.Polygon(corner).area, rel=1e-12)
+    side = [[2, 4], [4, 4], [4, 6], [2, 6]]
+    tin = ts.triangulate(GRID, holes=[[OUTER, side]])
+    assert tin.area == pytest.approx(100 - 36 + 4, rel=1e-12)
+    assert ts.check(tin).ok
+
+
+def test_an_edited_tin_keeps_its_islands():
+    tin = ts.triangulate(GRID, holes=[DONUT])
+    tin.insert([[5.2, 5.1, 3.0], [3.0, 5.3, 3.0]])
+    assert tin.area == pytest.approx(100 - 32, rel=1e-12)
+    assert tin.interpolate([[5.2, 5.1]]) == pytest.approx(3.0)
+
+
+def test_a_survey_carries_polygons():
+    survey = ts.Survey(points=GRID, holes=[DONUT], erase=[[OUTER, INNER]])
+    tin = ts.triangulate(survey)
+    assert tin.area == pytest.approx(100 - 32, rel=1e-12)
+    assert ts.check(tin, points=survey).ok
+
+
+def test_a_hole_that_cuts_nothing_is_named_by_its_number():
+    far = shapely.box(20, 20, 30, 30)
+    with pytest.raises(ts.LinesError, match="Hole 1 lies outside") as caught:
+        ts.triangulate(GRID, holes=[DONUT, far])
+    assert caught.value.lines == (1,)
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ([shapely.Point(1, 1)], "a Point is no polygon"),
+        ([shapely.LineString([[0, 0], [1, 1]])], "a LineString is no polygon"),
+        ([[]], "has shape"),
+        ([[OUTER, [[1, 1], [2, 2]]]], "hole ring 1 has shape"),
+        ([["a", "b"]], "no table of real numbers"),
+    ],
+)
+def test_what_is_no_polygon_is_refused(given, words):
+    with pytest.raises(ts.LinesError, match=f"(?i){words}"):
+        ts.triangulate(GRID, holes=given)

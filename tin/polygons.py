@@ -1,0 +1,98 @@
+"""Polygons as rings: a ring alone, or several of which the inner ones leave islands."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .errors import LinesError
+from .lines import as_ring
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["rings_of"]
+
+
+def rings_of(regions: Sequence[Any], what: str) -> list[list[NDArray[np.float64]]]:
+    """Return the rings of regions, one list for each.
+
+    Parameters
+    ----------
+    regions : sequence
+        Of each: a ring, (k, 2) or (k, 3); a sequence of rings; or an object that has a
+        ``__geo_interface__`` with polygons, such as one of shapely, every polygon of which is a
+        region.
+    what : str
+        What the rings are, for sentences.
+
+    Raises
+    ------
+    LinesError
+        For anything else.
+
+    Examples
+    --------
+    >>> [len(rings) for rings in rings_of([[[0, 0], [1, 0], [0, 1]]], "hole")]
+    [1]
+    """
+    number = 0
+    found = []
+    for region in regions:
+        for rings in _as_rings(region, what):
+            labels = [f"{what} ring {number + i}" for i in range(len(rings))]
+            found.append([as_ring(*one) for one in zip(rings, labels, strict=True)])
+            number += len(rings)
+    return found
+
+
+def _as_rings(region: Any, what: str) -> Iterator[Sequence[Any]]:
+    """Walk the regions that something given as one holds, each as a sequence of rings."""
+    interface = getattr(region, "__geo_interface__", None)
+    if interface is not None:
+        yield from _of_geometry(interface, what)
+    elif _is_sequence_of_rings(region):
+        if len(region) == 0:
+            raise LinesError(f"Invalid {what}: a polygon without a ring.")
+        yield region
+    else:
+        yield [region]
+
+
+def _is_sequence_of_rings(region: Any) -> bool:
+    """Whether there is one more level than in a ring: rings, of vertices, of numbers."""
+    if isinstance(region, np.ndarray) and region.dtype != object:
+        return region.ndim == 3
+    first = region
+    for _ in range(2):
+        if not isinstance(first, Sequence | np.ndarray) or isinstance(first, str) or not len(first):
+            return False
+        first = first[0]
+    return isinstance(first, Sequence | np.ndarray) and np.ndim(first) == 1
+
+
+def _of_geometry(given: Mapping[str, Any], what: str) -> Iterator[Sequence[Any]]:
+    """Take collections apart; an object may be a feature or several."""
+    pending = [given]
+    while pending:
+        geometry = pending.pop(0) or {"type": "nothing"}
+        kind = geometry["type"]
+        if kind == "Polygon":
+            if len(geometry["coordinates"]):
+                yield geometry["coordinates"]
+        elif kind == "MultiPolygon":
+            yield from geometry["coordinates"]
+        elif kind in ("LinearRing", "LineString") and _is_closed(geometry["coordinates"]):
+            yield [geometry["coordinates"]]
+        elif kind == "Feature":
+            pending.insert(0, geometry["geometry"])
+        elif kind in ("FeatureCollection", "GeometryCollection"):
+            pending[:0] = geometry["features" if kind[0] == "F" else "geometries"]
+        else:
+            raise LinesError(f"Invalid {what}: a {kind} is no polygon.")
+
+
+def _is_closed(coords: Sequence[Any]) -> bool:
+    return len(coords) > 3 and tuple(coords[0]) == tuple(coords[-1])
