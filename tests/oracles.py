@@ -31,6 +31,12 @@ def orientation(a: Place, b: Place, c: Place) -> int:
     return sign((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
 
 
+def are_collinear(points: Iterable[Sequence[float]]) -> bool:
+    """Tell if the points are too few, or all on one line: what no TIN can be made of."""
+    places = sorted({place(p) for p in points})
+    return not places or not any(orientation(places[0], places[-1], p) for p in places)
+
+
 def in_circle(a: Place, b: Place, c: Place, d: Place) -> int:
     """+1 if d lies inside the circle through counter-clockwise a, b, c, by the full determinant.
 

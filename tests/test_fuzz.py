@@ -15,7 +15,7 @@ from fuzz import coordinates, minimise
 TESTS = Path(__file__).parent
 
 
-def fuzz(*arguments: object) -> subprocess.CompletedProcess[str]:
+def fuzz(*arguments: object, timeout: float = 280) -> subprocess.CompletedProcess[str]:
     """Run the command line in a process of its own, as `make fuzz` does."""
     command = [sys.executable, "-m", "fuzz", "--jobs", "1", *map(str, arguments)]
     return subprocess.run(
@@ -23,7 +23,7 @@ def fuzz(*arguments: object) -> subprocess.CompletedProcess[str]:
         env={**os.environ, "PYTHONPATH": str(TESTS)},
         capture_output=True,
         text=True,
-        timeout=300,
+        timeout=timeout,
         check=False,
     )
 
@@ -97,6 +97,21 @@ def test_an_unknown_campaign_is_refused():
     done = fuzz("--campaign", "nonesuch")
     assert done.returncode == 1
     assert "no campaign nonesuch; there are" in done.stderr
+
+
+# ------------------------------------------------------------------ real campaigns
+
+
+def test_a_slice_of_every_campaign_finds_nothing(tmp_path):
+    done = fuzz("--cases", 40, "--seed", 20, "--folder", tmp_path)
+    assert done.returncode == 0, done.stdout
+
+
+@pytest.mark.proof
+@pytest.mark.timeout(3600)
+def test_a_longer_slice_of_every_campaign_finds_nothing(tmp_path):
+    done = fuzz("--cases", 1000, "--seed", 21, "--folder", tmp_path, timeout=3500)
+    assert done.returncode == 0, done.stdout
 
 
 # ------------------------------------------------------------------------ its parts

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 
@@ -90,6 +92,10 @@ def test_degrees_are_told_apart():
         (180.0, -1.0, 32701),
         (0.0, 0.0, 32631),
         (10.0, 88.0, 32661),
+        (0.0, 84.0, 32661),
+        (0.0, math.nextafter(84.0, 0.0), 32631),
+        (0.0, -80.0, 32731),
+        (0.0, math.nextafter(-80.0, -90.0), 32761),
         (10.0, -88.0, 32761),
     ],
 )

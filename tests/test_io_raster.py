@@ -178,6 +178,28 @@ def test_window_in_coordinates_holds_the_centres_within(raster, transform):
     assert np.allclose(survey.points, everything[inside], rtol=0, atol=1e-9)
 
 
+@pytest.mark.parametrize("transform", [UPRIGHT, SOUTH_UP])
+def test_centres_on_the_bounds_of_a_window_are_within(raster, transform):
+    array = heights(20, 20)
+    everything = points_by_loop(array, transform)
+    x, y = (np.unique(everything[:, k]) for k in range(2))
+    bounds = ts.Bounds(x[4], y[5], x[9], y[12])
+    path = raster(array, transform=transform)
+    assert len(read(path, window=bounds).points) == 6 * 8
+    for k, value in enumerate(
+        (
+            np.nextafter(x[4], x[5]),
+            np.nextafter(y[5], y[6]),
+            np.nextafter(x[9], x[8]),
+            np.nextafter(y[12], y[11]),
+        )  # fmt: skip
+    ):
+        limits = [bounds.xmin, bounds.ymin, bounds.xmax, bounds.ymax]
+        limits[k] = value
+        survey = read(path, window=ts.Bounds(*limits))
+        assert len(survey.points) == (5 * 8 if k in (0, 2) else 6 * 7)
+
+
 @pytest.mark.parametrize(
     "window",
     [

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 from dataclasses import FrozenInstanceError, replace
 
@@ -341,6 +342,23 @@ def test_constrained_boundary_may_have_any_shape():
         assert check(bound).ok
 
 
+@pytest.mark.parametrize("n_constrained", [0, 1, 2])
+def test_a_reflex_corner_needs_both_its_edges_constrained(n_constrained):
+    """An arrow-head: one constrained side does not excuse the other, on either side."""
+    points = [[0, 0, 0], [4, -4, 0], [2, 0, 0], [4, 4, 0]]
+    triangles = [[0, 1, 2], [0, 2, 3]]
+    free = TIN.from_triangles(points, triangles)
+    outer = [(t, k) for t in range(2) for k in range(3) if free.neighbors[t, k] < 0]
+    at_notch = [(t, k) for t, k in outer if 2 in np.delete(triangles[t], k)]
+    assert len(at_notch) == 2
+    for chosen in itertools.combinations(at_notch, n_constrained):
+        constrained = np.zeros((2, 3), bool)
+        for t, k in {*outer, *chosen} - (set(at_notch) - set(chosen)):
+            constrained[t, k] = True
+        result = check(TIN.from_triangles(points, triangles, constrained=constrained))
+        assert kinds(result) == (set() if n_constrained == 2 else {"hull"})
+
+
 # ------------------------------------------------------------------ level 3
 
 
@@ -392,7 +410,8 @@ def test_verdict_is_that_of_brute_force_after_any_flips(xy, choices):
     try:
         tin = ts.triangulate([(x, y, 0) for x, y in xy])
     except PointsError:
-        return  # all collinear
+        assert oracles.are_collinear(xy)
+        return
     for choice in choices:
         edges = flippable(tin)
         if edges:

@@ -184,11 +184,21 @@ def squared_distance(p, q):
     return (px - qx) ** 2 + (py - qy) ** 2
 
 
+def kept_by_definition(rows, snap):
+    """Places in lexicographic order, each if no earlier one that is kept is within the snap."""
+    kept, limit = [], Fraction(snap) ** 2
+    for row in sorted({row[:2] for row in rows}):
+        if all(squared_distance(row, other) > limit for other in kept):
+            kept.append(row)
+    return kept
+
+
 def snapped_or_none(rows, snap):
     try:
         return ts.triangulate(rows, snap=snap)
     except ts.PointsError:
-        return None  # too few places are left
+        assert oracles.are_collinear(kept_by_definition(rows, snap))
+        return None
 
 
 eighths = st.integers(0, 40).map(lambda value: value / 8)
@@ -207,8 +217,8 @@ def test_snap_holds_for_every_pair(rows, snap):
         assert squared_distance(p, q) > limit
     for row, vertex in zip(rows, tin.vertex_of, strict=True):
         assert squared_distance(row, tin.points[vertex]) <= limit
-    given_places = {row[:2] for row in rows}
-    assert all(tuple(p) in given_places for p in tin.points[:, :2].tolist())
+    kept = kept_by_definition(rows, snap)
+    assert sorted(tuple(p) for p in tin.points[:, :2].tolist()) == kept
     assert check(tin, points=rows).ok
 
 
@@ -296,3 +306,13 @@ def test_error_policy_with_snap_or_lines_and_no_duplicates(options):
     assert len(tin.points) == 4
     with pytest.raises(ts.PointsError, match="1 of 5 rows repeat the place"):
         ts.triangulate([*points, [5, 5, 2]], duplicates="error", **options)
+
+
+@pytest.mark.parametrize(
+    ("heights", "mean"),
+    [([1.7e308, -1.7e308], 0.0), ([1.7e308] * 5, 1.7e308), ([1e308, 1.5e308, 1.7e308], 1.4e308)],
+)
+def test_mean_of_the_largest_elevations_does_not_overflow(heights, mean):
+    corners = [[4.0, 0.0, 1.0], [0.0, 4.0, 2.0]]
+    tin = ts.triangulate([*corners, *([0.0, 0.0, z] for z in heights)])
+    assert tin.points[2, 2] == pytest.approx(mean, rel=1e-15)

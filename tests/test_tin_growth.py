@@ -160,7 +160,8 @@ def test_moved_and_scaled_points_give_the_same_triangles(xy, exponent, shift):
     try:
         wanted = grown(xy)
     except ts.PointsError:
-        return  # all collinear
+        assert oracles.are_collinear(xy)
+        return
     for moved in (xy * 2.0**exponent, xy + shift):
         found = grown(moved)
         np.testing.assert_array_equal(
@@ -175,7 +176,8 @@ def test_turned_and_mirrored_points_give_valid_tins(xy):
     try:
         n_triangles = len(grown(xy).triangles)
     except ts.PointsError:
-        return  # all collinear
+        assert oracles.are_collinear(xy)
+        return
     for turned in (xy[:, ::-1] * [-1, 1], -xy, xy * [-1, 1], xy[:, ::-1]):
         assert len(require_sound(turned).triangles) == n_triangles
 

@@ -146,10 +146,9 @@ def test_line_on_points_takes_them_in_and_reports_their_heights():
     (chain,) = tin.lines.chains()
     assert tin.points[chain, :2].tolist() == [[0, 0], [3, 3], [5, 5], [10, 10]]
     assert tin.points[chain, 2].tolist() == [1, 2, 7, 1]
-    assert [(one["height"], one["taken"]) for one in tin.report.to_dict()["overruled"]] == [
-        (1, 2),
-        (1, 7),
-    ] or sorted(one["taken"] for one in tin.report.to_dict()["overruled"]) == [2, 7]
+    overruled = tin.report.to_dict()["overruled"]
+    told = sorted((one["of"], round(one["height"], 9), one["taken"]) for one in overruled)
+    assert told == [("breakline 0", 1, 2), ("breakline 0", 1, 7)]
 
 
 def test_vertex_of_a_line_on_a_point_gives_it_its_height():
@@ -414,4 +413,31 @@ def test_boundary_across_the_rim_leaves_no_sliver(seed):
     ring = [[20, 20], [110, 20], [110, 110], [20, 110]]
     tin = ts.triangulate(points, boundary=[ring], breaklines=[rng.random((3, 2)) * 140 - 20])
     assert tin.area == pytest.approx(hull_of(points).intersection(polygon(ring)).area, rel=1e-9)
+    assert ts.check(tin).ok
+
+
+# ------------------------------------------------------------- at the very limits
+
+
+@pytest.mark.parametrize("trim", ["perimeter", "everywhere"])
+def test_an_edge_exactly_as_long_as_the_longest_allowed_stays(trim):
+    """Four 3-4-5 triangles: the edges of 4 are at the limit, not beyond it."""
+    points = [[0, 0, 1], [4, 0, 1], [4, 6, 1], [0, 6, 1], [2, 3, 2]]
+    whole = ts.triangulate(points)
+    assert len(whole.triangles) == 4
+    assert len(ts.triangulate(points, max_edge=6.0, trim=trim).triangles) == 4
+    assert len(ts.triangulate(points, max_edge=4.0, trim=trim).triangles) == 2
+    with pytest.raises(ts.TinsmithError):
+        ts.triangulate(points, max_edge=np.nextafter(4.0, 0), trim=trim)
+
+
+def test_corners_of_a_boundary_within_water_have_its_level():
+    pond = [[30, 30], [70, 30], [70, 70], [30, 70]]
+    ring = [[5, 5], [50, 50], [95, 5], [95, 95], [5, 95]]
+    tin = ts.triangulate(terrain(), boundary=[ring], water=[ts.Water(pond, 2.5)])
+    xy = tin.points[:, :2]
+    (corner,) = np.flatnonzero((xy == (50, 50)).all(axis=1))
+    assert tin.points[corner, 2] == 2.5
+    inside = ((xy >= 30) & (xy <= 70)).all(axis=1)
+    assert (tin.points[inside, 2] == 2.5).all()
     assert ts.check(tin).ok

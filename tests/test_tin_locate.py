@@ -192,7 +192,8 @@ def test_places_on_a_small_grid(points, queries, frame):
     xyz = [(origin + step * x, origin + step * y, x - y) for x, y in points]
     try:
         tin = ts.triangulate(xyz)
-    except PointsError:  # collinear
+    except PointsError:
+        assert oracles.are_collinear(xyz)
         return
     xy = [(origin + step * x / 2, origin + step * y / 2) for x, y in queries]
     np.testing.assert_array_equal(tin.locate(xy), locate_by_definition(tin, xy))
@@ -424,3 +425,27 @@ def test_threads_share_one_surface():
     with ThreadPoolExecutor(4) as pool:
         for found in pool.map(tin.locate, [xy] * 8):
             np.testing.assert_array_equal(found, expected)
+
+
+def test_elevations_in_needles_stay_within_those_of_their_corners():
+    """Rounded weights must not lift a place above the highest corner of its triangle."""
+    rng = np.random.default_rng(11)
+    n_inside = 0
+    for _ in range(300):
+        base = rng.random(2) * 1e5 if rng.random() < 0.5 else rng.random(2)
+        way = rng.random(2) * 10.0 ** rng.integers(-3, 3)
+        far = base + way
+        third = base + way * rng.random() + rng.integers(-9, 10, 2) * np.spacing(base)
+        level = rng.choice([0.1, 1 / 3, 318.37, 1e4 / 7])
+        elevations = level + rng.integers(0, 2, 3) * rng.choice([0.0, 0.1, 1e-13])
+        try:
+            tin = ts.triangulate(np.column_stack([[base, far, third], elevations]))
+        except PointsError:
+            continue
+        weights = rng.dirichlet([0.3] * 3, 200)
+        found = tin.interpolate(weights @ tin.points[:, :2])
+        found = found[np.isfinite(found)]
+        n_inside += len(found)
+        assert (found >= elevations.min()).all()
+        assert (found <= elevations.max()).all()
+    assert n_inside > 1000

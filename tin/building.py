@@ -85,14 +85,20 @@ class _Ground(NamedTuple):
     has_rim: bool
     notes: list[str]
 
+    def without_rim(self) -> _Ground:
+        """Return the same lines without the parts of the rim."""
+        return self._replace(lines=self.lines.chosen(self.lines.sources >= 0), has_rim=False)
+
 
 def _with_lines(recipe: Recipe) -> TIN:
     is_erased = _erased(recipe)
     rows = np.flatnonzero(~is_erased)
-    xyz = recipe.points[rows]
-    ground = _draped(xyz, recipe)
-    made = draft(xyz, ground.lines, recipe.options, conforming=recipe.conforming)
-    model = _model(recipe, ground, made, rows)
+    ground = _draped(rows, recipe)
+    made, model = _made(recipe, ground, rows)
+    has_rings = bool(recipe.boundary or recipe.extent or recipe.holes)
+    if not has_rings and model.loses_vertices_at_rim(made.surface):
+        ground = ground.without_rim()
+        made, model = _made(recipe, ground, rows)
     surface, number_of = model.surface(made.surface)
     vertex_of = _numbered(model.vertex_of, number_of)
     account = _account(recipe, made, number_of, is_erased, vertex_of, ground)
@@ -113,6 +119,11 @@ def _with_lines(recipe: Recipe) -> TIN:
         crs=recipe.crs,
         inputs=model,
     )
+
+
+def _made(recipe: Recipe, ground: _Ground, rows: NDArray[np.int64]) -> tuple[Draft, Model]:
+    made = draft(recipe.points, rows, ground.lines, recipe.options, conforming=recipe.conforming)
+    return made, _model(recipe, ground, made, rows)
 
 
 def _model(recipe: Recipe, ground: _Ground, made: Draft, rows: NDArray[np.int64]) -> Model:
@@ -166,19 +177,22 @@ def _numbered(vertices: NDArray[np.int32], number_of: NDArray[np.int32]) -> NDAr
 
 
 def _erased(recipe: Recipe) -> NDArray[np.bool_]:
+    """Tell which rows are left out before anything is built: masked or erased ones."""
     is_erased = np.zeros(len(recipe.points), np.bool_)
+    if recipe.is_masked is not None:
+        is_erased |= recipe.is_masked
     for rings in recipe.erase:
         is_erased |= in_rings(recipe.points[:, :2], rings) > 0
     return is_erased
 
 
-def _draped(xyz: NDArray[np.float64], recipe: Recipe) -> _Ground:
+def _draped(rows: NDArray[np.int64], recipe: Recipe) -> _Ground:
     """Give all lines heights: draped ones from the surface of everything else."""
     lines = recipe.lines
     is_draped = lines.is_draped
     if not is_draped.any():
         return _Ground(lines, False, [])
-    base = draft(xyz, lines.chosen(~is_draped), recipe.options)
+    base = draft(recipe.points, rows, lines.chosen(~is_draped), recipe.options)
     laid = drape(base.surface, lines.chosen(is_draped), threads=recipe.options.threads)
     notes = []
     if laid.n_cut:
@@ -265,4 +279,6 @@ def _reasons(
     drowned[np.flatnonzero(~is_erased)[made.vertex_of < 0]] = True
     why[drowned[rows]] = LEFT_OUT.index("in water")
     why[is_erased[rows]] = LEFT_OUT.index("erased")
+    if recipe.is_masked is not None:
+        why[recipe.is_masked[rows]] = LEFT_OUT.index("masked")
     return why

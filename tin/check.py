@@ -37,7 +37,8 @@ from .check_shape import check_shape, has_sound_rim
 from .errors import CheckError, PointsError
 from .findings import Findings, Problem
 from .line_set import as_sequence, gather_lines
-from .points import as_points
+from .options import is_whole_number, shown
+from .points import as_masked_points
 from .survey import Survey
 
 if TYPE_CHECKING:
@@ -170,8 +171,8 @@ def check(
     >>> check(triangulate([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8], [2, 1, 9]]))
     <CheckResult: level 3, ok>
     """
-    if level not in LEVELS:
-        raise PointsError(f"Invalid level {level!r}: 1, 2 or 3 is needed.")
+    if not (is_whole_number(level) and level in LEVELS):
+        raise PointsError(f"Invalid level {shown(level)}: 1, 2 or 3 is needed.")
     rows, lines = _rows_of(points), _lines_of(points, breaklines)
     found = Findings()
     if check_arrays(tin, found) and check_connections(tin, found):
@@ -191,7 +192,7 @@ def check(
 def _rows_of(points: Survey | ArrayLike | None) -> NDArray[np.float64] | None:
     if points is None:
         return None
-    return as_points(points.points if isinstance(points, Survey) else points)
+    return as_masked_points(points.points if isinstance(points, Survey) else points).values
 
 
 def _lines_of(

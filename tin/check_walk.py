@@ -163,13 +163,15 @@ class _Walker:
         return int(fits[np.argmax(worst <= worst.min() + self._unit)])
 
     def _deviation(self, rows: list[int], at: int, chain: range) -> float:
-        """Return how far a chain leaves its line if it begins behind vertex ``at``."""
+        """Return how far a chain leaves its line, or goes back, if it begins behind ``at``."""
         _, between = self._run(rows, at, chain)
         if not between:
             return 0.0
         positions, before, after = np.array(between).T
         places = np.array([self._places[position] for position in positions])
-        return float(distance(places, self._xy[before], self._xy[after]).max())
+        a, b = self._xy[before], self._xy[after]
+        back = -np.diff(_along(places, a, b))[np.diff(before) == 0]
+        return float(max(distance(places, a, b).max(), back.max(initial=0.0)))
 
     def _begins_with(self, rows: list[int], chain: range) -> bool:
         """Tell if a chain begins where its line does, and in the same direction."""

@@ -77,9 +77,14 @@ class _Merged(NamedTuple):
 
 
 def draft(
-    xyz: NDArray[np.float64], lines: LineSet, options: LineOptions, *, conforming: bool = False
+    points: NDArray[np.float64],
+    rows: NDArray[np.int64],
+    lines: LineSet,
+    options: LineOptions,
+    *,
+    conforming: bool = False,
 ) -> Draft:
-    """Triangulate points and lines; all lines have heights.
+    """Triangulate rows of points, and lines; all lines have heights.
 
     Raises
     ------
@@ -88,7 +93,8 @@ def draft(
     LinesError
         If lines cross that must not.
     """
-    merged = _merge(xyz, lines, options)
+    xyz = points[rows]
+    merged = _merge(xyz, rows, lines, options)
     mesh, noded = mesh_of_growth(merged.points, merged.growth), untouched(merged.chains)
     is_simple = options.snap == 0.0 and not (lines.priorities == ABOVE_ALL).any()
     is_forced = is_simple and _is_forced(mesh, _as_pieces(noded.chains))
@@ -152,7 +158,9 @@ def _as_pieces(chains: Chains) -> Pieces:
 # ------------------------------------------------------------------------- rows
 
 
-def _merge(xyz: NDArray[np.float64], lines: LineSet, options: LineOptions) -> _Merged:
+def _merge(
+    xyz: NDArray[np.float64], rows_of: NDArray[np.int64], lines: LineSet, options: LineOptions
+) -> _Merged:
     """Make one vertex of all rows at one place; a line's height counts more than a point's."""
     n = len(xyz)
     if n + len(lines.xy) < 3:
@@ -169,7 +177,7 @@ def _merge(xyz: NDArray[np.float64], lines: LineSet, options: LineOptions) -> _M
     is_kept = place == own
     vertex_of = (np.cumsum(is_kept, dtype=np.int32) - np.int32(1))[place]
     points = rows[is_kept]
-    merges = _merge_points(xyz, vertex_of[:n], points, options.duplicates)
+    merges = _merge_points(xyz, rows_of, vertex_of[:n], points, options.duplicates)
     overruled = _line_heights(points, vertex_of, n, lines)
     chains = Chains(vertex_of[n:], lines.offsets.astype(np.int32), lines.heights)
     return _Merged(points, vertex_of, chains, growth, merges, overruled)
@@ -177,6 +185,7 @@ def _merge(xyz: NDArray[np.float64], lines: LineSet, options: LineOptions) -> _M
 
 def _merge_points(
     xyz: NDArray[np.float64],
+    rows_of: NDArray[np.int64],
     vertex_of: NDArray[np.int32],
     points: NDArray[np.float64],
     policy: DuplicatePolicy,
@@ -185,7 +194,7 @@ def _merge_points(
     n = len(xyz)
     first = np.full(len(points), n, np.int32)
     np.minimum.at(first, vertex_of, np.arange(n, dtype=np.int32))
-    merged = merge_rows(xyz, first[vertex_of], policy)
+    merged = merge_rows(xyz, first[vertex_of], policy, rows_of)
     of_vertex = np.flatnonzero(first < n)
     of_vertex = of_vertex[np.argsort(first[of_vertex], kind="stable")].astype(np.int32)
     points[:, 2] = np.nan
@@ -195,6 +204,7 @@ def _merge_points(
         account["merged_vertices"] = of_vertex[account["merged_vertices"]]
         moved = xyz[account["merged_rows"], :2] - points[vertex_of[account["merged_rows"]], :2]
         account["merged_shifts"] = np.hypot(*moved.T)
+        account["merged_rows"] = rows_of[account["merged_rows"]].astype(np.int32)
     return account
 
 

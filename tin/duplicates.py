@@ -26,7 +26,10 @@ class Merged(NamedTuple):
 
 
 def merge_rows(
-    xyz: NDArray[np.float64], kept_row: NDArray[np.int32] | None, policy: DuplicatePolicy
+    xyz: NDArray[np.float64],
+    kept_row: NDArray[np.int32] | None,
+    policy: DuplicatePolicy,
+    rows_of: NDArray[np.int64] | None = None,
 ) -> Merged:
     """Merge rows that share a kept row.
 
@@ -38,6 +41,8 @@ def merge_rows(
     policy : DuplicatePolicy
         How the elevation of a merged vertex is chosen. ``"mean"`` adds in order of height, so
         that it does not depend on the order of the rows.
+    rows_of : (n,) int array, optional
+        Their numbers in the caller's input, for the sentence of an error.
 
     Raises
     ------
@@ -52,7 +57,7 @@ def merge_rows(
     vertex_of = vertex_at[kept_row]
     rows, offsets, vertices = _groups(vertex_of, kept_row, is_kept)
     if policy == "error" and len(rows):
-        _refuse(xyz, rows, offsets)
+        _refuse(xyz, rows, offsets, rows_of)
     points = xyz[is_kept]
     heights = _chosen_heights(xyz[rows, 2], offsets, policy)
     points[vertices, 2] = heights
@@ -93,23 +98,44 @@ def _chosen_heights(
         return np.minimum.reduceat(heights, starts)
     if policy == "highest":
         return np.maximum.reduceat(heights, starts)
-    counts = ends - starts
+    return _mean_heights(heights, starts, ends - starts)
+
+
+def _mean_heights(
+    heights: NDArray[np.float64], starts: NDArray[np.int32], counts: NDArray[np.int32]
+) -> NDArray[np.float64]:
+    """Average what lies above the lowest of each group, all made small enough not to overflow."""
     group = np.repeat(np.arange(len(counts)), counts)
     ascending = heights[np.lexsort((heights, group))]
+    halvings = _needed_halvings(heights, counts)
+    ascending = np.ldexp(ascending, -halvings)
     lowest = ascending[starts]
     excess = np.add.reduceat(ascending - lowest[group], starts) / counts
-    return np.asarray(lowest + excess, np.float64)
+    return np.asarray(np.ldexp(lowest + excess, halvings), np.float64)
 
 
-def _refuse(xyz: NDArray[np.float64], rows: NDArray[np.int32], offsets: NDArray[np.int32]) -> None:
+def _needed_halvings(heights: NDArray[np.float64], counts: NDArray[np.int32]) -> int:
+    """Return how often to halve so that differences and their sums stay finite."""
+    _, size = np.frexp(np.abs(heights).max(initial=0.0))
+    _, most = np.frexp(float(counts.max(initial=1)))
+    return max(0, int(size) + int(most) + 1 - np.finfo(np.float64).maxexp)
+
+
+def _refuse(
+    xyz: NDArray[np.float64],
+    rows: NDArray[np.int32],
+    offsets: NDArray[np.int32],
+    rows_of: NDArray[np.int64] | None,
+) -> None:
     surplus = len(rows) - (len(offsets) - 1)
     group = rows[offsets[0] : offsets[1]]
-    x, y, _ = xyz[group[0]]
+    numbers = group if rows_of is None else rows_of[group]
+    x, y, _ = xyz[group[0]].tolist()
     heights = ", ".join(f"{z:g}" for z in xyz[group[:SHOWN], 2])
-    shown = ", ".join(str(row) for row in group[:SHOWN])
+    shown = ", ".join(str(row) for row in numbers[:SHOWN])
     raise PointsError(
         f"{surplus} of {len(xyz)} rows repeat the place of another "
         f"(first: rows {shown} at x {x}, y {y} with "
         f'elevations {heights}): duplicates="error" allows none.',
-        rows=group[:SHOWN],
+        rows=numbers[:SHOWN],
     )

@@ -20,9 +20,11 @@ from .errors import LinesError, PointsError, TinsmithError
 from .line_set import gather_lines
 from .lines import Breakline
 from .model import Clip, LineInfo, Model
+from .options import is_one_of, is_whole_number, shown
 from .pieces import Pieces
-from .points import as_points
+from .points import as_elevations, as_points
 from .regions import Surface
+from .tables import as_table
 from .threads import thread_count
 from .triangulation import Triangulation
 from .version import Version
@@ -150,8 +152,8 @@ class Session:
 
     def undo(self, count: int) -> None:
         """Take back the last edits, by doing the others again from the beginning."""
-        if isinstance(count, bool) or not isinstance(count, int) or count < 1:
-            raise PointsError(f"Invalid count {count!r}: a whole number >= 1 is needed.")
+        if not is_whole_number(count) or count < 1:
+            raise PointsError(f"Invalid count {shown(count)}: a whole number >= 1 is needed.")
         if count > len(self.edits):
             raise PointsError(f"{count} edits cannot be taken back: {len(self.edits)} were made.")
         del self.edits[len(self.edits) - count :]
@@ -191,10 +193,11 @@ class Session:
             return self._editor.slots(np.array([only], np.int64))
         try:
             numbers = np.atleast_1d(np.asarray(vertices))
-        except ValueError:
+        except Exception:
             numbers = np.empty(0, np.float64)
-        if numbers.ndim != 1 or numbers.dtype.kind not in "iu":
-            raise PointsError(f"Invalid vertices {vertices!r}: whole numbers are needed.")
+        is_masked = isinstance(vertices, np.ma.MaskedArray)
+        if is_masked or numbers.ndim != 1 or numbers.dtype.kind not in "iu":
+            raise PointsError(f"Invalid vertices {shown(vertices)}: whole numbers are needed.")
         wrong = (numbers < 0) | (numbers >= count)
         if wrong.any():
             raise PointsError(
@@ -209,9 +212,9 @@ class Session:
         self, _: list[str], points: ArrayLike, duplicates: DuplicatePolicy = "last"
     ) -> NDArray[np.int32]:
         xyz = as_points(points)
-        if duplicates not in get_args(DuplicatePolicy):
+        if not is_one_of(duplicates, get_args(DuplicatePolicy)):
             allowed = ", ".join(get_args(DuplicatePolicy))
-            raise PointsError(f"Invalid duplicates '{duplicates}': one of {allowed}.")
+            raise PointsError(f"Invalid duplicates {shown(duplicates)}: one of {allowed}.")
         slots = self._editor.insert(xyz, duplicates)
         return slots if self._editor.is_clipped else self._editor.numbers(slots)
 
@@ -223,21 +226,16 @@ class Session:
 
     def _move(self, _: list[str], vertex: int, point: ArrayLike) -> None:
         (slot,) = self._slots([vertex]).tolist()
-        self._editor.move(slot, as_points(np.atleast_2d(np.asarray(point)))[0])
+        self._editor.move(slot, _one_point(point))
 
     def _set_z(self, _: list[str], vertices: ArrayLike, z: ArrayLike) -> None:
         slots = self._slots(vertices)
-        try:
-            heights = np.asarray(z, np.float64)
-        except (TypeError, ValueError):
-            raise PointsError(f"Invalid heights {z!r}: numbers are needed.") from None
-        if heights.ndim > 1 or (heights.ndim == 1 and len(heights) != len(slots)):
+        heights = as_elevations(z)
+        if heights.ndim == 1 and len(heights) != len(slots):
             raise PointsError(
                 f"{heights.size} heights for {len(slots)} vertices: one each, or one for all, "
                 "is needed."
             )
-        if not np.isfinite(heights).all():
-            raise PointsError("A height is not finite: every coordinate must be a finite number.")
         self._editor.set_z(slots, heights)
 
     def _flip(self, _: list[str], a: int, b: int) -> None:
@@ -256,8 +254,8 @@ class Session:
         crossing: str = "split",
     ) -> None:
         line = Breakline(coords, kind=kind, priority=priority, name=name)  # type: ignore[arg-type]
-        if crossing not in ("split", "error"):
-            raise LinesError(f"Invalid crossing '{crossing}': one of split, error.")
+        if not is_one_of(crossing, ("split", "error")):
+            raise LinesError(f"Invalid crossing {shown(crossing)}: one of split, error.")
         for xyz in self._with_heights(line):
             clean = as_points(xyz)
             info = LineInfo(line.kind, name=line.name, priority=float(line.priority))
@@ -275,9 +273,22 @@ class Session:
         return [part for part in parts if len(part) > 1]
 
     def _remove_breakline(self, _: list[str], number: int) -> None:
-        if isinstance(number, bool) or not isinstance(number, int | np.integer):
-            raise LinesError(f"Invalid breakline {number!r}: a whole number is needed.")
+        if not is_whole_number(number):
+            raise LinesError(f"Invalid breakline {shown(number)}: a whole number is needed.")
         self._editor.remove_line(int(number))
+
+
+def _one_point(point: Any) -> NDArray[np.float64]:
+    """Return a point given alone, or as a table of one row."""
+    values, is_masked = as_table(point, "Points")
+    if is_masked is not None:
+        raise PointsError("The point is masked: one, easting, northing, elevation, is needed.")
+    rows = as_points(np.atleast_2d(values))
+    if len(rows) != 1:
+        raise PointsError(
+            f"There are {len(rows)} points: one, easting, northing, elevation, is needed."
+        )
+    return rows[0]
 
 
 def apply_edits(tin: TIN, edits: Iterable[Edit | Mapping[str, Any]]) -> None:
@@ -313,7 +324,7 @@ def _taken_apart(edit: Edit | Mapping[str, Any], number: int) -> tuple[str, dict
     operation = edit.get("op")
     if operation not in OPERATIONS:
         raise PointsError(
-            f"Edit {number} has op {operation!r}: one of {', '.join(OPERATIONS)} is needed."
+            f"Edit {number} has op {shown(operation)}: one of {', '.join(OPERATIONS)} is needed."
         )
     return operation, arguments
 

@@ -10,6 +10,7 @@ import numpy as np
 from . import _kernel
 from .errors import LinesError
 from .lines import Breakline, LineKind, Water, as_ring
+from .options import shown
 from .polygons import rings_of
 
 if TYPE_CHECKING:
@@ -252,7 +253,8 @@ def as_sequence(lines: Any, what: str) -> list[Any]:
         return list(lines)
     except TypeError:
         raise LinesError(
-            f"Invalid {what} {lines!r}: a sequence of lines is needed, each an array of vertices."
+            f"Invalid {what} {shown(lines)}: a sequence of lines is needed, each an array of "
+            "vertices."
         ) from None
 
 

@@ -5,17 +5,22 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 
-from .errors import LinesError
+from .errors import LinesError, PointsError
 from .frozen import Frozen
+from .options import is_finite_number, is_one_of, shown
+from .tables import as_table
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 __all__ = ["Breakline", "BreaklineKind", "LineKind", "Lines", "Water"]
+
+MOST_PRIORITY = 2**53
+"""Up to here whole numbers are told apart as floats, which priorities become."""
 
 BreaklineKind = Literal["hard", "soft"]
 LineKind = Literal["hard", "soft", "boundary", "hole", "water"]
@@ -61,11 +66,15 @@ class Breakline:
         priority: int = 0,
         name: str = "",
     ) -> None:
-        if kind not in get_args(BreaklineKind):
+        if not is_one_of(kind, get_args(BreaklineKind)):
             allowed = ", ".join(get_args(BreaklineKind))
-            raise LinesError(f"Invalid breakline kind '{kind}': one of {allowed}.")
-        if isinstance(priority, bool) or not isinstance(priority, int | np.integer):
-            raise LinesError(f"Invalid priority {priority!r}: a whole number is needed.")
+            raise LinesError(f"Invalid breakline kind {shown(kind)}: one of {allowed}.")
+        is_whole = isinstance(priority, int | np.integer) and not isinstance(priority, bool)
+        if not is_whole or abs(int(priority)) > MOST_PRIORITY:
+            raise LinesError(
+                f"Invalid priority {shown(priority)}: a whole number from {-MOST_PRIORITY} to "
+                f"{MOST_PRIORITY} is needed."
+            )
         what = f"breakline '{name}'" if name else "a breakline"
         object.__setattr__(self, "coords", as_coords(coords, what, least=2))
         object.__setattr__(self, "kind", kind)
@@ -109,8 +118,8 @@ class Water:
 
     def __init__(self, ring: ArrayLike, z: float, *, name: str = "") -> None:
         what = f"water '{name}'" if name else "a water polygon"
-        if not (isinstance(z, int | float | np.number) and np.isfinite(z)):
-            raise LinesError(f"Invalid height {z!r} of {what}: a finite number is needed.")
+        if not is_finite_number(z):
+            raise LinesError(f"Invalid height {shown(z)} of {what}: a finite number is needed.")
         object.__setattr__(self, "ring", as_ring(ring, what)[:, :2])
         object.__setattr__(self, "z", float(z))
         object.__setattr__(self, "name", str(name))
@@ -180,10 +189,7 @@ def as_coords(coords: ArrayLike, what: str, *, least: int) -> NDArray[np.float64
         Otherwise; the sentence begins with ``what``.
     """
     subject = what[0].upper() + what[1:]
-    try:
-        array = np.array(coords, np.float64)
-    except (TypeError, ValueError):
-        raise LinesError(f"{subject} is no table of real numbers.") from None
+    array = _as_numbers(coords, subject)
     if array.ndim != 2 or array.shape[1] not in (2, 3) or len(array) < least:
         raise LinesError(
             f"{subject} has shape {array.shape}: (k, 3), or (k, 2) to drape it, "
@@ -202,11 +208,28 @@ def as_coords(coords: ArrayLike, what: str, *, least: int) -> NDArray[np.float64
     return array
 
 
+def _as_numbers(coords: Any, subject: str) -> NDArray[np.float64]:
+    try:
+        values, is_masked = as_table(coords, subject, least=2)
+    except PointsError as error:
+        if str(error).startswith(f"{subject} are no table"):
+            raise LinesError(f"{subject} is no table of real numbers.") from None
+        raise LinesError(str(error)) from None
+    if is_masked is not None:
+        raise LinesError(
+            f"{subject} has {int(is_masked.sum())} masked vertices (first: vertex "
+            f"{int(np.argmax(is_masked))}): a line needs all of its vertices."
+        )
+    return values.copy()
+
+
 def as_ring(ring: ArrayLike, what: str) -> NDArray[np.float64]:
     """Return the corners of a ring, the first not repeated at the end; as :func:`as_coords`."""
     coords = as_coords(ring, what, least=3)
     if (coords[0, :2] == coords[-1, :2]).all():
         coords = coords[:-1]
-    if len(coords) < 3:
-        raise LinesError(f"{what[0].upper() + what[1:]} has two corners: a ring needs three.")
+    n_corners = len(np.unique(coords[:, :2], axis=0))
+    if n_corners < 3:
+        number = "two corners" if n_corners == 2 else "one corner"
+        raise LinesError(f"{what[0].upper() + what[1:]} has {number}: a ring needs three.")
     return coords

@@ -6,7 +6,7 @@ triangulation of its vertices with its steps is unique, so any way to it gives t
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -130,11 +130,25 @@ class Model:
             return hull, np.arange(len(hull.points), dtype=np.int32)
         steps, line_of = self.pieces.steps()
         group = np.array([_group_of(info) for info in self.infos], np.int64)[line_of]
-        is_ring = group >= RIM
+        is_ring = group >= (RIM if self.clip.has_rim else BOUNDARY)
         keep = self.clip.keeps(hull, RingSteps(steps[is_ring], group[is_ring]))
         if keep.all():
             return hull, np.arange(len(hull.points), dtype=np.int32)
         return clipped(hull, keep)
+
+    def loses_vertices_at_rim(self, hull: Surface) -> bool:
+        """Tell whether vertices lie beyond the rim, which is so only if a rounding bent it.
+
+        Rings that end at the rim need it none the less, to have an inside.
+        """
+        if not self.clip.has_rim:
+            return False
+        without = replace(self, clip=replace(self.clip, has_rim=False))
+        try:
+            (_, within), (_, everywhere) = self.surface(hull), without.surface(hull)
+        except LinesError:  # nothing is left: the same without the rim, or it was its fault
+            return True
+        return bool(((within < 0) & (everywhere >= 0)).any())
 
 
 def _group_of(info: LineInfo) -> int:

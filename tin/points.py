@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import _kernel
 from .errors import PointsError
+from .tables import Table, as_table
 from .threads import thread_count
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
-__all__ = ["as_points", "as_xy"]
+__all__ = ["as_elevations", "as_masked_points", "as_points", "as_xy"]
 
 SHOWN = 5
 
 
-def as_points(points: ArrayLike, *, threads: int | None = 1) -> NDArray[np.float64]:
+def as_points(points: Any, *, threads: int | None = 1) -> NDArray[np.float64]:
     """Return a fresh (n, 3) float64 array of finite coordinates in the exact range.
 
     -0.0 becomes 0.0, so that equal coordinates are equal bytes.
@@ -26,24 +27,38 @@ def as_points(points: ArrayLike, *, threads: int | None = 1) -> NDArray[np.float
     Raises
     ------
     PointsError
-        For another shape, values that are no numbers, NaN, infinity, or magnitudes outside the
-        range in which the predicates are exact.
+        For another shape, values that are no numbers or masked, NaN, infinity, or magnitudes
+        outside the range in which the predicates are exact.
     """
-    xyz = _as_floats(points, "Points")
+    xyz, is_masked = as_masked_points(points, threads=threads)
+    if is_masked is not None:
+        rows = np.flatnonzero(is_masked)
+        raise PointsError(
+            f"{len(rows)} of {len(xyz)} points are masked (first: row {rows[0]}): leave them out.",
+            rows=rows[:SHOWN],
+        )
+    return xyz
+
+
+def as_masked_points(points: Any, *, threads: int | None = 1) -> Table:
+    """Return points as :func:`as_points` does, and which of them are masked; these are 0, 0, 0."""
+    xyz, is_masked = as_table(points, "Points")
     if xyz.ndim != 2 or xyz.shape[1] != 3:
         raise PointsError(
             f"Points have shape {xyz.shape}: (n, 3) is needed, "
             "columns easting, northing, elevation."
         )
+    if is_masked is not None:
+        xyz = np.where(is_masked[:, None], 0.0, xyz)
     clean, is_sound = _kernel.clean(np.ascontiguousarray(xyz), thread_count(threads, len(xyz)))
     if not is_sound:
         _require_finite(clean)
         _require_exact_range(clean[:, :2], "Points")
-    return clean
+    return Table(clean, is_masked)
 
 
-def as_xy(xy: ArrayLike) -> NDArray[np.float64]:
-    """Return a (k, 2) float64 array; NaN is allowed and lies nowhere.
+def as_xy(xy: Any) -> NDArray[np.float64]:
+    """Return a (k, 2) float64 array; NaN is allowed and lies nowhere, and so is what is masked.
 
     Raises
     ------
@@ -51,25 +66,32 @@ def as_xy(xy: ArrayLike) -> NDArray[np.float64]:
         For another shape, values that are no numbers, infinity, or magnitudes outside the range
         in which the predicates are exact.
     """
-    places = _as_floats(xy, "Places")
+    places, is_masked = as_table(xy, "Places", least=2, most=2)
     if places.ndim != 2 or places.shape[1] != 2:
         raise PointsError(f"Places have shape {places.shape}: (k, 2) is needed, columns x, y.")
+    if is_masked is not None:
+        places = np.where(is_masked[:, None], np.nan, places)
     places = np.ascontiguousarray(places, np.float64)
     _require_exact_range(places, "Places")
     return places
 
 
-def _as_floats(values: ArrayLike, what: str) -> NDArray[np.float64]:
-    try:
-        array = np.asarray(values)
-        if array.dtype.kind not in "biufO":
-            raise TypeError
-        return np.asarray(array, np.float64)
-    except (TypeError, ValueError, OverflowError):
-        raise PointsError(
-            f"{what} are no table of real numbers: rows of equal length are needed, "
-            "without text, complex numbers or dates."
-        ) from None
+def as_elevations(values: Any) -> NDArray[np.float64]:
+    """Return one elevation or several as a float64 array of finite numbers.
+
+    Raises
+    ------
+    PointsError
+        Otherwise.
+    """
+    elevations, is_masked = as_table(values, "Elevations")
+    if elevations.ndim > 1:
+        raise PointsError(f"Elevations have shape {elevations.shape}: one, or a row, is needed.")
+    if is_masked is not None:
+        raise PointsError("An elevation is masked: numbers are needed.")
+    if not np.isfinite(elevations).all():
+        raise PointsError("An elevation is not finite: every coordinate must be a finite number.")
+    return elevations
 
 
 def _require_finite(xyz: NDArray[np.float64]) -> None:
@@ -93,7 +115,7 @@ def _require_exact_range(xy: NDArray[np.float64], what: str) -> None:
     wrong = ((size > largest) | ((size < smallest) & (size > 0))).any(axis=1)
     if wrong.any():
         row, count = int(np.argmax(wrong)), int(wrong.sum())
-        x, y = xy[row, :2].tolist()
+        x, y = xy[row].tolist()
         raise PointsError(
             f"{what} have {count} {'row' if count == 1 else 'rows'} outside the exact range "
             f"(first: row {row}, "

@@ -20,7 +20,8 @@ from .line_set import (
     gather_regions,
     gather_rings,
 )
-from .points import as_points
+from .options import is_finite_number, is_one_of, shown
+from .points import as_masked_points
 from .survey import Survey
 from .threads import thread_count
 
@@ -41,6 +42,8 @@ class Recipe:
     Attributes
     ----------
     points : (n, 3) float64 array
+    is_masked : (n,) bool array or None
+        Rows that are left out; None if there are none.
     lines : LineSet
     boundary, extent : list of (k, 2) float64 arrays
         Rings, the first corner not repeated.
@@ -51,6 +54,7 @@ class Recipe:
     """
 
     points: NDArray[np.float64]
+    is_masked: NDArray[np.bool_] | None
     lines: LineSet
     boundary: list[NDArray[np.float64]]
     extent: list[NDArray[np.float64]]
@@ -66,8 +70,9 @@ class Recipe:
 
     @property
     def is_plain(self) -> bool:
-        """Whether there are only points, and all of the hull is the surface."""
-        return not (self.lines.kinds or self.erase or np.isfinite(self.max_edge))
+        """Whether there are only points, all of which count, and all of the hull is the surface."""
+        is_whole = not (self.lines.kinds or self.erase or np.isfinite(self.max_edge))
+        return is_whole and self.is_masked is None
 
 
 def recipe_of(
@@ -97,7 +102,9 @@ def recipe_of(
     _require_options(duplicates, snap, trim, crossing, max_edge)
     survey = points if isinstance(points, Survey) else None
     own = survey if survey is not None else Survey(points=np.empty((0, 3)))
-    xyz = as_points(points.points if isinstance(points, Survey) else points, threads=threads)
+    xyz, is_masked = as_masked_points(
+        points.points if isinstance(points, Survey) else points, threads=threads
+    )
     outer = [*own.boundary, *as_sequence(boundary, "boundary")]
     inner = [*own.holes, *as_sequence(holes, "holes")]
     lines = gather_lines(
@@ -116,6 +123,7 @@ def recipe_of(
         lines = LineSet.joined([lines, gather_extent(own.extent, len(rings))])
     return Recipe(
         points=xyz,
+        is_masked=is_masked,
         lines=lines,
         boundary=rings,
         extent=gather_rings(own.extent, "extent"),
@@ -139,14 +147,15 @@ def _require_options(
         ("trim", trim, TrimPolicy),
         ("crossing", crossing, CrossingPolicy),
     ):
-        if value not in get_args(kind):
-            raise PointsError(f"Invalid {name} '{value}': one of {', '.join(get_args(kind))}.")
-    if not (isinstance(snap, int | float | np.number) and 0 <= snap < np.inf):
-        raise PointsError(f"Invalid snap {snap!r}: a distance >= 0 in CRS units is needed.")
-    if max_edge is not None and not (
-        isinstance(max_edge, int | float | np.number) and 0 < max_edge < np.inf
-    ):
-        raise PointsError(f"Invalid max_edge {max_edge!r}: a length > 0 in CRS units is needed.")
+        if not is_one_of(value, get_args(kind)):
+            allowed = ", ".join(get_args(kind))
+            raise PointsError(f"Invalid {name} {shown(value)}: one of {allowed}.")
+    if not (is_finite_number(snap) and snap >= 0):
+        raise PointsError(f"Invalid snap {shown(snap)}: a distance >= 0 in CRS units is needed.")
+    if max_edge is not None and not (is_finite_number(max_edge) and max_edge > 0):
+        raise PointsError(
+            f"Invalid max_edge {shown(max_edge)}: a length > 0 in CRS units is needed."
+        )
 
 
 def _require_simple_rings(lines: LineSet) -> None:

@@ -25,6 +25,7 @@ LEFT_OUT = (
     "in a hole",
     "trimmed",
     "removed by an edit",
+    "masked",
 )
 """Why a row of points has no vertex; ``Report.left_out_why`` holds places in this list."""
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .lines import Breakline, Water
+from .tables import as_table
 from .types import Bounds
 
 if TYPE_CHECKING:
@@ -24,6 +25,7 @@ class Survey:
     Attributes
     ----------
     points : (n, 3) float64 array
+        Given as any table that :func:`tinsmith.triangulate` takes; masked points are left out.
         Easting, northing, elevation; CRS units, elevation in metres unless the CRS says otherwise.
     breaklines : sequence of Breakline or (k, 3) or (k, 2) arrays
         Polylines that must be edges of the surface; with two columns draped on it.
@@ -66,6 +68,23 @@ class Survey:
     skipped_lines: Mapping[str, Sequence[int]] = field(default_factory=dict)
     notes: Sequence[str] = ()
 
+    def __post_init__(self) -> None:
+        if not _is_plain(self.points):
+            self._clean_points()
+
+    def _clean_points(self) -> None:
+        """Take columns by their names, and leave out what is masked."""
+        table = as_table(self.points, "Points")
+        points, attributes = table.values, self.attributes
+        if table.is_masked is not None:
+            keep = ~table.is_masked
+            points = points[keep]
+            attributes = {name: np.asarray(v)[keep] for name, v in attributes.items()}
+            masked = {"masked points": int(table.is_masked.sum())}
+            object.__setattr__(self, "skipped", {**self.skipped, **masked})
+        object.__setattr__(self, "points", points)
+        object.__setattr__(self, "attributes", attributes)
+
     @property
     def bounds(self) -> Bounds:
         """Bounds of the points (at least one point)."""
@@ -83,6 +102,10 @@ class Survey:
         origin = f" from {self.source}" if self.source else ""
         names = f", attributes {', '.join(self.attributes)}" if self.attributes else ""
         return f"<Survey: {len(self)} points{origin}{names}, crs {_short(self.crs)}>"
+
+
+def _is_plain(points: Any) -> bool:
+    return type(points) is np.ndarray and points.dtype == np.float64
 
 
 def _short(crs: str | None) -> str:

@@ -5,11 +5,15 @@ from __future__ import annotations
 import os
 
 from .errors import PointsError
+from .options import is_whole_number, shown
 
 __all__ = ["thread_count"]
 
 # Below, starting the threads and stitching their parts costs as much as they save.
 LEAST_POINTS_PER_THREAD = 10_000
+
+# More are never started: the result is the same, and each takes memory.
+MOST_THREADS = 1024
 
 
 def thread_count(threads: int | None, n_points: int) -> int:
@@ -27,9 +31,11 @@ def thread_count(threads: int | None, n_points: int) -> int:
     """
     if threads is None:
         return max(1, min(available_cores(), n_points // LEAST_POINTS_PER_THREAD))
-    if isinstance(threads, bool) or not isinstance(threads, int) or threads < 1:
-        raise PointsError(f"Invalid threads {threads!r}: a whole number >= 1, or None, is needed.")
-    return threads
+    if not is_whole_number(threads) or threads < 1:
+        raise PointsError(
+            f"Invalid threads {shown(threads)}: a whole number >= 1, or None, is needed."
+        )
+    return min(int(threads), MOST_THREADS)
 
 
 def available_cores() -> int:

@@ -1,4 +1,4 @@
-"""First on the path of a sanitized run: look for tinsmith on the path, not where it is installed."""
+"""Look for tinsmith on the path, before where it is installed."""
 
 import sys
 

@@ -45,7 +45,6 @@ class Reading:
     columns: str | dict[str, str | int] | None = None
     delimiter: str | None = None
     decimal: str | None = None
-    nodata: float | None = None
     skip_bad: bool | None = None
     band: int | None = None
     window: tuple[float, float, float, float] | None = None
@@ -193,12 +192,6 @@ reading_options = _gathered(
         "--decimal", type=click.Choice([".", ","]), help="Decimal mark of the numbers in it."
     ),
     click.option(
-        "--nodata",
-        metavar="ELEVATION",
-        type=float,
-        help="Elevation that stands for no data in a text file, such as -9999.",
-    ),
-    click.option(
         "--skip-bad",
         is_flag=True,
         default=None,
@@ -214,11 +207,11 @@ reading_options = _gathered(
     click.option("--stride", metavar="N", type=int, help="Take every Nth cell of a raster."),
     click.option(
         "--nodata",
-        metavar="VALUE",
+        metavar="ELEVATION",
         type=float,
         multiple=True,
         callback=_as_given,
-        help="Elevation that stands for no data. May be given several times.",
+        help="Elevation that stands for no data, such as -9999. May be given several times.",
     ),
     click.option(
         "--fill", is_flag=True, default=None, help="Let the surface span the voids of a raster."

@@ -1,0 +1,46 @@
+"""Options: what callers give where a number or one word of a few is needed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+__all__ = ["is_finite_number", "is_one_of", "is_whole_number", "shown"]
+
+_LONGEST = 60
+
+
+def shown(value: Any) -> str:
+    """Return a value as a sentence can hold it: short, and NumPy's numbers as plain ones."""
+    if isinstance(value, np.integer | np.floating):
+        value = value.item()
+    if isinstance(value, int) and not isinstance(value, bool) and value.bit_length() > 200:
+        return f"{'-' if value < 0 else ''}2^{value.bit_length() - 1} or more"
+    try:
+        text = " ".join(repr(value).split())
+    except Exception:
+        text = f"a {type(value).__name__}"
+    return text if len(text) <= _LONGEST else text[: _LONGEST - 3] + "..."
+
+
+def is_one_of(value: Any, allowed: Sequence[str]) -> bool:
+    """Tell whether a value is one of a few words."""
+    return isinstance(value, str) and value in allowed
+
+
+def is_whole_number(value: Any) -> bool:
+    """Tell whether a value is a whole number; True and False are none."""
+    return isinstance(value, int | np.integer) and not isinstance(value, bool)
+
+
+def is_finite_number(value: Any) -> bool:
+    """Tell whether a value is a real number that a float can hold; True and False are none."""
+    if isinstance(value, bool) or not isinstance(value, int | float | np.integer | np.floating):
+        return False
+    try:
+        return math.isfinite(float(value))
+    except OverflowError:
+        return False
