@@ -79,7 +79,8 @@ def _widest(xy: Columns, p1: int, p2: int, qualified: NDArray[np.int64]) -> NDAr
         side = _sides_of_circle(xy, p1, p2, int(qualified[best]), np.delete(qualified, best))
         side = np.insert(side, best, 0)
         rivals = np.flatnonzero(side > 0)
-    return qualified[side == 0]
+    widest: NDArray[np.int64] = qualified[side == 0]
+    return widest
 
 
 def _doubled_area(xy: Columns, *corners: int) -> Fraction:
