@@ -34,6 +34,9 @@ CLOSEST = [(0, 0), (0, 1), (0, 2), (1, 3), (3, 3)]
 TIED = [(3, 0), (0, 2), (3, 3), (1, 2), (2, 2), (2, 1)]
 """Six points, in this order, on which the angle rule crosses itself."""
 
+TIED_BY_DISTANCE = [(0, 2), (0, 3), (2, 1), (1, 1), (3, 3), (0, 1), (2, 0), (0, 0)]
+"""Eight points, in this order, on which it crosses itself though distance breaks its ties."""
+
 SEED = 1
 WINDOW = ts.Bounds(745_000.0, 4_010_000.0, 748_405.0, 4_013_405.0)
 SETS = 40
@@ -52,6 +55,7 @@ def main(folder: Path = HERE) -> None:
     draw(bad, folder / "paper-75-overlap.png", "Another 75 random points")
     tell_removal()
     tell_odds(75)
+    tell_ties(100)
     tell_breeding(2_000)
 
 
@@ -127,6 +131,33 @@ def tell_odds(n: int) -> None:
     )
 
 
+def tell_ties(n: int) -> None:
+    """Print how the reading in which distance breaks ties fares beside the original."""
+    for name, make in (("random points", random_points), ("points of a lattice", lattice_points)):
+        found = [ts.tin.compare(make(n, seed)).outcomes for seed in range(SETS)]
+        for k in (0, 3):
+            exact = sum(same_triangles(one[k], one[4]) for one in found)
+            due = sum(len(one[k].triangles) == len(one[4].triangles) for one in found)
+            print(
+                f"{SETS} sets of {n} {name}, {found[0][k].name}: {exact} times the exact "
+                f"triangulation, {due} times as many triangles"
+            )
+
+
+def lattice_points(n: int, seed: int) -> NDArray[np.float64]:
+    """Return places of whole numbers, of which many lie on one circle."""
+    places = np.random.default_rng(seed).permutation(15 * 15)[:n]
+    return np.column_stack([places // 15, places % 15, np.zeros(n)])
+
+
+def same_triangles(one: Outcome, other: Outcome) -> bool:
+    """Tell whether two outcomes have the same triangles, in any order."""
+    first, second = (
+        {tuple(sorted(corners)) for corners in each.triangles.tolist()} for each in (one, other)
+    )
+    return first == second and len(one.triangles) == len(other.triangles)
+
+
 def tell_breeding(n: int) -> None:
     """Print to how many triangles the improved algorithm grows if nothing stops it."""
     for seed in (1, 2, 3):
@@ -153,11 +184,12 @@ def save(figure: Figure, path: Path, *, dpi: int) -> None:
 
 def draw_counterexamples(path: Path) -> None:
     """Draw the smallest sets of points found on which the rules fail, and what is right."""
-    figure = Figure(figsize=(12.0, 7.6), layout="constrained")
-    upper, lower = figure.subplots(2, 2)
+    figure = Figure(figsize=(12.0, 11.4), layout="constrained")
+    upper, middle, lower = figure.subplots(3, 2)
     draw_closest(upper)
-    draw_tied(lower)
-    for axes in (*upper, *lower):
+    draw_tied(middle, TIED, "original", "Largest angle, the first of equals")
+    draw_tied(lower, TIED_BY_DISTANCE, "improved (ties)", "Largest angle, of equals the closest")
+    for axes in (*upper, *middle, *lower):
         axes.set_aspect("equal")
         axes.set_axis_off()
     save(figure, path, dpi=100)
@@ -178,19 +210,17 @@ def draw_closest(panels: Any) -> None:
     panels[1].set_title("Widest angle: the circle is empty")
 
 
-def draw_tied(panels: Any) -> None:
-    """Draw how ties broken by the order of the points cross each other."""
-    points = flat(TIED)
-    triangles = paper.original(points).triangles
-    faults = ts.tin.compare(points).outcomes[0].overlapping
-    draw_network(panels[0], points, triangles, triangles[faults].tolist())
-    draw_network(panels[1], points, ts.triangulate(points).triangles, [])
-    panels[0].set_title(f"Largest angle, the first of equals: {len(triangles)} triangles, crossing")
-    panels[1].set_title(
-        f"Ties broken by coordinates: {len(ts.triangulate(points).triangles)} triangles"
-    )
+def draw_tied(panels: Any, places: list[tuple[int, int]], name: str, rule: str) -> None:
+    """Draw how triangles cross each other if ties are broken for each edge alone."""
+    points = flat(places)
+    found = {one.name: one for one in ts.tin.compare(points).outcomes}
+    tied, exact = found[name], found["exact"].triangles
+    draw_network(panels[0], points, tied.triangles, tied.triangles[tied.overlapping].tolist())
+    draw_network(panels[1], points, exact, [])
+    panels[0].set_title(f"{rule}: {len(tied.triangles)} triangles, crossing")
+    panels[1].set_title(f"Ties broken by coordinates: {len(exact)} triangles")
     for axes in panels:
-        for row, (x, y) in enumerate(TIED):
+        for row, (x, y) in enumerate(places):
             axes.annotate(str(row + 1), (x, y), (6, 6), textcoords="offset points", color=INK)
 
 

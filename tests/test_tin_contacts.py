@@ -293,3 +293,23 @@ def test_pairs_that_do_not_cross_have_no_meeting_place():
     xy = np.array([[0, 0], [1, 0], [0, 1], [1, 1.0]])
     with pytest.raises(ValueError, match="must cross"):
         _kernel.intersections(xy, as_pairs([[0, 1], [2, 3]]), as_pairs([0, 1]))
+
+
+@pytest.mark.parametrize("ends", [(0, 1), (1, 0)])
+@pytest.mark.parametrize(
+    ("vertex", "is_touching"),
+    [
+        ((50, 5), True),
+        ((50, np.nextafter(5, 6)), False),
+        ((97, 4), False),  # as near to the end as to be one vertex with it
+        ((96.875, 4), True),
+        ((3, 4), False),
+        ((3.125, 4), True),
+    ],
+)
+def test_a_vertex_at_just_the_distance_from_an_end_is_the_ends_not_the_segments(
+    ends, vertex, is_touching
+):
+    xy = np.array([(0, 0), (100, 0), vertex], float)
+    found = _kernel.touches(xy, as_pairs(ends), 5.0).tolist()
+    assert found == ([[0, 2]] if is_touching else [])

@@ -24,6 +24,9 @@ ALL = [*BOTH, partial(paper.improved, empty="open"), TIES]
 
 CLOSEST_IS_NOT_DELAUNAY = [(0, 0), (0, 1), (0, 2), (1, 3), (3, 3)]
 ANGLE_RULE_CROSSES_ITSELF = [(3, 0), (0, 2), (3, 3), (1, 2), (2, 2), (2, 1)]
+DISTANCE_RULE_CROSSES_ITSELF = [
+    (0, 2), (0, 3), (2, 1), (1, 1), (3, 3), (0, 1), (2, 0), (0, 0)
+]  # fmt: skip
 
 
 def flat(places):
@@ -253,6 +256,14 @@ def test_ties_by_distance_are_delaunay_of_points_in_general_position(seed):
     grown = oracles.canonical(TIES(points).triangles)
     assert grown == oracles.canonical(ts.triangulate(points).triangles)
     np.testing.assert_array_equal(TIES(points).triangles, paper.original(points).triangles)
+
+
+def test_ties_by_distance_cross_each_other_where_each_edge_breaks_them_alone():
+    network = TIES(flat(DISTANCE_RULE_CROSSES_ITSELF))
+    assert len(overlaps(network)) > 0
+    assert len(network.triangles) > 2 * 8 - 2 - oracles.hull_size(network.points)
+    # The points on which the first of equals crosses itself are no trouble to it.
+    assert overlaps(TIES(flat(ANGLE_RULE_CROSSES_ITSELF))) == []
 
 
 def test_of_equal_angles_the_closer_point_is_taken_whatever_the_order():

@@ -62,8 +62,10 @@ def widest_angle_then_closest(
     to the edge grows, and so does that to its line: they order such points alike. Exact.
     """
     widest = _widest(xy, p1, p2, qualified).tolist()
-    closest = min(widest, key=lambda p: _doubled_area(xy, p1, p2, p), default=None)
-    return Choice(closest, max(len(qualified) - 1, 0))
+    tests = max(len(qualified) - 1, 0)
+    if len(widest) < 2:
+        return Choice(widest[0] if widest else None, tests)
+    return Choice(min(widest, key=lambda p: _doubled_area(xy, p1, p2, p)), tests)
 
 
 def _widest(xy: Columns, p1: int, p2: int, qualified: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -77,7 +79,8 @@ def _widest(xy: Columns, p1: int, p2: int, qualified: NDArray[np.int64]) -> NDAr
         side = _sides_of_circle(xy, p1, p2, int(qualified[best]), np.delete(qualified, best))
         side = np.insert(side, best, 0)
         rivals = np.flatnonzero(side > 0)
-    return qualified[side == 0]
+    widest: NDArray[np.int64] = qualified[side == 0]
+    return widest
 
 
 def _doubled_area(xy: Columns, *corners: int) -> Fraction:
