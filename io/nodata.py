@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -29,7 +30,8 @@ _BEYOND = 50_000.0
 """No elevation of the earth is larger, in feet or in metres."""
 
 
-class SuspectElevation(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class SuspectElevation:
     """An elevation that may stand for no data, and how many points have it."""
 
     value: float
@@ -72,7 +74,7 @@ def find_suspect_elevations(z: NDArray[np.float64]) -> list[SuspectElevation]:
         found.append(suspect)
         rest = rest[rest != suspect.value]
     # What lies beyond the last of them is the range of the true ones.
-    return [one._replace(lowest=float(rest.min()), highest=float(rest.max())) for one in found]
+    return [replace(one, lowest=float(rest.min()), highest=float(rest.max())) for one in found]
 
 
 def _ends(z: NDArray[np.float64]) -> tuple[float, float]:
