@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from line_oracle import places_of, steps_of
 
-from tinsmith.tin import _kernel, noding, splitting
+from tinsmith.tin import _kernel, splitting
 from tinsmith.tin.errors import LinesError
 from tinsmith.tin.noding import Chains, node
 

@@ -184,6 +184,6 @@ def test_line_of_shapely():
 def test_geometries_and_a_column_of_elevations():
     frame = pd.DataFrame({"z": XYZ[:, 2], "geometry": shapely.points(XYZ[:, :2])})
     np.testing.assert_array_equal(ts.triangulate(frame).points, XYZ)
-    frame["geometry"] = shapely.points(XYZ + [0, 0, 100])
+    frame["geometry"] = shapely.points(np.add(XYZ, [0, 0, 100]))
     with pytest.raises(ts.PointsError, match="elevations in their geometries and others"):
         ts.triangulate(frame)

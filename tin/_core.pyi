@@ -24,6 +24,9 @@ def snap(points: NDArray[np.float64], distance: float) -> NDArray[np.int32]: ...
 def orientation(
     a: NDArray[np.float64], b: NDArray[np.float64], c: NDArray[np.float64]
 ) -> NDArray[np.int8]: ...
+def compare_distances(
+    v: NDArray[np.float64], p: NDArray[np.float64], q: NDArray[np.float64]
+) -> NDArray[np.int8]: ...
 def in_circle(
     a: NDArray[np.float64],
     b: NDArray[np.float64],

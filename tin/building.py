@@ -58,6 +58,7 @@ def build(recipe: Recipe) -> TIN:
         report=built.report,
         lines=built.lines,
         crs=recipe.crs,
+        elevation_unit=recipe.elevation_unit,
         inputs=recipe,
     )
 

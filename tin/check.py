@@ -37,7 +37,7 @@ from .check_shape import check_shape, has_sound_rim
 from .errors import CheckError, PointsError
 from .findings import Findings, Problem
 from .line_set import as_sequence, gather_lines
-from .options import is_whole_number, shown
+from .options import as_flag, is_whole_number, require_tin, shown
 from .points import as_masked_points
 from .survey import Survey
 
@@ -173,6 +173,8 @@ def check(
     """
     if not (is_whole_number(level) and level in LEVELS):
         raise PointsError(f"Invalid level {shown(level)}: 1, 2 or 3 is needed.")
+    require_tin(tin)
+    is_conforming = as_flag("conforming", conforming)
     rows, lines = _rows_of(points), _lines_of(points, breaklines)
     found = Findings()
     if check_arrays(tin, found) and check_connections(tin, found):
@@ -180,7 +182,7 @@ def check(
         if level >= 2:
             check_shape(tin, found)
         if level >= 3:
-            check_delaunay(tin, found, conforming=bool(conforming))
+            check_delaunay(tin, found, conforming=is_conforming)
             _check_given(tin, rows, lines, found)
     elif level >= 2:
         found.note(

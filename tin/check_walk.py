@@ -181,7 +181,8 @@ class _Walker:
         x, y = self._places[chain[1]]
         across = (bx - ax) * (y - ay) - (by - ay) * (x - ax)
         is_ahead = (bx - ax) * (x - ax) + (by - ay) * (y - ay) > 0
-        return is_ahead and abs(across) <= 2 * self._unit * hypot(bx - ax, by - ay)
+        allowed = len(chain) * self._unit  # as many cuts as there are vertices between
+        return is_ahead and abs(across) <= allowed * hypot(bx - ax, by - ay)
 
     def _run(
         self, rows: list[int], at: int, chain: range

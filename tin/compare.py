@@ -13,6 +13,7 @@ import numpy as np
 
 from . import _kernel
 from .errors import PointsError
+from .options import is_whole_number, shown
 from .paper import Network, improved, original
 from .paper_cover import cover
 from .paper_faults import minimum_angles, overlapping, violating
@@ -208,6 +209,8 @@ def compare(points: Survey | ArrayLike, *, limit: int = MOST_POINTS) -> Comparis
 improved (ties) 4, exact 4>
     """
     rows = as_points(points.points if isinstance(points, Survey) else points)
+    if not (is_whole_number(limit) and limit > 0):
+        raise PointsError(f"Invalid limit {shown(limit)}: a whole number >= 1 is needed.")
     if len(rows) > limit:
         raise PointsError(
             f"{len(rows):,} points are too many to compare, for the paper's algorithms take "

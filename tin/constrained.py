@@ -218,7 +218,8 @@ def _line_heights(
     """Give vertices on lines the height of the line that counts most there, its lowest."""
     vertices, line_of = vertex_of[n:], lines.line_of
     priority = lines.priorities[line_of]
-    order = np.lexsort((lines.heights, line_of, -priority, vertices))
+    rank = np.where(priority == BELOW_ALL, 0, line_of)  # parts of draped lines have no order
+    order = np.lexsort((line_of, lines.heights, rank, -priority, vertices))
     is_first = np.append(True, np.diff(vertices[order]) > 0)[: len(order)]
     best = order[is_first]
     before = points[vertices[best], 2].copy()

@@ -75,6 +75,7 @@ class Breakline:
                 f"Invalid priority {shown(priority)}: a whole number from {-MOST_PRIORITY} to "
                 f"{MOST_PRIORITY} is needed."
             )
+        name = _as_name(name)
         what = f"breakline '{name}'" if name else "a breakline"
         object.__setattr__(self, "coords", as_coords(coords, what, least=2))
         object.__setattr__(self, "kind", kind)
@@ -117,6 +118,7 @@ class Water:
     name: str = ""
 
     def __init__(self, ring: ArrayLike, z: float, *, name: str = "") -> None:
+        name = _as_name(name)
         what = f"water '{name}'" if name else "a water polygon"
         if not is_finite_number(z):
             raise LinesError(f"Invalid height {shown(z)} of {what}: a finite number is needed.")
@@ -191,6 +193,12 @@ class Lines(Frozen):
         return f"<Lines: {kinds}; {len(self.vertices)} vertices>"
 
 
+def _as_name(name: Any) -> str:
+    if not isinstance(name, str | int | float | np.number):
+        raise LinesError(f"Invalid name {shown(name)}: text is needed.")
+    return str(name)
+
+
 def as_coords(coords: ArrayLike, what: str, *, least: int) -> NDArray[np.float64]:
     """Return a (k, 2) or (k, 3) float64 array of at least ``least`` finite rows, read-only.
 
@@ -238,7 +246,9 @@ def as_ring(ring: ArrayLike, what: str) -> NDArray[np.float64]:
     """Return the corners of a ring, the first not repeated at the end; as :func:`as_coords`."""
     coords = as_coords(ring, what, least=3)
     if (coords[0, :2] == coords[-1, :2]).all():
-        coords = coords[:-1]
+        lowest = coords[[0, -1]].min(axis=0)  # of two elevations, whichever way the ring runs
+        coords = np.concatenate([lowest[None], coords[1:-1]])
+        coords.flags.writeable = False
     n_corners = len(np.unique(coords[:, :2], axis=0))
     if n_corners < 3:
         number = "two corners" if n_corners == 2 else "one corner"

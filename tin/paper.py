@@ -41,6 +41,7 @@ import numpy as np
 
 from .errors import PointsError
 from .exact import columns
+from .options import as_flag, is_one_of, is_whole_number, shown
 from .paper_lists import Edge, Lists, Triangle, sides
 from .paper_rules import (
     Rule,
@@ -197,19 +198,23 @@ def improved(
     >>> improved([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8], [2, 1, 9]])
     <Network: 5 points, 4 triangles, 0 edges not extended>
     """
-    if empty not in _RULES:
+    if not is_one_of(empty, tuple(_RULES)):
         allowed = " or ".join(repr(name) for name in get_args(EmptyCircle))
-        raise PointsError(f"Invalid empty {empty!r}: it must be {allowed}.")
-    if distance not in get_args(Distance):
+        raise PointsError(f"Invalid empty {shown(empty)}: it must be {allowed}.")
+    if not is_one_of(distance, get_args(Distance)):
         allowed = " or ".join(repr(name) for name in get_args(Distance))
-        raise PointsError(f"Invalid distance {distance!r}: it must be {allowed}.")
+        raise PointsError(f"Invalid distance {shown(distance)}: it must be {allowed}.")
     rule = _RULES[empty] if distance == "circle" else widest_angle_then_closest
     return _grown(as_points(points), rule, removal=removal, most=most_triangles)
 
 
 def _grown(rows: NDArray[np.float64], rule: Rule, *, removal: bool, most: int | None) -> Network:
+    if most is not None and not (is_whole_number(most) and most > 0):
+        raise PointsError(
+            f"Invalid most_triangles {shown(most)}: a whole number >= 1, or None, is needed."
+        )
     points = _distinct(rows)
-    lists = Lists(columns(points), removal=removal)
+    lists = Lists(columns(points), removal=as_flag("removal", removal))
     lists.enter(_first_triangle(lists.xy, len(rows)))
     is_stopped = False
     for p1, p2 in _edges_to_extend(lists):

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 
+from ..crs import CRS, Unit, require_one_unit, require_same_unit
+from ..errors import CrsError
 from . import _kernel
 from .constrained import CrossingPolicy, LineOptions
 from .duplicates import DuplicatePolicy
@@ -21,7 +23,7 @@ from .line_set import (
     gather_rings,
     require_length,
 )
-from .options import is_finite_number, is_one_of, shown
+from .options import as_flag, is_finite_number, is_one_of, shown
 from .points import as_masked_points
 from .survey import Survey
 from .threads import thread_count
@@ -29,6 +31,7 @@ from .threads import thread_count
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from ..crs import CrsLike, UnitLike
     from .lines import Breakline, Water
 
 __all__ = ["Recipe", "TrimPolicy", "recipe_of"]
@@ -67,7 +70,8 @@ class Recipe:
     trim: TrimPolicy
     conforming: bool
     options: LineOptions
-    crs: str | None
+    crs: CRS | None
+    elevation_unit: Unit | None = None
     has_rim: bool = False
     skipped: Mapping[str, int] = field(default_factory=dict)
     notes: Sequence[str] = ()
@@ -131,18 +135,20 @@ def recipe_of(
     duplicates: DuplicatePolicy,
     snap: float,
     threads: int | None,
-    crs: str | None,
+    crs: CrsLike | None,
+    z_unit: UnitLike | None,
 ) -> Recipe:
     """Check everything; lines come on top of the survey's own.
 
     Raises
     ------
-    PointsError, LinesError
+    PointsError, LinesError, CrsError, OptionError
         As :func:`tinsmith.triangulate`.
     """
     _require_options(duplicates, snap, trim, crossing, max_edge)
     survey = points if isinstance(points, Survey) else None
     own = survey if survey is not None else Survey(points=np.empty((0, 3)))
+    system, unit = _reference(own, CRS.of(crs), Unit.of(z_unit))
     xyz, is_masked = as_masked_points(
         points.points if isinstance(points, Survey) else points, threads=threads
     )
@@ -172,12 +178,32 @@ def recipe_of(
         erase=gather_regions([*own.erase, *as_sequence(erase, "erase")], "erase"),
         max_edge=np.inf if max_edge is None else float(max_edge),
         trim=trim,
-        conforming=bool(conforming),
+        conforming=as_flag("conforming", conforming),
         options=LineOptions(duplicates, float(snap), crossing, thread_count(threads, len(xyz))),
-        crs=crs if crs is not None else own.crs,
+        crs=system,
+        elevation_unit=unit,
         skipped=own.skipped,
         notes=own.notes,
     )
+
+
+def _reference(own: Survey, crs: CRS | None, unit: Unit | None) -> tuple[CRS | None, Unit | None]:
+    """Return CRS and unit of elevations, which a caller may add to the survey's own, not change."""
+    if crs is not None and own.crs is not None and not _adds_to(own.crs, crs):
+        raise CrsError(
+            f"The survey is in {own.crs.label}, and {crs.label} is another CRS: its points must be "
+            "reprojected first, for example while they are read.",
+            crs=crs,
+        )
+    if own.elevation_unit is not None and unit is not None:
+        require_same_unit(own.elevation_unit, unit, "that of the survey")
+    system = own.crs if crs is None else crs
+    return system, require_one_unit(system, unit or own.elevation_unit)
+
+
+def _adds_to(own: CRS, crs: CRS) -> bool:
+    """Whether a CRS is the same as another, or that with a vertical axis."""
+    return own.is_same(crs) or (own.vertical_unit is None and own.is_same(crs.horizontal))
 
 
 def _require_options(

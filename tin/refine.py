@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from . import _kernel, topology
 from .errors import PointsError
 from .model import Clip, LineInfo, Model, lines_in, mesh_of_growth
+from .options import is_finite_number, is_whole_number, require_tin, shown
 from .pieces import Pieces
 from .regions import Surface, edge_keys
 from .surface import TIN
@@ -111,6 +112,7 @@ def refine(
     >>> refine(tin, max_area=10.0)
     <TIN: 104 vertices, 158 triangles, z 0 to 1, crs unknown>
     """
+    require_tin(tin)
     _require_limits(min_angle, max_area, max_edge, max_vertices)
     _require_room(tin, max_area, max_vertices)
     goal = _Goal(
@@ -139,25 +141,21 @@ def refine(
 def _require_limits(
     min_angle: float, max_area: float | None, max_edge: float | None, max_vertices: int
 ) -> None:
-    if not _is_number(min_angle) or not 0.0 <= min_angle <= LARGEST_MIN_ANGLE:
+    if not is_finite_number(min_angle) or not 0.0 <= min_angle <= LARGEST_MIN_ANGLE:
         raise PointsError(
-            f"Invalid min_angle {min_angle!r}: it must be from 0 to {LARGEST_MIN_ANGLE:g} degrees, "
-            "for no mesh of larger angles can be promised."
+            f"Invalid min_angle {shown(min_angle)}: it must be from 0 to {LARGEST_MIN_ANGLE:g} "
+            "degrees, for no mesh of larger angles can be promised."
         )
     for name, value in (("max_area", max_area), ("max_edge", max_edge)):
-        if value is not None and not (_is_number(value) and value > 0.0):
-            raise PointsError(f"Invalid {name} {value!r}: a number above 0, or None, is needed.")
-    is_whole = isinstance(max_vertices, int | np.integer) and not isinstance(max_vertices, bool)
-    if not is_whole or not 0 < max_vertices <= _kernel.MOST_POINTS:
+        if value is not None and not (is_finite_number(value) and value > 0.0):
+            raise PointsError(
+                f"Invalid {name} {shown(value)}: a number above 0, or None, is needed."
+            )
+    if not is_whole_number(max_vertices) or not 0 < max_vertices <= _kernel.MOST_POINTS:
         raise PointsError(
-            f"Invalid max_vertices {max_vertices!r}: a whole number from 1 to "
+            f"Invalid max_vertices {shown(max_vertices)}: a whole number from 1 to "
             f"{_kernel.MOST_POINTS:,} is needed."
         )
-
-
-def _is_number(value: Any) -> bool:
-    is_real = isinstance(value, int | float | np.integer | np.floating)
-    return is_real and not isinstance(value, bool) and math.isfinite(value)
 
 
 def _require_room(tin: TIN, max_area: float | None, max_vertices: int) -> None:
@@ -371,6 +369,7 @@ def _refined(
         report=_report(tin, surface, found),
         lines=lines_in(model.pieces, model.infos, number_of, surface, is_whole=False),
         crs=tin.crs,
+        elevation_unit=tin.elevation_unit,
     )
 
 

@@ -83,12 +83,14 @@ class Walk(NamedTuple):
         offsets: NDArray[np.int32],
         heights: NDArray[np.float64],
     ) -> Walk:
-        """Join the chains; repeated vertices in a row count once."""
+        """Join the chains; repeated vertices in a row count once, by their lowest height."""
         line = np.repeat(np.arange(len(offsets) - 1, dtype=np.int32), np.diff(offsets))
         moves = np.ones(len(line), np.bool_)
         moves[1:] = (np.diff(vertices) != 0) | (np.diff(line) != 0)
         given = np.ones(int(moves.sum()), np.bool_)
-        return cls(vertices[moves], heights[moves], line[moves], given)
+        starts = np.flatnonzero(moves)
+        lowest = np.minimum.reduceat(heights, starts) if len(starts) else heights
+        return cls(vertices[moves], lowest, line[moves], given)
 
     def with_vertices(
         self, at: NDArray[np.int64], vertices: NDArray[np.int32], heights: NDArray[np.float64]

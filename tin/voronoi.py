@@ -11,6 +11,7 @@ import numpy as np
 from . import _kernel
 from .errors import LinesError, PointsError
 from .lines import as_ring
+from .options import is_finite_number, shown
 from .threads import thread_count
 from .types import Bounds
 from .voronoi_cells import Rings, cells_in_box, signed_areas
@@ -119,7 +120,9 @@ def voronoi(
 ) -> Voronoi:
     """Build the Voronoi diagram of the vertices of a TIN; see :meth:`tinsmith.TIN.voronoi`."""
     if boundary is not None and pad is not None:
-        raise PointsError(f"Invalid pad {pad!r}: a boundary is given, and only bounds are padded.")
+        raise PointsError(
+            f"Invalid pad {shown(pad)}: a boundary is given, and only bounds are padded."
+        )
     extent = Bounds.of(tin.points)
     if boundary is None:
         box = _padded(extent, pad)
@@ -162,8 +165,8 @@ def _cells(points: NDArray[np.float64], box: Bounds) -> Rings:
 def _padded(extent: Bounds, pad: float | None) -> Bounds:
     if pad is None:
         pad = _PAD_SHARE * max(extent.width, extent.height)
-    elif not (isinstance(pad, int | float | np.number) and 0 <= pad < np.inf):
-        raise PointsError(f"Invalid pad {pad!r}: a distance >= 0 in CRS units is needed.")
+    elif not (is_finite_number(pad) and pad >= 0):
+        raise PointsError(f"Invalid pad {shown(pad)}: a distance >= 0 in CRS units is needed.")
     return Bounds(extent.xmin - pad, extent.ymin - pad, extent.xmax + pad, extent.ymax + pad)
 
 
