@@ -455,7 +455,8 @@ def _one_point(point: Any) -> NDArray[np.float64]:
         raise PointsError(
             f"There are {len(rows)} points: one, easting, northing, elevation, is needed."
         )
-    return rows[0]
+    place: NDArray[np.float64] = rows[0]
+    return place
 
 
 def _elevations(z: ArrayLike, count: int) -> NDArray[np.float64]:

@@ -268,7 +268,8 @@ def _lift(tin: ts.TIN, new: Tracked, vertex: int, z: float) -> bool:
             if len(point) == 3 and point[:2] == tin.points[vertex, :2].tolist():
                 point[2] = z
                 found = True
-    return found
+    shores = [corner for ring in new.rings.get("water", []) for corner in ring]
+    return found or tin.points[vertex, :2].tolist() in shores
 
 
 def _remove(tin: ts.TIN, new: Tracked, vertices: list[int], edit: dict[str, Any]) -> Any:
