@@ -288,7 +288,8 @@ def _one_point(point: Any) -> NDArray[np.float64]:
         raise PointsError(
             f"There are {len(rows)} points: one, easting, northing, elevation, is needed."
         )
-    return rows[0]
+    point_alone: NDArray[np.float64] = rows[0]
+    return point_alone
 
 
 def apply_edits(tin: TIN, edits: Iterable[Edit | Mapping[str, Any]]) -> None:
