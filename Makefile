@@ -56,6 +56,31 @@ FUZZ := PYTHONPATH=tests $(BIN)/python -m fuzz
 fuzz: $(READY) ## Run random campaigns: MINUTES= or CASES=, SEED=, CAMPAIGN=
 	$(FUZZ) --seed $(SEED) $(addprefix --campaign ,$(CAMPAIGN)) $(if $(CASES),--cases $(CASES)) $(addprefix --minutes ,$(MINUTES))
 
+# The tests of the shape room and a slice of each campaign with ASan and UBSan, those of threads
+# with TSan. SANITIZE_CASES= makes the slice longer.
+SANITIZE_CASES ?= 200
+SANITIZE := tests/sanitizers/run.sh $(BIN)/python
+THREADS := $(wildcard tests/test_tin_threads.py tests/test_tin_concurrency.py)
+.PHONY: sanitize sanitize-address sanitize-thread
+sanitize: sanitize-address sanitize-thread ## Run tests and campaigns under ASan, UBSan and TSan
+sanitize-address: $(READY)
+	$(BIN)/python -m pip install --quiet --group sanitize
+	$(SANITIZE) address -m pytest -q -p no:cacheprovider --timeout 1800 tests/test_tin_*.py
+	$(SANITIZE) address -m fuzz --no-memory-limit --cases $(SANITIZE_CASES) --seed $(SEED)
+sanitize-thread: $(READY)
+	$(BIN)/python -m pip install --quiet --group sanitize
+	$(SANITIZE) thread -m pytest -q -p no:cacheprovider --timeout 1800 $(THREADS)
+
+# make mutants MUTANTS=60 SEED=3 KIND=core; survivors are listed in build/mutants, too.
+MUTANTS ?= 150
+KIND ?= python core
+.PHONY: mutants
+mutants: $(READY) ## Change the code at random and list what the tests miss: MUTANTS=, KIND=
+	$(BIN)/python -m pip install --quiet --group sanitize
+	@set -e; for kind in $(KIND); do \
+	  PATH="$(CURDIR)/$(BIN):$$PATH" PYTHONPATH=tests $(BIN)/python -m mutation $$kind --count $(MUTANTS) --seed $(SEED); \
+	done
+
 format: $(READY) ## Format the code
 	$(BIN)/ruff format .
 	$(BIN)/ruff check --fix .

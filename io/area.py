@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .crs import as_crs, crs_label
+from ..crs import CRS
 
 if TYPE_CHECKING:
     import pyproj
@@ -28,17 +28,17 @@ class AreaOfUse:
 
     Attributes
     ----------
-    source : str
+    source : CRS
         CRS of the coordinates.
-    targets : tuple of str
+    targets : tuple of CRS
         CRSs whose areas count, without those whose area is not known.
     """
 
-    source: str
-    targets: tuple[str, ...]
+    source: CRS
+    targets: tuple[CRS, ...]
 
     @classmethod
-    def of(cls, source: str | None, target: str | None) -> AreaOfUse | None:
+    def of(cls, source: CRS | None, target: CRS | None) -> AreaOfUse | None:
         """Return the areas to look at; None if nothing is known of them."""
         declared = source or target
         if declared is None:
@@ -50,7 +50,7 @@ class AreaOfUse:
     @property
     def label(self) -> str:
         """The CRSs and the narrowest of their areas in degrees, for a sentence."""
-        names = " and ".join(crs_label(crs) for crs in self.targets)
+        names = " and ".join(crs.label for crs in self.targets)
         area = min((_area(crs) for crs in self.targets), key=_width)
         return (
             f"{names} (longitude {area.west:g} to {area.east:g}, "
@@ -66,7 +66,7 @@ class AreaOfUse:
             Easting (longitude), northing (latitude).
         """
         longitude, latitude = _degrees(self.source, xy)
-        inside = np.isfinite(longitude) & np.isfinite(latitude)
+        inside: NDArray[np.bool_] = np.isfinite(longitude) & np.isfinite(latitude)
         for crs in self.targets:
             inside &= _lies_in(_area(crs), longitude, latitude)
         return inside
@@ -86,13 +86,13 @@ class AreaOfUse:
 def _outermost(xy: NDArray[np.float64]) -> list[int]:
     """Return the rows of the corners of the octagon around the points, and some between."""
     x, y = xy.T
-    with np.errstate(over="ignore"):
+    with np.errstate(over="ignore", invalid="ignore"):
         sides = (x, y, x + y, x - y)
         corners = [int(f(side)) for side in sides for f in (np.argmin, np.argmax)]
     return [*corners, *range(0, len(xy), max(1, len(xy) // _SPREAD))]
 
 
-def _degrees(source: str, xy: NDArray[np.float64]) -> tuple[NDArray[Any], NDArray[Any]]:
+def _degrees(source: CRS, xy: NDArray[np.float64]) -> tuple[NDArray[Any], NDArray[Any]]:
     """Return longitude from Greenwich and latitude, infinite where there is no image.
 
     They are those of the CRS's own datum, which are found fast and near enough for a margin of
@@ -104,23 +104,25 @@ def _degrees(source: str, xy: NDArray[np.float64]) -> tuple[NDArray[Any], NDArra
 
 
 @lru_cache(maxsize=8)
-def _to_angles(source: str) -> tuple[pyproj.Transformer, float, float]:
+def _to_angles(source: CRS) -> tuple[pyproj.Transformer, float, float]:
     """Return what makes longitude and latitude, the degrees of their unit, and the meridian."""
     import pyproj
 
-    crs = as_crs(source)
+    crs = source.to_pyproj()
     crs = crs.sub_crs_list[0] if crs.is_compound else crs
-    base = crs.geodetic_crs or as_crs(_WGS84)
+    base = crs.geodetic_crs or CRS.of(_WGS84).to_pyproj()
     degrees = float(np.degrees(base.to_2d().axis_info[0].unit_conversion_factor))
     prime = base.prime_meridian
-    meridian = np.degrees(prime.longitude * prime.unit_conversion_factor) if prime else 0.0
+    meridian = 0.0
+    if prime is not None:
+        meridian = float(np.degrees(prime.longitude * float(prime.unit_conversion_factor)))
     transformer = pyproj.Transformer.from_crs(crs.to_2d(), base.to_2d(), always_xy=True)
-    return transformer, degrees, float(meridian)
+    return transformer, degrees, meridian
 
 
-def _area(crs: str) -> Any:
+def _area(crs: CRS) -> Any:
     """Return the area of use of a CRS, of its horizontal part if only that has one, or None."""
-    known = as_crs(crs)
+    known = crs.to_pyproj()
     if known.area_of_use is None and known.is_compound:
         return known.sub_crs_list[0].area_of_use
     return known.area_of_use

@@ -1,195 +1,206 @@
-"""Coordinate reference systems: from text and back, transformation of points, units.
+"""Points move from one coordinate reference system to another, and elevations change their unit.
 
-Everywhere else a CRS travels as text: an authority code ("EPSG:32616") or WKT. Coordinates are
-always in the order easting, northing (longitude, latitude), whatever the authority says.
+What a CRS is, and which units there are, is told by :mod:`tinsmith.crs`.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from ..crs import CRS, METRE, UNKNOWN, Unit, assume_elevation_unit
 from .errors import CrsError
 
 if TYPE_CHECKING:
-    import pyproj
     from numpy.typing import NDArray
+
+    from ..crs import CrsLike, UnitLike
 
 __all__ = [
     "METRE",
     "LengthUnit",
-    "as_crs",
-    "crs_label",
-    "crs_text",
-    "elevation_unit",
+    "Reprojected",
+    "conversion_factor",
+    "convert_elevations",
     "fitting_utm",
     "is_geographic",
     "length_unit",
-    "normalised",
+    "reproject",
     "transform_points",
 ]
 
-_SHOWN_LETTERS = 60
+LengthUnit = Unit
+"""The name of :class:`tinsmith.Unit` in the first version."""
 
 
-@dataclass(frozen=True, slots=True)
-class LengthUnit:
-    """A unit of length.
+class Reprojected(NamedTuple):
+    """Points in another CRS.
 
     Attributes
     ----------
-    name : str
-        As the authority writes it, for example "US survey foot".
-    symbol : str
-        As it stands behind a number, for example "m".
-    metres : float or None
-        Its length; None if it is unknown, or an angle.
+    points : (n, 3) float64 array
+    unit : Unit or None
+        Of their elevations; None if it is still not known.
+    note : str or None
+        What was done to the elevations, in a sentence; None if nothing.
     """
 
-    name: str
-    symbol: str
-    metres: float | None
+    points: NDArray[np.float64]
+    unit: Unit | None
+    note: str | None
 
 
-METRE = LengthUnit("metre", "m", 1.0)
-_UNKNOWN = LengthUnit("unit", "units", None)
-_SYMBOLS = {
-    "metre": "m",
-    "meter": "m",
-    "foot": "ft",
-    "US survey foot": "US ft",
-    "kilometre": "km",
-}
+def is_geographic(crs: CrsLike | None) -> bool:
+    """Whether coordinates in this CRS are longitude and latitude; False where it is not known."""
+    return crs is not None and CRS.of(crs).is_geographic
 
 
-@lru_cache(maxsize=32)
-def as_crs(text: str) -> pyproj.CRS:
-    """Look a coordinate reference system up.
-
-    Parameters
-    ----------
-    text : str
-        Authority code ("EPSG:32616", or the bare number), WKT, PROJ string or PROJJSON.
-
-    Raises
-    ------
-    CrsError
-        If PROJ does not know it.
-
-    Examples
-    --------
-    >>> as_crs("EPSG:32616").name
-    'WGS 84 / UTM zone 16N'
-    """
-    import pyproj
-    from pyproj.exceptions import CRSError
-
-    wanted = str(text).strip()
-    try:
-        return pyproj.CRS.from_user_input(f"EPSG:{wanted}" if wanted.isdecimal() else wanted)
-    except CRSError as error:
-        raise CrsError(
-            f"Unknown CRS '{_shortened(wanted)}': an authority code such as EPSG:32616, "
-            "a WKT or a PROJ text is needed.",
-            crs=text,
-        ) from error
-
-
-def crs_text(crs: pyproj.CRS) -> str:
-    """Return the authority code of a CRS if it has one that means exactly this, else its WKT."""
-    authority = crs.to_authority(min_confidence=100)
-    return ":".join(authority) if authority else str(crs.to_wkt())
-
-
-def normalised(text: str | None) -> str | None:
-    """Return a caller's CRS text in the form in which it travels; None stays None.
-
-    Raises
-    ------
-    CrsError
-        If PROJ does not know it.
-    """
-    return None if text is None else crs_text(as_crs(text))
-
-
-def crs_label(text: str | None) -> str:
-    """Return a short name of a CRS for people: its code, else its name."""
-    if text is None:
-        return "unknown"
-    return text if len(text) <= 24 else str(as_crs(text).name)
-
-
-def is_geographic(text: str | None) -> bool:
-    """Whether coordinates in this CRS are longitude and latitude."""
-    return text is not None and bool(as_crs(text).is_geographic)
-
-
-def length_unit(text: str | None) -> LengthUnit:
+def length_unit(crs: CrsLike | None) -> Unit:
     """Return the unit of eastings and northings; ``metres`` is None where it is no known length.
 
     Examples
     --------
     >>> length_unit("EPSG:2274")
-    LengthUnit(name='US survey foot', symbol='US ft', metres=0.30480060960121924)
+    Unit(name='US survey foot', symbol='US ft', metres=0.3048006096012192)
     """
-    axes = [] if text is None else as_crs(text).axis_info
-    if not axes:
-        return _UNKNOWN
-    if is_geographic(text):
-        return LengthUnit("degree", "°", None)
-    return _unit(axes[0].unit_name, axes[0].unit_conversion_factor)
+    return UNKNOWN if crs is None else CRS.of(crs).horizontal_unit
 
 
-def elevation_unit(text: str | None) -> LengthUnit:
-    """Return the unit of elevations.
-
-    That of the CRS's vertical axis; without one the unit of its eastings, since who works in
-    State Plane feet levels in feet; metres above longitude and latitude, or where nothing is known.
-    """
-    axes = [] if text is None else as_crs(text).axis_info
-    if len(axes) >= 3:
-        return _unit(axes[2].unit_name, axes[2].unit_conversion_factor)
-    along = length_unit(text)
-    return METRE if along.metres is None else along
-
-
-def _unit(name: str, metres: float) -> LengthUnit:
-    return LengthUnit(name, _SYMBOLS.get(name, name), float(metres))
-
-
-def transform_points(points: NDArray[np.float64], source: str, target: str) -> NDArray[np.float64]:
-    """Move points from one CRS to another.
+def transform_points(
+    points: NDArray[np.float64],
+    source: CrsLike,
+    target: CrsLike,
+    *,
+    z_unit: UnitLike | None = None,
+) -> NDArray[np.float64]:
+    """Transform points from one CRS to another.
 
     Parameters
     ----------
     points : (n, 3) float64 array
         Easting (longitude), northing (latitude), elevation.
-    source, target : str
-        CRS as authority code or WKT.
+    source, target : CRS, str, int or pyproj.CRS
+    z_unit : Unit or str, optional
+        Unit of the elevations; default that of the source: its vertical axis, else its eastings,
+        metres above degrees.
 
     Returns
     -------
     (n, 3) float64 array
-        Elevations change only where both systems have a vertical axis.
+        Elevations are converted as :func:`reproject` tells.
 
     Raises
     ------
     CrsError
         If a CRS is unknown, no transformation exists, or a point lies outside its domain.
+    OptionError
+        If the unit is unknown.
     """
+    return reproject(points, CRS.of(source), CRS.of(target), unit=Unit.of(z_unit)).points
+
+
+def reproject(
+    points: NDArray[np.float64],
+    source: CRS,
+    target: CRS,
+    *,
+    unit: Unit | None,
+    wanted: Unit | None = None,
+) -> Reprojected:
+    """Transform points, and convert their elevations where the unit changes.
+
+    Parameters
+    ----------
+    points : (n, 3) float64 array
+    source, target : CRS
+    unit : Unit or None
+        Unit of the elevations, if it is known otherwise than by the source.
+    wanted : Unit, optional
+        Unit that they are to have; default the usual one of the target: feet in a CRS in feet,
+        metres in one in metres or degrees. A vertical axis of the target goes before it.
+
+    Raises
+    ------
+    CrsError
+        If no transformation exists, or a point lies outside its domain.
+
+    Notes
+    -----
+    Where both systems have a vertical axis PROJ changes datum and unit. Otherwise elevations keep
+    their datum, and only their unit becomes the one wanted.
+    """
+    points = np.asarray(points, np.float64)
+    known = unit if unit is not None else source.vertical_unit
+    had = assume_elevation_unit(source, known)
+    wanted = target.vertical_unit or wanted or target.usual_elevation_unit or had
+    if source.vertical_unit is not None and target.vertical_unit is not None:
+        points = _with_elevations(points, known, source.vertical_unit)
+        moved = _transform(points, source, target)
+    else:
+        # In the plane alone: PROJ would let the elevation, whatever its unit, move the place.
+        xy = _transform(points[:, :2], source.horizontal, target.horizontal)
+        moved = np.column_stack([xy, points[:, 2]])
+        moved = _with_elevations(moved, had, wanted)
+    is_known = known is not None or target.vertical_unit is not None
+    note = _note(source, target, known, wanted)
+    return Reprojected(np.ascontiguousarray(moved), wanted if is_known else None, note)
+
+
+def convert_elevations(
+    points: NDArray[np.float64], unit: Unit | None, wanted: Unit | None
+) -> NDArray[np.float64]:
+    """Return points with elevations in another unit; as they are where either is not known."""
+    return _with_elevations(np.asarray(points, np.float64), unit, wanted)
+
+
+def _with_elevations(
+    points: NDArray[np.float64], unit: Unit | None, wanted: Unit | None
+) -> NDArray[np.float64]:
+    factor = conversion_factor(unit, wanted)
+    return points if factor == 1.0 else points * (1.0, 1.0, factor)
+
+
+def conversion_factor(unit: Unit | None, wanted: Unit | None) -> float:
+    """Return how many of the wanted unit are in one unit; 1 where either is not known."""
+    if unit is None or wanted is None or unit == wanted:
+        return 1.0
+    if unit.metres is None or wanted.metres is None:
+        return 1.0
+    return unit.metres / wanted.metres
+
+
+def _note(source: CRS, target: CRS, known: Unit | None, wanted: Unit | None) -> str | None:
+    had = assume_elevation_unit(source, known)
+    if had is None or wanted is None or had == wanted:
+        return None
+    if known is not None:
+        return f"Elevations were converted from {had.name} to {wanted.name}."
+    return (
+        f"The unit of the elevations is not told: taken to be {had.name}, as is usual in "
+        f"{source.label}, they were converted to {wanted.name} for {target.label}."
+    )
+
+
+def _transform(points: NDArray[np.float64], source: CRS, target: CRS) -> NDArray[np.float64]:
     import pyproj
     from pyproj.exceptions import ProjError
 
-    points = np.asarray(points, np.float64)
-    names = f"from {crs_label(source)} to {crs_label(target)}"
+    names = f"from {source.label} to {target.label}"
     try:
-        transformer = pyproj.Transformer.from_crs(as_crs(source), as_crs(target), always_xy=True)
+        transformer = pyproj.Transformer.from_crs(
+            source.to_pyproj(), target.to_pyproj(), always_xy=True
+        )
         moved = np.stack(transformer.transform(*points.T), axis=1)
     except ProjError as error:
         raise CrsError(f"No transformation {names} is known.", crs=target) from error
+    _require_images(points, moved, names, target)
+    return moved
+
+
+def _require_images(
+    points: NDArray[np.float64], moved: NDArray[np.float64], names: str, target: CRS
+) -> None:
     lost = ~np.isfinite(moved).all(axis=1)
     if lost.any():
         row = int(np.argmax(lost))
@@ -199,7 +210,6 @@ def transform_points(points: NDArray[np.float64], source: str, target: str) -> N
             "check that the CRS of the points is the right one.",
             crs=target,
         )
-    return np.ascontiguousarray(moved)
 
 
 def fitting_utm(longitude: float, latitude: float) -> str:
@@ -216,7 +226,3 @@ def fitting_utm(longitude: float, latitude: float) -> str:
         return "EPSG:32761"
     zone = int((longitude + 180.0) % 360.0 // 6.0) + 1
     return f"EPSG:{326 if latitude >= 0 else 327}{zone:02d}"
-
-
-def _shortened(text: str) -> str:
-    return text if len(text) <= _SHOWN_LETTERS else text[: _SHOWN_LETTERS - 3] + "..."

@@ -8,10 +8,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ..crs import CRS, Unit
+from ..errors import OptionError
 from ..tin import TIN, Survey
 from .area import AreaOfUse
 from .atomic import replacing
-from .crs import is_geographic, normalised
+from .crs import is_geographic
+from .delimited_columns import unit_of
 from .delimited_content import columns_by_content
 from .delimited_findings import (
     describe_faults,
@@ -24,7 +27,7 @@ from .delimited_layout import find_layout
 from .delimited_lines import read_lines
 from .delimited_table import describe_columns, faults_error, read_cells, read_table
 from .errors import FormatError, ReadError, WriteError
-from .placing import placed
+from .placing import place, settle_unit
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -32,6 +35,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from ..crs import CrsLike, UnitLike
     from .delimited_columns import Columns
     from .delimited_layout import Layout
     from .delimited_lines import TextLines
@@ -48,13 +52,14 @@ _BARE_SUFFIXES = frozenset({".xyz", ".pts"})
 def read(
     path: Path,
     *,
-    crs: str | None = None,
+    crs: CrsLike | None = None,
+    z_unit: UnitLike | None = None,
     columns: str | Sequence[str] | Mapping[str, str | int] | None = None,
     delimiter: str | None = None,
     decimal: str | None = None,
     comment: str | None = None,
     encoding: str | None = None,
-    source_crs: str | None = None,
+    source_crs: CrsLike | None = None,
     nodata: float | Sequence[float] | None = None,
     skip_bad: bool = False,
 ) -> Survey:
@@ -63,9 +68,11 @@ def read(
     Parameters
     ----------
     path : Path
-    crs : str, optional
+    crs : CRS, str, int or pyproj.CRS, optional
         CRS of the coordinates. Where the file has longitude and latitude (WGS 84), or
         ``source_crs`` is another, points are reprojected to it.
+    z_unit : Unit or str, optional
+        Unit of the elevations, if the header does not give it.
     columns : str, sequence of str, or mapping of str to str or int, optional
         What the columns are; default by header, else by content. Letters in their order
         (``"PNEZD"``: P point number, N northing, E easting, Z elevation, D description, X
@@ -79,7 +86,7 @@ def read(
         What comment lines start with; default by looking (``# // ; ! %``), "" for none.
     encoding : str, optional
         Default by looking: UTF-8, UTF-16, else Windows-1252.
-    source_crs : str, optional
+    source_crs : CRS, str, int or pyproj.CRS, optional
         CRS in which the file's coordinates are, if not ``crs``.
     nodata : float or sequence of float, optional
         Elevations that stand for "no data": their points are left out.
@@ -104,6 +111,8 @@ def read(
         If an option has a value that it cannot have.
     CrsError
         If a CRS is unknown, or the points lie in its area of use only with coordinates exchanged.
+    OptionError
+        If ``z_unit`` is unknown, or another than the header gives.
 
     Notes
     -----
@@ -116,7 +125,7 @@ def read(
     on one core, two seconds where quotes stand inside cells or descriptions hold blanks.
     """
     left_out = _as_numbers(nodata)
-    declared = normalised(source_crs)
+    declared = CRS.of(source_crs)
     lines = read_lines(path, encoding=encoding)
     layout = find_layout(
         lines, path, columns=columns, delimiter=delimiter, decimal=decimal, comment=comment
@@ -124,8 +133,9 @@ def read(
     cells = read_cells(lines, layout, path)
     if cells.faults and not skip_bad:
         raise faults_error(cells.faults, len(layout.rows), lines, layout, path)
-    source = _source(layout, declared, crs)
-    area = AreaOfUse.of(source, crs)
+    target = CRS.of(crs)
+    source = _source(layout, declared, target)
+    area = AreaOfUse.of(source, target)
     meaning, notes = _columns(cells, layout, area, path)
     table = read_table(cells, layout, meaning, lines)
     _require_few_faults(table.faults, lines, layout, path, skip_bad=skip_bad)
@@ -138,15 +148,17 @@ def read(
         *find_odd_elevations(told.points),
         *find_repeated_numbers(told.attributes.get("number"), told.rows),
     ]
-    placed_points, placed_crs = placed(told.points, source=source, target=crs, path=path)
+    unit = settle_unit(Unit.of(z_unit), _unit_of_header(layout), path)
+    placed = place(told.points, source=source, target=target, path=path, unit=unit)
     return Survey(
-        points=placed_points,
+        points=placed.points,
         attributes=told.attributes,
-        crs=placed_crs,
+        crs=placed.crs,
+        elevation_unit=placed.elevation_unit,
         source=path.name,
         skipped={**layout.skipped, **{what: len(at) for what, at in told.lines.items()}},
         skipped_lines=told.lines,
-        notes=notes,
+        notes=[*notes, *placed.notes],
     )
 
 
@@ -166,10 +178,22 @@ def _as_numbers(nodata: float | Sequence[float] | None) -> NDArray[np.float64]:
         ) from error
 
 
-def _source(layout: Layout, source_crs: str | None, crs: str | None) -> str | None:
+def _unit_of_header(layout: Layout) -> Unit | None:
+    """Return the unit of elevations that the header names; a word that is no length tells none."""
+    try:
+        return Unit.of(layout.elevation_unit)
+    except OptionError:
+        return None
+
+
+def _source(layout: Layout, source_crs: CRS | None, crs: CRS | None) -> CRS | None:
     """Return the CRS of the coordinates in the file, None if it is the one declared."""
     in_degrees = layout.columns is not None and layout.columns.is_degrees
-    return _WGS84 if source_crs is None and in_degrees and not is_geographic(crs) else source_crs
+    return (
+        CRS.of(_WGS84)
+        if source_crs is None and in_degrees and not is_geographic(crs)
+        else source_crs
+    )
 
 
 def _columns(
@@ -180,7 +204,9 @@ def _columns(
         return layout.columns, []
     try:
         columns = describe_columns(cells, layout)
-        found, note = columns_by_content(columns, area, is_scan=layout.is_scan)
+        found, note = columns_by_content(
+            columns, area, is_scan=layout.is_scan, is_announced=layout.is_announced
+        )
     except ReadError as error:
         raise ReadError(f"'{path}': {error}", path=path) from None
     return found, [note]
@@ -270,17 +296,26 @@ def write(
 
     Notes
     -----
-    Every number is written so that it reads back as the same float64.
+    Every number is written so that it reads back as the same float64. The header names the unit of
+    elevations, ``elevation (ft)``, if it is known.
     """
     is_bare = path.suffix.lower() in _BARE_SUFFIXES
     table = _columns_to_write(obj, columns, is_bare, path)
     separator = delimiter or _SUFFIX_DELIMITERS.get(path.suffix.lower(), ",")
     if len(separator) != 1 or separator in '"\n\r.' or separator.isalnum():
         raise WriteError(f"Cannot write '{path}': '{delimiter}' is no delimiter.", path=path)
-    names = [] if (is_bare if header is None else not header) else [list(table)]
+    names = [] if (is_bare if header is None else not header) else [_header(table, obj)]
     with replacing(path, binary=False) as file:
         writer = csv.writer(file, delimiter=separator, lineterminator="\n")
         writer.writerows(chain(names, _rows(list(table.values()), progress)))
+
+
+def _header(table: Mapping[str, NDArray[Any]], obj: TIN | Survey) -> list[str]:
+    """Return the names of the columns, that of elevations with their unit if readers know it."""
+    unit = obj.elevation_unit
+    named = None if unit is None else f"elevation ({unit.symbol})"
+    is_read = named is not None and unit_of(named) is not None
+    return [str(named) if name == "elevation" and is_read else name for name in table]
 
 
 def _columns_to_write(

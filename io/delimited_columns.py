@@ -18,6 +18,7 @@ __all__ = [
     "Columns",
     "columns_by_header",
     "columns_by_word",
+    "list_names",
     "meanings",
     "numbered",
     "role_of",
@@ -81,6 +82,7 @@ _UNIT = re.compile(
     rf"|(?<=[^\W_])[_ .-]+(?P<behind>{'|'.join(sorted(_UNIT_NAMES, key=len, reverse=True))})$",
     re.IGNORECASE,
 )
+_SHOWN_LETTERS, _SHOWN_NAMES = 40, 12
 _LONGEST_NAME = 200
 """Letters of a header cell that may be a name; a longer one is some other text."""
 _ROLE_LETTERS = {
@@ -126,7 +128,7 @@ class Columns:
         """Name a column for a sentence."""
         name = self.names[column]
         place = f"column {column + 1}"
-        return place if name in ("", place) else f"{place} ('{name}')"
+        return place if name in ("", place) else f"{place} ('{shorten(name)}')"
 
     def permuted(self, order: Sequence[int]) -> Columns:
         """Return the same with the columns of the coordinates exchanged.
@@ -150,7 +152,18 @@ class Columns:
     def layout(self) -> str:
         """The meaning of the columns in order, in words."""
         meaning = {column: role for role, column in self.roles.items()}
-        return ", ".join(meaning.get(i, self.names[i]) for i in range(len(self.names)))
+        return list_names([meaning.get(i, self.names[i]) for i in range(len(self.names))])
+
+
+def shorten(name: str) -> str:
+    """Cut a name that no sentence should hold whole."""
+    return name if len(name) <= _SHOWN_LETTERS else f"{name[:_SHOWN_LETTERS]}..."
+
+
+def list_names(names: Sequence[str]) -> str:
+    """List the first names of a table for a sentence."""
+    shown = ", ".join(shorten(name) for name in names[:_SHOWN_NAMES])
+    return f"{shown}, ..." if len(names) > _SHOWN_NAMES else shown
 
 
 def numbered(names: Sequence[str], count: int) -> tuple[str, ...]:
@@ -241,7 +254,7 @@ def columns_by_header(
         same = [name for name in header if _plain(name) == _plain(header[roles[role]])]
         if len(same) > 1:
             raise ReadError(
-                f"the header has {len(same)} columns named '{same[0]}' for the {role}: "
+                f"the header has {len(same)} columns named '{shorten(same[0])}' for the {role}: "
                 "say with the option columns which is meant."
             )
     notes += _elevation_notes(header, found["elevation"])
@@ -293,15 +306,16 @@ def _best_pair(
             return {}, False, []
         return {"easting": found["lon"][0], "northing": found["lat"][0]}, True, []
     chosen = min(pairs, key=lambda pair: _is_xy(header[pair[0]]))
+    names = [f"'{shorten(name)}'" for name in header]
     notes = [
-        f"The header names two pairs of coordinates: '{header[chosen[0]]}' and "
-        f"'{header[chosen[1]]}' are taken, '{header[e]}' and '{header[n]}' are not."
+        f"The header names two pairs of coordinates: {names[chosen[0]]} and {names[chosen[1]]} "
+        f"are taken, {names[e]} and {names[n]} are not."
         for e, n in pairs
         if e != chosen[0] and n != chosen[1]
     ][:1]
     if _is_xy(header[chosen[0]]) and chosen[1] < chosen[0]:
         notes.append(
-            f"By the header '{header[chosen[0]]}' is the easting and '{header[chosen[1]]}' the "
+            f"By the header {names[chosen[0]]} is the easting and {names[chosen[1]]} the "
             "northing; where X points north it is the other way round."
         )
     return {"easting": chosen[0], "northing": chosen[1]}, False, notes
@@ -317,8 +331,10 @@ def _give_number(header: Sequence[str], roles: dict[str, int]) -> None:
 def _elevation_notes(header: Sequence[str], columns: Sequence[int]) -> list[str]:
     if len({_plain(header[column]) for column in columns}) < 2:
         return []
-    others = ", ".join(f"'{header[column]}'" for column in columns[1:])
-    return [f"The header's '{header[columns[0]]}' is taken as the elevation, not {others}."]
+    others = ", ".join(f"'{shorten(header[column])}'" for column in columns[1:])
+    return [
+        f"The header's '{shorten(header[columns[0]])}' is taken as the elevation, not {others}."
+    ]
 
 
 def columns_by_word(
@@ -363,7 +379,7 @@ def columns_by_word(
         raise FormatError(
             f"The option columns names {len(given)} columns ({word}), but the file has {count}."
         )
-    names = [_own_name(given, header, i) for i in range(count)]
+    names = tuple(_own_name(given, header, i) for i in range(count))
     notes = _contradictions(header, roles)
     in_degrees = _are_degrees(names, roles) or _are_degrees(_as_names(word), roles)
     return Columns(numbered(names, count), roles, in_degrees, _units(names, units, roles), notes)
@@ -388,7 +404,7 @@ def _require_distinct(roles: Mapping[str, int]) -> None:
 def _contradictions(header: Sequence[str], roles: Mapping[str, int]) -> tuple[str, ...]:
     """Say where the caller takes a column for another coordinate than its name says."""
     wrong = [
-        f"'{header[column]}' as the {role}"
+        f"'{shorten(header[column])}' as the {role}"
         for role, column in roles.items()
         if column < len(header) and role_of(header[column]) in set(_ROLES) - {role}
     ]
@@ -438,10 +454,11 @@ def _column(which: str | int, header: Sequence[str], count: int) -> int:
     found = [i for i, name in enumerate(header) if name.strip().casefold() == which.casefold()]
     if len(found) == 1:
         return found[0]
-    there = f"the header has {', '.join(header)}" if header else "the file has no header"
+    there = f"the header has {list_names(header)}" if header else "the file has no header"
     number = "no" if not found else f"{len(found)}"
     raise FormatError(
-        f"The option columns names '{which}', of which there are {number} columns: {there}.",
+        f"The option columns names '{shorten(which)}', of which there are {number} columns: "
+        f"{there}.",
         known=header,
     )
 

@@ -99,7 +99,11 @@ class _Candidate:
 
 
 def columns_by_content(
-    columns: Sequence[Column], area: AreaOfUse | None, *, is_scan: bool
+    columns: Sequence[Column],
+    area: AreaOfUse | None,
+    *,
+    is_scan: bool = False,
+    is_announced: bool = False,
 ) -> tuple[Columns, str]:
     """Tell the columns by what is in them.
 
@@ -109,7 +113,9 @@ def columns_by_content(
     area : AreaOfUse or None
         Where the points must lie, if their CRS is known.
     is_scan : bool
-        Whether the file says that it begins with x, y, z: by its suffix, or a point count on top.
+        Whether the suffix says that rows begin with x, y, z.
+    is_announced : bool
+        Whether a point count on top says it, too.
 
     Returns
     -------
@@ -130,7 +136,7 @@ def columns_by_content(
             candidate.objections.extend(_differences(candidate, columns))
     candidates = _placed(candidates, columns, area)
     left = [one for one in candidates if one.is_plausible]
-    chosen, reason = _customary(left, columns, is_scan=is_scan)
+    chosen, reason = _customary(left, columns, is_scan=is_scan, is_announced=is_announced)
     if len(left) == 1:
         chosen, reason = left[0], _reason(candidates, area)
     if chosen is None:
@@ -188,7 +194,7 @@ def _objections(candidate: _Candidate, columns: Sequence[Column]) -> Iterator[st
     points = candidate.coordinates(columns)
     used = columns[candidate.start : candidate.start + 3]
     if len(points) and not plausible_elevations(points[:, 2]):
-        low, high = np.percentile(points[:, 2], [5, 95])
+        low, high = np.percentile(points[:, 2], [5, 95], method="nearest")
         yield f"would have elevations of {low:,.0f} to {high:,.0f}"
     if any(column.is_padded for column in used):
         yield "would have coordinates with leading zeros"
@@ -231,8 +237,8 @@ def relief_and_extent(points: NDArray[np.float64]) -> tuple[float, float]:
     """Return relief and extent, outliers aside."""
     if len(points) == 0:
         return 0.0, 0.0
-    low, high = np.percentile(points, [5, 95], axis=0)
-    with np.errstate(over="ignore"):
+    low, high = np.percentile(points, [5, 95], axis=0, method="nearest")
+    with np.errstate(over="ignore", invalid="ignore"):
         span = high - low
         return float(span[2]), float(np.hypot(span[0], span[1]))
 
@@ -256,16 +262,18 @@ def _placed(
 
 
 def _customary(
-    left: Sequence[_Candidate], columns: Sequence[Column], *, is_scan: bool
+    left: Sequence[_Candidate], columns: Sequence[Column], *, is_scan: bool, is_announced: bool
 ) -> tuple[_Candidate | None, str]:
     """Return x, y, z where this is the custom: files that say so, and tables of numbers alone."""
     xyz = next((one for one in left if one.start == 0 and not one.is_northing_first), None)
     if xyz is None or len(left) < 2:
         return None, ""
-    if is_scan:
+    is_numbered = any(one.start > 0 for one in left)
+    first, second, third = (column.is_whole for column in columns[:3])
+    if is_announced or (is_scan and (not is_numbered or (first == second != third))):
         return xyz, ", the custom for files of this kind"
     may_be_code = len(columns) in (4, 5) and columns[3].is_whole
-    has_other = any(one.start > 0 for one in left) or xyz.word != "XYZ" or may_be_code
+    has_other = is_numbered or xyz.word != "XYZ" or may_be_code
     return (None, "") if has_other else (xyz, ", the custom for columns of numbers alone")
 
 

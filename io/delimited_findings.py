@@ -113,7 +113,7 @@ def find_odd_elevations(points: NDArray[np.float64]) -> list[str]:
     notes = describe_suspects(find_suspect_elevations(z))
     some = points[:: max(1, len(points) // _SOME)]
     if not plausible_elevations(some[:, 2]):
-        low, high = np.percentile(some[:, 2], [5, 95])
+        low, high = np.percentile(some[:, 2], [5, 95], method="nearest")
         notes.append(
             f"Most elevations lie between {low:,.6g} and {high:,.6g}, where no ground is: check "
             "the columns."

@@ -14,6 +14,7 @@ from .delimited_columns import (
     Columns,
     columns_by_header,
     columns_by_word,
+    list_names,
     meanings,
     role_of,
     unit_of,
@@ -81,7 +82,9 @@ class Layout:
     divided : frozenset of int
         Columns with a decimal mark or an exponent.
     is_scan : bool
-        Whether the file itself says that it begins with x, y, z.
+        Whether the suffix says that rows begin with x, y, z.
+    is_announced : bool
+        Whether a point count above the table says it, too.
     skipped : mapping of str to int
         Lines that are no rows.
     notes : tuple of str
@@ -101,6 +104,7 @@ class Layout:
     padded: frozenset[int]
     divided: frozenset[int]
     is_scan: bool
+    is_announced: bool
     skipped: Mapping[str, int]
     notes: tuple[str, ...] = ()
 
@@ -230,7 +234,7 @@ def _table_layout(
             f"the first line announces {top.announced} points, but {len(rows)} rows follow: "
             "the file may be truncated."
         )
-    body = [row for row in cells[top.n_lines :] if len(row) == count]
+    body = _even_rows(cells[top.n_lines :], count, has_text_tail=has_text_tail)
     columns = _told_columns(lines, top, int(rows[0]), (delimiter, count), body, wishes)
     kinds = _Kinds.of(body, count, decimal)
     is_described = columns is not None and columns.roles.get("description") == count - 1
@@ -247,10 +251,22 @@ def _table_layout(
         mostly_text=kinds.mostly_text,
         padded=kinds.padded,
         divided=kinds.divided,
-        is_scan=top.announced is not None or path.suffix.lower() in _SCAN_SUFFIXES,
+        is_scan=path.suffix.lower() in _SCAN_SUFFIXES,
+        is_announced=top.announced is not None,
         skipped={what: many for what, many in (skipped + top.counts).items() if many},
         notes=((note,) if note else ()) + (() if columns is None else columns.notes),
     )
+
+
+def _even_rows(
+    rows: Sequence[Sequence[str]], count: int, *, has_text_tail: bool
+) -> list[Sequence[str]]:
+    """Return the rows that have the right number of cells, a text at the end as one cell."""
+    if not has_text_tail:
+        return [row for row in rows if len(row) == count]
+    return [
+        [*row[: count - 1], " ".join(row[count - 1 :])] for row in rows if len(row) >= count - 1
+    ]
 
 
 def _told_columns(
@@ -435,7 +451,7 @@ def _fitted_header(
     if wishes.columns is not None and not isinstance(wishes.columns, Mapping):
         return []
     raise ReadError(
-        f"the header names {len(header)} columns ({', '.join(header)}), but rows have {count}: "
+        f"the header names {len(header)} columns ({list_names(header)}), but rows have {count}: "
         "say with the option columns what they are, and check delimiter and decimal mark."
     )
 
@@ -448,9 +464,9 @@ def _columns_by_name(
         return columns_by_word(wishes.columns, header, count, units)
     columns = columns_by_header(header, units)
     if columns is None:
-        found = [f"{role_of(name)} '{name}'" for name in header if role_of(name)]
+        found = [f"{role_of(name)} '{name}'" for name in header[:_TOP_LINES] if role_of(name)]
         raise ReadError(
-            f"the header ({', '.join(header)}) does not name easting, northing and elevation "
+            f"the header ({list_names(header)}) does not name easting, northing and elevation "
             f"(known: {', '.join(found) or 'none of it'}): say with the option columns which "
             "columns they are."
         )

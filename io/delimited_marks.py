@@ -100,7 +100,10 @@ def _count_numbers(cells: Sequence[str], delimiter: str) -> int:
     """Count the cells that are numbers with either decimal mark, or stand in place of one."""
     marks = "." if delimiter == "," else ".,"
     return sum(
-        bool(cell) and not _clings(cell) and any(is_number_like(cell, mark) for mark in marks)
+        bool(cell)
+        and not _clings(cell)
+        and not (delimiter == "," and " " in cell)  # what groups 4 024 240 is no comma
+        and any(is_number_like(cell, mark) for mark in marks)
         for cell in cells
     )
 
@@ -157,7 +160,7 @@ def decimal_of(rows: Iterable[Sequence[str]], delimiter: str) -> DecimalMark | N
     Between semicolons, which are delimiters because commas are decimal marks, the comma is taken.
     """
     cells = [cell for row in rows for cell in row]
-    commas = [cell for cell in cells if "," in cell and is_number(cell, ",")]
+    commas = [cell for cell in cells if "," in cell.strip(",") and is_number(cell, ",")]
     points = [cell for cell in cells if "." in cell and is_number(cell, ".")]
     sure_commas = sum(not may_group_or_divide(cell) for cell in commas)
     sure_points = sum(not may_group_or_divide(cell.replace(".", ",")) for cell in points)

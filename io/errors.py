@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..tin import TinsmithError
+from ..errors import CrsError, TinsmithError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -72,17 +72,3 @@ class FormatError(TinsmithError, ValueError):
     def __init__(self, message: str, *, known: Sequence[str] = ()) -> None:
         super().__init__(printable(message))
         self.known = tuple(known)
-
-
-class CrsError(TinsmithError, ValueError):
-    """A coordinate reference system that is unknown, or that does not fit the purpose.
-
-    Attributes
-    ----------
-    crs : str or None
-        The text at fault.
-    """
-
-    def __init__(self, message: str, *, crs: str | None = None) -> None:
-        super().__init__(message)
-        self.crs = crs

@@ -15,9 +15,9 @@ from importlib.metadata import entry_points
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
+from ..crs import CRS, Unit
 from ..tin import MissingExtraError, Survey, TinsmithError
 from . import signatures
-from .crs import normalised
 from .errors import CrsError, FormatError, ReadError, printable
 from .local import require_local
 from .raster_virtual import is_virtual
@@ -26,12 +26,13 @@ from .spooling import as_sentence, ordinary_file, spooled
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    from ..crs import CrsLike, UnitLike
     from ..tin import TIN
 
 __all__ = ["Format", "detect", "find_format", "known_formats", "read", "read_stream", "write"]
 
 _ENTRY_POINTS = "tinsmith.formats"
-_OWN_PARAMETERS = frozenset({"crs", "progress"})
+_OWN_PARAMETERS = frozenset({"crs", "z_unit", "progress"})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -47,8 +48,8 @@ class Format:
     suffixes : tuple of str
         Lower case, with the dot; a writer is chosen by them, a reader where the content is silent.
     read, write : str, optional
-        ``"module:function"``. A reader takes ``(path, *, crs=None, <options>)`` and returns a
-        Survey or a TIN; a writer takes ``(obj, path, *, <options>)``.
+        ``"module:function"``. A reader takes ``(path, *, crs=None, z_unit=None, <options>)``, a CRS
+        and a Unit or None, and returns a Survey or a TIN; a writer ``(obj, path, *, <options>)``.
     extra : str, optional
         The extra of this package that brings the library it needs.
     sniff : callable, optional
@@ -146,7 +147,8 @@ def read(
     path: str | os.PathLike[str],
     *,
     format: str | None = None,  # noqa: A002 - the word that users of the package know
-    crs: str | None = None,
+    crs: CrsLike | None = None,
+    z_unit: UnitLike | None = None,
     **options: Any,
 ) -> Survey | TIN:
     """Read elevation points or a TIN; the reader is chosen by content and suffix.
@@ -156,9 +158,13 @@ def read(
     path : path-like
     format : str, optional
         Name of a format, to choose it whatever the file looks like.
-    crs : str, optional
-        Coordinate reference system. It declares that of a file which has none; a raster with
-        another one is reprojected to it.
+    crs : CRS, str, int or pyproj.CRS, optional
+        Coordinate reference system. It declares that of a file which has none; points of a file
+        with another one are reprojected to it, a TIN with another one is refused.
+    z_unit : Unit or str, optional
+        Unit of the file's elevations ("m", "ft", "US survey foot"), where the file itself does not
+        say. After a reprojection they have the unit of ``crs``: see
+        :func:`tinsmith.io.transform_points`.
     **options
         Options of the reader, see :meth:`Format.options`.
 
@@ -174,16 +180,24 @@ def read(
     FormatError
         If no format fits, or the format has no such option.
     CrsError
-        If the CRS is unknown.
+        If the CRS is unknown, or another than that of a TIN.
+    OptionError
+        If the unit is unknown, or another than the one that the file gives.
     MissingExtraError
         If the library that reads the format is not installed.
     """
     require_local(path)
     file = Path(path)
-    declared = normalised(crs)
+    declared = _declared(crs, z_unit)
     with ordinary_file(file) as local:
         found = _read_file(local, format, declared, options)
     return found if local == file else _renamed(found, local, file)
+
+
+def _declared(crs: CrsLike | None, z_unit: UnitLike | None) -> dict[str, Any]:
+    """Return what the caller says of the coordinates, as options of a reader."""
+    unit = Unit.of(z_unit)
+    return {"crs": CRS.of(crs)} | ({} if unit is None else {"z_unit": unit})
 
 
 def read_stream(
@@ -191,7 +205,8 @@ def read_stream(
     name: str,
     *,
     format: str | None = None,  # noqa: A002 - as in read
-    crs: str | None = None,
+    crs: CrsLike | None = None,
+    z_unit: UnitLike | None = None,
     **options: Any,
 ) -> Survey | TIN:
     """Read elevation points or a TIN from a stream, such as standard input; as :func:`read`.
@@ -203,13 +218,13 @@ def read_stream(
         What reports and errors call it.
     """
     source = Path(name)
-    declared = normalised(crs)
+    declared = _declared(crs, z_unit)
     with spooled(stream, source) as local:
         return _renamed(_read_file(local, format, declared, options), local, source)
 
 
 def _read_file(
-    file: Path, name: str | None, crs: str | None, options: Mapping[str, Any]
+    file: Path, name: str | None, declared: Mapping[str, Any], options: Mapping[str, Any]
 ) -> Survey | TIN:
     head = _head(file)
     chosen = detect(file, head) if name is None else find_format(name)
@@ -220,9 +235,10 @@ def _read_file(
             known=_known("read"),
         )
     reader = _load(chosen.read)
-    _require_options(chosen, "read", reader, options)
+    of_file = {name: declared[name] for name in declared if name != "crs"} | dict(options)
+    _require_options(chosen, "read", reader, of_file)
     try:
-        survey: Survey | TIN = reader(file, crs=crs, **options)
+        survey: Survey | TIN = reader(file, crs=declared["crs"], **of_file)
     except CrsError as error:
         raise _of_file(error, file) from error
     except OSError as error:  # a file that vanishes, a disk that fails
@@ -480,7 +496,7 @@ def _require_options(
     chosen: Format, action: str, function: Callable[..., Any], options: Mapping[str, object]
 ) -> None:
     allowed = _options(function)
-    accepted = {*allowed, "progress"} & set(inspect.signature(function).parameters)
+    accepted = {*allowed, "progress", "z_unit"} & set(inspect.signature(function).parameters)
     unknown = [name for name in options if name not in accepted]
     if not unknown:
         return

@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, get_args
 
 import numpy as np
 
-from ..terrain.slope import aspect, slope
+from ..terrain.slope import areas, aspect, ring_area, slope
 from ..tin import Survey
 from .atomic import replacing
-from .crs import is_geographic
 from .errors import FormatError, WriteError
 from .geojson_lines import edge_words, line_features, line_vertices, require_lines
 from .geojson_places import (
@@ -18,7 +17,6 @@ from .geojson_places import (
     crs_places,
     require_one_piece,
     texts,
-    unit_metres,
     wgs84_places,
 )
 from .meshes import require_writable
@@ -90,9 +88,12 @@ def write(
     -----
     RFC 7946 means metres above the ellipsoid by the third number. The vertical datum is changed
     only where the CRS is a compound or 3D one (and PROJ has the geoid grid at hand); all other
-    elevations keep their datum, and feet become metres. Elevations of a CRS in feet that has no
-    vertical part are taken to be in the same feet. Areas are in CRS units squared where the CRS
-    is not known; slope, aspect and area are null where it is in degrees.
+    elevations keep their datum, and become metres. If their unit is not known they are taken to be
+    in that of the eastings (metres above degrees), and the member ``elevations`` says so where that
+    is not the metre. With ``projected`` elevations stay as they are, and the member
+    ``elevation_unit`` names their unit if it is known. Slope is that of the true surface, as
+    :func:`tinsmith.terrain.slope` gives it. Areas are in CRS units squared where the CRS is not
+    known.
 
     The file is written in batches; beside the surface itself memory holds about 100 bytes for
     each vertex.
@@ -103,7 +104,7 @@ def write(
         require_lines(surface)
     _require_finite(surface.points, path)
     place = crs_places if projected else wgs84_places
-    places = place(surface.points, surface.crs)
+    places = place(surface)
     if isinstance(surface, Survey) or chosen == "points":
         used, total = places.xyz, len(surface.points)
         features = _points(surface, places)
@@ -154,6 +155,7 @@ def _head(places: Places, used: NDArray[np.float64]) -> str:
     lines = ['"type":"FeatureCollection"']
     if places.crs_member is not None:
         lines.append(f'"crs":{places.crs_member}')
+    lines += [f"{json.dumps(name)}:{json.dumps(text)}" for name, text in places.members]
     if len(used):
         bbox = [*used.min(axis=0).tolist(), *used.max(axis=0).tolist()]
         lines.append(f'"bbox":{json.dumps(bbox)}')
@@ -177,7 +179,7 @@ def _batches(count: int) -> Iterator[tuple[int, slice]]:
 
 
 class _Measures(NamedTuple):
-    """Slope and aspect (degrees) and area (square metres) of each triangle; NaN for none."""
+    """Slope and aspect (degrees, NaN for none) and area (square metres) of each triangle."""
 
     slope: NDArray[np.float64]
     aspect: NDArray[np.float64]
@@ -185,14 +187,9 @@ class _Measures(NamedTuple):
 
 
 def _measures(tin: TIN) -> _Measures:
-    if is_geographic(tin.crs):
-        return _Measures(*np.full((3, len(tin.triangles)), np.nan))
-    along, up = unit_metres(tin.crs)
-    along, up = along or 1.0, up or along or 1.0
-    scaled = tin if along == up else tin.replace(points=tin.points * (1.0, 1.0, up / along))
     # As written, a hair west of north must not become the full circle.
-    falls = np.round(aspect(scaled), 4) % 360.0
-    return _Measures(slope(scaled), falls, tin.triangle_areas * along**2)
+    falls = np.round(aspect(tin), 4) % 360.0
+    return _Measures(slope(tin), falls, areas(tin))
 
 
 def _triangles(tin: TIN, places: Places) -> Iterator[tuple[int, str]]:
@@ -263,15 +260,13 @@ def _lines(tin: TIN, places: Places) -> Iterator[tuple[int, str]]:
 
 def _hull(tin: TIN, places: Places) -> Iterator[tuple[int, str]]:
     positions = texts(places.xyz)
-    scale = 1.0 if is_geographic(tin.crs) else (unit_metres(tin.crs)[0] or 1.0) ** 2
     features = []
     for number, rings in enumerate(_outlines(tin)):
-        area = sum(_signed_area(tin.points[ring]) for ring in rings) * scale
-        area = np.nan if is_geographic(tin.crs) else area
+        area = sum(ring_area(tin.crs, tin.points[ring]) for ring in rings)
         turned = [_turned(ring, places.xyz, k == 0) for k, ring in enumerate(rings)]
         written = ",".join(f"[{','.join(positions[ring])}]" for ring in turned)
         features.append(_HULL % (number, area, written))
-    yield len(tin.triangles), ",\n".join(features).replace(":nan", ":null")
+    yield len(tin.triangles), ",\n".join(features)
 
 
 def _outlines(tin: TIN) -> list[list[NDArray[np.int32]]]:

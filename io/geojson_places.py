@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from .crs import as_crs, elevation_unit, length_unit, transform_points
+from ..crs import CRS, METRE
+from .crs import reproject
 from .errors import CrsError, WriteError
 
 if TYPE_CHECKING:
@@ -15,7 +16,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["Places", "crs_places", "require_one_piece", "texts", "unit_metres", "wgs84_places"]
+    from ..tin import TIN, Survey
+
+__all__ = ["Places", "crs_places", "require_one_piece", "texts", "wgs84_places"]
 
 DEGREE_DECIMALS = 9  # a tenth of a millimetre on the ground
 ELEVATION_DECIMALS = 6  # a micrometre
@@ -31,19 +34,21 @@ class Places(NamedTuple):
     xyz : (n, 3) float64 array
     crs_member : str or None
         JSON text of the old-style ``crs`` member; None where RFC 7946 forbids one.
+    members : tuple of (str, str)
+        Further members of the file, which tell the unit of elevations.
     """
 
     xyz: NDArray[np.float64]
     crs_member: str | None = None
+    members: tuple[tuple[str, str], ...] = ()
 
 
-def wgs84_places(points: NDArray[np.float64], crs: str | None) -> Places:
+def wgs84_places(surface: TIN | Survey) -> Places:
     """Move points to WGS 84 longitude, latitude and elevation in metres, rounded.
 
     Parameters
     ----------
-    points : (n, 3) float64 array, CRS units
-    crs : str or None
+    surface : TIN or Survey
 
     Raises
     ------
@@ -56,35 +61,43 @@ def wgs84_places(points: NDArray[np.float64], crs: str | None) -> Places:
     as PROJ finds the geoid grid; otherwise the elevation keeps its datum and only its unit
     becomes the metre.
     """
+    crs, points = surface.crs, surface.points
     if crs is None:
         raise CrsError(
             "The CRS of these points is not known, and GeoJSON is in WGS 84: declare it, for "
             'example crs="EPSG:32616", or keep the coordinates as they are with projected=True.'
         )
-    # Of CRSs of the same kind PROJ changes heights only between systems that both have them.
-    target = "EPSG:4979" if _has_heights(crs) else "OGC:CRS84"
-    moved = transform_points(points, crs, target)
-    if not _has_heights(crs):
-        moved[:, 2] *= elevation_unit(crs).metres or 1.0
+    has_datum = crs.vertical_unit is not None
+    target = CRS.of("EPSG:4979" if has_datum else "OGC:CRS84")
+    moved = reproject(points, crs, target, unit=surface.elevation_unit, wanted=METRE).points
     _require_on_earth(moved, points, crs)
     moved[:, :2] = np.round(moved[:, :2], DEGREE_DECIMALS)
     moved[:, 2] = np.round(moved[:, 2], ELEVATION_DECIMALS)
-    return Places(moved + 0.0)
+    return Places(moved + 0.0, members=_assumption(surface))
 
 
-def crs_places(points: NDArray[np.float64], crs: str | None) -> Places:
+def _assumption(surface: TIN | Survey) -> tuple[tuple[str, str], ...]:
+    """Tell which unit elevations were taken to have, where they were converted from it."""
+    usual = None if surface.crs is None else surface.crs.usual_elevation_unit
+    if surface.elevation_unit is not None or usual is None or usual == METRE:
+        return ()
+    text = f"metres; their unit was not known and taken to be the {usual.name}, that of the CRS"
+    return (("elevations", text),)
+
+
+def crs_places(surface: TIN | Survey) -> Places:
     """Keep points as they are, and name their CRS by the rule of 2008 (``null``: unknown)."""
-    if crs is None:
-        return Places(points, "null")
-    authority = as_crs(crs).to_authority(min_confidence=100)
-    name = f"urn:ogc:def:crs:{authority[0]}::{authority[1]}" if authority else crs
-    return Places(points, json.dumps({"type": "name", "properties": {"name": name}}))
-
-
-def unit_metres(crs: str | None) -> tuple[float | None, float | None]:
-    """Return the metres in a unit of easting, and of elevation; None where not known."""
-    along = length_unit(crs).metres
-    return along, None if crs is None else elevation_unit(crs).metres
+    unit = surface.elevation_unit
+    members = () if unit is None else (("elevation_unit", unit.name),)
+    if surface.crs is None:
+        return Places(surface.points, "null", members)
+    authority = surface.crs.to_authority()
+    name = str(surface.crs)
+    if authority:
+        name = f"urn:ogc:def:crs:{authority[0]}::{authority[1]}"
+    return Places(
+        surface.points, json.dumps({"type": "name", "properties": {"name": name}}), members
+    )
 
 
 def texts(xyz: NDArray[np.float64]) -> NDArray[np.object_]:
@@ -121,11 +134,7 @@ def require_one_piece(longitudes: NDArray[np.float64], path: Path) -> None:
         )
 
 
-def _has_heights(crs: str) -> bool:
-    return len(as_crs(crs).axis_info) > 2
-
-
-def _require_on_earth(moved: NDArray[np.float64], points: NDArray[np.float64], crs: str) -> None:
+def _require_on_earth(moved: NDArray[np.float64], points: NDArray[np.float64], crs: CRS) -> None:
     outside = (np.abs(moved[:, :2]) > (180.0, 90.0)).any(axis=1)
     if outside.any():
         row = int(np.argmax(outside))

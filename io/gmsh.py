@@ -2,7 +2,8 @@
 
 The file is MSH 2.2 in text, which they all read. Triangles are in the physical group ``surface``.
 Edges of the rim and of lines are line elements for boundary conditions: of the rim in the group
-``boundary``, of a line in one with its name, else its kind and number. MSH has no place for a CRS.
+``boundary``, of a line in one with its name, else its kind and number. MSH has no place for CRS
+and units.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from ..tin.regions import edge_keys
 from ..tin.topology import NO_NEIGHBOR, ends
 from .atomic import replacing_path
 from .isolated import run_isolated
-from .meshes import chosen_crs, file_content, require_tin, survey_of, tin_of
+from .meshes import choose_reference, file_content, require_tin, survey_of, tin_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from ..crs import CrsLike, UnitLike
     from ..tin import TIN, Survey
 
 __all__ = ["read", "write"]
@@ -47,14 +49,16 @@ class _Edges(NamedTuple):
     names: list[str]
 
 
-def read(path: Path, *, crs: str | None = None) -> TIN | Survey:
+def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN | Survey:
     """Read the triangles of a Gmsh file; line elements along their edges become constrained.
 
     Parameters
     ----------
     path : Path
-    crs : str, optional
+    crs : CRS, str, int or pyproj.CRS, optional
         CRS of the coordinates, which the file cannot tell.
+    z_unit : Unit or str, optional
+        Unit of the elevations, which the file cannot tell.
 
     Returns
     -------
@@ -68,7 +72,9 @@ def read(path: Path, *, crs: str | None = None) -> TIN | Survey:
     ReadError
         If the file is damaged, or its triangles are no TIN.
     CrsError
-        If PROJ does not know the CRS.
+        If PROJ does not know the CRS, or the file names another.
+    OptionError
+        If the unit is unknown, or the file names another.
     """
     if find_spec("meshio") is None:
         raise MissingExtraError("meshio", extra="mesh", purpose="Reading Gmsh files")
@@ -77,11 +83,11 @@ def read(path: Path, *, crs: str | None = None) -> TIN | Survey:
     where = {"path": os.path.abspath(path), "shown": str(path)}  # noqa: PTH100 - links stay
     arrays = run_isolated(f"{__package__}.gmsh_meshio:mesh", where, path=path).arrays
     points, triangles = arrays["points"], arrays["triangles"]
-    system = chosen_crs(crs, None)
+    reference = choose_reference(crs, z_unit, path)
     if len(triangles) == 0:
-        return survey_of(points, path, crs=system)
+        return survey_of(points, path, reference=reference)
     flags = _flags(triangles, arrays["lines"], len(points))
-    return tin_of(points, triangles, path, constrained=flags, crs=system)
+    return tin_of(points, triangles, path, constrained=flags, reference=reference)
 
 
 def _flags(

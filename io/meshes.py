@@ -6,18 +6,23 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ..crs import CRS, Unit
+from ..errors import OptionError
 from ..tin import TIN, PointsError, Survey
-from .crs import as_crs, normalised
-from .errors import FormatError, ReadError
+from .errors import CrsError, FormatError, ReadError
+from .placing import settle_unit
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from numpy.typing import NDArray
 
+    from ..crs import CrsLike, UnitLike
+
 __all__ = [
     "Fans",
-    "chosen_crs",
+    "Reference",
+    "choose_reference",
     "fans",
     "file_content",
     "one_line",
@@ -25,6 +30,7 @@ __all__ = [
     "require_writable",
     "survey_of",
     "tin_of",
+    "unit_text",
 ]
 
 
@@ -70,24 +76,71 @@ def require_tin(surface: object, path: Path, *, format_name: str) -> TIN:
     )
 
 
-def one_line(crs: str) -> str:
-    """Return a CRS text without line breaks, for a comment."""
-    return " ".join(part.strip() for part in crs.splitlines())
+def one_line(crs: CRS) -> str:
+    """Return the text of a CRS without line breaks, for a comment."""
+    return " ".join(part.strip() for part in str(crs).splitlines())
 
 
-def chosen_crs(declared: str | None, found: str | None) -> str | None:
-    """Return the CRS that the caller declares, else the one found in the file.
+class Reference(NamedTuple):
+    """What the coordinates of a file are measured in; None for what is not known."""
+
+    crs: CRS | None
+    elevation_unit: Unit | None
+
+
+def choose_reference(
+    crs: CrsLike | None,
+    z_unit: UnitLike | None,
+    path: Path,
+    *,
+    found_crs: str | None = None,
+    found_unit: str | None = None,
+) -> Reference:
+    """Return CRS and unit of elevations: what the file says, else what the caller declares.
 
     Raises
     ------
     CrsError
-        If PROJ does not know it.
+        If PROJ does not know the CRS, or the caller names another than the file.
+    OptionError
+        If the unit is unknown, or another than that of the file or the CRS.
+    ReadError
+        If the file names a unit that is none.
     """
-    if declared is not None:
-        return normalised(declared)
-    if found is not None:
-        as_crs(found)
-    return found
+    declared, own = CRS.of(crs), _found_crs(found_crs, crs is not None)
+    if declared is not None and own is not None and not own.is_same(declared):
+        raise CrsError(
+            f"'{path}' is in {own.label}, and {declared.label} is another CRS: a TIN is not "
+            "reprojected, since its triangles would be no Delaunay triangles there; build it anew "
+            "from its points.",
+            crs=crs,
+        )
+    system = declared if own is None else own
+    known = _found_unit(found_unit, path)
+    vertical = None if system is None else system.vertical_unit
+    return Reference(system, settle_unit(Unit.of(z_unit), known or vertical, path))
+
+
+def _found_crs(text: str | None, is_declared: bool) -> CRS | None:
+    """Look the CRS of a file up; one that is unknown does no harm if the caller names another."""
+    try:
+        return CRS.of(text or None)
+    except CrsError:
+        if is_declared:
+            return None
+        raise
+
+
+def unit_text(surface: TIN | Survey) -> str:
+    """Return the name of the unit of elevations for a file; "" if it is not known."""
+    return "" if surface.elevation_unit is None else surface.elevation_unit.text
+
+
+def _found_unit(text: str | None, path: Path) -> Unit | None:
+    try:
+        return Unit.of(text or None)
+    except OptionError:
+        raise ReadError(f"'{path}': '{text}' is no unit of elevations.", path=path) from None
 
 
 def tin_of(
@@ -96,7 +149,7 @@ def tin_of(
     path: Path,
     *,
     constrained: NDArray[np.bool_] | None = None,
-    crs: str | None = None,
+    reference: Reference,
 ) -> TIN:
     """Make a TIN of what a file holds; what makes no TIN is a fault of the file.
 
@@ -106,7 +159,13 @@ def tin_of(
         As ``TIN.from_triangles`` raises PointsError.
     """
     try:
-        return TIN.from_triangles(points, triangles, constrained=constrained, crs=crs)
+        return TIN.from_triangles(
+            points,
+            triangles,
+            constrained=constrained,
+            crs=reference.crs,
+            z_unit=reference.elevation_unit,
+        )
     except PointsError as error:
         raise ReadError(f"'{path}' holds no TIN. {error}", path=path) from error
 
@@ -116,7 +175,7 @@ def survey_of(
     path: Path,
     *,
     attributes: dict[str, NDArray[Any]] | None = None,
-    crs: str | None = None,
+    reference: Reference,
 ) -> Survey:
     """Make a survey of the points of a file.
 
@@ -135,7 +194,13 @@ def survey_of(
             f"point {row}, {points[row].tolist()}).",
             path=path,
         )
-    return Survey(points=points, attributes=attributes or {}, crs=crs, source=path.name)
+    return Survey(
+        points=points,
+        attributes=attributes or {},
+        crs=reference.crs,
+        elevation_unit=reference.elevation_unit,
+        source=path.name,
+    )
 
 
 def fans(

@@ -103,7 +103,7 @@ def _is_apart(value: float, others: NDArray[np.float64], count: int) -> bool:
     half_range = high / 2 - low / 2  # the halves cannot overflow
     is_customary = value in _CUSTOMARY and half_gap > half_range
     is_shared = count >= _REPEATS and half_gap > _FAR * max(half_range, size / 1000)
-    is_beyond = abs(value) > _BEYOND >= float(np.median(np.abs(others)))
+    is_beyond = abs(value) > _BEYOND >= 2.0 * float(np.median(np.abs(others) / 2.0))
     return is_customary or is_shared or is_beyond
 
 

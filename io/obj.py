@@ -1,6 +1,7 @@
 """Wavefront OBJ: vertices and faces as text, every digit kept, elevation up as it is.
 
-A comment ``# crs: EPSG:32616`` keeps the CRS. Which edges are constrained is lost.
+Comments keep the CRS, ``# crs: EPSG:32616``, and the unit of elevations where it is known,
+``# elevation unit: US survey foot``. Which edges are constrained is lost.
 """
 
 from __future__ import annotations
@@ -13,7 +14,16 @@ import numpy as np
 
 from .atomic import replacing
 from .errors import ReadError
-from .meshes import chosen_crs, fans, file_content, one_line, require_tin, survey_of, tin_of
+from .meshes import (
+    choose_reference,
+    fans,
+    file_content,
+    one_line,
+    require_tin,
+    survey_of,
+    tin_of,
+    unit_text,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -21,6 +31,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from ..crs import CrsLike, UnitLike
     from ..tin import TIN, Survey
 
 __all__ = ["read", "write"]
@@ -34,14 +45,17 @@ _CLAMPED = 2**63 - 1
 _VERTEX_NUMBER = re.compile(r"([-+]?)([0-9]+)(?:/|$)")
 
 
-def read(path: Path, *, crs: str | None = None) -> TIN | Survey:
+def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN | Survey:
     """Read the vertices and faces of an OBJ file.
 
     Parameters
     ----------
     path : Path
-    crs : str, optional
+    crs : CRS, str, int or pyproj.CRS, optional
         Declares the CRS; default the one in a comment ``# crs: ...``.
+    z_unit : Unit or str, optional
+        Declares the unit of the elevations; default the one in a comment
+        ``# elevation unit: ...``.
 
     Returns
     -------
@@ -54,17 +68,26 @@ def read(path: Path, *, crs: str | None = None) -> TIN | Survey:
     ReadError
         If a line cannot be understood, or the faces are no TIN.
     CrsError
-        If PROJ does not know the CRS.
+        If PROJ does not know the CRS, or the file names another.
+    OptionError
+        If the unit is unknown, or the file names another.
     """
     lines = _lines(file_content(path))
     vertex_lines = [i for i, line in enumerate(lines) if line[:2] in ("v ", "v\t")]
     face_lines = [i for i, line in enumerate(lines) if line[:2] in ("f ", "f\t")]
     points = _points(lines, vertex_lines, path)
-    system = chosen_crs(crs, _crs_comment(lines))
+    reference = choose_reference(
+        crs,
+        z_unit,
+        path,
+        found_crs=_comment(lines, "crs"),
+        found_unit=_comment(lines, "elevation unit"),
+    )
     if not face_lines:
-        return survey_of(points, path, crs=system)
+        return survey_of(points, path, reference=reference)
     corners, offsets = _faces(lines, vertex_lines, face_lines, path)
-    return tin_of(points, fans(corners, offsets, points, path).triangles, path, crs=system)
+    triangles = fans(corners, offsets, points, path).triangles
+    return tin_of(points, triangles, path, reference=reference)
 
 
 def _lines(content: bytes) -> list[str]:
@@ -79,13 +102,13 @@ def _lines(content: bytes) -> list[str]:
     return lines
 
 
-def _crs_comment(lines: Sequence[str]) -> str | None:
-    """Return the CRS named among the comments at the top."""
+def _comment(lines: Sequence[str], name: str) -> str | None:
+    """Return what is named so among the comments at the top."""
     for line in lines:
         if line.strip() and not line.startswith("#"):
             return None
-        if line.startswith("# crs: "):
-            return line.removeprefix("# crs: ").strip() or None
+        if line.startswith(f"# {name}: "):
+            return line.removeprefix(f"# {name}: ").strip() or None
     return None
 
 
@@ -184,6 +207,8 @@ def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None 
     with replacing(path, binary=False) as file:
         if tin.crs is not None:
             file.write(f"# crs: {one_line(tin.crs)}\n")
+        if unit := unit_text(tin):
+            file.write(f"# elevation unit: {unit}\n")
         done = 0
         for count, batch in _batches(tin):
             file.write(batch)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, NamedTuple, NoReturn
 
 import numpy as np
 
-from .crs import as_crs, crs_label, fitting_utm, is_geographic, transform_points
+from ..crs import require_same_unit
+from .crs import convert_elevations, fitting_utm, reproject, transform_points
 from .errors import CrsError, ReadError
 
 if TYPE_CHECKING:
@@ -14,30 +15,53 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["placed"]
+    from ..crs import CRS, Unit
+
+__all__ = ["Placed", "place", "settle_unit"]
 
 _WGS84 = "EPSG:4326"
 
 
-def placed(
-    points: NDArray[np.float64], *, source: str | None, target: str | None, path: Path
-) -> tuple[NDArray[np.float64], str | None]:
+class Placed(NamedTuple):
+    """Points in the CRS wanted.
+
+    Attributes
+    ----------
+    points : (n, 3) float64 array
+    crs : CRS or None
+    elevation_unit : Unit or None
+        None if it is not known.
+    notes : tuple of str
+        What was done to the elevations.
+    """
+
+    points: NDArray[np.float64]
+    crs: CRS | None
+    elevation_unit: Unit | None
+    notes: tuple[str, ...]
+
+
+def place(
+    points: NDArray[np.float64],
+    *,
+    source: CRS | None,
+    target: CRS | None,
+    path: Path,
+    unit: Unit | None = None,
+) -> Placed:
     """Bring points into a projected CRS.
 
     Parameters
     ----------
     points : (n, 3) float64 array
-    source : str, optional
+    source : CRS, optional
         CRS of the points; unknown points are declared to be in the target.
-    target : str, optional
+    target : CRS, optional
         CRS wanted; default the source.
     path : Path
         For sentences.
-
-    Returns
-    -------
-    points : (n, 3) float64 array
-    crs : str or None
+    unit : Unit, optional
+        Unit of the elevations, if it is known otherwise than by the source.
 
     Raises
     ------
@@ -47,31 +71,50 @@ def placed(
         If they cannot be transformed.
     """
     wanted = target if target is not None else source
-    if wanted is not None and is_geographic(wanted):
+    if wanted is not None and wanted.is_geographic:
         _refuse_degrees(points, wanted, source or wanted, path)
-    if source is None or wanted is None or _is_same(source, wanted):
-        return points, wanted
+    if source is None or wanted is None or source.is_same(wanted):
+        return _stay(points, wanted, unit)
     try:
-        return transform_points(points, source, wanted), wanted
+        moved, known, note = reproject(points, source, wanted, unit=unit)
     except CrsError as error:
         raise CrsError(f"'{path}': {error}", crs=wanted) from error
+    return Placed(moved, wanted, known, () if note is None else (note,))
 
 
-def _is_same(source: str, target: str) -> bool:
-    return source == target or as_crs(source).equals(as_crs(target), ignore_axis_order=True)
+def _stay(points: NDArray[np.float64], crs: CRS | None, unit: Unit | None) -> Placed:
+    """Leave points where they are; elevations take the unit of the CRS's vertical axis."""
+    vertical = None if crs is None else crs.vertical_unit
+    if vertical is None or unit is None or unit == vertical:
+        return Placed(points, crs, vertical or unit, ())
+    note = f"Elevations were converted from {unit.name} to {vertical.name}."
+    return Placed(convert_elevations(points, unit, vertical), crs, vertical, (note,))
 
 
-def _refuse_degrees(points: NDArray[np.float64], wanted: str, source: str, path: Path) -> NoReturn:
+def settle_unit(declared: Unit | None, found: Unit | None, path: Path) -> Unit | None:
+    """Return the unit of a file's elevations: what the file says, else what the caller declares.
+
+    Raises
+    ------
+    OptionError
+        If the two differ.
+    """
+    if declared is not None and found is not None:
+        require_same_unit(found, declared, f"as '{path}' itself says")
+    return declared if found is None else found
+
+
+def _refuse_degrees(points: NDArray[np.float64], wanted: CRS, source: CRS, path: Path) -> NoReturn:
     suggestion = _suggestion(points, source)
     fitting = f"crs='{suggestion}'" if suggestion else "the option crs"
     raise ReadError(
-        f"'{path}': {crs_label(wanted)} measures in degrees, and a TIN needs a projected CRS: "
+        f"'{path}': {wanted.label} measures in degrees, and a TIN needs a projected CRS: "
         f"give {fitting} to reproject from longitude and latitude.",
         path=path,
     )
 
 
-def _suggestion(points: NDArray[np.float64], source: str) -> str | None:
+def _suggestion(points: NDArray[np.float64], source: CRS) -> str | None:
     """Return the UTM zone of the middle of the points."""
     if len(points) == 0:
         return None

@@ -1,9 +1,10 @@
 """PLY: meshes and point clouds, written so that QGIS reads them and nothing of a TIN is lost.
 
 Written is binary little-endian with double coordinates, the face list ``vertex_indices``, and the
-CRS in a header line ``comment crs: EPSG:32616`` (WKT where there is no code). Constrained edges are
-the face properties ``constrained_0`` to ``constrained_2``, 1 where the edge opposite that corner is
-a breakline; a TIN without any goes without them.
+CRS in a header line ``comment crs: EPSG:32616`` (WKT where there is no code). A line ``comment
+elevation unit: US survey foot`` keeps the unit of elevations where it is known. Constrained edges
+are the face properties ``constrained_0`` to ``constrained_2``, 1 where the edge opposite that
+corner is a breakline; a TIN without any goes without them.
 """
 
 from __future__ import annotations
@@ -15,7 +16,16 @@ import numpy as np
 from ..tin import TIN, Survey
 from .atomic import replacing
 from .errors import ReadError
-from .meshes import chosen_crs, fans, file_content, one_line, require_writable, survey_of, tin_of
+from .meshes import (
+    choose_reference,
+    fans,
+    file_content,
+    one_line,
+    require_writable,
+    survey_of,
+    tin_of,
+    unit_text,
+)
 from .ply_body import Ragged, Table, read_tables
 from .ply_header import parse_header
 
@@ -24,6 +34,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from numpy.typing import NDArray
+
+    from ..crs import CrsLike, UnitLike
 
 __all__ = ["read", "write"]
 
@@ -40,14 +52,16 @@ _TYPE_NAMES = {
 }
 
 
-def read(path: Path, *, crs: str | None = None) -> TIN | Survey:
+def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN | Survey:
     """Read a PLY file, text or binary of either byte order.
 
     Parameters
     ----------
     path : Path
-    crs : str, optional
+    crs : CRS, str, int or pyproj.CRS, optional
         Declares the CRS; default the one named in the header.
+    z_unit : Unit or str, optional
+        Declares the unit of the elevations; default the one named there.
 
     Returns
     -------
@@ -60,7 +74,9 @@ def read(path: Path, *, crs: str | None = None) -> TIN | Survey:
     ReadError
         If the file is damaged, or its faces are no TIN.
     CrsError
-        If PROJ does not know the CRS.
+        If PROJ does not know the CRS, or the file names another.
+    OptionError
+        If the unit is unknown, or the file names another.
     """
     content = file_content(path)
     header = parse_header(content, path)
@@ -69,13 +85,15 @@ def read(path: Path, *, crs: str | None = None) -> TIN | Survey:
     if vertices is None or not set(_COORDINATES) <= vertices.columns.keys():
         raise ReadError(f"'{path}' has no element 'vertex' with x, y and z.", path=path)
     points = _points(vertices)
-    system = chosen_crs(crs, header.crs)
+    reference = choose_reference(
+        crs, z_unit, path, found_crs=header.crs, found_unit=header.elevation_unit
+    )
     faces = _face_list(tables.get("face"))
     if faces is None or len(faces.offsets) == 1:
-        return survey_of(points, path, attributes=_attributes(vertices), crs=system)
+        return survey_of(points, path, attributes=_attributes(vertices), reference=reference)
     made = fans(_whole_numbers(faces.items, path), faces.offsets, points, path)
     flags = _flags(tables["face"], len(made.triangles))
-    return tin_of(points, made.triangles, path, constrained=flags, crs=system)
+    return tin_of(points, made.triangles, path, constrained=flags, reference=reference)
 
 
 def _points(vertices: Table) -> NDArray[np.float64]:
@@ -141,7 +159,7 @@ def write(
     vertices = _vertex_rows(surface.points, attributes)
     faces = _face_rows(surface) if isinstance(surface, TIN) else None
     with replacing(path) as file:
-        file.write(_header(surface.crs, vertices, faces))
+        file.write(_header(surface, vertices, faces))
         file.write(vertices.data)
         if progress is not None:
             progress(0.5)
@@ -151,10 +169,12 @@ def write(
             progress(1.0)
 
 
-def _header(crs: str | None, vertices: NDArray[Any], faces: NDArray[Any] | None) -> bytes:
+def _header(surface: TIN | Survey, vertices: NDArray[Any], faces: NDArray[Any] | None) -> bytes:
     lines = ["ply", "format binary_little_endian 1.0"]
-    if crs is not None:
-        lines.append(f"comment crs: {one_line(crs)}")
+    if surface.crs is not None:
+        lines.append(f"comment crs: {one_line(surface.crs)}")
+    if unit := unit_text(surface):
+        lines.append(f"comment elevation unit: {unit}")
     lines.append(f"element vertex {len(vertices)}")
     lines += [
         f"property {_type_name(vertices.dtype[name])} {name}" for name in vertices.dtype.names or ()

@@ -87,6 +87,8 @@ class Header:
         In the order in which they follow.
     crs : str or None
         From the comment ``crs: ...``.
+    elevation_unit : str or None
+        From the comment ``elevation unit: ...``.
     size : int
         Bytes of the header.
     """
@@ -95,6 +97,7 @@ class Header:
     elements: list[Element]
     crs: str | None
     size: int
+    elevation_unit: str | None = None
 
 
 def parse_header(content: bytes, path: Path) -> Header:
@@ -109,6 +112,7 @@ def parse_header(content: bytes, path: Path) -> Header:
     byte_order: str | None = None
     elements: list[Element] = []
     crs: str | None = None
+    unit: str | None = None
     for number, line in enumerate(lines, start=1):
         words = line.split()
         match words:
@@ -116,6 +120,8 @@ def parse_header(content: bytes, path: Path) -> Header:
                 byte_order = _BYTE_ORDERS[encoding]
             case ["comment", "crs:", _, *_]:
                 crs = line.split("crs:", 1)[1].strip()
+            case ["comment", "elevation", "unit:", _, *_]:
+                unit = line.split("unit:", 1)[1].strip()
             case ["element", name, count] if _is_new(name, elements) and _COUNT.fullmatch(count):
                 elements.append(Element(name, int(count)))
             case ["property", *rest] if elements and (found := _property(rest)) is not None:
@@ -131,7 +137,7 @@ def parse_header(content: bytes, path: Path) -> Header:
                 )
     if byte_order is None:
         raise ReadError(f"'{path}': the PLY header has no line 'format'.", path=path)
-    return Header(byte_order, elements, crs, size)
+    return Header(byte_order, elements, crs, size, unit)
 
 
 def _header_lines(content: bytes, path: Path) -> tuple[list[str], int]:

@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ..crs import CRS, Unit
+from ..errors import OptionError
 from ..tin import Bounds, MissingExtraError, Survey
-from .crs import as_crs, crs_text
 from .errors import FormatError, ReadError
 from .isolated import Limits, limits_for, run_isolated, stream_isolated
 from .nodata import describe_suspects, find_suspect_elevations
-from .placing import placed
+from .placing import place, settle_unit
 from .raster_virtual import is_virtual, require_plain_sources
 from .voids import rings_around
 
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
+
+    from ..crs import CrsLike, UnitLike
 
 __all__ = ["read", "recognises"]
 
@@ -63,7 +66,8 @@ class _Cells:
 def read(
     path: Path,
     *,
-    crs: str | None = None,
+    crs: CrsLike | None = None,
+    z_unit: UnitLike | None = None,
     band: int | None = None,
     window: Sequence[int] | Bounds | None = None,
     stride: int = 1,
@@ -75,9 +79,12 @@ def read(
     Parameters
     ----------
     path : Path
-    crs : str, optional
+    crs : CRS, str, int or pyproj.CRS, optional
         CRS wanted. The points are transformed to it, nothing is resampled. It declares the CRS
         of a raster that has none.
+    z_unit : Unit or str, optional
+        Unit of the elevations, if neither the band nor the vertical axis of its CRS gives one; or
+        the one of the two that is right, if they differ.
     band : int, optional
         Band to read, from 1; default the first.
     window : (4,) sequence of int, or Bounds, optional
@@ -106,6 +113,8 @@ def read(
         If band, window or stride is not one that the raster has, or nodata is no number.
     CrsError
         If the points cannot be transformed.
+    OptionError
+        If ``z_unit`` is unknown, or another than the raster's own.
     MissingExtraError
         If rasterio is not installed.
 
@@ -117,11 +126,12 @@ def read(
     dataset = _header(path)
     number = _band(dataset, band, path)
     _require_elevations(dataset, number, band is not None, path)
-    source = _crs_of(dataset)
+    target, source = CRS.of(crs), CRS.of(dataset.crs)
+    unit, said = _elevation_unit(dataset, number, source, Unit.of(z_unit))
     cells = _cells(dataset, window, stride, path)
     marks = _as_numbers(nodata)
     _require_room(cells, path)
-    placed(_middle(dataset), source=source, target=crs, path=path)
+    place(_middle(dataset), source=source, target=target, path=path)
     points, valid, n_nodata = _points(dataset, number, cells, marks)
     if len(points) == 0:
         raise ReadError(
@@ -131,9 +141,15 @@ def read(
         )
     _require_finite(points, number, path)
     notes = describe_suspects(find_suspect_elevations(points[:, 2]), "cell")
-    points, found = placed(points, source=source, target=crs, path=path)
-    skipped = {"nodata cells": n_nodata} if n_nodata else {}
-    survey = Survey(points=points, crs=found, source=path.name, skipped=skipped, notes=notes)
+    placed = place(points, source=source, target=target, path=path, unit=unit)
+    survey = Survey(
+        points=placed.points,
+        crs=placed.crs,
+        elevation_unit=placed.elevation_unit,
+        source=path.name,
+        skipped={"nodata cells": n_nodata} if n_nodata else {},
+        notes=[*said, *notes, *placed.notes],
+    )
     return survey if fill or valid.all() else _with_voids(survey, valid)
 
 
@@ -315,8 +331,26 @@ def _require_place(dataset: _Header, path: Path) -> None:
         )
 
 
-def _crs_of(dataset: _Header) -> str | None:
-    return None if dataset.crs is None else crs_text(as_crs(dataset.crs))
+def _elevation_unit(
+    dataset: _Header, band: int, source: CRS | None, declared: Unit | None
+) -> tuple[Unit | None, list[str]]:
+    """Return the unit that band, vertical axis or caller give, and a note on one not understood."""
+    path, word = dataset.path, str(dataset.units[band - 1] or "").strip()
+    vertical = None if source is None else source.vertical_unit
+    try:
+        of_band = Unit.of(word or None)
+    except OptionError:
+        note = f"The unit of band {band}, '{word}', is no length: the elevations have none."
+        return settle_unit(declared, vertical, path), [] if declared or vertical else [note]
+    if of_band is None or vertical is None or of_band == vertical:
+        return settle_unit(declared, of_band or vertical, path), []
+    if declared in (of_band, vertical):
+        return declared, []
+    raise ReadError(
+        f"'{path}' gives its elevations two units: {of_band.name} (of band {band}) and "
+        f"{vertical.name} (of the vertical axis of its CRS); declare the one that is right.",
+        path=path,
+    )
 
 
 def _middle(dataset: _Header) -> NDArray[np.float64]:

@@ -2,7 +2,8 @@
 
 STL stores float32, which at UTM size is good for half a metre only. So an origin is subtracted (the
 south-west bottom corner of the TIN, rounded down to whole units) and recorded in the 80 bytes of
-the header, with the CRS if it is short enough: ``origin 745000.0 4033000.0 198.0 crs EPSG:32616``.
+the header, with the CRS and the unit of elevations if they are known and short enough:
+``origin 745000.0 4033000.0 198.0 crs EPSG:32616 z foot``.
 Add the origin to get coordinates in the CRS. What float32 rounds off then is about a sixteen
 millionth of the extent. Which edges are constrained is lost.
 """
@@ -16,7 +17,7 @@ import numpy as np
 
 from .atomic import replacing
 from .errors import ReadError, WriteError
-from .meshes import chosen_crs, file_content, require_tin, tin_of
+from .meshes import choose_reference, file_content, require_tin, tin_of, unit_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from ..crs import CrsLike, UnitLike
     from ..tin import TIN
 
 __all__ = ["read", "write"]
@@ -31,17 +33,19 @@ __all__ = ["read", "write"]
 _HEADER_BYTES = 80
 _FACET = np.dtype([("normal", "<f4", (3,)), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 _BATCH = 131_072
-_RECORD = re.compile(r"origin (\S+) (\S+) (\S+)(?: crs (\S+))?")
+_RECORD = re.compile(r"origin (\S+) (\S+) (\S+)(?: crs (\S+))?(?: z (\S+))?")
 
 
-def read(path: Path, *, crs: str | None = None) -> TIN:
+def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN:
     """Read a binary STL file; corners at the same place become one vertex.
 
     Parameters
     ----------
     path : Path
-    crs : str, optional
+    crs : CRS, str, int or pyproj.CRS, optional
         Declares the CRS; default the one recorded in the header.
+    z_unit : Unit or str, optional
+        Declares the unit of the elevations; default the one recorded there.
 
     Returns
     -------
@@ -53,20 +57,23 @@ def read(path: Path, *, crs: str | None = None) -> TIN:
     ReadError
         If the file is text or damaged, or its facets are no TIN.
     CrsError
-        If PROJ does not know the CRS.
+        If PROJ does not know the CRS, or the file names another.
+    OptionError
+        If the unit is unknown, or the file names another.
     """
     content = file_content(path)
     facets = _facets(content, path)
-    origin, found = _recorded(content[:_HEADER_BYTES])
+    origin, found_crs, found_unit = _recorded(content[:_HEADER_BYTES])
     if not np.isfinite(origin).all():
         raise ReadError(
             f"'{path}' records the origin {origin.tolist()}: three finite numbers are needed.",
             path=path,
         )
+    reference = choose_reference(crs, z_unit, path, found_crs=found_crs, found_unit=found_unit)
     with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused
         points, triangles = _merged(facets["corners"].reshape(-1, 3))
         places = points + origin
-    return tin_of(places, triangles, path, crs=chosen_crs(crs, found))
+    return tin_of(places, triangles, path, reference=reference)
 
 
 def _facets(content: bytes, path: Path) -> NDArray[Any]:
@@ -92,16 +99,16 @@ def _facets(content: bytes, path: Path) -> NDArray[Any]:
     )
 
 
-def _recorded(header: bytes) -> tuple[NDArray[np.float64], str | None]:
-    """Return the origin and the CRS that our own header records; a foreign one records none."""
+def _recorded(header: bytes) -> tuple[NDArray[np.float64], str | None, str | None]:
+    """Return origin, CRS and unit that our own header records; a foreign one records none."""
     found = _RECORD.fullmatch(header.rstrip(b"\0 ").decode("ascii", errors="replace"))
     if found is None:
-        return np.zeros(3), None
+        return np.zeros(3), None, None
     try:
         origin = np.array(found.groups()[:3], np.float64)
     except ValueError:
-        return np.zeros(3), None
-    return origin, found[4]
+        return np.zeros(3), None, None
+    return origin, found[4], found[5]
 
 
 def _merged(corners: NDArray[np.float32]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
@@ -144,7 +151,7 @@ def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None 
     if np.ptp(tin.points, axis=0).max() > np.finfo(np.float32).max / 4:
         raise WriteError(f"Cannot write '{path}': the TIN is too large for float32.", path=path)
     with replacing(path) as file:
-        file.write(_header(origin, tin.crs))
+        file.write(_header(origin, tin))
         file.write(len(tin.triangles).to_bytes(4, "little"))
         for start in range(0, len(tin.triangles), _BATCH):
             part = tin.triangles[start : start + _BATCH]
@@ -153,11 +160,13 @@ def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None 
                 progress(min(1.0, (start + len(part)) / len(tin.triangles)))
 
 
-def _header(origin: NDArray[np.float64], crs: str | None) -> bytes:
+def _header(origin: NDArray[np.float64], tin: TIN) -> bytes:
+    """Record the origin, and CRS and unit of elevations as far as there is room for them."""
     record = "origin {!r} {!r} {!r}".format(*(origin + 0.0).tolist())
-    with_crs = f"{record} crs {crs}"
-    if crs is not None and len(with_crs) <= _HEADER_BYTES and not set(crs) & set(" \n\t"):
-        record = with_crs
+    for name, text in (("crs", str(tin.crs or "")), ("z", "".join(unit_text(tin).split()))):
+        longer = f"{record} {name} {text}"
+        if text and not set(text) & set(" \n\t") and len(longer.encode()) <= _HEADER_BYTES:
+            record = longer
     return record.encode().ljust(_HEADER_BYTES, b" ")
 
 

@@ -11,16 +11,19 @@ from typing import TYPE_CHECKING, get_args
 
 import numpy as np
 
+from ..crs import CRS, Unit
 from ..tin import Breakline, Water
 from ..tin.lines import BreaklineKind, as_ring
 from .errors import ReadError
 from .vectors_features import Features, read_features
-from .vectors_parts import Part, parts_of
+from .vectors_parts import Part, Wanted, elevation_factor, parts_of
 
 if TYPE_CHECKING:
     import os
 
     from numpy.typing import NDArray
+
+    from ..crs import CrsLike, UnitLike
 
 __all__ = ["read_lines", "read_polygons", "read_rings", "read_water"]
 
@@ -34,7 +37,9 @@ _WATER_COLUMNS = ("z", "level", "elevation", "height")
 def read_lines(
     path: str | os.PathLike[str],
     *,
-    crs: str | None = None,
+    crs: CrsLike | None = None,
+    elevation_unit: UnitLike | None = None,
+    z_unit: UnitLike | None = None,
     layer: str | None = None,
     where: str | None = None,
     kind: BreaklineKind | None = None,
@@ -49,8 +54,12 @@ def read_lines(
     Parameters
     ----------
     path : path-like
-    crs : str, optional
+    crs : CRS, str, int or pyproj.CRS, optional
         CRS wanted, that of the points; default the file's own.
+    elevation_unit : Unit or str, optional
+        Unit wanted, that of the elevations of the points, if it is known.
+    z_unit : Unit or str, optional
+        Unit of the elevations in the file, if its CRS has no vertical axis that tells.
     layer : str, optional
         Needed if several layers have geometry.
     where : str, optional
@@ -65,7 +74,9 @@ def read_lines(
     Returns
     -------
     list of Breakline
-        (k, 3) with the file's heights, whose datum and unit are left alone, or (k, 2) to drape.
+        (k, 3) with the file's heights in the unit of the points, their datum left alone; or (k, 2)
+        to drape. Where a unit is not known it is taken to be the usual one of the CRS, that of the
+        eastings (metres above degrees), and a note says so if it made a difference.
 
     Raises
     ------
@@ -76,9 +87,11 @@ def read_lines(
         other values.
     CrsError
         If the lines cannot be brought into the CRS.
+    OptionError
+        If a unit is unknown, or not that of the file's CRS.
     """
     features = read_features(Path(path), layer=layer, where=where)
-    parts = parts_of(features, crs=crs, drape=drape, notes=notes)
+    parts = parts_of(features, _wanted(crs, elevation_unit, z_unit), drape=drape, notes=notes)
     kinds = _kinds(features) if kind is None else [kind] * len(features.numbers)
     priorities, names = _priorities(features), _texts(features, "name")
     return [
@@ -92,7 +105,9 @@ def read_lines(
 def read_rings(
     path: str | os.PathLike[str],
     *,
-    crs: str | None = None,
+    crs: CrsLike | None = None,
+    elevation_unit: UnitLike | None = None,
+    z_unit: UnitLike | None = None,
     layer: str | None = None,
     where: str | None = None,
     drape: bool = False,
@@ -102,7 +117,7 @@ def read_rings(
 
     Parameters
     ----------
-    path, crs, layer, where, drape, notes
+    path, crs, elevation_unit, z_unit, layer, where, drape, notes
         As in :func:`read_lines`.
 
     Returns
@@ -118,14 +133,16 @@ def read_rings(
         If a ring has fewer than three corners.
     """
     features = read_features(Path(path), layer=layer, where=where)
-    parts = parts_of(features, crs=crs, drape=drape, notes=notes)
+    parts = parts_of(features, _wanted(crs, elevation_unit, z_unit), drape=drape, notes=notes)
     return [_ring(part, features) for part in parts]
 
 
 def read_polygons(
     path: str | os.PathLike[str],
     *,
-    crs: str | None = None,
+    crs: CrsLike | None = None,
+    elevation_unit: UnitLike | None = None,
+    z_unit: UnitLike | None = None,
     layer: str | None = None,
     where: str | None = None,
     drape: bool = False,
@@ -135,7 +152,7 @@ def read_polygons(
 
     Parameters
     ----------
-    path, crs, layer, where, drape, notes
+    path, crs, elevation_unit, z_unit, layer, where, drape, notes
         As in :func:`read_lines`.
 
     Returns
@@ -150,7 +167,8 @@ def read_polygons(
     """
     features = read_features(Path(path), layer=layer, where=where)
     polygons: list[list[NDArray[np.float64]]] = []
-    for part in parts_of(features, crs=crs, drape=drape, notes=notes):
+    wanted = _wanted(crs, elevation_unit, z_unit)
+    for part in parts_of(features, wanted, drape=drape, notes=notes):
         if part.ring == 0:
             polygons.append([])
         polygons[-1].append(_ring(part, features))
@@ -161,7 +179,9 @@ def read_water(
     path: str | os.PathLike[str],
     *,
     z: float | str | None = None,
-    crs: str | None = None,
+    crs: CrsLike | None = None,
+    elevation_unit: UnitLike | None = None,
+    z_unit: UnitLike | None = None,
     layer: str | None = None,
     where: str | None = None,
     notes: list[str] | None = None,
@@ -170,11 +190,12 @@ def read_water(
 
     Parameters
     ----------
-    path, crs, layer, where, notes
+    path, crs, elevation_unit, z_unit, layer, where, notes
         As in :func:`read_lines`.
     z : float or str, optional
-        Height of all of them, or the column that holds it. Default the column ``z``, ``level``,
-        ``elevation`` or ``height``; without one the heights of the corners, if all are equal.
+        Height of all of them, in the unit of the points, or the column that holds it. Default the
+        column ``z``, ``level``, ``elevation`` or ``height``; without one the heights of the
+        corners, if all are equal.
 
     Returns
     -------
@@ -186,7 +207,8 @@ def read_water(
         As :func:`read_rings`; ReadError also if a height is missing, or a polygon has islands.
     """
     features = read_features(Path(path), layer=layer, where=where)
-    parts = parts_of(features, crs=crs, drape=False, notes=notes)
+    wanted = _wanted(crs, elevation_unit, z_unit)
+    parts = parts_of(features, wanted, drape=False, notes=notes)
     island = next((part for part in parts if part.ring > 0), None)
     if island is not None:
         raise ReadError(
@@ -195,7 +217,7 @@ def read_water(
             path=features.path,
         )
     rings = [_ring(part, features) for part in parts]
-    names, levels = _texts(features, "name"), _levels(features, z)
+    names, levels = _texts(features, "name"), _levels(features, wanted, z)
     return [
         Water(ring, _level(ring, levels, part.row, features), name=names[part.row])
         for ring, part in zip(rings, parts, strict=True)
@@ -209,6 +231,12 @@ def _ring(part: Part, features: Features) -> NDArray[np.float64]:
             path=features.path,
         )
     return as_ring(part.coords, f"the ring of feature {features.numbers[part.row]}")
+
+
+def _wanted(
+    crs: CrsLike | None, elevation_unit: UnitLike | None, z_unit: UnitLike | None
+) -> Wanted:
+    return Wanted(CRS.of(crs), Unit.of(elevation_unit), Unit.of(z_unit))
 
 
 # ----------------------------------------------------------------------- columns
@@ -267,8 +295,8 @@ def _number(text: str) -> float | None:
     return value if np.isfinite(value) else None
 
 
-def _levels(features: Features, z: float | str | None) -> list[float | None]:
-    """Return the height of each feature, None where the corners must tell."""
+def _levels(features: Features, wanted: Wanted, z: float | str | None) -> list[float | None]:
+    """Return the height of each feature, None where the corners must tell; columns converted."""
     if z is not None and not isinstance(z, str):
         return [float(z)] * len(features.numbers)
     if z is not None and z.lower() not in features.columns:
@@ -278,7 +306,11 @@ def _levels(features: Features, z: float | str | None) -> list[float | None]:
             path=features.path,
         )
     names = [z.lower()] if z is not None else [n for n in _WATER_COLUMNS if n in features.columns]
-    return [_number(text) for text in _texts(features, names[0] if names else "")]
+    found = [_number(text) for text in _texts(features, names[0] if names else "")]
+    if all(level is None for level in found):
+        return found
+    factor = elevation_factor(features, wanted, notes=[])
+    return [None if level is None else level * factor for level in found]
 
 
 def _level(

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ..crs import CRS
 from ..tin import MissingExtraError
-from .crs import normalised
 from .errors import CrsError, ReadError
 from .isolated import limits_for, run_isolated
 from .local import require_local
@@ -42,7 +42,7 @@ class Features(NamedTuple):
         Shapely geometries, none of them missing or empty.
     columns : dict of str to (n,) array
         By their names in lower case.
-    crs : str or None
+    crs : CRS or None
     notes : tuple of str
         What was left out.
     """
@@ -51,7 +51,7 @@ class Features(NamedTuple):
     numbers: NDArray[np.int64]
     geometries: NDArray[np.object_]
     columns: dict[str, NDArray[Any]]
-    crs: str | None
+    crs: CRS | None
     notes: tuple[str, ...]
 
     def label(self, row: int) -> str:
@@ -111,9 +111,9 @@ def _read_layer(path: Path, layer: str | None, where: str | None) -> Features:
     )
 
 
-def _crs_of(text: str | None, path: Path) -> str | None:
+def _crs_of(text: str | None, path: Path) -> CRS | None:
     try:
-        return normalised(text)
+        return CRS.of(text)
     except CrsError as error:
         raise CrsError(f"'{path}': {error}", crs=text) from error
 

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, NoReturn
 
 import numpy as np
 
-from .crs import as_crs, crs_label, crs_text, elevation_unit
+from ..crs import assume_elevation_unit
+from .crs import conversion_factor
 from .errors import ReadError
-from .placing import placed
+from .placing import place, settle_unit
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from ..crs import CRS, Unit
     from .vectors_features import Features
 
-__all__ = ["Part", "parts_of"]
+__all__ = ["Part", "Wanted", "elevation_factor", "parts_of"]
 
 _POLYGON = 3
 
@@ -39,6 +41,24 @@ class Part(NamedTuple):
     ring: int
 
 
+class Wanted(NamedTuple):
+    """What lines are to be measured in, that of the points, and what the caller declares of them.
+
+    Attributes
+    ----------
+    crs : CRS or None
+        Of the points.
+    elevation_unit : Unit or None
+        Of their elevations, if it is known.
+    z_unit : Unit or None
+        Of the elevations in the file, if its CRS does not tell.
+    """
+
+    crs: CRS | None = None
+    elevation_unit: Unit | None = None
+    z_unit: Unit | None = None
+
+
 class _Lines(NamedTuple):
     """Shapely lines and rings, the row of the feature of each, and its ring as in Part."""
 
@@ -48,15 +68,15 @@ class _Lines(NamedTuple):
 
 
 def parts_of(
-    features: Features, *, crs: str | None, drape: bool, notes: list[str] | None
+    features: Features, wanted: Wanted, *, drape: bool, notes: list[str] | None
 ) -> list[Part]:
     """Return the lines and rings of all features, in their order.
 
     Parameters
     ----------
     features : Features
-    crs : str, optional
-        CRS wanted; default the file's own.
+    wanted : Wanted
+        Without a CRS lines stay in the file's own.
     drape : bool
         Leave heights aside.
     notes : list of str, optional
@@ -76,10 +96,12 @@ def parts_of(
     bounds = np.concatenate([[0], np.cumsum(shapely.get_num_coordinates(lines.shapes))])
     has_z = shapely.has_z(lines.shapes) & (not drape)
     _require_finite(xyz, np.repeat(has_z, np.diff(bounds)), bounds, lines.rows, features)
-    said = list(features.notes) + _crs_notes(features, crs, has_heights=bool(has_z.any()))
+    said = list(features.notes) + _crs_notes(features, wanted)
+    if has_z.any():
+        xyz[:, 2] *= elevation_factor(features, wanted, notes=said)
     if notes is not None:
         notes.extend(said)
-    xyz[:, :2] = _moved(xyz[:, :2], features, crs)
+    xyz[:, :2] = _moved(xyz[:, :2], features, wanted.crs)
     return [
         Part(xyz[start:end, :width], row, is_closed, ring)
         for start, end, width, row, is_closed, ring in zip(
@@ -148,34 +170,83 @@ def _require_finite(
 # --------------------------------------------------------------------------- CRS
 
 
-def _moved(xy: NDArray[np.float64], features: Features, crs: str | None) -> NDArray[np.float64]:
+def _moved(xy: NDArray[np.float64], features: Features, crs: CRS | None) -> NDArray[np.float64]:
     """Reproject in the plane."""
     level = np.column_stack([xy, np.zeros(len(xy))])
     source, target = _flat(features.crs), _flat(crs)
-    moved, _ = placed(level, source=source, target=target, path=features.path)
-    return moved[:, :2]
+    return place(level, source=source, target=target, path=features.path).points[:, :2]
 
 
-def _flat(text: str | None) -> str | None:
+def _flat(crs: CRS | None) -> CRS | None:
     """Return the horizontal part of a CRS, so that no vertical datum plays a part."""
-    if text is None:
-        return None
-    crs = as_crs(text)
-    if crs.is_compound:
-        crs = crs.sub_crs_list[0]
-    return crs_text(crs.to_2d() if len(crs.axis_info) > 2 else crs)
+    return None if crs is None else crs.horizontal
 
 
-def _crs_notes(features: Features, crs: str | None, *, has_heights: bool) -> list[str]:
-    source, name = features.crs, features.path.name
+def _crs_notes(features: Features, wanted: Wanted) -> list[str]:
+    source, crs, name = features.crs, wanted.crs, features.path.name
     if source is None:
-        return [] if crs is None else [f"'{name}' names no CRS: taken to be in {crs_label(crs)}."]
+        return [] if crs is None else [f"'{name}' names no CRS: taken to be in {crs.label}."]
     if crs is None:
-        return [f"'{name}' is in {crs_label(source)}: taken to be the CRS of the points."]
-    theirs, ours = elevation_unit(source), elevation_unit(crs)
-    if not has_heights or theirs.metres == ours.metres:
-        return []
-    return [
-        f"'{name}': heights are taken as they are, though its CRS has them in {theirs.name} and "
-        f"that of the points in {ours.name}."
-    ]
+        return [f"'{name}' is in {source.label}: taken to be the CRS of the points."]
+    return []
+
+
+# ------------------------------------------------------------------------- units
+
+
+def elevation_factor(features: Features, wanted: Wanted, *, notes: list[str]) -> float:
+    """Return the factor from a file's elevations to those of the points; their datum stays.
+
+    Parameters
+    ----------
+    features : Features
+    wanted : Wanted
+    notes : list of str
+        What had to be assumed or converted is appended to it.
+
+    Raises
+    ------
+    OptionError
+        If the unit declared is not that of the file's CRS.
+    ReadError
+        If the unit of the points is known, that of the file is not, and its CRS is usual with
+        another one.
+    """
+    source = features.crs or wanted.crs
+    vertical = None if features.crs is None else features.crs.vertical_unit
+    theirs = settle_unit(wanted.z_unit, vertical, features.path)
+    ours = wanted.elevation_unit or (None if wanted.crs is None else wanted.crs.vertical_unit)
+    if theirs is None and features.crs is None:
+        return 1.0
+    from_unit = assume_elevation_unit(source, theirs)
+    to_unit = assume_elevation_unit(wanted.crs, ours) or from_unit
+    factor = conversion_factor(from_unit, to_unit)
+    if factor != 1.0 and from_unit is not None and to_unit is not None:
+        if theirs is None and ours is not None:
+            _refuse_unknown(features, from_unit, ours)
+        notes.append(_conversion(features, theirs, ours, (from_unit, to_unit)))
+    return factor
+
+
+def _refuse_unknown(features: Features, usual: Unit, ours: Unit) -> NoReturn:
+    raise ReadError(
+        f"'{features.path}' does not tell the unit of its elevations: the points have theirs in "
+        f"{ours.name}, and {usual.name} is usual in the CRS of the file; declare the unit of the "
+        "lines' elevations.",
+        path=features.path,
+    )
+
+
+def _conversion(
+    features: Features, theirs: Unit | None, ours: Unit | None, units: tuple[Unit, Unit]
+) -> str:
+    """Say which elevations were converted, and what was assumed for it."""
+    text = f"'{features.path.name}': elevations were converted from {units[0].name} to "
+    text += f"{units[1].name}, the unit of the points"
+    guessed = []
+    if theirs is None:
+        guessed.append(f"of the lines {units[0].name}")
+    if ours is None:
+        guessed.append(f"of the points {units[1].name}")
+    reason = f"; not told and taken as usual in the CRS: {', '.join(guessed)}" if guessed else ""
+    return f"{text}{reason}."

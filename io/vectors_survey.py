@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from ..crs import UnitLike
     from ..tin import Survey
 
     Source = str | os.PathLike[str]
@@ -41,6 +42,7 @@ def with_lines(
     water: Sequence[Source] = (),
     water_z: float | str | None = None,
     drape: bool = False,
+    z_unit: UnitLike | None = None,
 ) -> Survey:
     """Add the lines of vector files to a survey, in its CRS.
 
@@ -55,6 +57,8 @@ def with_lines(
     drape : bool
         Take the heights of breaklines, boundary and holes from the surface, whatever the files
         say.
+    z_unit : Unit or str, optional
+        Unit of the elevations in the files, where their CRS has no vertical axis that tells.
 
     Returns
     -------
@@ -74,12 +78,17 @@ def with_lines(
     <Survey: 3 points, crs unknown>
     """
     notes = list(survey.notes)
+    units: dict[str, Any] = {
+        "crs": survey.crs,
+        "elevation_unit": survey.elevation_unit,
+        "z_unit": z_unit,
+    }
 
     def read(reader: Callable[..., list[Any]], sources: Iterable[Source], **how: Any) -> list[Any]:
         found = []
         for source in sources:
             path, layer = path_and_layer(source)
-            lines = reader(path, crs=survey.crs, layer=layer, notes=notes, **how)
+            lines = reader(path, layer=layer, notes=notes, **units, **how)
             _require_near(survey, [xy for line in lines for xy in _coords_of(line)], path)
             if reader is read_polygons and sources is boundary:
                 notes.extend(nesting_notes(lines, path))

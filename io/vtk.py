@@ -2,7 +2,8 @@
 
 Coordinates are written in the CRS as doubles, with nothing subtracted. Cell data are ``slope`` and
 ``aspect`` (degrees) and ``constrained`` (three flags, of the edge opposite each corner); field data
-``crs`` and ``origin``, what a reader must add to the coordinates: zeros.
+``crs`` and ``elevation_unit`` ("" if not known), and ``origin``, what a reader must add to the
+coordinates: zeros.
 """
 
 from __future__ import annotations
@@ -20,7 +21,16 @@ from ..tin import MissingExtraError
 from .atomic import replacing_path
 from .errors import ReadError, WriteError
 from .isolated import run_isolated
-from .meshes import chosen_crs, fans, file_content, one_line, require_tin, survey_of, tin_of
+from .meshes import (
+    choose_reference,
+    fans,
+    file_content,
+    one_line,
+    require_tin,
+    survey_of,
+    tin_of,
+    unit_text,
+)
 from .vtk_library import errors_caught, vtk_class
 
 if TYPE_CHECKING:
@@ -29,6 +39,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from ..crs import CrsLike, UnitLike
     from ..tin import TIN, Survey
     from .isolated import Answer
 
@@ -40,21 +51,24 @@ _CLOSEST_PACKING = 1100  # zlib packs no tighter than 1032 to 1
 _COUNTS = re.compile(rb'NumberOf\w+="(\d+)"')
 
 
-def read(path: Path, *, crs: str | None = None) -> TIN | Survey:
+def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN | Survey:
     """Read a VTK XML file of faces.
 
     Parameters
     ----------
     path : Path
-    crs : str, optional
+    crs : CRS, str, int or pyproj.CRS, optional
         Declares the CRS; default the field data ``crs``.
+    z_unit : Unit or str, optional
+        Declares the unit of the elevations; default the one in the field
+        data ``elevation_unit``.
 
     Returns
     -------
     TIN or Survey
         A survey where the file has no faces, its one-column numeric point data as attributes.
         Polygons are cut into triangles. Field data ``origin`` is added to the coordinates, and
-        ``exaggeration`` taken out of the heights first.
+        ``exaggeration`` and ``elevation_scale`` taken out of the elevations first.
 
     Raises
     ------
@@ -63,28 +77,34 @@ def read(path: Path, *, crs: str | None = None) -> TIN | Survey:
     ReadError
         If the file is damaged or holds cells that are no faces, or its faces are no TIN.
     CrsError
-        If PROJ does not know the CRS.
+        If PROJ does not know the CRS, or the file names another.
+    OptionError
+        If the unit is unknown, or the file names another.
     """
     value, arrays = _found(path)
     points = _true_points(arrays)
-    system = chosen_crs(crs, value["crs"])
+    reference = choose_reference(
+        crs, z_unit, path, found_crs=value["crs"], found_unit=value["elevation_unit"]
+    )
     cells = arrays["cells"]
     if len(cells) == 0:
         attributes = {name: arrays[f"attribute {k}"] for k, name in enumerate(value["attributes"])}
-        return survey_of(points, path, attributes=attributes, crs=system)
+        return survey_of(points, path, attributes=attributes, reference=reference)
     made = fans(arrays["corners"], arrays["offsets"], points, path)
     flags = arrays.get("flags") if len(cells) == len(made.triangles) else None
     is_flagged = None if flags is None else flags != 0
-    return tin_of(points, made.triangles, path, constrained=is_flagged, crs=system)
+    return tin_of(points, made.triangles, path, constrained=is_flagged, reference=reference)
 
 
 def _true_points(arrays: Mapping[str, NDArray[Any]]) -> NDArray[np.float64]:
     """Take an exaggeration out of the elevations, and add the origin."""
     points = arrays["points"]
-    exaggeration, origin = arrays.get("exaggeration"), arrays.get("origin")
+    origin = arrays.get("origin")
     with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused later
-        if exaggeration is not None and exaggeration[0] > 0:
-            points[:, 2] /= exaggeration[0]
+        for name in ("exaggeration", "elevation_scale"):
+            factor = arrays.get(name)
+            if factor is not None and factor[0] > 0:
+                points[:, 2] /= factor[0]
         return points if origin is None else points + origin
 
 
@@ -171,5 +191,6 @@ def _poly_data(tin: TIN, pv: Any) -> Any:
     mesh.cell_data["aspect"] = aspect(tin)
     mesh.cell_data["constrained"] = tin.constrained.astype(np.uint8)
     mesh.field_data["crs"] = ["" if tin.crs is None else one_line(tin.crs)]
+    mesh.field_data["elevation_unit"] = [unit_text(tin)]
     mesh.field_data["origin"] = np.zeros(3)
     return mesh

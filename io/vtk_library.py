@@ -40,10 +40,10 @@ def mesh(path: str, shown: str, *, kind: str) -> Answer:
     Returns
     -------
     Answer
-        The value holds ``crs`` and the names of the ``attributes``. The arrays hold ``points``,
-        the ``corners`` of faces, one face after the other, their ``offsets``, the number of the
-        cell that each is (``cells``), ``attribute 0`` ..., and where the file has them ``flags``
-        of the faces' edges, ``origin`` and ``exaggeration``.
+        The value holds ``crs``, ``elevation_unit`` and the names of the ``attributes``. The arrays
+        hold ``points``, the ``corners`` of faces, one face after the other, their ``offsets``, the
+        number of the cell that each is (``cells``), ``attribute 0`` ..., and where the file has
+        them ``flags`` of the faces' edges, ``origin``, ``exaggeration`` and ``elevation_scale``.
     """
     pv = import_module("pyvista")
     reader = vtk_class(f"vtkXML{kind}Reader")()
@@ -58,7 +58,8 @@ def mesh(path: str, shown: str, *, kind: str) -> Answer:
     arrays = {"points": np.array(found.points, np.float64).reshape(-1, 3), **faces}
     arrays |= {f"attribute {k}": values for k, values in enumerate(attributes.values())}
     arrays |= _number_fields(found) | _flags(found, faces["cells"])
-    return Answer({"crs": _text_field(found, "crs"), "attributes": list(attributes)}, arrays)
+    texts = {name: _text_field(found, name) for name in ("crs", "elevation_unit")}
+    return Answer({**texts, "attributes": list(attributes)}, arrays)
 
 
 def vtk_class(name: str) -> Any:
@@ -91,7 +92,7 @@ def _whole(array: Any) -> NDArray[np.int64]:
 def _number_fields(found: Any) -> dict[str, NDArray[np.float64]]:
     """Return the fields that tell where the coordinates are, as far as they are sound."""
     fields = {}
-    for name, size in (("origin", 3), ("exaggeration", 1)):
+    for name, size in (("origin", 3), ("exaggeration", 1), ("elevation_scale", 1)):
         values = np.asarray(found.field_data.get(name, ()))
         if values.size == size and values.dtype.kind in "iuf" and np.isfinite(values).all():
             fields[name] = values.ravel().astype(np.float64)

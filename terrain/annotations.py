@@ -13,8 +13,8 @@ from .rounding import format_number, round_down, ticks
 from .tints import tints
 
 if TYPE_CHECKING:
+    from ..crs import Unit
     from .overlay import Color, Overlay
-    from .units import Unit
 
 __all__ = ["Caption", "Sheet", "annotate", "scale_bar_length"]
 
@@ -58,16 +58,18 @@ class Caption:
     title, subtitle : str
     exaggeration : float
     elevations : tuple of float
-        Lowest and highest, in ``elevation_unit``.
-    elevation_unit, unit : Unit
-        ``unit`` is that of lengths in the scene.
+        Lowest and highest.
+    elevation_caption : str
+        Their unit, as it stands behind "Elevation"; "" if it is not known.
+    unit : Unit
+        Of lengths in the scene.
     """
 
     title: str
     subtitle: str
     exaggeration: float
     elevations: tuple[float, float]
-    elevation_unit: Unit
+    elevation_caption: str
     unit: Unit
 
 
@@ -192,8 +194,8 @@ def _exaggeration_words(factor: float, view: View) -> str:
 
 def _draw_legend(overlay: Overlay, sheet: Sheet, caption: Caption) -> None:
     left, bottom, height = sheet.width - MARGIN - _LEGEND_WIDTH, 62.0, 14.0
-    symbol = caption.elevation_unit.symbol
-    name = f"Elevation ({symbol})" if symbol else "Elevation"
+    unit = caption.elevation_caption
+    name = f"Elevation ({unit})" if unit else "Elevation (unit not known)"
     overlay.text((left, bottom + height + 8.0), name, INK, size=15)
     colors = tints(100).tolist()
     step = _LEGEND_WIDTH / len(colors)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..crs import scale_elevations
 from . import extras
 from .errors import OptionError
 from .slope import aspect, slope
@@ -27,11 +28,13 @@ def lift(
 
     Graphics cards compute in single precision, which is wrong by decimetres at the size of map
     coordinates. The origin is therefore subtracted in double precision first:
-    ``points = (tin.points - origin) * (1, 1, exaggeration)``.
+    ``points = (tin.points - origin) * (1, 1, elevation_scale * exaggeration)``, where
+    ``elevation_scale`` converts elevations to the unit of eastings and northings.
 
     Parameters
     ----------
     tin : TIN
+        In a projected CRS.
     origin : (3,) array, CRS units, optional
         Easting, northing and elevation that become (0, 0, 0); default :func:`default_origin`.
     exaggeration : float, optional
@@ -41,14 +44,16 @@ def lift(
     -------
     pyvista.PolyData
         Double-precision points and triangles in the TIN's order. Point data ``elevation`` (true
-        elevation, CRS units); cell data ``slope`` and ``aspect`` of the true surface (degrees,
-        aspect NaN where level); field data ``origin``, ``exaggeration`` and ``crs`` ("" if
-        unknown).
+        elevation, in the TIN's own unit); cell data ``slope`` and ``aspect`` of the true surface
+        (degrees, aspect NaN where level); field data ``origin``, ``exaggeration``,
+        ``elevation_scale``, ``crs`` and ``elevation_unit`` ("" if unknown).
 
     Raises
     ------
     MissingExtraError
         If pyvista is not installed.
+    CrsError
+        If coordinates are longitude and latitude.
     OptionError
         If the origin is not three finite numbers, or the exaggeration is not above 0.
 
@@ -65,15 +70,19 @@ def lift(
     pv = extras.pyvista("Lifting a TIN into 3D")
     shift = default_origin(tin) if origin is None else _as_origin(origin)
     factor = as_exaggeration(exaggeration)
+    scale = scale_elevations(tin.crs, tin.elevation_unit)
     mesh: pyvista.PolyData = pv.PolyData.from_regular_faces(
-        (tin.points - shift) * (1.0, 1.0, factor), np.array(tin.triangles)
+        (tin.points - shift) * (1.0, 1.0, scale * factor), np.array(tin.triangles)
     )
     mesh.point_data["elevation"] = tin.points[:, 2].copy()
     mesh.cell_data["slope"] = slope(tin)
     mesh.cell_data["aspect"] = aspect(tin)
     mesh.field_data["origin"] = shift
     mesh.field_data["exaggeration"] = [factor]
-    mesh.field_data["crs"] = ["" if tin.crs is None else tin.crs]
+    mesh.field_data["elevation_scale"] = [scale]
+    mesh.field_data["crs"] = ["" if tin.crs is None else str(tin.crs)]
+    unit = tin.elevation_unit
+    mesh.field_data["elevation_unit"] = ["" if unit is None else unit.name]
     mesh.set_active_scalars("elevation")
     return mesh
 

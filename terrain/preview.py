@@ -212,7 +212,7 @@ def _caption(tin: TIN, ground: Ground, factor: float, title: str) -> Caption:
         subtitle=f"{counts}  \N{MIDDLE DOT}  {ground.crs_name}",
         exaggeration=factor,
         elevations=(low, high),
-        elevation_unit=ground.elevation_unit,
+        elevation_caption=ground.elevation_caption,
         unit=ground.unit,
     )
 

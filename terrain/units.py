@@ -1,40 +1,38 @@
-"""Units: what the numbers of a CRS mean on the ground."""
+"""Ground: how the coordinates of a TIN are measured on the ground, each in its own unit."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ..crs import METRE, Unit, assume_elevation_unit
 
 if TYPE_CHECKING:
-    import pyproj
+    from numpy.typing import ArrayLike, NDArray
 
+    from ..crs import CRS
     from ..tin import TIN
 
-__all__ = ["Ground", "Unit", "ground_of"]
+__all__ = ["Ground", "Scales", "ground_of", "scales_of"]
+
+NOT_KNOWN = Unit("unit", "", None)
 
 
-@dataclass(frozen=True, slots=True)
-class Unit:
-    """A unit of length.
+class Scales(NamedTuple):
+    """Factors from easting, northing and elevation to one unit of length.
 
     Attributes
     ----------
-    symbol : str
-        What is written behind a number; "" if the unit is unknown.
-    metres : float
-        Length of one unit; 1 if unknown.
+    east, north : float or (k,) float64 array
+        Arrays, one value a place, above longitude and latitude.
+    up : float
     """
 
-    symbol: str
-    metres: float
-
-
-METRE = Unit("m", 1.0)
-UNKNOWN = Unit("", 1.0)
-_SYMBOLS = {"metre": "m", "foot": "ft", "US survey foot": "US ft", "kilometre": "km"}
-_VERTICAL = frozenset({"up"})
-_HORIZONTAL = frozenset({"east", "north", "west", "south"})
+    east: Any
+    north: Any
+    up: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +46,9 @@ class Ground:
     unit : Unit
         Of horizontal lengths in the picture.
     elevation_unit : Unit
+        The one that elevations are taken to have.
+    is_assumed : bool
+        Whether that unit is the usual one of the CRS, and not known.
     scale : tuple of float
         Factors from easting, northing and elevation to ``unit``.
     """
@@ -55,11 +56,18 @@ class Ground:
     crs_name: str
     unit: Unit
     elevation_unit: Unit
+    is_assumed: bool
     scale: tuple[float, float, float]
+
+    @property
+    def elevation_caption(self) -> str:
+        """The unit of elevations behind their name: "m", "m assumed", or nothing."""
+        symbol = self.elevation_unit.symbol
+        return f"{symbol} assumed" if symbol and self.is_assumed else symbol
 
 
 def ground_of(tin: TIN) -> Ground:
-    """Read the units of a TIN from its CRS.
+    """Read the units of a TIN from its CRS and its unit of elevations.
 
     Parameters
     ----------
@@ -68,59 +76,66 @@ def ground_of(tin: TIN) -> Ground:
     Returns
     -------
     Ground
-        Elevations have the unit of the CRS's vertical axis; without one the horizontal unit, or
-        metres above a geographic CRS. Degrees are drawn as metres along the ellipsoid at the
-        middle of the TIN, which holds for small areas.
+        Degrees are drawn as metres along the ellipsoid at the middle of the TIN, which holds for
+        small areas.
     """
-    crs = _parsed(tin.crs)
+    crs = tin.crs
+    up = assume_elevation_unit(crs, tin.elevation_unit) or NOT_KNOWN
+    scales = scales_of(crs, tin.elevation_unit, tin.bounds.center[1])
+    return Ground(
+        "CRS unknown" if crs is None else crs.caption,
+        _drawn_unit(crs),
+        up,
+        tin.elevation_unit is None,
+        (float(scales.east), float(scales.north), scales.up),
+    )
+
+
+def _drawn_unit(crs: CRS | None) -> Unit:
     if crs is None:
-        name = "CRS unknown" if tin.crs is None else f"CRS {tin.crs:.40}"
-        return _ground(name, UNKNOWN, UNKNOWN, (1.0, 1.0))
-    vertical = _unit_along(crs, _VERTICAL)
+        return NOT_KNOWN
+    return METRE if crs.is_geographic else crs.horizontal_unit
+
+
+def scales_of(crs: CRS | None, unit: Unit | None, northing: ArrayLike) -> Scales:
+    """Return the factors that make all three coordinates lengths of one unit.
+
+    Parameters
+    ----------
+    crs : CRS or None
+    unit : Unit or None
+        Unit of elevations, if it is known; else the usual one of the CRS is taken.
+    northing : float or (k,) array
+        Where: the length of a degree of longitude depends on the latitude.
+
+    Returns
+    -------
+    Scales
+        To the unit of eastings, in a geographic CRS to metres along the ellipsoid. Where a unit is
+        not known it is taken to be the same as the other.
+    """
+    if crs is None:
+        return Scales(1.0, 1.0, 1.0)
+    up = assume_elevation_unit(crs, unit)
+    metres = None if up is None else up.metres
     if crs.is_geographic:
-        return _ground(_caption(crs), METRE, vertical or METRE, _degree_lengths(crs, tin))
-    unit = _unit_along(crs, _HORIZONTAL) or UNKNOWN
-    return _ground(_caption(crs), unit, vertical or unit, (1.0, 1.0))
+        return Scales(*_degree_lengths(crs, northing), metres or 1.0)
+    along = crs.horizontal_unit.metres
+    if up == crs.horizontal_unit or metres is None or along is None:
+        return Scales(1.0, 1.0, 1.0)
+    return Scales(1.0, 1.0, metres / along)
 
 
-def _ground(name: str, unit: Unit, vertical: Unit, horizontal: tuple[float, float]) -> Ground:
-    return Ground(name, unit, vertical, (*horizontal, vertical.metres / unit.metres))
-
-
-def _parsed(text: str | None) -> pyproj.CRS | None:
-    """Return the CRS, or None where a caption is all that an unreadable one is worth."""
-    if text is None:
-        return None
-    from pyproj import CRS
-    from pyproj.exceptions import CRSError
-
-    try:
-        return CRS.from_user_input(text)
-    except CRSError:
-        return None
-
-
-def _caption(crs: pyproj.CRS) -> str:
-    authority = crs.to_authority(min_confidence=100)
-    return crs.name if authority is None else f"{crs.name} ({':'.join(authority)})"
-
-
-def _unit_along(crs: pyproj.CRS, directions: frozenset[str]) -> Unit | None:
-    """Return the unit of the first axis that points one of these ways, if there is one."""
-    for axis in crs.axis_info:
-        if axis.direction in directions and axis.unit_conversion_factor > 0:
-            return Unit(_SYMBOLS.get(axis.unit_name, axis.unit_name), axis.unit_conversion_factor)
-    return None
-
-
-def _degree_lengths(crs: pyproj.CRS, tin: TIN) -> tuple[float, float]:
-    """Return metres per CRS unit along a parallel and along a meridian, mid-TIN."""
-    to_radians = float(crs.axis_info[0].unit_conversion_factor)
-    latitude = tin.bounds.center[1] * to_radians
-    ellipsoid: Any = crs.ellipsoid  # every geographic CRS has one
-    major, minor = ellipsoid.semi_major_metre, ellipsoid.semi_minor_metre
+def _degree_lengths(
+    crs: CRS, latitude: ArrayLike
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return metres per CRS unit along a parallel and along a meridian."""
+    parsed: Any = crs.to_pyproj()  # every geographic CRS has axes and an ellipsoid
+    to_radians = float(parsed.axis_info[0].unit_conversion_factor)
+    turn = np.asarray(latitude, np.float64) * to_radians
+    major, minor = parsed.ellipsoid.semi_major_metre, parsed.ellipsoid.semi_minor_metre
     squared = 1.0 - (minor / major) ** 2
-    bulge = 1.0 - squared * math.sin(latitude) ** 2
-    prime_vertical = major / math.sqrt(bulge)
+    bulge = 1.0 - squared * np.sin(turn) ** 2
+    prime_vertical = major / np.sqrt(bulge)
     meridian = prime_vertical * (1.0 - squared) / bulge
-    return prime_vertical * math.cos(latitude) * to_radians, meridian * to_radians
+    return prime_vertical * np.cos(turn) * to_radians, meridian * to_radians

@@ -1,4 +1,4 @@
-"""Coordinate reference systems as text: looked up, written back, moved between, measured."""
+"""Points move between coordinate reference systems, and elevations between units."""
 
 from __future__ import annotations
 
@@ -7,72 +7,19 @@ import math
 import numpy as np
 import pytest
 
+from tinsmith import CRS
+from tinsmith.crs import METRE
 from tinsmith.io import CrsError, LengthUnit, crs, length_unit, transform_points
+from tinsmith.io.crs import reproject
 
 pyproj = pytest.importorskip("pyproj")
 
 
-@pytest.mark.parametrize("text", ["EPSG:32616", "epsg:32616", "32616", " EPSG:32616 "])
-def test_codes_come_back_in_their_usual_form(text):
-    assert crs.crs_text(crs.as_crs(text)) == "EPSG:32616"
-    assert crs.normalised(text) == "EPSG:32616"
-    assert crs.normalised(None) is None
-
-
-@pytest.mark.parametrize("version", ["WKT1_GDAL", "WKT1_ESRI", "WKT2_2019"])
-def test_wkt_of_a_known_crs_becomes_its_code(version):
-    wkt = pyproj.CRS("EPSG:32616").to_wkt(version)
-    assert crs.crs_text(crs.as_crs(wkt)) == "EPSG:32616"
-
-
-def test_crs_without_a_code_keeps_its_meaning():
-    text = "+proj=tmerc +lat_0=0 +lon_0=147 +k=0.9996 +x_0=500000 +y_0=1e7 +ellps=GRS80 +units=m"
-    wkt = crs.normalised(text)
-    assert crs.as_crs(wkt) == pyproj.CRS(text)
-    assert crs.normalised(wkt) == wkt
-
-
-def test_a_near_miss_takes_no_code():
-    wkt = pyproj.CRS("EPSG:32616").to_wkt().replace("500000", "500001")
-    assert crs.normalised(wkt).startswith("PROJCRS")
-
-
-@pytest.mark.parametrize("text", ["EPSG:99999", "nonsense", "", "EPSG:", "PROJCRS[", "x" * 500])
-def test_unknown_crs_is_one_short_sentence(text):
-    with pytest.raises(CrsError, match="Unknown CRS") as caught:
-        crs.as_crs(text)
-    assert caught.value.crs == text
-    assert len(str(caught.value)) < 200
-    assert "\n" not in str(caught.value)
-
-
-def test_label_is_short():
-    assert crs.crs_label(None) == "unknown"
-    assert crs.crs_label("EPSG:32616") == "EPSG:32616"
-    named = pyproj.CRS("EPSG:32616").to_wkt().replace("500000", "500001")
-    assert crs.crs_label(named) == "WGS 84 / UTM zone 16N"
-
-
-@pytest.mark.parametrize(
-    ("text", "expected"),
-    [
-        ("EPSG:32616", LengthUnit("metre", "m", 1.0)),
-        ("EPSG:2274", LengthUnit("US survey foot", "US ft", 0.30480060960121924)),
-        ("EPSG:2222", LengthUnit("foot", "ft", 0.3048)),
-        ("EPSG:4326", LengthUnit("degree", "°", None)),
-        (None, LengthUnit("unit", "units", None)),
-    ],
-)
-def test_units(text, expected):
-    assert length_unit(text) == expected
-
-
-def test_elevations_are_metres_unless_a_vertical_axis_says_otherwise():
-    assert crs.elevation_unit(None) == crs.METRE
-    assert crs.elevation_unit("EPSG:2274") == crs.length_unit("EPSG:2274")
-    assert crs.elevation_unit("EPSG:4326") == crs.METRE
-    assert crs.elevation_unit("EPSG:2274+6360").symbol == "US ft"
-    assert crs.elevation_unit("EPSG:4979").symbol == "m"
+def test_units_of_eastings():
+    assert length_unit("EPSG:2274") == LengthUnit.of("US survey foot")
+    assert length_unit(32616) == crs.METRE
+    assert length_unit("EPSG:4326").metres is None
+    assert length_unit(None).metres is None
 
 
 def test_degrees_are_told_apart():
@@ -135,3 +82,50 @@ def test_points_without_an_image_are_counted():
     points = np.array([[-84.0, 36.0, 1.0], [5e5, 4e6, 1.0], [5e5, 4e6, 2.0]])
     with pytest.raises(CrsError, match=r"^2 points .*first: point 1"):
         transform_points(points, "EPSG:4326", "EPSG:32616")
+
+
+SUMMIT = np.array([[751_428.0, 4_020_862.0, 1_032.0]])
+
+
+@pytest.mark.parametrize(
+    ("source", "unit", "target", "elevation"),
+    [
+        ("EPSG:32616", None, "EPSG:2274", 3385.82),
+        ("EPSG:32616", None, "EPSG:2222", 1032 / 0.3048),
+        ("EPSG:32616", None, "EPSG:32617", 1032.0),
+        ("EPSG:32616", None, "EPSG:4326", 1032.0),
+        ("EPSG:32616", "ft", "EPSG:32617", 1032 * 0.3048),
+        ("EPSG:32616", "ft", "EPSG:2274", 1032 * 0.3048 * 3937 / 1200),
+        ("EPSG:32616", "US survey foot", "EPSG:2274", 1032.0),
+        ("EPSG:32616", "cm", "EPSG:32617", 10.32),
+        ("EPSG:32616+5703", None, "EPSG:2274", 3385.82),
+        ("EPSG:32616+5703", None, "EPSG:2274+6360", 3385.82),
+        ("EPSG:32616+6360", None, "EPSG:2274+5703", 1032 * 1200 / 3937),
+        ("EPSG:32616+6360", "m", "EPSG:2274+5703", 1032.0),
+        ("EPSG:32616", None, "EPSG:2274+5703", 1032.0),
+        ("EPSG:32616", "ft", "EPSG:2274+5703", 1032 * 0.3048),
+        ("EPSG:32616+6360", None, "EPSG:4326", 1032 * 1200 / 3937),
+    ],
+)
+def test_elevations_change_their_unit_with_the_crs(source, unit, target, elevation):
+    moved = transform_points(SUMMIT, source, target, z_unit=unit)
+    assert moved[0, 2] == pytest.approx(elevation, rel=1e-12)
+    flat = transform_points(SUMMIT, source, target)
+    assert np.array_equal(moved[:, :2], flat[:, :2])
+
+
+@pytest.mark.parametrize("target", ["EPSG:2274", "EPSG:2222", "EPSG:4326", "EPSG:2274+6360"])
+def test_a_summit_comes_back_from_every_unit(target):
+    there = transform_points(SUMMIT, "EPSG:32616", target)
+    assert transform_points(there, target, "EPSG:32616") == pytest.approx(SUMMIT, rel=1e-9)
+
+
+def test_a_conversion_is_told_and_so_is_what_was_assumed_for_it():
+    metres, feet = CRS.of(32616), CRS.of(2274)
+    assumed = reproject(SUMMIT, metres, feet, unit=None)
+    assert "not told: taken to be metre" in assumed.note
+    assert assumed.unit is None
+    known = reproject(SUMMIT, metres, feet, unit=METRE)
+    assert known.note == "Elevations were converted from metre to US survey foot."
+    assert known.unit == LengthUnit.of("US survey foot")
+    assert reproject(SUMMIT, metres, CRS.of(32617), unit=None).note is None

@@ -9,6 +9,7 @@ import re
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -323,6 +324,11 @@ def test_elevations_first_are_no_layout(survey):
 def test_numbers_before_two_coordinates_are_no_coordinates(survey):
     rows = "".join(f"{i},5000.{i},600.{i}5\n" for i in range(1, 9))
     assert "count 1, 2, 3" in str(fault(survey, rows))
+
+
+def test_point_numbers_in_a_file_of_a_scan_s_suffix(survey):
+    rows = "".join(f"{i % 3},{14 + i}.75,{20 + i}.5,32.25,86,EP\n" for i in range(9))
+    assert "columns='PENZ-D'" in str(fault(survey, rows, name="a.xyz"))
 
 
 @pytest.mark.parametrize("suffix", [".xyz", ".pts"])
@@ -690,6 +696,13 @@ def test_decimal_marks_below_the_rows_looked_at(survey):
     assert "'1,5'" in str(fault(survey, mixed))
 
 
+def test_a_comma_behind_a_number_in_a_remark_is_no_decimal_mark(survey):
+    rows = "".join(f"{i} 1{i}.5 21 1,032 MH, 12, OLD\n" for i in range(4))
+    assert survey(rows, columns="PENZD").points[:, 2].tolist() == [1032.0] * 4
+    whole = rows.replace(".5", "")
+    assert "separate thousands" in str(fault(survey, whole, columns="PENZD"))
+
+
 def test_commas_that_may_separate_thousands(survey):
     assert "decimal=','" in str(fault(survey, "752,700\t424,240\t132\n752,701\t424,241\t133\n"))
     (note, *_) = survey("x;y;z\n752,700;424,240;132\n752,701;424,241;133\n").notes
@@ -937,3 +950,16 @@ def test_importing_the_room_loads_no_heavy_library():
     heavy = "{'pandas', 'pyproj', 'rasterio', 'pyvista', 'scipy'}"
     code = f"import sys, tinsmith.io; sys.exit(len({heavy} & set(sys.modules)))"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_the_examples_of_the_page_on_survey_text_run(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    page = Path(__file__).parents[1] / "docs" / "survey-text.md"
+    blocks = re.findall(r"```python\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)
+    assert len(blocks) == 2
+    exec("\n".join(blocks), {})
+    printed = " ".join(capsys.readouterr().out.split())
+    shown = re.sub(r"\n# ", " ", blocks[0]).split("print(error) ")[1].split("\n")[0]
+    assert printed.startswith(shown)
+    for line in re.findall(r"^# (\d.*)$", blocks[1], re.MULTILINE):
+        assert line in printed

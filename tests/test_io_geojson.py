@@ -243,10 +243,15 @@ def test_a_compound_crs_in_feet_gives_metres(tmp_path):
     assert found[:, 2] == pytest.approx(1000 * 1200 / 3937, abs=60)
 
 
-def test_degrees_have_no_slope(tmp_path):
+def test_degrees_have_the_slope_that_they_have_on_the_ground(tmp_path):
     tin = ts.triangulate([[10, 50, 1], [10.1, 50, 2], [10, 50.1, 3]], crs="EPSG:4326")
     (feature,) = written(tin, tmp_path / "a.geojson")["features"]
-    assert feature["properties"] == {"id": 0, "slope": None, "aspect": None, "area": None}
+    found = feature["properties"]
+    # Lengths of a degree at 50 1/30 degrees north, from the tables of the ellipsoid.
+    east, north = 1 / (0.1 * 71_648.0), 2 / (0.1 * 111_230.0)
+    assert found["slope"] == pytest.approx(np.degrees(np.arctan(np.hypot(east, north))), abs=1e-4)
+    assert found["aspect"] == pytest.approx(180 + np.degrees(np.arctan(east / north)), abs=0.02)
+    assert found["area"] == pytest.approx(7164.8 * 11123.0 / 2, rel=1e-3)
     assert [10.1, 50.0, 2.0] in feature["geometry"]["coordinates"][0]
 
 

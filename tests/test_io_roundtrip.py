@@ -62,9 +62,9 @@ def test_the_same_tin_comes_back(tmp_path, module, name, crs):
     if crs is None:
         assert again.crs is None
     else:
-        assert "\n" not in again.crs
+        assert "\n" not in str(again.crs)
         assert pyproj.CRS(again.crs) == pyproj.CRS(crs)
-        assert again.crs == crs or "\n" in crs
+        assert again.crs == crs
 
 
 def test_ply_through_the_front_door(tmp_path):

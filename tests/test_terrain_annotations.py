@@ -10,7 +10,7 @@ import pytest
 from tinsmith import triangulate
 from tinsmith.terrain.annotations import INK, PAPER, Caption, Sheet, annotate, scale_bar_length
 from tinsmith.terrain.camera import VIEWS, View, aim, ground_axes, pixels_per_unit
-from tinsmith.terrain.scene import scene_points
+from tinsmith.terrain.scene import add_lights, scene_points
 from tinsmith.terrain.tints import tints
 from tinsmith.terrain.units import METRE, ground_of
 from tinsmith.tin import Bounds
@@ -208,3 +208,25 @@ def test_a_title_too_long_for_the_sheet_is_cut_and_shows_it():
     (title,) = [said for said, *_ in overlay.texts if said.startswith("word")]
     assert title.endswith("...")
     assert 0.8 * 1312 < overlay.text_width(title, size=30.0) <= 1312
+
+
+# ----------------------------------------------------------------------- lights
+
+
+def test_the_sun_stands_in_the_northwest_and_the_sky_around():
+    plotter = pv.Plotter(off_screen=True)
+    add_lights(plotter)
+    found = []
+    for light in plotter.renderer.lights:
+        east, north, up = light.position
+        assert math.hypot(east, north, up) == pytest.approx(1.0)
+        assert light.focal_point == (0.0, 0.0, 0.0)
+        azimuth = math.degrees(math.atan2(east, north)) % 360 if up < 1 - 1e-9 else 0.0
+        found.append((azimuth, math.degrees(math.asin(min(1.0, up))), light.intensity))
+    found.sort(key=lambda one: -one[2])
+    assert len(found) == 4
+    assert found[0] == pytest.approx((315.0, 45.0, 0.58))
+    assert all(height >= 45.0 - 1e-9 for _, height, _ in found)
+    assert all(strength <= 0.10 for *_, strength in found[1:])
+    assert max(height for _, height, _ in found) == pytest.approx(90.0, abs=1e-4)
+    assert {round(azimuth) for azimuth, *_ in found[1:]} == {0, 45, 225}

@@ -170,9 +170,7 @@ def test_crossing_breakline_takes_the_height_of_higher_priority_and_tells_both()
             [[0, 0, 5], [4, 0, 6], [4, 4, 7], [0, 4, 8]], breaklines=[[[0, 1, 10], [4, 1, 10]]]
         )
         tin.add_breakline([[1, 0.5, 20], [1, 3, 20]], priority=priority)
-        assert tin.points[tin.vertex_of[3] + 5].tolist() == [1, 1, taken] or [1, 1, taken] in (
-            tin.points.tolist()
-        )
+        assert tin.points[-1].tolist() == [1, 1, taken]
         (note,) = tin.edits[-1].notes
         assert "20" in note
         assert "10" in note
@@ -193,6 +191,213 @@ def test_draped_breakline_follows_the_surface():
     tin.add_breakline([[1, 2], [3, 2]])
     np.testing.assert_allclose(tin.interpolate([[1, 2], [3, 2]]), wanted, rtol=0, atol=1e-12)
     require_fresh(tin)
+
+
+EARLIER_LINES = {
+    "through the end of one, across another": (
+        [[3, 0, 0], [4, 6, 0], [5, 4, 0]],
+        [[[3, 4, 0], [0, 7, 0]], [[7, 7, 0], [3, 5, 0]]],
+        [[[2, 1, 0], [4, 7, 0]]],
+    ),
+    "through the end of one at fractions": (
+        [[1, 3, 0], [1, 4, 0], [4, 1, 0]],
+        [[[3, 0, 0], [2, 4, 0]], [[0.75, 1.75, 0], [0, 1, 0]]],
+        [[[3, 1, 0], [0, 2, 0]]],
+    ),
+    "centimetres at the size of UTM": (
+        [
+            [752063.7, 4024026.98, 0.0],
+            [752004.1, 4024001.65, 0.0],
+            [752081.33, 4024091.28, 0.0],
+        ],
+        [],
+        [
+            [[752040.46, 4024019.85, 0.0], [752009.08, 4024058.03, 0.0]],
+            [[751995.64, 4024054.0399999996, 0.0], [752022.5199999999, 4024062.02, 0.0]],
+            [[752094.21, 4024036.51, 0.0], [752010.55, 4024062.91, 0.0]],
+            [[751990.5399999999, 4024049.2199999997, 0.0], [752027.62, 4024066.84, 0.0]],
+        ],
+    ),
+    "out and back across a line": (
+        [[500007, 4000009, -5], [500007, 4000003, 2], [500005, 4000003, -4]],
+        [[[500007, 4000009, -5], [500007, 4000003, 2], [500005, 4000003, -4]]],
+        [[[500010, 4000003, -2], [500005, 4000010, 2], [500010, 4000003, -3]]],
+    ),
+    "across a draped line": (
+        [[6, 12, 0]],
+        [[[2, 12, 3], [2, 4, -4]], [[4, 8], [4, 10], [3, 6], [5, 12]]],
+        [[[6, 6, 4], [2, 12, -1]]],
+    ),
+    "draped, partly outside": (
+        [[-12, -12, 1]],
+        [[[-8, -16, -2], [-8, -4, -2]]],
+        [[[8, 8], [-12, -12], [2, 14]]],
+    ),
+    "draped, at a rounding from others": (
+        [[0.49999999999999933, -0.866025403784439, 1.0]],
+        [
+            [
+                [-0.524519052838329, -0.43301270189221963, -3.0],
+                [0.49999999999999944, -0.43301270189221963, 4.0],
+            ]
+        ],
+        [
+            [
+                [-0.4999999999999998, 0.8660254037844387],
+                [0.49999999999999933, -0.866025403784439],
+                [-0.6185484040607179, 0.3083790555865533],
+            ]
+        ],
+    ),
+}
+
+
+def require_same_tin(tin, fresh):
+    require_state(tin, state(fresh))
+    assert tin.lines.sources.tolist() == fresh.lines.sources.tolist()
+    assert tin.lines.offsets.tolist() == fresh.lines.offsets.tolist()
+    assert tin.report.to_dict()["crossings"] == fresh.report.to_dict()["crossings"]
+    assert tin.report.to_dict()["overruled"] == fresh.report.to_dict()["overruled"]
+
+
+@pytest.mark.parametrize(
+    ("points", "lines", "added"), EARLIER_LINES.values(), ids=list(EARLIER_LINES)
+)
+def test_lines_come_one_by_one_as_they_come_together(points, lines, added):
+    tin = ts.triangulate(points, breaklines=lines)
+    for count, line in enumerate(added, 1):
+        tin.add_breakline(line)
+        require_same_tin(tin, ts.triangulate(points, breaklines=lines + added[:count]))
+        assert ts.check(tin).ok
+    for number in range(len(lines) + len(added) - 1, len(lines) - 1, -1):
+        tin.remove_breakline(number)
+    require_same_tin(tin, ts.triangulate(points, breaklines=lines))
+    tin.undo(len(tin.edits) - 1)
+    require_same_tin(tin, ts.triangulate(points, breaklines=lines + added[:1]))
+
+
+CROSS = [[[0, 2, 10], [4, 2, 10]], [[2, 0, 20], [2, 4, 20]]]
+CORNERS = [[0, 0, 5], [4, 0, 6], [4, 4, 7], [0, 4, 8]]
+
+
+def crossed(**options):
+    return ts.triangulate(CORNERS, breaklines=CROSS, **options)
+
+
+def test_a_crossing_goes_with_its_lines():
+    tin = crossed()
+    made = len(tin.points) - 1
+    assert tin.points[made].tolist() == [2, 2, 10]
+    for edit in (lambda: tin.remove(made), lambda: tin.move(made, [1, 1, 1])):
+        with pytest.raises(ts.LinesError, match="goes with them"):
+            edit()
+    tin.set_z(made, 15.0)
+    require_same_tin(tin, ts.triangulate([*CORNERS, [2, 2, 15]], breaklines=CROSS))
+    assert tin.vertex_of.tolist() == [0, 1, 2, 3, 4]
+    tin.undo()
+    tin.remove_breakline(0)
+    require_same_tin(tin, ts.triangulate(CORNERS, breaklines=CROSS[1:]))
+    assert len(tin.points) == 6
+
+
+def test_a_moved_vertex_takes_its_line_along():
+    tin = crossed()
+    (vertex,) = np.flatnonzero((tin.points[:, :2] == [4, 2]).all(axis=1)).tolist()
+    tin.move(vertex, [4, 3, 12])
+    moved = [[CROSS[0][0], [4, 3, 12]], CROSS[1]]
+    require_same_tin(tin, ts.triangulate(CORNERS, breaklines=moved))
+    tin.set_z(vertex, 1.0)
+    moved[0][1] = [4, 3, 1]
+    require_same_tin(tin, ts.triangulate(CORNERS, breaklines=moved))
+
+
+def test_a_line_without_a_vertex_runs_straight_on():
+    line = [[0, 1, 1], [2, 3, 2], [4, 1, 3]]
+    tin = ts.triangulate(CORNERS, breaklines=[line])
+    tin.remove(int(tin.lines.vertices[1]))
+    require_same_tin(tin, ts.triangulate(CORNERS, breaklines=[[line[0], line[2]]]))
+    with pytest.raises(ts.LinesError, match="would vanish"):
+        tin.remove(int(tin.lines.vertices[0]))
+
+
+def test_a_failed_edit_of_lines_changes_nothing():
+    tin = crossed()
+    before = state(tin)
+    for arguments in ({"crossing": "error"}, {"crossing": "split", "kind": "loft"}):
+        with pytest.raises(ts.LinesError):
+            tin.add_breakline([[0, 1, 0], [3, 4, 0]], **arguments)
+        require_state(tin, before)
+    tin.insert([[1, 1.5, 1]])
+    tin.undo()
+    require_state(tin, before)
+
+
+def test_edits_away_from_lines_build_nothing_anew(monkeypatch):
+    rng = np.random.default_rng(3)
+    points = np.c_[rng.random((400, 2)) * 100, rng.random(400)]
+    line = [[10, 10, 1], [40, 12, 2], [40, 12.5, 2]]
+    across = [[30, 2, 5], [30, 30, 6]]
+    tin = ts.triangulate(points, breaklines=[line, across])
+    far = np.flatnonzero(points[:, 1] > 60)
+    tin.set_z(int(far[0]), 0.5)
+    with monkeypatch.context() as patched:
+        patched.setattr("tinsmith.tin.editing.build_state", None)
+        assert tin.insert([[70.5, 80.5, 3], points[far[1]]]).tolist() == [400, far[1]]
+        tin.move(int(far[2]), [75.25, 85.5, 4])
+        tin.remove([int(far[3]), int(far[4])])
+        tin.set_z(398, -1.0)
+    rows = np.vstack([points, [[70.5, 80.5, 3], points[far[1]]]])
+    rows[far[0], 2] = 0.5
+    rows[far[2]] = [75.25, 85.5, 4]
+    rows[400, 2] = -1.0
+    fresh = ts.triangulate(np.delete(rows, far[3:5], axis=0), breaklines=[line, across])
+    require_same_tin(tin, fresh)
+    assert np.delete(tin.vertex_of, far[3:5]).tolist() == fresh.vertex_of.tolist()
+    assert [merge.rows for merge in tin.report.merges()] == [(far[1], 401)]
+
+
+def test_reasons_of_the_build_are_kept_beside_those_of_edits():
+    rng = np.random.default_rng(5)
+    points = np.c_[rng.random((60, 2)) * 10, rng.random(60)]
+    points[37, :2] = 5, 5
+    ring = [[4.9, 4.9], [5.1, 4.9], [5.1, 5.1], [4.9, 5.1]]
+    tin = ts.triangulate(points, erase=[ring])
+    assert tin.report.to_dict()["left_out"] == {"erased": [37]}
+    tin.remove(5)
+    assert tin.report.to_dict()["left_out"] == {"erased": [37], "removed by an edit": [5]}
+    assert tin.insert([[5, 5, 1]]).tolist() == [-1]
+    assert tin.report.to_dict()["left_out"]["erased"] == [37, 60]
+
+
+def test_overlapping_triangles_are_not_edited():
+    tin = ts.TIN.from_triangles(
+        [[0, 0, 1], [4, 0, 1], [4, 4, 1], [0, 4, 1], [3, 1, 2]], [[0, 1, 2], [2, 3, 4]]
+    )
+    with pytest.raises(ts.PointsError, match="overlap"):
+        tin.insert([[1, 0.5, 1]])
+
+
+def test_the_log_keeps_what_was_given():
+    tin = square()
+    points, vertices = np.array([[3.0, 3.0, 1.0]]), [0]
+    tin.insert(points)
+    tin.set_z(vertices, 3.0)
+    points[0, 0], vertices[0] = 99.0, 1
+    assert tin.edits[0].to_dict() == {
+        "op": "insert",
+        "points": [[3.0, 3.0, 1.0]],
+        "duplicates": "last",
+    }
+    assert tin.edits[1].arguments["vertices"] == [0]
+
+
+def test_water_keeps_its_level():
+    pond = ts.Water([[1, 1], [3, 1], [3, 3], [1, 3]], 2.0)
+    tin = ts.triangulate(CORNERS, water=[pond])
+    (vertex,) = np.flatnonzero((tin.points[:, :2] == [1, 1]).all(axis=1)).tolist()
+    with pytest.raises(ts.LinesError, match="stays at elevation 2"):
+        tin.set_z(vertex, 5.0)
+    assert tin.edits == ()
 
 
 def test_clipped_surface_is_edited_and_stays_clipped():
@@ -244,6 +449,8 @@ def test_tin_that_is_not_delaunay_is_not_edited():
         ("remove", {"vertices": [0, 1, 2]}, "No triangle"),
         ("move", {"vertex": 0, "point": [2, 1, 0]}, "already"),
         ("move", {"vertex": 0, "point": [2, np.inf, 0]}, "finite"),
+        ("move", {"vertex": 0, "point": [[1], [2, 3]]}, "no table of real numbers"),
+        ("set_z", {"vertices": 0, "z": 10**400}, "real numbers"),
         ("set_z", {"vertices": [0, 1], "z": [1, 2, 3]}, "heights"),
         ("set_z", {"vertices": 0, "z": np.nan}, "finite"),
         ("flip", {"a": 0, "b": 0}, "two different ends"),

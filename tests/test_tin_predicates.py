@@ -134,6 +134,30 @@ def test_signs_are_those_of_rational_arithmetic(name, family):
         assert 0 in wanted
 
 
+def on_circles_about_the_first(rng, k):
+    """Places nearly equally far from the first, at UTM size, in the unit square, on integers."""
+    angle = rng.uniform(0, 2 * np.pi, (k, 3))
+    center = rng.choice([0.0, 0.1, 1 / 3, 5e5 + 0.37], (k, 1, 1)) + rng.random((k, 1, 2))
+    radius = rng.choice([1e-3, 1.0, 12.7, 4e4], (k, 1, 1))
+    around = center + radius * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    around += rng.integers(-1, 2, around.shape) * np.spacing(around)
+    return np.concatenate([center, around], axis=1)
+
+
+@pytest.mark.parametrize(
+    "family", [*FAMILIES, on_circles_about_the_first], ids=lambda family: family.__name__
+)
+def test_distances_are_compared_as_by_rational_arithmetic(family):
+    quads = family(np.random.default_rng(9), 1000)
+    v, p, q = (np.ascontiguousarray(quads[:, corner]) for corner in range(3))
+    wanted = []
+    for (vx, vy), (px, py), (qx, qy) in (map(oracles.place, quad[:3]) for quad in quads):
+        far = (px - vx) ** 2 + (py - vy) ** 2 - (qx - vx) ** 2 - (qy - vy) ** 2
+        wanted.append(oracles.sign(far))
+    np.testing.assert_array_equal(_kernel.compare_distances(v, p, q), wanted)
+    assert {-1, 1} <= set(wanted)
+
+
 @pytest.mark.proof
 @pytest.mark.parametrize("family", FAMILIES, ids=lambda family: family.__name__)
 @pytest.mark.parametrize("name", ["orientation", "in_circle"])

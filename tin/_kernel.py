@@ -20,6 +20,7 @@ __all__ = [
     "Mesh",
     "Method",
     "clean",
+    "compare_distances",
     "contacts",
     "count_work",
     "crossings",
@@ -47,6 +48,7 @@ refine = _core.refine
 regions = _core.regions
 orientation = _core.orientation
 in_circle = _core.in_circle
+compare_distances = _core.compare_distances
 snap = _core.snap
 count_work = _core.count_work
 clean = _core.clean

@@ -11,9 +11,9 @@ from .constrained import Draft, draft
 from .draping import drape
 from .duplicates import merge_rows
 from .line_set import LineSet
+from .lines import Lines
 from .model import Clip, LineInfo, Model, lines_in
-from .pieces import Pieces
-from .regions import BOUNDARY, EXTENT, HOLES, in_rings
+from .regions import BOUNDARY, EXTENT, HOLES, Surface, in_rings
 from .report import LEFT_OUT, Crossings, Overruled, Report
 from .surface import TIN
 
@@ -22,39 +22,70 @@ if TYPE_CHECKING:
 
     from .recipe import Recipe
 
-__all__ = ["build"]
+__all__ = ["Built", "assemble", "build"]
+
+
+class Built(NamedTuple):
+    """What a recipe gives.
+
+    Attributes
+    ----------
+    surface : Surface
+    vertex_of : (n,) int32 array
+        The vertex of each row, -1 for none.
+    lines : Lines
+    report : Report
+    line_xy : (k, 2) float64 array
+        Vertices of the lines as they were merged with the rows: draped ones laid on the surface.
+    line_vertices : (k,) int32 array
+        The vertex of each, -1 for none.
+    """
+
+    surface: Surface
+    vertex_of: NDArray[np.int32]
+    lines: Lines
+    report: Report
+    line_xy: NDArray[np.float64]
+    line_vertices: NDArray[np.int32]
 
 
 def build(recipe: Recipe) -> TIN:
     """Build the TIN of a recipe."""
+    built = assemble(recipe)
+    return TIN(
+        **built.surface._asdict(),
+        vertex_of=built.vertex_of,
+        report=built.report,
+        lines=built.lines,
+        crs=recipe.crs,
+        elevation_unit=recipe.elevation_unit,
+        inputs=recipe,
+    )
+
+
+def assemble(recipe: Recipe) -> Built:
+    """Build all that the TIN of a recipe holds."""
     return _plain(recipe) if recipe.is_plain else _with_lines(recipe)
 
 
 # ------------------------------------------------------------------ points alone
 
 
-def _plain(recipe: Recipe) -> TIN:
+def _plain(recipe: Recipe) -> Built:
     xyz, options = recipe.points, recipe.options
     kept_row = _kernel.snap(xyz, options.snap) if options.snap > 0 else None
     growth = _kernel.grow(
         xyz if kept_row is None else _kept(xyz, kept_row), threads=options.threads
     )
     merged = merge_rows(xyz, growth.kept_row if kept_row is None else kept_row, options.duplicates)
-    return TIN(
-        points=merged.points,
-        triangles=growth.triangles,
-        neighbors=growth.neighbors,
-        constrained=np.zeros(growth.triangles.shape, np.bool_),
-        vertex_of=merged.vertex_of,
-        report=_report(recipe, len(merged.points), len(growth.triangles), merged.account),
-        crs=recipe.crs,
-        inputs=Model(
-            points=merged.points,
-            pieces=Pieces.none(),
-            infos=(),
-            clip=Clip(),
-            vertex_of=merged.vertex_of,
-        ),
+    fixed = np.zeros(growth.triangles.shape, np.bool_)
+    return Built(
+        Surface(merged.points, growth.triangles, growth.neighbors, fixed),
+        merged.vertex_of,
+        Lines(),
+        _report(recipe, len(merged.points), len(growth.triangles), merged.account),
+        np.empty((0, 2)),
+        np.empty(0, np.int32),
     )
 
 
@@ -70,8 +101,8 @@ def _report(recipe: Recipe, n_vertices: int, n_triangles: int, account: dict[str
         n_triangles=n_triangles,
         duplicates=recipe.options.duplicates,
         snap=recipe.options.snap,
-        skipped=recipe.skipped,
-        **{"notes": recipe.notes, **account},
+        skipped=dict(recipe.skipped),
+        **{"notes": tuple(recipe.notes), **account},
     )
 
 
@@ -90,34 +121,26 @@ class _Ground(NamedTuple):
         return self._replace(lines=self.lines.chosen(self.lines.sources >= 0), has_rim=False)
 
 
-def _with_lines(recipe: Recipe) -> TIN:
+def _with_lines(recipe: Recipe) -> Built:
     is_erased = _erased(recipe)
     rows = np.flatnonzero(~is_erased)
     ground = _draped(rows, recipe)
     made, model = _made(recipe, ground, rows)
-    has_rings = bool(recipe.boundary or recipe.extent or recipe.holes)
+    has_rings = bool(recipe.boundary or recipe.extent or recipe.holes or recipe.has_rim)
     if not has_rings and model.loses_vertices_at_rim(made.surface):
         ground = ground.without_rim()
         made, model = _made(recipe, ground, rows)
     surface, number_of = model.surface(made.surface)
     vertex_of = _numbered(model.vertex_of, number_of)
     account = _account(recipe, made, number_of, is_erased, vertex_of, ground)
-    return TIN(
-        points=surface.points,
-        triangles=surface.triangles,
-        neighbors=surface.neighbors,
-        constrained=surface.constrained,
-        vertex_of=vertex_of,
-        report=_report(recipe, len(surface.points), len(surface.triangles), account),
-        lines=lines_in(
-            model.pieces,
-            model.infos,
-            number_of,
-            surface,
-            is_whole=surface is made.surface,
-        ),
-        crs=recipe.crs,
-        inputs=model,
+    is_whole = surface is made.surface
+    return Built(
+        surface,
+        vertex_of,
+        lines_in(model.pieces, model.infos, number_of, surface, is_whole=is_whole),
+        _report(recipe, len(surface.points), len(surface.triangles), account),
+        ground.lines.xy,
+        _numbered(made.line_vertices, number_of),
     )
 
 
@@ -148,7 +171,7 @@ def _model(recipe: Recipe, ground: _Ground, made: Draft, rows: NDArray[np.int64]
             boundary=recipe.boundary,
             extent=recipe.extent,
             holes=recipe.holes,
-            has_rim=ground.has_rim,
+            has_rim=ground.has_rim or recipe.has_rim,
             max_edge=recipe.max_edge,
             is_trimmed_everywhere=recipe.trim == "everywhere",
         ),
@@ -164,6 +187,8 @@ def _groups(recipe: Recipe, lines: LineSet) -> list[int]:
     ]
     of_hole = [HOLES + number for number, rings in enumerate(recipe.holes) for _ in rings]
     groups: dict[str, list[int]] = {"boundary": of_ring, "hole": of_hole}
+    if recipe.has_rim:  # of existing triangles, whose rings are edges of the rim
+        groups = {}
     return [
         groups[kind][source] if kind in groups and source >= 0 else BOUNDARY
         for kind, source in zip(lines.kinds, lines.sources.tolist(), strict=True)
@@ -230,7 +255,7 @@ def _account(
         "overruled": Overruled(
             _numbered(gave_way.vertices, final), gave_way.lines, gave_way.heights, gave_way.taken
         ),
-        "notes": [*recipe.notes, *ground.notes],
+        "notes": (*recipe.notes, *ground.notes),
     }
 
 

@@ -46,6 +46,8 @@ class Draft(NamedTuple):
     surface : Surface
     vertex_of : (n,) int32 array
         The vertex of each row of points, -1 for rows in water.
+    line_vertices : (k,) int32 array
+        Likewise of each given vertex of the lines.
     pieces : Pieces
         What is left of the lines, water excluded.
     merges : dict
@@ -60,6 +62,7 @@ class Draft(NamedTuple):
 
     surface: Surface
     vertex_of: NDArray[np.int32]
+    line_vertices: NDArray[np.int32]
     pieces: Pieces
     merges: dict[str, Any]
     noded: Noded
@@ -123,6 +126,7 @@ def draft(
     return Draft(
         Surface(points, triangles, neighbors, constrained),
         number_of[merged.vertex_of[: len(xyz)]],
+        number_of[merged.vertex_of[len(xyz) :]],
         pieces,
         merged.merges,
         noded,

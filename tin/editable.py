@@ -19,8 +19,7 @@ if TYPE_CHECKING:
     from .duplicates import DuplicatePolicy
     from .editing import Edit, Session
     from .lines import BreaklineKind
-    from .model import Model
-    from .surface import TIN
+    from .recipe import Recipe
     from .version import Version
 
 __all__ = ["Editable"]
@@ -28,6 +27,11 @@ __all__ = ["Editable"]
 
 class Editable:
     """What a TIN can have done to it.
+
+    Edits change the inputs; the TIN is the build of the inputs. After any edits it equals, to the
+    last bit, what :func:`tinsmith.triangulate` gives with the same options for the rows and lines
+    that are there then, in the order in which they came. Only ``vertex_of`` and the row numbers of
+    the report keep counting removed rows: their vertex is -1, the others are in order.
 
     Parameters
     ----------
@@ -38,7 +42,7 @@ class Editable:
 
     __slots__ = ("_inputs", "_lock", "_session", "_version")
 
-    def __init__(self, version: Version, inputs: Model | None) -> None:
+    def __init__(self, version: Version, inputs: Recipe | None) -> None:
         self._version: Version | None = version
         self._session: Session | None = None
         self._inputs = inputs
@@ -98,16 +102,19 @@ class Editable:
         points : (k, 3) array
             They become further rows of input; a point on a line becomes a vertex of it.
         duplicates : {"last", "first", "mean", "lowest", "highest", "error"}
-            Elevation of a vertex that stands at one of the places already.
+            Elevation of a vertex that stands at one of the places already: all rows, and the given
+            vertices of lines there, get it. Points that ``snap`` merges with others are treated as
+            in the build.
 
         Returns
         -------
         (k,) int32 array
-            The vertex of each point (-1 outside a clipped surface).
+            The vertex of each point, -1 outside a clipped surface or where points are erased.
+            Vertices of lines alone come behind those of points, and move up.
 
         Raises
         ------
-        PointsError
+        PointsError, LinesError
             As :func:`tinsmith.triangulate`; then nothing has changed.
 
         Examples
@@ -128,7 +135,8 @@ class Editable:
     def remove(self, vertices: ArrayLike) -> None:
         """Remove vertices, in place; those behind them move up, as in ``numpy.delete``.
 
-        A line through a vertex runs straight on between the neighbours.
+        The rows there go, and a line that names the vertex runs straight on between the
+        neighbours. Where lines cross at the place, a vertex is left for them.
 
         Parameters
         ----------
@@ -139,12 +147,13 @@ class Editable:
         PointsError
             If there is no such vertex, or no triangle would be left.
         LinesError
-            If a line would vanish, or cross another. Then nothing has changed.
+            If a line would vanish, or the vertex was made by the build (where lines cross, are laid
+            on the surface, or are split): it goes with its lines. Then nothing has changed.
         """
         self._edit("remove", vertices=vertices)
 
     def move(self, vertex: int, point: ArrayLike) -> None:
-        """Move a vertex, in place, and the lines through it.
+        """Move a vertex, in place: the rows there, and the lines that name it.
 
         Parameters
         ----------
@@ -156,12 +165,16 @@ class Editable:
         PointsError
             If there is no such vertex, or another one stands at the place.
         LinesError
-            If a line would cross another. Then nothing has changed.
+            If the vertex was made by the build, or a build refuses the lines as they are then.
+            Then nothing has changed.
         """
         self._edit("move", vertex=vertex, point=point)
 
     def set_z(self, vertices: ArrayLike, z: ArrayLike) -> None:
         """Give vertices other elevations, in place.
+
+        All rows, and the given vertices of lines there, get it; at a vertex that the build made
+        (where lines cross, say) it becomes that of a row inserted there.
 
         Parameters
         ----------
@@ -172,6 +185,8 @@ class Editable:
         ------
         PointsError
             If there is no such vertex, or an elevation is not finite.
+        LinesError
+            If something else decides there, such as the level of water. Then nothing has changed.
         """
         self._edit("set_z", vertices=vertices, z=z)
 
@@ -212,7 +227,8 @@ class Editable:
             As in :class:`.Breakline`.
         crossing : {"split", "error"}
             Make a vertex where it crosses another line, with the height of the one of higher
-            priority or of the older one, or refuse. ``edits[-1].notes`` tells both heights.
+            priority or of the first, or refuse. ``edits[-1].notes`` tells both heights. A TIN that
+            was built with ``crossing="error"`` refuses in any case.
 
         Raises
         ------
@@ -229,7 +245,9 @@ class Editable:
         )
 
     def remove_breakline(self, number: int) -> None:
-        """Remove a breakline, in place; its vertices stay as points.
+        """Remove a breakline, in place, with the vertices that only it had.
+
+        Those behind it move up, as if it had never been given.
 
         Parameters
         ----------
@@ -265,5 +283,5 @@ class Editable:
         if self._session is None:
             from .editing import Session
 
-            self._session = Session(cast("TIN", self), self._inputs)
+            self._session = Session(cast("Version", self._version), self._inputs)
         return self._session

@@ -1,37 +1,42 @@
-"""Editing of a TIN in place: operations, their history, going back and doing again.
-
-Edits go to an :class:`.Editor` that is kept with the TIN; the TIN's arrays are made anew when they
-are next looked at.
-"""
+"""Editing of a TIN: operations on its inputs, their history, going back and doing again."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from copy import copy
-from typing import TYPE_CHECKING, Any, NamedTuple, get_args
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, NamedTuple, cast, get_args
 
 import numpy as np
 
-from . import _kernel, topology
-from .draping import drape
+from . import _kernel
 from .duplicates import DuplicatePolicy
-from .editor import Editor
+from .editor import Editor, NotLocal, is_local, merged_elevation, occupied
 from .errors import LinesError, PointsError, TinsmithError
-from .line_set import gather_lines
+from .existing import recipe_of_triangles, state_of_triangles
+from .inputs import (
+    AddLine,
+    Change,
+    DropLines,
+    DropVertices,
+    Inputs,
+    LineChange,
+    PutVertices,
+    SetElevations,
+    count_breaklines,
+    has_own_heights,
+)
 from .lines import Breakline
-from .model import Clip, LineInfo, Model
 from .options import is_one_of, is_whole_number, shown
-from .pieces import Pieces
 from .points import as_elevations, as_points
-from .regions import Surface
+from .state import State, build_state
 from .tables import as_table
-from .threads import thread_count
-from .triangulation import Triangulation
 from .version import Version
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from .lines import Lines
+    from .recipe import Recipe
     from .surface import TIN
 
 __all__ = ["OPERATIONS", "Edit", "Session", "apply_edits"]
@@ -46,6 +51,12 @@ OPERATIONS = (
     "remove_breakline",
 )
 """Names of the methods of a TIN that change it."""
+
+
+_ON_MESH = ("insert", "remove", "move", "set_z")
+
+FLIP = "flip"
+"""Name of the soft breakline that keeps a flipped edge."""
 
 
 class Edit(NamedTuple):
@@ -78,61 +89,87 @@ def _plain(value: Any) -> Any:
 
 
 class Session:
-    """The edits of a TIN: its editor, what was done, and where it began.
+    """The edits of a TIN: the inputs at the beginning, what was done to them, and where that led.
+
+    The TIN is always the build of the inputs. Edits that reach no line are done in a mesh, for
+    which :class:`.Editor` is kept; for all others everything is built anew beside what is there,
+    and takes its place when it is complete. So an edit that fails changes nothing.
 
     Parameters
     ----------
-    tin : TIN
-        Its arrays are read now, and not again.
-    model : Model or None
-        What the TIN was built from; None for one of existing triangles.
+    version : Version
+        The TIN before its first edit.
+    recipe : Recipe or None
+        What it was built from; None for one of existing triangles.
+
+    Raises
+    ------
+    PointsError
+        If existing triangles are no Delaunay triangulation.
     """
 
-    def __init__(self, tin: TIN, model: Model | None) -> None:
+    def __init__(self, version: Version, recipe: Recipe | None) -> None:
         self.edits: list[Edit] = []
-        self._report = tin.report
-        self._threads = thread_count(None, len(tin.points))
-        hull = Surface(tin.points, tin.triangles, tin.neighbors, tin.constrained)
-        self._begin = _model_of(tin) if model is None else model
-        self._kept = self._begin
-        self._done_since = 0
-        is_whole = self._begin.clip.is_none
-        is_sure = is_whole and model is not None
-        self._editor = Editor(self._begin, hull if is_sure else None, threads=self._threads)
-        if model is None:
-            _require_same(self._editor.refreshed().surface, hull)
-        if not is_whole:
-            self._editor.refreshed()
+        self._changes: list[Change] = []
+        self._given: Version | None = None if recipe is not None else version
+        if recipe is None:
+            recipe = recipe_of_triangles(version)
+            self._begin = Inputs.of(recipe)
+            self._state: State | None = state_of_triangles(version, self._begin)
+        else:
+            self._begin = Inputs.of(recipe)
+            self._state = State(
+                version.triangulation, version.vertex_of, version.lines, version.report, None
+            )
+        self._inputs, self._n_applied = self._begin, 0
+        self._editor: Editor | None = None
 
     def copy(self) -> Session:
         """Return a session that goes on from here on its own."""
-        other = copy(self)
-        other.edits = list(self.edits)
-        other._restore()
+        other = Session.__new__(Session)
+        other.__setstate__(self.__getstate__())
         return other
 
     def __getstate__(self) -> dict[str, Any]:
-        return {name: value for name, value in vars(self).items() if name != "_editor"}
+        return {
+            "edits": list(self.edits),
+            "_changes": list(self._changes),
+            "_given": self._given,
+            "_begin": self._begin,
+            "_state": self._now(),
+        }
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         vars(self).update(state)
-        self._restore()
+        self._inputs, self._n_applied = self._begin, 0
+        self._editor = None
 
     # ------------------------------------------------------------------ for TIN
 
     def version(self) -> Version:
         """Return the TIN after the edits."""
-        found = self._editor.refreshed()
-        self._kept, self._done_since = found.model, len(self.edits)
-        surface, vertex_of = found.surface, found.vertex_of
+        if self._given is not None and not self.edits:
+            return self._given
+        state, edits = self._now(), tuple(self.edits)
+        vertex_of, report = state.vertex_of_row, replace(state.report, edits=edits)
+        if self._given is not None:
+            vertex_of = self._of_given_rows(vertex_of)
+            surface = state.triangulation
+            report = self._given.report.after_edits(
+                vertex_of, len(surface.points), len(surface.triangles), edits
+            )
         return Version(
-            triangulation=Triangulation(**surface._asdict()),
+            triangulation=state.triangulation,
             vertex_of=vertex_of,
-            lines=found.lines,
-            report=self._report.after_edits(
-                vertex_of, len(surface.points), len(surface.triangles), tuple(self.edits)
-            ),
+            lines=state.lines,
+            report=report,
         )
+
+    def _of_given_rows(self, vertex_of_row: NDArray[np.int32]) -> NDArray[np.int32]:
+        """Return the vertices of the rows that existing triangles stand for, and of later ones."""
+        given = cast("Version", self._given).vertex_of
+        none = np.int32(-1)
+        return np.append(np.append(vertex_of_row, none)[given], vertex_of_row[self._begin.n_rows :])
 
     def do(self, operation: str, arguments: dict[str, Any]) -> Any:
         """Do one edit and remember it; one that fails leaves everything as it was.
@@ -142,55 +179,66 @@ class Session:
         PointsError, LinesError
             As the methods of :class:`.TIN`.
         """
+        if operation not in OPERATIONS:
+            raise PointsError(f"Invalid edit '{operation}': one of {', '.join(OPERATIONS)}.")
+        kept = {name: _kept(value) for name, value in arguments.items()}
+        before = self._state
         try:
-            result, notes = self._run(operation, arguments)
-        except BaseException:
-            self._restore()
+            done = self._on_mesh(operation, arguments)
+            if done is None:
+                done = getattr(self, f"_{operation}")(**arguments)
+        except TinsmithError:
             raise
-        self.edits.append(Edit(operation, arguments, notes))
-        return result
+        except BaseException:  # interrupted: the mesh may be half-way
+            self._editor, self._state = None, before
+            raise
+        self._changes.append(done.change)
+        self.edits.append(Edit(operation, kept, done.notes))
+        self._state = done.state
+        if done.state is not None:
+            self._editor = None
+        return done.result
 
     def undo(self, count: int) -> None:
-        """Take back the last edits, by doing the others again from the beginning."""
+        """Take back the last edits: build the inputs that were there before.
+
+        Raises
+        ------
+        PointsError
+            If there are not so many.
+        """
         if not is_whole_number(count) or count < 1:
             raise PointsError(f"Invalid count {shown(count)}: a whole number >= 1 is needed.")
         if count > len(self.edits):
             raise PointsError(f"{count} edits cannot be taken back: {len(self.edits)} were made.")
-        del self.edits[len(self.edits) - count :]
-        self._kept, self._done_since = self._begin, 0
-        self._restore()
+        left = len(self.edits) - count
+        inputs = self._begin.after(self._changes[:left])
+        state = build_state(inputs)
+        del self.edits[left:], self._changes[left:]
+        self._inputs, self._n_applied = inputs, left
+        self._state, self._editor = state, None
 
-    # ------------------------------------------------------------------ running
+    # ------------------------------------------------------------------ what is there
 
-    def _restore(self) -> None:
-        """Start again from the model that was last complete."""
-        self._editor = Editor(self._kept, threads=self._threads)
-        if self._editor.is_clipped:
-            self._editor.refreshed()
-        for edit in self.edits[self._done_since :]:
-            self._run(edit.operation, edit.arguments)
+    def _now(self) -> State:
+        """Return the TIN after the edits, and how it hangs together with its inputs."""
+        if self._state is None:
+            inputs = self._inputs_now()
+            built = self._editor.state(inputs) if self._editor is not None else None
+            self._state = build_state(inputs) if built is None else built
+        return self._state
 
-    def _run(self, operation: str, arguments: dict[str, Any]) -> tuple[Any, tuple[str, ...]]:
-        if operation not in OPERATIONS:
-            raise PointsError(f"Invalid edit '{operation}': one of {', '.join(OPERATIONS)}.")
-        notes: list[str] = []
-        result = getattr(self, f"_{operation}")(notes, **arguments)
-        if self._editor.is_clipped:
-            result = self._after_clipping(operation, result)
-        return result, tuple(notes)
+    def _inputs_now(self) -> Inputs:
+        if self._n_applied < len(self._changes):
+            self._inputs = self._inputs.after(self._changes[self._n_applied :])
+            self._n_applied = len(self._changes)
+        return self._inputs
 
-    def _after_clipping(self, operation: str, result: Any) -> Any:
-        """Make a clipped surface anew: some of its vertices may have come or gone."""
-        found = self._editor.refreshed()
-        if operation == "insert":
-            return found.vertex_of[len(found.vertex_of) - len(result) :]
-        return result
-
-    def _slots(self, vertices: ArrayLike) -> NDArray[np.int32]:
-        count = self._editor.count
+    def _vertices(self, vertices: ArrayLike) -> NDArray[np.int64]:
+        count = self._count()
         only = vertices[0] if isinstance(vertices, list) and len(vertices) == 1 else vertices
         if type(only) is int and 0 <= only < count:  # most edits: no arrays for one number
-            return self._editor.slots(np.array([only], np.int64))
+            return np.array([only], np.int64)
         try:
             numbers = np.atleast_1d(np.asarray(vertices))
         except Exception:
@@ -204,78 +252,197 @@ class Session:
                 f"There is no vertex {int(numbers[np.argmax(wrong)])}: numbers 0 to {count - 1} "
                 "are allowed."
             )
-        return self._editor.slots(numbers.astype(np.int64))
+        return numbers.astype(np.int64)
 
-    # --------------------------------------------------------------- operations
+    def _count(self) -> int:
+        """Count the vertices."""
+        if self._editor is not None:
+            return self._editor.count
+        return len(self._now().triangulation.points)
 
-    def _insert(
-        self, _: list[str], points: ArrayLike, duplicates: DuplicatePolicy = "last"
-    ) -> NDArray[np.int32]:
+    # ------------------------------------------------------------- edits of a mesh
+
+    def _on_mesh(self, operation: str, arguments: dict[str, Any]) -> _Done | None:
+        """Do an edit in the mesh; None if it reaches a line, or may."""
+        if operation not in _ON_MESH:
+            return None
+        edit = getattr(self, f"_{operation}_on_mesh")
+        if self._editor is None:
+            inputs = self._inputs_now()
+            if not is_local(inputs.recipe):
+                return None
+            self._editor = Editor(self._now(), inputs)
+        try:
+            done: _Done = edit(self._editor, **arguments)
+        except NotLocal:
+            return None
+        return done
+
+    def _insert_on_mesh(
+        self, editor: Editor, points: ArrayLike, duplicates: DuplicatePolicy = "last"
+    ) -> _Done:
+        slots, change = editor.insert(as_points(points), _policy(duplicates))
+        return _Done(change, result=editor.numbers(slots))
+
+    def _remove_on_mesh(self, editor: Editor, vertices: ArrayLike) -> _Done:
+        return _Done(editor.remove(editor.slots(_distinct(self._vertices(vertices)))))
+
+    def _move_on_mesh(self, editor: Editor, vertex: int, point: ArrayLike) -> _Done:
+        (slot,) = editor.slots(self._vertices([vertex])).tolist()
+        return _Done(editor.move(slot, _one_point(point)))
+
+    def _set_z_on_mesh(self, editor: Editor, vertices: ArrayLike, z: ArrayLike) -> _Done:
+        numbers = self._vertices(vertices)
+        return _Done(editor.set_z(editor.slots(numbers), _elevations(z, len(numbers))))
+
+    # ------------------------------------------------------------ edits of the inputs
+
+    def _built(self, change: Change) -> State:
+        """Build the TIN of the inputs after a change; nothing is changed yet."""
+        return build_state(self._inputs_now().after([change]))
+
+    def _insert(self, points: ArrayLike, duplicates: DuplicatePolicy = "last") -> _Done:
         xyz = as_points(points)
-        if not is_one_of(duplicates, get_args(DuplicatePolicy)):
-            allowed = ", ".join(get_args(DuplicatePolicy))
-            raise PointsError(f"Invalid duplicates {shown(duplicates)}: one of {allowed}.")
-        slots = self._editor.insert(xyz, duplicates)
-        return slots if self._editor.is_clipped else self._editor.numbers(slots)
+        state, inputs = self._now(), self._inputs_now()
+        there = state.vertices_at(xyz[:, :2])
+        own = np.where(there < 0, np.nan, state.triangulation.points[there, 2])
+        z = _merged_elevations(xyz, own, _policy(duplicates))
+        at_vertex = there >= 0
+        change = _with_elevations(state, inputs, there[at_vertex], z[at_vertex])
+        change = change._replace(added=np.column_stack([xyz[:, :2], z]))
+        found = self._built(change)
+        return _Done(change, found, found.vertex_of_row[len(found.vertex_of_row) - len(xyz) :])
 
-    def _remove(self, _: list[str], vertices: ArrayLike) -> None:
-        slots = self._slots(vertices)
-        if len(slots) > 1 and len(np.unique(slots)) < len(slots):
-            raise PointsError("A vertex is named twice: it can be removed once.")
-        self._editor.remove(slots)
+    def _remove(self, vertices: ArrayLike) -> _Done:
+        numbers = _distinct(self._vertices(vertices))
+        state, inputs = self._now(), self._inputs_now()
+        rows = np.flatnonzero(np.isin(state.vertex_of_row, numbers))
+        of_lines = state.line_vertices(inputs)
+        on_lines = np.flatnonzero(np.isin(of_lines, numbers))
+        _require_given(numbers, state.vertex_of_row[rows], of_lines[on_lines], "removed")
+        lines = (DropVertices(on_lines),) if len(on_lines) else ()
+        change = Change(removed=rows, lines=lines)
+        return _Done(change, self._built(change))
 
-    def _move(self, _: list[str], vertex: int, point: ArrayLike) -> None:
-        (slot,) = self._slots([vertex]).tolist()
-        self._editor.move(slot, _one_point(point))
+    def _move(self, vertex: int, point: ArrayLike) -> _Done:
+        numbers, place = self._vertices([vertex]), _one_point(point)
+        state, inputs = self._now(), self._inputs_now()
+        (there,) = state.vertices_at(place[None, :2]).tolist()
+        if there >= 0 and there != numbers[0]:
+            raise occupied(there, *place[:2].tolist())
+        rows = np.flatnonzero(np.isin(state.vertex_of_row, numbers))
+        of_lines = state.line_vertices(inputs)
+        on_lines = np.flatnonzero(of_lines == numbers[0])
+        _require_given(numbers, state.vertex_of_row[rows], of_lines[on_lines], "moved")
+        change = Change(
+            moved=rows,
+            places=np.tile(place, (len(rows), 1)),
+            lines=(PutVertices(on_lines, place),) if len(on_lines) else (),
+        )
+        found = self._built(change)
+        _require_elevations(found, place[None])
+        return _Done(change, found)
 
-    def _set_z(self, _: list[str], vertices: ArrayLike, z: ArrayLike) -> None:
-        slots = self._slots(vertices)
-        heights = as_elevations(z)
-        if heights.ndim == 1 and len(heights) != len(slots):
-            raise PointsError(
-                f"{heights.size} heights for {len(slots)} vertices: one each, or one for all, "
-                "is needed."
-            )
-        self._editor.set_z(slots, heights)
+    def _set_z(self, vertices: ArrayLike, z: ArrayLike) -> _Done:
+        numbers = self._vertices(vertices)
+        heights = np.broadcast_to(_elevations(z, len(numbers)), len(numbers))
+        state, inputs = self._now(), self._inputs_now()
+        change = _with_elevations(state, inputs, numbers, heights)
+        made = numbers[~_has_own_elevation(state, inputs, numbers)]
+        wanted = state.triangulation.points.copy()
+        wanted[numbers, 2] = heights
+        change = change._replace(added=wanted[np.unique(made)])
+        found = self._built(change)
+        _require_elevations(found, wanted[np.unique(numbers)])
+        return _Done(change, found)
 
-    def _flip(self, _: list[str], a: int, b: int) -> None:
-        first, second = self._slots([a, b]).tolist()
+    def _flip(self, a: int, b: int) -> _Done:
+        (first, second) = self._vertices([a, b]).tolist()
         if first == second:
             raise PointsError("An edge has two different ends.")
-        self._editor.flip(first, second)
+        state = self._now()
+        change = Change(lines=(self._flipped(state, first, second),))
+        return _Done(change, self._built(change))
+
+    def _flipped(self, state: State, a: int, b: int) -> LineChange:
+        """Return the line to be added, or those to be dropped."""
+        surface = state.triangulation
+        holds = (surface.triangles == a).any(axis=1) & (surface.triangles == b).any(axis=1)
+        beside = np.flatnonzero(holds)
+        if len(beside) != 2:
+            raise PointsError("Only an edge between two triangles can be flipped.")
+        own = _lines_along(state.lines, a, b)
+        if own:
+            if not all(state.lines.names[line] == FLIP for line in own):
+                raise LinesError("The edge is one of a line, which must stay.")
+            return DropLines(tuple(sorted({int(state.lines.sources[line]) for line in own})))
+        corners = surface.triangles[beside]
+        left, right = corners[(corners != a) & (corners != b)].tolist()
+        if not _is_convex_at(surface.points[:, :2], a, b, left, right):
+            raise PointsError("The two triangles at the edge are no convex quadrilateral.")
+        return AddLine(Breakline(surface.points[[left, right]], kind="soft", name=FLIP))
 
     def _add_breakline(
         self,
-        notes: list[str],
         coords: ArrayLike,
         kind: str = "hard",
         priority: int = 0,
         name: str = "",
         crossing: str = "split",
-    ) -> None:
+    ) -> _Done:
         line = Breakline(coords, kind=kind, priority=priority, name=name)  # type: ignore[arg-type]
         if not is_one_of(crossing, ("split", "error")):
             raise LinesError(f"Invalid crossing {shown(crossing)}: one of split, error.")
-        for xyz in self._with_heights(line):
-            clean = as_points(xyz)
-            info = LineInfo(line.kind, name=line.name, priority=float(line.priority))
-            notes += self._editor.add_line(clean, info, splits=crossing == "split")
-
-    def _with_heights(self, line: Breakline) -> list[NDArray[np.float64]]:
-        checked = gather_lines([line], (), (), ())
-        if not line.is_draped:
-            return [line.coords]
-        laid = drape(self._editor.hull(), checked, threads=self._threads).lines
-        rows = np.column_stack([laid.xy, laid.heights])
-        parts = np.split(rows, laid.offsets[1:-1])
-        if not any(len(part) > 1 for part in parts):
+        change = Change(lines=(AddLine(line),))
+        inputs = self._inputs_now().after([change])
+        found = build_state(inputs)
+        number = count_breaklines(inputs.recipe.lines) - 1
+        met = found.report.met_by(inputs.recipe.lines.label(number))
+        if met and crossing == "error":
+            raise LinesError(f'{met[0][:-1]}: crossing="error" allows none.')
+        if line.is_draped and not found.lines.has_breakline(number):
             raise LinesError("The draped line lies outside the surface.")
-        return [part for part in parts if len(part) > 1]
+        return _Done(change, found, notes=tuple(met))
 
-    def _remove_breakline(self, _: list[str], number: int) -> None:
+    def _remove_breakline(self, number: int) -> _Done:
         if not is_whole_number(number):
             raise LinesError(f"Invalid breakline {shown(number)}: a whole number is needed.")
-        self._editor.remove_line(int(number))
+        if not 0 <= number < count_breaklines(self._inputs_now().recipe.lines):
+            raise LinesError(f"There is no breakline {number}.")
+        change = Change(lines=(DropLines((int(number),)),))
+        return _Done(change, self._built(change))
+
+
+class _Done(NamedTuple):
+    """What an edit did to the inputs, and where that led; None if the mesh tells."""
+
+    change: Change
+    state: State | None = None
+    result: Any = None
+    notes: tuple[str, ...] = ()
+
+
+# --------------------------------------------------------------------- arguments
+
+
+def _kept(value: Any) -> Any:
+    """Return an argument so that the caller's further use of it changes nothing."""
+    if isinstance(value, list):
+        return [_kept(one) if isinstance(one, list) else one for one in value]
+    return value.copy() if isinstance(value, np.ndarray) else value
+
+
+def _policy(policy: str) -> DuplicatePolicy:
+    if not is_one_of(policy, get_args(DuplicatePolicy)):
+        allowed = ", ".join(get_args(DuplicatePolicy))
+        raise PointsError(f"Invalid duplicates {shown(policy)}: one of {allowed}.")
+    return cast("DuplicatePolicy", policy)
+
+
+def _distinct(vertices: NDArray[np.int64]) -> NDArray[np.int64]:
+    if len(vertices) > 1 and len(np.unique(vertices)) < len(vertices):
+        raise PointsError("A vertex is named twice: it can be removed once.")
+    return vertices
 
 
 def _one_point(point: Any) -> NDArray[np.float64]:
@@ -290,6 +457,101 @@ def _one_point(point: Any) -> NDArray[np.float64]:
         )
     point_alone: NDArray[np.float64] = rows[0]
     return point_alone
+
+
+def _elevations(z: ArrayLike, count: int) -> NDArray[np.float64]:
+    heights = as_elevations(z) + 0.0  # no -0.0
+    if heights.ndim == 1 and len(heights) != count:
+        raise PointsError(
+            f"{heights.size} heights for {count} vertices: one each, or one for all, is needed."
+        )
+    return heights
+
+
+# -------------------------------------------------------------------------- steps
+
+
+def _merged_elevations(
+    xyz: NDArray[np.float64], own: NDArray[np.float64], policy: DuplicatePolicy
+) -> NDArray[np.float64]:
+    """Return the elevation that each new row has in the end, given those of vertices there."""
+    z = xyz[:, 2].copy()
+    _, place = np.unique(xyz[:, :2], axis=0, return_inverse=True)
+    place = place.reshape(-1)
+    is_alone = (np.bincount(place)[place] == 1) & np.isnan(own)
+    heights: dict[int, float] = {}
+    for row in np.flatnonzero(~is_alone).tolist():
+        here = heights.get(int(place[row]), float(own[row]))
+        heights[int(place[row])] = (
+            float(z[row]) if np.isnan(here) else merged_elevation(here, float(z[row]), policy)
+        )
+    for row in np.flatnonzero(~is_alone).tolist():
+        z[row] = heights[int(place[row])]
+    return z
+
+
+def _with_elevations(
+    state: State, inputs: Inputs, vertices: NDArray[Any], heights: NDArray[np.float64]
+) -> Change:
+    """Give the rows and the lines at vertices other elevations."""
+    height_of = np.full(len(state.triangulation.points) + 1, np.nan)  # the last is of no vertex
+    height_of[vertices] = heights
+    wanted = height_of[state.vertex_of_row]
+    rows = np.flatnonzero(~np.isnan(wanted))
+    places = inputs.recipe.points[np.searchsorted(inputs.rows, rows)]
+    places[:, 2] = wanted[rows]
+    of_lines = height_of[state.line_vertices(inputs)]
+    on_lines = np.flatnonzero(~np.isnan(of_lines) & has_own_heights(inputs.recipe.lines))
+    lines = (SetElevations(on_lines, of_lines[on_lines]),) if len(on_lines) else ()
+    return Change(moved=rows, places=places, lines=lines)
+
+
+def _has_own_elevation(
+    state: State, inputs: Inputs, vertices: NDArray[np.int64]
+) -> NDArray[np.bool_]:
+    """Tell which vertices stand for rows or for vertices of lines with elevations."""
+    of_lines = state.line_vertices(inputs)[~np.isnan(inputs.recipe.lines.heights)]
+    return np.isin(vertices, np.append(state.vertex_of_row, of_lines))
+
+
+def _require_given(
+    vertices: NDArray[np.int64], rows: NDArray[np.int32], lines: NDArray[np.int32], what: str
+) -> None:
+    made = vertices[~np.isin(vertices, np.append(rows, lines))]
+    if len(made):
+        raise LinesError(
+            f"Vertex {int(made[0])} cannot be {what} on its own: it was made where lines cross, "
+            "are laid on the surface or are split, and goes with them."
+        )
+
+
+def _require_elevations(found: State, wanted: NDArray[np.float64]) -> None:
+    """Refuse an elevation that a water body or a line of higher priority overrules."""
+    there = found.vertices_at(wanted[:, :2])
+    points = found.triangulation.points[there]
+    wrong = np.flatnonzero((there >= 0) & (points[:, 2] != wanted[:, 2]))
+    if len(wrong):
+        x, y, z = points[wrong[0]].tolist()
+        raise LinesError(
+            f"The vertex at x {x:g}, y {y:g} stays at elevation {z:g}: what counts more there, "
+            "such as water, has it."
+        )
+
+
+def _lines_along(lines: Lines, a: int, b: int) -> list[int]:
+    """Return the chains that take an edge."""
+    steps = np.sort(lines.steps(), axis=1)
+    chain = np.repeat(np.arange(len(lines)), np.diff(lines.offsets) - 1)
+    found: list[int] = chain[(steps == sorted((a, b))).all(axis=1)].tolist()
+    return found
+
+
+def _is_convex_at(xy: NDArray[np.float64], a: int, b: int, left: int, right: int) -> bool:
+    """Tell whether the quadrilateral with the diagonals a-b and left-right is strictly convex."""
+    quad = np.ascontiguousarray(xy[[a, right, b, left]])
+    following = (np.ascontiguousarray(np.roll(quad, -k, axis=0)) for k in (1, 2))
+    turns = _kernel.orientation(quad, *following)
+    return bool((turns > 0).all() or (turns < 0).all())
 
 
 def apply_edits(tin: TIN, edits: Iterable[Edit | Mapping[str, Any]]) -> None:
@@ -328,50 +590,3 @@ def _taken_apart(edit: Edit | Mapping[str, Any], number: int) -> tuple[str, dict
             f"Edit {number} has op {shown(operation)}: one of {', '.join(OPERATIONS)} is needed."
         )
     return operation, arguments
-
-
-# ------------------------------------------------- TINs made of existing triangles
-
-
-def _model_of(tin: TIN) -> Model:
-    """Take flagged edges for soft breaklines, and the rim for the boundary if it is not convex."""
-    triangle, corner = np.nonzero(tin.constrained)
-    start, end = topology.ends(tin.triangles, triangle, corner)
-    once = (tin.neighbors[triangle, corner] < triangle) | (start < end)
-    steps = np.unique(np.sort(np.stack([start, end], axis=1)[once], axis=1), axis=0)
-    rim = [tin.points[ring, :2] for ring in tin.rings]
-    is_whole = len(rim) == 1 and _is_convex(rim[0])
-    infos = [LineInfo("soft", source) for source in range(len(steps))]
-    chains = [step.tolist() for step in steps]
-    if not is_whole:
-        chains += [[*ring.tolist(), int(ring[0])] for ring in tin.rings]
-        infos += [LineInfo("boundary") for _ in tin.rings]
-    return Model(
-        points=tin.points,
-        pieces=Pieces.of_chains(chains, range(len(chains))),
-        infos=tuple(infos),
-        clip=Clip(has_rim=not is_whole),
-        vertex_of=tin.vertex_of,
-    )
-
-
-def _is_convex(ring: NDArray[np.float64]) -> bool:
-    a, b, c = (np.ascontiguousarray(np.roll(ring, -k, axis=0)) for k in range(3))
-    return bool((_kernel.orientation(a, b, c) >= 0).all())
-
-
-def _require_same(found: Surface, given: Surface) -> None:
-    if len(found.triangles) == len(given.triangles):
-        own, theirs = (_as_set(surface.triangles) for surface in (found, given))
-        if (own == theirs).all():
-            return
-    raise PointsError(
-        "The TIN is not the Delaunay triangulation of its points and lines that edits must keep: "
-        "triangulate its points first."
-    )
-
-
-def _as_set(triangles: NDArray[np.int32]) -> NDArray[np.int32]:
-    first = np.argmin(triangles, axis=1)
-    rolled = np.take_along_axis(triangles, (first[:, None] + np.arange(3)) % 3, axis=1)
-    return rolled[np.lexsort(rolled.T[::-1])]

@@ -1,100 +1,125 @@
-"""The editor behind a TIN that is changed in place: its mesh, its chains, its numbers.
+"""The editor behind a TIN whose edits reach no line: a mesh that is changed in place.
 
-The triangulation of points and lines is unique, so after any edits it is the one that a fresh
-build gives. An operation that fails may leave the editor half-way: whoever calls it starts again
-from the last model (:mod:`.editing`).
+The triangulation of points and lines is unique, so where lines are not touched it is the one that
+a fresh build gives. An edit that fails, or that comes near a line, leaves the mesh as it was.
 """
 
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right, insort
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from . import _kernel
-from .chains import ChainTable, Step, as_pairs, step_of, with_middle
-from .errors import LinesError, PointsError
+from .duplicates import merge_rows
+from .errors import PointsError
 from .growing import GrowingRows
+from .inputs import Change
 from .live_mesh import LiveMesh
-from .model import LineInfo, Model, lines_in, mesh_of
-from .regions import Surface
+from .report import Report
+from .state import State
+from .triangulation import Triangulation
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
-    from .lines import Lines
+    from .duplicates import DuplicatePolicy
+    from .inputs import Inputs
+    from .recipe import Recipe
 
-__all__ = ["FLIP", "Editor", "Refreshed"]
-
-FLIP = "flip"
-"""Name of the soft breakline that keeps a flipped edge."""
-
-_MOST_CROSSINGS = 1_000_000
+__all__ = ["Editor", "NotLocal", "is_local", "merged_elevation", "occupied"]
 
 _LARGE_BATCH = 10_000
 _LARGE_SHARE = 8
 """A batch of more than an eighth of the vertices is triangulated together with them."""
 
+_ROUNDINGS = 1024.0
+"""Units in the last place of the largest coordinate: nearer to a line, all is built anew. A
+crossing is rounded by one unit, and each later one that depends on it by one more."""
 
-class Refreshed(NamedTuple):
-    """The arrays of a TIN after edits, and the model that they come from."""
 
-    surface: Surface
-    lines: Lines
-    vertex_of: NDArray[np.int32]
-    model: Model
+class NotLocal(Exception):
+    """The edit reaches a line, so that all must be built anew. Nothing has changed."""
+
+
+def is_local(recipe: Recipe) -> bool:
+    """Tell whether an edit away from the lines changes the triangulation there alone."""
+    lines, options = recipe.lines, recipe.options
+    has_all_rows = not recipe.erase and recipe.is_masked is None
+    is_simple = options.snap == 0.0 and has_all_rows and not recipe.conforming
+    has_own_heights = bool(np.isfinite(lines.priorities).all() and np.isfinite(lines.heights).all())
+    return is_simple and has_own_heights and not recipe.is_clipped
+
+
+class _Counts(NamedTuple):
+    """How many vertices are there, in the order of their numbers."""
+
+    rows: int
+    inserted: int
+    lines: int
 
 
 class Editor:
-    """Points, lines and mesh of a TIN that is being edited.
+    """Mesh and numbers of a TIN that is being edited.
 
-    Vertices are called by slots here, numbers that never change; a TIN's own numbers close the
-    gaps that removed vertices leave.
+    Vertices are called by slots here, numbers that never change. Those of the state come first: of
+    its rows, then of its lines; those that are inserted follow. A TIN's own numbers put the
+    inserted ones between the two, and close the gaps that removed ones leave.
 
     Parameters
     ----------
-    model : Model
-    hull : Surface, optional
-        Its triangulation, if that is at hand.
-    threads : int
+    state : State
+        Neither clipped nor with vertices that have been left out.
+    inputs : Inputs
+        Of the state.
     """
 
-    def __init__(self, model: Model, hull: Surface | None = None, *, threads: int = 1) -> None:
-        self._threads = threads
-        self._clip = model.clip
-        self._points = GrowingRows(model.points)
-        self._rows = GrowingRows(model.vertex_of)
-        self._infos = list(model.infos)
-        self._chains = ChainTable(model.pieces)
+    def __init__(self, state: State, inputs: Inputs) -> None:
+        surface = state.triangulation
+        self._vertex_of_row, self._lines = state.vertex_of_row, state.lines
+        self._report = state.report
+        self._n_first_rows = inputs.n_rows
+        self._is_strict = inputs.recipe.options.duplicates == "error"
+        self._threads = inputs.recipe.options.threads
+        self._live = LiveMesh(
+            surface.points, surface.triangles, surface.neighbors, surface.constrained
+        )
+        self._points = GrowingRows(surface.points)
         self._removed: list[int] = []
-        self._visible: NDArray[np.int32] | None = None
-        if hull is None:
-            self._live = LiveMesh.of(mesh_of(model.points, model.pieces, threads=threads))
-        else:
-            self._live = LiveMesh(model.points, hull.triangles, hull.neighbors, hull.constrained)
+        self._n_base = len(surface.points)
+        self._base_rows = _rows_by_vertex(state.vertex_of_row)
+        self._n_rows = self._base_rows.n_vertices
+        self._more_rows: dict[int, list[int]] = {}
+        self._new_slots = GrowingRows(np.empty(0, np.int32))
+        self._n_new = 0
+        self._least = _ROUNDINGS * float(np.spacing(np.abs(surface.points[:, :2]).max()))
+        self._has_lines = self._n_rows < self._n_base or len(state.lines) > 0
 
     # ------------------------------------------------------------------ numbers
 
     @property
-    def is_clipped(self) -> bool:
-        """Whether the surface is a part of the hull, so that only a refresh tells its vertices."""
-        return not self._clip.is_none
-
-    @property
     def count(self) -> int:
-        """Number of vertices of the TIN (of a clipped one, when it was last refreshed)."""
-        return self._live.count if self._visible is None else len(self._visible)
+        """Number of vertices."""
+        return self._live.count
 
     @property
     def _mesh(self) -> _kernel.Mesh:
         return self._live.mesh
 
+    def _counts(self) -> _Counts:
+        rows = self._n_rows - bisect_left(self._removed, self._n_base)
+        lines = self._n_base - self._n_rows
+        return _Counts(rows, self._live.count - rows - lines, lines)
+
     def slots(self, vertices: NDArray[np.int64]) -> NDArray[np.int32]:
-        """Return the slots of vertices of the TIN, which must exist."""
-        if self._visible is not None:
-            return self._visible[vertices]
+        """Return the slots of vertices, which must exist."""
+        if self._n_rows < self._n_base:
+            rows, inserted, lines = self._counts()
+            back = np.where(vertices < rows + inserted, lines, -inserted)
+            vertices = vertices + np.where(vertices < rows, 0, back)
         removed = self._removed
         if len(vertices) == 1:
             vertex = int(vertices[0])
@@ -105,70 +130,140 @@ class Editor:
         return (vertices + shift).astype(np.int32)
 
     def numbers(self, slots: NDArray[np.int32]) -> NDArray[np.int32]:
-        """Return the vertices of an unclipped TIN that slots hold."""
+        """Return the vertices that slots hold."""
         if len(slots) == 1:
-            return slots - np.int32(bisect_left(self._removed, int(slots[0])))
-        return slots - np.searchsorted(np.array(self._removed, np.int64), slots).astype(np.int32)
-
-    def hull(self) -> Surface:
-        """Return the triangulation of all vertices."""
-        triangles, neighbors, fixed = self._live.arrays(self._threads)
-        return Surface(self._points.values()[self._live.alive()], triangles, neighbors, fixed)
-
-    def refreshed(self) -> Refreshed:
-        """Make the arrays of the TIN."""
-        hull = self.hull()
-        alive = self._live.alive()
-        number = np.where(alive, np.cumsum(alive) - 1, -1).astype(np.int32)
-        model = Model(
-            points=hull.points,
-            pieces=self._chains.pieces().renumbered(number),
-            infos=tuple(self._infos),
-            clip=self._clip,
-            vertex_of=np.append(number, np.int32(-1))[self._rows.values()],
-        )
-        surface, number_of = model.surface(hull)
-        if self.is_clipped:
-            self._visible = np.flatnonzero(alive)[number_of >= 0].astype(np.int32)
-        return Refreshed(
-            surface,
-            lines_in(model.pieces, model.infos, number_of, surface, is_whole=surface is hull),
-            np.append(number_of, np.int32(-1))[model.vertex_of],
-            model,
-        )
-
-    # ------------------------------------------------------------------- points
-
-    def insert(self, xyz: NDArray[np.float64], policy: str) -> NDArray[np.int32]:
-        """Insert rows of points; return their slots."""
-        slots = self._insert(xyz, policy)
-        self._rows.extend(slots)
-        return slots
-
-    def _insert(self, xyz: NDArray[np.float64], policy: str) -> NDArray[np.int32]:
-        first = self._live.slots
-        if self._is_large(len(xyz)):
-            slots = self._grow_with(xyz)
+            found = slots - np.int32(bisect_left(self._removed, int(slots[0])))
         else:
-            slots = self._mesh.insert(np.ascontiguousarray(xyz[:, :2]))
-        is_new = slots == np.arange(first, first + len(xyz))
+            gone = np.array(self._removed, np.int64)
+            found = slots - np.searchsorted(gone, slots).astype(np.int32)
+        return self._reordered(found)
+
+    def _reordered(self, ranks: NDArray[np.int32]) -> NDArray[np.int32]:
+        """Return the numbers of vertices that are numbered by slot, without gaps."""
+        if self._n_rows == self._n_base:
+            return ranks
+        rows, inserted, lines = self._counts()
+        on = np.where(ranks < rows + lines, np.int32(inserted), np.int32(-lines))
+        return ranks + np.where(ranks < rows, np.int32(0), on)
+
+    def _rows_at(self, slot: int) -> list[int]:
+        more = self._more_rows.get(slot, [])
+        return self._base_rows.at(slot) + more if slot < self._n_rows else more
+
+    # -------------------------------------------------------------------- edits
+
+    def insert(
+        self, xyz: NDArray[np.float64], policy: DuplicatePolicy
+    ) -> tuple[NDArray[np.int32], Change]:
+        """Insert rows of points; return their slots.
+
+        Raises
+        ------
+        PointsError
+            If vertices are there, and the policy is "error".
+        """
+        before = self._live
+        first = before.slots
+        is_large = self._is_large(len(xyz))
+        slots = self._grown_with(xyz) if is_large else self._inserted(xyz)
+        is_new = slots == np.arange(first, first + len(xyz), dtype=np.int32)
+        try:
+            heights: dict[int, float] = {}
+            if not is_new.all():
+                self._require_in_order(slots, first)
+                old = np.flatnonzero(~is_new).tolist()
+                heights = self._merged_elevations(xyz, slots, old, policy)
+            if self._has_lines:
+                self._require_clear(slots)
+        except (PointsError, NotLocal):
+            if is_large:
+                self._live = before
+            else:
+                self._take_back(slots[is_new])
+                self._keep_empty(xyz, first)
+            raise
+        return slots, self._enter(xyz, slots, is_new, heights)
+
+    def _inserted(self, xyz: NDArray[np.float64]) -> NDArray[np.int32]:
+        return self._mesh.insert(np.ascontiguousarray(xyz[:, :2]))
+
+    def _require_in_order(self, slots: NDArray[np.int32], first: int) -> None:
+        """Leave rows at one place to a build if it refuses them, or if not the first is kept."""
+        is_late = slots > np.arange(first, first + len(slots))
+        if is_late.any() or self._is_strict:
+            raise NotLocal
+
+    def _merged_elevations(
+        self,
+        xyz: NDArray[np.float64],
+        slots: NDArray[np.int32],
+        old: list[int],
+        policy: DuplicatePolicy,
+    ) -> dict[int, float]:
+        """Return the elevations of vertices at which further rows come to stand."""
+        heights: dict[int, float] = {}
+        first = self._live.slots - len(xyz)
+        for row in old:
+            slot = int(slots[row])
+            here = self._points.at(slot)[2] if slot < first else xyz[slot - first, 2]
+            here = heights.get(slot, float(here))
+            heights[slot] = merged_elevation(here, float(xyz[row, 2]), policy)
+        return heights
+
+    def _require_clear(self, slots: NDArray[np.int32]) -> None:
+        for slot in set(slots.tolist()):
+            self._require_free(slot)
+
+    def _require_free(self, slot: int) -> None:
+        """Refuse a vertex on a line, or near one."""
+        if self._mesh.has_fixed_edge(slot) or not self._mesh.clearance(slot) > self._least:
+            raise NotLocal
+
+    def _take_back(self, slots: NDArray[np.int32]) -> None:
+        """Remove vertices that were inserted, also from fixed edges."""
+        for slot in slots.tolist():
+            ends = self._mesh.fixed_neighbors(slot)
+            pairs = np.stack([np.full_like(ends, slot), ends], axis=1)
+            self._mesh.release(pairs)
+            self._mesh.remove(np.array([slot], np.int32))
+            if len(ends):
+                self._mesh.force(np.ascontiguousarray(ends[None, :]))
+
+    def _keep_empty(self, xyz: NDArray[np.float64], first: int) -> None:
         self._points.extend(xyz)
-        self._removed.extend((first + np.flatnonzero(~is_new)).tolist())
-        for row in np.flatnonzero(~is_new).tolist():
-            there = int(slots[row])
-            old, new = float(self._points.at(there)[2]), float(xyz[row, 2])
-            self._set_height(there, _merged_height(old, new, policy))
-        if self._chains:
-            for slot in slots[is_new].tolist():
-                self._join_step_at(slot)
-        return slots
+        self._removed.extend(range(first, first + len(xyz)))
+
+    def _enter(
+        self,
+        xyz: NDArray[np.float64],
+        slots: NDArray[np.int32],
+        is_new: NDArray[np.bool_],
+        heights: dict[int, float],
+    ) -> Change:
+        first = len(self._points)
+        self._points.extend(xyz)
+        row = self._n_first_rows + self._n_new
+        moved = []
+        if heights:
+            self._removed.extend((first + np.flatnonzero(~is_new)).tolist())
+            moved = [self._put_elevation(slot, height) for slot, height in heights.items()]
+        for number, slot in enumerate(slots.tolist(), row):
+            self._more_rows.setdefault(slot, []).append(number)
+        self._new_slots.extend(slots)
+        self._n_new += len(xyz)
+        if not heights:
+            return Change(added=xyz)
+        added = xyz.copy()
+        for slot, height in heights.items():
+            added[slots == slot, 2] = height
+        return _joined(moved)._replace(added=added)
 
     def _is_large(self, count: int) -> bool:
         """Tell whether growing all points anew is quicker than inserting so many."""
         is_worth_it = count > _LARGE_BATCH and count * _LARGE_SHARE > self._live.count
-        return is_worth_it and not self._removed and not self._chains
+        return is_worth_it and not self._removed and not self._has_lines
 
-    def _grow_with(self, xyz: NDArray[np.float64]) -> NDArray[np.int32]:
+    def _grown_with(self, xyz: NDArray[np.float64]) -> NDArray[np.int32]:
         """Triangulate the points that are there and those that come; return slots of the latter.
 
         A slot is made for every row, as if each had been inserted, and stays empty where a vertex
@@ -190,231 +285,185 @@ class Editor:
         )
         return slots[first:]
 
-    def _join_step_at(self, slot: int) -> None:
-        """Take a vertex that came to lie on a fixed edge into the lines there."""
-        if self._mesh.has_fixed_edge(slot):
-            a, b = self._mesh.fixed_neighbors(slot).tolist()
-            self._chains.split(step_of(a, b), slot)
-
-    def remove(self, slots: NDArray[np.int32]) -> None:
-        """Remove vertices; the lines through them run straight on.
+    def remove(self, slots: NDArray[np.int32]) -> Change:
+        """Remove vertices and the rows there.
 
         Raises
         ------
         PointsError
             If no triangle would be left.
-        LinesError
-            If a line would vanish, or cross another.
         """
+        if self._has_lines:
+            self._require_clear(slots)
+        gone: list[int] = []
         for slot in slots.tolist():
-            self._remove(slot)
-            insort(self._removed, slot)
-
-    def _remove(self, slot: int) -> None:
-        new: list[Step] = []
-        for chain in self._chains.at(slot) if self._chains else ():
-            vertices = self._chains.vertices(chain)
-            rest = _without(vertices, slot)
-            if len(rest) < (4 if vertices[0] == vertices[-1] else 2):
-                raise LinesError(
-                    "A line would vanish with the vertex: remove_breakline removes a line."
+            if not self._mesh.remove(np.array([slot], np.int32)):
+                self._put_back(gone)
+                raise PointsError(
+                    "No triangle would be left: three vertices not in line must stay."
                 )
-            gone, more = self._chains.change(chain, rest)
-            self._release(gone)
-            new += more
-        if not self._mesh.remove(np.array([slot], np.int32)):
-            raise PointsError("No triangle would be left: three vertices not in line must stay.")
-        for step in new:
-            self._force(step)
+            gone.append(slot)
+        rows = [row for slot in gone for row in self._rows_at(slot)]
+        for slot in gone:
+            insort(self._removed, slot)
+        return Change(removed=np.array(rows, np.int64))
 
-    def move(self, slot: int, point: NDArray[np.float64]) -> None:
-        """Move a vertex, and the lines with it.
+    def _put_back(self, slots: Sequence[int]) -> None:
+        for slot in slots:
+            x, y = self._points.at(slot)[:2].tolist()
+            self._mesh.put(slot, x, y)
+
+    def move(self, slot: int, point: NDArray[np.float64]) -> Change:
+        """Move a vertex and the rows there.
 
         Raises
         ------
         PointsError
             If another vertex stands there, or no triangle would be left.
-        LinesError
-            If a line would cross another.
         """
+        if self._has_lines and self._mesh.has_fixed_edge(slot):
+            raise NotLocal
         if (self._points.at(slot)[:2] != point[:2]).any():
-            held = [step_of(slot, other) for other in self._mesh.fixed_neighbors(slot).tolist()]
-            self._release(held)
-            if not self._mesh.remove(np.array([slot], np.int32)):
-                raise PointsError(
-                    "The vertex cannot be moved while all others are in line: insert a point first."
-                )
-            found = self._mesh.put(slot, float(point[0]), float(point[1]))
-            if found != slot:
-                raise PointsError(
-                    f"Vertex {int(self.numbers(np.array([found], np.int32))[0])} stands at "
-                    f"x {point[0]:g}, y {point[1]:g} already: two vertices need two places."
-                )
-            self._join_step_at(slot)
-            for step in held:
-                self._force(step)
+            self._move_in_plane(slot, float(point[0]), float(point[1]))
         self._points.put(slot, point)
+        return self._moved(slot, point)
 
-    def set_z(self, slots: NDArray[np.int32], z: NDArray[np.float64]) -> None:
-        """Give vertices other heights."""
+    def _move_in_plane(self, slot: int, x: float, y: float) -> None:
+        if self._has_lines:
+            self._require_free(slot)
+        if not self._mesh.remove(np.array([slot], np.int32)):
+            raise PointsError(
+                "The vertex cannot be moved while all others are in line: insert a point first."
+            )
+        found = self._mesh.put(slot, x, y)
+        if found != slot:
+            self._put_back([slot])
+            raise occupied(int(self.numbers(np.array([found], np.int32))[0]), x, y)
+        if self._has_lines:
+            try:
+                self._require_free(slot)
+            except NotLocal:
+                self._take_back(np.array([slot], np.int32))
+                self._put_back([slot])
+                raise
+
+    def set_z(self, slots: NDArray[np.int32], z: NDArray[np.float64]) -> Change:
+        """Give vertices, and the rows there, other elevations."""
+        if self._has_lines and any(map(self._mesh.has_fixed_edge, slots.tolist())):
+            raise NotLocal
         heights = np.broadcast_to(z, len(slots)).tolist()
-        for slot, height in zip(slots.tolist(), heights, strict=True):
-            self._set_height(slot, height)
+        return _joined(
+            [
+                self._put_elevation(slot, height)
+                for slot, height in zip(slots.tolist(), heights, strict=True)
+            ]
+        )
 
-    def _set_height(self, slot: int, height: float) -> None:
+    def _put_elevation(self, slot: int, height: float) -> Change:
         point = self._points.at(slot).copy()
         point[2] = height
         self._points.put(slot, point)
+        return self._moved(slot, point)
 
-    # -------------------------------------------------------------------- lines
+    def _moved(self, slot: int, point: NDArray[np.float64]) -> Change:
+        rows = np.array(self._rows_at(slot), np.int64)
+        places = point[None] if len(rows) == 1 else np.tile(point, (len(rows), 1))
+        return Change(moved=rows, places=places)
 
-    def flip(self, a: int, b: int) -> None:
-        """Swap the diagonal of the two triangles at an edge, and keep it as a soft breakline.
+    # ------------------------------------------------------------------- result
 
-        Raises
-        ------
-        PointsError
-            If there is no such inner edge, or the two triangles are no convex quadrilateral.
-        LinesError
-            If it is the edge of a line.
-        """
-        beside = self._mesh.corners_beside(a, b).tolist()
-        if not beside:
-            raise PointsError("Only an edge between two triangles can be flipped.")
-        own = self._chains.lines_of_step(step_of(a, b)) if self._chains else []
-        if own:
-            if not all(self._infos[line].name == FLIP for line in own):
-                raise LinesError("The edge is one of a line, which must stay.")
-            for line in own:
-                self._drop_line(line)
-            return
-        left, right = beside
-        quad = np.ascontiguousarray(self._points.take([a, right, b, left])[:, :2])
-        following = np.roll(quad, -1, axis=0), np.roll(quad, -2, axis=0)
-        if _kernel.orientation(quad, *following).min() <= 0:
-            raise PointsError("The two triangles at the edge are no convex quadrilateral.")
-        line = self._new_line(LineInfo("soft", self._next_source(), FLIP))
-        self._add_chain(line, [left, right])
-
-    def add_line(self, xyz: NDArray[np.float64], info: LineInfo, *, splits: bool) -> list[str]:
-        """Add a breakline with heights; return what it met, a sentence each.
-
-        Raises
-        ------
-        LinesError
-            If it crosses another and ``splits`` is false.
-        """
-        slots = self._insert(xyz, "last")
-        line = self._new_line(info._replace(source=self._next_source()))
-        met: list[str] = []
-        way = [int(slots[0])]
-        ahead = [int(slot) for slot in slots[:0:-1]]
-        for _ in range(_MOST_CROSSINGS):
-            if not ahead:
-                self._chains.add(line, way)
-                return met
-            crossing = self._first_crossing(way[-1], ahead[-1])
-            if crossing is None:
-                self._extend(way, ahead.pop())
-            else:
-                ahead.append(self._cross(line, way, ahead[-1], crossing, splits, met))
-        raise LinesError("The line crosses others at too many places.")
-
-    def _extend(self, way: list[int], to: int) -> None:
-        """Go on to a vertex, where nothing is in the way but vertices."""
-        if way[-1] == to:
-            return
-        passed, blocked = self._mesh.force(as_pairs([(way[-1], to)]))
-        if len(blocked):
-            raise LinesError("A line would cross another one where they have no vertex.")
-        way += [*passed[1::2].tolist(), to]
-
-    def remove_line(self, source: int) -> None:
-        """Remove a breakline; its vertices stay as points.
-
-        Raises
-        ------
-        LinesError
-            If there is no such breakline.
-        """
-        lines = [
-            line
-            for line, info in enumerate(self._infos)
-            if info.kind in ("hard", "soft") and info.source == source
-        ]
-        chains = [chain for line in lines for chain in self._chains.of_line(line)]
-        if not chains:
-            raise LinesError(f"There is no breakline {source}.")
-        for line in lines:
-            self._drop_line(line)
-
-    def _next_source(self) -> int:
-        own = [info.source for info in self._infos if info.kind in ("hard", "soft")]
-        return max(own, default=-1) + 1
-
-    def _new_line(self, info: LineInfo) -> int:
-        self._infos.append(info)
-        return len(self._infos) - 1
-
-    def _drop_line(self, line: int) -> None:
-        for chain in self._chains.of_line(line):
-            self._release(self._chains.drop(chain))
-
-    def _add_chain(self, line: int, vertices: Sequence[int]) -> None:
-        for step in self._chains.add(line, vertices):
-            self._force(step)
-
-    def _first_crossing(self, a: int, b: int) -> Step | None:
-        met = self._mesh.crossed(np.array([[a, b]], np.int32), True)
-        return (int(met[1]), int(met[2])) if len(met) else None
-
-    def _cross(
-        self, line: int, way: list[int], to: int, other: Step, splits: bool, met: list[str]
-    ) -> int:
-        """Make a vertex where the next step of a new line crosses one; return it."""
-        c, d = other
-        ends = self._points.take([way[-1], to, c, d])
-        four = np.ascontiguousarray(ends[:, :2])
-        pairs = np.array([[0, 1]], np.int32)
-        place = _kernel.intersections(four, np.array([[0, 1], [2, 3]], np.int32), pairs)[0]
-        own = _height_at(ends[:2], place)
-        theirs = _height_at(ends[2:], place)
-        rivals = self._chains.lines_of_step(step_of(c, d))
-        highest = max((self._infos[rival].priority for rival in rivals), default=np.inf)
-        taken = own if self._infos[line].priority > highest else theirs
-        sentence = (
-            f"crosses {'another line' if rivals else 'itself'} at x {place[0]:.6f}, "
-            f"y {place[1]:.6f}: its height there is {own:g}, the other's {theirs:g}"
+    def state(self, inputs: Inputs) -> State:
+        """Return what the edits led to; ``inputs`` are those of now."""
+        alive = self._live.alive()
+        number = self._reordered(np.cumsum(alive, dtype=np.int32) - np.int32(1))
+        number = np.where(alive, number, np.int32(-1))
+        surface = self._triangulation(alive)
+        slot_of_row = np.append(self._vertex_of_row, self._new_slots.values())
+        vertex_of_row = np.append(number, np.int32(-1))[slot_of_row]
+        lines, base = self._lines, self._report
+        if self._has_lines:
+            lines = lines.renumbered(number)
+        report = base.renumbered(
+            number, len(vertex_of_row), len(surface.points), len(surface.triangles)
         )
-        if not splits:
-            raise LinesError(f'The breakline {sentence}; crossing="error" allows none.')
-        met.append(f"The breakline {sentence}; {taken:g} was taken.")
-        self._release([step_of(c, d)])
-        slot = int(self._insert(np.array([[*place, taken]]), "first")[0])
-        self._chains.split(step_of(c, d), slot)
-        way[:] = with_middle(way, step_of(c, d), slot)
-        for end in (c, d):
-            self._force(step_of(end, slot))
-        return slot
+        report = report.with_removed(vertex_of_row).with_merges(
+            _merges(vertex_of_row, self._counts(), inputs)
+        )
+        return State(surface, vertex_of_row, lines, report, None)
 
-    # -------------------------------------------------------------------- edges
-
-    def _release(self, steps: Sequence[Step]) -> None:
-        if steps:
-            self._mesh.release(as_pairs(steps))
-
-    def _force(self, step: Step) -> None:
-        """Fix the edges along a step; vertices on it are taken into its lines."""
-        passed, blocked = self._mesh.force(as_pairs([step]))
-        if len(blocked):
-            raise LinesError("A line would cross another one where they have no vertex.")
-        a, b = step
-        for slot in passed[1::2].tolist():
-            self._chains.split(step_of(a, b), slot)
-            a = slot
+    def _triangulation(self, alive: NDArray[np.bool_]) -> Triangulation:
+        triangles, neighbors, constrained = self._live.arrays(self._threads)
+        points = self._points.values()[alive]
+        rows, inserted, lines = self._counts()
+        if lines and inserted:
+            between = rows + lines
+            points = np.concatenate([points[:rows], points[between:], points[rows:between]])
+            triangles = self._reordered(np.arange(len(points), dtype=np.int32))[triangles]
+        return Triangulation(
+            points=points, triangles=triangles, neighbors=neighbors, constrained=constrained
+        )
 
 
-def _merged_height(old: float, new: float, policy: str) -> float:
+class _RowsByVertex(NamedTuple):
+    """The rows of each vertex that has any; ``rows`` is None where row and vertex are the same."""
+
+    n_vertices: int
+    rows: NDArray[np.int64] | None
+    offsets: NDArray[np.int64] | None
+
+    def at(self, vertex: int) -> list[int]:
+        if self.rows is None or self.offsets is None:
+            return [vertex]
+        found: list[int] = self.rows[self.offsets[vertex] : self.offsets[vertex + 1]].tolist()
+        return found
+
+
+def _rows_by_vertex(vertex_of_row: NDArray[np.int32]) -> _RowsByVertex:
+    count = int(vertex_of_row.max()) + 1 if len(vertex_of_row) else 0
+    if count == len(vertex_of_row):
+        return _RowsByVertex(count, None, None)
+    order = np.argsort(vertex_of_row, kind="stable")
+    offsets = np.searchsorted(vertex_of_row[order], np.arange(count + 1))
+    return _RowsByVertex(count, order, offsets)
+
+
+def _merges(vertex_of_row: NDArray[np.int32], counts: _Counts, inputs: Inputs) -> Report | None:
+    """Return the account of rows that share a vertex, as a build gives it; None for none."""
+    rows = np.flatnonzero(vertex_of_row >= 0)
+    if len(rows) == counts.rows + counts.inserted:
+        return None
+    vertex = vertex_of_row[rows]
+    first = np.empty(counts.rows + counts.inserted, np.int32)
+    first[vertex[::-1]] = np.arange(len(rows), dtype=np.int32)[::-1]
+    recipe = inputs.recipe
+    account = merge_rows(recipe.points, first[vertex], recipe.options.duplicates).account
+    return Report(
+        n_rows=0,
+        n_vertices=0,
+        n_triangles=0,
+        **(account | {"merged_rows": rows[account["merged_rows"]].astype(np.int32)}),
+    )
+
+
+def _joined(changes: list[Change]) -> Change:
+    if len(changes) == 1:
+        return changes[0]
+    if not changes:
+        return Change()
+    return Change(
+        moved=np.concatenate([change.moved for change in changes]),
+        places=np.concatenate([change.places for change in changes]),
+    )
+
+
+def merged_elevation(old: float, new: float, policy: DuplicatePolicy) -> float:
+    """Return the elevation of a vertex at which a point is inserted.
+
+    Raises
+    ------
+    PointsError
+        If the policy is "error".
+    """
     if policy == "error":
         raise PointsError(
             f"A vertex with elevation {old:g} stands where one with {new:g} is to be inserted: "
@@ -425,21 +474,14 @@ def _merged_height(old: float, new: float, policy: str) -> float:
         "last": new,
         "lowest": min(old, new),
         "highest": max(old, new),
-        "mean": min(old, new) + abs(old - new) / 2,
+        "mean": old / 2 + new / 2
+        if abs(old - new) == np.inf
+        else min(old, new) + abs(old - new) / 2,
     }[policy]
 
 
-def _without(vertices: list[int], gone: int) -> list[int]:
-    """Return a chain without a vertex; a closed one stays closed."""
-    rest = [vertex for vertex in vertices if vertex != gone]
-    rest = [v for i, v in enumerate(rest) if i == 0 or rest[i - 1] != v]
-    if vertices[0] == vertices[-1] and rest and rest[0] != rest[-1]:
-        rest.append(rest[0])
-    return rest
-
-
-def _height_at(ends: NDArray[np.float64], place: NDArray[np.float64]) -> float:
-    """Return the height on a step at a place near it."""
-    whole, part = ends[1, :2] - ends[0, :2], place - ends[0, :2]
-    share = min(max(float(part @ whole / (whole @ whole)), 0.0), 1.0)
-    return float(ends[0, 2] + share * (ends[1, 2] - ends[0, 2]))
+def occupied(vertex: int, x: float, y: float) -> PointsError:
+    """Return the error for a place at which a vertex stands already."""
+    return PointsError(
+        f"Vertex {vertex} stands at x {x:g}, y {y:g} already: two vertices need two places."
+    )

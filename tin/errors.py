@@ -5,14 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
+from ..errors import TinsmithError
+
 if TYPE_CHECKING:
     from .findings import Problem
 
 __all__ = ["CheckError", "LinesError", "MissingExtraError", "PointsError", "TinsmithError"]
-
-
-class TinsmithError(Exception):
-    """Root of every error that tinsmith raises on purpose; its text is one clear sentence."""
 
 
 class PointsError(TinsmithError, ValueError):

@@ -33,6 +33,9 @@ class GrowingRows(Generic[Scalar]):
         self._room = np.empty((0, *rows.shape[1:]), rows.dtype)
         self._size = 0
 
+    def __len__(self) -> int:
+        return len(self._head) + self._size
+
     def extend(self, more: NDArray[Scalar]) -> None:
         """Add rows."""
         size = self._size + len(more)

@@ -26,6 +26,7 @@ __all__ = [
     "gather_regions",
     "gather_rings",
     "gather_water",
+    "require_length",
 ]
 
 ABOVE_ALL = np.inf
@@ -75,6 +76,11 @@ class LineSet(NamedTuple):
         noun = "breakline" if kind in ("hard", "soft") else kind
         name = f" '{self.names[line]}'" if self.names[line] else ""
         return f"{noun} {int(self.sources[line])}{name}"
+
+    def title(self, line: int) -> str:
+        """Return what a line is called at the beginning of a sentence."""
+        label = self.label(line)
+        return label[0].upper() + label[1:]
 
     @classmethod
     def joined(cls, sets: Sequence[LineSet]) -> LineSet:
@@ -137,7 +143,7 @@ def gather_lines(
     if found is None:
         found = _gathered(breaklines, boundary, holes, water)
     _require_exact_range(found)
-    _require_length(found)
+    require_length(found)
     return found
 
 
@@ -292,7 +298,13 @@ def _sources(kinds: Sequence[str]) -> NDArray[np.int32]:
     return np.array(numbers, np.int32)
 
 
-def _require_length(lines: LineSet) -> None:
+def require_length(lines: LineSet) -> None:
+    """Refuse a line whose vertices are all at one place.
+
+    Raises
+    ------
+    LinesError
+    """
     starts = lines.offsets[:-1]
     begins_at_one_place = (lines.xy[starts] == lines.xy[starts + 1]).all(axis=1)
     for line in np.flatnonzero(begins_at_one_place).tolist():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
@@ -176,6 +176,17 @@ class Lines(Frozen):
         is_step[self.offsets[1:] - 1] = False
         start = np.flatnonzero(is_step)
         return np.stack([self.vertices[start], self.vertices[start + 1]], axis=1)
+
+    def has_breakline(self, source: int) -> bool:
+        """Tell whether some of a breakline is there."""
+        return any(
+            kind in ("hard", "soft") and own == source
+            for kind, own in zip(self.kinds, self.sources.tolist(), strict=True)
+        )
+
+    def renumbered(self, number: NDArray[np.int32]) -> Lines:
+        """Return the same lines with vertex ``v`` called ``number[v]``."""
+        return replace(self, vertices=number[self.vertices])
 
     def __repr__(self) -> str:
         kinds = ", ".join(f"{self.kinds.count(kind)} {kind}" for kind in get_args(LineKind))

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..crs import scale_elevations
 from .options import as_flag, require_tin
 
 if TYPE_CHECKING:
@@ -109,12 +110,17 @@ def quality(tin: TIN, *, space: bool = False) -> Quality:
     ----------
     tin : TIN
     space : bool, optional
-        Measure the triangles as they lie in space, elevations in the unit of easting and northing.
-        Default: in the plane, where the triangulation is made.
+        Measure the triangles as they lie in space, elevations converted to the unit of easting and
+        northing. Default: in the plane, where the triangulation is made.
 
     Returns
     -------
     Quality
+
+    Raises
+    ------
+    CrsError
+        If coordinates are longitude and latitude, and ``space`` is asked for.
 
     Notes
     -----
@@ -146,7 +152,8 @@ def quality(tin: TIN, *, space: bool = False) -> Quality:
     array([2.5])
     """
     require_tin(tin)
-    corners = tin.points[:, : 3 if as_flag("space", space) else 2][tin.triangles]
+    in_space = as_flag("space", space)
+    corners = _corners_in_space(tin) if in_space else tin.points[:, :2][tin.triangles]
     edges = np.roll(corners, 1, axis=1) - np.roll(corners, -1, axis=1)
     lengths = np.sqrt(np.einsum("tkx,tkx->tk", edges, edges))
     doubled = _doubled_areas(edges, lengths)
@@ -164,6 +171,12 @@ def quality(tin: TIN, *, space: bool = False) -> Quality:
         radius_edge=circumradius / shortest,
         space=bool(space),
     )
+
+
+def _corners_in_space(tin: TIN) -> NDArray[np.float64]:
+    scale = (1.0, 1.0, scale_elevations(tin.crs, tin.elevation_unit))
+    corners: NDArray[np.float64] = (tin.points * scale)[tin.triangles]
+    return corners
 
 
 def smallest_angles(corners: NDArray[np.float64]) -> NDArray[np.float64]:

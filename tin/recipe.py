@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 
+from ..crs import CRS, Unit, require_one_unit, require_same_unit
+from ..errors import CrsError
 from . import _kernel
 from .constrained import CrossingPolicy, LineOptions
 from .duplicates import DuplicatePolicy
@@ -19,6 +21,7 @@ from .line_set import (
     gather_lines,
     gather_regions,
     gather_rings,
+    require_length,
 )
 from .options import as_flag, is_finite_number, is_one_of, shown
 from .points import as_masked_points
@@ -28,6 +31,7 @@ from .threads import thread_count
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from ..crs import CrsLike, UnitLike
     from .lines import Breakline, Water
 
 __all__ = ["Recipe", "TrimPolicy", "recipe_of"]
@@ -51,6 +55,8 @@ class Recipe:
         The rings of each region: the outer one, then its islands.
     max_edge : float
         Infinity for none.
+    has_rim : bool
+        Whether some of the lines are edges of the rim of existing triangles.
     """
 
     points: NDArray[np.float64]
@@ -64,7 +70,9 @@ class Recipe:
     trim: TrimPolicy
     conforming: bool
     options: LineOptions
-    crs: str | None
+    crs: CRS | None
+    elevation_unit: Unit | None = None
+    has_rim: bool = False
     skipped: Mapping[str, int] = field(default_factory=dict)
     notes: Sequence[str] = ()
 
@@ -73,6 +81,43 @@ class Recipe:
         """Whether there are only points, all of which count, and all of the hull is the surface."""
         is_whole = not (self.lines.kinds or self.erase or np.isfinite(self.max_edge))
         return is_whole and self.is_masked is None
+
+    @property
+    def is_clipped(self) -> bool:
+        """Whether only a part of the hull may be the surface."""
+        has_rings = bool(self.boundary or self.extent or self.holes or self.has_rim)
+        return has_rings or bool(np.isfinite(self.max_edge))
+
+    def with_lines(self, lines: LineSet) -> Recipe:
+        """Return the recipe with other lines, rings among them.
+
+        Raises
+        ------
+        LinesError
+            If all vertices of a line are at one place, or a ring crosses itself.
+        """
+        require_length(lines)
+        _require_simple_rings(lines)
+        if self.has_rim:
+            return replace(self, lines=lines)
+        rings = {kind: _rings_of(lines, kind) for kind in ("boundary", "hole")}
+        corners = iter(rings["hole"])
+        return replace(
+            self,
+            lines=lines,
+            boundary=rings["boundary"][: len(self.boundary)],
+            extent=rings["boundary"][len(self.boundary) :],
+            holes=[[next(corners) for _ in hole] for hole in self.holes],
+        )
+
+
+def _rings_of(lines: LineSet, kind: str) -> list[NDArray[np.float64]]:
+    """Return the rings of a kind, the first corner not repeated."""
+    return [
+        lines.xy[lines.offsets[line] : lines.offsets[line + 1] - 1]
+        for line, own in enumerate(lines.kinds)
+        if own == kind
+    ]
 
 
 def recipe_of(
@@ -90,18 +135,20 @@ def recipe_of(
     duplicates: DuplicatePolicy,
     snap: float,
     threads: int | None,
-    crs: str | None,
+    crs: CrsLike | None,
+    z_unit: UnitLike | None,
 ) -> Recipe:
     """Check everything; lines come on top of the survey's own.
 
     Raises
     ------
-    PointsError, LinesError
+    PointsError, LinesError, CrsError, OptionError
         As :func:`tinsmith.triangulate`.
     """
     _require_options(duplicates, snap, trim, crossing, max_edge)
     survey = points if isinstance(points, Survey) else None
     own = survey if survey is not None else Survey(points=np.empty((0, 3)))
+    system, unit = _reference(own, CRS.of(crs), Unit.of(z_unit))
     xyz, is_masked = as_masked_points(
         points.points if isinstance(points, Survey) else points, threads=threads
     )
@@ -133,10 +180,30 @@ def recipe_of(
         trim=trim,
         conforming=as_flag("conforming", conforming),
         options=LineOptions(duplicates, float(snap), crossing, thread_count(threads, len(xyz))),
-        crs=crs if crs is not None else own.crs,
+        crs=system,
+        elevation_unit=unit,
         skipped=own.skipped,
         notes=own.notes,
     )
+
+
+def _reference(own: Survey, crs: CRS | None, unit: Unit | None) -> tuple[CRS | None, Unit | None]:
+    """Return CRS and unit of elevations, which a caller may add to the survey's own, not change."""
+    if crs is not None and own.crs is not None and not _adds_to(own.crs, crs):
+        raise CrsError(
+            f"The survey is in {own.crs.label}, and {crs.label} is another CRS: its points must be "
+            "reprojected first, for example while they are read.",
+            crs=crs,
+        )
+    if own.elevation_unit is not None and unit is not None:
+        require_same_unit(own.elevation_unit, unit, "that of the survey")
+    system = own.crs if crs is None else crs
+    return system, require_one_unit(system, unit or own.elevation_unit)
+
+
+def _adds_to(own: CRS, crs: CRS) -> bool:
+    """Whether a CRS is the same as another, or that with a vertical axis."""
+    return own.is_same(crs) or (own.vertical_unit is None and own.is_same(crs.horizontal))
 
 
 def _require_options(
@@ -160,7 +227,7 @@ def _require_options(
 
 def _require_simple_rings(lines: LineSet) -> None:
     for line, kind in enumerate(lines.kinds):
-        if kind in ("hard", "soft"):
+        if kind in ("hard", "soft") or lines.sources[line] < 0:
             continue
         rows = np.arange(lines.offsets[line], lines.offsets[line + 1], dtype=np.int32)
         corners = np.append(rows[:-1], rows[0]) - rows[0]

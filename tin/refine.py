@@ -369,7 +369,7 @@ def _refined(
         report=_report(tin, surface, found),
         lines=lines_in(model.pieces, model.infos, number_of, surface, is_whole=False),
         crs=tin.crs,
-        inputs=model,
+        elevation_unit=tin.elevation_unit,
     )
 
 

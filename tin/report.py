@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -138,7 +138,8 @@ class Report(Frozen):
     vertex_heights : (g,) float64 array
         Elevations that the merged vertices received.
     left_out_rows : (k,) int32 array
-        Rows without a vertex, ascending.
+        Rows without a vertex, ascending. Rows are called by their place in ``TIN.vertex_of``:
+        those given come first, those inserted by edits follow, and removed ones stay in the list.
     left_out_why : (k,) int8 array
         Why, as places in ``LEFT_OUT``.
     n_lines : int
@@ -146,9 +147,7 @@ class Report(Frozen):
     line_labels : tuple of str
         What lines are called; a draped line that was cut has several parts.
     crossings : Crossings
-        Vertices as numbered before any edits.
     overruled : Overruled
-        Likewise.
     skipped : mapping of str to int
         What the reader left out and how often.
     notes : sequence of str
@@ -184,22 +183,79 @@ class Report(Frozen):
     def after_edits(
         self, vertex_of: NDArray[np.int32], n_vertices: int, n_triangles: int, edits: Sequence[Edit]
     ) -> Report:
-        """Return the report of a TIN that was edited, whose rows have these vertices now."""
-        lost = np.flatnonzero(vertex_of < 0).astype(np.int32)
-        why = np.full(len(lost), LEFT_OUT.index("removed by an edit"), np.int8)
-        before = np.isin(lost, self.left_out_rows)
-        slot = np.searchsorted(self.left_out_rows, lost[before])
-        why[before] = self.left_out_why[slot]
-        return replace(
+        """Return the report of a TIN that was not built by us, whose rows have these vertices."""
+        report = replace(
             self,
             n_rows=len(vertex_of),
             n_vertices=n_vertices,
             n_triangles=n_triangles,
             merged_vertices=vertex_of[self.merged_rows[self.merged_offsets[:-1]]],
-            left_out_rows=lost,
-            left_out_why=why,
             edits=edits,
             unmended=Unmended.none(),
+        )
+        return report.with_removed(vertex_of)
+
+    def with_removed(self, vertex_of: NDArray[np.int32]) -> Report:
+        """Return the report with the rows that have no vertex; what is new is due to an edit."""
+        lost = np.flatnonzero(vertex_of < 0).astype(np.int32)
+        why = np.full(len(lost), LEFT_OUT.index("removed by an edit"), np.int8)
+        before = np.isin(lost, self.left_out_rows)
+        why[before] = self.left_out_why[np.searchsorted(self.left_out_rows, lost[before])]
+        return replace(self, left_out_rows=lost, left_out_why=why)
+
+    def with_rows(self, rows: NDArray[np.int64], n_rows: int) -> Report:
+        """Return the report with row ``i`` called ``rows[i]``; those between were removed."""
+        if len(rows) == n_rows:
+            return self
+        is_lost = np.ones(n_rows, np.bool_)
+        is_lost[rows] = False
+        is_lost[rows[self.left_out_rows]] = True
+        return replace(
+            self,
+            n_rows=n_rows,
+            merged_rows=rows[self.merged_rows].astype(np.int32),
+            left_out_rows=rows[self.left_out_rows].astype(np.int32),
+        ).with_removed(np.where(is_lost, np.int32(-1), np.int32(0)))
+
+    def with_merges(self, merges: Report | None) -> Report:
+        """Return the report with the merges of another one, or with none."""
+        names = [f.name for f in fields(self) if f.name.startswith("merged_")]
+        account = Report(n_rows=0, n_vertices=0, n_triangles=0) if merges is None else merges
+        own = {name: getattr(account, name) for name in [*names, "vertex_heights"]}
+        return replace(self, **own)
+
+    def met_by(self, label: str) -> list[str]:
+        """Return where a line crosses others, a sentence each."""
+        own = [i for i, name in enumerate(self.line_labels) if name == label]
+        met = self.crossings
+        return [
+            self._crossing(row, own)
+            for row in np.flatnonzero(np.isin(met.lines, own).any(axis=1)).tolist()
+        ]
+
+    def _crossing(self, row: int, own: list[int]) -> str:
+        met = self.crossings
+        mine = int(met.lines[row, 1] in own and met.lines[row, 0] not in own)
+        first, second = met.lines[row, [mine, 1 - mine]].tolist()
+        other = "itself" if first == second else self.line_labels[second]
+        (x, y), heights = met.xy[row].tolist(), met.heights[row].tolist()
+        return (
+            f"The breakline crosses {other} at x {x:.6f}, y {y:.6f}: its height there is "
+            f"{heights[mine]:g}, the other's {heights[1 - mine]:g}; {met.taken[row]:g} was taken."
+        )
+
+    def renumbered(
+        self, number: NDArray[np.int32], n_rows: int, n_vertices: int, n_triangles: int
+    ) -> Report:
+        """Return the report with vertex ``v`` of the lines' account called ``number[v]``."""
+        crossings, overruled = self.crossings, self.overruled
+        return replace(
+            self,
+            n_rows=n_rows,
+            n_vertices=n_vertices,
+            n_triangles=n_triangles,
+            crossings=crossings._replace(vertices=number[crossings.vertices]),
+            overruled=overruled._replace(vertices=number[overruled.vertices]),
         )
 
     def merges(self) -> Iterator[Merge]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Never
 
 import numpy as np
 
+from ..crs import CRS, Unit, require_one_unit, scale_elevations, shorten_crs
 from . import _kernel, topology
 from .editable import Editable
 from .errors import PointsError
@@ -19,7 +20,8 @@ from .version import Version
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from .model import Model
+    from ..crs import CrsLike, UnitLike
+    from .recipe import Recipe
     from .types import Bounds
     from .voronoi import Voronoi
 
@@ -35,6 +37,7 @@ _ARGUMENTS = (
     "report",
     "lines",
     "crs",
+    "elevation_unit",
 )
 
 
@@ -60,8 +63,10 @@ class TIN(Editable):
         What became of every input row.
     lines : Lines
         Breaklines, boundary, holes and water, as chains of vertices.
-    crs : str or None
-        Coordinate reference system, as authority code or WKT.
+    crs : CRS or None
+        Coordinate reference system.
+    elevation_unit : Unit or None
+        Unit of elevations; None if it is not known.
 
     Notes
     -----
@@ -71,7 +76,7 @@ class TIN(Editable):
     is edited on its own, and takes back the edits made before it was copied.
     """
 
-    __slots__ = ("__weakref__", "_crs")
+    __slots__ = ("__weakref__", "_crs", "_elevation_unit")
 
     # ``dataclasses.replace(tin, crs=...)`` makes a TIN that differs in some arguments.
     __dataclass_fields__: ClassVar[dict[str, Field[Any]]] = vars(
@@ -88,9 +93,12 @@ class TIN(Editable):
         vertex_of: NDArray[np.int32],
         report: Report,
         lines: Lines | None = None,
-        crs: str | None = None,
-        inputs: Model | None = None,
+        crs: CrsLike | None = None,
+        elevation_unit: UnitLike | None = None,
+        inputs: Recipe | None = None,
     ) -> None:
+        system = CRS.of(crs)
+        unit = require_one_unit(system, Unit.of(elevation_unit))
         triangulation = Triangulation(
             points=points, triangles=triangles, neighbors=neighbors, constrained=constrained
         )
@@ -101,7 +109,8 @@ class TIN(Editable):
             lines=Lines() if lines is None else lines,
         )
         super().__init__(version, inputs)
-        self._crs = crs
+        self._crs = system
+        self._elevation_unit = unit
 
     @classmethod
     def from_triangles(
@@ -110,7 +119,8 @@ class TIN(Editable):
         triangles: ArrayLike,
         *,
         constrained: ArrayLike | None = None,
-        crs: str | None = None,
+        crs: CrsLike | None = None,
+        z_unit: UnitLike | None = None,
     ) -> TIN:
         """Make a TIN of triangles that exist already, for example those of a file.
 
@@ -121,10 +131,16 @@ class TIN(Editable):
             Vertex numbers; clockwise triangles are turned round.
         constrained : (m, 3) bool array, optional
             Flags of the edge opposite each corner as given; default none.
-        crs : str, optional
+        crs : CRS, str, int or pyproj.CRS, optional
+        z_unit : Unit or str, optional
+            Unit of the elevations; default that of the CRS's vertical axis, else not known.
 
         Raises
         ------
+        CrsError
+            If the CRS is unknown.
+        OptionError
+            If ``z_unit`` is unknown, or another than that of the CRS's vertical axis.
         PointsError
             If a vertex number is out of range, a triangle has no area, or triangles overlap
             along an edge.
@@ -135,6 +151,8 @@ class TIN(Editable):
         >>> tin
         <TIN: 3 vertices, 1 triangle, z 1 to 3, crs unknown>
         """
+        system = CRS.of(crs)
+        unit = require_one_unit(system, Unit.of(z_unit))
         xyz = as_points(points)
         corners = _as_triangles(triangles, len(xyz))
         flags = _as_flags(constrained, len(corners))
@@ -146,7 +164,8 @@ class TIN(Editable):
             constrained=flags,
             vertex_of=np.arange(len(xyz), dtype=np.int32),
             report=Report(n_rows=len(xyz), n_vertices=len(xyz), n_triangles=len(corners)),
-            crs=crs,
+            crs=system,
+            elevation_unit=unit,
         )
 
     def __setattr__(self, name: str, value: Never) -> None:
@@ -197,12 +216,21 @@ class TIN(Editable):
         return self._current.lines
 
     @property
-    def crs(self) -> str | None:
-        """Coordinate reference system, as authority code or WKT."""
+    def crs(self) -> CRS | None:
+        """Coordinate reference system."""
         return self._crs
 
+    @property
+    def elevation_unit(self) -> Unit | None:
+        """Unit of elevations; None if it is not known."""
+        return self._elevation_unit
+
     def __getstate__(self) -> dict[str, Any]:
-        return super().__getstate__() | {"_crs": self._crs}
+        return super().__getstate__() | {"_crs": self._crs, "_elevation_unit": self._elevation_unit}
+
+    @property
+    def _reference(self) -> dict[str, Any]:
+        return {"crs": self._crs, "elevation_unit": self._elevation_unit}
 
     def replace(self, **changes: Any) -> TIN:
         """Return a TIN that differs in some arguments of the constructor; it has no edits.
@@ -211,12 +239,12 @@ class TIN(Editable):
         --------
         >>> tin = TIN.from_triangles([[0, 0, 1], [1, 0, 2], [0, 1, 3]], [[0, 1, 2]])
         >>> tin.replace(crs="EPSG:32616").crs
-        'EPSG:32616'
+        CRS('EPSG:32616')
         """
         version = self._current
         given = {name: getattr(version.triangulation, name) for name in _ARGUMENTS[:4]}
         given |= {name: getattr(version, name) for name in _ARGUMENTS[4:7]}
-        return type(self)(**(given | {"crs": self._crs} | changes))
+        return type(self)(**(given | self._reference | changes))
 
     # ---------------------------------------------------------------- measures
 
@@ -247,8 +275,12 @@ class TIN(Editable):
 
     @property
     def triangle_surface_areas(self) -> NDArray[np.float64]:
-        """Area of each triangle in space, (m,) array, CRS units squared."""
-        return self._current.triangulation.triangle_surface_areas
+        """Area of each triangle in space, (m,) array, CRS units squared, elevations converted.
+
+        Raises CrsError where coordinates are longitude and latitude.
+        """
+        scale = scale_elevations(self.crs, self.elevation_unit)
+        return self._current.triangulation.surface_areas(scale)
 
     @property
     def area(self) -> float:
@@ -257,7 +289,7 @@ class TIN(Editable):
 
     @property
     def surface_area(self) -> float:
-        """Area in space, CRS units squared."""
+        """Area in space, CRS units squared, elevations converted to them."""
         return float(self.triangle_surface_areas.sum())
 
     # ---------------------------------------------------------------- queries
@@ -361,10 +393,9 @@ class TIN(Editable):
         surface = self._current.triangulation
         count = len(surface.triangles)
         z = surface.points[:, 2]
-        crs = "unknown" if self.crs is None else self.crs
         return (
             f"<TIN: {len(surface.points)} vertices, {count} triangle{'s' * (count != 1)}, "
-            f"z {z.min():g} to {z.max():g}, crs {crs if len(crs) <= 24 else crs[:21] + '...'}>"
+            f"z {z.min():g} to {z.max():g}, crs {shorten_crs(self.crs)}>"
         )
 
 

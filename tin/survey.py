@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..crs import CRS, Unit, require_one_unit, shorten_crs
 from .lines import Breakline, Water
 from .tables import as_table
 from .types import Bounds
@@ -25,8 +26,8 @@ class Survey:
     Attributes
     ----------
     points : (n, 3) float64 array
-        Given as any table that :func:`tinsmith.triangulate` takes; masked points are left out.
-        Easting, northing, elevation; CRS units, elevation in metres unless the CRS says otherwise.
+        Easting and northing in CRS units, elevation in ``elevation_unit``. Given as any table that
+        :func:`tinsmith.triangulate` takes; masked points are left out.
     breaklines : sequence of Breakline or (k, 3) or (k, 2) arrays
         Polylines that must be edges of the surface; with two columns draped on it.
     boundary : sequence of (k, 3) or (k, 2) arrays, or polygons
@@ -42,8 +43,11 @@ class Survey:
         odd number of them holds the place.
     attributes : mapping of str to (n,) array
         Further columns, one value a point (for example ``"number"`` and ``"description"``).
-    crs : str, optional
-        Coordinate reference system: an authority code ("EPSG:32616") or WKT.
+    crs : CRS, optional
+        Coordinate reference system; given as a code ("EPSG:32616"), number, WKT or ``pyproj.CRS``.
+    elevation_unit : Unit, optional
+        Unit of all elevations, those of lines included; given as Unit or text ("m", "US survey
+        foot"). Default that of the CRS's vertical axis; None if it is not known.
     source : str, optional
         Name of the file that the points come from.
     skipped : mapping of str to int
@@ -52,6 +56,13 @@ class Survey:
         Of a text file, the lines of the rows that were left out, counted from 1 as an editor does.
     notes : sequence of str
         What the reader assumed, in sentences.
+
+    Raises
+    ------
+    CrsError
+        If the CRS is unknown.
+    OptionError
+        If the unit is unknown, or another than that of the CRS's vertical axis.
     """
 
     points: NDArray[np.float64]
@@ -62,13 +73,18 @@ class Survey:
     water: Sequence[Water] = ()
     extent: Sequence[NDArray[np.float64]] = ()
     attributes: Mapping[str, NDArray[Any]] = field(default_factory=dict)
-    crs: str | None = None
+    crs: CRS | None = None
+    elevation_unit: Unit | None = None
     source: str | None = None
     skipped: Mapping[str, int] = field(default_factory=dict)
     skipped_lines: Mapping[str, Sequence[int]] = field(default_factory=dict)
     notes: Sequence[str] = ()
 
     def __post_init__(self) -> None:
+        crs = CRS.of(self.crs)
+        object.__setattr__(self, "crs", crs)
+        unit = require_one_unit(crs, Unit.of(self.elevation_unit))
+        object.__setattr__(self, "elevation_unit", unit)
         if not _is_plain(self.points):
             self._clean_points()
 
@@ -101,15 +117,8 @@ class Survey:
     def __repr__(self) -> str:
         origin = f" from {self.source}" if self.source else ""
         names = f", attributes {', '.join(self.attributes)}" if self.attributes else ""
-        return f"<Survey: {len(self)} points{origin}{names}, crs {_short(self.crs)}>"
+        return f"<Survey: {len(self)} points{origin}{names}, crs {shorten_crs(self.crs)}>"
 
 
 def _is_plain(points: Any) -> bool:
     return type(points) is np.ndarray and points.dtype == np.float64
-
-
-def _short(crs: str | None) -> str:
-    """Shorten a CRS text to fit a one-line repr."""
-    if crs is None:
-        return "unknown"
-    return crs if len(crs) <= 24 else crs[:21] + "..."

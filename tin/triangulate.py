@@ -14,6 +14,7 @@ from .surface import TIN
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
+    from ..crs import CrsLike, UnitLike
     from .lines import Breakline, Water
     from .survey import Survey
 
@@ -35,7 +36,8 @@ def triangulate(
     duplicates: DuplicatePolicy = "mean",
     snap: float = 0.0,
     threads: int | None = None,
-    crs: str | None = None,
+    crs: CrsLike | None = None,
+    z_unit: UnitLike | None = None,
 ) -> TIN:
     """Build the Delaunay TIN of a set of elevation points, and of lines that must be its edges.
 
@@ -47,10 +49,10 @@ def triangulate(
     Parameters
     ----------
     points : Survey or (n, 3) array
-        Easting, northing, elevation, CRS units. A survey's own lines are used as well. A structured
-        array, data frame or mapping is taken by its columns' names (x, y, z; easting, northing,
-        elevation; lon, lat, height), shapely's points by their coordinates. Masked rows are left
-        out, and named in the report.
+        Easting and northing in CRS units, elevation. A survey's own lines are used as well. A
+        structured array, data frame or mapping is taken by its columns' names (x, y, z; easting,
+        northing, elevation; lon, lat, height), shapely's points by their coordinates. Masked rows
+        are left out, and named in the report.
     breaklines : sequence of Breakline or arrays
         Polylines that must be edges: (k, 3) arrays hard ones, (k, 2) arrays draped on the surface
         of everything that has heights, with a vertex wherever they cross an edge of it.
@@ -87,8 +89,12 @@ def triangulate(
         0 merges exact duplicates only.
     threads : int, optional
         Number of threads; default every core, where it pays. The result is the same.
-    crs : str, optional
-        Coordinate reference system; default the survey's own.
+    crs : CRS, str, int or pyproj.CRS, optional
+        Coordinate reference system of the points: a code ("EPSG:32616"), number, WKT; default the
+        survey's own.
+    z_unit : Unit or str, optional
+        Unit of all elevations ("m", "ft", "US survey foot"), lines included; default the survey's
+        own, else that of the CRS's vertical axis, else not known.
 
     Returns
     -------
@@ -100,6 +106,10 @@ def triangulate(
         If names of columns do not tell the coordinates, if a coordinate is not finite or outside
         the exact range, if fewer than three places are distinct, if all are collinear, or
         (``duplicates="error"``) if two rows coincide; if an option is none of the allowed.
+    CrsError
+        If the CRS is unknown, or another than the survey's own.
+    OptionError
+        If ``z_unit`` is unknown, or another than the one that survey or CRS give.
     LinesError
         If a line has too few vertices or coordinates that are not finite, if a ring crosses
         itself, if lines cross and must not, if a hole lies outside, or if no triangle is left.
@@ -138,5 +148,6 @@ def triangulate(
             snap=snap,
             threads=threads,
             crs=crs,
+            z_unit=z_unit,
         )
     )

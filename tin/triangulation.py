@@ -62,10 +62,9 @@ class Triangulation(Frozen):
         first, second = self._edge_vectors()
         return seal(0.5 * (first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]))
 
-    @cached_property
-    def triangle_surface_areas(self) -> NDArray[np.float64]:
-        """Area of each triangle in space, (m,) array, CRS units squared."""
-        first, second = self._edge_vectors()
+    def surface_areas(self, elevation_scale: float = 1.0) -> NDArray[np.float64]:
+        """Measure each triangle in space, (m,) array; elevations times a factor."""
+        first, second = (edge * (1.0, 1.0, elevation_scale) for edge in self._edge_vectors())
         areas: NDArray[np.float64] = 0.5 * np.linalg.norm(np.cross(first, second), axis=1)
         return seal(areas)
 

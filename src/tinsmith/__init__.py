@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from . import io, terrain, tin
+    from .crs import CRS, Unit
     from .io import CrsError, FormatError, ReadError, WriteError, read, write
     from .terrain import OptionError, RenderError
     from .tin import (
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
 
 # The room that each public name lives in; rooms are loaded when a name is first used.
 _NAMES_OF_ROOM = {
+    "crs": ("CRS", "Unit"),
     "io": ("CrsError", "FormatError", "ReadError", "WriteError", "read", "write"),
     "terrain": ("OptionError", "RenderError"),
     "tin": (
@@ -74,6 +76,7 @@ def __dir__() -> list[str]:
 
 
 __all__ = [
+    "CRS",
     "TIN",
     "Bounds",
     "Breakline",
@@ -92,6 +95,7 @@ __all__ = [
     "Report",
     "Survey",
     "TinsmithError",
+    "Unit",
     "Water",
     "WriteError",
     "__version__",

@@ -99,7 +99,10 @@ def serve(
         while not near.poll(5.0):
             if os.getppid() != parent:  # the run was killed
                 os._exit(0)
-        verb, what = near.recv()
+        try:
+            verb, what = near.recv()
+        except EOFError:  # the run ended
+            os._exit(0)
         if verb == "make":
             near.send(make_case(campaign, seed, what))
         elif verb == "number":

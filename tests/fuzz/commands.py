@@ -141,10 +141,10 @@ def _examine(words: list[str], result: Any, given: dict[str, bytes], folder: Pat
     assert isinstance(result.exception, SystemExit | None), result.exception
     for word in ("Traceback", "A bug in tinsmith", "PosixPath", "np.float64", "NoneType"):
         assert word not in result.stderr, result.stderr
-    written = {after for before, after in pairwise(words) if before in _WRITING}
-    read = {after for before, after in pairwise(words) if before not in _WRITING}
+    written = {_real(folder, after) for before, after in pairwise(words) if before in _WRITING}
+    read = {_real(folder, after) for before, after in pairwise(words) if before not in _WRITING}
     for name, content in given.items():
-        is_free = name in {Path(one).name for one in written} and name not in read
+        is_free = _real(folder, name) in written - read
         assert is_free or (folder / name).read_bytes() == content, f"'{name}' was changed"
     hidden = [path.name for path in folder.rglob(".*")]
     assert not hidden, f"temporary files are left: {hidden}"
@@ -152,6 +152,10 @@ def _examine(words: list[str], result: Any, given: dict[str, bytes], folder: Pat
         assert result.stderr.splitlines()[-1].startswith("Error: "), result.stderr
     if _wants_json(words, result):
         json.loads(result.stdout)
+
+
+def _real(folder: Path, word: str) -> str:
+    return os.path.realpath(folder / word)
 
 
 def _wants_json(words: list[str], result: Any) -> bool:

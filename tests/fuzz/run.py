@@ -16,6 +16,8 @@ from .campaign import Campaign, Case
 from .child import Child, Outcome
 from .minimise import minimise
 
+MOST_LABELS = 6  # of a campaign in the summary
+
 
 @dataclass
 class Options:
@@ -186,7 +188,10 @@ def summarize(tallies: list[Tally]) -> str:
     """Return a table: cases, seconds, finds, and what became of the cases."""
     lines = [f"{'campaign':<20} {'cases':>9} {'seconds':>8} {'finds':>6}  outcomes"]
     for tally in tallies:
-        outcomes = ", ".join(f"{label} {n:,}" for label, n in tally.labels.most_common())
+        common = tally.labels.most_common(MOST_LABELS)
+        outcomes = ", ".join(f"{label} {n:,}" for label, n in common)
+        if len(tally.labels) > MOST_LABELS:
+            outcomes += f", other {tally.labels.total() - sum(n for _, n in common):,}"
         lines.append(
             f"{tally.campaign:<20} {tally.n_cases:>9,} {tally.seconds:>8.1f} "
             f"{tally.finds.total():>6}  {outcomes}"

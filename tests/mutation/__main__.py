@@ -150,8 +150,9 @@ class Workshop:
         return done.returncode == 0
 
     def _test(self, tests: tuple[Path, ...], limit: float) -> str:
-        command = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider",
-                   "--hypothesis-seed=1", f"--timeout={limit / 3:.0f}", *map(str, tests)]  # fmt: skip
+        options = ["-q", "-x", "-p", "no:cacheprovider", "--hypothesis-seed=1"]
+        options.append(f"--timeout={limit / 3:.0f}")
+        command = [sys.executable, "-m", "pytest", *options, *map(str, tests)]
         environment = {
             **os.environ,
             "PYTHONPATH": f"{self.folder / 'tree'}:{TESTS}",

@@ -131,6 +131,13 @@ Signs orientation(const Places& a, const Places& b, const Places& c) {
   });
 }
 
+Signs compare_distances(const Places& v, const Places& p, const Places& q) {
+  using tinsmith::Point;
+  return signs(v, p, q, q, [](Point a, Point b, Point c, Point) {
+    return tinsmith::compare_distances(a, b, c);
+  });
+}
+
 Signs in_circle(const Places& a, const Places& b, const Places& c, const Places& d) {
   return signs(a, b, c, d, tinsmith::in_circle);
 }
@@ -225,6 +232,8 @@ NB_MODULE(_core, m) {
         "For each row the row that it is merged into.");
   m.def("orientation", &orientation, "a"_a.noconvert(), "b"_a.noconvert(), "c"_a.noconvert(),
         "+1 where c lies left of the line from a to b, -1 right, 0 on it.");
+  m.def("compare_distances", &compare_distances, "v"_a.noconvert(), "p"_a.noconvert(),
+        "q"_a.noconvert(), "+1 where p is further from v than q is, -1 nearer, 0 equally far.");
   m.def("in_circle", &in_circle, "a"_a.noconvert(), "b"_a.noconvert(), "c"_a.noconvert(),
         "d"_a.noconvert(),
         "+1 where d lies inside the circle through counter-clockwise a, b, c, -1 outside, 0 on it.");

@@ -154,6 +154,11 @@ class HeldMesh {
     return hand_over(editor_.fixed_neighbors(v));
   }
 
+  double clearance(std::int32_t v) const {
+    require_vertex(v);
+    return editor_.clearance(v);
+  }
+
   Numbers corners_beside(std::int32_t a, std::int32_t b) const {
     require_vertex(a);
     require_vertex(b);
@@ -269,6 +274,8 @@ inline void bind_mesh(nb::module_& m) {
            "Fixed edges that are not Delaunay, flat pairs of vertices.")
       .def("fixed_neighbors", &HeldMesh::fixed_neighbors, "vertex"_a,
            "The other ends of the fixed edges at a vertex.")
+      .def("clearance", &HeldMesh::clearance, "vertex"_a,
+           "How far a vertex is, nearly, from the edges between its neighbours.")
       .def("corners_beside", &HeldMesh::corners_beside, "a"_a, "b"_a,
            "The corners left and right of the edge from a to b; none if it is no inner edge.")
       .def("crossed", &HeldMesh::crossed, "segments"_a.noconvert(), "only_fixed"_a = false,

@@ -124,7 +124,7 @@ def _fields(
         *line_fields(survey, tin),
         ("TIN", tin_counts(tin)),
         *(("Gaps", gap) for gap in gaps),
-        *extent_fields(tin.points, tin.crs),
+        *extent_fields(tin),
         crs_field(tin.crs),
         ("Written", written_text(outputs)),
         ("Time", f"{seconds:.2f} s"),

@@ -44,13 +44,15 @@ def convert(
       tinsmith convert sample_data/site_survey.csv -o site.xyz
     """  # noqa: D301 - click reads the control character
     from ..tin import Survey
-    from .facts import reading_fields
+    from .facts import reading_fields, unit_note
     from .files import inputs_of, plan_outputs, read_input, write_outputs, written_text
 
     planned = plan_outputs(outputs, writing, inputs=inputs_of(file), console=console)
     found = read_input(file, reading, console)
     write_outputs(found, planned, console)
     notes = reading_fields(found) if isinstance(found, Survey) else []
+    if note := unit_note(found):
+        notes = [*notes, ("Elevation", note)]
     read = ("Read", f"{_what(found)} from {name_of(file)}")
     console.summarise([read, *notes, ("Written", written_text(planned))])
     if console.as_json:

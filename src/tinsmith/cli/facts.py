@@ -8,18 +8,25 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..io.crs import as_crs, elevation_unit, is_geographic, length_unit
+from ..crs import assume_elevation_unit
+from ..io.crs import is_geographic, length_unit
 from ..terrain import slope
+from ..terrain.slope import areas
 from ..tin import TIN, Bounds, Survey, quality
 from .console import count
-from .line_facts import constrained_edges, given_lines, given_lines_text, tin_counts
+from .line_facts import (
+    constrained_edges,
+    elevation_symbol,
+    given_lines,
+    given_lines_text,
+    tin_counts,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ..crs import CRS
     from ..tin import Merge, Quality, Report
     from .console import Field
 
@@ -36,6 +43,7 @@ __all__ = [
     "survey_fields",
     "tin_facts",
     "tin_fields",
+    "unit_note",
     "units",
 ]
 
@@ -48,7 +56,7 @@ def survey_facts(survey: Survey) -> dict[str, Any]:
     return {
         "kind": "points",
         "points": len(survey),
-        **_place_facts(survey.points, survey.crs),
+        **_place_facts(survey),
         "attributes": list(survey.attributes),
         **given_lines(survey),
         "skipped": dict(survey.skipped),
@@ -57,7 +65,7 @@ def survey_facts(survey: Survey) -> dict[str, Any]:
 
 
 def tin_facts(tin: TIN) -> dict[str, Any]:
-    """Describe a TIN as plain values; measures on the ground are None in degrees."""
+    """Describe a TIN as plain values; areas are None in degrees."""
     return {
         "kind": "tin",
         "vertices": len(tin.points),
@@ -67,7 +75,7 @@ def tin_facts(tin: TIN) -> dict[str, Any]:
         "rings": len(tin.rings),
         "constrained_edges": constrained_edges(tin),
         "lines": {kind: tin.lines.kinds.count(kind) for kind in sorted(set(tin.lines.kinds))},
-        **_place_facts(tin.points, tin.crs),
+        **_place_facts(tin),
         **_ground_facts(tin),
     }
 
@@ -92,48 +100,65 @@ def _plain(value: Any) -> Any:
     return value.item() if isinstance(value, np.generic) else value
 
 
-def _place_facts(points: NDArray[np.float64], crs: str | None) -> dict[str, Any]:
-    z = points[:, 2]
+def _place_facts(found: Survey | TIN) -> dict[str, Any]:
+    z, crs = found.points[:, 2], found.crs
     return {
-        "bounds": asdict(Bounds.of(points)),
-        "elevation": {"min": float(z.min()), "max": float(z.max()), "mean": float(z.mean())},
-        "crs": crs,
-        "crs_name": None if crs is None else as_crs(crs).name,
-        "units": {"horizontal": length_unit(crs).name, "vertical": elevation_unit(crs).name},
+        "bounds": asdict(Bounds.of(found.points)),
+        "elevation": {
+            "min": float(z.min()),
+            "max": float(z.max()),
+            "mean": float(z.mean()),
+            "unit_assumed": _assumed_unit(found),
+        },
+        "crs": None if crs is None else str(crs),
+        "crs_name": None if crs is None else crs.name,
+        "units": _unit_names(found),
     }
 
 
-def _ground_facts(tin: TIN) -> dict[str, Any]:
-    if is_geographic(tin.crs):
-        return {"area": None, "surface_area": None, "slope": None}
-    solid = _with_one_unit(tin)
-    degrees = slope(solid)
+def _unit_names(found: Survey | TIN) -> dict[str, str]:
     return {
-        "area": solid.area,
-        "surface_area": solid.surface_area,
+        "horizontal": "unknown" if found.crs is None else found.crs.horizontal_unit.name,
+        "vertical": "unknown" if found.elevation_unit is None else found.elevation_unit.name,
+    }
+
+
+def _assumed_unit(found: Survey | TIN) -> str | None:
+    """Name what elevations are taken to be measured in where that is not known."""
+    usual = assume_elevation_unit(found.crs, None)
+    return usual.name if found.elevation_unit is None and usual is not None else None
+
+
+def _ground_facts(tin: TIN) -> dict[str, Any]:
+    degrees, in_degrees = slope(tin), is_geographic(tin.crs)
+    return {
+        "area": None if in_degrees else tin.area,
+        "surface_area": None if in_degrees else tin.surface_area,
         "slope": {
             "min": float(degrees.min()),
-            "mean": float(np.average(degrees, weights=solid.triangle_areas)),
+            "mean": float(np.average(degrees, weights=areas(tin))),
             "max": float(degrees.max()),
         },
     }
 
 
-def _with_one_unit(tin: TIN) -> TIN:
-    """Return the TIN with elevations in the unit of its eastings and northings."""
-    across, up = length_unit(tin.crs).metres, elevation_unit(tin.crs).metres
-    if across is None or up is None or across == up:
-        return tin
-    return tin.replace(points=tin.points * [1.0, 1.0, up / across])
-
-
 # ---------------------------------------------------------------- for people
 
 
-def units(crs: str | None) -> tuple[str, str]:
-    """Return the symbols of horizontal and vertical units, with the space before them."""
-    across, up = length_unit(crs).symbol, elevation_unit(crs).symbol
-    return across if across == "°" else f" {across}", f" {up}"
+def units(found: Survey | TIN) -> tuple[str, str]:
+    """Return the symbols behind horizontal and vertical numbers, with the space before them."""
+    across = length_unit(found.crs).symbol
+    return across if across == "°" else f" {across}", elevation_symbol(found)
+
+
+def unit_note(found: Survey | TIN) -> str:
+    """Say what the unit of elevations is taken to be where it is not known; else nothing."""
+    if found.elevation_unit is not None:
+        return ""
+    usual = assume_elevation_unit(found.crs, None)
+    if usual is None or found.crs is None:
+        return "unit not known"
+    return f"unit not known, taken to be {usual.name}, the usual one in {found.crs.label}"
 
 
 def survey_fields(survey: Survey) -> list[Field]:
@@ -143,26 +168,25 @@ def survey_fields(survey: Survey) -> list[Field]:
         fields.append(("Columns", ", ".join(survey.attributes)))
     if survey.has_lines:
         fields.append(("Lines", given_lines_text(survey)))
-    return [*fields, *extent_fields(survey.points, survey.crs), crs_field(survey.crs)]
+    return [*fields, *extent_fields(survey), crs_field(survey.crs)]
 
 
 def tin_fields(tin: TIN) -> list[Field]:
     """Describe a TIN."""
     facts = _ground_facts(tin)
-    across, _ = units(tin.crs)
+    across, _ = units(tin)
     fields = [
         ("TIN", tin_counts(tin)),
         ("Edges", f"{len(tin.edges):,}, {len(tin.hull):,} of them on the hull"),
-        *extent_fields(tin.points, tin.crs),
+        *extent_fields(tin),
     ]
-    if facts["slope"] is not None:
-        steep = facts["slope"]
+    if facts["area"] is not None:
         fields += [
             ("Area", f"{facts['area']:,.1f}{across}² in the plane"),
             ("", f"{facts['surface_area']:,.1f}{across}² in space"),
-            ("Slope", f"{steep['min']:.1f}° to {steep['max']:.1f}°, mean {steep['mean']:.1f}°"),
         ]
-    return [*fields, crs_field(tin.crs)]
+    low, mean, high = (facts["slope"][name] for name in ("min", "mean", "max"))
+    return [*fields, ("Slope", f"{low:.1f}° to {high:.1f}°, mean {mean:.1f}°"), crs_field(tin.crs)]
 
 
 def quality_fields(shapes: Quality | None) -> list[Field]:
@@ -186,27 +210,28 @@ def _ratio(value: float) -> str:
     return f"{value:,.0f}" if 100 <= value < 1e9 else f"{value:.3g}"
 
 
-def extent_fields(points: NDArray[np.float64], crs: str | None) -> list[Field]:
+def extent_fields(found: Survey | TIN) -> list[Field]:
     """Describe where points lie, and how high."""
-    across, up = units(crs)
-    digits = 7 if is_geographic(crs) else 3
-    box = Bounds.of(points)
-    low, high = points[:, 2].min(), points[:, 2].max()
-    east, north = ("longitude", "latitude") if is_geographic(crs) else ("easting", "northing")
+    across, up = units(found)
+    in_degrees = is_geographic(found.crs)
+    digits = 7 if in_degrees else 3
+    box = Bounds.of(found.points)
+    low, high = found.points[:, 2].min(), found.points[:, 2].max()
+    east, north = ("longitude", "latitude") if in_degrees else ("easting", "northing")
+    note = unit_note(found)
     return [
         ("Extent", f"{box.width:,.{digits}f}{across} x {box.height:,.{digits}f}{across}"),
         ("", f"{east} {box.xmin:.{digits}f} to {box.xmax:.{digits}f}"),
         ("", f"{north} {box.ymin:.{digits}f} to {box.ymax:.{digits}f}"),
-        ("Elevation", f"{low:,.3f} to {high:,.3f}{up}"),
+        ("Elevation", f"{low:,.3f} to {high:,.3f}{up}{f' ({note})' if note else ''}"),
     ]
 
 
-def crs_field(crs: str | None) -> Field:
+def crs_field(crs: CRS | None) -> Field:
     """Name the CRS."""
     if crs is None:
         return ("CRS", "unknown (name it with --crs)")
-    name = str(as_crs(crs).name)
-    return ("CRS", f"{crs}, {name}" if len(crs) <= 24 else name)
+    return ("CRS", crs.name if crs.label == crs.name else f"{crs}, {crs.name}")
 
 
 def reading_fields(survey: Survey) -> list[Field]:
@@ -239,7 +264,7 @@ def merge_field(report: Report, survey: Survey) -> list[Field]:
     if spread[worst] == 0:
         return [("Merged", f"{text}, with equal elevations")]
     merge = next(_merges_from(report, worst))
-    _, up = units(survey.crs)
+    up = elevation_symbol(survey)
     differing = int(np.count_nonzero(spread))
     return [
         ("Merged", f"{text}, elevation by '{report.duplicates}'"),

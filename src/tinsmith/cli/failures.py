@@ -36,10 +36,12 @@ class Failure(click.ClickException):
     """A sentence on stderr and exit code 1."""
 
     label = "Error: "
+    translated = ""
+    """The sentence with flags in place of the library's names of options."""
 
     def format_message(self) -> str:
         """Return the sentence, on one line."""
-        return escape_unprintable(self.message)
+        return escape_unprintable(self.translated or self.message)
 
     def show(self, file: IO[Any] | None = None) -> None:
         """Write the sentence to stderr, or to ``file``."""
@@ -58,7 +60,7 @@ class Interruption(Failure):
 
     def __init__(self, message: str, number: int) -> None:
         super().__init__(message)
-        self.exit_code = 128 + number
+        setattr(self, "exit_code", 128 + number)  # noqa: B010 - click has it as a constant
 
 
 def note_written(path: Path) -> None:
@@ -121,7 +123,7 @@ def failures_as_sentences(ctx: click.Context) -> Iterator[None]:
 def _marked(error: click.ClickException, ctx: click.Context) -> click.ClickException:
     """Return the error in the words of this command, and whether the result is on stdout."""
     if isinstance(error, Failure):
-        error.message = name_flags(error.message)
+        error.translated = name_flags(error.message)
     error.is_answered = _ANSWERED in ctx.find_root().meta  # type: ignore[attr-defined]
     return error
 

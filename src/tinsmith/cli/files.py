@@ -314,7 +314,9 @@ def written_text(outputs: Sequence[Output]) -> str:
     from .facts import file_size
 
     return "\n".join(
-        "standard output" if one.path == STANDARD else f"{one.path} ({file_size(one.path)})"
+        "standard output"
+        if one.path == STANDARD
+        else f"{name_of(one.path)} ({file_size(one.path)})"
         for one in outputs
     )
 

@@ -52,20 +52,18 @@ class _Commands(click.Group):
         entry = _plug_ins().get(cmd_name)
         return None if entry is None else _plugged_in(entry)
 
-    def main(
-        self, args: Sequence[str] | None = None, *more: Any, **how: Any
-    ) -> Any:  # not NoReturn, which click's own is not either where it is called with a context
+    def main(self, args: Sequence[str] | None = None, **how: Any) -> Any:  # type: ignore[override]
         """Run; click's own ``main``, but for failures, signals and streams that are closed."""
         if not how.pop("standalone_mode", True):
-            return super().main(args, *more, standalone_mode=False, **how)
+            return super().main(args, standalone_mode=False, **how)
         arguments = sys.argv[1:] if args is None else list(args)
         reserve_standard_streams()
         with signals_as_exceptions():
-            sys.exit(self._exit_code(arguments, *more, **how))
+            sys.exit(self._exit_code(arguments, **how))
 
-    def _exit_code(self, arguments: list[str], *more: Any, **how: Any) -> int:
+    def _exit_code(self, arguments: list[str], **how: Any) -> int:
         try:
-            code = super().main(arguments, *more, standalone_mode=False, **how)
+            code = super().main(arguments, standalone_mode=False, **how)
         except click.ClickException as error:
             return show_failure(error, arguments)
         except BrokenPipeError:

@@ -86,5 +86,5 @@ def _plot(shapes: Quality | None, tin: TIN, file: Path, plot: Path, console: Con
         )
     with console.steps() as steps, steps.step("Drawing"):
         title = f"Triangle quality: {title_of(file)}".rstrip(": ")
-        figure = histogram(shapes, title=title, unit=units(tin.crs)[0].strip())
+        figure = histogram(shapes, title=title, unit=units(tin)[0].strip())
         write_figure(figure, plot, dpi=150)

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..io.crs import elevation_unit
 from ..tin.report import LEFT_OUT
 from .console import count
 
@@ -16,6 +15,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "constrained_edges",
+    "elevation_symbol",
     "given_lines",
     "given_lines_text",
     "line_counts",
@@ -37,6 +37,11 @@ def constrained_edges(tin: TIN) -> int:
     """Count the constrained edges, each once."""
     on_rim = tin.constrained & (tin.neighbors < 0)
     return int((tin.constrained.sum() + on_rim.sum()) // 2)
+
+
+def elevation_symbol(found: Survey | TIN) -> str:
+    """Return what stands behind an elevation, with the space before it; "" if not known."""
+    return "" if found.elevation_unit is None else f" {found.elevation_unit.symbol}"
 
 
 def given_lines(survey: Survey) -> dict[str, int]:
@@ -103,14 +108,14 @@ def _crossing_fields(report: Report, survey: Survey) -> list[Field]:
     worst = int(np.argmax(apart))
     if apart[worst] == 0:
         return [("Crossings", f"{places}, at equal heights")]
-    up = elevation_unit(survey.crs).symbol
+    up = elevation_symbol(survey)
     one, other = (
         f"{report.line_labels[line]} at {height:.3f}"
         for line, height in zip(met.lines[worst].tolist(), met.heights[worst].tolist(), strict=True)
     )
     x, y = met.xy[worst].tolist()
     return [
-        ("Crossings", f"{places}, heights differ most by {apart[worst]:.3f} {up}"),
+        ("Crossings", f"{places}, heights differ most by {apart[worst]:.3f}{up}"),
         ("", f"at x {x:.3f}, y {y:.3f}: {one}, {other}, taken {met.taken[worst]:.3f}"),
     ]
 
@@ -118,5 +123,5 @@ def _crossing_fields(report: Report, survey: Survey) -> list[Field]:
 def _overruled_text(report: Report, survey: Survey) -> str:
     gave_way = report.overruled
     most = float(np.abs(gave_way.heights - gave_way.taken).max())
-    number, up = len(gave_way.vertices), elevation_unit(survey.crs).symbol
-    return f"{number:,} gave way to lines of more weight, the most by {most:.3f} {up}"
+    number, up = len(gave_way.vertices), elevation_symbol(survey)
+    return f"{number:,} gave way to lines of more weight, the most by {most:.3f}{up}"

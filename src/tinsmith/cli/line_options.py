@@ -56,6 +56,11 @@ LINE_OPTIONS = (
         help="Height of the water, or the column that holds it.",
     ),
     click.option(
+        "--lines-z-unit",
+        metavar="UNIT",
+        help="Unit of the elevations in the files of lines, where they do not say.",
+    ),
+    click.option(
         "--drape", is_flag=True, help="Take the heights of lines in files from the surface."
     ),
     click.option(

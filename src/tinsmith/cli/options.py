@@ -40,6 +40,7 @@ class Reading:
     """How the input is read; None leaves it to the reader."""
 
     crs: str | None = None
+    z_unit: str | None = None
     source_crs: str | None = None
     format: str | None = None
     columns: str | dict[str, str | int] | None = None
@@ -71,6 +72,7 @@ class Triangulating:
     erase: tuple[Path, ...] = ()
     water: tuple[Path, ...] = ()
     water_z: float | str | None = None
+    lines_z_unit: str | None = None
     drape: bool = False
     codes: bool = False
 
@@ -83,7 +85,13 @@ class Triangulating:
     def files(self) -> dict[str, Any]:
         """Options of :func:`tinsmith.io.with_lines`; empty if there are no files."""
         given = {name: getattr(self, name) for name in _FILES}
-        return given | {"water_z": self.water_z, "drape": self.drape} if any(given.values()) else {}
+        if not any(given.values()):
+            return {}
+        return given | {
+            "water_z": self.water_z,
+            "drape": self.drape,
+            "z_unit": self.lines_z_unit,
+        }
 
     @property
     def line_files(self) -> dict[str, tuple[Path, ...]]:
@@ -175,6 +183,12 @@ reading_options = _gathered(
         metavar="CRS",
         help="Coordinate reference system of points that name none, such as EPSG:32616; "
         "points in another one are reprojected to it.",
+    ),
+    click.option(
+        "--z-unit",
+        metavar="UNIT",
+        help="Unit of the elevations in the file, where it does not say: m, ft, 'US survey foot'. "
+        "Points that are reprojected get the unit of --crs.",
     ),
     click.option(
         "--source-crs", metavar="CRS", help="CRS that the points are in, if it is not --crs."

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
+from .streams import escape_unprintable
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
@@ -41,7 +43,7 @@ _MORE_PARTS = (".aux.xml", ".xml", ".ovr", ".msk", "-wal", "-shm", "-journal")
 
 def name_of(path: Path) -> str:
     """Return what a file to read is called in summaries."""
-    return "standard input" if path == STANDARD else str(path)
+    return "standard input" if path == STANDARD else escape_unprintable(str(path))
 
 
 def title_of(path: Path) -> str:
@@ -56,7 +58,7 @@ class Named(NamedTuple):
     place: str
 
 
-class _Name(click.ParamType):
+class _Name(click.ParamType["Path"]):
     """A file's name, of which ``-`` means the standard stream, and ``./-`` a file called so."""
 
     name = "file"

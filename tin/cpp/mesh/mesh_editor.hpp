@@ -6,6 +6,8 @@
 // so the result is a function of the points and the fixed edges, not of the way to it.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <utility>
@@ -230,6 +232,22 @@ class MeshEditor {
     return found;
   }
 
+  // How far v is from the nearest edge between two of its neighbours, in doubles: nothing that it
+  // can see, vertex or fixed edge, is nearer than the edges of its star.
+  double clearance(std::int32_t v) const {
+    double least = std::numeric_limits<double>::infinity();
+    const MeshEdge first = mesh_.leaving(v);
+    MeshEdge e = first;
+    do {
+      const std::int32_t a = mesh_.to(e), b = mesh_.corner(e);
+      if (a != kGhost && b != kGhost) {
+        least = std::min(least, square_to_segment(points_[v], points_[a], points_[b]));
+      }
+      e = mesh_.next_leaving(e);
+    } while (e != first);
+    return std::sqrt(least);
+  }
+
   // The corners left and right of the edge from a to b; empty if there is none or it is an outer
   // one.
   std::vector<std::int32_t> corners_beside(std::int32_t a, std::int32_t b) const {
@@ -241,6 +259,13 @@ class MeshEditor {
   }
 
  private:
+  static double square_to_segment(Point p, Point a, Point b) {
+    const double ux = b.x - a.x, uy = b.y - a.y, vx = p.x - a.x, vy = p.y - a.y;
+    const double share = std::clamp((ux * vx + uy * vy) / (ux * ux + uy * uy), 0.0, 1.0);
+    const double dx = vx - share * ux, dy = vy - share * uy;
+    return dx * dx + dy * dy;
+  }
+
   // Worth setting up in a large mesh only.
   std::int32_t landmark_near(Point p) {
     if (slots() < Landmarks::kDrawn) return kGhost;

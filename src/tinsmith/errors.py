@@ -1,0 +1,40 @@
+"""The root of all errors, and those that every package may raise. Imports nothing of tinsmith."""
+
+from __future__ import annotations
+
+__all__ = ["CrsError", "OptionError", "TinsmithError"]
+
+
+class TinsmithError(Exception):
+    """Root of every error that tinsmith raises on purpose; its text is one clear sentence."""
+
+
+class OptionError(TinsmithError, ValueError):
+    """An option outside what is allowed.
+
+    Attributes
+    ----------
+    option : str
+        Name of the parameter.
+    value : object
+        What was given.
+    """
+
+    def __init__(self, option: str, value: object, *, allowed: str) -> None:
+        super().__init__(f"Invalid {option} {value!r}: it must be {allowed}.")
+        self.option = option
+        self.value = value
+
+
+class CrsError(TinsmithError, ValueError):
+    """A coordinate reference system that is unknown, or that does not fit the purpose.
+
+    Attributes
+    ----------
+    crs : object
+        What was given.
+    """
+
+    def __init__(self, message: str, *, crs: object = None) -> None:
+        super().__init__(message)
+        self.crs = crs

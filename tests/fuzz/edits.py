@@ -1,0 +1,384 @@
+"""Edit sequences: after every edit the TIN is the fresh build of the inputs that are there.
+
+The inputs are tracked here, apart from the library: rows and lines as plain lists, changed as the
+docstrings of the edits say. Which rows stand at a vertex is read off ``vertex_of``; which given
+vertices of lines do, by their place.
+"""
+
+from __future__ import annotations
+
+import copy
+import pickle
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+import tinsmith as ts
+
+from .campaign import Campaign, Case
+from .coordinates import KINDS, coordinates
+
+ARRAYS = ("points", "triangles", "neighbors", "constrained")
+CHAINS = ("vertices", "offsets", "kinds", "sources", "names")
+POLICIES = ("last", "first", "mean", "lowest", "highest")
+OPERATIONS = (
+    "insert", "insert_old", "remove", "remove", "move", "set_z", "flip", "add_breakline",
+    "add_breakline", "remove_breakline", "undo", "copy",
+)  # fmt: skip
+DESERVED = (
+    "stands at", "goes with them", "stays at elevation", "would vanish", "No triangle",
+    "all others are in line", "between two triangles", "which must stay", "convex",
+    "lies outside the surface", "all its vertices at one place", "must hold",
+)  # fmt: skip
+"""Refusals that are no fresh build's."""
+
+
+@dataclass
+class Tracked:
+    """The inputs: rows by their lasting numbers (None is removed), lines, options."""
+
+    rows: list[list[float] | None]
+    lines: list[dict[str, Any]]
+    rings: dict[str, Any]
+    options: dict[str, Any]
+    before: list[Tracked] = field(default_factory=list)
+
+    def build(self) -> ts.TIN:
+        there = [row for row in self.rows if row is not None]
+        points = np.array(there, float).reshape(-1, 3)
+        lines = [ts.Breakline(**line) for line in self.lines]
+        rings = dict(self.rings)
+        rings["water"] = [ts.Water(ring, 3.0) for ring in rings.get("water", [])]
+        return ts.triangulate(points, breaklines=lines, **rings, **self.options)
+
+    def changed(self) -> Tracked:
+        """Return a copy to be changed; it remembers this one."""
+        new = copy.deepcopy(Tracked(self.rows, self.lines, self.rings, self.options))
+        new.before = [*self.before, self]
+        return new
+
+    def at(self, tin: ts.TIN, vertices: list[int]) -> list[int]:
+        return np.flatnonzero(np.isin(tin.vertex_of, vertices)).tolist()
+
+    def chains(self) -> list[list[list[float]]]:
+        """All lists of vertices of lines and rings, to be changed in place."""
+        return [line["coords"] for line in self.lines] + [
+            ring for kind in ("boundary", "holes", "water") for ring in self.rings.get(kind, [])
+        ]
+
+
+# ------------------------------------------------------------------------ generate
+
+
+def generate(rng: np.random.Generator) -> Case:
+    """Make a TIN with or without lines and rings, and a list of edits."""
+    kind = str(rng.choice([name for name in KINDS if name != "nearly_collinear"]))
+    pool = coordinates(rng, 60, kind).tolist()
+
+    def place() -> list[float]:
+        return list(pool[rng.integers(len(pool))])
+
+    def elevation() -> float:
+        return float(rng.integers(-9, 10))
+
+    def points(count: int) -> list[list[float]]:
+        return [[*place(), elevation()] for _ in range(count)]
+
+    def line() -> dict[str, Any]:
+        is_draped = rng.random() < 0.25
+        count = int(rng.integers(2, 5))
+        return {
+            "coords": [place() for _ in range(count)] if is_draped else points(count),
+            "kind": str(rng.choice(["hard", "soft"])),
+            "priority": int(rng.integers(0, 2)),
+            "name": str(rng.choice(["", "kerb"])),
+        }
+
+    case: Case = {
+        "rows": points(int(rng.integers(3, 25))),
+        "lines": [line() for _ in range(rng.integers(0, 4) if rng.random() < 0.6 else 0)],
+        "rings": {},
+        "options": {},
+    }
+    side = np.ptp(np.array(pool), axis=0).max()
+    if rng.random() < 0.15:
+        low, high = np.min(pool, axis=0), np.max(pool, axis=0)
+        cut = low + (high - low) * 0.3
+        ring = [[cut[0], cut[1]], [high[0], cut[1]], [high[0], high[1]], [cut[0], high[1]]]
+        kind_of_ring = str(rng.choice(["boundary", "holes", "erase", "water"]))
+        case["rings"] = {kind_of_ring: [[[float(x) for x in corner] for corner in ring]]}
+    if rng.random() < 0.1:
+        case["options"]["max_edge"] = float(side * rng.uniform(0.3, 1.0)) or 1.0
+    if rng.random() < 0.1:
+        case["options"]["snap"] = float(side * rng.choice([1e-3, 0.02, 0.1]))
+    if rng.random() < 0.2:
+        case["options"]["duplicates"] = str(rng.choice(["first", "last", "lowest", "error"]))
+    case["edits"] = [
+        _edit(str(rng.choice(OPERATIONS)), rng, points, line)
+        for _ in range(int(rng.integers(1, 15)))
+    ]
+    return case
+
+
+def _edit(operation: str, rng: np.random.Generator, points: Any, line: Any) -> dict[str, Any]:
+    return {
+        "op": operation,
+        "at": [float(u) for u in rng.random(int(rng.integers(1, 3)))],
+        "points": points(int(rng.integers(1, 4))),
+        "line": line(),
+        "policy": str(rng.choice(POLICIES)),
+        "crossing": "error" if rng.random() < 0.1 else "split",
+        "by": int(rng.integers(3)),
+    }
+
+
+# ------------------------------------------------------------------------- examine
+
+
+def examine(case: Case) -> str:
+    """Do the edits, and compare with a fresh build after each of them."""
+    tracked = Tracked(
+        [[*map(float, row)] for row in case["rows"]], case["lines"], case["rings"], case["options"]
+    )
+    try:
+        tin = tracked.build()
+    except ts.TinsmithError:
+        return "refused at first"
+    done = 0
+    for edit in case["edits"]:
+        tin, tracked, is_done = _step(tin, tracked, edit)
+        done += is_done
+    return "edited" if done else "no edit"
+
+
+def _step(tin: ts.TIN, tracked: Tracked, edit: dict[str, Any]) -> tuple[ts.TIN, Tracked, bool]:
+    if edit["op"] == "copy":
+        return _copied(tin, tracked, edit["by"]), tracked, False
+    if edit["op"] == "undo":
+        return _undone(tin, tracked, len(edit["at"]))
+    wanted = _prepare(tin, tracked, edit)
+    if wanted is None:
+        return tin, tracked, False
+    new, call, is_whole = wanted
+    keep = copy.copy(tin)
+    try:
+        call(tin)
+    except ts.TinsmithError as error:
+        _require_deserved(error, new, edit)
+        require_same(tin, tracked, keep)
+        return tin, tracked, False
+    fresh = new.build()
+    require_fresh(tin, new, fresh)
+    require_fresh(keep, tracked, keep)
+    if is_whole:
+        ts.check(tin, level=3).raise_if_failed()
+    return tin, new, True
+
+
+def _require_deserved(error: ts.TinsmithError, new: Tracked, edit: dict[str, Any]) -> None:
+    if any(words in str(error) for words in DESERVED) or edit["crossing"] == "error":
+        return
+    try:
+        new.build()
+    except ts.TinsmithError:
+        return
+    raise AssertionError(f"{edit['op']} was refused, but a fresh build takes it: {error}")
+
+
+def _copied(tin: ts.TIN, tracked: Tracked, by: int) -> ts.TIN:
+    other = [copy.copy, copy.deepcopy, lambda one: pickle.loads(pickle.dumps(one))][by](tin)
+    require_same(other, tracked, tin)
+    return other
+
+
+def _undone(tin: ts.TIN, tracked: Tracked, count: int) -> tuple[ts.TIN, Tracked, bool]:
+    count = min(count, len(tracked.before))
+    if count == 0:
+        return tin, tracked, False
+    tin.undo(count)
+    tracked = tracked.before[-count]
+    require_fresh(tin, tracked, tracked.build())
+    assert len(tin.edits) == len(tracked.before)
+    return tin, tracked, True
+
+
+def _prepare(tin: ts.TIN, tracked: Tracked, edit: dict[str, Any]) -> Any:
+    """Return the inputs after an edit, what does it, and whether ``check`` is to agree."""
+    new = tracked.changed()
+    vertices = list(dict.fromkeys(int(u * len(tin.points)) for u in edit["at"]))
+    operation = edit["op"].removesuffix("_old")
+    if new.options.get("snap") and operation in ("remove", "move", "set_z", "flip", "insert"):
+        return None if operation != "insert" else _insert_apart(tin, new, edit)
+    if operation == "insert":
+        points = [list(point) for point in edit["points"]]
+        if edit["op"] == "insert_old":
+            points[0][:2] = tin.points[vertices[0], :2].tolist()
+        return _insert(tin, new, points, edit["policy"])
+    if operation == "add_breakline":
+        new.lines.append(edit["line"])
+        arguments = {**edit["line"], "crossing": edit["crossing"]}
+        return new, lambda one: one.add_breakline(**arguments), True
+    if operation == "remove_breakline":
+        if not new.lines:
+            return None
+        number = int(edit["at"][0] * len(new.lines))
+        del new.lines[number]
+        return new, lambda one: one.remove_breakline(number), True
+    return {"remove": _remove, "move": _move, "set_z": _set_z, "flip": _flip}[operation](
+        tin, new, vertices, edit
+    )
+
+
+def _insert_apart(tin: ts.TIN, new: Tracked, edit: dict[str, Any]) -> Any:
+    points = edit["points"]
+    at = [[*p[:2]] for p in points] + tin.points[:, :2].tolist()
+    if len({tuple(p) for p in at}) < len(at):
+        return None
+    new.rows += points
+    return new, lambda one: one.insert(points, duplicates=edit["policy"]), True
+
+
+def _insert(tin: ts.TIN, new: Tracked, points: list[list[float]], policy: str) -> Any:
+    own = {tuple(p[:2]): (v, p[2]) for v, p in enumerate(tin.points.tolist())}
+    here = {place: z for place, (_, z) in own.items()}
+    counts: dict[tuple[float, ...], int] = {}
+    for x, y, z in points:
+        old = here.get((x, y))
+        counts[x, y] = counts.get((x, y), 0) + 1
+        if old is not None:
+            z = {"last": z, "first": old, "lowest": min(z, old), "highest": max(z, old),
+                 "mean": min(z, old) + abs(z - old) / 2}[policy]  # fmt: skip
+        here[x, y] = z
+    for place in counts:
+        if place in own:
+            _lift(tin, new, own[place][0], here[place])
+    new.rows += [[x, y, here[x, y]] for x, y, _ in points]
+    return new, lambda one: one.insert(points, duplicates=policy), True
+
+
+def _lift(tin: ts.TIN, new: Tracked, vertex: int, z: float) -> bool:
+    """Give the rows and line vertices at a vertex an elevation; tell whether there are any."""
+    found = False
+    for row in new.at(tin, [vertex]):
+        new.rows[row][2] = z
+        found = True
+    for chain in new.chains():
+        for point in chain:
+            if len(point) == 3 and point[:2] == tin.points[vertex, :2].tolist():
+                point[2] = z
+                found = True
+    return found
+
+
+def _remove(tin: ts.TIN, new: Tracked, vertices: list[int], edit: dict[str, Any]) -> Any:
+    places = tin.points[vertices, :2].tolist()
+    for row in new.at(tin, vertices):
+        new.rows[row] = None
+    for line in new.lines:
+        line["coords"] = _without(line["coords"], places, can_close=True)
+    for kind in ("boundary", "holes", "water"):
+        rings = new.rings.get(kind, [])
+        new.rings |= {kind: [_without(r, places, can_close=False) for r in rings]} if rings else {}
+    return new, lambda one: one.remove(vertices), True
+
+
+def _without(chain: list[list[float]], places: list[list[float]], *, can_close: bool) -> Any:
+    is_closed = can_close and chain[0][:2] == chain[-1][:2]
+    rest = [point for point in chain if point[:2] not in places]
+    if is_closed and chain[0][:2] in places and rest:
+        rest.append(list(rest[0]))
+    return rest
+
+
+def _move(tin: ts.TIN, new: Tracked, vertices: list[int], edit: dict[str, Any]) -> Any:
+    vertex, point = vertices[0], edit["points"][0]
+    place = tin.points[vertex, :2].tolist()
+    for row in new.at(tin, [vertex]):
+        new.rows[row] = list(point)
+    for chain in new.chains():
+        for own in chain:
+            if own[:2] == place:
+                own[:] = point[: len(own)]
+    return new, lambda one: one.move(vertex, point), True
+
+
+def _set_z(tin: ts.TIN, new: Tracked, vertices: list[int], edit: dict[str, Any]) -> Any:
+    z = edit["points"][0][2]
+    made = [vertex for vertex in sorted(vertices) if not _lift(tin, new, vertex, z)]
+    new.rows += [[*tin.points[vertex, :2].tolist(), z] for vertex in made]
+    return new, lambda one: one.set_z(vertices, z), True
+
+
+def _flip(tin: ts.TIN, new: Tracked, vertices: list[int], edit: dict[str, Any]) -> Any:
+    a, b = tin.edges[int(edit["at"][0] * len(tin.edges))].tolist()
+    beside = [t for t in tin.triangles.tolist() if a in t and b in t]
+    own = [
+        int(source)
+        for chain, source, name in zip(
+            tin.lines.chains(), tin.lines.sources, tin.lines.names, strict=True
+        )
+        if any(
+            {a, b} == set(step) for step in zip(chain.tolist(), chain.tolist()[1:], strict=False)
+        )
+        and name == "flip"
+    ]
+    if own:
+        new.lines = [line for number, line in enumerate(new.lines) if number not in own]
+    elif len(beside) == 2:
+        left, right = (v for t in beside for v in t if v not in (a, b))
+        coords = sorted(tin.points[[left, right]].tolist())
+        ends = tin.points[[left, right]].tolist()
+        new.lines.append({"coords": ends or coords, "kind": "soft", "name": "flip"})
+    return new, lambda one: one.flip(a, b), True
+
+
+# ------------------------------------------------------------------------- compare
+
+
+def require_fresh(tin: ts.TIN, tracked: Tracked, fresh: ts.TIN) -> None:
+    """Compare everything with the build of the inputs."""
+    for name in ARRAYS:
+        _require_equal(name, getattr(tin, name), getattr(fresh, name))
+    for name in CHAINS:
+        _require_equal(f"lines.{name}", getattr(tin.lines, name), getattr(fresh.lines, name))
+    if fresh is tin:
+        return
+    there = np.array([n for n, row in enumerate(tracked.rows) if row is not None], int)
+    vertex_of = np.full(len(tracked.rows), -1)
+    vertex_of[there] = fresh.vertex_of
+    _require_equal("vertex_of", tin.vertex_of, vertex_of)
+    _require_same_report(tin.report, fresh.report, there)
+
+
+def _require_same_report(found: ts.Report, fresh: ts.Report, there: Any) -> None:
+    for group in ("crossings", "overruled"):
+        for name, own, wanted in zip(
+            getattr(found, group)._fields, getattr(found, group), getattr(fresh, group), strict=True
+        ):
+            _require_equal(f"{group}.{name}", own, wanted)
+    wanted_merges = [m._replace(rows=tuple(there[list(m.rows)].tolist())) for m in fresh.merges()]
+    assert list(found.merges()) == wanted_merges, "merges"
+    assert (found.n_vertices, found.n_triangles) == (fresh.n_vertices, fresh.n_triangles)
+    assert (found.n_lines, found.line_labels) == (fresh.n_lines, fresh.line_labels)
+    assert tuple(found.notes) == tuple(fresh.notes)
+    own, wanted = found.to_dict()["left_out"], fresh.to_dict()["left_out"]
+    own.pop("removed by an edit", None)
+    assert own == {why: there[rows].tolist() for why, rows in wanted.items()}, "left_out"
+
+
+def require_same(tin: ts.TIN, tracked: Tracked, other: ts.TIN) -> None:
+    """Compare everything with a TIN of the same history."""
+    require_fresh(tin, tracked, other) if other is tin else None
+    for name in (*ARRAYS, "vertex_of"):
+        _require_equal(name, getattr(tin, name), getattr(other, name))
+    assert tin.report.to_dict() == other.report.to_dict(), "report"
+
+
+def _require_equal(name: str, found: Any, wanted: Any) -> None:
+    found, wanted = np.asarray(found), np.asarray(wanted)
+    is_equal = np.array_equal(found, wanted, equal_nan=found.dtype.kind == "f")
+    assert is_equal, f"{name}: {found.tolist()} is not {wanted.tolist()}"
+
+
+CAMPAIGNS = (Campaign("edits", "edit sequences against a fresh build", generate, examine),)
