@@ -163,3 +163,61 @@ def test_check_asks_constrained_edges_too_if_they_are_to_conform():
     assert problem.kind == "delaunay"
     assert problem.count == 1
     assert ts.check(plain, level=2, conforming=True).ok
+
+
+# ------------------------------------------------- the same campaign, without conforming
+
+
+def test_draped_line_over_a_nearly_collinear_hull_loses_no_vertex():
+    """The rim, bent by a rounding, would leave a whole vertex outside."""
+    lines = [
+        [
+            [23.100000000000005, 10799999.999999994, -4.0],
+            [7.700000000000001, 5400000.000000002, 1.0],
+        ],
+        [[1.9999999999999987, 33333.333333333336], [23.10000000000001, 10800000.000000002]],
+        [
+            [0.9999999999999998, 33333.33333333334, 1.0],
+            [2.000000000000001, 33333.33333333333, -1.0],
+        ],
+    ]
+    tin = ts.triangulate(NONE, breaklines=lines)
+    ts.check(tin, breaklines=lines).raise_if_failed()
+    there = set(map(tuple, tin.points[:, :2].tolist()))
+    assert all(tuple(v[:2]) in there for line in (lines[0], lines[2]) for v in line)
+
+
+def test_check_follows_a_draped_line_that_returns_along_itself():
+    there = [512345.06000000006, 5403214.769999999]
+    lines = [
+        [there, [512498.91, 5403385.78], there],
+        [
+            [512373.62000000005, 5403285.140000001, -2.0],
+            [512508.1, 5403220.77, -5.0],
+            [512391.92, 5403338.34, 5.0],
+        ],
+    ]
+    tin = ts.triangulate(NONE, breaklines=lines)
+    ts.check(tin, breaklines=lines).raise_if_failed()
+
+
+def test_elevation_of_snapped_parts_of_a_draped_line_has_no_direction():
+    ridge = [[975.79, -218.69, 3.0], [0.96, 0.27, -4.0], [-871.98, 489.54, 1.0]]
+    draped = [[-52.0, -39.0], [812.25, 583.31], [0.0, -65.0]]
+    tins = [
+        ts.triangulate(NONE, breaklines=[ridge[::way], draped[::way]], snap=99.0) for way in (1, -1)
+    ]
+    assert faces(tins[0]) == faces(tins[1])
+
+
+def test_ring_with_two_elevations_where_it_closes_has_the_lower_one_both_ways():
+    ring = [[0, 0, 3.0], [0, 0, 1.0], [9, 1, 0.0], [8, 9, 4.0]]
+    for corners in (ring, [ring[0], *ring[:0:-1]]):
+        tin = ts.triangulate([[-5, -5, 0], [15, -5, 0], [0, 20, 0]], holes=[corners])
+        assert (0.0, 0.0, 1.0) in set(map(tuple, tin.points.tolist()))
+
+
+@pytest.mark.parametrize("ring", [[[0, 0], [0, 0], [5, 5]], [[0, 0], [5, 5], [0, 0]]])
+def test_ring_of_two_corners_is_refused_wherever_it_begins(ring):
+    with pytest.raises(ts.LinesError, match="two corners: a ring needs three"):
+        ts.triangulate([[-9, -9, 0], [15, -5, 0], [0, 20, 0]], holes=[ring])

@@ -187,3 +187,8 @@ def test_geometries_and_a_column_of_elevations():
     frame["geometry"] = shapely.points(np.add(XYZ, [0, 0, 100]))
     with pytest.raises(ts.PointsError, match="elevations in their geometries and others"):
         ts.triangulate(frame)
+
+
+def test_masked_table_without_rows():
+    with pytest.raises(ts.PointsError, match="0 points cannot make a TIN"):
+        ts.triangulate(np.ma.array(np.zeros((0, 3))))

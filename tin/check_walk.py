@@ -151,8 +151,8 @@ class _Walker:
         off = np.maximum(distance(first, a, b), distance(second, a, b))
         begin, end = _along(first, a, b), _along(second, a, b)
         off[end < begin - self._unit] = np.inf
-        if here is not None and begin[:1] < _along(np.array(self._places[here]), a[:1], b[:1]):
-            off[0] = np.inf
+        if here is not None and len(begin):  # not behind the end of the chain before
+            off[:1][begin[:1] < _along(np.array(self._places[here]), a[:1], b[:1])] = np.inf
         best = off.min(initial=np.inf)
         if best > (1 + UNSEEN_CUTS + len(chain)) * self._unit:
             return None

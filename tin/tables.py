@@ -89,7 +89,8 @@ def _unnamed(given: Any, what: str) -> Table:
         return Table(_as_numbers(given, what))
     mask = np.ma.getmaskarray(given)
     values = _as_numbers(np.where(mask, 0, given.data), what)
-    is_masked = mask.reshape(len(mask), -1).any(axis=1) if mask.ndim else mask
+    rows = np.atleast_1d(mask)
+    is_masked = np.asarray(rows.any(axis=tuple(range(1, rows.ndim))), np.bool_)
     return Table(values, is_masked if is_masked.any() else None)
 
 
