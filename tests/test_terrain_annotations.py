@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import math
 
 import numpy as np
@@ -230,3 +231,19 @@ def test_the_sun_stands_in_the_northwest_and_the_sky_around():
     assert all(strength <= 0.10 for *_, strength in found[1:])
     assert max(height for _, height, _ in found) == pytest.approx(90.0, abs=1e-4)
     assert {round(azimuth) for azimuth, *_ in found[1:]} == {0, 45, 225}
+
+
+def test_the_settings_of_vtk_come_back_after_drawing():
+    from vtkmodules.vtkRenderingFreeType import vtkMathTextFreeTypeTextRenderer
+
+    drawing = importlib.import_module("tinsmith.terrain.preview")
+    words = vtkMathTextFreeTypeTextRenderer.GetInstance()
+    before = words.GetDefaultBackend()
+    try:
+        for backend in (words.MathText, words.FreeType):
+            words.SetDefaultBackend(backend)
+            with drawing._plain_vtk():
+                assert words.GetDefaultBackend() == words.FreeType
+            assert words.GetDefaultBackend() == backend
+    finally:
+        words.SetDefaultBackend(before)
