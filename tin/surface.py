@@ -444,10 +444,10 @@ def _turned_counter_clockwise(
     flat = turn == 0
     if flat.any():
         row, count = int(np.argmax(flat)), int(flat.sum())
+        what = "triangle has" if count == 1 else "triangles have"
         raise PointsError(
-            f"{count} {'triangle has' if count == 1 else 'triangles have'} no area in the plane "
-            f"(first: triangle {row}, vertices {triangles[row].tolist()}): a TIN needs triangles "
-            "seen from above.",
+            f"{count} {what} no area in the plane (first: triangle {row}, "
+            f"vertices {triangles[row].tolist()}): a TIN needs triangles seen from above.",
             rows=np.flatnonzero(flat)[:5],
         )
     clockwise = turn < 0
