@@ -29,7 +29,7 @@ def shown(value: Any) -> str:
         value = value.item()
     if isinstance(value, np.ndarray):
         return f"an array of shape {value.shape}"
-    if type(value) in (list, tuple):
+    if type(value) in (list, tuple) and value:
         more = ", ..." if len(value) > _SHOWN else ""
         return _shortened(f"[{', '.join(shown(item) for item in value[:_SHOWN])}{more}]")
     if isinstance(value, int) and not isinstance(value, bool) and value.bit_length() > 200:
