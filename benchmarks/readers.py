@@ -65,10 +65,14 @@ def _measure(
     repeats: int,
     outcome: Outcome,
     require: Callable[[Any, Any, str], None],
+    **options: Any,
 ) -> None:
-    """Time tinsmith and the peers on one file; ``require(ours, theirs, tool)`` compares."""
+    """Time tinsmith and the peers on one file; ``require(ours, theirs, tool)`` compares.
+
+    ``options`` are those of ``ts.read``.
+    """
     present = outcome.present({tool: peer.module for tool, peer in peers.items()})
-    calls: dict[str, Callable[[], Any]] = {OURS: lambda: ts.read(path)}
+    calls: dict[str, Callable[[], Any]] = {OURS: lambda: ts.read(path, **options)}
     calls |= {tool: _call(peers[tool], path) for tool in present}
     for call in calls.values():
         call()  # imports, file cache
@@ -102,7 +106,7 @@ def _survey(folder: Path, n: int, repeats: int, outcome: Outcome) -> None:
         tolerance = 1e-15 if tool == "pandas.read_csv" else 0.0
         np.testing.assert_allclose(_northing_first(ours.points), theirs, rtol=tolerance, atol=0)
 
-    _measure(SURVEY, path, n, peers, repeats, outcome, require)
+    _measure(SURVEY, path, n, peers, repeats, outcome, require, columns="PNEZD")
 
 
 def _write_pnezd(points: Floats, path: Path) -> None:

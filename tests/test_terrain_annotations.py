@@ -56,7 +56,7 @@ def annotated(view, *, extent=EXTENT, elevations=(312.4, 398.6), exaggeration=2.
     camera, overlay = pv.Camera(), Recorder()
     square = np.array([[x, y, 0.0] for x in (0, extent) for y in (0, extent)])
     aim(camera, square, view=view, frame=SHEET.frame, size=(SHEET.width, SHEET.height))
-    caption = Caption("Title", "Subtitle", exaggeration, elevations, METRE, METRE)
+    caption = Caption("Title", "Subtitle", exaggeration, elevations, "m", METRE)
     annotate(overlay, SHEET, caption, camera)
     return overlay, camera
 
@@ -204,7 +204,7 @@ def test_a_title_too_long_for_the_sheet_is_cut_and_shows_it():
     overlay = Recorder()
     camera = pv.Camera()
     aim(camera, np.eye(3), view=VIEWS["top"], frame=SHEET.frame, size=(1400, 900))
-    caption = Caption("word " * 60, "short", 1.0, (0.0, 1.0), METRE, METRE)
+    caption = Caption("word " * 60, "short", 1.0, (0.0, 1.0), "m", METRE)
     annotate(overlay, SHEET, caption, camera)
     (title,) = [said for said, *_ in overlay.texts if said.startswith("word")]
     assert title.endswith("...")

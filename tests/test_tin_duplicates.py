@@ -131,6 +131,7 @@ def test_report_is_plain_data():
         "overruled": [],
         "skipped": {},
         "notes": [],
+        "unmended": [],
         "edits": [],
     }
     assert repr(tin.report) == "<Report: 5 rows, 4 vertices, 2 triangles, 1 row merged away>"

@@ -196,11 +196,14 @@ def test_input_stays_writable():
     assert tin.points[0].tolist() == [0, 0, 5]
 
 
-def test_crs_of_the_survey_unless_named():
+def test_crs_of_the_survey_and_no_other():
     survey = ts.Survey(points=GOOD, crs="EPSG:32616")
     assert ts.triangulate(survey).crs == "EPSG:32616"
-    assert ts.triangulate(survey, crs="EPSG:25832").crs == "EPSG:25832"
+    assert ts.triangulate(survey, crs="EPSG:32616").crs == "EPSG:32616"
+    assert ts.triangulate(GOOD, crs="EPSG:25832").crs == "EPSG:25832"
     assert ts.triangulate(GOOD).crs is None
+    with pytest.raises(ts.TinsmithError, match="EPSG:32616, and EPSG:25832 is another"):
+        ts.triangulate(survey, crs="EPSG:25832")
 
 
 def test_skipped_cells_reach_the_report():

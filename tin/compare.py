@@ -175,7 +175,7 @@ class Comparison:
 
 
 def compare(points: Survey | ArrayLike, *, limit: int = MOST_POINTS) -> Comparison:
-    r"""Triangulate points by the paper's algorithms and by the exact kernel, and judge the results.
+    """Triangulate points by the paper's algorithms and by the exact kernel, and judge the results.
 
     Parameters
     ----------
@@ -204,9 +204,9 @@ def compare(points: Survey | ArrayLike, *, limit: int = MOST_POINTS) -> Comparis
 
     Examples
     --------
-    >>> compare([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8], [2, 1, 9]])
-    <Comparison: 5 points, 4 triangles due; original 4, improved 4, improved (open) 1, \
-improved (ties) 4, exact 4>
+    >>> found = compare([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8], [2, 1, 9]])
+    >>> [(one.name, len(one.triangles)) for one in found.outcomes]
+    [('original', 4), ('improved', 4), ('improved (open)', 1), ('improved (ties)', 4), ('exact', 4)]
     """
     rows = as_points(points.points if isinstance(points, Survey) else points)
     if not (is_whole_number(limit) and limit > 0):
