@@ -20,6 +20,8 @@ _WGS84 = "EPSG:4326"
 _MARGIN_DEGREES = 2.0
 """Surveys at the edge of a zone keep its CRS some way beyond; two degrees are a third of a zone."""
 _SPREAD = 64
+_ORIGIN_METRES = 20_000.0
+"""Coordinates of a local grid, or degrees, are as small as this; UTM's begin at 166,000."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,24 +59,36 @@ class AreaOfUse:
             f"latitude {area.south:g} to {area.north:g})"
         )
 
-    def covers(self, xy: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Whether each point lies in all areas, a margin of two degrees around them included.
+    def covers(
+        self, xy: NDArray[np.float64], *, margin: float = _MARGIN_DEGREES
+    ) -> NDArray[np.bool_]:
+        """Whether each point lies in all areas, a margin around them included.
 
         Parameters
         ----------
         xy : (n, 2) float64 array
             Easting (longitude), northing (latitude).
+        margin : float
+            Degrees.
         """
         longitude, latitude = _degrees(self.source, xy)
         inside: NDArray[np.bool_] = np.isfinite(longitude) & np.isfinite(latitude)
         for crs in self.targets:
-            inside &= _lies_in(_area(crs), longitude, latitude)
+            inside &= _lies_in(_area(crs), longitude, latitude, margin)
         return inside
 
     def covers_most(self, xy: NDArray[np.float64]) -> bool:
         """Whether more than half of some points, spread over all of them, lie in the areas."""
         some = xy[:: max(1, len(xy) // _SPREAD)]
         return bool(2 * self.covers(some).sum() > len(some))
+
+    def is_local(self, xy: NDArray[np.float64]) -> bool:
+        """Whether points lie about the origin of the coordinates, and in no area but its margin."""
+        if len(xy) == 0 or self.source.is_geographic:
+            return False
+        if np.abs(xy).max() * self.source.horizontal_unit.metres > _ORIGIN_METRES:
+            return False
+        return not self.covers(xy[_outermost(xy)], margin=0.0).any()
 
     def outside(self, xy: NDArray[np.float64]) -> NDArray[np.int64]:
         """Return the rows that lie outside; all are looked at only if the outermost do not fit."""
@@ -133,9 +147,11 @@ def _width(area: pyproj.aoi.AreaOfUse) -> float:
 
 
 def _lies_in(
-    area: pyproj.aoi.AreaOfUse, longitude: NDArray[Any], latitude: NDArray[Any]
+    area: pyproj.aoi.AreaOfUse,
+    longitude: NDArray[Any],
+    latitude: NDArray[Any],
+    margin: float,
 ) -> NDArray[np.bool_]:
-    margin = _MARGIN_DEGREES
     span = (area.east - area.west) % 360.0 or 360.0
     with np.errstate(invalid="ignore"):
         is_between = (longitude - area.west + margin) % 360.0 <= span + 2 * margin

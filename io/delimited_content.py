@@ -264,17 +264,17 @@ def _placed(
 def _customary(
     left: Sequence[_Candidate], columns: Sequence[Column], *, is_scan: bool, is_announced: bool
 ) -> tuple[_Candidate | None, str]:
-    """Return x, y, z where this is the custom: files that say so, and tables of numbers alone."""
+    """Return x, y, z where that is the convention: files that say so, and numbers alone."""
     xyz = next((one for one in left if one.start == 0 and not one.is_northing_first), None)
     if xyz is None or len(left) < 2:
         return None, ""
     is_numbered = any(one.start > 0 for one in left)
     first, second, third = (column.is_whole for column in columns[:3])
     if is_announced or (is_scan and (not is_numbered or (first == second != third))):
-        return xyz, ", the custom for files of this kind"
+        return xyz, ", the convention for files of this kind"
     may_be_code = len(columns) in (4, 5) and columns[3].is_whole
     has_other = is_numbered or xyz.word != "XYZ" or may_be_code
-    return (None, "") if has_other else (xyz, ", the custom for columns of numbers alone")
+    return (None, "") if has_other else (xyz, ", the convention for columns of numbers alone")
 
 
 def _reason(candidates: Iterable[_Candidate], area: AreaOfUse | None) -> str:

@@ -60,8 +60,17 @@ def require_in_area(
     CrsError
         If most of them do, and with coordinates exchanged most would not.
     """
-    outside = np.empty(0, np.int64) if area is None else area.outside(points[:, :2])
-    if area is None or len(outside) == 0:
+    if area is None:
+        return []
+    if area.is_local(points[:, :2]):
+        x, y = points[0, :2].tolist()
+        return [
+            f"The points lie about the origin of {area.source.label} (first: easting {x:.10g}, "
+            f"northing {y:.10g}), outside its area of use: check that they are no local "
+            "coordinates, and no degrees."
+        ]
+    outside = area.outside(points[:, :2])
+    if len(outside) == 0:
         return []
     if 2 * len(outside) > len(points):
         _require_no_exchange(points, columns, area, path)

@@ -192,7 +192,7 @@ def examine(case: Case) -> str:
         return "read"
     if case["groups"] and any("usual between semicolons" in note for note in found.notes):
         return "read by custom"
-    is_custom = any("the custom for" in note for note in found.notes)
+    is_custom = any("the convention for" in note for note in found.notes)
     assert is_custom, f"other points, and the notes say {found.notes}"
     assert case["layout"].startswith("NEZ")
     assert np.array_equal(found.points[:, [1, 0, 2]], expected), "other points by custom"
