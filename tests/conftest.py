@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hypothesis
 import pytest
 from no_skips import (  # noqa: F401 - hooks
     pytest_addoption,
@@ -11,6 +12,10 @@ from no_skips import (  # noqa: F401 - hooks
 
 from tinsmith.terrain import opengl
 from tinsmith.tin import TinsmithError
+
+# A timing is never a test; a test that hangs ends at pytest's own limit.
+hypothesis.settings.register_profile("tinsmith", deadline=None)
+hypothesis.settings.load_profile("tinsmith")
 
 
 @pytest.fixture(scope="session")

@@ -116,9 +116,7 @@ def text_of(layout, delimiter, decimal, rows, line_end, is_quoted):
     return buffer.getvalue()
 
 
-@settings(
-    max_examples=250, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
-)
+@settings(max_examples=250, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(table=tables())
 def test_every_table_reads_as_csv_and_float_say(survey, table):
     layout, _, _, rows, *_ = table
@@ -138,9 +136,7 @@ def test_every_table_reads_as_csv_and_float_say(survey, table):
         assert found.attributes["intensity"].tolist() == [int(row[-1]) for row in rows]
 
 
-@settings(
-    max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
-)
+@settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(
     values=st.lists(
         st.floats(allow_nan=False, allow_infinity=False, width=64), min_size=9, max_size=30
@@ -580,9 +576,7 @@ def test_quotes_as_surveyors_write_them(survey):
     assert found.points.tolist() == [[float(cell) for cell in row[:3]] for row in oracle]
 
 
-@settings(
-    max_examples=200, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
-)
+@settings(max_examples=200, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(tails=st.lists(st.text('a",b ', max_size=7), min_size=1, max_size=4))
 def test_every_pile_of_quotes_reads_as_csv_says_or_is_refused(survey, tails):
     lines = [f"{i},2.5,3.5,{tail}" for i, tail in enumerate(tails)]
@@ -863,9 +857,7 @@ def test_source_crs_is_left_for_another(survey):
 values = st.floats(allow_nan=False, allow_infinity=False)
 
 
-@settings(
-    max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
-)
+@settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(
     points=st.lists(st.tuples(values, values, values), min_size=1, max_size=8),
     words=st.data(),

@@ -90,7 +90,7 @@ def test_stl_comes_back_within_single_precision(tmp_path):
 doubles = st.floats(-1e9, 1e9, allow_nan=False).filter(lambda x: x == 0 or abs(x) > 1e-9)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(points=st.lists(st.tuples(doubles, doubles, doubles), min_size=3, max_size=8))
 def test_any_doubles_come_back_bit_by_bit(tmp_path_factory, points):
     try:

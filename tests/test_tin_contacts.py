@@ -47,7 +47,7 @@ def bundle(rng, n):
     return xy, as_pairs(number)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(st.integers(0, 2**32 - 1), st.sampled_from(DATA), st.integers(1, 3))
 def test_contacts_of_all_pairs(seed, name, threads):
     xy, segments = drawn(name, np.random.default_rng(seed))
@@ -60,7 +60,7 @@ def test_contacts_of_all_pairs(seed, name, threads):
     assert [pairs.tolist() for pairs in together] == [crossings, touches]
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.integers(0, 2**32 - 1), st.sampled_from(DATA))
 def test_only_what_is_new(seed, name):
     rng = np.random.default_rng(seed)
@@ -157,7 +157,7 @@ def test_vertex_that_would_make_a_longer_part_touches_nothing():
     assert near([0.5, 0.8], 0.85, ends=((0, 0), (1, 0)))
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=80)
 @given(st.integers(0, 2**32 - 1), st.sampled_from([0.1, 0.7, 1.5]), st.booleans())
 def test_touches_within_a_distance_of_all_pairs(seed, distance, is_utm):
     rng = np.random.default_rng(seed)
@@ -199,7 +199,7 @@ def test_a_rounding_counts_in_units_of_the_segments_own_coordinates(units, is_ne
 # -------------------------------------------------------------------- where they meet
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(st.integers(0, 2**32 - 1), st.sampled_from(DATA))
 def test_meeting_places_are_the_true_ones_rounded_once(seed, name):
     """Rectangles' diagonals meet in the middle between two doubles: rounded to even."""

@@ -181,7 +181,7 @@ class TestAgainstDefinition:
 small_place = st.tuples(st.integers(0, 6), st.integers(0, 6))
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(
     st.lists(small_place, min_size=3, max_size=20, unique=True),
     st.lists(st.tuples(st.integers(-1, 13), st.integers(-1, 13)), min_size=1, max_size=40),
@@ -199,7 +199,7 @@ def test_places_on_a_small_grid(points, queries, frame):
     np.testing.assert_array_equal(tin.locate(xy), locate_by_definition(tin, xy))
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.integers(0, 2**32 - 1), st.floats(0.1, 0.9))
 def test_surface_with_triangles_torn_out(seed, share):
     random = rng(seed)

@@ -175,7 +175,7 @@ def test_heights_stay_within_the_steps_own():
         assert set(part.tolist()) == {z}
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.integers(0, 2**32 - 1))
 def test_heights_are_linear_and_the_rule_chooses_one(seed):
     rng = np.random.default_rng(seed)
@@ -289,7 +289,7 @@ def drawn_places(name, rng):
 NAMES = ["small_grid", "utm_raster", "nearly_raster", "random"]
 
 
-@settings(max_examples=120, deadline=None)
+@settings(max_examples=120)
 @given(st.integers(0, 2**32 - 1), st.sampled_from(NAMES))
 def test_any_lines_in_any_order_and_direction(seed, name):
     rng = np.random.default_rng(seed)
@@ -299,7 +299,7 @@ def test_any_lines_in_any_order_and_direction(seed, name):
     require_sound(xy, lines, result)
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=80)
 @given(st.integers(0, 2**32 - 1), st.sampled_from(NAMES), st.sampled_from([0.05, 0.4, 1.2, 20.0]))
 def test_any_lines_within_a_distance(seed, name, snap):
     rng = np.random.default_rng(seed)

@@ -158,7 +158,7 @@ def finished(uses):
     list(zip(ALL, [widest, closest_or_widest, closest, widest_then_closest], strict=True)),
     ids=["original", "improved", "open", "ties"],
 )
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     places=st.lists(
         st.tuples(st.integers(0, 6), st.integers(0, 6)), min_size=4, max_size=10, unique=True
@@ -352,7 +352,7 @@ def small_grids():
 
 
 @pytest.mark.parametrize("grow", ALL)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(places=small_grids())
 def test_ends_on_small_grids_and_uses_no_edge_thrice(grow, places):
     distinct = list(dict.fromkeys(places))

@@ -74,7 +74,7 @@ def test_no_ring_and_no_place():
     assert sides([], [SQUARE]).tolist() == []
 
 
-@settings(max_examples=120, deadline=None)
+@settings(max_examples=120)
 @given(st.integers(0, 2**32 - 1), st.integers(2, 8), st.booleans())
 def test_any_rings_on_a_small_grid(seed, side, is_utm):
     """Edges overlap, cross, and run through corners: parity is defined all the same."""

@@ -105,7 +105,7 @@ def assert_nearest(diagram, points, count=2000, seed=5):
 # ------------------------------------------------------------------ second opinions
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     st.lists(st.tuples(st.integers(0, 6), st.integers(0, 6)), min_size=3, max_size=14, unique=True),
     st.sampled_from([0, 1, 2.5]),
@@ -303,7 +303,7 @@ def test_cocircular_points_share_one_corner():
     np.testing.assert_array_equal(np.add.reduceat(at_centre, diagram.offsets[:-1]), 1)
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(st.integers(1, 500), st.integers(1, 500), st.integers(1, 500))
 def test_the_four_cells_of_a_trapezoid_have_one_corner_though_it_is_rounded(half, more, height):
     """Symmetric trapezoids are cocircular; the centre's northing is a fraction of any kind."""
