@@ -473,6 +473,16 @@ def test_bad_edits_are_refused_in_a_sentence_and_change_nothing(operation, argum
     assert tin.edits == ()
 
 
+@pytest.mark.parametrize("options", [{}, {"snap": 0.5}])
+def test_the_last_line_cannot_go_when_no_points_are_left(options):
+    tin = ts.triangulate([[0, 0, 0]], breaklines=[[[5, 5, 1], [9, 5, 1], [9, 9, 1]]], **options)
+    tin.remove(0)
+    before = state(tin)
+    with pytest.raises(ts.PointsError, match="0 points cannot make a TIN"):
+        tin.remove_breakline(0)
+    require_state(tin, before)
+
+
 @pytest.mark.parametrize(
     ("script", "sentence"),
     [
