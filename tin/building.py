@@ -246,7 +246,7 @@ def _account(
     final = _numbered(made.number_of, number_of)
     account = _without_lost_merges(dict(made.merges), final)
     left_out = np.flatnonzero(vertex_of < 0).astype(np.int32)
-    labels = [ground.lines.label(i) for i in range(len(ground.lines.kinds))]
+    labels = ground.lines.labels()
     gave_way = made.overruled
     return account | {
         "left_out_rows": left_out,

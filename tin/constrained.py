@@ -150,7 +150,7 @@ def _noded(merged: _Merged, lines: LineSet, options: LineOptions) -> Noded:
         snap=options.snap,
         crossing=options.crossing,
         threads=options.threads,
-        names=[lines.label(i) for i in range(len(lines.kinds))],
+        names=lines.labels(),
     )
 
 

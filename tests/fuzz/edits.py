@@ -348,10 +348,10 @@ def _flip(tin: ts.TIN, new: Tracked, vertices: list[int], edit: dict[str, Any]) 
     if own:
         new.lines = [line for number, line in enumerate(new.lines) if number not in own]
     elif len(beside) == 2:
-        left, right = (v for t in beside for v in t if v not in (a, b))
-        coords = sorted(tin.points[[left, right]].tolist())
-        ends = tin.points[[left, right]].tolist()
-        new.lines.append({"coords": ends or coords, "kind": "soft", "name": "flip"})
+        beside.sort(key=lambda t: t[(t.index(a) + 1) % 3] != b)  # the left one first
+        ends = [v for t in beside for v in t if v not in (a, b)]
+        line = {"coords": tin.points[ends].tolist(), "kind": "soft", "name": "flip"}
+        new.lines.append(line)
     return new, lambda one: one.flip(a, b)
 
 
