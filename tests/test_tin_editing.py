@@ -356,6 +356,56 @@ def test_edits_away_from_lines_build_nothing_anew(monkeypatch):
     assert [merge.rows for merge in tin.report.merges()] == [(far[1], 401)]
 
 
+@pytest.mark.parametrize("lines", [[], [[[10, 10, 1], [40, 12, 2]], [[40, 12, 2], [60, 40, 3]]]])
+def test_flips_build_nothing_anew_where_no_lines_meet(lines, monkeypatch):
+    rng = np.random.default_rng(11)
+    points = np.c_[rng.random((300, 2)) * 100, rng.random(300)]
+    tin = ts.triangulate(points, breaklines=lines)
+    flips = []
+    with monkeypatch.context() as patched:
+        patched.setattr("tinsmith.tin.editing.build_state", None)
+        for a, b in tin.edges[5::40].tolist():
+            left, right = corners_beside(tin, a, b)
+            try:
+                tin.flip(a, b)
+            except ts.PointsError:
+                continue
+            flips.append(ts.Breakline(tin.points[[left, right]], kind="soft", name="flip"))
+    assert len(flips) > 10
+    fresh = ts.triangulate(points, breaklines=[*map(ts.Breakline, lines), *flips])
+    require_same_tin(tin, fresh)
+    assert (tin.report.n_lines, tin.report.line_labels) == (
+        fresh.report.n_lines,
+        fresh.report.line_labels,
+    )
+
+
+def corners_beside(tin, a, b):
+    """Return the corners left and right of an edge; -1 for one that is not there."""
+    corners = {
+        (t[k], t[k - 2]): t[k - 1] for t in tin.triangles.tolist() for k in range(3)
+    }  # by edges that have the triangle to their left
+    return corners.get((a, b), -1), corners.get((b, a), -1)
+
+
+def test_a_flip_where_lines_cross_is_that_of_a_fresh_build():
+    rng = np.random.default_rng(12)
+    points = np.c_[rng.random((60, 2)) * 100, rng.random(60)]
+    lines = [ts.Breakline([[10, 10, 1], [90, 92, 2]]), ts.Breakline([[10, 90, 5], [90, 12, 6]])]
+    count = 0
+    for a, b in ts.triangulate(points, breaklines=lines).edges.tolist():
+        tin = ts.triangulate(points, breaklines=lines)
+        left, right = corners_beside(tin, a, b)
+        try:
+            tin.flip(a, b)
+        except (ts.PointsError, ts.LinesError):
+            continue
+        flip = ts.Breakline(tin.points[[left, right]], kind="soft", name="flip")
+        require_same_tin(tin, ts.triangulate(points, breaklines=[*lines, flip]))
+        count += 1
+    assert count > 50
+
+
 def test_reasons_of_the_build_are_kept_beside_those_of_edits():
     rng = np.random.default_rng(5)
     points = np.c_[rng.random((60, 2)) * 10, rng.random(60)]
@@ -471,6 +521,16 @@ def test_bad_edits_are_refused_in_a_sentence_and_change_nothing(operation, argum
         getattr(tin, operation)(**arguments)
     require_state(tin, before)
     assert tin.edits == ()
+
+
+@pytest.mark.parametrize("options", [{}, {"snap": 0.5}])
+def test_the_last_line_cannot_go_when_no_points_are_left(options):
+    tin = ts.triangulate([[0, 0, 0]], breaklines=[[[5, 5, 1], [9, 5, 1], [9, 9, 1]]], **options)
+    tin.remove(0)
+    before = state(tin)
+    with pytest.raises(ts.PointsError, match="0 points cannot make a TIN"):
+        tin.remove_breakline(0)
+    require_state(tin, before)
 
 
 @pytest.mark.parametrize(

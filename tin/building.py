@@ -13,6 +13,7 @@ from .duplicates import merge_rows
 from .line_set import LineSet
 from .lines import Lines
 from .model import Clip, LineInfo, Model, lines_in
+from .points import require_three
 from .regions import BOUNDARY, EXTENT, HOLES, Surface, in_rings
 from .report import LEFT_OUT, Crossings, Overruled, Report
 from .surface import TIN
@@ -73,6 +74,7 @@ def assemble(recipe: Recipe) -> Built:
 
 def _plain(recipe: Recipe) -> Built:
     xyz, options = recipe.points, recipe.options
+    require_three(len(xyz))  # edits may have removed the others
     kept_row = _kernel.snap(xyz, options.snap) if options.snap > 0 else None
     growth = _kernel.grow(
         xyz if kept_row is None else _kept(xyz, kept_row), threads=options.threads
@@ -244,7 +246,7 @@ def _account(
     final = _numbered(made.number_of, number_of)
     account = _without_lost_merges(dict(made.merges), final)
     left_out = np.flatnonzero(vertex_of < 0).astype(np.int32)
-    labels = [ground.lines.label(i) for i in range(len(ground.lines.kinds))]
+    labels = ground.lines.labels()
     gave_way = made.overruled
     return account | {
         "left_out_rows": left_out,

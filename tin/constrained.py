@@ -13,11 +13,11 @@ import numpy as np
 from . import _kernel
 from .conforming import conform
 from .duplicates import DuplicatePolicy, merge_rows
-from .errors import PointsError
 from .line_set import ABOVE_ALL, BELOW_ALL, LineSet
 from .model import force, mesh_of, mesh_of_growth
 from .noding import Chains, Noded, node, untouched
 from .pieces import Pieces
+from .points import require_three
 from .regions import Surface, edge_keys, in_rings
 from .report import Overruled
 
@@ -150,7 +150,7 @@ def _noded(merged: _Merged, lines: LineSet, options: LineOptions) -> Noded:
         snap=options.snap,
         crossing=options.crossing,
         threads=options.threads,
-        names=[lines.label(i) for i in range(len(lines.kinds))],
+        names=lines.labels(),
     )
 
 
@@ -167,11 +167,7 @@ def _merge(
 ) -> _Merged:
     """Make one vertex of all rows at one place; a line's height counts more than a point's."""
     n = len(xyz)
-    if n + len(lines.xy) < 3:
-        raise PointsError(
-            f"{n + len(lines.xy)} points are left: a TIN needs at least three that are not "
-            "collinear."
-        )
+    require_three(n + len(lines.xy))
     rows = np.concatenate([xyz, np.column_stack([lines.xy, np.nan_to_num(lines.heights)])])
     place = _kernel.snap(rows, options.snap) if options.snap > 0 else None
     own = np.arange(len(rows), dtype=np.int32)

@@ -193,7 +193,8 @@ class Editable:
     def flip(self, a: int, b: int) -> None:
         """Swap the diagonal of the two triangles at an edge, in place.
 
-        The new edge is kept as a soft breakline named "flip"; flipping it again lets it go.
+        The new edge is kept as a soft breakline named "flip", from the left of the old one to its
+        right; flipping it again lets it go.
 
         Parameters
         ----------
@@ -247,7 +248,8 @@ class Editable:
     def remove_breakline(self, number: int) -> None:
         """Remove a breakline, in place, with the vertices that only it had.
 
-        Those behind it move up, as if it had never been given.
+        Lines and vertices behind them move up, as if it had never been given; ``vertex_of`` keeps
+        its rows.
 
         Parameters
         ----------

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple, cast, get_args
 
 import numpy as np
 
-from . import _kernel
 from .duplicates import DuplicatePolicy
 from .editor import Editor, NotLocal, is_local, merged_elevation, occupied
 from .errors import LinesError, PointsError, TinsmithError
 from .existing import recipe_of_triangles, state_of_triangles
+from .flipping import FLIP, flipped_edge, require_inner
 from .inputs import (
     AddLine,
     Change,
@@ -53,10 +53,7 @@ OPERATIONS = (
 """Names of the methods of a TIN that change it."""
 
 
-_ON_MESH = ("insert", "remove", "move", "set_z")
-
-FLIP = "flip"
-"""Name of the soft breakline that keeps a flipped edge."""
+_ON_MESH = ("insert", "remove", "move", "set_z", "flip")
 
 
 class Edit(NamedTuple):
@@ -254,6 +251,12 @@ class Session:
             )
         return numbers.astype(np.int64)
 
+    def _ends(self, a: int, b: int) -> NDArray[np.int64]:
+        ends = self._vertices([a, b])
+        if ends[0] == ends[1]:
+            raise PointsError("An edge has two different ends.")
+        return ends
+
     def _count(self) -> int:
         """Count the vertices."""
         if self._editor is not None:
@@ -294,6 +297,10 @@ class Session:
     def _set_z_on_mesh(self, editor: Editor, vertices: ArrayLike, z: ArrayLike) -> _Done:
         numbers = self._vertices(vertices)
         return _Done(editor.set_z(editor.slots(numbers), _elevations(z, len(numbers))))
+
+    def _flip_on_mesh(self, editor: Editor, a: int, b: int) -> _Done:
+        first, second = editor.slots(self._ends(a, b)).tolist()
+        return _Done(editor.flip(first, second))
 
     # ------------------------------------------------------------ edits of the inputs
 
@@ -357,9 +364,7 @@ class Session:
         return _Done(change, found)
 
     def _flip(self, a: int, b: int) -> _Done:
-        (first, second) = self._vertices([a, b]).tolist()
-        if first == second:
-            raise PointsError("An edge has two different ends.")
+        first, second = self._ends(a, b).tolist()
         state = self._now()
         change = Change(lines=(self._flipped(state, first, second),))
         return _Done(change, self._built(change))
@@ -369,18 +374,17 @@ class Session:
         surface = state.triangulation
         holds = (surface.triangles == a).any(axis=1) & (surface.triangles == b).any(axis=1)
         beside = np.flatnonzero(holds)
-        if len(beside) != 2:
-            raise PointsError("Only an edge between two triangles can be flipped.")
+        require_inner(beside.tolist())
         own = _lines_along(state.lines, a, b)
         if own:
             if not all(state.lines.names[line] == FLIP for line in own):
                 raise LinesError("The edge is one of a line, which must stay.")
             return DropLines(tuple(sorted({int(state.lines.sources[line]) for line in own})))
         corners = surface.triangles[beside]
+        runs = ((corners == a) & (np.roll(corners, -1, axis=1) == b)).any(axis=1)  # its left side
+        corners = corners[np.argsort(~runs)]
         left, right = corners[(corners != a) & (corners != b)].tolist()
-        if not _is_convex_at(surface.points[:, :2], a, b, left, right):
-            raise PointsError("The two triangles at the edge are no convex quadrilateral.")
-        return AddLine(Breakline(surface.points[[left, right]], kind="soft", name=FLIP))
+        return AddLine(flipped_edge(surface.points[[a, b, left, right]]))
 
     def _add_breakline(
         self,
@@ -544,14 +548,6 @@ def _lines_along(lines: Lines, a: int, b: int) -> list[int]:
     chain = np.repeat(np.arange(len(lines)), np.diff(lines.offsets) - 1)
     found: list[int] = chain[(steps == sorted((a, b))).all(axis=1)].tolist()
     return found
-
-
-def _is_convex_at(xy: NDArray[np.float64], a: int, b: int, left: int, right: int) -> bool:
-    """Tell whether the quadrilateral with the diagonals a-b and left-right is strictly convex."""
-    quad = np.ascontiguousarray(xy[[a, right, b, left]])
-    following = (np.ascontiguousarray(np.roll(quad, -k, axis=0)) for k in (1, 2))
-    turns = _kernel.orientation(quad, *following)
-    return bool((turns > 0).all() or (turns < 0).all())
 
 
 def apply_edits(tin: TIN, edits: Iterable[Edit | Mapping[str, Any]]) -> None:

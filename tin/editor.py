@@ -14,8 +14,9 @@ import numpy as np
 from . import _kernel
 from .duplicates import merge_rows
 from .errors import PointsError
+from .flipping import are_uncut, flipped_edge, require_inner
 from .growing import GrowingRows
-from .inputs import Change
+from .inputs import AddLine, Change
 from .live_mesh import LiveMesh
 from .report import Report
 from .state import State
@@ -97,6 +98,7 @@ class Editor:
         self._n_new = 0
         self._least = _ROUNDINGS * float(np.spacing(np.abs(surface.points[:, :2]).max()))
         self._has_lines = self._n_rows < self._n_base or len(state.lines) > 0
+        self._has_uncut_lines = are_uncut(state, inputs.recipe)
 
     # ------------------------------------------------------------------ numbers
 
@@ -370,6 +372,23 @@ class Editor:
         places = point[None] if len(rows) == 1 else np.tile(point, (len(rows), 1))
         return Change(moved=rows, places=places)
 
+    def flip(self, a: int, b: int) -> Change:
+        """Put the other diagonal of the two triangles at an edge in its place, as a soft line.
+
+        Raises
+        ------
+        PointsError
+            If there is no such inner edge, or the triangles are no convex quadrilateral.
+        """
+        if not self._has_uncut_lines or b in self._mesh.fixed_neighbors(a).tolist():
+            raise NotLocal
+        beside = self._mesh.corners_beside(a, b).tolist()
+        require_inner(beside)
+        line = flipped_edge(self._points.take([a, b, *beside]))
+        self._mesh.force(np.array([beside], np.int32))
+        self._lines, self._has_lines = self._lines.with_breakline(beside, line), True
+        return Change(lines=(AddLine(line),))
+
     # ------------------------------------------------------------------- result
 
     def state(self, inputs: Inputs) -> State:
@@ -389,6 +408,7 @@ class Editor:
         report = report.with_removed(vertex_of_row).with_merges(
             _merges(vertex_of_row, self._counts(), inputs)
         )
+        report = report.with_lines(inputs.recipe.lines.labels())
         return State(surface, vertex_of_row, lines, report, None)
 
     def _triangulation(self, alive: NDArray[np.bool_]) -> Triangulation:

@@ -77,6 +77,10 @@ class LineSet(NamedTuple):
         name = f" '{self.names[line]}'" if self.names[line] else ""
         return f"{noun} {int(self.sources[line])}{name}"
 
+    def labels(self) -> list[str]:
+        """Return what the lines are called."""
+        return [self.label(line) for line in range(len(self.kinds))]
+
     def title(self, line: int) -> str:
         """Return what a line is called at the beginning of a sentence."""
         label = self.label(line)

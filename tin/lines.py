@@ -184,6 +184,16 @@ class Lines(Frozen):
             for kind, own in zip(self.kinds, self.sources.tolist(), strict=True)
         )
 
+    def with_breakline(self, vertices: list[int], line: Breakline) -> Lines:
+        """Return the lines, all of them breaklines, and a further one through some vertices."""
+        return Lines(
+            vertices=np.append(self.vertices, np.array(vertices, np.int32)),
+            offsets=np.append(self.offsets, np.int32(len(self.vertices) + len(vertices))),
+            kinds=(*self.kinds, line.kind),
+            sources=np.append(self.sources, np.int32(len(self))),
+            names=(*self.names, line.name),
+        )
+
     def renumbered(self, number: NDArray[np.int32]) -> Lines:
         """Return the same lines with vertex ``v`` called ``number[v]``."""
         return replace(self, vertices=number[self.vertices])

@@ -14,9 +14,24 @@ from .threads import thread_count
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["as_elevations", "as_masked_points", "as_points", "as_xy"]
+__all__ = ["as_elevations", "as_masked_points", "as_points", "as_xy", "require_three"]
 
 SHOWN = 5
+
+
+def require_three(count: int) -> None:
+    """Refuse fewer points than a triangle has.
+
+    Raises
+    ------
+    PointsError
+        If there are fewer than three.
+    """
+    if count < 3:
+        raise PointsError(
+            f"{count} point{'s' * (count != 1)} cannot make a TIN: at least three not collinear "
+            "ones are needed."
+        )
 
 
 def as_points(points: Any, *, threads: int | None = 1) -> NDArray[np.float64]:

@@ -24,7 +24,7 @@ from .line_set import (
     require_length,
 )
 from .options import as_flag, is_finite_number, is_one_of, shown
-from .points import as_masked_points
+from .points import as_masked_points, require_three
 from .survey import Survey
 from .threads import thread_count
 
@@ -160,10 +160,8 @@ def recipe_of(
         inner,
         [*own.water, *as_sequence(water, "water")],
     )
-    if len(xyz) < 3 and not lines.kinds:
-        raise PointsError(
-            f"{len(xyz)} points cannot make a TIN: at least three not collinear ones are needed."
-        )
+    if not lines.kinds:
+        require_three(len(xyz))
     _require_simple_rings(lines)
     rings = gather_rings(outer, "boundary")
     if own.extent:

@@ -224,6 +224,10 @@ class Report(Frozen):
         own = {name: getattr(account, name) for name in [*names, "vertex_heights"]}
         return replace(self, **own)
 
+    def with_lines(self, labels: Sequence[str]) -> Report:
+        """Return the report with all lines, when some that meet no others have been added."""
+        return replace(self, n_lines=len(labels), line_labels=tuple(labels))
+
     def met_by(self, label: str) -> list[str]:
         """Return where a line crosses others, a sentence each."""
         own = [i for i, name in enumerate(self.line_labels) if name == label]

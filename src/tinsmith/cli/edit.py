@@ -57,7 +57,9 @@ def edit(
     """Change the TIN in FILE, or that of the points in it, by the edits in SCRIPT.
 
     SCRIPT is a JSON list of edits, done in their order: insert, remove, move, set_z, flip,
-    add_breakline, remove_breakline. The report of an earlier run will do as well.
+    add_breakline, remove_breakline. The report of an earlier run will do as well. Vertices are
+    numbered as they are then: those behind a removed one move up. A breakline that is removed
+    takes along the vertices that only it had.
 
     \b
     Example:
