@@ -248,9 +248,21 @@ def as_ring(ring: ArrayLike, what: str) -> NDArray[np.float64]:
     if (coords[0, :2] == coords[-1, :2]).all():
         lowest = coords[[0, -1]].min(axis=0)  # of two elevations, whichever way the ring runs
         coords = np.concatenate([lowest[None], coords[1:-1]])
-        coords.flags.writeable = False
+    coords = _with_one_start(coords)
     n_corners = len(np.unique(coords[:, :2], axis=0))
     if n_corners < 3:
         number = "two corners" if n_corners == 2 else "one corner"
         raise LinesError(f"{what[0].upper() + what[1:]} has {number}: a ring needs three.")
     return coords
+
+
+def _with_one_start(ring: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Give corners at the place of the first, next to it either way, the lowest elevation."""
+    is_apart = (ring[:, :2] != ring[0, :2]).any(axis=1)
+    if ring.shape[1] == 3 and is_apart.any():
+        ahead, behind = int(np.argmax(is_apart)), int(np.argmax(is_apart[::-1]))
+        start = np.r_[:ahead, len(ring) - behind : len(ring)]
+        ring = ring.copy()
+        ring[start, 2] = ring[start, 2].min()
+    ring.flags.writeable = False
+    return ring
