@@ -269,19 +269,17 @@ class _Walker:
         """Walk a chain to its end, and tell how well it keeps to the line."""
         end, between = self._align(rows, begin, chain, is_late=is_late)
         off, back, before = self._measure(between)
-        cuts = np.bincount(before - rows[0], minlength=rows[-1] - rows[0] + 1)
+        row = before - rows[begin]
+        cuts = np.bincount(row, minlength=rows[end] - rows[begin] + 1)
         unseen = np.zeros_like(cuts)
         if not (is_first and self._is_at(self._places[chain[0]], rows[0])):
-            unseen[rows[begin] - rows[0]] = UNSEEN_CUTS
+            unseen[0] = UNSEEN_CUTS
         if end < len(rows) - 1:
-            unseen[rows[end] - rows[0]] = UNSEEN_CUTS
-        is_within = [
-            bool(((off <= allowed) & (back <= 2 * allowed)).all())
-            for cut in (cuts, cuts + unseen)
-            for allowed in ((1 + cut[before - rows[0]]) * self._unit,)
-        ]
+            unseen[-1] = UNSEEN_CUTS
+        allowed = self._unit * (1 + np.stack([cuts, cuts + unseen])[:, row])
+        is_close, is_kept = ((off <= allowed) & (back <= 2 * allowed)).all(axis=1).tolist()
         deviation = float(max(off.max(initial=0.0), back.max(initial=0.0)))
-        return _Course(begin, end, between, deviation, *is_within)
+        return _Course(begin, end, between, deviation, is_close, is_kept)
 
     def _align(
         self, rows: list[int], at: int, chain: range, *, is_late: bool = False
