@@ -215,6 +215,74 @@ def test_ring_with_two_elevations_where_it_closes_has_the_lower_one_both_ways():
     for corners in (ring, [ring[0], *ring[:0:-1]]):
         tin = ts.triangulate([[-5, -5, 0], [15, -5, 0], [0, 20, 0]], holes=[corners])
         assert (0.0, 0.0, 1.0) in set(map(tuple, tin.points.tolist()))
+        (note,) = tin.report.notes
+        assert note == (
+            "1 ring closes with more than one elevation (first: hole ring 0 at x 0, y 0, 1 to 3): "
+            "the lowest was taken."
+        )
+
+
+def test_rings_with_one_elevation_where_they_close_have_no_note():
+    ring = [[0, 0, 1.0], [9, 1, 0.0], [9, 1, 5.0], [8, 9, 4.0], [0, 0, 1.0]]
+    corners = [[-5, -5, 0], [15, -5, 0], [0, 20, 0]]
+    assert not ts.triangulate(corners, holes=[ring, [v[:2] for v in ring]]).report.notes
+
+
+def test_elevation_at_a_crossing_of_a_ring_is_the_same_wherever_the_ring_begins():
+    """The lower of two elevations at its first corner, not one for each direction."""
+    ring = [[1000, 935, 5.0], [1000, 935, 0.0], [0, 0, 0.0], [967, 1056, 0.0]]
+    other = [[940, 0], [0, 0], [1000, 1065]]
+    tins = [ts.triangulate(NONE, holes=[ring[n:] + ring[:n], other]) for n in range(4)]
+    assert tins[0].points[:, 2].max() == 0.0
+    for tin in tins[1:]:
+        assert faces(tin) == faces(tins[0])
+
+
+# ------------------------------------------------- which way along a line, with a large snap
+
+
+def test_check_finds_a_line_cut_in_a_cascade_whose_begin_was_trimmed():
+    """Its part from (8064, 0) is bent onto (59, 20), (70, 23) and (78, 26), a snap each."""
+    lines = [
+        [[59.0, 20.0, 1.0], [70.0, 23.0, 0.0]],
+        [[8064.0, 0.0, 0.0], [0.0, 16.0, 0.0], [0.0, 62298.0, 0.0], [78.0, 26.0, 0.0]],
+    ]
+    tin = ts.triangulate(NONE, breaklines=lines, snap=4.4, max_edge=85.0)
+    chain = tin.points[tin.lines.vertices[tin.lines.offsets[1] :][:4], :2].tolist()
+    assert chain == [[78.0, 26.0], [70.0, 23.0], [59.0, 20.0], [0.0, 16.0]]
+    ts.check(tin, breaklines=lines).raise_if_failed()
+
+
+def test_check_finds_both_ways_of_a_line_that_returns_through_trimmed_parts():
+    """The second chain begins where the first, a likely but wrong part of the line, did not end."""
+    lines = [
+        [[59.0, 20.0, 1.0], [70.0, 23.0, 0.0]],
+        [[8064.0, 0.0, 0.0], [0.0, 16.0, 0.0], [88998.0, 0.0, 0.0], [78.0, 26.0, 0.0]],
+    ]
+    survey = ts.Survey(points=[[91.0, 30.0, 0.0]], breaklines=list(map(ts.Breakline, lines)))
+    tin = ts.triangulate(survey, snap=4.4, max_edge=85.0)
+    assert tin.lines.sources.tolist() == [0, 1, 1]
+    ts.check(tin, points=survey).raise_if_failed()
+
+
+def test_check_does_not_take_the_first_vertex_within_snap_for_the_line_s_own():
+    """(0, 187732) is within snap of (0, 0), too, which became (0, -144288), outside."""
+    survey = ts.Survey(
+        points=[[-148336.7, 0.0, 0.0], [0.0, -144288.0, 1.0]],
+        breaklines=[ts.Breakline([[0, 15226533.0, 0], [0, 0, 2.0], [0, 187732.0, 0]])],
+        boundary=[[[-148337.0, 0.0], [0.0, 0.0], [0.0, 183972197.0]]],
+    )
+    tin = ts.triangulate(survey, snap=194760.0)
+    assert tin.lines.sources.tolist()[:2] == [0, 0]
+    ts.check(tin, points=survey).raise_if_failed()
+
+
+def test_check_still_loses_a_chain_that_is_on_no_part_of_its_line():
+    lines = [[[0.0, 0.0, 0.0], [10.0, 0.0, 0.0]], [[0.0, 5.0, 0.0], [10.0, 5.0, 0.0]]]
+    tin = ts.triangulate(NONE, breaklines=lines, snap=0.01)
+    moved = [lines[0], [[0.0, 6.0, 0.0], [10.0, 6.0, 0.0]]]
+    result = ts.check(tin, breaklines=moved)
+    assert [problem.kind for problem in result.problems] == ["lines"]
 
 
 @pytest.mark.parametrize("ring", [[[0, 0], [0, 0], [5, 5]], [[0, 0], [5, 5], [0, 0]]])

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from math import hypot
+from operator import itemgetter
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -21,6 +22,8 @@ UNSEEN_CUTS = 16
 """Cuts that are allowed for in a part of a line that is left out."""
 
 Place = list[float]
+Between = tuple[int, int, int]
+"""Position of a vertex that is none of its line, and the rows of the line's before and after."""
 
 
 class Walk(NamedTuple):
@@ -76,6 +79,28 @@ def walk_along(
     return walker.walk
 
 
+class _Course(NamedTuple):
+    """How a chain may run along its line.
+
+    Attributes
+    ----------
+    begin, end : int
+        Numbers of the line's vertices passed first, or just before, and last.
+    between : list of Between
+    deviation : float
+        How far it leaves the line, or goes back.
+    is_close, is_kept : bool
+        Whether it is as near to the line as the cuts seen allow, or with unseen ones, too.
+    """
+
+    begin: int
+    end: int
+    between: list[Between]
+    deviation: float
+    is_close: bool
+    is_kept: bool
+
+
 class _Walker:
     """Keeps to the earliest way along a line that its chains can have taken.
 
@@ -98,7 +123,7 @@ class _Walker:
         self._offsets: list[int] = given.offsets.tolist()
         self._snap = snap
         self._unit = unit
-        self._between: list[tuple[int, int, int]] = []
+        self._between: list[Between] = []
         self._gaps = Walk(np.empty((0, 3), np.int64), [], [], [], [], [], [])
 
     @property
@@ -113,19 +138,42 @@ class _Walker:
         rows = self._rows_of(line)
         if not chains and self._is_point(rows):
             return
+        courses = self._courses_of(rows, chains)
+        if courses is None:
+            self._gaps.lost.append(line)
+            return
         at, here = 0, None
-        for chain in chains:
-            begin = self._entry(rows, at, here, chain)
-            if begin is None:
-                self._gaps.lost.append(line)
-                return
+        for chain, course in zip(chains, courses, strict=True):
             if here is not None or not self._is_at(self._places[chain[0]], rows[0]):
-                self._pass_gap(line, rows[at : begin + 1], here, chain[0])
-            at, between = self._run(rows, begin, chain)
-            self._between += between
-            here = chain[-1]
+                self._pass_gap(line, rows[at : course.begin + 1], here, chain[0])
+            self._between += course.between
+            at, here = course.end, chain[-1]
         if here is None or at < len(rows) - 1:
             self._pass_gap(line, rows[at:], here, None)
+
+    def _courses_of(self, rows: list[int], chains: list[range]) -> list[_Course] | None:
+        """Find courses for all chains, as near to the line as cuts allow; None if there are none.
+
+        What a chain begins behind, and which vertex within ``snap`` became one of the line's, may
+        have several answers, and the next chains tell which are wrong. One way along the line
+        proves that the chains follow it, whichever was taken.
+        """
+        courses: list[_Course] = []
+        tried: set[tuple[int, int]] = set()
+        waiting = [self._courses(rows, 0, None, chains[0])] if chains else []
+        while waiting:
+            n = len(waiting)
+            course = next(waiting[-1], None)
+            del courses[n - 1 :]
+            if course is None:
+                waiting.pop()
+            elif (n, course.end) not in tried:
+                tried.add((n, course.end))
+                courses.append(course)
+                if n == len(chains):
+                    return courses
+                waiting.append(self._courses(rows, course.end, chains[n - 1][-1], chains[n]))
+        return None if chains else []
 
     def _rows_of(self, line: int) -> list[int]:
         """Return the rows of a line, without repeated places."""
@@ -142,10 +190,45 @@ class _Walker:
         given = self._given[row]
         return place == given or (self._snap > 0 and _far(place, given) <= self._snap)
 
-    def _entry(self, rows: list[int], at: int, here: int | None, chain: range) -> int | None:
-        """Find behind which vertex a chain begins: the first from where it fits to the line."""
+    def _courses(
+        self, rows: list[int], at: int, here: int | None, chain: range
+    ) -> Iterator[_Course]:
+        """Yield courses of a chain behind ``at``, the likeliest first."""
+        begins = self._entries(rows, at, here, chain)
+        likely = next(begins, None)
+        if likely is None:
+            return
+        course = self._run(rows, likely, chain, is_first=here is None)
+        if course.is_close:
+            yield course
+        ways = [(course.deviation, course.begin, course)]
+        for begin in begins:
+            for is_late in (False, True)[: 1 + (self._snap > 0)]:
+                course = self._run(rows, begin, chain, is_first=here is None, is_late=is_late)
+                ways.append((course.deviation, course.begin, course))
+        ways = [way for way in ways if way[2].is_kept]
+        yield from (course for *_, course in sorted(ways, key=itemgetter(0, 1)))
+
+    def _entries(self, rows: list[int], at: int, here: int | None, chain: range) -> Iterator[int]:
+        """Yield behind which vertices a chain may begin, the likeliest first, then all."""
         if here is None and self._begins_with(rows, chain):
-            return 0
+            yield 0
+        off = self._offsets_from(rows, at, here, chain)
+        best = off.min(initial=np.inf)
+        allowed = (1 + UNSEEN_CUTS + len(chain)) * self._unit
+        if best > allowed:
+            return
+        fits = at + np.flatnonzero(off <= max(best, 2 * self._unit))
+        worst = np.zeros(len(fits))
+        if len(fits) > 1:
+            worst = np.array([self._run(rows, n, chain, is_first=False).deviation for n in fits])
+        yield int(fits[np.argmax(worst <= worst.min() + self._unit)])
+        yield from (at + np.flatnonzero(off <= allowed)).tolist()
+
+    def _offsets_from(
+        self, rows: list[int], at: int, here: int | None, chain: range
+    ) -> NDArray[np.float64]:
+        """Return how far from each segment a chain's first step is; inf if it goes back there."""
         first, second = (np.array([self._places[position]]) for position in chain[:2])
         a, b = self._xy[rows[at:-1]], self._xy[rows[at + 1 :]]
         off = np.maximum(distance(first, a, b), distance(second, a, b))
@@ -153,25 +236,18 @@ class _Walker:
         off[end < begin - self._unit] = np.inf
         if here is not None and len(begin):  # not behind the end of the chain before
             off[:1][begin[:1] < _along(np.array(self._places[here]), a[:1], b[:1])] = np.inf
-        best = off.min(initial=np.inf)
-        if best > (1 + UNSEEN_CUTS + len(chain)) * self._unit:
-            return None
-        fits = at + np.flatnonzero(off <= max(best, 2 * self._unit))
-        if len(fits) == 1:
-            return int(fits[0])
-        worst = np.array([self._deviation(rows, number, chain) for number in fits.tolist()])
-        return int(fits[np.argmax(worst <= worst.min() + self._unit)])
+        return off
 
-    def _deviation(self, rows: list[int], at: int, chain: range) -> float:
-        """Return how far a chain leaves its line, or goes back, if it begins behind ``at``."""
-        _, between = self._run(rows, at, chain)
-        if not between:
-            return 0.0
-        positions, before, after = np.array(between).T
-        places = np.array([self._places[position] for position in positions])
+    def _measure(
+        self, between: list[Between]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64]]:
+        """Return how far vertices are off their line, and back of the one before; its rows."""
+        positions, before, after = np.array(between, np.int64).reshape(-1, 3).T
+        places = np.array([self._places[position] for position in positions]).reshape(-1, 2)
         a, b = self._xy[before], self._xy[after]
-        back = -np.diff(_along(places, a, b))[np.diff(before) == 0]
-        return float(max(distance(places, a, b).max(), back.max(initial=0.0)))
+        back = np.zeros(len(before))
+        back[1:] = np.where(np.diff(before) == 0, -np.diff(_along(places, a, b)), 0.0)
+        return distance(places, a, b), back, before
 
     def _begins_with(self, rows: list[int], chain: range) -> bool:
         """Tell if a chain begins where its line does, and in the same direction."""
@@ -181,24 +257,52 @@ class _Walker:
         x, y = self._places[chain[1]]
         across = (bx - ax) * (y - ay) - (by - ay) * (x - ax)
         is_ahead = (bx - ax) * (x - ax) + (by - ay) * (y - ay) > 0
-        allowed = len(chain) * self._unit  # as many cuts as there are vertices between
+        # m vertices between two of the line's are within m + 1 units (see check_given); the chain
+        # has m <= len(chain) - 1 behind this one. It is only asked where the chain begins: that it
+        # keeps to the line is judged by the vertices that there are between each two.
+        allowed = len(chain) * self._unit
         return is_ahead and abs(across) <= allowed * hypot(bx - ax, by - ay)
 
     def _run(
-        self, rows: list[int], at: int, chain: range
-    ) -> tuple[int, list[tuple[int, int, int]]]:
-        """Walk a chain to its end; return where that is, and what lies between its line's own."""
+        self, rows: list[int], begin: int, chain: range, *, is_first: bool, is_late: bool = False
+    ) -> _Course:
+        """Walk a chain to its end, and tell how well it keeps to the line."""
+        end, between = self._align(rows, begin, chain, is_late=is_late)
+        off, back, before = self._measure(between)
+        row = before - rows[begin]
+        cuts = np.bincount(row, minlength=rows[end] - rows[begin] + 1)
+        unseen = np.zeros_like(cuts)
+        if not (is_first and self._is_at(self._places[chain[0]], rows[0])):
+            unseen[0] = UNSEEN_CUTS
+        if end < len(rows) - 1:
+            unseen[-1] = UNSEEN_CUTS
+        allowed = self._unit * (1 + np.stack([cuts, cuts + unseen])[:, row])
+        is_close, is_kept = ((off <= allowed) & (back <= 2 * allowed)).all(axis=1).tolist()
+        deviation = float(max(off.max(initial=0.0), back.max(initial=0.0)))
+        return _Course(begin, end, between, deviation, is_close, is_kept)
+
+    def _align(
+        self, rows: list[int], at: int, chain: range, *, is_late: bool = False
+    ) -> tuple[int, list[Between]]:
+        """Return what a chain passes last of its line's own vertices, and what lies between."""
         places, last = self._places, len(rows) - 1
         is_passed = self._is_at(places[chain[0]], rows[at])
         between = []
         for position in chain:
             while at < last and self._is_at(places[position], rows[at + 1]):
+                if is_late and position < chain[-1] and self._comes_nearer(position, rows[at + 1]):
+                    break
                 at, is_passed = at + 1, True
             if not is_passed:
                 before = min(at, last - 1)
                 between.append((position, rows[before], rows[before + 1]))
             is_passed = False
         return at, between
+
+    def _comes_nearer(self, position: int, row: int) -> bool:
+        """Tell if the next vertex of a chain is nearer to one of its line's."""
+        given = self._given[row]
+        return _far(self._places[position + 1], given) < _far(self._places[position], given)
 
     def _pass_gap(self, line: int, rows: Sequence[int], here: int | None, then: int | None) -> None:
         """Note the part of a line from one chain to the next, or from or to its ends."""

@@ -253,14 +253,38 @@ def _as_numbers(coords: Any, subject: str) -> NDArray[np.float64]:
 
 
 def as_ring(ring: ArrayLike, what: str) -> NDArray[np.float64]:
-    """Return the corners of a ring, the first not repeated at the end; as :func:`as_coords`."""
+    """Return the corners of a ring, the first not repeated at the end; as :func:`as_coords`.
+
+    Of several elevations where it closes the lowest is taken, whichever way the ring runs.
+    """
     coords = as_coords(ring, what, least=3)
-    if (coords[0, :2] == coords[-1, :2]).all():
-        lowest = coords[[0, -1]].min(axis=0)  # of two elevations, whichever way the ring runs
-        coords = np.concatenate([lowest[None], coords[1:-1]])
-        coords.flags.writeable = False
+    is_start = _is_start(coords)
+    if coords.shape[1] == 3 and is_start.sum() > 1:
+        lowest = coords[is_start, 2].min()
+        coords = coords.copy()
+        coords[is_start, 2] = lowest
+    if is_start[-1]:
+        coords = coords[:-1]
+    coords.flags.writeable = False
     n_corners = len(np.unique(coords[:, :2], axis=0))
     if n_corners < 3:
         number = "two corners" if n_corners == 2 else "one corner"
         raise LinesError(f"{what[0].upper() + what[1:]} has {number}: a ring needs three.")
     return coords
+
+
+def elevations_at_start(ring: ArrayLike, what: str) -> NDArray[np.float64]:
+    """Return the vertices where a ring closes, one for each elevation, ascending; none if flat."""
+    coords = as_coords(ring, what, least=3)
+    if coords.shape[1] == 2:
+        return np.empty((0, 3))
+    found: NDArray[np.float64] = np.unique(coords[_is_start(coords)], axis=0)
+    return found
+
+
+def _is_start(ring: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Tell which vertices are where a ring begins and ends: repeated ones next to the first."""
+    is_there = (ring[:, :2] == ring[0, :2]).all(axis=1)
+    ahead, behind = np.logical_and.accumulate(is_there), np.logical_and.accumulate(is_there[::-1])
+    is_start: NDArray[np.bool_] = ahead | behind[::-1]
+    return is_start

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .errors import LinesError
-from .lines import as_ring
+from .lines import as_ring, elevations_at_start
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["rings_of"]
+__all__ = ["rings_of", "starts_with_elevations"]
 
 
 def rings_of(regions: Sequence[Any], what: str) -> list[list[NDArray[np.float64]]]:
@@ -38,14 +38,25 @@ def rings_of(regions: Sequence[Any], what: str) -> list[list[NDArray[np.float64]
     >>> [len(rings) for rings in rings_of([[[0, 0], [1, 0], [0, 1]]], "hole")]
     [1]
     """
+    return [[as_ring(*one) for one in rings] for rings in _labelled(regions, what)]
+
+
+def starts_with_elevations(
+    regions: Sequence[Any], what: str
+) -> list[tuple[str, NDArray[np.float64]]]:
+    """Return the rings that close with several elevations: name, vertices with the lowest first."""
+    rings = [one for rings in _labelled(regions, what) for one in rings]
+    starts = [(label, elevations_at_start(ring, label)) for ring, label in rings]
+    return [(label, start) for label, start in starts if len(start) > 1]
+
+
+def _labelled(regions: Sequence[Any], what: str) -> Iterator[list[tuple[Any, str]]]:
+    """Walk the regions, each a list of rings with their names."""
     number = 0
-    found = []
     for region in regions:
         for rings in _as_rings(region, what):
-            labels = [f"{what} ring {number + i}" for i in range(len(rings))]
-            found.append([as_ring(*one) for one in zip(rings, labels, strict=True)])
+            yield [(ring, f"{what} ring {number + i}") for i, ring in enumerate(rings)]
             number += len(rings)
-    return found
 
 
 def _as_rings(region: Any, what: str) -> Iterator[Sequence[Any]]:

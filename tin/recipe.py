@@ -25,6 +25,7 @@ from .line_set import (
 )
 from .options import as_flag, is_finite_number, is_one_of, shown
 from .points import as_masked_points, require_three
+from .polygons import starts_with_elevations
 from .survey import Survey
 from .threads import thread_count
 
@@ -181,8 +182,22 @@ def recipe_of(
         crs=system,
         elevation_unit=unit,
         skipped=own.skipped,
-        notes=own.notes,
+        notes=(*own.notes, *_notes_on_rings(outer, inner)),
     )
+
+
+def _notes_on_rings(boundary: Sequence[Any], holes: Sequence[Any]) -> list[str]:
+    """Tell where rings close with several elevations."""
+    starts = [*starts_with_elevations(boundary, "boundary"), *starts_with_elevations(holes, "hole")]
+    if not starts:
+        return []
+    label, start = starts[0]
+    x, y, lowest = start[0].tolist()
+    return [
+        f"{len(starts)} ring{'s close' if len(starts) > 1 else ' closes'} with more than one "
+        f"elevation (first: {label} at x {x:.12g}, y {y:.12g}, {lowest:.10g} to "
+        f"{start[-1, 2]:.10g}): the lowest was taken."
+    ]
 
 
 def _reference(own: Survey, crs: CRS | None, unit: Unit | None) -> tuple[CRS | None, Unit | None]:
