@@ -26,6 +26,7 @@ _UNEXTENDED = "#1f5fbf"
 _VEIL = 0.22
 """Opacity of an overlapping triangle: the more of them, the darker."""
 
+_PADDING = 0.14  # inches above and below titles
 _COLUMNS = 3
 
 _WIDTH = 17.0
@@ -65,8 +66,9 @@ def comparison_picture(comparison: Comparison, *, title: str | None = None) -> A
     xy = comparison.points[:, :2] - comparison.points[:, :2].min(axis=0)
     width, height = xy.max(axis=0)
     panel = _WIDTH / _COLUMNS * min(max(height / width, 0.3), 1.5)
-    size = (_WIDTH, 2 * panel + 1.6)
+    size = (_WIDTH, 2 * panel + 2.0)
     figure = extras.matplotlib(_PURPOSE).Figure(figsize=size, layout="constrained")
+    figure.get_layout_engine().set(h_pad=_PADDING)
     heading = " ".join((title or f"{len(xy):,} points").split())
     figure.suptitle(heading, fontsize=15, color=_INK, parse_math=False)
     *grid, last = figure.subplots(2, _COLUMNS).ravel()
