@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from hypothesis import settings
 from no_skips import (  # noqa: F401 - hooks
     pytest_addoption,
     pytest_make_collect_report,
@@ -11,6 +12,10 @@ from no_skips import (  # noqa: F401 - hooks
 
 from tinsmith.terrain import opengl
 from tinsmith.tin import TinsmithError
+
+# Every test has a time limit; the milliseconds of one example depend on who else is at work.
+settings.register_profile("tinsmith", deadline=None)
+settings.load_profile("tinsmith")
 
 
 @pytest.fixture(scope="session")
