@@ -51,6 +51,7 @@ NEAREST = {
 """Test files that are likeliest to notice changes in a folder of the core; they run first."""
 
 BUILDERS = ("points", "growth", "kernel_seams")
+NO_TESTS = 5
 N_NEAREST = 3
 TEST_LIMIT = 100
 """Seconds after which a test hangs, on a busy machine too."""
@@ -124,7 +125,8 @@ def ranked_tests(path: Path, names: set[str]) -> tuple[Path, ...]:
     room = PLACES[next(p for p in PLACES if path.is_relative_to(ROOT / p))] or "cli"
     scores = {}
     for test in sorted(TESTS.rglob("test_*.py")):
-        score = len(pattern.findall(test.read_text()))
+        text = test.read_text().replace("from __future__ import annotations", "")
+        score = len(pattern.findall(text))
         score += 50 * (f"test_{room}_{path.stem.split('_')[0]}" in test.stem)
         score *= 3 if test.stem.startswith(f"test_{room}") else 1
         scores[test] = score
@@ -242,7 +244,7 @@ class Workshop:
         (self.folder / "last.log").write_text(done.stdout + done.stderr)
         failed = re.search(r"^(?:FAILED|ERROR) (\S+)", done.stdout, re.MULTILINE)
         self.noticed_by = failed[1] if failed else "a crash or hang"
-        return "SURVIVED" if done.returncode == 0 else "noticed"
+        return "SURVIVED" if done.returncode in (0, NO_TESTS) else "noticed"
 
 
 def installed_core() -> str:
