@@ -34,7 +34,7 @@ BUILD = ROOT / "build" / "mutants"
 PLACES = {"tin": "tin", "io": "io", "terrain": "terrain", "src/tinsmith": ""}
 DURATIONS = BUILD / "durations.json"
 JUDGED = tomllib.loads((Path(__file__).parent / "judged.toml").read_text())["mutant"]
-NOT_RUN = ("does not compile", "judged", "out of time", "not begun")
+NOT_RUN = ("does not compile", "judged", "unsure", "out of time", "not begun")
 MOST_FILES = 8
 CORE_TESTS = (
     "predicates", "growth", "kernel_seams", "points", "locate", "rings", "mesh", "editing",
@@ -96,41 +96,44 @@ def python_files() -> list[Path]:
 
 
 def tests_of(path: Path) -> tuple[Path, ...]:
-    """Test files that name a module or what it defines, or else the modules that import it."""
-    return (
-        ranked_tests(path, names_of(path))
-        or ranked_tests(path, importers_of(path))
-        or tuple(sorted(TESTS.glob(f"test_{path.parent.name}_*.py")))
-    )
+    """Test files of a module, by what they name, then those of the modules that import it."""
+    own = ranked_tests(path, {path.stem}, names_of(path))
+    both = dict.fromkeys((*own, *ranked_tests(path, *importers_of(path))))
+    return tuple(both)[:MOST_FILES] or tuple(sorted(TESTS.glob(f"test_{path.parent.name}_*.py")))
 
 
 def names_of(path: Path) -> set[str]:
     tree = ast.parse(path.read_text())
     kinds = (ast.FunctionDef, ast.ClassDef)
     public = {node.name for node in tree.body if isinstance(node, kinds)}
-    return {name for name in public if not name.startswith("_")} | {path.stem}
+    return {name for name in public if not name.startswith("_")}
 
 
-def importers_of(path: Path) -> set[str]:
+def importers_of(path: Path) -> tuple[set[str], set[str]]:
     imports = re.compile(rf"from [.\w]*\b{path.stem} import|import .*\b{path.stem}\b")
     users = [one for one in python_files() if one != path and imports.search(one.read_text())]
-    return {name for one in users for name in names_of(one)}
+    return {one.stem for one in users}, {name for one in users for name in names_of(one)}
 
 
-def ranked_tests(path: Path, names: set[str]) -> tuple[Path, ...]:
-    """Return the test files that hold some of the names most often."""
-    if not names:
+def ranked_tests(path: Path, modules: set[str], names: set[str]) -> tuple[Path, ...]:
+    """Return the test files that import some of the modules or hold the names most often."""
+    if not modules:
         return ()
-    pattern = re.compile(rf"\b({'|'.join(map(re.escape, sorted(names)))})\b")
+    imported = rf"import .*\b(?:{any_of(modules)})\b|from .*\b(?:{any_of(modules)}) import"
+    pattern = re.compile(rf"{imported}|\b(?:{any_of(names)})\b" if names else imported)
     room = PLACES[next(p for p in PLACES if path.is_relative_to(ROOT / p))] or "cli"
     scores = {}
     for test in sorted(TESTS.rglob("test_*.py")):
         text = test.read_text().replace("from __future__ import annotations", "")
         score = len(pattern.findall(text))
-        score += 50 * (f"test_{room}_{path.stem.split('_')[0]}" in test.stem)
+        score += 50 * any(f"test_{room}_{one.split('_')[0]}" in test.stem for one in modules)
         score *= 3 if test.stem.startswith(f"test_{room}") else 1
         scores[test] = score
     return tuple(sorted((t for t in scores if scores[t]), key=lambda t: -scores[t])[:MOST_FILES])
+
+
+def any_of(words: set[str]) -> str:
+    return "|".join(map(re.escape, sorted(words)))
 
 
 def draw(kind: str, count: int, seed: int, only: str) -> list[Mutant]:
@@ -219,12 +222,12 @@ class Workshop:
         """Run the likeliest files first: to collect all takes longer than most tests."""
         end = time.monotonic() + limit
         for some in (tests[:N_NEAREST], tests[N_NEAREST:]):
-            verdict = self._run(some, end - time.monotonic()) if some else "SURVIVED"
+            verdict = self.run_tests(some, end - time.monotonic()) if some else "SURVIVED"
             if verdict != "SURVIVED":
                 return verdict
         return "SURVIVED"
 
-    def _run(self, tests: tuple[Path, ...], limit: float) -> str:
+    def run_tests(self, tests: tuple[Path, ...], limit: float) -> str:
         options = ["-q", "-x", "-p", "no:cacheprovider", "-p", "mutation.shortest_first"]
         options += ["--hypothesis-seed=1", f"--timeout={TEST_LIMIT}"]
         command = [sys.executable, "-m", "pytest", *options, *map(str, tests)]
@@ -242,7 +245,7 @@ class Workshop:
         except subprocess.TimeoutExpired:
             return "out of time"
         (self.folder / "last.log").write_text(done.stdout + done.stderr)
-        failed = re.search(r"^(?:FAILED|ERROR) (\S+)", done.stdout, re.MULTILINE)
+        failed = re.search(r"^(?:FAILED|ERROR) ([^\s\[]+)", done.stdout, re.MULTILINE)
         self.noticed_by = failed[1] if failed else "a crash or hang"
         return "SURVIVED" if done.returncode in (0, NO_TESTS) else "noticed"
 
@@ -262,6 +265,7 @@ def run(mutants: list[Mutant], given: argparse.Namespace) -> dict[str, list[str]
     for number in range(given.jobs):
         workshops.put(Workshop(number, given.kind))
     verdicts: dict[str, list[str]] = {}
+    noticed: dict[str, list[str]] = {}
 
     def judge(mutant: Mutant) -> None:
         workshop = workshops.get()
@@ -271,6 +275,8 @@ def run(mutants: list[Mutant], given: argparse.Namespace) -> dict[str, list[str]
             verdicts.setdefault(verdict, []).append(mutant.describe())
             seconds = time.monotonic() - began
             by = f"\n    by {workshop.noticed_by}" if verdict == "noticed" else ""
+            if verdict == "noticed":
+                noticed.setdefault(workshop.noticed_by, []).append(mutant.describe())
             results.write_text(json.dumps(verdicts, indent=1))
             if verdict != "not begun":
                 print(f"{verdict:<16} {seconds:6.1f} s  {mutant.describe()}{by}", flush=True)
@@ -279,7 +285,21 @@ def run(mutants: list[Mutant], given: argparse.Namespace) -> dict[str, list[str]
 
     with ThreadPoolExecutor(given.jobs) as pool:
         list(pool.map(judge, mutants))
+    for mutant in unsure(workshops.get(), noticed, given.limit):
+        verdicts["noticed"].remove(mutant)
+        verdicts.setdefault("unsure", []).append(mutant)
+    results.write_text(json.dumps(verdicts, indent=1))
     return verdicts
+
+
+def unsure(workshop: Workshop, noticed: dict[str, list[str]], limit: float) -> list[str]:
+    """Return the mutants that were noticed by a test that fails without a mutant, too."""
+    failing = []
+    for test, mutants in noticed.items():
+        if "::" in test and workshop.run_tests((TESTS.parent / test,), limit) != "SURVIVED":
+            print(f"fails without a mutant, too: {test}")
+            failing += mutants
+    return failing
 
 
 def main() -> int:
@@ -290,10 +310,11 @@ def main() -> int:
     add("--seed", type=int, default=1)
     add("--jobs", type=int, default=os.cpu_count() or 1)
     add("--limit", type=float, default=300.0, help="seconds for the tests of a mutant [300]")
+    add("--skip", type=int, default=0, help="of the mutants drawn, leave out the first so many")
     add("--minutes", type=float, default=math.inf, help="begin no mutant after so many [all]")
     add("--only", default="", metavar="TEXT", help="files whose path holds this, or PATH:LINE")
     given = parser.parse_args()
-    mutants = draw(given.kind, given.count, given.seed, given.only)
+    mutants = draw(given.kind, given.count, given.seed, given.only)[given.skip :]
     verdicts = run(mutants, given)
     survivors = sorted(verdicts.get("SURVIVED", []))
     n_run = sum(len(v) for k, v in verdicts.items() if k not in NOT_RUN)
