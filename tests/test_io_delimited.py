@@ -697,6 +697,26 @@ def test_a_comma_behind_a_number_in_a_remark_is_no_decimal_mark(survey):
     assert "separate thousands" in str(fault(survey, whole, columns="PENZD"))
 
 
+@pytest.mark.parametrize("numbers", [False, True], ids=["coordinates", "point numbers"])
+@pytest.mark.parametrize("long", range(6))
+def test_commas_may_be_decimal_marks_only_before_a_few_digits(survey, long, numbers):
+    """4,25,7,50,1,05 may be three coordinates; with 12345 behind a comma it is six columns."""
+
+    def is_doubted(digits):
+        cells = [["4", "25", "7", "50", "1", "05"], ["5", "75", "8", "25", "2", "10"]]
+        for row in cells:
+            row[long] = digits
+        rows = [",".join([str(101 + i)] * numbers + row) for i, row in enumerate(cells)]
+        try:
+            survey("\n".join(rows) + "\n")
+        except ReadError as error:
+            return "delimiters or decimal marks" in str(error)
+        return False
+
+    assert is_doubted("1234")
+    assert is_doubted("12345") == (long % 2 == 0)
+
+
 def test_commas_that_may_separate_thousands(survey):
     assert "decimal=','" in str(fault(survey, "752,700\t424,240\t132\n752,701\t424,241\t133\n"))
     (note, *_) = survey("x;y;z\n752,700;424,240;132\n752,701;424,241;133\n").notes

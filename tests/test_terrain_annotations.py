@@ -211,6 +211,17 @@ def test_a_title_too_long_for_the_sheet_is_cut_and_shows_it():
     assert 0.8 * 1312 < overlay.text_width(title, size=30.0) <= 1312
 
 
+@pytest.mark.parametrize("length", [100, 101])
+def test_a_title_is_cut_to_the_last_letter_that_fits(length):
+    overlay = Recorder()
+    camera = pv.Camera()
+    aim(camera, np.eye(3), view=VIEWS["top"], frame=SHEET.frame, size=(1400, 900))
+    annotate(overlay, SHEET, Caption("x" * length, "short", 1.0, (0.0, 1.0), "m", METRE), camera)
+    (title,) = [said for said, *_ in overlay.texts if said.startswith("x")]
+    letter = overlay.text_width("x", size=30.0)
+    assert 1312 - letter < overlay.text_width(title, size=30.0) <= 1312
+
+
 # ----------------------------------------------------------------------- lights
 
 

@@ -59,6 +59,17 @@ def test_a_bay_at_the_perimeter_is_told_apart():
     assert f"{lost} triangles" in sentence
 
 
+@pytest.mark.parametrize(("n_wide", "n_sentences"), [(5, 1), (10, 0)])
+def test_an_edge_is_usual_if_more_than_five_percent_are_as_long(n_wide, n_sentences):
+    """Two of three edges between columns far apart are long: 3.3 % of all, or 6.7 %."""
+    steps = [1.0] * (100 - n_wide) + [10.0] * n_wide
+    x, y = np.meshgrid(np.cumsum([0.0, *steps]), np.arange(8.0))
+    sentences = describe_gaps(ts.triangulate(ground(np.column_stack([x.ravel(), y.ravel()]))))
+    assert len(sentences) == n_sentences
+    # Of the short edges the diagonals are the 95th percentile: 5 times 1.42, rounded up.
+    assert all("max_edge=7.1 " in sentence for sentence in sentences)
+
+
 def test_edges_of_lines_are_no_gaps():
     xy = grid(60, 60)
     xy = xy[np.hypot(*(xy - 295).T) > 120]

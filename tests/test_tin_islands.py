@@ -61,6 +61,12 @@ def test_the_island_of_a_boundary_is_cut_out(form):
     assert ts.triangulate(GRID, boundary=FORMS[form]).area == pytest.approx(32, rel=1e-12)
 
 
+def test_what_follows_a_collection_in_a_collection_is_not_lost():
+    nested = shapely.GeometryCollection([shapely.box(0.5, 0.5, 1.5, 1.5)])
+    holes = shapely.GeometryCollection([nested, DONUT, shapely.box(0.25, 8.0, 0.75, 9.0)])
+    assert ts.triangulate(GRID, holes=holes).area == pytest.approx(100 - 1 - 32 - 0.5, rel=1e-12)
+
+
 def test_rings_alone_are_regions_of_their_own():
     assert ts.triangulate(GRID, holes=[OUTER, INNER]).area == pytest.approx(100 - 36, rel=1e-12)
     erased = ts.triangulate(GRID, erase=[OUTER, INNER]).vertex_of < 0

@@ -380,6 +380,17 @@ def test_vertices_on_both_sides_of_a_short_segment():
     require_sound(xy, [[0, 1]], result, snap=0.71)
 
 
+def test_all_vertices_near_a_segment_are_taken_at_once(monkeypatch):
+    """Else lines along dense points would need a round of splitting for each point."""
+    monkeypatch.setattr(splitting, "MOST_ROUNDS", 3)
+    x = np.arange(1.0, 40.0)
+    beside = np.column_stack([x, 0.01 * x])  # the nearest is always at one end
+    ends = np.array([[0.0, 0], [40, 0], [0, 900], [40, 900]])
+    xy = np.concatenate([ends, beside, beside + np.array([0.0, 900])])
+    result = noded(xy, [[0, 1], [2, 3]], snap=0.5)
+    assert lines_of(result.chains) == [[0, *range(4, 43), 1], [2, *range(43, 82), 3]]
+
+
 def test_lines_that_cross_beside_a_vertex_meet_in_it():
     xy = [*CROSS, [2.1, 2]]
     result = noded(xy, TWO, snap=0.2)

@@ -1,7 +1,9 @@
 """Draw mutants of the package or its core, run the tests that name their module, list survivors.
 
-A mutant is noticed if a test fails, hangs or crashes. Survivors are to be judged one by one: a test
-is missing, or the change changes nothing (an equivalent mutant).
+A mutant is noticed if a test fails, hangs or crashes; tests that took least time run first, and the
+first that fails ends the run. Survivors are to be judged one by one: a test is missing, or the
+change changes nothing that can be relied on (an equivalent mutant). Those that were judged so stand
+in `judged.toml`, each with its reason, and are not run again.
 """
 
 from __future__ import annotations
@@ -9,6 +11,7 @@ from __future__ import annotations
 import argparse
 import ast
 import json
+import math
 import os
 import random
 import re
@@ -17,6 +20,7 @@ import subprocess
 import sys
 import sysconfig
 import time
+import tomllib
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from queue import SimpleQueue
@@ -28,13 +32,29 @@ ROOT = Path(__file__).resolve().parents[2]
 TESTS = ROOT / "tests"
 BUILD = ROOT / "build" / "mutants"
 PLACES = {"tin": "tin", "io": "io", "terrain": "terrain", "src/tinsmith": ""}
+DURATIONS = BUILD / "durations.json"
+JUDGED = tomllib.loads((Path(__file__).parent / "judged.toml").read_text())["mutant"]
+NOT_RUN = ("does not compile", "judged", "unsure", "out of time", "not begun")
 MOST_FILES = 8
 CORE_TESTS = (
-    "test_tin_predicates", "test_tin_growth", "test_tin_kernel_seams", "test_tin_points",
-    "test_tin_locate", "test_tin_rings", "test_tin_mesh", "test_tin_editing", "test_tin_noding",
-    "test_tin_lines", "test_tin_refine", "test_tin_threads", "test_tin_kernel_work",
-    "test_tin_duplicates", "test_tin_kernel_datasets",
+    "predicates", "growth", "kernel_seams", "points", "locate", "rings", "mesh", "editing",
+    "noding", "lines", "refine", "threads", "kernel_work", "duplicates", "kernel_datasets",
 )  # fmt: skip
+NEAREST = {
+    "location": ("locate",),
+    "lines": ("noding", "lines", "rings", "contacts"),
+    "mesh": ("mesh", "editing", "lines"),
+    "refinement": ("refine", "conforming"),
+    "predicates": ("predicates", "error_bounds"),
+    "points": ("points", "duplicates"),
+}
+"""Test files that are likeliest to notice changes in a folder of the core; they run first."""
+
+BUILDERS = ("points", "growth", "kernel_seams")
+NO_TESTS = 5
+N_NEAREST = 3
+TEST_LIMIT = 100
+"""Seconds after which a test hangs, on a busy machine too."""
 
 
 class Mutant(NamedTuple):
@@ -45,10 +65,25 @@ class Mutant(NamedTuple):
     tests: tuple[Path, ...]
 
     def describe(self) -> str:
+        line, column, words = self.place()
+        return f"{self.path.relative_to(ROOT)}:{line}:{column}: {self.change.what}   in: {words}"
+
+    def place(self) -> tuple[int, int, str]:
+        """Return the number of the changed line, the column in it, and its words."""
         text = self.path.read_text()
         line = text.count("\n", 0, self.change.start) + 1
-        words = text.splitlines()[line - 1].strip()
-        return f"{self.path.relative_to(ROOT)}:{line}: {self.change.what}   in: {words}"
+        column = self.change.start - text.rfind("\n", 0, self.change.start)
+        return line, column, text.splitlines()[line - 1].strip()
+
+    def is_judged(self) -> bool:
+        """Whether it is known to change nothing; `from` tells places in a line apart."""
+        _, _, words = self.place()
+        after = self.path.read_text()[self.change.start :].splitlines()[0].strip()
+        known = (str(self.path.relative_to(ROOT)), self.change.what, words, after)
+        return any(
+            known == (one["path"], one["change"], one["line"], one.get("from", after))
+            for one in JUDGED
+        )
 
 
 # ---------------------------------------------------------------------------- drawing
@@ -61,21 +96,44 @@ def python_files() -> list[Path]:
 
 
 def tests_of(path: Path) -> tuple[Path, ...]:
-    """Test files that name a module or what it defines, those that name it most first."""
+    """Test files of a module, by what they name, then those of the modules that import it."""
+    own = ranked_tests(path, {path.stem}, names_of(path))
+    both = dict.fromkeys((*own, *ranked_tests(path, *importers_of(path))))
+    return tuple(both)[:MOST_FILES] or tuple(sorted(TESTS.glob(f"test_{path.parent.name}_*.py")))
+
+
+def names_of(path: Path) -> set[str]:
     tree = ast.parse(path.read_text())
     kinds = (ast.FunctionDef, ast.ClassDef)
     public = {node.name for node in tree.body if isinstance(node, kinds)}
-    public = {name for name in public if not name.startswith("_")} | {path.stem}
-    pattern = re.compile(rf"\b({'|'.join(map(re.escape, sorted(public)))})\b")
+    return {name for name in public if not name.startswith("_")}
+
+
+def importers_of(path: Path) -> tuple[set[str], set[str]]:
+    imports = re.compile(rf"from [.\w]*\b{path.stem} import|import .*\b{path.stem}\b")
+    users = [one for one in python_files() if one != path and imports.search(one.read_text())]
+    return {one.stem for one in users}, {name for one in users for name in names_of(one)}
+
+
+def ranked_tests(path: Path, modules: set[str], names: set[str]) -> tuple[Path, ...]:
+    """Return the test files that import some of the modules or hold the names most often."""
+    if not modules:
+        return ()
+    imported = rf"import .*\b(?:{any_of(modules)})\b|from .*\b(?:{any_of(modules)}) import"
+    pattern = re.compile(rf"{imported}|\b(?:{any_of(names)})\b" if names else imported)
     room = PLACES[next(p for p in PLACES if path.is_relative_to(ROOT / p))] or "cli"
     scores = {}
     for test in sorted(TESTS.rglob("test_*.py")):
-        score = len(pattern.findall(test.read_text()))
-        score += 50 * (f"test_{room}_{path.stem.split('_')[0]}" in test.stem)
+        text = test.read_text().replace("from __future__ import annotations", "")
+        score = len(pattern.findall(text))
+        score += 50 * any(f"test_{room}_{one.split('_')[0]}" in test.stem for one in modules)
         score *= 3 if test.stem.startswith(f"test_{room}") else 1
         scores[test] = score
-    best = sorted((t for t in scores if scores[t]), key=lambda t: -scores[t])[:MOST_FILES]
-    return tuple(best) or tuple(sorted(TESTS.glob(f"test_{room}_*.py")))
+    return tuple(sorted((t for t in scores if scores[t]), key=lambda t: -scores[t])[:MOST_FILES])
+
+
+def any_of(words: set[str]) -> str:
+    return "|".join(map(re.escape, sorted(words)))
 
 
 def draw(kind: str, count: int, seed: int, only: str) -> list[Mutant]:
@@ -84,11 +142,19 @@ def draw(kind: str, count: int, seed: int, only: str) -> list[Mutant]:
         files, changes = python_files(), python_changes
     else:
         files, changes = sorted((ROOT / "tin" / "cpp").rglob("*.hpp")), cpp_changes
-    files = [path for path in files if only in str(path.relative_to(ROOT))]
+    name, _, line = only.partition(":")
+    files = [path for path in files if name in str(path.relative_to(ROOT))]
     everything = [(path, change) for path in files for change in changes(path.read_text())]
+    if line:
+        everything = [(p, c) for p, c in everything if Mutant(p, c, ()).place()[0] == int(line)]
     chosen = random.Random(seed).sample(everything, min(count, len(everything)))
-    core = tuple(path for n in CORE_TESTS if (path := TESTS / f"{n}.py").exists())
-    return [Mutant(p, c, tests_of(p) if kind == "python" else core) for p, c in chosen]
+    tests = tests_of if kind == "python" else core_tests_of
+    return [Mutant(path, change, tests(path)) for path, change in chosen]
+
+
+def core_tests_of(path: Path) -> tuple[Path, ...]:
+    names = dict.fromkeys((*NEAREST.get(path.parent.name, BUILDERS), *CORE_TESTS))
+    return tuple(path for n in names if (path := TESTS / f"test_tin_{n}.py").exists())
 
 
 # ---------------------------------------------------------------------------- running
@@ -99,6 +165,7 @@ class Workshop:
 
     def __init__(self, number: int, kind: str) -> None:
         self.folder = BUILD / f"{kind}-{number}"
+        self.noticed_by = ""
         shutil.rmtree(self.folder / "tree", ignore_errors=True)
         package = self.folder / "tree" / "tinsmith"
         ignored = shutil.ignore_patterns("cpp", "__pycache__")
@@ -124,7 +191,9 @@ class Workshop:
         )  # fmt: skip
 
     def judge(self, mutant: Mutant, limit: float) -> str:
-        """Return "noticed", "hangs", "does not compile" or "SURVIVED"."""
+        """Return "noticed", "SURVIVED", or a word for what was not run to its end."""
+        if mutant.is_judged():
+            return "judged"
         target = self._target(mutant.path)
         text = mutant.path.read_text()
         target.write_text(mutant.change.applied(text))
@@ -150,23 +219,35 @@ class Workshop:
         return done.returncode == 0
 
     def _test(self, tests: tuple[Path, ...], limit: float) -> str:
-        options = ["-q", "-x", "-p", "no:cacheprovider", "--hypothesis-seed=1"]
-        options.append(f"--timeout={limit / 3:.0f}")
+        """Run the likeliest files first: to collect all takes longer than most tests."""
+        end = time.monotonic() + limit
+        for some in (tests[:N_NEAREST], tests[N_NEAREST:]):
+            verdict = self.run_tests(some, end - time.monotonic()) if some else "SURVIVED"
+            if verdict != "SURVIVED":
+                return verdict
+        return "SURVIVED"
+
+    def run_tests(self, tests: tuple[Path, ...], limit: float) -> str:
+        options = ["-q", "-x", "-p", "no:cacheprovider", "-p", "mutation.shortest_first"]
+        options += ["--hypothesis-seed=1", f"--timeout={TEST_LIMIT}"]
         command = [sys.executable, "-m", "pytest", *options, *map(str, tests)]
         environment = {
             **os.environ,
             "PYTHONPATH": f"{self.folder / 'tree'}:{TESTS}",
             "HYPOTHESIS_STORAGE_DIRECTORY": str(self.folder / "hypothesis"),
             "PYTHONDONTWRITEBYTECODE": "1",
+            "MUTATION_DURATIONS": str(DURATIONS),
         }
         try:
             done = subprocess.run(
                 command, cwd=ROOT, env=environment, capture_output=True, text=True, timeout=limit
             )
         except subprocess.TimeoutExpired:
-            return "hangs"
+            return "out of time"
         (self.folder / "last.log").write_text(done.stdout + done.stderr)
-        return "SURVIVED" if done.returncode == 0 else "noticed"
+        failed = re.search(r"^(?:FAILED|ERROR) ([^\s\[]+)", done.stdout, re.MULTILINE)
+        self.noticed_by = failed[1] if failed else "a crash or hang"
+        return "SURVIVED" if done.returncode in (0, NO_TESTS) else "noticed"
 
 
 def installed_core() -> str:
@@ -175,27 +256,50 @@ def installed_core() -> str:
     return str(core.__file__)
 
 
-def run(mutants: list[Mutant], kind: str, jobs: int, limit: float) -> dict[str, list[str]]:
-    """Judge all mutants; return their descriptions by verdict."""
+def run(mutants: list[Mutant], given: argparse.Namespace) -> dict[str, list[str]]:
+    """Judge all mutants, or those that there is time for; return their descriptions by verdict."""
+    BUILD.mkdir(parents=True, exist_ok=True)
+    results = BUILD / f"{given.kind}-{given.seed}.json"
+    deadline = time.monotonic() + 60 * given.minutes
     workshops: SimpleQueue[Workshop] = SimpleQueue()
-    for number in range(jobs):
-        workshops.put(Workshop(number, kind))
+    for number in range(given.jobs):
+        workshops.put(Workshop(number, given.kind))
     verdicts: dict[str, list[str]] = {}
+    noticed: dict[str, list[str]] = {}
 
     def judge(mutant: Mutant) -> None:
         workshop = workshops.get()
         try:
             began = time.monotonic()
-            verdict = workshop.judge(mutant, limit)
+            verdict = workshop.judge(mutant, given.limit) if began < deadline else "not begun"
             verdicts.setdefault(verdict, []).append(mutant.describe())
             seconds = time.monotonic() - began
-            print(f"{verdict:<16} {seconds:6.1f} s  {mutant.describe()}", flush=True)
+            by = f"\n    by {workshop.noticed_by}" if verdict == "noticed" else ""
+            if verdict == "noticed":
+                noticed.setdefault(workshop.noticed_by, []).append(mutant.describe())
+            results.write_text(json.dumps(verdicts, indent=1))
+            if verdict != "not begun":
+                print(f"{verdict:<16} {seconds:6.1f} s  {mutant.describe()}{by}", flush=True)
         finally:
             workshops.put(workshop)
 
-    with ThreadPoolExecutor(jobs) as pool:
+    with ThreadPoolExecutor(given.jobs) as pool:
         list(pool.map(judge, mutants))
+    for mutant in unsure(workshops.get(), noticed, given.limit):
+        verdicts["noticed"].remove(mutant)
+        verdicts.setdefault("unsure", []).append(mutant)
+    results.write_text(json.dumps(verdicts, indent=1))
     return verdicts
+
+
+def unsure(workshop: Workshop, noticed: dict[str, list[str]], limit: float) -> list[str]:
+    """Return the mutants that were noticed by a test that fails without a mutant, too."""
+    failing = []
+    for test, mutants in noticed.items():
+        if "::" in test and workshop.run_tests((TESTS.parent / test,), limit) != "SURVIVED":
+            print(f"fails without a mutant, too: {test}")
+            failing += mutants
+    return failing
 
 
 def main() -> int:
@@ -206,17 +310,20 @@ def main() -> int:
     add("--seed", type=int, default=1)
     add("--jobs", type=int, default=os.cpu_count() or 1)
     add("--limit", type=float, default=300.0, help="seconds for the tests of a mutant [300]")
-    add("--only", default="", metavar="TEXT", help="files whose path holds this text")
+    add("--skip", type=int, default=0, help="of the mutants drawn, leave out the first so many")
+    add("--minutes", type=float, default=math.inf, help="begin no mutant after so many [all]")
+    add("--only", default="", metavar="TEXT", help="files whose path holds this, or PATH:LINE")
     given = parser.parse_args()
-    mutants = draw(given.kind, given.count, given.seed, given.only)
-    verdicts = run(mutants, given.kind, given.jobs, given.limit)
+    mutants = draw(given.kind, given.count, given.seed, given.only)[given.skip :]
+    verdicts = run(mutants, given)
     survivors = sorted(verdicts.get("SURVIVED", []))
-    BUILD.mkdir(parents=True, exist_ok=True)
-    (BUILD / f"{given.kind}-{given.seed}.json").write_text(json.dumps(verdicts, indent=1))
-    n_judged = sum(len(v) for k, v in verdicts.items() if k != "does not compile")
-    share = 100 * (1 - len(survivors) / max(1, n_judged))
-    print(f"\n{n_judged} mutants, seed {given.seed}: {share:.1f} % noticed. Survivors:")
+    n_run = sum(len(v) for k, v in verdicts.items() if k not in NOT_RUN)
+    share = 100 * (1 - len(survivors) / max(1, n_run))
+    print(f"\n{n_run} mutants, seed {given.seed}: {share:.1f} % noticed. Survivors:")
     print("\n".join(f"  {one}" for one in survivors) or "  none")
+    print(
+        "".join(f"{word}: {len(verdicts[word])}\n" for word in NOT_RUN if word in verdicts), end=""
+    )
     return 0
 
 
