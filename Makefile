@@ -56,20 +56,21 @@ FUZZ := PYTHONPATH=tests $(BIN)/python -m fuzz
 fuzz: $(READY) ## Run random campaigns: MINUTES= or CASES=, SEED=, CAMPAIGN=
 	$(FUZZ) --seed $(SEED) $(addprefix --campaign ,$(CAMPAIGN)) $(if $(CASES),--cases $(CASES)) $(addprefix --minutes ,$(MINUTES))
 
-# The tests of the shape room and a slice of each campaign with ASan and UBSan, those of threads
-# with TSan. SANITIZE_CASES= makes the slice longer.
+# The tests of tin and a slice of the campaigns about it with ASan and UBSan, those of threads with
+# TSan. SANITIZE_CASES= makes the slice longer. Python alone captures: reports go past it.
 SANITIZE_CASES ?= 200
+SANITIZE_CAMPAIGNS ?= points lines edits refine voronoi
 SANITIZE := tests/sanitizers/run.sh $(BIN)/python
-THREADS := $(wildcard tests/test_tin_threads.py tests/test_tin_concurrency.py)
+SANITIZE_PYTEST := -m pytest -q -p no:cacheprovider --capture=sys --timeout 1800
 .PHONY: sanitize sanitize-address sanitize-thread
 sanitize: sanitize-address sanitize-thread ## Run tests and campaigns under ASan, UBSan and TSan
 sanitize-address: $(READY)
 	$(BIN)/python -m pip install --quiet --group sanitize
-	$(SANITIZE) address -m pytest -q -p no:cacheprovider --timeout 1800 tests/test_tin_*.py
-	$(SANITIZE) address -m fuzz --no-memory-limit --cases $(SANITIZE_CASES) --seed $(SEED)
+	$(SANITIZE) address $(SANITIZE_PYTEST) -n auto tests/test_tin_*.py
+	$(SANITIZE) address -m fuzz --no-memory-limit --folder build/sanitize/fuzz --cases $(SANITIZE_CASES) --seed $(SEED) $(addprefix --campaign ,$(SANITIZE_CAMPAIGNS))
 sanitize-thread: $(READY)
 	$(BIN)/python -m pip install --quiet --group sanitize
-	$(SANITIZE) thread -m pytest -q -p no:cacheprovider --timeout 1800 $(THREADS)
+	$(SANITIZE) thread $(SANITIZE_PYTEST) tests/test_tin_threads.py tests/test_tin_concurrency.py
 
 # make mutants MUTANTS=60 SEED=3 KIND=core; survivors are listed in build/mutants, too.
 MUTANTS ?= 150

@@ -184,6 +184,15 @@ def test_point_on_a_fixed_edge_splits_it():
     assert edges == {(0, 4), (2, 4)}
 
 
+def test_lists_without_a_row_are_handed_over_as_arrays_without_a_row():
+    """Under UndefinedBehaviorSanitizer this shows a copy from a list that has no memory yet."""
+    mesh = mesh_of([[0, 0], [4, 0], [4, 3], [0, 3]])
+    passed, blocked = mesh.force(np.zeros((0, 2), np.int32))
+    for found in (passed, blocked, mesh.illegal_fixed_edges(), mesh.fixed_neighbors(0)):
+        assert found.dtype == np.int32
+        assert found.size == 0
+
+
 def test_edge_in_the_way_of_another_is_told_and_nothing_breaks():
     xy = np.array([[0.0, 0], [4, 0], [4, 4], [0, 4]])
     mesh = mesh_of(xy)

@@ -256,6 +256,7 @@ import numpy as np
 import tinsmith as ts
 
 points = np.random.default_rng(7).random(({n}, 3))
+ts.triangulate(points[:100])  # loads the core, which is slow with sanitizers
 print("begin", flush=True)
 while True:
     ts.triangulate(points, threads={threads})

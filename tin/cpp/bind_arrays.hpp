@@ -37,7 +37,10 @@ Array hand_over(StreamedArray<T> data, std::initializer_list<std::size_t> shape)
 
 inline Numbers hand_over(const std::vector<std::int32_t>& values) {
   auto data = streamed_array<std::int32_t>(values.size());
-  std::memcpy(data.get(), values.data(), values.size() * sizeof(std::int32_t));
+  // No bytes are to be copied from no address either: that is undefined.
+  if (!values.empty()) {
+    std::memcpy(data.get(), values.data(), values.size() * sizeof(std::int32_t));
+  }
   return hand_over<Numbers>(std::move(data), {values.size()});
 }
 
