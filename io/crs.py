@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ..crs import CRS, METRE, UNKNOWN, Unit, assume_elevation_unit
-from .errors import CrsError
+from .errors import CrsError, counted
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -205,8 +205,10 @@ def _require_images(
     if lost.any():
         row = int(np.argmax(lost))
         x, y = points[row, :2]
+        count = int(lost.sum())
         raise CrsError(
-            f"{int(lost.sum())} points have no image {names} (first: point {row} at {x:g}, {y:g}): "
+            f"{counted(count, 'point')} {'has' if count == 1 else 'have'} no image {names} "
+            f"(first: point {row} at {x:g}, {y:g}): "
             "check that the CRS of the points is the right one.",
             crs=target,
         )

@@ -26,7 +26,7 @@ from .delimited_findings import (
 from .delimited_layout import find_layout
 from .delimited_lines import read_lines
 from .delimited_table import describe_columns, faults_error, read_cells, read_table
-from .errors import FormatError, ReadError, WriteError
+from .errors import FormatError, ReadError, WriteError, counted
 from .placing import place, settle_unit
 
 if TYPE_CHECKING:
@@ -239,7 +239,7 @@ def _accounted(table: Table, nodata: NDArray[np.float64], path: Path) -> _Accoun
     is_flat = np.isnan(z)
     is_nodata = np.isin(z, nodata) if len(nodata) else np.zeros(len(z), np.bool_)
     if (is_flat | is_nodata).all():
-        raise ReadError(f"'{path}': none of its {len(z)} rows has an elevation.", path=path)
+        raise ReadError(f"'{path}': of {counted(len(z), 'row')}, none has an elevation.", path=path)
     lines: dict[str, tuple[int, ...]] = {}
     notes: list[str] = []
     if table.n_grouped:

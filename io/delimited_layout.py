@@ -29,7 +29,7 @@ from .delimited_marks import (
     decimal_of,
     delimiter_of,
 )
-from .errors import ReadError
+from .errors import ReadError, counted
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -231,7 +231,8 @@ def _table_layout(
         raise ReadError("there is no row of numbers below the header.")
     if top.announced not in (None, len(rows)):
         raise ReadError(
-            f"the first line announces {top.announced} points, but {len(rows)} rows follow: "
+            f"the first line announces {counted(top.announced or 0, 'point')}, but "
+            f"{counted(len(rows), 'row')} {'follows' if len(rows) == 1 else 'follow'}: "
             "the file may be truncated."
         )
     body = _even_rows(cells[top.n_lines :], count, has_text_tail=has_text_tail)

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 _ODD_LETTER = "\N{REPLACEMENT CHARACTER}"
 
-__all__ = ["CrsError", "FormatError", "ReadError", "WriteError", "printable"]
+__all__ = ["CrsError", "FormatError", "ReadError", "WriteError", "counted", "printable"]
 
 
 def printable(text: str) -> str:
@@ -72,3 +72,14 @@ class FormatError(TinsmithError, ValueError):
     def __init__(self, message: str, *, known: Sequence[str] = ()) -> None:
         super().__init__(printable(message))
         self.known = tuple(known)
+
+
+def counted(number: int, noun: str, plural: str = "") -> str:
+    """Return a number with its noun, for sentences.
+
+    Examples
+    --------
+    >>> counted(1, "row"), counted(2000, "vertex", "vertices")
+    ('1 row', '2,000 vertices')
+    """
+    return f"{number:,} {noun if number == 1 else plural or noun + 's'}"

@@ -10,7 +10,7 @@ import numpy as np
 from ..terrain.slope import areas, aspect, ring_area, slope
 from ..tin import Survey
 from .atomic import replacing
-from .errors import FormatError, WriteError
+from .errors import FormatError, WriteError, counted
 from .geojson_lines import edge_words, line_features, line_vertices, require_lines
 from .geojson_places import (
     Places,
@@ -143,9 +143,10 @@ def _checked_kind(surface: TIN | Survey, kind: str | None) -> str:
 def _require_finite(points: NDArray[np.float64], path: Path) -> None:
     wrong = ~np.isfinite(points).all(axis=1)
     if wrong.any():
-        row = int(np.argmax(wrong))
+        row, count = int(np.argmax(wrong)), int(wrong.sum())
         raise WriteError(
-            f"Cannot write '{path}': {int(wrong.sum())} points are not finite (first: point "
+            f"Cannot write '{path}': {counted(count, 'point')} "
+            f"{'is' if count == 1 else 'are'} not finite (first: point "
             f"{row}, {points[row].tolist()}), and JSON has only finite numbers.",
             path=path,
         )

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..crs import CRS, METRE
 from .crs import reproject
-from .errors import CrsError, WriteError
+from .errors import CrsError, WriteError, counted
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -127,8 +127,8 @@ def require_one_piece(longitudes: NDArray[np.float64], path: Path) -> None:
     wide = np.ptp(longitudes, axis=1) > _HALF_TURN
     if wide.any():
         raise WriteError(
-            f"Cannot write '{path}': {int(wide.sum())} triangles cross the antimeridian or hold "
-            "a pole, which longitude and latitude cannot show in one piece; keep the coordinates "
+            f"Cannot write '{path}': {_crossing(int(wide.sum()))} a pole, "
+            "which longitude and latitude cannot show in one piece; keep the coordinates "
             "of the CRS with projected=True.",
             path=path,
         )
@@ -139,9 +139,15 @@ def _require_on_earth(moved: NDArray[np.float64], points: NDArray[np.float64], c
     if outside.any():
         row = int(np.argmax(outside))
         x, y = points[row, :2]
+        count = int(outside.sum())
         raise CrsError(
-            f"{int(outside.sum())} points are no places on Earth in this CRS (first: point {row} "
-            f"at {x:.12g}, {y:.12g}): longitudes of -180 to 180 and latitudes of -90 to 90 are "
+            f"{counted(count, 'point')} {'is no place' if count == 1 else 'are no places'} on "
+            f"Earth in this CRS (first: point {row} at {x:.12g}, {y:.12g}): longitudes of -180 to 180 and latitudes of -90 to 90 are "
             "allowed; check that the CRS is the right one.",
             crs=crs,
         )
+
+
+def _crossing(count: int) -> str:
+    cross, hold = ("crosses", "holds") if count == 1 else ("cross", "hold")
+    return f"{counted(count, 'triangle')} {cross} the antimeridian or {hold}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from ..crs import CRS, Unit
 from ..errors import OptionError
 from ..tin import TIN, PointsError, Survey
+from ..tin.check_overlaps import describe_overlaps
 from .errors import CrsError, FormatError, ReadError
 from .placing import settle_unit
 
@@ -153,13 +155,15 @@ def tin_of(
 ) -> TIN:
     """Make a TIN of what a file holds; what makes no TIN is a fault of the file.
 
+    What makes one in which triangles overlap, and the like, is told in the notes of its report.
+
     Raises
     ------
     ReadError
         As ``TIN.from_triangles`` raises PointsError.
     """
     try:
-        return TIN.from_triangles(
+        tin = TIN.from_triangles(
             points,
             triangles,
             constrained=constrained,
@@ -168,6 +172,21 @@ def tin_of(
         )
     except PointsError as error:
         raise ReadError(f"'{path}' holds no TIN. {error}", path=path) from error
+    notes = describe_overlaps(tin)
+    return _with_notes(tin, notes) if notes else tin
+
+
+def _with_notes(tin: TIN, notes: list[str]) -> TIN:
+    return TIN(
+        points=tin.points,
+        triangles=tin.triangles,
+        neighbors=tin.neighbors,
+        constrained=tin.constrained,
+        vertex_of=tin.vertex_of,
+        report=replace(tin.report, notes=notes),
+        crs=tin.crs,
+        elevation_unit=tin.elevation_unit,
+    )
 
 
 def survey_of(

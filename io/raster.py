@@ -14,7 +14,7 @@ import numpy as np
 from ..crs import CRS, Unit
 from ..errors import OptionError
 from ..tin import Bounds, MissingExtraError, Survey
-from .errors import FormatError, ReadError
+from .errors import FormatError, ReadError, counted
 from .isolated import Limits, limits_for, run_isolated, stream_isolated
 from .nodata import describe_suspects, find_suspect_elevations
 from .placing import place, settle_unit
@@ -135,8 +135,8 @@ def read(
     points, valid, n_nodata = _points(dataset, number, cells, marks)
     if len(points) == 0:
         raise ReadError(
-            f"'{path}': none of the {n_nodata} cells of band {number} has an elevation, "
-            "all are nodata.",
+            f"'{path}': of {counted(n_nodata, 'cell')} of band {number}, none has an elevation but "
+            "nodata.",
             path=path,
         )
     _require_finite(points, number, path)
@@ -377,7 +377,7 @@ def _cells(
     if not isinstance(stride, Integral) or not (1 <= stride < smaller or stride == 1):
         raise FormatError(
             f"Invalid stride {stride!r}: a whole number from 1 to {max(1, smaller - 1)} is needed "
-            f"for the {part[2]} columns and {part[3]} rows to read."
+            f"for the {counted(part[2], 'column')} and {counted(part[3], 'row')} to read."
         )
     return _Cells(*part, int(stride), bounds)
 
@@ -385,7 +385,7 @@ def _cells(
 def _part_of_window(
     dataset: _Header, window: Sequence[int], path: Path
 ) -> tuple[int, int, int, int]:
-    size = f"the raster has {dataset.width} columns and {dataset.height} rows"
+    size = f"the raster has {counted(dataset.width, 'column')} and {counted(dataset.height, 'row')}"
     try:
         numbers = tuple(window)
     except TypeError:

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..crs import CRS
 from ..tin import MissingExtraError
-from .errors import CrsError, ReadError
+from .errors import CrsError, ReadError, counted
 from .isolated import limits_for, run_isolated
 from .local import require_local
 from .signatures import HEAD_BYTES, reference_kind
@@ -194,7 +194,7 @@ def _with_geometry(features: Features) -> Features:
         return features
     if is_empty.all():
         raise ReadError(
-            f"'{features.path}': none of its {len(is_empty)} features has a geometry.",
+            f"'{features.path}': of {counted(len(is_empty), 'feature')}, none has a geometry.",
             path=features.path,
         )
     count, first = int(is_empty.sum()), features.numbers[np.argmax(is_empty)]

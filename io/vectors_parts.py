@@ -8,7 +8,7 @@ import numpy as np
 
 from ..crs import assume_elevation_unit
 from .crs import conversion_factor
-from .errors import ReadError
+from .errors import ReadError, counted
 from .placing import place, settle_unit
 
 if TYPE_CHECKING:
@@ -160,7 +160,7 @@ def _require_finite(
     first = int(np.argmax(wrong))
     line = int(np.searchsorted(bounds, first, side="right")) - 1
     raise ReadError(
-        f"'{features.path}' has {int(wrong.sum())} vertices that are not finite (first: vertex "
+        f"'{features.path}' has {_not_finite(int(wrong.sum()))} (first: vertex "
         f"{first - int(bounds[line])} of feature {features.numbers[rows[line]]}, "
         f"{xyz[first].tolist()}): every coordinate must be a finite number.",
         path=features.path,
@@ -250,3 +250,8 @@ def _conversion(
         guessed.append(f"of the points {units[1].name}")
     reason = f"; not told and taken as usual in the CRS: {', '.join(guessed)}" if guessed else ""
     return f"{text}{reason}."
+
+
+def _not_finite(count: int) -> str:
+    vertices = counted(count, "vertex", "vertices")
+    return f"{vertices} that {'is' if count == 1 else 'are'} not finite"

@@ -360,3 +360,17 @@ def test_json_knows_no_infinity_and_no_numpy():
 
     given = {"a": float("inf"), "b": [float("nan"), np.float64("-inf")], "c": np.int32(3)}
     assert json.loads(plain(given)) == {"a": None, "b": [None, None], "c": 3}
+
+
+def test_every_row_that_was_left_out_is_in_report_and_json(tmp_path):
+    path, report = tmp_path / "a.csv", tmp_path / "report.json"
+    rows = ["x,y,z", "0,0,1", "4,0,2", "odd,0,2", "0,4,3", "2,2,", "5,5,4"]
+    path.write_text("\n".join(rows) + "\n")
+    how = ["--skip-bad", "--json", "--report", report, "-o", tmp_path / "a.ply"]
+    facts = json.loads(run("build", path, *how).stdout)
+    expected = {"bad rows": [4], "points without elevation": [6]}
+    assert facts["survey"]["skipped_lines"] == expected
+    assert facts["report"]["skipped_lines"] == expected
+    assert json.loads(report.read_text())["skipped_lines"] == expected
+    info = json.loads(run("info", path, "--skip-bad", "--json").stdout)
+    assert info["skipped_lines"] == expected

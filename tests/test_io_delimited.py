@@ -776,7 +776,7 @@ def test_a_bad_value_in_the_first_row(survey):
 def test_a_whole_column_that_is_no_number(survey):
     assert "2 of 2 rows" in str(fault(survey, "x,y,z\n1,2,True\n3,4,False\n"))
     assert "2 of 2 rows" in str(fault(survey, "x,y,z\n1,,2\n3,,4\n"))
-    assert "none of its 2 rows has an elevation" in str(fault(survey, "x,y,z\n1,2,\n3,4,\n"))
+    assert "of 2 rows, none has an elevation" in str(fault(survey, "x,y,z\n1,2,\n3,4,\n"))
 
 
 def test_rows_of_another_length(survey):
@@ -993,3 +993,15 @@ def test_local_coordinates_with_a_projected_crs_are_told(tmp_path, rows, is_told
     path.write_text("x,y,z\n" + rows)
     told = [note for note in ts.read(path, crs="EPSG:32632").notes if "local coordinates" in note]
     assert len(told) == is_told
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        ("x,y,z\n1,2,\n", "of 1 row, none has an elevation"),
+        ("3\n1 2 3\n", "announces 3 points, but 1 row follows"),
+        ("1\n1 2 3\n2 3 4\n", "announces 1 point, but 2 rows follow"),
+    ],
+)
+def test_sentences_about_one_row_are_in_the_singular(survey, content, words):
+    assert words in str(fault(survey, content))

@@ -411,7 +411,7 @@ def test_a_surface_about_the_pole(tmp_path):
 def test_a_survey_with_a_coordinate_that_is_not_finite(tmp_path, value):
     survey = ts.Survey(points=np.array([[5e5, 4e6, 1], [5e5, value, 1]]), crs=UTM16)
     for projected in (False, True):
-        words = r"1 points are not finite \(first: point 1"
+        words = r"1 point is not finite \(first: point 1"
         refused(WriteError, words, survey, tmp_path / "a.geojson", projected=projected)
 
 

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import math
 import struct
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
 import tinsmith as ts
+from tinsmith.cli import main
 from tinsmith.io import obj, ply, stl, vtk
 from tinsmith.io.errors import CrsError, FormatError, ReadError
+from tinsmith.tin.check_overlaps import describe_overlaps
 
 ORIGIN = np.array([745_000.0, 4_033_000.0, 200.0])
 SQUARE = np.array([[0, 0, 1], [1, 0, 2], [1, 1, 3], [0, 1, 4]], float)
@@ -556,3 +560,78 @@ def test_something_that_is_no_surface(tmp_path, module):
     with pytest.raises(FormatError, match="a dict is neither"):
         module.write({}, tmp_path / "a")
     assert not list(tmp_path.iterdir())
+
+
+# ------------------------------------------------------------------ what a file's mesh is, is told
+
+TWO_OVER_EACH_OTHER = """v 0 0 1
+v 4 0 1
+v 0 4 1
+v 1 1 5
+v 5 1 5
+v 1 5 5
+f 1 2 3
+f 4 5 6
+"""
+
+
+def notes_of(tmp_path, text, name="a.obj"):
+    path = tmp_path / name
+    path.write_text(text)
+    return list(ts.read(path).report.notes)
+
+
+def test_triangles_of_a_file_that_overlap_are_told(tmp_path):
+    assert notes_of(tmp_path, TWO_OVER_EACH_OTHER) == [
+        "Triangles overlap (westernmost place: near vertex 3); a check tells more."
+    ]
+
+
+def test_a_fan_that_winds_twice_is_told(tmp_path):
+    angles = np.arange(8) * (4 * np.pi / 8) + 0.1 * (np.arange(8) >= 4)
+    rows = [f"v {math.cos(a)!r} {math.sin(a)!r} 1" for a in angles.tolist()]
+    faces = [f"f 1 {k + 2} {(k + 1) % 8 + 2}" for k in range(8)]
+    text = "\n".join(["v 0 0 1", *rows, *faces, ""])
+    assert any("overlap" in note for note in notes_of(tmp_path, text))
+
+
+def test_vertices_of_no_triangle_are_told(tmp_path):
+    text = "v 0 0 1\nv 9 9 9\nv 4 0 1\nv 0 4 1\nf 1 3 4\n"
+    assert notes_of(tmp_path, text) == ["1 vertex belongs to no triangle (first: vertex 1)."]
+
+
+@pytest.mark.parametrize("name", ["a.ply", "a.obj", "a.vtu", "a.msh"])
+def test_a_concave_mesh_in_two_pieces_has_no_notes(tmp_path, name):
+    points = [[0, 0, 1], [4, 0, 1], [1, 1, 1], [0, 4, 1], [9, 9, 1], [9, 12, 2], [7, 12, 2]]
+    tin = ts.TIN.from_triangles(points, [[0, 1, 2], [0, 2, 3], [4, 5, 6]])
+    again = ts.read(ts.write(tin, tmp_path / name))
+    assert list(again.report.notes) == []
+    assert len(again.triangles) == 3
+
+
+def test_an_edge_that_is_constrained_on_one_side_is_told():
+    points = [[0, 0, 1], [4, 0, 1], [4, 4, 1], [0, 4, 1]]
+    flags = [[False, True, False], [False, False, False]]
+    tin = ts.TIN.from_triangles(points, [[0, 1, 2], [0, 2, 3]], constrained=flags)
+    assert describe_overlaps(tin) == ["1 edge is constrained on one side only."]
+
+
+def test_a_boundary_too_long_to_be_swept_is_told(monkeypatch):
+    monkeypatch.setattr("tinsmith.tin.check_overlaps._MOST_EDGES", 5)
+    points = [[0, 0, 1], [4, 0, 1], [0, 4, 1], [1, 1, 5], [5, 1, 5], [1, 5, 5]]
+    tin = ts.TIN.from_triangles(points, [[0, 1, 2], [3, 4, 5]])
+    assert "whether triangles overlap was not looked at" in describe_overlaps(tin)[0]
+
+
+@pytest.mark.parametrize("command", ["info", "convert"])
+def test_the_command_line_shows_what_is_odd_in_a_mesh(tmp_path, command):
+    path = tmp_path / "a.obj"
+    path.write_text(TWO_OVER_EACH_OTHER)
+    arguments = [
+        command,
+        str(path),
+        *(["-o", str(tmp_path / "b.ply")] if command != "info" else []),
+    ]
+    done = CliRunner().invoke(main, arguments)
+    assert done.exit_code == 0
+    assert "Triangles overlap" in done.output

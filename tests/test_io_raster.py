@@ -283,7 +283,7 @@ def test_points_outside_the_wanted_crs(raster):
 
 def test_all_nodata(raster):
     array = np.full((4, 5), -1.0)
-    assert "none of the 20 cells" in fault(raster(array, nodata=-1))
+    assert "of 20 cells of band 1, none" in fault(raster(array, nodata=-1))
 
 
 @pytest.mark.parametrize("share", [0.05, 0.5, 0.9])

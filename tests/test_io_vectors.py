@@ -289,7 +289,7 @@ def test_a_height_that_is_no_number(tmp_path):
     broken[1, 2] = np.nan
     shapes = [shapely.LineString(KERB_Z), shapely.LineString(broken)]
     path = write(tmp_path / "a.gpkg", shapes)
-    text = refused("1 vertices that are not finite", read_lines, path)
+    text = refused("1 vertex that is not finite", read_lines, path)
     assert "vertex 1 of feature 2" in text
     assert len(read_lines(path, drape=True)) == 2
 
@@ -318,7 +318,7 @@ def test_features_without_geometry_are_noted_unless_all_are(tmp_path):
     assert "'a.gpkg': 2 features have no geometry (first: 2)." in notes
     nothing = write_json(tmp_path / "b.geojson", None, None)
     refused("geometry", read_lines, nothing)
-    refused("none of its 2 features", read_lines, write(tmp_path / "c.gpkg", [None, None]))
+    refused("of 2 features, none", read_lines, write(tmp_path / "c.gpkg", [None, None]))
 
 
 def test_an_empty_layer(tmp_path):

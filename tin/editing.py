@@ -29,7 +29,7 @@ from .lines import Breakline
 from .options import is_one_of, is_whole_number, shown
 from .points import as_elevations, as_points
 from .state import State, build_state
-from .tables import as_table
+from .tables import as_table, is_masked_array
 from .version import Version
 
 if TYPE_CHECKING:
@@ -240,8 +240,7 @@ class Session:
             numbers = np.atleast_1d(np.asarray(vertices))
         except Exception:
             numbers = np.empty(0, np.float64)
-        is_masked = isinstance(vertices, np.ma.MaskedArray)
-        if is_masked or numbers.ndim != 1 or numbers.dtype.kind not in "iu":
+        if is_masked_array(vertices) or numbers.ndim != 1 or numbers.dtype.kind not in "iu":
             raise PointsError(f"Invalid vertices {shown(vertices)}: whole numbers are needed.")
         wrong = (numbers < 0) | (numbers >= count)
         if wrong.any():

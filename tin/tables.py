@@ -18,7 +18,7 @@ from .errors import PointsError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Table", "as_table"]
+__all__ = ["Table", "as_table", "is_masked_array"]
 
 COORDINATES = ("easting", "northing", "elevation")
 _NAMES = {
@@ -77,15 +77,21 @@ def as_table(given: Any, what: str, *, least: int = 3, most: int = 3) -> Table:
     return _stacked(columns, what)
 
 
+def is_masked_array(given: Any) -> bool:
+    """Whether values are a masked array, which nobody can have without its module loaded."""
+    masked = sys.modules.get("numpy.ma")
+    return masked is not None and isinstance(given, masked.MaskedArray)
+
+
 def _without_wrapping(given: Any) -> Any:
     """Return masked rows in a list as one masked array."""
-    if isinstance(given, list | tuple) and any(isinstance(v, np.ma.MaskedArray) for v in given):
+    if isinstance(given, list | tuple) and any(map(is_masked_array, given)):
         return np.ma.array(given)
     return given
 
 
 def _unnamed(given: Any, what: str) -> Table:
-    if not isinstance(given, np.ma.MaskedArray):
+    if not is_masked_array(given):
         return Table(_as_numbers(given, what))
     mask = np.ma.getmaskarray(given)
     values = _as_numbers(np.where(mask, 0, given.data), what)

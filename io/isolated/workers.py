@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import ReadError
+from ..forking import Fork, can_fork
 from .answers import Answer, BrokenMessageError, receive, send
 from .limits import START_SECONDS, Limits, limits_for
 
@@ -90,15 +91,7 @@ class _Worker:
         self.module = module
         self.is_sound = True
         self._timed_out = False
-        self._process = subprocess.Popen(
-            [_interpreter(), "-P", "-c", _START, _search_path()],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-            bufsize=0,
-            env={**os.environ, **_environment(module)},
-            start_new_session=True,  # Ctrl-C is for the program, which then ends the child
-        )
+        self._process = _forked(module) if can_fork() else _started(module)
 
     def ask(
         self, request: dict[str, Any], path: Path, limits: Limits
@@ -137,6 +130,10 @@ class _Worker:
 
     def _time_out(self) -> None:
         self._timed_out = True
+        self.kill()
+
+    def kill(self) -> None:
+        """End the child at once."""
         self._process.kill()
 
     def end(self) -> None:
@@ -186,6 +183,7 @@ class _Pool:
         with self._lock:
             workers, self._idle = list(self._idle.values()), {}
         for worker in workers:
+            worker.kill()  # an idle child has nothing to finish
             worker.end()
 
     def forget(self) -> None:
@@ -202,6 +200,24 @@ if hasattr(os, "register_at_fork"):
 
 
 # ---------------------------------------------------------------------- starting a child
+
+
+def _forked(module: str) -> Fork:
+    from .child import main
+
+    return Fork(main, _environment(module))
+
+
+def _started(module: str) -> subprocess.Popen[bytes]:
+    return subprocess.Popen(
+        [_interpreter(), "-P", "-c", _START, _search_path()],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        bufsize=0,
+        env={**os.environ, **_environment(module)},
+        start_new_session=True,  # Ctrl-C is for the program, which then ends the child
+    )
 
 
 def _interpreter() -> str:

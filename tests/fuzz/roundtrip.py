@@ -13,6 +13,7 @@ import tinsmith as ts
 
 from .campaign import Campaign
 from .coordinates import coordinates
+from .samples import MEMORY
 
 SUFFIXES = ("ply", "obj", "vtp", "vtu", "msh", "stl", "geojson", "csv")
 _NO_FLAGS = ("obj", "msh", "stl")
@@ -48,7 +49,7 @@ def examine(case: dict[str, Any]) -> str:
         )
     except ts.TinsmithError:
         return "no TIN"
-    with tempfile.TemporaryDirectory() as folder:
+    with tempfile.TemporaryDirectory(dir=MEMORY) as folder:
         path = Path(folder, f"a.{suffix}")
         if suffix == "geojson":
             _require_same_triangles(tin, ts.write(tin, path, projected=True))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import tempfile
 import warnings
 from functools import cache
@@ -12,7 +13,10 @@ import numpy as np
 
 import tinsmith as ts
 
-__all__ = ["sample_files"]
+__all__ = ["MEMORY", "sample_files"]
+
+MEMORY = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
+"""Where files cost microseconds; on a disk each folder may take a hundredth of a second."""
 
 CRS = "EPSG:32616"
 CORNER = np.array([752_640.0, 4_024_180.0, 300.0])

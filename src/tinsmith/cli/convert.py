@@ -43,14 +43,13 @@ def convert(
     Example:
       tinsmith convert sample_data/site_survey.csv -o site.xyz
     """  # noqa: D301 - click reads the control character
-    from ..tin import Survey
     from .facts import reading_fields, unit_note
     from .files import inputs_of, plan_outputs, read_input, write_outputs, written_text
 
     planned = plan_outputs(outputs, writing, inputs=inputs_of(file), console=console)
     found = read_input(file, reading, console)
     write_outputs(found, planned, console)
-    notes = reading_fields(found) if isinstance(found, Survey) else []
+    notes = reading_fields(found)
     if note := unit_note(found):
         notes = [*notes, ("Elevation", note)]
     read = ("Read", f"{_what(found)} from {name_of(file)}")

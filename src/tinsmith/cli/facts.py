@@ -60,6 +60,7 @@ def survey_facts(survey: Survey) -> dict[str, Any]:
         "attributes": list(survey.attributes),
         **given_lines(survey),
         "skipped": dict(survey.skipped),
+        "skipped_lines": {what: list(rows) for what, rows in survey.skipped_lines.items()},
         "notes": list(survey.notes),
     }
 
@@ -77,6 +78,7 @@ def tin_facts(tin: TIN) -> dict[str, Any]:
         "lines": {kind: tin.lines.kinds.count(kind) for kind in sorted(set(tin.lines.kinds))},
         **_place_facts(tin),
         **_ground_facts(tin),
+        "notes": list(tin.report.notes),
     }
 
 
@@ -89,6 +91,7 @@ def report_facts(report: Report, survey: Survey, gaps: Sequence[str] = ()) -> di
     """Return the report, with the gaps found, and the point numbers of merged rows."""
     facts = report.to_dict()
     facts["notes"] += gaps
+    facts["skipped_lines"] = {what: list(rows) for what, rows in survey.skipped_lines.items()}
     numbers = survey.attributes.get("number")
     if numbers is not None:
         for merge in facts["merges"]:
@@ -186,7 +189,8 @@ def tin_fields(tin: TIN) -> list[Field]:
             ("", f"{facts['surface_area']:,.1f}{across}² in space"),
         ]
     low, mean, high = (facts["slope"][name] for name in ("min", "mean", "max"))
-    return [*fields, ("Slope", f"{low:.1f}° to {high:.1f}°, mean {mean:.1f}°"), crs_field(tin.crs)]
+    fields.append(("Slope", f"{low:.1f}° to {high:.1f}°, mean {mean:.1f}°"))
+    return [*fields, crs_field(tin.crs), *reading_fields(tin)]
 
 
 def quality_fields(shapes: Quality | None) -> list[Field]:
@@ -234,15 +238,17 @@ def crs_field(crs: CRS | None) -> Field:
     return ("CRS", crs.name if crs.label == crs.name else f"{crs}, {crs.name}")
 
 
-def reading_fields(survey: Survey) -> list[Field]:
-    """Say what the reader left out and what it assumed, if anything."""
+def reading_fields(found: Survey | TIN) -> list[Field]:
+    """Say what the reader left out, what it assumed and what it found odd, if anything."""
+    if not isinstance(found, Survey):
+        return [("Note", note) for note in found.report.notes]
     skipped = [
         count(number, _singular(what), what)
-        for what, number in survey.skipped.items()
+        for what, number in found.skipped.items()
         if what != _EXPECTED
     ]
     fields = [("Skipped", ", ".join(skipped))] if skipped else []
-    return [*fields, *(("Note", note) for note in survey.notes)]
+    return [*fields, *(("Note", note) for note in found.notes)]
 
 
 def _singular(what: str) -> str:

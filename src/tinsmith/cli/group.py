@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .. import __version__
+from ..io.forking import permit_forks
 from .failures import Failure, failures_as_sentences, show_failure
 from .streams import (
     Terminated,
@@ -58,6 +59,8 @@ class _Commands(click.Group):
             return super().main(args, standalone_mode=False, **how)
         arguments = sys.argv[1:] if args is None else list(args)
         reserve_standard_streams()
+        if args is None:  # this process is the command's own
+            permit_forks()
         with signals_as_exceptions():
             sys.exit(self._exit_code(arguments, **how))
 
