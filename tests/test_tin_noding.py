@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from line_oracle import places_of, steps_of
 
+import tinsmith as ts
 from tinsmith.tin import _kernel, splitting
 from tinsmith.tin.errors import LinesError
 from tinsmith.tin.noding import Chains, node
@@ -434,3 +435,17 @@ def test_touching_and_overlapping_lines_do_not_cross():
 def test_unknown_crossing_is_refused():
     with pytest.raises(LinesError, match="Invalid crossing 'join': one of split, error"):
         noded(CROSS, TWO, crossing="join")
+
+
+@pytest.mark.parametrize("turn", [[0, 1, 2], [1, 0, 2]])
+def test_order_of_rows_has_no_say_where_an_upright_line_bends_onto_two_points(turn):
+    """Both lie equally far along the line, on either side of it."""
+    points = np.array([[-0.1, 5, 1], [0.1, 5, 2], [-9, 4, 0], [9, 4, 0]], float)
+    line = np.array([[0, 0, 0], [0, 10, 0]], float)
+    tins = [
+        ts.triangulate(rows[:, turn], breaklines=[line[:, turn]], snap=0.15)
+        for rows in (points, points[::-1])
+    ]
+    chains = [tin.points[tin.lines.vertices].tolist() for tin in tins]
+    assert len(chains[0]) == 4
+    assert chains[0] == chains[1]

@@ -221,7 +221,9 @@ class _Walker:
         fits = at + np.flatnonzero(off <= max(best, 2 * self._unit))
         worst = np.zeros(len(fits))
         if len(fits) > 1:
-            worst = np.array([self._run(rows, n, chain, is_first=False).deviation for n in fits])
+            worst = np.array(
+                [self._run(rows, n, chain, is_first=False).deviation for n in fits.tolist()]
+            )
         yield int(fits[np.argmax(worst <= worst.min() + self._unit)])
         yield from (at + np.flatnonzero(off <= allowed)).tolist()
 
@@ -277,8 +279,9 @@ class _Walker:
         if end < len(rows) - 1:
             unseen[-1] = UNSEEN_CUTS
         allowed = self._unit * (1 + np.stack([cuts, cuts + unseen])[:, row])
-        is_close, is_kept = ((off <= allowed) & (back <= 2 * allowed)).all(axis=1).tolist()
+        is_within = (off <= allowed) & (back <= 2 * allowed)
         deviation = float(max(off.max(initial=0.0), back.max(initial=0.0)))
+        is_close, is_kept = (bool(rows_within.all()) for rows_within in is_within)
         return _Course(begin, end, between, deviation, is_close, is_kept)
 
     def _align(

@@ -301,11 +301,12 @@ class Splitting:
         """Sort by segment, then from its first end to the second.
 
         Rounding is monotone: exact places and rounded crossings are in order by x and by y. Where
-        lines bend, the projection decides.
+        lines bend, the projection decides; of two places across an upright or level segment, which
+        are then equally far along it, the coordinates.
         """
         a, b, p = self._ends_and_places(segment, vertex)
         x, y = (np.sign(b - a) * p).T
-        keys = (y, x, _projection(a, b, p)) if bends else (y, x)
+        keys = (*p.T, y, x, _projection(a, b, p)) if bends else (y, x)
         order = np.lexsort((*keys, segment))
         return segment[order], vertex[order]
 
