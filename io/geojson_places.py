@@ -142,8 +142,8 @@ def _require_on_earth(moved: NDArray[np.float64], points: NDArray[np.float64], c
         count = int(outside.sum())
         raise CrsError(
             f"{counted(count, 'point')} {'is no place' if count == 1 else 'are no places'} on "
-            f"Earth in this CRS (first: point {row} at {x:.12g}, {y:.12g}): longitudes of -180 to 180 and latitudes of -90 to 90 are "
-            "allowed; check that the CRS is the right one.",
+            f"Earth in this CRS (first: point {row} at {x:.12g}, {y:.12g}): longitudes of -180 to "
+            "180 and latitudes of -90 to 90 are allowed; check that the CRS is the right one.",
             crs=crs,
         )
 

@@ -126,3 +126,36 @@ def test_a_hole_that_cuts_nothing_is_named_by_its_number():
 def test_what_is_no_polygon_is_refused(given, words):
     with pytest.raises(ts.LinesError, match=f"(?i){words}"):
         ts.triangulate(GRID, holes=given)
+
+
+def plane(xy):
+    return np.column_stack([np.asarray(xy, float), np.zeros(len(xy))])
+
+
+@pytest.mark.parametrize("option", ["holes", "boundary"])
+def test_rings_that_leave_the_hull_cut_what_shapely_cuts(option):
+    """A place where a ring leaves the hull is rounded, and may come to lie beyond it.
+
+    Then the sliver between it and the next hull edge in line joined the outside with the surface,
+    and all beyond the ring was lost without a word.
+    """
+    rng = np.random.default_rng(3)
+    built = 0
+    while built < 150:
+        points = rng.integers(0, 7, (rng.integers(3, 9), 2))
+        ring = shapely.Polygon(rng.integers(-1, 8, (3, 2)))
+        hull = shapely.MultiPoint(points).convex_hull
+        wanted = hull.difference(ring) if option == "holes" else hull.intersection(ring)
+        if 0 in (ring.area, hull.area, wanted.area) or not ring.intersects(hull.buffer(-1e-6)):
+            continue
+        tin = ts.triangulate(plane(points), **{option: [np.array(ring.exterior.coords)[:-1]]})
+        assert tin.area == pytest.approx(wanted.area, rel=1e-12)
+        assert ts.check(tin).ok
+        built += 1
+
+
+def test_a_hole_across_collinear_points_of_the_hull():
+    points = plane([[4, 2], [6, 4], [2, 0], [0, 0]])
+    tin = ts.triangulate(points, holes=[[[1, 1], [4, 0], [0, 3]]])
+    assert tin.area == pytest.approx(4 - 0.6886087768440714, rel=1e-12)
+    assert tin.report.to_dict()["left_out"] == {}

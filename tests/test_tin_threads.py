@@ -18,6 +18,7 @@ from kernel_ways import DATASETS, dataset, require_same_growth, with_heights
 import tinsmith as ts
 from tinsmith.tin import _kernel
 from tinsmith.tin import threads as threads_module
+from tinsmith.tin.interrupts import hold_interrupts
 from tinsmith.tin.threads import LEAST_POINTS_PER_THREAD, thread_count
 
 FOUR_CORNERS = [[0, 0, 1], [9, 0, 2], [9, 9, 3], [0, 9, 4]]
@@ -306,3 +307,18 @@ def test_ctrl_c_ends_triangulations_in_a_loop(threads):
 def test_ctrl_c_ends_large_triangulations(threads, seconds_before):
     """At whatever step it comes: cleaning, index, hull, growth, stitching."""
     require_interrupted(MANY_TRIANGULATIONS.format(n=5_000_000, threads=threads), seconds_before)
+
+
+def test_an_interrupt_while_the_core_is_loaded_waits():
+    done = []
+
+    def load():
+        with hold_interrupts():
+            signal.raise_signal(signal.SIGINT)
+            done.append("loaded")
+
+    with pytest.raises(KeyboardInterrupt):
+        load()
+    assert done == ["loaded"]
+    with pytest.raises(KeyboardInterrupt):
+        signal.raise_signal(signal.SIGINT)

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from . import _core
 from .errors import PointsError
+from .interrupts import hold_interrupts
+
+with hold_interrupts():
+    from . import _core
 
 if TYPE_CHECKING:
     import numpy as np

@@ -107,9 +107,17 @@ def _split_rim(
     heights: NDArray[np.float64],
     own: NDArray[np.int32],
 ) -> LineSet:
-    """Return the edges of the rim that have vertices between their ends, as lines."""
+    """Return the edges of the rim that have vertices between their ends, as lines.
+
+    Edges that such a vertex hides belong to them: where rounding put it beyond the rim, a sliver
+    that is no surface lies between it and the next edges in line::
+
+        rim  --------- v ----.         v is above the rim by a rounding; the edge from a to b tells
+             ______.--' `--. a ___ b   the sliver v, a, b apart from the surface below
+    """
     corner = np.flatnonzero(np.isin(chain, own))
     is_split = np.diff(corner) > 1
+    is_split |= _hidden_edges(places[chain], corner, is_split)
     begins, ends = corner[:-1][is_split], corner[1:][is_split] + 1
     counts = ends - begins
     total = int(counts.sum())
@@ -124,6 +132,30 @@ def _split_rim(
         np.full(len(counts), BELOW_ALL),
         ("",) * len(counts),
     )
+
+
+def _hidden_edges(
+    xy: NDArray[np.float64], corner: NDArray[np.int64], is_split: NDArray[np.bool_]
+) -> NDArray[np.bool_]:
+    """Tell which edges of a closed rim, from corner to corner, a vertex on another one hides."""
+    is_hidden = np.zeros(len(is_split), np.bool_)
+    n = len(is_split)
+    for edge in np.flatnonzero(is_split).tolist():
+        between = xy[corner[edge] + 1 : corner[edge + 1]]
+        for turn in (1, -1):
+            for step in range(1, n):
+                other = (edge + turn * step) % n
+                if not _are_beyond(between, xy[corner[[other, other + 1]]]).any():
+                    break
+                is_hidden[other] = True
+    return is_hidden
+
+
+def _are_beyond(xy: NDArray[np.float64], edge: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Tell which places lie to the right of an edge from its first end to its second."""
+    start, end = (np.ascontiguousarray(np.broadcast_to(place, xy.shape)) for place in edge)
+    beyond: NDArray[np.bool_] = _kernel.orientation(start, end, np.ascontiguousarray(xy)) < 0
+    return beyond
 
 
 def _with_heights(
