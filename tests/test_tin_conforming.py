@@ -238,6 +238,16 @@ def test_elevation_at_a_crossing_of_a_ring_is_the_same_wherever_the_ring_begins(
         assert faces(tin) == faces(tins[0])
 
 
+def test_elevation_at_a_crossing_of_a_ring_whose_first_corners_snap_together():
+    """One elevation at the merged corner for both directions, wherever the ring begins."""
+    ring = [[0, 0, 2.0], [0.1, 0, 0.0], [10, 0, 0.0], [10, 10, 0.0], [0, 10, 0.0]]
+    other = [[-1, 4, 0.0], [1, 4, 0.0], [1, 6, 0.0], [-1, 6, 0.0]]
+    for n in range(5):
+        for corners in (ring[n:] + ring[:n], (ring[n:] + ring[:n])[::-1]):
+            tin = ts.triangulate(NONE, boundary=[corners], holes=[other], snap=0.5)
+            assert tin.points[:, 2].tolist() == [0.0] * 8
+
+
 # ------------------------------------------------- which way along a line, with a large snap
 
 

@@ -83,13 +83,19 @@ class Walk(NamedTuple):
         offsets: NDArray[np.int32],
         heights: NDArray[np.float64],
     ) -> Walk:
-        """Join the chains; repeated vertices in a row count once, by their lowest height."""
+        """Join the chains; repeated vertices in a row count once, by their lowest height.
+
+        Where a chain closes, too: snapping may have merged the first vertex with the next ones.
+        """
         line = np.repeat(np.arange(len(offsets) - 1, dtype=np.int32), np.diff(offsets))
         moves = np.ones(len(line), np.bool_)
         moves[1:] = (np.diff(vertices) != 0) | (np.diff(line) != 0)
         given = np.ones(int(moves.sum()), np.bool_)
         starts = np.flatnonzero(moves)
         lowest = np.minimum.reduceat(heights, starts) if len(starts) else heights
+        ends = _closing_ends(vertices, offsets, heights)
+        run = np.searchsorted(starts, ends, side="right") - 1
+        lowest[run] = lowest[run].min(axis=0)
         return cls(vertices[moves], lowest, line[moves], given)
 
     def with_vertices(
@@ -103,6 +109,19 @@ class Walk(NamedTuple):
             np.insert(self.line, behind, self.line[at]),
             np.insert(self.is_given, behind, values=False),
         )
+
+
+def _closing_ends(
+    vertices: NDArray[np.int32], offsets: NDArray[np.int32], heights: NDArray[np.float64]
+) -> NDArray[np.int64]:
+    """Return where chains begin and end that close with one height, (2, c).
+
+    Others keep both of their heights: a ramp may end above its begin.
+    """
+    has_vertices = np.diff(offsets) > 0
+    ends = np.stack([offsets[:-1], offsets[1:] - 1])[:, has_vertices].astype(np.int64)
+    closes = (vertices[ends[0]] == vertices[ends[1]]) & (heights[ends[0]] == heights[ends[1]])
+    return ends[:, closes]
 
 
 def _key_of(first: NDArray[Any], second: NDArray[Any]) -> NDArray[np.int64]:
