@@ -287,6 +287,29 @@ def test_check_does_not_take_the_first_vertex_within_snap_for_the_line_s_own():
     ts.check(tin, points=survey).raise_if_failed()
 
 
+def test_check_finds_a_draped_part_that_snaps_back_behind_the_one_before():
+    """What is in the needle of its second segment, 1e-8 long, became an edge of length 0.4."""
+    lines = [
+        [[512345.2, 0.0, 0.0], [512345.0, 5403210.4, 0.0], [512345.5, 0.0, 5.0]],
+        [[512345.4, 0.0], [512345.0, 5403210.2], [512345.2, 5403210.2]],
+    ]
+    tin = ts.triangulate(NONE, breaklines=lines, snap=0.25)
+    assert tin.lines.sources.tolist() == [0, 1, 1]
+    ts.check(tin, breaklines=lines).raise_if_failed()
+
+
+def test_check_finds_which_of_two_vertices_equally_near_became_the_line_s_own():
+    """The first of them is the line's last vertex, too, to which the second chain leads."""
+    x, y = 512345.0, 5403210.0
+    lines = [
+        [[x + 0.2, 0.0, 0.0], [x, y + 0.4, 0.0], [x + 0.5, y, 5.0]],
+        [[x + 0.4, y], [x, y + 0.2], [x + 0.2, y + 0.2]],
+    ]
+    tin = ts.triangulate(NONE, breaklines=lines, snap=0.25)
+    assert tin.lines.sources.tolist() == [0, 1, 1]
+    ts.check(tin, breaklines=lines).raise_if_failed()
+
+
 def test_check_still_loses_a_chain_that_is_on_no_part_of_its_line():
     lines = [[[0.0, 0.0, 0.0], [10.0, 0.0, 0.0]], [[0.0, 5.0, 0.0], [10.0, 5.0, 0.0]]]
     tin = ts.triangulate(NONE, breaklines=lines, snap=0.01)

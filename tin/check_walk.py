@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from math import hypot
 from operator import itemgetter
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple, get_args
 
 import numpy as np
 
@@ -24,6 +24,9 @@ UNSEEN_CUTS = 16
 Place = list[float]
 Between = tuple[int, int, int]
 """Position of a vertex that is none of its line, and the rows of the line's before and after."""
+Passing = Literal["first", "nearest", "last"]
+"""Which of successive vertices within ``snap`` became one of the line's."""
+_PASSINGS: tuple[Passing, ...] = get_args(Passing)
 
 
 class Walk(NamedTuple):
@@ -203,8 +206,8 @@ class _Walker:
             yield course
         ways = [(course.deviation, course.begin, course)]
         for begin in begins:
-            for is_late in (False, True)[: 1 + (self._snap > 0)]:
-                course = self._run(rows, begin, chain, is_first=here is None, is_late=is_late)
+            for passing in _PASSINGS if self._snap > 0 else _PASSINGS[:1]:
+                course = self._run(rows, begin, chain, is_first=here is None, passing=passing)
                 ways.append((course.deviation, course.begin, course))
         ways = [way for way in ways if way[2].is_kept]
         yield from (course for *_, course in sorted(ways, key=itemgetter(0, 1)))
@@ -236,8 +239,9 @@ class _Walker:
         off = np.maximum(distance(first, a, b), distance(second, a, b))
         begin, end = _along(first, a, b), _along(second, a, b)
         off[end < begin - self._unit] = np.inf
-        if here is not None and len(begin):  # not behind the end of the chain before
-            off[:1][begin[:1] < _along(np.array(self._places[here]), a[:1], b[:1])] = np.inf
+        if here is not None and len(begin):  # not behind the end of the chain before; both may move
+            passed = _along(np.array(self._places[here]), a[:1], b[:1]) - 2 * self._unit
+            off[:1][begin[:1] < passed] = np.inf
         return off
 
     def _measure(
@@ -266,10 +270,16 @@ class _Walker:
         return is_ahead and abs(across) <= allowed * hypot(bx - ax, by - ay)
 
     def _run(
-        self, rows: list[int], begin: int, chain: range, *, is_first: bool, is_late: bool = False
+        self,
+        rows: list[int],
+        begin: int,
+        chain: range,
+        *,
+        is_first: bool,
+        passing: Passing = "first",
     ) -> _Course:
         """Walk a chain to its end, and tell how well it keeps to the line."""
-        end, between = self._align(rows, begin, chain, is_late=is_late)
+        end, between = self._align(rows, begin, chain, passing=passing)
         off, back, before = self._measure(between)
         row = before - rows[begin]
         cuts = np.bincount(row, minlength=rows[end] - rows[begin] + 1)
@@ -285,7 +295,7 @@ class _Walker:
         return _Course(begin, end, between, deviation, is_close, is_kept)
 
     def _align(
-        self, rows: list[int], at: int, chain: range, *, is_late: bool = False
+        self, rows: list[int], at: int, chain: range, *, passing: Passing
     ) -> tuple[int, list[Between]]:
         """Return what a chain passes last of its line's own vertices, and what lies between."""
         places, last = self._places, len(rows) - 1
@@ -293,7 +303,7 @@ class _Walker:
         between = []
         for position in chain:
             while at < last and self._is_at(places[position], rows[at + 1]):
-                if is_late and position < chain[-1] and self._comes_nearer(position, rows[at + 1]):
+                if position < chain[-1] and self._is_later(position, rows[at + 1], passing):
                     break
                 at, is_passed = at + 1, True
             if not is_passed:
@@ -302,10 +312,12 @@ class _Walker:
             is_passed = False
         return at, between
 
-    def _comes_nearer(self, position: int, row: int) -> bool:
-        """Tell if the next vertex of a chain is nearer to one of its line's."""
-        given = self._given[row]
-        return _far(self._places[position + 1], given) < _far(self._places[position], given)
+    def _is_later(self, position: int, row: int, passing: Passing) -> bool:
+        """Tell if one of the line's vertices is to be passed at a later vertex of the chain."""
+        given, after = self._given[row], self._places[position + 1]
+        if passing == "nearest":
+            return _far(after, given) < _far(self._places[position], given)
+        return passing == "last" and self._is_at(after, row)
 
     def _pass_gap(self, line: int, rows: Sequence[int], here: int | None, then: int | None) -> None:
         """Note the part of a line from one chain to the next, or from or to its ends."""
