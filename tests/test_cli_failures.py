@@ -439,6 +439,51 @@ def test_a_signal_while_writing_leaves_nothing(folder, number):
     assert names() == ["in.csv"]
 
 
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_inside_a_finalizer_is_not_lost(number):
+    # Python drops what is raised there: the program would go on as if nobody had stopped it.
+    program = f"""
+import signal, time
+from tinsmith.cli.streams import Terminated, signals_as_exceptions
+
+class Finalized:
+    def __del__(self):
+        signal.raise_signal({int(number)})
+
+signal.signal(signal.SIGTERM, signal.SIG_DFL)
+signal.signal(signal.SIGHUP, signal.SIG_DFL)
+signal.signal(signal.SIGINT, signal.default_int_handler)
+try:
+    with signals_as_exceptions():
+        Finalized()
+        time.sleep(20)
+except (Terminated, KeyboardInterrupt) as error:
+    print(getattr(error, "number", int(signal.SIGINT)))
+"""
+    run = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, timeout=30, check=False
+    )
+    assert (run.stdout, run.stderr, run.returncode) == (f"{int(number)}\n", "", 0)
+
+
+def test_another_exception_in_a_finalizer_is_told_as_usual():
+    program = """
+from tinsmith.cli.streams import signals_as_exceptions
+
+class Finalized:
+    def __del__(self):
+        raise ValueError("told")
+
+with signals_as_exceptions():
+    Finalized()
+"""
+    run = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, timeout=30, check=False
+    )
+    assert "Exception ignored in" in run.stderr
+    assert "ValueError: told" in run.stderr
+
+
 def test_interrupt_after_the_first_file_names_it(folder, monkeypatch):
     from tinsmith import io
 

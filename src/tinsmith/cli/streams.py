@@ -26,6 +26,8 @@ __all__ = [
 ]
 
 _SIGNALS = ("SIGTERM", "SIGHUP")
+_RESENDING_DELAY = 0.001
+"""Seconds until a signal is sent again whose exception Python dropped."""
 
 
 class Terminated(BaseException):
@@ -46,22 +48,42 @@ class Terminated(BaseException):
 def signals_as_exceptions() -> Iterator[None]:
     """Raise :class:`Terminated` for a signal that would end the program at once.
 
-    One that is ignored, as under ``nohup``, stays ignored.
+    One that is ignored, as under ``nohup``, stays ignored. Python drops an exception that is raised
+    inside a finalizer or a weak reference's callback; a signal that was dropped so is sent again.
     """
     before = {}
+    hook = sys.unraisablehook
     if threading.current_thread() is threading.main_thread():
         for number in (getattr(signal, name) for name in _SIGNALS if hasattr(signal, name)):
             if signal.getsignal(number) is signal.SIG_DFL:
                 before[number] = signal.signal(number, _terminate)
+        sys.unraisablehook = _send_again
     try:
         yield
     finally:
+        sys.unraisablehook = hook
         for number, handler in before.items():
             signal.signal(number, handler)
 
 
 def _terminate(number: int, _: object) -> None:
     raise Terminated(number)
+
+
+def _send_again(dropped: sys.UnraisableHookArgs) -> None:
+    """Send a signal anew whose exception was dropped; tell of any other exception as usual."""
+    error = dropped.exc_value
+    if isinstance(error, Terminated):
+        number = error.number
+    elif isinstance(error, KeyboardInterrupt):
+        number = signal.SIGINT
+    else:
+        sys.__unraisablehook__(dropped)
+        return
+    # From another thread and later, or it would be raised and dropped in here again.
+    again = threading.Timer(_RESENDING_DELAY, os.kill, (os.getpid(), number))
+    again.daemon = True
+    again.start()
 
 
 def reserve_standard_streams() -> None:
