@@ -26,7 +26,8 @@ from .delimited_findings import (
 from .delimited_layout import find_layout
 from .delimited_lines import read_lines
 from .delimited_table import describe_columns, faults_error, read_cells, read_table
-from .errors import FormatError, ReadError, WriteError, counted
+from .errors import ReadError, WriteError, counted
+from .nodata import as_nodata
 from .placing import place, settle_unit
 
 if TYPE_CHECKING:
@@ -124,7 +125,7 @@ def read(
     A number is the float64 nearest to its text. One million rows take about half a second
     on one core, two seconds where quotes stand inside cells or descriptions hold blanks.
     """
-    left_out = _as_numbers(nodata)
+    left_out = as_nodata(nodata)
     declared = CRS.of(source_crs)
     lines = read_lines(path, encoding=encoding)
     layout = find_layout(
@@ -160,22 +161,6 @@ def read(
         skipped_lines=told.lines,
         notes=[*notes, *placed.notes],
     )
-
-
-def _as_numbers(nodata: float | Sequence[float] | None) -> NDArray[np.float64]:
-    """Return the elevations that stand for no data.
-
-    Raises
-    ------
-    FormatError
-        If they are no numbers.
-    """
-    try:
-        return np.atleast_1d(np.asarray([] if nodata is None else nodata, np.float64)).ravel()
-    except (TypeError, ValueError, OverflowError) as error:
-        raise FormatError(
-            f"Invalid nodata '{nodata}': a number, or several, are needed."
-        ) from error
 
 
 def _unit_of_header(layout: Layout) -> Unit | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..errors import CrsError, TinsmithError
+from ..errors import CrsError, TinsmithError, counted
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -72,14 +72,3 @@ class FormatError(TinsmithError, ValueError):
     def __init__(self, message: str, *, known: Sequence[str] = ()) -> None:
         super().__init__(printable(message))
         self.known = tuple(known)
-
-
-def counted(number: int, noun: str, plural: str = "") -> str:
-    """Return a number with its noun, for sentences.
-
-    Examples
-    --------
-    >>> counted(1, "row"), counted(2000, "vertex", "vertices")
-    ('1 row', '2,000 vertices')
-    """
-    return f"{number:,} {noun if number == 1 else plural or noun + 's'}"

@@ -7,12 +7,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..tin.options import shown
+from .errors import FormatError
+
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     from numpy.typing import NDArray
 
-__all__ = ["SuspectElevation", "describe_suspects", "find_suspect_elevations"]
+__all__ = ["SuspectElevation", "as_nodata", "describe_suspects", "find_suspect_elevations"]
 
 _CUSTOMARY = (
     *(-9999.0, -99999.0, -999999.0, -999.0, -9999.9, -999.9, -99.0, -99.9, -32768.0, -32767.0),
@@ -28,6 +31,22 @@ _FAR = 10.0
 _SOME = 1_000
 _BEYOND = 50_000.0
 """No elevation of the earth is larger, in feet or in metres."""
+
+
+def as_nodata(nodata: float | Sequence[float] | None) -> NDArray[np.float64]:
+    """Return the elevations that a caller names as no data, (k,) array.
+
+    Raises
+    ------
+    FormatError
+        If they are no numbers.
+    """
+    try:
+        return np.atleast_1d(np.asarray([] if nodata is None else nodata, np.float64)).ravel()
+    except (TypeError, ValueError, OverflowError) as error:
+        raise FormatError(
+            f"Invalid nodata {shown(nodata)}: a number, or several, are needed."
+        ) from error
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,7 +16,7 @@ from ..errors import OptionError
 from ..tin import Bounds, MissingExtraError, Survey
 from .errors import FormatError, ReadError, counted
 from .isolated import Limits, limits_for, run_isolated, stream_isolated
-from .nodata import describe_suspects, find_suspect_elevations
+from .nodata import as_nodata, describe_suspects, find_suspect_elevations
 from .placing import place, settle_unit
 from .raster_virtual import is_virtual, require_plain_sources
 from .voids import rings_around
@@ -129,7 +129,7 @@ def read(
     target, source = CRS.of(crs), CRS.of(dataset.crs)
     unit, said = _elevation_unit(dataset, number, source, Unit.of(z_unit))
     cells = _cells(dataset, window, stride, path)
-    marks = _as_numbers(nodata)
+    marks = as_nodata(nodata)
     _require_room(cells, path)
     place(_middle(dataset), source=source, target=target, path=path)
     points, valid, n_nodata = _points(dataset, number, cells, marks)
@@ -151,15 +151,6 @@ def read(
         notes=[*said, *notes, *placed.notes],
     )
     return survey if fill or valid.all() else _with_voids(survey, valid)
-
-
-def _as_numbers(nodata: float | Sequence[float] | None) -> NDArray[np.float64]:
-    try:
-        return np.atleast_1d(np.asarray([] if nodata is None else nodata, np.float64)).ravel()
-    except (TypeError, ValueError) as error:
-        raise FormatError(
-            f"Invalid nodata '{nodata}': a number, or several, are needed."
-        ) from error
 
 
 def _with_voids(survey: Survey, valid: NDArray[np.bool_]) -> Survey:

@@ -118,6 +118,12 @@ def test_alpha_band_is_a_mask(raster):
     assert read(path).skipped == {"nodata cells": 9}
 
 
+@pytest.mark.parametrize("nodata", ["none", [1.0, "x"], 10**400, object()])
+def test_nodata_that_is_no_number_is_refused(raster, nodata):
+    with pytest.raises(ts.FormatError, match="Invalid nodata .*: a number, or several, are needed"):
+        ts.read(raster(np.ones((3, 3), np.float32)), nodata=nodata)
+
+
 def test_scale_and_offset_are_applied_after_nodata(raster):
     array = heights(dtype="int16")
     array[0, 0] = -1

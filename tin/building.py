@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ..errors import counted
 from . import _kernel
 from .constrained import Draft, draft
 from .draping import drape
@@ -224,7 +225,7 @@ def _draped(rows: NDArray[np.int64], recipe: Recipe) -> _Ground:
     notes = []
     if laid.n_cut:
         notes.append(
-            f"Of {laid.n_cut} draped line{'s' * (laid.n_cut != 1)} the parts outside the surface "
+            f"Of {counted(laid.n_cut, 'draped line')} the parts outside the surface "
             "of the points were left out."
         )
     together = LineSet.joined([lines.chosen(~is_draped), laid.lines, laid.rim])

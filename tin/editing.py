@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, cast, get_args
 
 import numpy as np
 
+from .constrained import CrossingPolicy
 from .duplicates import DuplicatePolicy
 from .editor import Editor, NotLocal, is_local, merged_elevation, occupied
 from .errors import LinesError, PointsError, TinsmithError
@@ -26,7 +27,7 @@ from .inputs import (
     has_own_heights,
 )
 from .lines import Breakline
-from .options import is_one_of, is_whole_number, shown
+from .options import is_whole_number, require_one_of, shown
 from .points import as_elevations, as_points
 from .state import State, build_state
 from .tables import as_table, is_masked_array
@@ -394,8 +395,7 @@ class Session:
         crossing: str = "split",
     ) -> _Done:
         line = Breakline(coords, kind=kind, priority=priority, name=name)  # type: ignore[arg-type]
-        if not is_one_of(crossing, ("split", "error")):
-            raise LinesError(f"Invalid crossing {shown(crossing)}: one of split, error.")
+        require_one_of("crossing", crossing, get_args(CrossingPolicy), LinesError)
         change = Change(lines=(AddLine(line),))
         inputs = self._inputs_now().after([change])
         found = build_state(inputs)
@@ -436,9 +436,7 @@ def _kept(value: Any) -> Any:
 
 
 def _policy(policy: str) -> DuplicatePolicy:
-    if not is_one_of(policy, get_args(DuplicatePolicy)):
-        allowed = ", ".join(get_args(DuplicatePolicy))
-        raise PointsError(f"Invalid duplicates {shown(policy)}: one of {allowed}.")
+    require_one_of("duplicates", policy, get_args(DuplicatePolicy))
     return cast("DuplicatePolicy", policy)
 
 

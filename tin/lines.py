@@ -11,7 +11,7 @@ import numpy as np
 
 from .errors import LinesError, PointsError
 from .frozen import Frozen
-from .options import is_finite_number, is_one_of, shown
+from .options import is_finite_number, require_one_of, shown
 from .tables import as_table
 
 if TYPE_CHECKING:
@@ -66,9 +66,7 @@ class Breakline:
         priority: int = 0,
         name: str = "",
     ) -> None:
-        if not is_one_of(kind, get_args(BreaklineKind)):
-            allowed = ", ".join(get_args(BreaklineKind))
-            raise LinesError(f"Invalid breakline kind {shown(kind)}: one of {allowed}.")
+        require_one_of("breakline kind", kind, get_args(BreaklineKind), LinesError)
         is_whole = isinstance(priority, int | np.integer) and not isinstance(priority, bool)
         if not is_whole or abs(int(priority)) > MOST_PRIORITY:
             raise LinesError(

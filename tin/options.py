@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..errors import TinsmithError
 from .errors import PointsError
 
 __all__ = [
@@ -15,6 +16,7 @@ __all__ = [
     "is_finite_number",
     "is_one_of",
     "is_whole_number",
+    "require_one_of",
     "require_tin",
     "shown",
 ]
@@ -48,6 +50,14 @@ def _shortened(text: str) -> str:
 def is_one_of(value: Any, allowed: Sequence[str]) -> bool:
     """Tell whether a value is one of a few words."""
     return isinstance(value, str) and value in allowed
+
+
+def require_one_of(
+    name: str, value: Any, allowed: Sequence[str], error: type[TinsmithError] = PointsError
+) -> None:
+    """Refuse an option that is none of the words allowed."""
+    if not is_one_of(value, allowed):
+        raise error(f"Invalid {name} {shown(value)}: one of {', '.join(allowed)}.")
 
 
 def is_whole_number(value: Any) -> bool:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..errors import counted
 from . import _kernel
 from .errors import PointsError
 from .tables import Table, as_table
@@ -29,7 +30,7 @@ def require_three(count: int) -> None:
     """
     if count < 3:
         raise PointsError(
-            f"{count} point{'s' * (count != 1)} cannot make a TIN: at least three not collinear "
+            f"{counted(count, 'point')} cannot make a TIN: at least three not collinear "
             "ones are needed."
         )
 

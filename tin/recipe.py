@@ -23,7 +23,7 @@ from .line_set import (
     gather_rings,
     require_length,
 )
-from .options import as_flag, is_finite_number, is_one_of, shown
+from .options import as_flag, is_finite_number, require_one_of, shown
 from .points import as_masked_points, require_three
 from .polygons import starts_with_elevations
 from .survey import Survey
@@ -227,9 +227,7 @@ def _require_options(
         ("trim", trim, TrimPolicy),
         ("crossing", crossing, CrossingPolicy),
     ):
-        if not is_one_of(value, get_args(kind)):
-            allowed = ", ".join(get_args(kind))
-            raise PointsError(f"Invalid {name} {shown(value)}: one of {allowed}.")
+        require_one_of(name, value, get_args(kind))
     if not (is_finite_number(snap) and snap >= 0):
         raise PointsError(f"Invalid snap {shown(snap)}: a distance >= 0 in CRS units is needed.")
     if max_edge is not None and not (is_finite_number(max_edge) and max_edge > 0):

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ..errors import counted
 from .quality import smallest_angles
 
 if TYPE_CHECKING:
@@ -46,7 +47,7 @@ class Unmended(NamedTuple):
     def sentences(self) -> tuple[str, ...]:
         """Tell for each reason how many there are, and the least angle of them."""
         return tuple(
-            f"{group['count']:,} triangle{'s' * (group['count'] != 1)} with angles from "
+            f"{counted(group['count'], 'triangle')} with angles from "
             f"{group['least_angle']:.3g} degrees on could not be mended: {group['why']}."
             for group in self.to_list()
         )

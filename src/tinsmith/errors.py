@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-__all__ = ["CrsError", "OptionError", "TinsmithError"]
+__all__ = ["CrsError", "OptionError", "TinsmithError", "counted"]
 
 
 class TinsmithError(Exception):
@@ -38,3 +38,14 @@ class CrsError(TinsmithError, ValueError):
     def __init__(self, message: str, *, crs: object = None) -> None:
         super().__init__(message)
         self.crs = crs
+
+
+def counted(number: int, noun: str, plural: str = "") -> str:
+    """Return a number with its noun, for sentences.
+
+    Examples
+    --------
+    >>> counted(1, "row"), counted(2000, "vertex", "vertices")
+    ('1 row', '2,000 vertices')
+    """
+    return f"{number:,} {noun if number == 1 else plural or noun + 's'}"

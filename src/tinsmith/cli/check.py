@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from .console import count
+from ..errors import counted
 from .failures import Failure
 from .options import console_options, input_file, reading_options, triangulating_options
 from .paths import name_of
@@ -53,7 +53,8 @@ def check(file: Path, level: int, reading: Reading, how: Triangulating, console:
     from .files import read_tin
 
     tin, survey = read_tin(file, reading, how, console)
-    with console.steps() as steps, steps.step(f"Checking {count(len(tin.triangles), 'triangle')}"):
+    triangles = counted(len(tin.triangles), "triangle")
+    with console.steps() as steps, steps.step(f"Checking {triangles}"):
         result = check_tin(tin, level=level, points=survey)
     console.answer(_fields(file, result), {"input": str(file)} | result.to_dict())
     if not result.ok:
@@ -62,7 +63,7 @@ def check(file: Path, level: int, reading: Reading, how: Triangulating, console:
 
 def _fields(file: Path, result: CheckResult) -> list[Field]:
     counts = ", ".join(
-        count(result.counts[name], one, name)
+        counted(result.counts[name], one, name)
         for name, one in (("vertices", "vertex"), ("triangles", "triangle"), ("edges", "edge"))
         if name in result.counts
     )

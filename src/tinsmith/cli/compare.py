@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .console import count
+from ..errors import counted
 from .failures import Failure
 from .options import console_options, input_file, reading_options
 from .paths import OUTPUT, name_of, title_of
@@ -65,7 +65,7 @@ def compare(
     if isinstance(found, TIN):
         raise Failure(f"'{file}' holds a TIN: 'tinsmith compare' needs points.")
     points = _sampled(found.points, sample)
-    with console.steps() as steps, steps.step(f"Comparing on {count(len(points), 'point')}"):
+    with console.steps() as steps, steps.step(f"Comparing on {counted(len(points), 'point')}"):
         result = compare_points(points, limit=len(points))
     facts = {"input": str(file)} | result.to_dict()
     if output is not None:

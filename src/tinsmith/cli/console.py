@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
     from pathlib import Path
 
-__all__ = ["Console", "Field", "count", "emit_file", "plain"]
+__all__ = ["Console", "Field", "emit_file", "plain"]
 
 Field = tuple[str, str]
 """A label and what it says; further lines stand under the first."""
@@ -106,11 +106,6 @@ def _lines(fields: Iterable[Field]) -> str:
         + indent.join(map(escape_unprintable, name_flags(text).split("\n")))
         for label, text in fields
     )
-
-
-def count(number: int, noun: str, plural: str | None = None) -> str:
-    """Return a number with its noun: ``1 triangle``, ``2,000 vertices``."""
-    return f"{number:,} {noun if number == 1 else plural or noun + 's'}"
 
 
 def plain(facts: Mapping[str, Any]) -> str:

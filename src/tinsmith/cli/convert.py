@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from .console import count, plain
+from ..errors import counted
+from .console import plain
 from .options import (
     console_options,
     input_file,
@@ -62,5 +63,5 @@ def _what(found: TIN | Survey) -> str:
     from ..tin import TIN
 
     if isinstance(found, TIN):
-        return f"a TIN of {count(len(found.triangles), 'triangle')}"
-    return count(len(found), "point")
+        return f"a TIN of {counted(len(found.triangles), 'triangle')}"
+    return counted(len(found), "point")

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .console import count, plain
+from ..errors import counted
+from .console import plain
 from .options import (
     console_options,
     input_file,
@@ -88,7 +89,7 @@ def edit(
     edits = _read_script(script)
     tin, _ = read_tin(file, reading, how, console)
     before = mesh_counts(tin)
-    with console.steps() as steps, steps.step(f"Making {count(len(edits), 'edit')}"):
+    with console.steps() as steps, steps.step(f"Making {counted(len(edits), 'edit')}"):
         apply_edits(tin, edits)
     write_outputs(tin, planned, console)
     if report is not None:

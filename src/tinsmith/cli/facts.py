@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..crs import assume_elevation_unit
+from ..errors import counted
 from ..io.crs import is_geographic, length_unit
 from ..terrain import slope
 from ..terrain.slope import areas
 from ..tin import TIN, Bounds, Survey, quality
-from .console import count
 from .line_facts import (
     constrained_edges,
     elevation_symbol,
@@ -243,7 +243,7 @@ def reading_fields(found: Survey | TIN) -> list[Field]:
     if not isinstance(found, Survey):
         return [("Note", note) for note in found.report.notes]
     skipped = [
-        count(number, _singular(what), what)
+        counted(number, _singular(what), what)
         for what, number in found.skipped.items()
         if what != _EXPECTED
     ]
@@ -261,7 +261,7 @@ def merge_field(report: Report, survey: Survey) -> list[Field]:
     surplus = len(report.merged_rows) - len(report.merged_vertices)
     if surplus == 0:
         return []
-    text = f"{count(surplus, 'row')} at {count(len(report.merged_vertices), 'place')}"
+    text = f"{counted(surplus, 'row')} at {counted(len(report.merged_vertices), 'place')}"
     starts = report.merged_offsets[:-1]
     spread = np.maximum.reduceat(report.merged_heights, starts) - np.minimum.reduceat(
         report.merged_heights, starts
@@ -276,7 +276,7 @@ def merge_field(report: Report, survey: Survey) -> list[Field]:
         ("Merged", f"{text}, elevation by '{report.duplicates}'"),
         (
             "",
-            f"elevations differ at {count(differing, 'place')}, most by {spread[worst]:.3f}{up}: "
+            f"elevations differ at {counted(differing, 'place')}, most by {spread[worst]:.3f}{up}: "
             f"{_rows_text(merge, survey)}",
         ),
     ]

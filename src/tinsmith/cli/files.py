@@ -11,7 +11,8 @@ from typing import IO, TYPE_CHECKING, Any
 
 import click
 
-from .console import count, emit_file
+from ..errors import counted
+from .console import emit_file
 from .failures import Failure, note_written
 from .paths import STANDARD, Named, name_of, require_separate
 
@@ -109,7 +110,7 @@ def triangulated(survey: Survey, how: Triangulating, console: Console) -> TIN:
     from ..tin import PointsError, triangulate
 
     try:
-        with console.steps() as steps, steps.step(f"Triangulating {count(len(survey), 'point')}"):
+        with console.steps() as steps, steps.step(f"Triangulating {counted(len(survey), 'point')}"):
             return triangulate(survey, **how.method)
     except PointsError as error:
         raise Failure(f"{error}{_row_names(survey, error.rows)}") from error

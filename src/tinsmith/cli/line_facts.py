@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..errors import counted
 from ..tin.report import LEFT_OUT
-from .console import count
 
 if TYPE_CHECKING:
     from ..tin import TIN, Report, Survey
@@ -52,21 +52,21 @@ def given_lines(survey: Survey) -> dict[str, int]:
 def given_lines_text(survey: Survey) -> str:
     """Count the lines of a survey, in words."""
     return ", ".join(
-        count(number, *_NOUNS[name]) for name, number in given_lines(survey).items() if number
+        counted(number, *_NOUNS[name]) for name, number in given_lines(survey).items() if number
     )
 
 
 def tin_counts(tin: TIN) -> str:
     """Count vertices and triangles, and constrained edges if there are any, in words."""
     fixed = constrained_edges(tin)
-    lines = f", {count(fixed, 'constrained edge')}" if fixed else ""
+    lines = f", {counted(fixed, 'constrained edge')}" if fixed else ""
     return f"{mesh_counts(tin)}{lines}"
 
 
 def mesh_counts(tin: TIN) -> str:
     """Count vertices and triangles, in words."""
-    vertices = count(len(tin.points), "vertex", "vertices")
-    return f"{vertices}, {count(len(tin.triangles), 'triangle')}"
+    vertices = counted(len(tin.points), "vertex", "vertices")
+    return f"{vertices}, {counted(len(tin.triangles), 'triangle')}"
 
 
 def line_counts(report: Report) -> dict[str, Any]:
@@ -95,7 +95,7 @@ def line_fields(survey: Survey, tin: TIN) -> list[Field]:
         fields.append(("Heights", _overruled_text(report, survey)))
     if len(report.left_out_rows):
         reasons = ", ".join(f"{number:,} {why}" for why, number in _left_out(report).items())
-        fields.append(("Left out", f"{count(len(report.left_out_rows), 'row')}: {reasons}"))
+        fields.append(("Left out", f"{counted(len(report.left_out_rows), 'row')}: {reasons}"))
     return fields
 
 
@@ -103,7 +103,7 @@ def _crossing_fields(report: Report, survey: Survey) -> list[Field]:
     met = report.crossings
     if len(met.vertices) == 0:
         return []
-    places = f"at {count(len(met.vertices), 'place')}"
+    places = f"at {counted(len(met.vertices), 'place')}"
     apart = np.abs(np.diff(met.heights, axis=1)[:, 0])
     worst = int(np.argmax(apart))
     if apart[worst] == 0:

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .console import count, plain
+from ..errors import counted
+from .console import plain
 from .failures import Failure
 from .flags import name_flags
 from .options import (
@@ -91,7 +92,8 @@ def refine(
     planned = plan_outputs(outputs, writing, inputs=inputs_of(file, how), console=console)
     tin, _ = read_tin(file, reading, how, console)
     _require_lengths(tin, file)
-    with console.steps() as steps, steps.step(f"Refining {count(len(tin.triangles), 'triangle')}"):
+    triangles = counted(len(tin.triangles), "triangle")
+    with console.steps() as steps, steps.step(f"Refining {triangles}"):
         try:
             refined = refine_tin(
                 tin,
