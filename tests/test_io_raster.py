@@ -120,7 +120,9 @@ def test_alpha_band_is_a_mask(raster):
 
 @pytest.mark.parametrize("nodata", ["none", [1.0, "x"], 10**400, object()])
 def test_nodata_that_is_no_number_is_refused(raster, nodata):
-    with pytest.raises(ts.FormatError, match="Invalid nodata .*: a number, or several, are needed"):
+    with pytest.raises(
+        ts.FormatError, match=r"Invalid nodata .*: a number, or several, are needed"
+    ):
         ts.read(raster(np.ones((3, 3), np.float32)), nodata=nodata)
 
 

@@ -310,6 +310,22 @@ def test_check_finds_which_of_two_vertices_equally_near_became_the_line_s_own():
     ts.check(tin, breaklines=lines).raise_if_failed()
 
 
+def test_check_lets_the_next_chain_have_the_line_s_last_vertex():
+    """The first chain ends within snap of it, where water that reaches far beyond takes over."""
+    points = [[13681.0, 16113500.0, 0.0]]
+    line = [[14882659.0, 0.0, 4.0], [0.0, 0.0, 4.0]]
+    ring = [
+        [0.0, -1.3152300785109916e53],
+        [1.0, 1884057.0],
+        [-14201.0, 1.2028957737263383e46],
+    ]
+    lake = ts.Water(ring, 1.0)
+    tin = ts.triangulate(points, breaklines=[line], water=[lake], snap=329226.0)
+    assert tin.lines.kinds == ("hard", "hard", "water")
+    survey = ts.Survey(points=np.array(points), breaklines=[ts.Breakline(line)], water=[lake])
+    ts.check(tin, points=survey).raise_if_failed()
+
+
 def test_check_still_loses_a_chain_that_is_on_no_part_of_its_line():
     lines = [[[0.0, 0.0, 0.0], [10.0, 0.0, 0.0]], [[0.0, 5.0, 0.0], [10.0, 5.0, 0.0]]]
     tin = ts.triangulate(NONE, breaklines=lines, snap=0.01)

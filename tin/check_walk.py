@@ -24,8 +24,9 @@ UNSEEN_CUTS = 16
 Place = list[float]
 Between = tuple[int, int, int]
 """Position of a vertex that is none of its line, and the rows of the line's before and after."""
-Passing = Literal["first", "nearest", "last"]
-"""Which of successive vertices within ``snap`` became one of the line's."""
+Passing = Literal["first", "nearest", "last", "beyond"]
+"""Which of successive vertices within ``snap`` became one of the line's: one of the next chain's
+(``"beyond"``) where they end a chain."""
 _PASSINGS: tuple[Passing, ...] = get_args(Passing)
 
 
@@ -303,7 +304,7 @@ class _Walker:
         between = []
         for position in chain:
             while at < last and self._is_at(places[position], rows[at + 1]):
-                if position < chain[-1] and self._is_later(position, rows[at + 1], passing):
+                if self._is_later(position, chain[-1], rows[at + 1], passing):
                     break
                 at, is_passed = at + 1, True
             if not is_passed:
@@ -312,12 +313,14 @@ class _Walker:
             is_passed = False
         return at, between
 
-    def _is_later(self, position: int, row: int, passing: Passing) -> bool:
-        """Tell if one of the line's vertices is to be passed at a later vertex of the chain."""
+    def _is_later(self, position: int, end: int, row: int, passing: Passing) -> bool:
+        """Tell if one of the line's vertices is to be passed behind this one of the chain."""
+        if position == end:
+            return passing == "beyond"
         given, after = self._given[row], self._places[position + 1]
         if passing == "nearest":
             return _far(after, given) < _far(self._places[position], given)
-        return passing == "last" and self._is_at(after, row)
+        return passing in ("last", "beyond") and self._is_at(after, row)
 
     def _pass_gap(self, line: int, rows: Sequence[int], here: int | None, then: int | None) -> None:
         """Note the part of a line from one chain to the next, or from or to its ends."""
