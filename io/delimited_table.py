@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ..errors import counted, inflect
 from .delimited_cells import (
     BLANKS,
     as_grouped,
@@ -170,15 +171,14 @@ def faults_error(
     join = " " if kind == "columns" else ": "
     shown = ", ".join(f"line {one.line + 1}{join}{one.what}" for one in wrong[:_SHOWN])
     mark = "point" if layout.decimal == "." else "comma"
-    do, have = ("does", "has") if len(wrong) == 1 else ("do", "have")
     fails = {
-        "columns": f"{do} not have {layout.count} columns",
-        "number": f"{have} a coordinate that is not a finite number with decimal {mark}",
+        "columns": f"[does|do] not have {layout.count} columns",
+        "number": f"[has|have] a coordinate that is not a finite number with decimal {mark}",
     }[kind]
     is_cut = kind == "columns" and wrong[-1].line == len(lines) - 1 and not lines.is_whole
     hint = "; the last line has no end, so the file may be truncated" if is_cut else ""
     return ReadError(
-        f"'{path}': {len(wrong)} of {n_rows} rows {fails} "
+        f"'{path}': {len(wrong)} of {counted(n_rows, 'row')} {inflect(fails, len(wrong))} "
         f"({shown}{', ...' if len(wrong) > _SHOWN else ''}){hint}; the option skip_bad leaves "
         "such rows out.",
         path=path,

@@ -141,7 +141,7 @@ def _require_lines(types: NDArray[np.int32], rows: NDArray[np.int64], features: 
     points = np.flatnonzero(types == 0)
     if len(points):
         raise ReadError(
-            f"'{features.path}' has {len(points)} points (first: feature "
+            f"'{features.path}' has {counted(len(points), 'point')} (first: feature "
             f"{features.numbers[rows[points[0]]]}): lines or polygons are needed.",
             path=features.path,
         )

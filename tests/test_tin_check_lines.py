@@ -380,7 +380,7 @@ def test_part_of_a_line_that_is_missing_inside():
     assert "lines" not in kinds(check(cut))
     result = check(cut, points=given([KERB]))
     assert "missing" in sentences(result)
-    assert "end inside" in sentences(result)
+    assert "ends inside the surface, before its end" in sentences(result)
 
 
 def test_closed_line_and_one_that_meets_itself():

@@ -62,7 +62,8 @@ def _check_coordinates(points: NDArray[np.float64], found: Findings) -> None:
     found.report(
         "coordinates",
         np.flatnonzero(~np.isfinite(points).all(axis=1)),
-        "{count} vertices have a coordinate that is not finite (first: vertices {first}).",
+        "{count} [vertex has|vertices have] a coordinate that is not finite "
+        "(first: [vertex|vertices] {first}).",
     )
     smallest, largest = EXACT_RANGE
     size = np.abs(points[:, :2])
@@ -71,8 +72,8 @@ def _check_coordinates(points: NDArray[np.float64], found: Findings) -> None:
         np.flatnonzero(
             (((size > largest) & np.isfinite(size)) | ((size < smallest) & (size > 0))).any(axis=1)
         ),
-        "{count} vertices lie outside the range of exact arithmetic, magnitudes "
-        f"{smallest:.0e} to {largest:.0e} (first: vertices {{first}}).",
+        "{count} [vertex lies|vertices lie] outside the range of exact arithmetic, magnitudes "
+        f"{smallest:.0e} to {largest:.0e} (first: [vertex|vertices] {{first}}).",
     )
 
 
@@ -80,16 +81,22 @@ def _check_ranges(tin: TIN, found: Findings) -> None:
     n_vertices, n_triangles = len(tin.points), len(tin.triangles)
     is_left_out = _left_out(tin, found)
     ranges = (
-        ("triangles", "triangles", tin.triangles, 0, n_vertices),
-        ("neighbors", "triangles", tin.neighbors, topology.NO_NEIGHBOR, n_triangles),
-        ("vertex_of", "rows", np.where(is_left_out, 0, tin.vertex_of)[:, None], 0, n_vertices),
+        ("triangles", "[triangle|triangles]", tin.triangles, 0, n_vertices),
+        ("neighbors", "[triangle|triangles]", tin.neighbors, topology.NO_NEIGHBOR, n_triangles),
+        (
+            "vertex_of",
+            "[row|rows]",
+            np.where(is_left_out, 0, tin.vertex_of)[:, None],
+            0,
+            n_vertices,
+        ),
     )
     for name, things, array, lowest, end in ranges:
         wrong = ((array < lowest) | (array >= end)).any(axis=1)
         found.report(
             "index",
             np.flatnonzero(wrong),
-            f"{{count}} {things} have an entry of {name} outside {lowest} to {end - 1} "
+            f"{{count}} {things} [has|have] an entry of {name} outside {lowest} to {end - 1} "
             f"(first: {things} {{first}}).",
         )
 
@@ -110,14 +117,15 @@ def _left_out(tin: TIN, found: Findings) -> NDArray[np.bool_]:
     found.report(
         "left_out",
         np.flatnonzero(~is_known),
-        "{count} entries of the report about rows that were left out have no such row, no such "
-        "reason or are out of order (first: entries {first}).",
+        "{count} [entry|entries] of the report about rows that were left out [has|have] no such "
+        "row, no such reason or [is|are] out of order (first: [entry|entries] {first}).",
     )
     is_left_out[rows[is_known]] = True
     found.report(
         "left_out",
         np.flatnonzero(is_left_out & (tin.vertex_of != NO_VERTEX)),
-        "{count} rows were left out by the report, but have a vertex (first: rows {first}).",
+        "{count} [row was|rows were] left out by the report, but [has|have] a vertex "
+        "(first: [row|rows] {first}).",
     )
     return is_left_out
 
@@ -128,14 +136,16 @@ def check_connections(tin: TIN, found: Findings) -> bool:
     found.report(
         "corners",
         np.flatnonzero((a == b) | (b == c) | (c == a)),
-        "{count} triangles use a vertex twice (first: triangles {first}).",
+        "{count} [triangle uses|triangles use] a vertex twice "
+        "(first: [triangle|triangles] {first}).",
     )
     lonely, unequal = _one_sided(tin)
     found.report(
         "neighbors",
         np.flatnonzero(lonely),
-        "{count} triangles have a neighbour that does not have them across the same edge, "
-        "walked the other way (first: triangles {first}).",
+        "{count} [triangle has|triangles have] a neighbour that does not have them across the "
+        "same edge, "
+        "walked the other way (first: [triangle|triangles] {first}).",
     )
     if not found.problems:
         _count_edges(tin, found)
@@ -143,15 +153,16 @@ def check_connections(tin: TIN, found: Findings) -> bool:
     found.report(
         "constrained",
         np.flatnonzero(unequal),
-        "{count} triangles have an edge that is constrained on one side only "
-        "(first: triangles {first}).",
+        "{count} [triangle has|triangles have] an edge that is constrained on one side only "
+        "(first: [triangle|triangles] {first}).",
     )
     is_used = np.zeros(len(tin.points), np.bool_)
     is_used[tin.triangles] = True
     found.report(
         "unused",
         np.flatnonzero(~is_used),
-        "{count} vertices belong to no triangle (first: vertices {first}).",
+        "{count} [vertex belongs|vertices belong] to no triangle "
+        "(first: [vertex|vertices] {first}).",
     )
     return is_reliable
 
@@ -206,5 +217,6 @@ def _count_edges(tin: TIN, found: Findings) -> None:
     found.report(
         "edge",
         np.unique(keys[1:][keys[1:] == keys[:-1]] // len(tin.points)),
-        "Edges at {count} vertices belong to more triangles than two (first: vertices {first}).",
+        "Edges at {count} [vertex|vertices] belong to more triangles than two "
+        "(first: [vertex|vertices] {first}).",
     )

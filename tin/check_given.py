@@ -57,8 +57,8 @@ def check_rows(tin: TIN, rows: NDArray[np.float64], found: Findings) -> None:
     found.report(
         "rows",
         np.flatnonzero(is_moved),
-        "{count} rows are not where their vertex is, "
-        f"within snap {tin.report.snap:g} (first: rows {{first}}).",
+        "{count} [row is not where its|rows are not where their] vertex is, "
+        f"within snap {tin.report.snap:g} (first: [row|rows] {{first}}).",
     )
     if not has_sound_rim(found):
         return
@@ -68,7 +68,8 @@ def check_rows(tin: TIN, rows: NDArray[np.float64], found: Findings) -> None:
     found.report(
         "rows",
         outside[_is_inside(tin, rows[outside, :2], slack)],
-        "{count} rows are left out as outside the surface, but lie inside (first: rows {first}).",
+        "{count} [row is|rows are] left out as outside the surface, but [lies|lie] inside "
+        "(first: [row|rows] {first}).",
     )
 
 
@@ -89,7 +90,8 @@ def check_given_lines(tin: TIN, given: LineSet, found: Findings) -> None:
     found.report(
         "lines",
         walk.lost,
-        "{count} lines have chains that do not begin on them (first: lines {first}).",
+        "{count} [line has|lines have] chains that do not begin on [it|them] "
+        "(first: [line|lines] {first}).",
     )
     most = _check_course(xy, given, walk, unit, found)
     slack = (1 + most + UNSEEN_CUTS) * unit
@@ -121,7 +123,8 @@ def _check_course(
     found.report(
         "lines",
         np.unique(given.line_of[before[is_wrong]]),
-        "{count} lines have chains that leave their course (first: lines {first}).",
+        "{count} [line has|lines have] chains that leave their course "
+        "(first: [line|lines] {first}).",
     )
     return int(cuts.max())
 
@@ -134,7 +137,8 @@ def _check_gaps(tin: TIN, given: LineSet, walk: Walk, slack: float, found: Findi
     found.report(
         "lines",
         np.unique(np.array(walk.gap_lines, np.int64)[is_wrong]),
-        "{count} lines have parts inside the surface that are missing (first: lines {first}).",
+        "{count} [line has|lines have] parts inside the surface that are missing "
+        "(first: [line|lines] {first}).",
     )
 
 
@@ -150,7 +154,8 @@ def _check_ends(tin: TIN, given: LineSet, walk: Walk, slack: float, found: Findi
     found.report(
         "lines",
         np.unique(np.array(walk.end_lines, np.int64)[loose[is_wrong]]),
-        "{count} lines end inside the surface, before their end (first: lines {first}).",
+        "{count} [line ends|lines end] inside the surface, before [its|their] end "
+        "(first: [line|lines] {first}).",
     )
 
 

@@ -51,13 +51,13 @@ def _check_labels(tin: TIN, found: Findings) -> None:
     found.report(
         "chains",
         [i for i, kind in enumerate(lines.kinds) if kind not in allowed],
-        "{count} chains are of a kind that is none of "
-        f"{', '.join(allowed)} (first: chains {{first}}).",
+        "{count} [chain is|chains are] of a kind that is none of "
+        f"{', '.join(allowed)} (first: [chain|chains] {{first}}).",
     )
     found.report(
         "chains",
         np.flatnonzero(lines.sources < 0),
-        "{count} chains have a source below 0 (first: chains {first}).",
+        "{count} [chain has|chains have] a source below 0 (first: [chain|chains] {first}).",
     )
 
 
@@ -75,20 +75,22 @@ def _check_ranges(tin: TIN, found: Findings) -> None:
     found.report(
         "chains",
         np.flatnonzero(is_short),
-        "{count} chains have fewer than two vertices (first: chains {first}).",
+        "{count} [chain has|chains have] fewer than two vertices (first: [chain|chains] {first}).",
     )
     is_wrong = (vertices < 0) | (vertices >= n)
     found.report(
         "chains",
         np.flatnonzero(is_wrong),
-        f"{{count}} entries of chains are outside 0 to {n - 1} (first: entries {{first}}).",
+        f"{{count}} [entry of chains is|entries of chains are] outside 0 to {n - 1} "
+        "(first: [entry|entries] {first}).",
     )
     if not (is_short.any() or is_wrong.any()):
         start, end = tin.lines.steps().T
         found.report(
             "chains",
             np.flatnonzero(start == end),
-            "{count} steps of chains stay at their vertex (first: steps {first}).",
+            "{count} [step of chains stays at its|steps of chains stay at their] vertex "
+            "(first: [step|steps] {first}).",
         )
 
 
@@ -103,16 +105,17 @@ def check_steps(tin: TIN, found: Findings) -> None:
     found.report(
         "lines",
         np.unique(chain[~np.isin(steps, edges)]),
-        "{count} chains have steps that are no constrained edges of the surface "
-        "(first: chains {first}).",
+        "{count} [chain has|chains have] steps that are no constrained edges of the surface "
+        "(first: [chain|chains] {first}).",
     )
     is_once = tin.neighbors[triangle, corner] > triangle
     tell = found.report if len(tin.lines) else found.note
     tell(
         "lines",
         triangle[is_once][~np.isin(edges[is_once], steps)],
-        "{count} constrained edges inside the surface belong to no line that is known "
-        "(first: triangles {first}).",
+        "{count} [constrained edge|constrained edges] inside the surface [belongs|belong] to no "
+        "line "
+        "that is known (first: [triangle|triangles] {first}).",
     )
 
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..errors import inflect
 from .check_rim import Rim, find_fault
 from .check_shape import rim_of
 from .exact import Columns, columns, is_last, orientation
@@ -84,8 +85,10 @@ def _unused(tin: TIN) -> list[str]:
     count = len(is_used) - int(np.count_nonzero(is_used))
     if count == 0:
         return []
-    whose = "1 vertex belongs" if count == 1 else f"{count:,} vertices belong"
-    return [f"{whose} to no triangle (first: vertex {int(np.argmin(is_used))})."]
+    sentence = (
+        f"[vertex belongs|vertices belong] to no triangle (first: vertex {np.argmin(is_used)})."
+    )
+    return [f"{count:,} {inflect(sentence, count)}"]
 
 
 def _one_sided(tin: TIN) -> list[str]:
@@ -97,5 +100,4 @@ def _one_sided(tin: TIN) -> list[str]:
     count = int(np.count_nonzero(~tin.constrained[across, back]))
     if count == 0:
         return []
-    edges = "1 edge is" if count == 1 else f"{count:,} edges are"
-    return [f"{edges} constrained on one side only."]
+    return [f"{count:,} {inflect('[edge is|edges are] constrained on one side only.', count)}"]

@@ -28,7 +28,8 @@ def check_shape(tin: TIN, found: Findings) -> None:
     found.report(
         "orientation",
         clockwise,
-        "{count} triangles are not counter-clockwise (first: triangles {first}).",
+        "{count} [triangle is|triangles are] not counter-clockwise "
+        "(first: [triangle|triangles] {first}).",
     )
     rings = topology.boundary_rings(tin.triangles, tin.neighbors)
     found.counts["rings"] = len(rings)
@@ -64,7 +65,8 @@ def _check_rim(
     found.report(
         "hull",
         np.unique(here[is_reflex & ~is_allowed]),
-        "The boundary turns inwards at {count} vertices (first: vertices {first}).",
+        "The boundary turns inwards at {count} [vertex|vertices] "
+        "(first: [vertex|vertices] {first}).",
     )
     is_start = is_last(xy, before, here) & is_last(xy, after, here)
     if not is_reflex.any() and np.count_nonzero(is_start) != len(rings):

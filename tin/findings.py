@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..errors import inflect
+
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
@@ -52,7 +54,8 @@ class Findings:
     def report(self, kind: str, at: ArrayLike, sentence: str) -> None:
         """Report a problem at the numbers ``at``; nothing if there are none.
 
-        ``{count}`` and ``{first}`` in the sentence are filled in.
+        ``{count}`` and ``{first}`` in the sentence are filled in, and of ``[is|are]`` the word is
+        taken that fits the count.
         """
         _add(self.problems, kind, at, sentence)
 
@@ -69,5 +72,7 @@ def _add(into: list[Problem], kind: str, at: ArrayLike, sentence: str) -> None:
     numbers = np.asarray(at)
     if numbers.size:
         first = tuple(int(number) for number in numbers[:_SHOWN])
-        text = sentence.format(count=numbers.size, first=", ".join(map(str, first)))
+        text = inflect(sentence, numbers.size).format(
+            count=numbers.size, first=", ".join(map(str, first))
+        )
         into.append(Problem(kind, int(numbers.size), first, text))

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from ..errors import counted
 from . import _kernel, topology
 from .errors import PointsError
 from .model import Clip, LineInfo, Model, lines_in, mesh_of_growth
@@ -386,7 +387,10 @@ def _report(tin: TIN, surface: Surface, found: _Found) -> Report:
 
 
 def _note(n_new: int, n_on_segments: int) -> str:
-    return f"Refinement added {n_new:,} points, {n_on_segments:,} of them on the rim and on lines."
+    return (
+        f"Refinement added {counted(n_new, 'point')}, "
+        f"{n_on_segments:,} of them on the rim and on lines."
+    )
 
 
 def _model(tin: TIN, points: NDArray[np.float64], splits: _Splits) -> Model:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-__all__ = ["CrsError", "OptionError", "TinsmithError", "counted"]
+import re
+
+__all__ = ["CrsError", "OptionError", "TinsmithError", "counted", "inflect"]
 
 
 class TinsmithError(Exception):
@@ -38,6 +40,20 @@ class CrsError(TinsmithError, ValueError):
     def __init__(self, message: str, *, crs: object = None) -> None:
         super().__init__(message)
         self.crs = crs
+
+
+_INFLECTED = re.compile(r"\[([^\[|\]]*)\|([^\[|\]]*)\]")
+
+
+def inflect(sentence: str, count: int) -> str:
+    """Take, of words written ``[singular|plural]``, those that fit a count.
+
+    Examples
+    --------
+    >>> inflect("{count} [row is|rows are] missing.", 1)
+    '{count} row is missing.'
+    """
+    return _INFLECTED.sub(r"\1" if count == 1 else r"\2", sentence)
 
 
 def counted(number: int, noun: str, plural: str = "") -> str:
