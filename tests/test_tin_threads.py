@@ -309,7 +309,15 @@ def test_ctrl_c_ends_large_triangulations(threads, seconds_before):
     require_interrupted(MANY_TRIANGULATIONS.format(n=5_000_000, threads=threads), seconds_before)
 
 
-def test_an_interrupt_while_the_core_is_loaded_waits():
+@pytest.fixture
+def interrupts_raise():
+    """Programs that a shell starts in the background begin with SIGINT ignored."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+def test_an_interrupt_while_the_core_is_loaded_waits(interrupts_raise):
     done = []
 
     def load():
