@@ -16,7 +16,8 @@ from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 
-from ..tin import Breakline, LinesError, Water
+from ..errors import LinesError
+from ..tin import Breakline, Water
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

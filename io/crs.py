@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from .._sentences import counted
 from ..crs import CRS, METRE, UNKNOWN, Unit, assume_elevation_unit
-from .errors import CrsError, counted
+from ..errors import CrsError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from .._atomic import replacing
+from .._sentences import counted
 from ..crs import CRS, Unit
-from ..errors import OptionError
+from ..errors import OptionError, ReadError, WriteError
 from ..tin import TIN, Survey
 from .area import AreaOfUse
-from .atomic import replacing
 from .crs import is_geographic
 from .delimited_columns import unit_of
 from .delimited_content import columns_by_content
@@ -26,7 +27,6 @@ from .delimited_findings import (
 from .delimited_layout import find_layout
 from .delimited_lines import read_lines
 from .delimited_table import describe_columns, faults_error, read_cells, read_table
-from .errors import ReadError, WriteError, counted
 from .nodata import as_nodata
 from .placing import place, settle_unit
 

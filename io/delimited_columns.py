@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from .errors import FormatError, ReadError
+from ..errors import FormatError, ReadError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

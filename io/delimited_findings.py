@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..errors import CrsError
 from .delimited_content import is_too_steep, plausible_elevations, relief_and_extent
-from .errors import CrsError
 from .nodata import describe_suspects, find_suspect_elevations
 
 if TYPE_CHECKING:

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .._sentences import counted
+from ..errors import ReadError
 from .delimited_cells import BLANKS, is_number, is_number_like, is_padded, split_line
 from .delimited_columns import (
     Columns,
@@ -29,7 +31,6 @@ from .delimited_marks import (
     decimal_of,
     delimiter_of,
 )
-from .errors import ReadError, counted
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

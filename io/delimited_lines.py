@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .errors import ReadError
+from ..errors import ReadError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from ..errors import FormatError, ReadError
 from .delimited_cells import (
     BLANKS,
     is_grouped,
@@ -18,7 +19,6 @@ from .delimited_cells import (
 )
 from .delimited_columns import columns_by_header
 from .delimited_lines import COMMENT_PREFIXES, decoded
-from .errors import FormatError, ReadError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..errors import counted, inflect
+from .._sentences import counted, inflect
+from ..errors import ReadError
 from .delimited_cells import (
     BLANKS,
     as_grouped,
@@ -27,7 +28,6 @@ from .delimited_cells import (
 )
 from .delimited_columns import COORDINATES
 from .delimited_content import Column
-from .errors import ReadError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence

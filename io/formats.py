@@ -15,10 +15,11 @@ from importlib.metadata import entry_points
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
+from .._sentences import printable
 from ..crs import CRS, Unit
-from ..tin import MissingExtraError, Survey, TinsmithError
+from ..errors import CrsError, FormatError, MissingExtraError, ReadError, TinsmithError
+from ..tin import Survey
 from . import signatures
-from .errors import CrsError, FormatError, ReadError, printable
 from .local import require_local
 from .raster_virtual import is_virtual
 from .spooling import as_sentence, ordinary_file, spooled

@@ -7,18 +7,13 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, get_args
 
 import numpy as np
 
+from .._atomic import replacing
+from .._sentences import counted
+from ..errors import FormatError, WriteError
 from ..terrain.slope import areas, aspect, ring_area, slope
 from ..tin import Survey
-from .atomic import replacing
-from .errors import FormatError, WriteError, counted
 from .geojson_lines import edge_words, line_features, line_vertices, require_lines
-from .geojson_places import (
-    Places,
-    crs_places,
-    require_one_piece,
-    texts,
-    wgs84_places,
-)
+from .geojson_places import Places, crs_places, require_one_piece, texts, wgs84_places
 from .meshes import require_writable
 
 if TYPE_CHECKING:

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..errors import FormatError
 from ..terrain.linework import EDGE_KINDS, line_edges
 from ..tin.regions import edge_keys
-from .errors import FormatError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from .._sentences import counted
 from ..crs import CRS, METRE
+from ..errors import CrsError, WriteError
 from .crs import reproject
-from .errors import CrsError, WriteError, counted
 
 if TYPE_CHECKING:
     from pathlib import Path

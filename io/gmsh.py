@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..terrain import extras
-from ..tin import MissingExtraError
+from .. import _optional as extras
+from .._atomic import replacing_path
+from ..errors import MissingExtraError
 from ..tin.regions import edge_keys
 from ..tin.topology import NO_NEIGHBOR, ends
-from .atomic import replacing_path
 from .isolated import run_isolated
 from .meshes import choose_reference, file_content, require_tin, survey_of, tin_of
 

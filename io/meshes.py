@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ..crs import CRS, Unit
-from ..errors import OptionError
-from ..tin import TIN, PointsError, Survey
+from ..errors import CrsError, FormatError, OptionError, PointsError, ReadError
+from ..tin import TIN, Survey
 from ..tin.check_overlaps import describe_overlaps
-from .errors import CrsError, FormatError, ReadError
 from .placing import settle_unit
 
 if TYPE_CHECKING:

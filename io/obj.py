@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .atomic import replacing
-from .errors import ReadError
+from .._atomic import replacing
+from ..errors import ReadError
 from .meshes import (
     choose_reference,
     fans,

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple, NoReturn
 import numpy as np
 
 from ..crs import require_same_unit
+from ..errors import CrsError, ReadError
 from .crs import convert_elevations, fitting_utm, reproject, transform_points
-from .errors import CrsError, ReadError
 
 if TYPE_CHECKING:
     from pathlib import Path

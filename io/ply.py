@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .._atomic import replacing
+from ..errors import ReadError
 from ..tin import TIN, Survey
-from .atomic import replacing
-from .errors import ReadError
 from .meshes import (
     choose_reference,
     fans,

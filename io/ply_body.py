@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from .errors import ReadError
+from ..errors import ReadError
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from .errors import ReadError
+from ..errors import ReadError
 from .signatures import is_ply
 
 if TYPE_CHECKING:

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from .._sentences import counted
 from ..crs import CRS, Unit
-from ..errors import OptionError
-from ..tin import Bounds, MissingExtraError, Survey
-from .errors import FormatError, ReadError, counted
+from ..errors import FormatError, MissingExtraError, OptionError, ReadError
+from ..tin import Bounds, Survey
 from .isolated import Limits, limits_for, run_isolated, stream_isolated
 from .nodata import as_nodata, describe_suspects, find_suspect_elevations
 from .placing import place, settle_unit

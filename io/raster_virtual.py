@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree as ET
 
-from .errors import ReadError
+from ..errors import ReadError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -9,8 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
-from ..tin import TinsmithError
-from .errors import ReadError
+from ..errors import ReadError, TinsmithError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .atomic import replacing
-from .errors import ReadError, WriteError
+from .._atomic import replacing
+from ..errors import ReadError, WriteError
 from .meshes import choose_reference, file_content, require_tin, tin_of, unit_text
 
 if TYPE_CHECKING:

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, get_args
 import numpy as np
 
 from ..crs import CRS, Unit
+from ..errors import ReadError
 from ..tin import Breakline, Water
 from ..tin.lines import BreaklineKind, as_ring
-from .errors import ReadError
 from .vectors_features import Features, read_features
 from .vectors_parts import Part, Wanted, elevation_factor, parts_of
 

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from .._sentences import counted
 from ..crs import CRS
-from ..tin import MissingExtraError
-from .errors import CrsError, ReadError, counted
+from ..errors import CrsError, MissingExtraError, ReadError
 from .isolated import limits_for, run_isolated
 from .local import require_local
 from .signatures import HEAD_BYTES, reference_kind

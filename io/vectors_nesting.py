@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .errors import ReadError
+from ..errors import ReadError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

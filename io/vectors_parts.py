@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, NamedTuple, NoReturn
 
 import numpy as np
 
+from .._sentences import counted
 from ..crs import assume_elevation_unit
+from ..errors import ReadError
 from .crs import conversion_factor
-from .errors import ReadError, counted
 from .placing import place, settle_unit
 
 if TYPE_CHECKING:

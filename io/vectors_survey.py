@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..errors import ReadError
 from ..tin import Bounds, Breakline, Water
-from .errors import ReadError
 from .vectors import read_lines, read_polygons, read_water
 from .vectors_nesting import nesting_notes
 

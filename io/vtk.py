@@ -15,11 +15,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..terrain import extras
+from .. import _optional as extras
+from .._atomic import replacing_path
+from ..errors import MissingExtraError, ReadError, WriteError
 from ..terrain.slope import aspect, slope
-from ..tin import MissingExtraError
-from .atomic import replacing_path
-from .errors import ReadError, WriteError
 from .isolated import run_isolated
 from .meshes import (
     choose_reference,

@@ -1,7 +1,7 @@
 """The meaning room: what a terrain surface says. Knows no files."""
 
+from ..errors import OptionError, RenderError
 from .comparison import comparison_picture
-from .errors import OptionError, RenderError
 from .histogram import histogram
 from .lift import lift
 from .preview import preview

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import extras
+from .. import _optional as extras
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import extras
+from .. import _optional as extras
 from .rounding import ticks
 
 if TYPE_CHECKING:

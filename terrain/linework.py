@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from .. import _optional as extras
 from ..tin.regions import edge_keys
-from . import extras
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

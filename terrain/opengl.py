@@ -7,7 +7,7 @@ import subprocess
 import sys
 from functools import cache
 
-from .errors import RenderError
+from ..errors import RenderError
 
 __all__ = ["require_opengl", "require_window"]
 

@@ -9,11 +9,12 @@ from numbers import Integral
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from .. import _optional as extras
+from ..errors import OptionError, RenderError
 from ..tin import Bounds
-from . import extras, opengl
+from . import opengl
 from .annotations import Caption, Sheet, annotate
 from .camera import VIEWS, View, aim, ground_axes, pixels_per_unit
-from .errors import OptionError, RenderError
 from .lift import as_exaggeration
 from .linework import add_lines
 from .overlay import Overlay

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import extras
+from .. import _optional as extras
 from .lift import default_origin
 from .tints import tints
 

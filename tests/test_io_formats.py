@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import tinsmith as ts
+from tinsmith._atomic import replacing, replacing_path
 from tinsmith.io import (
     Format,
     FormatError,
@@ -22,7 +23,6 @@ from tinsmith.io import (
     read,
     write,
 )
-from tinsmith.io.atomic import replacing, replacing_path
 from tinsmith.io.formats import detect
 
 SURVEY = "x,y,z\n1,2,3\n4,5,6\n7,8.5,9\n"

@@ -14,8 +14,8 @@ import pytest
 import shapely
 
 import tinsmith as ts
+from tinsmith.errors import CrsError, FormatError, WriteError
 from tinsmith.io import geojson
-from tinsmith.io.errors import CrsError, FormatError, WriteError
 
 UTM16 = "EPSG:32616"
 TENNESSEE = np.array([1_700_000.0, 600_000.0, 0.0])  # US survey feet

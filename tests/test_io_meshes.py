@@ -11,8 +11,8 @@ from click.testing import CliRunner
 
 import tinsmith as ts
 from tinsmith.cli import main
+from tinsmith.errors import CrsError, FormatError, ReadError
 from tinsmith.io import obj, ply, stl, vtk
-from tinsmith.io.errors import CrsError, FormatError, ReadError
 from tinsmith.tin.check_overlaps import describe_overlaps
 
 ORIGIN = np.array([745_000.0, 4_033_000.0, 200.0])

@@ -17,8 +17,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import tinsmith as ts
+from tinsmith.errors import WriteError
 from tinsmith.io import obj, ply, stl, vtk
-from tinsmith.io.errors import WriteError
 
 MODULES = {
     "geojson": "geojson",

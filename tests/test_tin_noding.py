@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from line_oracle import places_of, steps_of
 
 import tinsmith as ts
+from tinsmith.errors import LinesError
 from tinsmith.tin import _kernel, splitting
-from tinsmith.tin.errors import LinesError
 from tinsmith.tin.noding import Chains, node
 
 UTM = np.array([500_000.0, 4_000_000.0])

@@ -1,9 +1,9 @@
 """The shape room: points become triangles. Knows no files, no CRS, no pictures."""
 
+from ..errors import CheckError, LinesError, MissingExtraError, PointsError, TinsmithError
 from . import paper
 from .check import CheckResult, check
 from .compare import Comparison, Outcome, compare
-from .errors import CheckError, LinesError, MissingExtraError, PointsError, TinsmithError
 from .lines import Breakline, Lines, Water
 from .quality import Quality, quality
 from .refine import refine

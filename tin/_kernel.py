@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from .errors import PointsError
+from ..errors import PointsError
 from .interrupts import hold_interrupts
 
 with hold_interrupts():

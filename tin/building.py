@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..errors import counted
+from .._sentences import counted
 from . import _kernel
 from .constrained import Draft, draft
 from .draping import drape

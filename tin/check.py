@@ -29,12 +29,12 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from ..errors import CheckError, PointsError
 from .check_connections import check_arrays, check_connections
 from .check_delaunay import check_delaunay
 from .check_given import check_given_lines, check_rows
 from .check_lines import check_chains, check_steps, has_sound_chains
 from .check_shape import check_shape, has_sound_rim
-from .errors import CheckError, PointsError
 from .findings import Findings, Problem
 from .line_set import as_sequence, gather_lines
 from .options import as_flag, is_whole_number, require_tin, shown

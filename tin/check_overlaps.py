@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..errors import inflect
+from .._sentences import inflect
 from .check_rim import Rim, find_fault
 from .check_shape import rim_of
 from .exact import Columns, columns, is_last, orientation

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
+from ..errors import PointsError
 from . import _kernel
-from .errors import PointsError
 from .options import is_whole_number, shown
 from .paper import Network, improved, original
 from .paper_cover import cover

@@ -24,8 +24,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..errors import LinesError
 from . import _kernel
-from .errors import LinesError
 from .model import mesh_of
 from .noding import Chains, node_again
 from .pieces import Pieces

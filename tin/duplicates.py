@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
-from .errors import PointsError
+from ..errors import PointsError
 from .points import SHOWN
 
 if TYPE_CHECKING:

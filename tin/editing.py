@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple, cast, get_args
 
 import numpy as np
 
+from ..errors import LinesError, PointsError, TinsmithError
 from .constrained import CrossingPolicy
 from .duplicates import DuplicatePolicy
 from .editor import Editor, NotLocal, is_local, merged_elevation, occupied
-from .errors import LinesError, PointsError, TinsmithError
 from .existing import recipe_of_triangles, state_of_triangles
 from .flipping import FLIP, flipped_edge, require_inner
 from .inputs import (

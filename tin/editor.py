@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from ..errors import PointsError
 from . import _kernel
 from .duplicates import merge_rows
-from .errors import PointsError
 from .flipping import are_uncut, flipped_edge, require_inner
 from .growing import GrowingRows
 from .inputs import AddLine, Change

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..errors import PointsError, TinsmithError
 from . import _kernel, topology
 from .building import assemble
 from .constrained import LineOptions
-from .errors import PointsError, TinsmithError
 from .line_set import BELOW_ALL, LineSet
 from .points import as_points
 from .recipe import Recipe

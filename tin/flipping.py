@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..errors import PointsError
 from . import _kernel
-from .errors import PointsError
 from .lines import Breakline
 
 if TYPE_CHECKING:

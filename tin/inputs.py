@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
-from .errors import LinesError
+from ..errors import LinesError
 from .frozen import Frozen
 from .line_set import ABOVE_ALL, LineSet, gather_lines
 from .lines import Breakline

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ..errors import LinesError
 from . import _kernel
-from .errors import LinesError
 from .lines import Breakline, LineKind, Water, as_ring
 from .options import shown
 from .polygons import rings_of

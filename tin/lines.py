@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 
-from .errors import LinesError, PointsError
+from ..errors import LinesError, PointsError
 from .frozen import Frozen
 from .options import is_finite_number, require_one_of, shown
 from .tables import as_table

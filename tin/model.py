@@ -11,20 +11,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from ..errors import LinesError
 from . import _kernel, topology
-from .errors import LinesError
 from .lines import LineKind, Lines
 from .pieces import Pieces
-from .regions import (
-    BOUNDARY,
-    RIM,
-    RingSteps,
-    Surface,
-    clipped,
-    edge_keys,
-    is_inside,
-    trimmed,
-)
+from .regions import BOUNDARY, RIM, RingSteps, Surface, clipped, edge_keys, is_inside, trimmed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

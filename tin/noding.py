@@ -26,7 +26,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from .errors import LinesError
+from ..errors import LinesError
 from .splitting import Splitting, Walk
 
 if TYPE_CHECKING:

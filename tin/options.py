@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import TinsmithError
-from .errors import PointsError
+from ..errors import PointsError, TinsmithError
 
 __all__ = [
     "as_flag",

@@ -39,7 +39,7 @@ from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 
-from .errors import PointsError
+from ..errors import PointsError
 from .exact import columns
 from .options import as_flag, is_one_of, is_whole_number, shown
 from .paper_lists import Edge, Lists, Triangle, sides

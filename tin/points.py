@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..errors import counted
+from .._sentences import counted
+from ..errors import PointsError
 from . import _kernel
-from .errors import PointsError
 from .tables import Table, as_table
 from .threads import thread_count
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .errors import LinesError
+from ..errors import LinesError
 from .lines import as_ring, elevations_at_start
 
 if TYPE_CHECKING:

@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING, Any, Literal, get_args
 import numpy as np
 
 from ..crs import CRS, Unit, require_one_unit, require_same_unit
-from ..errors import CrsError
+from ..errors import CrsError, LinesError, PointsError
 from . import _kernel
 from .constrained import CrossingPolicy, LineOptions
 from .duplicates import DuplicatePolicy
-from .errors import LinesError, PointsError
 from .line_set import (
     LineSet,
     as_sequence,

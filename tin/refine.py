@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..errors import counted
+from .._sentences import counted
+from ..errors import PointsError
 from . import _kernel, topology
-from .errors import PointsError
 from .model import Clip, LineInfo, Model, lines_in, mesh_of_growth
 from .options import is_finite_number, is_whole_number, require_tin, shown
 from .pieces import Pieces

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ..errors import LinesError
 from . import _kernel
-from .errors import LinesError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

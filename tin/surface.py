@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any, ClassVar, Never
 import numpy as np
 
 from ..crs import CRS, Unit, require_one_unit, scale_elevations, shorten_crs
+from ..errors import PointsError
 from . import _kernel, topology
 from .editable import Editable
-from .errors import PointsError
 from .lines import Lines
 from .points import as_points, as_xy
 from .report import Report

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 
-from .errors import PointsError
+from ..errors import PointsError
 from .options import is_whole_number, shown
 
 __all__ = ["thread_count"]

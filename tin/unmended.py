@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..errors import counted
+from .._sentences import counted
 from .quality import smallest_angles
 
 if TYPE_CHECKING:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..errors import LinesError, PointsError
 from . import _kernel
-from .errors import LinesError, PointsError
 from .lines import as_ring
 from .options import is_finite_number, shown
 from .threads import thread_count

@@ -18,7 +18,7 @@ from collections.abc import Generator, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from ..errors import ReadError
+from ...errors import ReadError
 from ..forking import Fork, can_fork
 from .answers import Answer, BrokenMessageError, receive, send
 from .limits import START_SECONDS, Limits, limits_for

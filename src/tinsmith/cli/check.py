@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..errors import counted
+from .._sentences import counted
 from .failures import Failure
 from .options import console_options, input_file, reading_options, triangulating_options
 from .paths import name_of

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..errors import counted
+from .._sentences import counted
 from .failures import Failure
 from .options import console_options, input_file, reading_options
 from .paths import OUTPUT, name_of, title_of

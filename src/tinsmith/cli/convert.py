@@ -6,15 +6,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..errors import counted
+from .._sentences import counted
 from .console import plain
-from .options import (
-    console_options,
-    input_file,
-    output_files,
-    reading_options,
-    writing_options,
-)
+from .options import console_options, input_file, output_files, reading_options, writing_options
 from .paths import name_of
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..errors import counted
+from .._sentences import counted
 from .console import plain
 from .options import (
     console_options,

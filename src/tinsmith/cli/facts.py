@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .._sentences import counted
 from ..crs import assume_elevation_unit
-from ..errors import counted
 from ..io.crs import is_geographic, length_unit
 from ..terrain import slope
 from ..terrain.slope import areas

@@ -135,7 +135,7 @@ def _interruption(ctx: click.Context, number: int) -> Interruption:
 
 
 def _failure(error: Exception) -> Failure:
-    from ..tin import TinsmithError
+    from ..errors import TinsmithError
 
     if isinstance(error, TinsmithError):
         return Failure(str(error))

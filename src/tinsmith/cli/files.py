@@ -11,7 +11,7 @@ from typing import IO, TYPE_CHECKING, Any
 
 import click
 
-from ..errors import counted
+from .._sentences import counted
 from .console import emit_file
 from .failures import Failure, note_written
 from .paths import STANDARD, Named, name_of, require_separate
@@ -107,7 +107,8 @@ def with_lines(survey: Survey, how: Triangulating, console: Console) -> Survey:
 
 def triangulated(survey: Survey, how: Triangulating, console: Console) -> TIN:
     """Build the TIN of a survey, showing progress; rows at fault are named by point number too."""
-    from ..tin import PointsError, triangulate
+    from ..errors import PointsError
+    from ..tin import triangulate
 
     try:
         with console.steps() as steps, steps.step(f"Triangulating {counted(len(survey), 'point')}"):
@@ -227,7 +228,7 @@ def require_picture(
 
 def write_figure(figure: Any, path: Path, *, dpi: int) -> None:
     """Write a figure of matplotlib, whole or not at all, with no version in its bytes."""
-    from ..io.atomic import replacing
+    from .._atomic import replacing
 
     with replacing(path) as picture:
         figure.savefig(picture, format="png", dpi=dpi, metadata={"Software": None})
@@ -259,7 +260,8 @@ def _require_taken(left_over: set[str]) -> None:
 
 
 def _output_format(path: Path, name: str | None) -> Format:
-    from ..io import FormatError, find_format, known_formats
+    from ..errors import FormatError
+    from ..io import find_format, known_formats
 
     if name is not None:
         chosen = find_format(name)
@@ -331,7 +333,7 @@ def _shows_progress(one: Format) -> bool:
 
 def write_text(path: Path, text: str) -> None:
     """Write a whole text file or none."""
-    from ..io.atomic import replacing
+    from .._atomic import replacing
 
     with replacing(path, binary=False) as file:
         file.write(text)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..errors import counted
+from .._sentences import counted
 from ..tin.report import LEFT_OUT
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..errors import counted
+from .._sentences import counted
 from .console import plain
 from .failures import Failure
 from .flags import name_flags
@@ -83,7 +83,8 @@ def refine(
     Example:
       tinsmith refine sample_data/site_survey.csv --codes --max-area 20 -o site.msh -o site.vtu
     """  # noqa: D301 - click reads the control character
-    from ..tin import TinsmithError, quality
+    from ..errors import TinsmithError
+    from ..tin import quality
     from ..tin import refine as refine_tin
     from .files import inputs_of, plan_outputs, read_tin, write_outputs, written_text
     from .line_facts import mesh_counts

@@ -8,8 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Literal, overload
 
-from ..tin import TinsmithError
-from .errors import WriteError
+from .errors import TinsmithError, WriteError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
