@@ -10,7 +10,7 @@ import numpy as np
 
 from ..errors import FormatError
 from ..terrain.linework import EDGE_KINDS, line_edges
-from ..tin.regions import edge_keys
+from ..tin.constraints.clipping import edge_keys
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -18,7 +18,7 @@ import numpy as np
 from .. import _optional as extras
 from .._atomic import replacing_path
 from ..errors import MissingExtraError
-from ..tin.regions import edge_keys
+from ..tin.constraints.clipping import edge_keys
 from ..tin.topology import NO_NEIGHBOR, ends
 from .isolated import run_isolated
 from .meshes import choose_reference, file_content, require_tin, survey_of, tin_of

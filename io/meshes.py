@@ -10,7 +10,7 @@ import numpy as np
 from ..crs import CRS, Unit
 from ..errors import CrsError, FormatError, OptionError, PointsError, ReadError
 from ..tin import TIN, Survey
-from ..tin.check_overlaps import describe_overlaps
+from ..tin.checking.overlaps import describe_overlaps
 from .placing import settle_unit
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..errors import FormatError
-from ..tin.options import shown
+from ..tin.validation.options import shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

@@ -14,7 +14,7 @@ import numpy as np
 from ..crs import CRS, Unit
 from ..errors import ReadError
 from ..tin import Breakline, Water
-from ..tin.lines import BreaklineKind, as_ring
+from ..tin.constraints.breaklines import BreaklineKind, as_ring
 from .vectors_features import Features, read_features
 from .vectors_parts import Part, Wanted, elevation_factor, parts_of
 

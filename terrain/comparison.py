@@ -11,7 +11,7 @@ from .. import _optional as extras
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from ..tin.compare import Comparison, Outcome
+    from ..tin.paper.comparison import Comparison, Outcome
 
 __all__ = ["comparison_picture"]
 

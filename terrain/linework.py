@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from .. import _optional as extras
-from ..tin.regions import edge_keys
+from ..tin.constraints.clipping import edge_keys
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -82,7 +82,7 @@ def test_version_is_the_package_version():
 
 def test_choices_are_those_of_the_library():
     from tinsmith.io.geojson import Kind
-    from tinsmith.tin.duplicates import DuplicatePolicy
+    from tinsmith.tin.building.duplicates import DuplicatePolicy
 
     assert get_args(DuplicatePolicy) == DUPLICATES
     assert get_args(Kind) == KINDS

@@ -14,8 +14,8 @@ import tinsmith as ts
 from tinsmith.cli import main
 from tinsmith.cli.line_options import CROSSINGS, TRIMS
 from tinsmith.cli.options import Triangulating
-from tinsmith.tin.constrained import CrossingPolicy
-from tinsmith.tin.recipe import TrimPolicy
+from tinsmith.tin.building.constrained import CrossingPolicy
+from tinsmith.tin.building.inputs import TrimPolicy
 
 pyogrio = pytest.importorskip("pyogrio")
 

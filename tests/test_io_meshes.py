@@ -13,7 +13,7 @@ import tinsmith as ts
 from tinsmith.cli import main
 from tinsmith.errors import CrsError, FormatError, ReadError
 from tinsmith.io import obj, ply, stl, vtk
-from tinsmith.tin.check_overlaps import describe_overlaps
+from tinsmith.tin.checking.overlaps import describe_overlaps
 
 ORIGIN = np.array([745_000.0, 4_033_000.0, 200.0])
 SQUARE = np.array([[0, 0, 1], [1, 0, 2], [1, 1, 3], [0, 1, 4]], float)
@@ -617,7 +617,7 @@ def test_an_edge_that_is_constrained_on_one_side_is_told():
 
 
 def test_a_boundary_too_long_to_be_swept_is_told(monkeypatch):
-    monkeypatch.setattr("tinsmith.tin.check_overlaps._MOST_EDGES", 5)
+    monkeypatch.setattr("tinsmith.tin.checking.overlaps._MOST_EDGES", 5)
     points = [[0, 0, 1], [4, 0, 1], [0, 4, 1], [1, 1, 5], [5, 1, 5], [1, 5, 5]]
     tin = ts.TIN.from_triangles(points, [[0, 1, 2], [3, 4, 5]])
     assert "whether triangles overlap was not looked at" in describe_overlaps(tin)[0]

@@ -13,8 +13,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import tinsmith as ts
-from tinsmith.tin import TIN, CheckError, PointsError, _kernel, check, check_shape
-from tinsmith.tin.findings import Findings
+from tinsmith.tin import TIN, CheckError, PointsError, _kernel, check
+from tinsmith.tin.checking import shape as check_shape
+from tinsmith.tin.checking.findings import Findings
 
 RNG = np.random.default_rng(21)
 CLOUD = np.column_stack([RNG.random((60, 2)) * 100, RNG.random(60)])

@@ -11,7 +11,7 @@ import pytest
 
 import tinsmith as ts
 from tinsmith.tin import TIN, LinesError, check
-from tinsmith.tin.lines import Lines
+from tinsmith.tin.constraints.breaklines import Lines
 from tinsmith.tin.report import LEFT_OUT
 
 RNG = np.random.default_rng(8)

@@ -12,7 +12,7 @@ from oracles import orientation, place
 
 import tinsmith as ts
 from tinsmith.tin import TIN, check
-from tinsmith.tin.check_rim import Rim, find_fault, sides_of
+from tinsmith.tin.checking.boundary_sweep import Rim, find_fault, sides_of
 
 UTM = np.array([500_000.0, 4_000_000.0])
 SQUARE = np.array([[0, 0], [6, 0], [6, 6], [0, 6]], float)

@@ -13,8 +13,8 @@ import shapely
 
 import tinsmith as ts
 from tinsmith.tin import PointsError, compare, paper
-from tinsmith.tin.paper_cover import cover
-from tinsmith.tin.paper_faults import minimum_angles, overlapping, violating
+from tinsmith.tin.paper.cover import cover
+from tinsmith.tin.paper.faults import minimum_angles, overlapping, violating
 
 SURVEY = Path(__file__).parents[1] / "sample_data" / "site_survey.csv"
 NAMES = ("original", "improved", "improved (open)", "improved (ties)", "exact")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import tinsmith as ts
-from tinsmith.tin import conforming
+from tinsmith.tin.constraints import conforming
 
 NONE = np.empty((0, 3))
 

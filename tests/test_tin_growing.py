@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from tinsmith.tin import growing
-from tinsmith.tin.growing import GrowingRows
+from tinsmith.tin.editing import row_buffer as growing
+from tinsmith.tin.editing.row_buffer import GrowingRows
 
 
 @pytest.mark.parametrize("many", [0, 3, 10_000])

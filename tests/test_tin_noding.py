@@ -11,8 +11,9 @@ from line_oracle import places_of, steps_of
 
 import tinsmith as ts
 from tinsmith.errors import LinesError
-from tinsmith.tin import _kernel, splitting
-from tinsmith.tin.noding import Chains, node
+from tinsmith.tin import _kernel
+from tinsmith.tin.constraints import splitting
+from tinsmith.tin.constraints.noding import Chains, node
 
 UTM = np.array([500_000.0, 4_000_000.0])
 NAN = float("nan")

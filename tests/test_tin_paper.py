@@ -16,7 +16,7 @@ from scipy.spatial import Delaunay
 
 import tinsmith as ts
 from tinsmith.tin import PointsError, paper
-from tinsmith.tin.paper_rules import _cotangents, widest_angle, widest_angle_then_closest
+from tinsmith.tin.paper.rules import _cotangents, widest_angle, widest_angle_then_closest
 
 BOTH = [paper.original, paper.improved]
 TIES = partial(paper.improved, distance="ties")

@@ -7,7 +7,7 @@ import pytest
 
 import tinsmith as ts
 from tinsmith.tin import check
-from tinsmith.tin.points import as_points, as_xy
+from tinsmith.tin.validation.points import as_points, as_xy
 
 GOOD = np.array([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8], [1, 2, 9]], float)
 

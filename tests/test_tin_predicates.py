@@ -10,7 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tinsmith.tin import _kernel, exact
+from tinsmith.tin import _kernel
+from tinsmith.tin import predicates as exact
 
 N_ROWS = 300
 

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from shapely.geometry import LineString, Point, Polygon
 
 import tinsmith as ts
-from tinsmith.tin.refine import refine
-from tinsmith.tin.unmended import UNMENDED_WHY
+from tinsmith.tin.meshing.refinement import refine
+from tinsmith.tin.report import UNMENDED_WHY
 
 UTM = np.array([500_000.0, 4_000_000.0, 300.0])
 

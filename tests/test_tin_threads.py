@@ -17,9 +17,9 @@ from kernel_ways import DATASETS, dataset, require_same_growth, with_heights
 
 import tinsmith as ts
 from tinsmith.tin import _kernel
-from tinsmith.tin import threads as threads_module
-from tinsmith.tin.interrupts import hold_interrupts
-from tinsmith.tin.threads import LEAST_POINTS_PER_THREAD, thread_count
+from tinsmith.tin._kernel import hold_interrupts
+from tinsmith.tin.validation import threads as threads_module
+from tinsmith.tin.validation.threads import LEAST_POINTS_PER_THREAD, thread_count
 
 FOUR_CORNERS = [[0, 0, 1], [9, 0, 2], [9, 9, 3], [0, 9, 4]]
 

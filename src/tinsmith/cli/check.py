@@ -14,7 +14,7 @@ from .paths import name_of
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ..tin.check import CheckResult
+    from ..tin.checking.checker import CheckResult
     from .console import Console, Field
     from .options import Reading, Triangulating
 
@@ -49,7 +49,7 @@ def check(file: Path, level: int, reading: Reading, how: Triangulating, console:
     Example:
       tinsmith check sample_data/site_survey.csv
     """  # noqa: D301 - click reads the control character
-    from ..tin.check import check as check_tin
+    from ..tin.checking.checker import check as check_tin
     from .files import read_tin
 
     tin, survey = read_tin(file, reading, how, console)

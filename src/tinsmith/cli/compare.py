@@ -78,7 +78,7 @@ def _sampled(points: NDArray[Any], count: int | None) -> NDArray[Any]:
     """Return some of the points, in their order; all of them if no number is given."""
     import numpy as np
 
-    from ..tin.compare import MOST_POINTS
+    from ..tin.paper.comparison import MOST_POINTS
 
     if count is None:
         if len(points) > MOST_POINTS:

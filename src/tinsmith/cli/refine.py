@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ..tin import TIN, Quality
-    from ..tin.unmended import Unmended
+    from ..tin.report import Unmended
     from .console import Console, Field
     from .options import Reading, Triangulating, Writing
 
