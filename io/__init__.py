@@ -6,22 +6,26 @@ from .._lazy import lazy_names
 
 if TYPE_CHECKING:
     from ..errors import CrsError, FormatError, ReadError, WriteError
-    from .codes import lines_from_codes
-    from .crs import LengthUnit, length_unit, transform_points
-    from .formats import Format, find_format, known_formats, read, write
-    from .vectors import read_lines, read_polygons, read_rings, read_water
-    from .vectors_survey import with_lines
+    from .field_codes import lines_from_codes
+    from .reading import read
+    from .registry import Format, find_format, known_formats
+    from .reprojection.transformation import LengthUnit, length_unit, transform_points
+    from .vector.reading import read_lines, read_polygons, read_rings, read_water
+    from .vector.survey_lines import with_lines
+    from .writing import write
 
 # The processes that read files for native libraries start without what they do not use.
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        ".codes": ("lines_from_codes",),
-        ".crs": ("LengthUnit", "length_unit", "transform_points"),
+        ".field_codes": ("lines_from_codes",),
+        ".reprojection.transformation": ("LengthUnit", "length_unit", "transform_points"),
         "..errors": ("CrsError", "FormatError", "ReadError", "WriteError"),
-        ".formats": ("Format", "find_format", "known_formats", "read", "write"),
-        ".vectors": ("read_lines", "read_polygons", "read_rings", "read_water"),
-        ".vectors_survey": ("with_lines",),
+        ".reading": ("read",),
+        ".registry": ("Format", "find_format", "known_formats"),
+        ".vector.reading": ("read_lines", "read_polygons", "read_rings", "read_water"),
+        ".vector.survey_lines": ("with_lines",),
+        ".writing": ("write",),
     },
 )
 

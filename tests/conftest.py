@@ -10,7 +10,7 @@ from no_skips import (  # noqa: F401 - hooks
     pytest_runtest_makereport,
 )
 
-from tinsmith.terrain import opengl
+from tinsmith.terrain.preview import opengl
 from tinsmith.tin import TinsmithError
 
 # A timing is never a test; a test that hangs ends at pytest's own limit.

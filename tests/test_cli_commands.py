@@ -81,7 +81,7 @@ def test_version_is_the_package_version():
 
 
 def test_choices_are_those_of_the_library():
-    from tinsmith.io.geojson import Kind
+    from tinsmith.io.geojson.writing import Kind
     from tinsmith.tin.building.duplicates import DuplicatePolicy
 
     assert get_args(DuplicatePolicy) == DUPLICATES
@@ -357,7 +357,7 @@ def test_mean_slope_is_weighted_by_area(tmp_path):
 
 
 def test_json_knows_no_infinity_and_no_numpy():
-    from tinsmith.cli.console import plain
+    from tinsmith.cli.output.console import plain
 
     given = {"a": float("inf"), "b": [float("nan"), np.float64("-inf")], "c": np.int32(3)}
     assert json.loads(plain(given)) == {"a": None, "b": [None, None], "c": 3}

@@ -13,9 +13,9 @@ from click.testing import CliRunner
 
 import tinsmith as ts
 from tinsmith.cli import main
-from tinsmith.cli.compare import _sampled
+from tinsmith.cli.commands.compare import _sampled
 from tinsmith.terrain import comparison_picture
-from tinsmith.terrain.comparison import _GAP, _SOUND, _VIOLATING
+from tinsmith.terrain.charts.comparison import _GAP, _SOUND, _VIOLATING
 
 SAMPLES = Path(__file__).parents[1] / "sample_data"
 SURVEY = SAMPLES / "site_survey.csv"
@@ -159,7 +159,7 @@ def test_tin_is_refused(tmp_path):
 
 
 def test_a_sample_keeps_the_order_of_the_points():
-    from tinsmith.cli.compare import _sampled
+    from tinsmith.cli.commands.compare import _sampled
 
     points = np.random.default_rng(2).random((50, 3))
     sample = _sampled(points, 20)

@@ -444,7 +444,7 @@ def test_a_signal_inside_a_finalizer_is_not_lost(number):
     # Python drops what is raised there: the program would go on as if nobody had stopped it.
     program = f"""
 import signal, time
-from tinsmith.cli.streams import Terminated, signals_as_exceptions
+from tinsmith.cli.output.streams import Terminated, signals_as_exceptions
 
 class Finalized:
     def __del__(self):
@@ -468,7 +468,7 @@ except (Terminated, KeyboardInterrupt) as error:
 
 def test_another_exception_in_a_finalizer_is_told_as_usual():
     program = """
-from tinsmith.cli.streams import signals_as_exceptions
+from tinsmith.cli.output.streams import signals_as_exceptions
 
 class Finalized:
     def __del__(self):
@@ -589,7 +589,7 @@ def test_help_loads_no_heavy_library(folder):
 
 STEPS = """
 import time
-from tinsmith.cli import steps
+from tinsmith.cli.output import progress as steps
 steps.PATIENCE = 0.0
 with steps.Steps(quiet={quiet}) as shown, shown.step("Growing") as progress:
     for fraction in (0.2, 0.9):
@@ -602,7 +602,7 @@ def test_progress_shows_the_fraction_done(monkeypatch):
     from rich.console import Console
     from rich.progress import Progress
 
-    from tinsmith.cli import steps
+    from tinsmith.cli.output import progress as steps
 
     bar = Progress(console=Console(file=StringIO()))
     monkeypatch.setattr(steps, "_progress_bar", lambda: bar)

@@ -279,11 +279,10 @@ def test_a_terminal_gets_no_bytes(folder):
 
 
 def test_a_file_that_vanishes_is_a_sentence(folder, monkeypatch):
-    from tinsmith.io import formats
 
     def vanished(path, **_):
         raise FileNotFoundError(2, "No such file or directory", str(path))
 
-    monkeypatch.setattr(formats, "_load", lambda _: vanished)
+    monkeypatch.setattr("tinsmith.io.reading.load_function", lambda _: vanished)
     with pytest.raises(ts.ReadError, match=r"There is no file 's\.csv'"):
         ts.read("s.csv")

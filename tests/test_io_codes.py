@@ -10,7 +10,7 @@ import pytest
 
 import tinsmith as ts
 from tinsmith.io import lines_from_codes
-from tinsmith.io.codes import MARKS, RULES
+from tinsmith.io.field_codes import MARKS, RULES
 
 SAMPLE = Path(__file__).parents[1] / "sample_data" / "site_survey.csv"
 

@@ -9,8 +9,9 @@ import pytest
 
 from tinsmith import CRS
 from tinsmith.crs import METRE
-from tinsmith.io import CrsError, LengthUnit, crs, length_unit, transform_points
-from tinsmith.io.crs import reproject
+from tinsmith.io import CrsError, LengthUnit, length_unit, transform_points
+from tinsmith.io.reprojection import transformation as crs
+from tinsmith.io.reprojection.transformation import reproject
 
 pyproj = pytest.importorskip("pyproj")
 

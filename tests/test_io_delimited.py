@@ -18,8 +18,8 @@ from hypothesis import strategies as st
 
 import tinsmith as ts
 from tinsmith.io import CrsError, FormatError, ReadError, WriteError, read, write
-from tinsmith.io.delimited_layout import find_layout
-from tinsmith.io.delimited_lines import read_lines
+from tinsmith.io.delimited.layout import find_layout
+from tinsmith.io.delimited.lines import read_lines
 
 ROWS = [
     (1, 4024238.125, 752646.5, 320.565, "CP1"),

@@ -18,12 +18,12 @@ from tinsmith.io import (
     ReadError,
     WriteError,
     find_format,
-    formats,
     known_formats,
     read,
     write,
 )
-from tinsmith.io.formats import detect
+from tinsmith.io import registry as formats
+from tinsmith.io.reading import detect
 
 SURVEY = "x,y,z\n1,2,3\n4,5,6\n7,8.5,9\n"
 TABLE = b"1.5 2.5 3.5\n4.5 5.5 6.5\n"

@@ -196,7 +196,7 @@ def test_a_mosaic_of_anything_else_is_refused(tmp_path, server):
 
 @pytest.mark.parametrize("size", [(100_000, 100_000), (2**31 - 1, 2**31 - 1), (1, 2**31 - 1)])
 def test_a_raster_of_more_cells_than_memory_is_refused_at_once(tmp_path, size, monkeypatch):
-    from tinsmith.io import raster
+    from tinsmith.io.raster import dem as raster
 
     monkeypatch.setattr(raster, "_free_memory", lambda: 1 << 30)
     path = tmp_path / "bomb.vrt"

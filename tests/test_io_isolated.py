@@ -213,8 +213,8 @@ FORKING = """
 import sys; sys.path.append(sys.argv[1])
 import os, signal, threading
 from pathlib import Path
-from tinsmith.io import ReadError, forking
-from tinsmith.io.isolated import Limits, run_isolated, workers
+from tinsmith.io import ReadError
+from tinsmith.io.isolated import Limits, forking, run_isolated, workers
 signal.signal(signal.SIGTERM, lambda *_: os.write(2, b"handler"))
 kept = open(sys.argv[2], "w"); kept.write("once")  # not flushed yet
 forking.permit_forks()
@@ -291,6 +291,6 @@ def test_a_fork_needs_permission_no_native_library_and_a_small_program(tmp_path,
 
 
 def test_a_library_does_not_fork():
-    from tinsmith.io.forking import can_fork
+    from tinsmith.io.isolated.forking import can_fork
 
     assert not can_fork()

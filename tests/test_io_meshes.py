@@ -12,7 +12,8 @@ from click.testing import CliRunner
 import tinsmith as ts
 from tinsmith.cli import main
 from tinsmith.errors import CrsError, FormatError, ReadError
-from tinsmith.io import obj, ply, stl, vtk
+from tinsmith.io.mesh import obj, stl, vtk
+from tinsmith.io.mesh.ply import file as ply
 from tinsmith.tin.checking.overlaps import describe_overlaps
 
 ORIGIN = np.array([745_000.0, 4_033_000.0, 200.0])

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 import tinsmith as ts
-from tinsmith.io import ReadError, obj, ply, read, stl
+from tinsmith.io import ReadError, read
+from tinsmith.io.mesh import obj, stl
+from tinsmith.io.mesh.ply import file as ply
 
 # Corner 0 is the right angle, so that the edge opposite to it is the slanted one.
 KITE = np.array([[0.0, 0.0, 1.0], [4.0, 0.0, 2.0], [0.0, 3.0, 3.0], [5.0, 5.0, 4.0]])

@@ -144,7 +144,7 @@ def test_band_by_number(raster):
 
 
 def test_strips_join_without_a_seam(raster, monkeypatch):
-    from tinsmith.io import raster as module
+    from tinsmith.io.raster import dem as module
 
     array = heights(61, 37)
     array[10:20, 5:9] = -1

@@ -18,15 +18,16 @@ from hypothesis import strategies as st
 
 import tinsmith as ts
 from tinsmith.errors import WriteError
-from tinsmith.io import obj, ply, stl, vtk
+from tinsmith.io.mesh import obj, stl, vtk
+from tinsmith.io.mesh.ply import file as ply
 
 MODULES = {
-    "geojson": "geojson",
-    "ply": "ply",
-    "obj": "obj",
-    "stl": "stl",
-    "vtp": "vtk",
-    "vtu": "vtk",
+    "geojson": "geojson.writing",
+    "ply": "mesh.ply",
+    "obj": "mesh.obj",
+    "stl": "mesh.stl",
+    "vtp": "mesh.vtk",
+    "vtu": "mesh.vtk",
 }
 SUFFIXES = sorted(MODULES)
 EXACT = [(ply, "a.ply"), (obj, "a.obj"), (vtk, "a.vtp"), (vtk, "a.vtu")]

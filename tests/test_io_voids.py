@@ -8,7 +8,7 @@ from click.testing import CliRunner
 
 import tinsmith as ts
 from tinsmith.cli import main
-from tinsmith.io.voids import rings_around
+from tinsmith.io.raster.voids import rings_around
 
 rasterio = pytest.importorskip("rasterio")
 

@@ -9,10 +9,17 @@ import numpy as np
 import pytest
 
 from tinsmith import triangulate
-from tinsmith.terrain.annotations import INK, PAPER, Caption, Sheet, annotate, scale_bar_length
-from tinsmith.terrain.camera import VIEWS, View, aim, ground_axes, pixels_per_unit
-from tinsmith.terrain.scene import add_lights, scene_points
-from tinsmith.terrain.tints import tints
+from tinsmith.terrain.preview.annotations import (
+    INK,
+    PAPER,
+    Caption,
+    Sheet,
+    annotate,
+    scale_bar_length,
+)
+from tinsmith.terrain.preview.camera import VIEWS, View, aim, ground_axes, pixels_per_unit
+from tinsmith.terrain.preview.scene import add_lights, scene_points
+from tinsmith.terrain.preview.tints import tints
 from tinsmith.terrain.units import METRE, ground_of
 from tinsmith.tin import Bounds
 
@@ -247,7 +254,7 @@ def test_the_sun_stands_in_the_northwest_and_the_sky_around():
 def test_the_settings_of_vtk_come_back_after_drawing():
     from vtkmodules.vtkRenderingFreeType import vtkMathTextFreeTypeTextRenderer
 
-    drawing = importlib.import_module("tinsmith.terrain.preview")
+    drawing = importlib.import_module("tinsmith.terrain.preview.picture")
     words = vtkMathTextFreeTypeTextRenderer.GetInstance()
     before = words.GetDefaultBackend()
     try:

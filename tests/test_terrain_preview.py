@@ -13,13 +13,14 @@ from PIL import Image
 
 from tinsmith import TIN, MissingExtraError, triangulate
 from tinsmith.crs import FOOT, METRE
-from tinsmith.terrain import OptionError, RenderError, opengl, preview, slope
-from tinsmith.terrain.annotations import Sheet, scale_bar_length
-from tinsmith.terrain.camera import VIEWS, View, aim, ground_axes, pixels_per_unit
-from tinsmith.terrain.preview import PICTURE_SUFFIXES
+from tinsmith.terrain import OptionError, RenderError, preview, slope
+from tinsmith.terrain.preview import opengl
+from tinsmith.terrain.preview.annotations import Sheet, scale_bar_length
+from tinsmith.terrain.preview.camera import VIEWS, View, aim, ground_axes, pixels_per_unit
+from tinsmith.terrain.preview.picture import PICTURE_SUFFIXES
+from tinsmith.terrain.preview.scene import choose_exaggeration
+from tinsmith.terrain.preview.tints import lightness, tints
 from tinsmith.terrain.rounding import format_number, round_down, ticks
-from tinsmith.terrain.scene import choose_exaggeration
-from tinsmith.terrain.tints import lightness, tints
 from tinsmith.terrain.units import NOT_KNOWN, ground_of
 from tinsmith.tin import Bounds
 
@@ -189,7 +190,7 @@ class TestPicture:
         assert list(tmp_path.iterdir()) == [path]
 
     def test_annotations_follow_the_camera(self, monkeypatch):
-        module = sys.modules["tinsmith.terrain.preview"]
+        module = sys.modules["tinsmith.terrain.preview.picture"]
         written = []
         monkeypatch.setattr(opengl, "require_window", lambda: None)
         monkeypatch.setattr(

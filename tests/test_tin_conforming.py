@@ -326,6 +326,19 @@ def test_check_lets_the_next_chain_have_the_line_s_last_vertex():
     ts.check(tin, points=survey).raise_if_failed()
 
 
+def test_check_follows_a_line_back_to_where_it_left_the_surface():
+    """Between two chains the line goes from the second one's first place into water and back."""
+    corner = [41114.701223856886, 13705.000407952295]
+    line = [[0.0, 9.0], corner, [40.0, 133.0], corner, [0.0, 0.0]]
+    lakes = [
+        ts.Water([[0.0, 150.0], [40.0, 131.0], [72694.0, 24231.0]], 0.0),
+        ts.Water([[41.0, 134.0], [23206.0, 7735.5], corner], 0.0),
+    ]
+    tin = ts.triangulate(NONE, breaklines=[line], water=lakes)
+    survey = ts.Survey(points=NONE, breaklines=[ts.Breakline(line)], water=lakes)
+    ts.check(tin, points=survey).raise_if_failed()
+
+
 def test_check_still_loses_a_chain_that_is_on_no_part_of_its_line():
     lines = [[[0.0, 0.0, 0.0], [10.0, 0.0, 0.0]], [[0.0, 5.0, 0.0], [10.0, 5.0, 0.0]]]
     tin = ts.triangulate(NONE, breaklines=lines, snap=0.01)

@@ -19,8 +19,8 @@ from pathlib import Path
 from typing import Any
 
 from ...errors import ReadError
-from ..forking import Fork, can_fork
 from .answers import Answer, BrokenMessageError, receive, send
+from .forking import Fork, can_fork
 from .limits import START_SECONDS, Limits, limits_for
 
 __all__ = ["run_isolated", "stream_isolated"]

@@ -25,7 +25,7 @@ def lazy_names(
         within the package can be used as an attribute, too.
     """
     module_of = {name: module for module, names in names_of.items() for name in names}
-    modules = {module[1:] for module in names_of if not module.startswith("..")}
+    modules = {module.split(".")[1] for module in names_of if not module.startswith("..")}
 
     def load(name: str) -> Any:
         if name in module_of:

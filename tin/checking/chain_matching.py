@@ -325,11 +325,11 @@ class _Walker:
     def _pass_gap(self, line: int, rows: Sequence[int], here: int | None, then: int | None) -> None:
         """Note the part of a line from one chain to the next, or from or to its ends."""
         ends = [self._places[position] for position in (here, then) if position is not None]
-        left_out = [
-            row
-            for number, row in enumerate(rows)
-            if (number or here is None) and not any(self._is_at(end, row) for end in ends)
-        ]
+        left_out = list(rows[here is not None :])
+        while left_out and here is not None and self._is_at(ends[0], left_out[0]):
+            del left_out[0]
+        while left_out and then is not None and self._is_at(ends[-1], left_out[-1]):
+            del left_out[-1]
         nodes = [*ends[: here is not None], *(self._given[row] for row in left_out)]
         nodes += ends[len(ends) - (then is not None) :]
         if len(nodes) < 2 or (not left_out and nodes[0] == nodes[1]):

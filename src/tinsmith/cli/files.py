@@ -12,8 +12,8 @@ from typing import IO, TYPE_CHECKING, Any
 import click
 
 from .._sentences import counted
-from .console import emit_file
-from .failures import Failure, note_written
+from .output.console import emit_file
+from .output.failures import Failure, note_written
 from .paths import STANDARD, Named, name_of, require_separate
 
 if TYPE_CHECKING:
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
     from ..io import Format
     from ..tin import TIN, Survey
-    from .console import Console
     from .options import Reading, Triangulating, Writing
+    from .output.console import Console
 
 __all__ = [
     "Output",
@@ -57,7 +57,7 @@ class Output:
 def read_input(path: Path, reading: Reading, console: Console) -> Survey | TIN:
     """Read points or a TIN, showing progress."""
     from ..io import read
-    from ..io.formats import read_stream
+    from ..io.reading import read_stream
     from ..tin import Bounds
 
     options = {name: value for name, value in asdict(reading).items() if value is not None}
@@ -148,7 +148,7 @@ def inputs_of(
     file: Path, how: Triangulating | None = None, *, script: Path | None = None
 ) -> list[Named]:
     """Return all files that a command reads."""
-    from ..io.vectors_survey import path_and_layer
+    from ..io.vector.survey_lines import path_and_layer
 
     inputs = [Named(file, "the input")]
     if script is not None:
@@ -314,7 +314,7 @@ def _write_to_stdout(obj: TIN | Survey, output: Output, options: dict[str, Any])
 
 def written_text(outputs: Sequence[Output]) -> str:
     """Return what was written for a summary, a line each."""
-    from .facts import file_size
+    from .output.summaries import file_size
 
     return "\n".join(
         "standard output"

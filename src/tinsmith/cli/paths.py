@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
-from .streams import escape_unprintable
+from .output.streams import escape_unprintable
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
