@@ -18,16 +18,16 @@ import numpy as np
 import tinsmith as ts
 from tinsmith.tin import TIN
 
-from .answers import Verdict, numbered, ranked, verdict
-from .cgal import harness
-from .edit_tasks import BATCH, EDIT_TASKS, EditTask, edit_task, labelled
-from .edit_tools import ALL_EDIT_TOOLS, BUILD, EDIT_TOOLS, OPENED
+from ..cgal import harness
+from ..datasets.edits import BATCH, EDIT_TASKS, EditTask, edit_task, labelled
+from ..datasets.tasks import write_task
+from ..measure import Outcome, Result, median
+from ..peers.answers import Verdict, numbered, ranked, verdict
+from ..peers.edit_tools import ALL_EDIT_TOOLS, BUILD, EDIT_TOOLS, OPENED
+from ..peers.tool_process import ToolProcess, worker_command
+from ..peers.triangulators import CGAL, is_cgal
 from .kernel import in_turn
 from .lines import available_tools
-from .measure import Outcome, Result, median
-from .tasks import write_task
-from .tool_process import ToolProcess, worker_command
-from .triangulators import CGAL, is_cgal
 
 __all__ = ["SECTION", "run"]
 

@@ -21,12 +21,12 @@ from numpy.typing import NDArray
 import tinsmith as ts
 from tinsmith.tin import _kernel
 
-from .answers import Verdict, counted, ranked, verdict
-from .cgal import CgalMissingError, harness
-from .datasets import DATASETS, dataset
-from .measure import OURS, SLOW_SECONDS, Outcome, Result, median
-from .tool_process import ToolFailedError, ToolProcess
-from .triangulators import ALL_CORES, CGAL, KERNEL, KERNEL_ALL_CORES, TOOLS
+from ..cgal import CgalMissingError, harness
+from ..datasets.points import DATASETS, dataset
+from ..measure import OURS, SLOW_SECONDS, Outcome, Result, median
+from ..peers.answers import Verdict, counted, ranked, verdict
+from ..peers.tool_process import ToolFailedError, ToolProcess
+from ..peers.triangulators import ALL_CORES, CGAL, KERNEL, KERNEL_ALL_CORES, TOOLS
 
 __all__ = [
     "ALL_TOOLS",

@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .edit_tasks import INSERT_ALL, WHAT, EditTask
-from .measure import OURS
+from ..datasets.edits import INSERT_ALL, WHAT, EditTask
+from ..measure import OURS
 from .triangulators import CGAL, Tool
 
 __all__ = ["ALL_EDIT_TOOLS", "BUILD", "EDIT_TOOLS", "OPENED", "WITH_ARRAYS"]

@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 import tinsmith as ts
 from tinsmith.tin import TIN
 
-from .datasets import dataset
-from .measure import OURS, Outcome, Result, alternate, is_installed, median
-from .meshes import MESH_PEERS
+from ..datasets.points import dataset
+from ..measure import OURS, Outcome, Result, alternate, is_installed, median
+from ..peers.meshes import MESH_PEERS
 
 __all__ = ["SECTION", "run"]
 

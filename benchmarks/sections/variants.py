@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 import tinsmith as ts
 from tinsmith.tin import _kernel
 
-from .datasets import DATASETS, dataset
-from .measure import OURS, Outcome, Result, alternate, median
+from ..datasets.points import DATASETS, dataset
+from ..measure import OURS, Outcome, Result, alternate, median
 
 __all__ = ["SECTION", "TWO_THREADS", "run"]
 

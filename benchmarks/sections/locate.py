@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 import tinsmith as ts
 from tinsmith.tin import TIN
 
-from .measure import OURS, Outcome, Result, alternate, median
+from ..measure import OURS, Outcome, Result, alternate, median
 
 __all__ = ["SECTION", "run"]
 

@@ -8,12 +8,13 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict
 from pathlib import Path
 
-from . import edits, kernel, lines, locate, readers, ways, writers
-from .answers import AS_MANY, EQUAL
+from ..measure import OURS, Outcome, Result, is_installed
+from ..peers.answers import AS_MANY, EQUAL
+from ..peers.line_tools import ALL_LINE_TOOLS
+from ..peers.triangulators import CGAL, KERNEL
+from ..sections import edits, kernel, lines, locate, readers, writers
+from ..sections import variants as ways
 from .goals import judged
-from .line_tools import ALL_LINE_TOOLS
-from .measure import OURS, Outcome, Result, is_installed
-from .triangulators import CGAL, KERNEL
 
 __all__ = ["write_report"]
 

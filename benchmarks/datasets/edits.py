@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .datasets import SEED, dataset
+from .points import SEED, dataset
 
 __all__ = [
     "BATCH",

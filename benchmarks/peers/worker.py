@@ -17,11 +17,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .edit_tasks import EditTask, edit_task
+from ..datasets.edits import EditTask, edit_task
+from ..datasets.lines import LEAST_POINTS, LineTask, line_dataset
+from ..datasets.tasks import read_task
 from .edit_tools import EDIT_TOOLS
-from .line_datasets import LEAST_POINTS, LineTask, line_dataset
 from .line_tools import LINE_TOOLS
-from .tasks import read_task
 from .triangulators import TOOLS, Tool
 
 WARM_UP_POINTS = 100

@@ -14,12 +14,12 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from .cgal import harness
+from ..cgal import harness
 from .triangulators import is_cgal
 
 __all__ = ["ToolFailedError", "ToolProcess", "worker_command"]
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 START_SECONDS = 120.0
 LEAST_TIMED_SECONDS = 0.02
 """Runs shorter than this are repeated within one timing."""
@@ -27,7 +27,7 @@ LEAST_TIMED_SECONDS = 0.02
 
 def worker_command(kind: str, name: str, path: Path) -> list[str]:
     """Return the command for a tool that Python can call, on a task of some kind in a file."""
-    return [sys.executable, "-m", "benchmarks.worker", kind, name, str(path)]
+    return [sys.executable, "-m", "benchmarks.peers.worker", kind, name, str(path)]
 
 
 class ToolFailedError(Exception):

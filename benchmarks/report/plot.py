@@ -6,10 +6,10 @@ import math
 from pathlib import Path
 from typing import Any
 
-from . import kernel, lines
-from .line_tools import CGAL_INDICES
-from .measure import OURS, Result
-from .triangulators import ALL_CORES, CGAL, KERNEL, KERNEL_ALL_CORES
+from ..measure import OURS, Result
+from ..peers.line_tools import CGAL_INDICES
+from ..peers.triangulators import ALL_CORES, CGAL, KERNEL, KERNEL_ALL_CORES
+from ..sections import kernel, lines
 
 __all__ = ["TITLES", "draw"]
 

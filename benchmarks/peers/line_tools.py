@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import Any
 
-from .line_datasets import LineTask
+from ..datasets.lines import LineTask
 from .triangulators import ALL_CORES, CGAL, Tool, tin_bytes
 
 __all__ = ["ALL_LINE_TOOLS", "CGAL_INDICES", "LINE_TOOLS"]

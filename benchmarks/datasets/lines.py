@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .datasets import SEED, UTM_CORNER, dataset, with_heights
+from .points import SEED, UTM_CORNER, dataset, with_heights
 
 __all__ = ["LEAST_POINTS", "LINE_DATASETS", "LineTask", "line_dataset"]
 

@@ -6,12 +6,12 @@ import math
 from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
-from .edit_tasks import BATCH, EDITS, labelled
-from .edit_tools import BUILD, WITH_ARRAYS
-from .line_tools import CGAL_INDICES
-from .measure import OURS, Result
-from .triangulators import CGAL, KERNEL
-from .ways import TWO_THREADS
+from ..datasets.edits import BATCH, EDITS, labelled
+from ..measure import OURS, Result
+from ..peers.edit_tools import BUILD, WITH_ARRAYS
+from ..peers.line_tools import CGAL_INDICES
+from ..peers.triangulators import CGAL, KERNEL
+from ..sections.variants import TWO_THREADS
 
 __all__ = ["judged"]
 

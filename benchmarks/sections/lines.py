@@ -19,15 +19,15 @@ from numpy.typing import NDArray
 import tinsmith as ts
 from tinsmith.tin import TIN
 
-from .answers import Verdict, edge_codes, numbered, ranked, verdict
-from .cgal import CgalMissingError, harness
+from ..cgal import CgalMissingError, harness
+from ..datasets.lines import LEAST_POINTS, LINE_DATASETS, LineTask, line_dataset
+from ..datasets.tasks import write_task
+from ..measure import Outcome, Result
+from ..peers.answers import Verdict, edge_codes, numbered, ranked, verdict
+from ..peers.line_tools import ALL_LINE_TOOLS, CGAL_INDICES, LINE_TOOLS
+from ..peers.tool_process import ToolFailedError, ToolProcess, worker_command
+from ..peers.triangulators import is_cgal
 from .kernel import in_turn, result_of
-from .line_datasets import LEAST_POINTS, LINE_DATASETS, LineTask, line_dataset
-from .line_tools import ALL_LINE_TOOLS, CGAL_INDICES, LINE_TOOLS
-from .measure import Outcome, Result
-from .tasks import write_task
-from .tool_process import ToolFailedError, ToolProcess, worker_command
-from .triangulators import is_cgal
 
 __all__ = ["SECTION", "available_tools", "run"]
 

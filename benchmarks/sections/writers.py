@@ -20,9 +20,9 @@ from tinsmith.io import transform_points
 from tinsmith.terrain.slope import aspect, slope
 from tinsmith.tin import TIN
 
-from .datasets import dataset
-from .measure import OURS, Outcome, Result, alternate, median
-from .meshes import MESH_PEERS
+from ..datasets.points import dataset
+from ..measure import OURS, Outcome, Result, alternate, median
+from ..peers.meshes import MESH_PEERS
 
 __all__ = ["SECTION", "run"]
 
