@@ -12,7 +12,7 @@ from ..constraints.breaklines import Lines
 from ..constraints.clipping import BOUNDARY, EXTENT, HOLES, Surface, in_rings
 from ..constraints.constraint_set import LineSet
 from ..constraints.draping import drape
-from ..constraints.pslg import Clip, LineInfo, Model, lines_in
+from ..constraints.pslg import Clip, Model, lines_in
 from ..report import LEFT_OUT, Crossings, Overruled, Report
 from ..validation.points import require_three
 from .constrained import Draft, draft
@@ -125,7 +125,7 @@ def _with_lines(recipe: Recipe) -> Built:
     return Built(
         surface,
         vertex_of,
-        lines_in(model.pieces, model.infos, number_of, surface, is_whole=is_whole),
+        lines_in(model.polylines, model.constraints, number_of, surface, is_whole=is_whole),
         _report(recipe, len(surface.points), len(surface.triangles), account),
         ground.lines.xy,
         _numbered(made.line_vertices, number_of),
@@ -143,18 +143,9 @@ def _model(recipe: Recipe, ground: _Ground, made: Draft, rows: NDArray[np.int64]
     vertex_of[rows] = made.vertex_of
     return Model(
         points=made.surface.points,
-        pieces=made.pieces,
-        infos=tuple(
-            LineInfo(*info)
-            for info in zip(
-                lines.kinds,
-                lines.sources.tolist(),
-                lines.names,
-                lines.priorities.tolist(),
-                _groups(recipe, lines),
-                strict=True,
-            )
-        ),
+        polylines=made.polylines,
+        constraints=lines.table,
+        groups=_groups(recipe, lines),
         clip=Clip(
             boundary=recipe.boundary,
             extent=recipe.extent,
@@ -167,7 +158,7 @@ def _model(recipe: Recipe, ground: _Ground, made: Draft, rows: NDArray[np.int64]
     )
 
 
-def _groups(recipe: Recipe, lines: LineSet) -> list[int]:
+def _groups(recipe: Recipe, lines: LineSet) -> NDArray[np.int64]:
     """Return the group of each line among the rings; that of other lines says nothing."""
     of_ring = [
         *([BOUNDARY] * len(recipe.boundary)),
@@ -177,10 +168,11 @@ def _groups(recipe: Recipe, lines: LineSet) -> list[int]:
     groups: dict[str, list[int]] = {"boundary": of_ring, "hole": of_hole}
     if recipe.has_rim:  # of existing triangles, whose rings are edges of the rim
         groups = {}
-    return [
+    found = [
         groups[kind][source] if kind in groups and source >= 0 else BOUNDARY
         for kind, source in zip(lines.kinds, lines.sources.tolist(), strict=True)
     ]
+    return np.array(found, np.int64)
 
 
 def _numbered(vertices: NDArray[np.int32], number_of: NDArray[np.int32]) -> NDArray[np.int32]:
@@ -248,16 +240,13 @@ def _account(
 
 
 def _crossings(made: Draft, final: NDArray[np.int32]) -> Crossings:
-    met = made.noded.crossings
-    lines = np.stack([met.line_a, met.line_b], axis=1).astype(np.int32)
-    heights = np.stack([met.height_a, met.height_b], axis=1)
-    order = np.argsort(lines, axis=1, kind="stable")
-    return Crossings(
-        _numbered(met.vertex, final),
-        met.xy,
-        np.take_along_axis(lines, order, axis=1),
-        np.take_along_axis(heights, order, axis=1),
-        met.height,
+    """Return the crossings by the numbers of the TIN, the earlier line in front."""
+    found = made.noded.crossings
+    order = np.argsort(found.lines, axis=1, kind="stable")
+    return found._replace(
+        vertices=_numbered(found.vertices, final),
+        lines=np.take_along_axis(found.lines, order, axis=1),
+        heights=np.take_along_axis(found.heights, order, axis=1),
     )
 
 

@@ -101,7 +101,7 @@ def check_steps(tin: TIN, found: Findings) -> None:
     edges = _keys(start, end, len(tin.points))
     taken = tin.lines.steps().astype(np.int64)
     steps = _keys(taken[:, 0], taken[:, 1], len(tin.points))
-    chain = np.repeat(np.arange(len(tin.lines)), np.diff(tin.lines.offsets) - 1)
+    chain = tin.lines.step_chains()
     found.report(
         "lines",
         np.unique(chain[~np.isin(steps, edges)]),

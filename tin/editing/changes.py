@@ -15,6 +15,7 @@ import numpy as np
 from ...errors import LinesError
 from ..constraints.breaklines import Breakline
 from ..constraints.constraint_set import ABOVE_ALL, LineSet, gather_lines
+from ..constraints.polylines import offsets_of
 from ..types import Frozen
 
 if TYPE_CHECKING:
@@ -222,7 +223,7 @@ class DropVertices(NamedTuple):
         return lines._replace(
             xy=lines.xy[rows],
             heights=lines.heights[rows],
-            offsets=np.concatenate([[0], np.cumsum(counts)]),
+            offsets=offsets_of(counts),
         )
 
 
@@ -232,4 +233,4 @@ def _numbered(breaklines: Iterable[LineSet], others: LineSet) -> LineSet:
     sources = together.sources.copy()
     count = len(together.kinds) - len(others.kinds)
     sources[:count] = np.arange(count, dtype=np.int32)
-    return together._replace(sources=sources)
+    return together._replace(table=together.table._replace(sources=sources))

@@ -17,6 +17,8 @@ from ..building.constrained import LineOptions
 from ..building.inputs import Recipe
 from ..constraints.clipping import Surface, edge_keys
 from ..constraints.constraint_set import BELOW_ALL, LineSet
+from ..constraints.constraint_table import ConstraintTable
+from ..constraints.polylines import offsets_of
 from ..triangulation import Triangulation
 from ..validation.points import as_points
 from ..validation.threads import thread_count
@@ -88,15 +90,12 @@ def _line_set(
     sources: NDArray[np.int32],
 ) -> LineSet:
     vertices = np.concatenate([*chains, np.empty(0, np.int32)])
-    offsets = np.concatenate([[0], np.cumsum([len(chain) for chain in chains], dtype=np.int64)])
+    priorities = np.where(sources < 0, BELOW_ALL, 0.0)
     return LineSet(
         np.ascontiguousarray(points[vertices, :2]),
         points[vertices, 2],
-        offsets,
-        tuple(kinds),
-        sources,
-        np.where(sources < 0, BELOW_ALL, 0.0),
-        tuple(names),
+        offsets_of(map(len, chains)),
+        ConstraintTable(tuple(kinds), sources, priorities, tuple(names)),
     )
 
 

@@ -542,8 +542,7 @@ def _require_elevations(found: State, wanted: NDArray[np.float64]) -> None:
 def _lines_along(lines: Lines, a: int, b: int) -> list[int]:
     """Return the chains that take an edge."""
     steps = np.sort(lines.steps(), axis=1)
-    chain = np.repeat(np.arange(len(lines)), np.diff(lines.offsets) - 1)
-    found: list[int] = chain[(steps == sorted((a, b))).all(axis=1)].tolist()
+    found: list[int] = lines.step_chains()[(steps == sorted((a, b))).all(axis=1)].tolist()
     return found
 
 

@@ -15,9 +15,10 @@ import numpy as np
 from ..._sentences import counted
 from ...errors import PointsError
 from .. import _kernel, topology
-from ..constraints.clipping import Surface, edge_keys
-from ..constraints.polylines import Pieces
-from ..constraints.pslg import Clip, LineInfo, Model, lines_in, mesh_of_growth
+from ..constraints.clipping import BOUNDARY, Surface, edge_keys
+from ..constraints.constraint_table import ConstraintTable
+from ..constraints.polylines import Polylines
+from ..constraints.pslg import Clip, Model, lines_in, mesh_of_growth
 from ..surface import TIN
 from ..validation.options import is_finite_number, is_whole_number, require_tin, shown
 from ..validation.threads import thread_count
@@ -26,6 +27,7 @@ from .unmended import find_unmended
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from ..constraints.breaklines import LineKind
     from ..report import Report
 
 __all__ = ["LARGEST_MIN_ANGLE", "refine"]
@@ -338,7 +340,7 @@ def _build(tin: TIN, found: _Found, threads: int) -> TIN | set[tuple[int, int]]:
 
 def _force(mesh: _kernel.Mesh, model: Model, splits: _Splits) -> set[tuple[int, int]] | None:
     """Fix all steps of lines; return the segments in the way of that, None if there are none."""
-    steps, _ = model.pieces.steps()
+    steps = model.polylines.segments()
     passed, blocked = mesh.force(steps)
     if not (len(passed) or len(blocked)):
         return None
@@ -368,7 +370,7 @@ def _refined(
         constrained=surface.constrained,
         vertex_of=tin.vertex_of,
         report=_report(tin, surface, found),
-        lines=lines_in(model.pieces, model.infos, number_of, surface, is_whole=False),
+        lines=lines_in(model.polylines, model.constraints, number_of, surface, is_whole=False),
         crs=tin.crs,
         elevation_unit=tin.elevation_unit,
     )
@@ -396,27 +398,41 @@ def _note(n_new: int, n_on_segments: int) -> str:
 def _model(tin: TIN, points: NDArray[np.float64], splits: _Splits) -> Model:
     rings = [[*ring.tolist(), int(ring[0])] for ring in tin.rings]
     chains = [chain.tolist() for chain in tin.lines.chains()]
-    infos = [
-        LineInfo(*info)
-        for info in zip(tin.lines.kinds, tin.lines.sources.tolist(), tin.lines.names, strict=True)
-    ]
     nameless = _without_line(tin)
-    n_breaklines = sum(info.kind in ("hard", "soft") for info in infos)
     chains += nameless
-    infos += [LineInfo("soft", n_breaklines + number) for number in range(len(nameless))]
     if "boundary" not in tin.lines.kinds:
         chains += rings
-        infos += [LineInfo("boundary", number) for number in range(len(rings))]
     chains += rings
-    infos += [LineInfo("boundary") for _ in rings]
-    split = [splits.along(chain) for chain in chains]
     return Model(
         points=points,
-        pieces=Pieces.of_chains(split, range(len(split))),
-        infos=tuple(infos),
+        polylines=Polylines.of_chains([splits.along(chain) for chain in chains]),
+        constraints=_constraints(tin, len(nameless), len(rings)),
+        groups=np.full(len(chains), BOUNDARY),
         clip=Clip(has_rim=True),
         vertex_of=tin.vertex_of,
     )
+
+
+def _constraints(tin: TIN, n_nameless: int, n_rings: int) -> ConstraintTable:
+    """Return what the lines are: the TIN's own, edges of no line, and rings twice, as the rim."""
+    lines = tin.lines
+    n_breaklines = sum(kind in ("hard", "soft") for kind in lines.kinds)
+    outer = np.arange(0 if "boundary" in lines.kinds else n_rings)
+    nameless = n_breaklines + np.arange(n_nameless)
+    return ConstraintTable.joined(
+        [
+            ConstraintTable(
+                lines.kinds, lines.sources.astype(np.int32), np.zeros(len(lines)), lines.names
+            ),
+            _nameless("soft", nameless),
+            _nameless("boundary", outer),
+            _nameless("boundary", np.full(n_rings, -1)),
+        ]
+    )
+
+
+def _nameless(kind: LineKind, sources: NDArray[np.int64]) -> ConstraintTable:
+    return ConstraintTable.of_kind(kind, sources.astype(np.int32), np.zeros(len(sources)))
 
 
 def _without_line(tin: TIN) -> list[list[int]]:
