@@ -1,4 +1,4 @@
-"""The only door to the compiled core: its arrays, its types, its faults as our errors."""
+"""The only module that imports the compiled core: its arrays, types and errors."""
 
 from __future__ import annotations
 

@@ -1,5 +1,6 @@
-"""The rules of the house: lint, types, import contract, one class each, light imports."""
+"""The rules of the repository: lint, types, import contract, no circle, light imports."""
 
+import ast
 import doctest
 import importlib
 import os
@@ -7,6 +8,7 @@ import pkgutil
 import re
 import subprocess
 import sys
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -33,14 +35,14 @@ def tool(name):
 
 @pytest.fixture
 def tree(tmp_path):
-    """Mount the rooms as the one package that they are once installed."""
+    """Mount the folders as the one package that they are once installed."""
     package = tmp_path / "tinsmith"
     package.mkdir()
     for source in (ROOT / "src" / "tinsmith").iterdir():
         if source.name != "__pycache__":
             (package / source.name).symlink_to(source)
-    for room in ("tin", "io", "terrain"):
-        (package / room).symlink_to(ROOT / room)
+    for folder in ("tin", "io", "terrain"):
+        (package / folder).symlink_to(ROOT / folder)
     return tmp_path
 
 
@@ -67,21 +69,69 @@ def test_import_contract(tree):
     assert result.returncode == 0, result.stdout + result.stderr
 
 
+def modules_of(tree):
+    """Return every module of the package with its file."""
+    found = {}
+    for folder, folders, files in os.walk(tree / "tinsmith", followlinks=True):
+        folders[:] = [name for name in folders if name not in ("cpp", "__pycache__")]
+        for file in files:
+            path = Path(folder) / file
+            if path.suffix == ".py":
+                parts = path.relative_to(tree).with_suffix("").parts
+                name = ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+                found[name] = path
+    return found
+
+
+def imports_of(name, path, modules):
+    """Return the modules that one imports when it runs, at its head or within functions."""
+    package = name if path.name == "__init__.py" else name.rpartition(".")[0]
+    tree = ast.parse(path.read_text())
+    typing_only = {
+        id(node)
+        for block in ast.walk(tree)
+        if isinstance(block, ast.If) and "TYPE_CHECKING" in ast.unparse(block.test)
+        for node in ast.walk(block)
+    }
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and node.level and id(node) not in typing_only:
+            base = package.split(".")[: len(package.split(".")) - node.level + 1]
+            source = ".".join([*base, *([node.module] if node.module else [])])
+            for alias in node.names:
+                module = f"{source}.{alias.name}"
+                if node.module or module in modules:  # the compiled core is no module of these
+                    yield module if module in modules else source
+
+
+def test_no_modules_import_in_a_circle(tree):
+    modules = modules_of(tree)
+    graph = {
+        name: {one for one in imports_of(name, path, modules) if one in modules and one != name}
+        for name, path in modules.items()
+    }
+    assert len(graph) > 150
+    assert sum(map(len, graph.values())) > 500
+    try:
+        tuple(TopologicalSorter(graph).static_order())
+    except CycleError as error:
+        pytest.fail(" -> ".join(error.args[1]))
+
+
 def test_only_the_kernel_module_imports_the_core():
     users = [
         path.relative_to(ROOT).as_posix()
-        for room in ("tin", "io", "terrain", "src")
-        for path in (ROOT / room).rglob("*.py")
+        for folder in ("tin", "io", "terrain", "src")
+        for path in (ROOT / folder).rglob("*.py")
         if "import _core" in path.read_text()
     ]
     assert users == ["tin/_kernel.py"]
 
 
-def test_rooms_are_never_imported_from_the_root():
+def test_packages_are_never_imported_from_the_root():
     code = (
         "import sys, tinsmith as ts; ts.triangulate([[0, 0, 0], [1, 0, 0], [0, 1, 0]]);"
         "from tinsmith import io, terrain;"
-        "assert not {'tin', 'terrain'} & set(sys.modules), 'a second copy of a room'"
+        "assert not {'tin', 'terrain'} & set(sys.modules), 'a second copy of a package'"
     )
     result = run(sys.executable, "-c", code)
     assert result.returncode == 0, result.stderr
@@ -103,11 +153,12 @@ def test_every_public_name_is_there():
 
 
 def test_public_examples_run():
-    """Run the examples of every docstring in every room."""
+    """Run the examples of every docstring in every package."""
     names = ["tinsmith"]
-    for room in (tinsmith.tin, tinsmith.io, tinsmith.terrain):
+    for package in (tinsmith.tin, tinsmith.io, tinsmith.terrain):
         names += [
-            module.name for module in pkgutil.walk_packages(room.__path__, f"{room.__name__}.")
+            module.name
+            for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}.")
         ]
     tried = 0
     for name in names:
