@@ -14,7 +14,7 @@ from .types import Frozen
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .editing.session import Edit
+    from .editing.history import Edit
 
 __all__ = ["LEFT_OUT", "UNMENDED_WHY", "Crossings", "Merge", "Overruled", "Report", "Unmended"]
 

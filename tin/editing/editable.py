@@ -19,7 +19,8 @@ if TYPE_CHECKING:
     from ..building.duplicates import DuplicatePolicy
     from ..building.inputs import Recipe
     from ..constraints.breaklines import BreaklineKind
-    from .session import Edit, Session
+    from .history import Edit
+    from .session import Session
     from .version import Version
 
 __all__ = ["Editable"]
@@ -170,7 +171,7 @@ class Editable:
         """
         self._edit("move", vertex=vertex, point=point)
 
-    def set_z(self, vertices: ArrayLike, z: ArrayLike) -> None:
+    def set_elevation(self, vertices: ArrayLike, z: ArrayLike) -> None:
         """Give vertices other elevations, in place.
 
         All rows, and the given vertices of lines there, get it; at a vertex that the build made
@@ -189,6 +190,8 @@ class Editable:
             If something else decides there, such as the level of water. Then nothing has changed.
         """
         self._edit("set_z", vertices=vertices, z=z)
+
+    set_z = set_elevation
 
     def flip(self, a: int, b: int) -> None:
         """Swap the diagonal of the two triangles at an edge, in place.
