@@ -12,6 +12,7 @@ from ..constraints.breaklines import Lines
 from ..constraints.clipping import BOUNDARY, EXTENT, HOLES, Surface, in_rings
 from ..constraints.constraint_set import LineSet
 from ..constraints.draping import drape
+from ..constraints.polylines import offsets_of
 from ..constraints.pslg import Clip, Model, lines_in
 from ..report import LEFT_OUT, Crossings, Overruled, Report
 from ..validation.points import require_three
@@ -260,7 +261,7 @@ def _without_lost_merges(account: dict[str, Any], final: NDArray[np.int32]) -> d
     rows = np.repeat(keep, counts)
     return {
         "merged_vertices": vertices[keep],
-        "merged_offsets": np.append(0, np.cumsum(counts[keep])).astype(np.int32),
+        "merged_offsets": offsets_of(counts[keep]).astype(np.int32),
         "vertex_heights": account["vertex_heights"][keep],
         **{k: account[k][rows] for k in ("merged_rows", "merged_heights", "merged_shifts")},
     }

@@ -11,13 +11,14 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import numpy as np
 
 from .. import _kernel
-from ..constraints.clipping import Surface, edge_keys, in_rings
+from ..constraints.clipping import Surface, in_rings
 from ..constraints.conforming import conform
 from ..constraints.constraint_set import ABOVE_ALL, BELOW_ALL, LineSet
 from ..constraints.noding import Noded, node, untouched
 from ..constraints.polylines import Polylines
 from ..constraints.pslg import force, mesh_of, mesh_of_growth
 from ..report import Overruled
+from ..topology import edge_keys
 from ..validation.points import require_three
 from .duplicates import DuplicatePolicy, merge_rows
 

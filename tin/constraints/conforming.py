@@ -26,7 +26,7 @@ import numpy as np
 
 from ...errors import LinesError
 from .. import _kernel
-from .clipping import edge_keys
+from ..topology import edge_keys
 from .noding import node_again
 from .pslg import mesh_of
 from .splitting import interpolate_linearly, is_before

@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...errors import LinesError
-from .. import _kernel, topology
+from .. import _kernel
+from ..topology import edge_keys, edges_at
 from .breaklines import Lines
-from .clipping import BOUNDARY, RIM, RingSteps, Surface, clipped, edge_keys, is_inside, trimmed
+from .clipping import BOUNDARY, RIM, RingSteps, Surface, clipped, is_inside, trimmed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -184,8 +185,7 @@ def lines_in(
 
 def _are_edges(steps: NDArray[np.int32], surface: Surface) -> NDArray[np.bool_]:
     n = len(surface.points)
-    triangle, corner = np.nonzero(surface.constrained)
-    edges = np.stack(topology.ends(surface.triangles, triangle, corner), axis=1)
+    edges = edges_at(surface.triangles, surface.constrained)
     is_edge = np.asarray((steps >= 0).all(axis=1), np.bool_)
-    is_edge[is_edge] = np.isin(edge_keys(steps[is_edge], n), edge_keys(edges.astype(np.int32), n))
+    is_edge[is_edge] = np.isin(edge_keys(steps[is_edge], n), edge_keys(edges, n))
     return is_edge

@@ -15,7 +15,7 @@ from .. import _kernel, topology
 from ..building.assembly import assemble
 from ..building.constrained import LineOptions
 from ..building.inputs import Recipe
-from ..constraints.clipping import Surface, edge_keys
+from ..constraints.clipping import Surface
 from ..constraints.constraint_set import BELOW_ALL, LineSet
 from ..constraints.constraint_table import ConstraintTable
 from ..constraints.polylines import offsets_of
@@ -105,11 +105,9 @@ def _edges_of_no_line(version: Version) -> list[NDArray[np.int32]]:
     flagged = surface.constrained
     if len(lines):
         flagged = flagged & (surface.neighbors > topology.NO_NEIGHBOR)
-    triangle, corner = np.nonzero(flagged)
-    start, end = topology.ends(surface.triangles, triangle, corner)
-    edges = np.unique(np.sort(np.stack([start, end], axis=1), axis=1), axis=0).astype(np.int32)
+    edges = np.unique(np.sort(topology.edges_at(surface.triangles, flagged), axis=1), axis=0)
     n = len(surface.points)
-    is_step = np.isin(edge_keys(edges, n), edge_keys(lines.steps(), n))
+    is_step = np.isin(topology.edge_keys(edges, n), topology.edge_keys(lines.steps(), n))
     return list(edges[~is_step])
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from ..._sentences import counted
 from ...errors import PointsError
 from .. import _kernel, topology
-from ..constraints.clipping import BOUNDARY, Surface, edge_keys
+from ..constraints.clipping import BOUNDARY, Surface
 from ..constraints.constraint_table import ConstraintTable
 from ..constraints.polylines import Polylines
 from ..constraints.pslg import Clip, Model, lines_in, mesh_of_growth
@@ -437,10 +437,9 @@ def _nameless(kind: LineKind, sources: NDArray[np.int64]) -> ConstraintTable:
 
 def _without_line(tin: TIN) -> list[list[int]]:
     """Return the constrained edges inside the surface that are no step of a line."""
-    triangle, corner = np.nonzero(tin.constrained & (tin.neighbors > topology.NO_NEIGHBOR))
-    start, end = topology.ends(tin.triangles, triangle, corner)
-    edges = np.unique(np.sort(np.stack([start, end], axis=1), axis=1), axis=0).astype(np.int32)
+    is_inner = tin.constrained & (tin.neighbors > topology.NO_NEIGHBOR)
+    edges = np.unique(np.sort(topology.edges_at(tin.triangles, is_inner), axis=1), axis=0)
     n = len(tin.points)
-    is_step = np.isin(edge_keys(edges, n), edge_keys(tin.lines.steps(), n))
+    is_step = np.isin(topology.edge_keys(edges, n), topology.edge_keys(tin.lines.steps(), n))
     found: list[list[int]] = edges[~is_step].tolist()
     return found
