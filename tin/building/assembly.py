@@ -13,7 +13,7 @@ from ..constraints.clipping import BOUNDARY, EXTENT, HOLES, Surface, in_rings
 from ..constraints.constraint_set import LineSet
 from ..constraints.draping import drape
 from ..constraints.polylines import offsets_of
-from ..constraints.pslg import Clip, Model, lines_in
+from ..constraints.pslg import Clip, Pslg, lines_in
 from ..report import LEFT_OUT, Crossings, Overruled, Report
 from ..validation.points import require_three
 from .constrained import Draft, draft
@@ -114,35 +114,35 @@ def _with_lines(recipe: Recipe) -> Built:
     is_erased = _erased(recipe)
     rows = np.flatnonzero(~is_erased)
     ground = _draped(rows, recipe)
-    made, model = _made(recipe, ground, rows)
+    made, pslg = _made(recipe, ground, rows)
     has_rings = bool(recipe.boundary or recipe.extent or recipe.holes or recipe.has_rim)
-    if not has_rings and model.loses_vertices_at_rim(made.surface):
+    if not has_rings and pslg.loses_vertices_at_rim(made.surface):
         ground = ground.without_rim()
-        made, model = _made(recipe, ground, rows)
-    surface, number_of = model.surface(made.surface)
-    vertex_of = _numbered(model.vertex_of, number_of)
+        made, pslg = _made(recipe, ground, rows)
+    surface, number_of = pslg.surface(made.surface)
+    vertex_of = _numbered(pslg.vertex_of, number_of)
     account = _account(recipe, made, number_of, is_erased, vertex_of, ground)
     is_whole = surface is made.surface
     return Built(
         surface,
         vertex_of,
-        lines_in(model.polylines, model.constraints, number_of, surface, is_whole=is_whole),
+        lines_in(pslg.polylines, pslg.constraints, number_of, surface, is_whole=is_whole),
         _report(recipe, len(surface.points), len(surface.triangles), account),
         ground.lines.xy,
         _numbered(made.line_vertices, number_of),
     )
 
 
-def _made(recipe: Recipe, ground: _Ground, rows: NDArray[np.int64]) -> tuple[Draft, Model]:
+def _made(recipe: Recipe, ground: _Ground, rows: NDArray[np.int64]) -> tuple[Draft, Pslg]:
     made = draft(recipe.points, rows, ground.lines, recipe.options, conforming=recipe.conforming)
-    return made, _model(recipe, ground, made, rows)
+    return made, _gather_pslg(recipe, ground, made, rows)
 
 
-def _model(recipe: Recipe, ground: _Ground, made: Draft, rows: NDArray[np.int64]) -> Model:
+def _gather_pslg(recipe: Recipe, ground: _Ground, made: Draft, rows: NDArray[np.int64]) -> Pslg:
     lines = ground.lines
     vertex_of = np.full(len(recipe.points), -1, np.int32)
     vertex_of[rows] = made.vertex_of
-    return Model(
+    return Pslg(
         points=made.surface.points,
         polylines=made.polylines,
         constraints=lines.table,

@@ -1,6 +1,6 @@
-"""Model: vertices, the steps of lines, and what of the hull is the surface.
+"""Planar straight-line graph (PSLG): vertices, segments of lines, what of the hull is the surface.
 
-A model is what a TIN is a function of once rows are merged and lines cut where they meet. The
+It is what a TIN is a function of once rows are merged and lines cut where they meet. The
 triangulation of its vertices with its steps is unique, so any way to it gives the same TIN.
 """
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from .constraint_table import ConstraintTable
     from .polylines import Polylines
 
-__all__ = ["Clip", "Model", "force", "lines_in", "mesh_of", "mesh_of_growth"]
+__all__ = ["Clip", "Pslg", "force", "lines_in", "mesh_of", "mesh_of_growth"]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -84,8 +84,8 @@ def _require_triangles(keep: NDArray[np.bool_], sentence: str) -> None:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Model:
-    """Vertices and lines of the whole hull.
+class Pslg:
+    """Planar straight-line graph: vertices and segments of lines of the whole hull.
 
     Attributes
     ----------

@@ -18,7 +18,7 @@ from .. import _kernel, topology
 from ..constraints.clipping import BOUNDARY, Surface
 from ..constraints.constraint_table import ConstraintTable
 from ..constraints.polylines import Polylines
-from ..constraints.pslg import Clip, Model, lines_in, mesh_of_growth
+from ..constraints.pslg import Clip, Pslg, lines_in, mesh_of_growth
 from ..surface import TIN
 from ..validation.options import is_finite_number, is_whole_number, require_tin, shown
 from ..validation.threads import thread_count
@@ -324,23 +324,23 @@ def _build(tin: TIN, found: _Found, threads: int) -> TIN | set[tuple[int, int]]:
     that are in the way of each other when they are split.
     """
     points = np.concatenate([tin.points, _lifted(tin, found.xy, found.splits)])
-    model = _model(tin, points, found.splits)
+    pslg = _gather_pslg(tin, points, found.splits)
     growth = _kernel.grow(points, threads=threads)
     if growth.kept_row is not None:
         return found.splits.segments_of(np.flatnonzero(growth.kept_row != np.arange(len(points))))
     mesh = mesh_of_growth(points, growth)
-    in_the_way = _force(mesh, model, found.splits)
+    in_the_way = _force(mesh, pslg, found.splits)
     if in_the_way is not None:
         return in_the_way
-    surface, number_of = model.surface(Surface(points, *mesh.arrays(threads)))
+    surface, number_of = pslg.surface(Surface(points, *mesh.arrays(threads)))
     if len(surface.points) != len(points) or len(surface.triangles) != found.n_triangles:
         return set()
-    return _refined(tin, model, surface, number_of, found)
+    return _refined(tin, pslg, surface, number_of, found)
 
 
-def _force(mesh: _kernel.Mesh, model: Model, splits: _Splits) -> set[tuple[int, int]] | None:
+def _force(mesh: _kernel.Mesh, pslg: Pslg, splits: _Splits) -> set[tuple[int, int]] | None:
     """Fix all steps of lines; return the segments in the way of that, None if there are none."""
-    steps = model.polylines.segments()
+    steps = pslg.polylines.segments()
     passed, blocked = mesh.force(steps)
     if not (len(passed) or len(blocked)):
         return None
@@ -361,7 +361,7 @@ def _more_kept_whole(
 
 
 def _refined(
-    tin: TIN, model: Model, surface: Surface, number_of: NDArray[np.int32], found: _Found
+    tin: TIN, pslg: Pslg, surface: Surface, number_of: NDArray[np.int32], found: _Found
 ) -> TIN:
     return TIN(
         points=surface.points,
@@ -370,7 +370,7 @@ def _refined(
         constrained=surface.constrained,
         vertex_of=tin.vertex_of,
         report=_report(tin, surface, found),
-        lines=lines_in(model.polylines, model.constraints, number_of, surface, is_whole=False),
+        lines=lines_in(pslg.polylines, pslg.constraints, number_of, surface, is_whole=False),
         crs=tin.crs,
         elevation_unit=tin.elevation_unit,
     )
@@ -395,7 +395,7 @@ def _note(n_new: int, n_on_segments: int) -> str:
     )
 
 
-def _model(tin: TIN, points: NDArray[np.float64], splits: _Splits) -> Model:
+def _gather_pslg(tin: TIN, points: NDArray[np.float64], splits: _Splits) -> Pslg:
     rings = [[*ring.tolist(), int(ring[0])] for ring in tin.rings]
     chains = [chain.tolist() for chain in tin.lines.chains()]
     nameless = _without_line(tin)
@@ -403,7 +403,7 @@ def _model(tin: TIN, points: NDArray[np.float64], splits: _Splits) -> Model:
     if "boundary" not in tin.lines.kinds:
         chains += rings
     chains += rings
-    return Model(
+    return Pslg(
         points=points,
         polylines=Polylines.of_chains([splits.along(chain) for chain in chains]),
         constraints=_constraints(tin, len(nameless), len(rings)),
