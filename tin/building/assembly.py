@@ -16,7 +16,7 @@ from ..constraints.polylines import offsets_of
 from ..constraints.pslg import Clip, Pslg, lines_in
 from ..report import LEFT_OUT, Crossings, Overruled, Report
 from ..validation.points import require_three
-from .constrained import Draft, draft
+from .constrained import ConstrainedTriangulation, triangulate_constrained
 from .duplicates import merge_rows
 
 if TYPE_CHECKING:
@@ -133,12 +133,18 @@ def _with_lines(recipe: Recipe) -> Built:
     )
 
 
-def _made(recipe: Recipe, ground: _Ground, rows: NDArray[np.int64]) -> tuple[Draft, Pslg]:
-    made = draft(recipe.points, rows, ground.lines, recipe.options, conforming=recipe.conforming)
+def _made(
+    recipe: Recipe, ground: _Ground, rows: NDArray[np.int64]
+) -> tuple[ConstrainedTriangulation, Pslg]:
+    made = triangulate_constrained(
+        recipe.points, rows, ground.lines, recipe.options, conforming=recipe.conforming
+    )
     return made, _gather_pslg(recipe, ground, made, rows)
 
 
-def _gather_pslg(recipe: Recipe, ground: _Ground, made: Draft, rows: NDArray[np.int64]) -> Pslg:
+def _gather_pslg(
+    recipe: Recipe, ground: _Ground, made: ConstrainedTriangulation, rows: NDArray[np.int64]
+) -> Pslg:
     lines = ground.lines
     vertex_of = np.full(len(recipe.points), -1, np.int32)
     vertex_of[rows] = made.vertex_of
@@ -198,7 +204,7 @@ def _draped(rows: NDArray[np.int64], recipe: Recipe) -> _Ground:
     is_draped = lines.is_draped
     if not is_draped.any():
         return _Ground(lines, False, [])
-    base = draft(recipe.points, rows, lines.chosen(~is_draped), recipe.options)
+    base = triangulate_constrained(recipe.points, rows, lines.chosen(~is_draped), recipe.options)
     laid = drape(base.surface, lines.chosen(is_draped), threads=recipe.options.threads)
     notes = []
     if laid.n_cut:
@@ -215,7 +221,7 @@ def _draped(rows: NDArray[np.int64], recipe: Recipe) -> _Ground:
 
 def _account(
     recipe: Recipe,
-    made: Draft,
+    made: ConstrainedTriangulation,
     number_of: NDArray[np.int32],
     is_erased: NDArray[np.bool_],
     vertex_of: NDArray[np.int32],
@@ -240,7 +246,7 @@ def _account(
     }
 
 
-def _crossings(made: Draft, final: NDArray[np.int32]) -> Crossings:
+def _crossings(made: ConstrainedTriangulation, final: NDArray[np.int32]) -> Crossings:
     """Return the crossings by the numbers of the TIN, the earlier line in front."""
     found = made.noded.crossings
     order = np.argsort(found.lines, axis=1, kind="stable")
@@ -268,7 +274,10 @@ def _without_lost_merges(account: dict[str, Any], final: NDArray[np.int32]) -> d
 
 
 def _reasons(
-    recipe: Recipe, rows: NDArray[np.int32], is_erased: NDArray[np.bool_], made: Draft
+    recipe: Recipe,
+    rows: NDArray[np.int32],
+    is_erased: NDArray[np.bool_],
+    made: ConstrainedTriangulation,
 ) -> NDArray[np.int8]:
     """Return why each row was left out, as places in ``LEFT_OUT``."""
     xy = recipe.points[rows, :2]

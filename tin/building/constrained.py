@@ -25,7 +25,7 @@ from .duplicates import DuplicatePolicy, merge_rows
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["CrossingPolicy", "Draft", "LineOptions", "draft"]
+__all__ = ["ConstrainedTriangulation", "CrossingPolicy", "LineOptions", "triangulate_constrained"]
 
 CrossingPolicy = Literal["split", "error"]
 
@@ -39,7 +39,7 @@ class LineOptions(NamedTuple):
     threads: int = 1
 
 
-class Draft(NamedTuple):
+class ConstrainedTriangulation(NamedTuple):
     """The triangulated hull with its lines.
 
     Attributes
@@ -80,14 +80,14 @@ class _Merged(NamedTuple):
     overruled: Overruled
 
 
-def draft(
+def triangulate_constrained(
     points: NDArray[np.float64],
     rows: NDArray[np.int64],
     lines: LineSet,
     options: LineOptions,
     *,
     conforming: bool = False,
-) -> Draft:
+) -> ConstrainedTriangulation:
     """Triangulate rows of points, and lines; all lines have heights.
 
     Raises
@@ -126,7 +126,7 @@ def draft(
             mesh, points, polylines, lines.priorities, threads=options.threads
         )
     triangles, neighbors, constrained = mesh.arrays(options.threads)
-    return Draft(
+    return ConstrainedTriangulation(
         Surface(points, triangles, neighbors, constrained),
         number_of[merged.vertex_of[: len(xyz)]],
         number_of[merged.vertex_of[len(xyz) :]],
