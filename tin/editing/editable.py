@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from ..building.constrained import CrossingPolicy
     from ..building.duplicates import DuplicatePolicy
-    from ..building.inputs import Recipe
+    from ..building.inputs import BuildInputs
     from ..constraints.breaklines import BreaklineKind
     from .history import Edit
     from .session import Session
@@ -37,13 +37,13 @@ class Editable:
     Parameters
     ----------
     version : Version
-    inputs : Recipe or None
+    inputs : BuildInputs or None
         What it was built from; None for one of existing triangles.
     """
 
     __slots__ = ("_inputs", "_lock", "_session", "_version")
 
-    def __init__(self, version: Version, inputs: Recipe | None) -> None:
+    def __init__(self, version: Version, inputs: BuildInputs | None) -> None:
         self._version: Version | None = version
         self._session: Session | None = None
         self._inputs = inputs

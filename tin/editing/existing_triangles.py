@@ -14,7 +14,7 @@ from ...errors import PointsError, TinsmithError
 from .. import _kernel, topology
 from ..building.assembly import assemble
 from ..building.constrained import LineOptions
-from ..building.inputs import Recipe
+from ..building.inputs import BuildInputs
 from ..constraints.clipping import Surface
 from ..constraints.constraint_set import BELOW_ALL, LineSet
 from ..constraints.constraint_table import ConstraintTable
@@ -28,13 +28,13 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ..constraints.breaklines import LineKind
-    from .changes import Inputs
+    from .changes import NumberedInputs
     from .version import Version
 
-__all__ = ["recipe_of_triangles", "state_of_triangles"]
+__all__ = ["inputs_of_triangles", "state_of_triangles"]
 
 
-def recipe_of_triangles(version: Version) -> Recipe:
+def inputs_of_triangles(version: Version) -> BuildInputs:
     """Return what existing triangles are built of.
 
     Raises
@@ -54,7 +54,7 @@ def recipe_of_triangles(version: Version) -> Recipe:
     sources = np.concatenate(
         [np.arange(n_breaklines), np.zeros(len(ordered) - n_breaklines), np.full(len(rim), -1)]
     )
-    return Recipe(
+    return BuildInputs(
         points=as_points(surface.points),
         is_masked=None,
         lines=_line_set(
@@ -120,7 +120,7 @@ def _is_whole(surface: Triangulation) -> bool:
     return bool((_kernel.orientation(a, b, c) >= 0).all())
 
 
-def state_of_triangles(version: Version, inputs: Inputs) -> State:
+def state_of_triangles(version: Version, inputs: NumberedInputs) -> State:
     """Build existing triangles from their inputs.
 
     Raises
@@ -130,7 +130,7 @@ def state_of_triangles(version: Version, inputs: Inputs) -> State:
     """
     given = version.triangulation
     try:
-        built = assemble(inputs.recipe)
+        built = assemble(inputs.build_inputs)
     except TinsmithError:
         raise _unfit() from None
     if not _have_same_triangles(built.surface, given):

@@ -27,8 +27,8 @@ from .changes import (
     Change,
     DropLines,
     DropVertices,
-    Inputs,
     LineChange,
+    NumberedInputs,
     PutVertices,
     SetElevations,
     count_breaklines,
@@ -72,11 +72,11 @@ class Edited(Protocol):
         """Return the TIN as it is."""
         ...
 
-    def inputs(self) -> Inputs:
+    def inputs(self) -> NumberedInputs:
         """Return what it is the build of."""
         ...
 
-    def build(self, inputs: Inputs) -> State:
+    def build(self, inputs: NumberedInputs) -> State:
         """Build the TIN of other inputs; nothing is changed yet."""
         ...
 
@@ -290,8 +290,8 @@ class AddBreakline(Operation):
         change = Change(lines=(AddLine(line),))
         inputs = tin.inputs().after([change])
         found = tin.build(inputs)
-        number = count_breaklines(inputs.recipe.lines) - 1
-        met = found.report.met_by(inputs.recipe.lines.label(number))
+        number = count_breaklines(inputs.build_inputs.lines) - 1
+        met = found.report.met_by(inputs.build_inputs.lines.label(number))
         if met and self.crossing == "error":
             raise LinesError(f'{met[0][:-1]}: crossing="error" allows none.')
         if line.is_draped and not found.lines.has_breakline(number):
@@ -311,7 +311,7 @@ class RemoveBreakline(Operation):
         """Build the TIN of the changed inputs."""
         if not is_whole_number(self.number):
             raise LinesError(f"Invalid breakline {shown(self.number)}: a whole number is needed.")
-        if not 0 <= self.number < count_breaklines(tin.inputs().recipe.lines):
+        if not 0 <= self.number < count_breaklines(tin.inputs().build_inputs.lines):
             raise LinesError(f"There is no breakline {self.number}.")
         change = Change(lines=(DropLines((int(self.number),)),))
         return Done(change, tin.build(tin.inputs().after([change])))
@@ -362,26 +362,26 @@ def _merged_elevations(
 
 
 def _with_elevations(
-    state: State, inputs: Inputs, vertices: NDArray[Any], heights: NDArray[np.float64]
+    state: State, inputs: NumberedInputs, vertices: NDArray[Any], heights: NDArray[np.float64]
 ) -> Change:
     """Give the rows and the lines at vertices other elevations."""
     height_of = np.full(len(state.triangulation.points) + 1, np.nan)  # the last is of no vertex
     height_of[vertices] = heights
     wanted = height_of[state.vertex_of_row]
     rows = np.flatnonzero(~np.isnan(wanted))
-    places = inputs.recipe.points[np.searchsorted(inputs.rows, rows)]
+    places = inputs.build_inputs.points[np.searchsorted(inputs.rows, rows)]
     places[:, 2] = wanted[rows]
     of_lines = height_of[state.line_vertices(inputs)]
-    on_lines = np.flatnonzero(~np.isnan(of_lines) & has_own_heights(inputs.recipe.lines))
+    on_lines = np.flatnonzero(~np.isnan(of_lines) & has_own_heights(inputs.build_inputs.lines))
     lines = (SetElevations(on_lines, of_lines[on_lines]),) if len(on_lines) else ()
     return Change(moved=rows, places=places, lines=lines)
 
 
 def _has_own_elevation(
-    state: State, inputs: Inputs, vertices: NDArray[np.int64]
+    state: State, inputs: NumberedInputs, vertices: NDArray[np.int64]
 ) -> NDArray[np.bool_]:
     """Tell which vertices stand for rows or for vertices of lines with elevations."""
-    of_lines = state.line_vertices(inputs)[~np.isnan(inputs.recipe.lines.heights)]
+    of_lines = state.line_vertices(inputs)[~np.isnan(inputs.build_inputs.lines.heights)]
     return np.isin(vertices, np.append(state.vertex_of_row, of_lines))
 
 

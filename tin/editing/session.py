@@ -9,8 +9,8 @@ import numpy as np
 
 from ...errors import PointsError, TinsmithError
 from ..validation.options import is_whole_number, shown
-from .changes import Change, Inputs
-from .existing_triangles import recipe_of_triangles, state_of_triangles
+from .changes import Change, NumberedInputs
+from .existing_triangles import inputs_of_triangles, state_of_triangles
 from .history import Edit
 from .mesh_editor import Editor, NotLocal, is_local
 from .operations import OPERATIONS, Done, MeshOperation, Operation
@@ -20,7 +20,7 @@ from .version import Version
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from ..building.inputs import Recipe
+    from ..building.inputs import BuildInputs
 
 __all__ = ["Session"]
 
@@ -36,7 +36,7 @@ class Session:
     ----------
     version : Version
         The TIN before its first edit.
-    recipe : Recipe or None
+    build_inputs : BuildInputs or None
         What it was built from; None for one of existing triangles.
 
     Raises
@@ -45,16 +45,16 @@ class Session:
         If existing triangles are no Delaunay triangulation.
     """
 
-    def __init__(self, version: Version, recipe: Recipe | None) -> None:
+    def __init__(self, version: Version, build_inputs: BuildInputs | None) -> None:
         self.edits: list[Edit] = []
         self._changes: list[Change] = []
-        self._given: Version | None = None if recipe is not None else version
-        if recipe is None:
-            recipe = recipe_of_triangles(version)
-            self._begin = Inputs.of(recipe)
+        self._given: Version | None = None if build_inputs is not None else version
+        if build_inputs is None:
+            build_inputs = inputs_of_triangles(version)
+            self._begin = NumberedInputs.of(build_inputs)
             self._state: State | None = state_of_triangles(version, self._begin)
         else:
-            self._begin = Inputs.of(recipe)
+            self._begin = NumberedInputs.of(build_inputs)
             self._state = State(
                 version.triangulation, version.vertex_of, version.lines, version.report, None
             )
@@ -140,7 +140,7 @@ class Session:
             return None
         if self._editor is None:
             inputs = self.inputs()
-            if not is_local(inputs.recipe):
+            if not is_local(inputs.build_inputs):
                 return None
             self._editor = Editor(self.now(), inputs)
         try:
@@ -177,7 +177,7 @@ class Session:
             self._state = build_state(inputs) if built is None else built
         return self._state
 
-    def inputs(self) -> Inputs:
+    def inputs(self) -> NumberedInputs:
         """Return what the TIN is the build of now."""
         if self._n_applied < len(self._changes):
             self._inputs = self._inputs.after(self._changes[self._n_applied :])
@@ -191,6 +191,6 @@ class Session:
             return self._editor.count
         return len(self.now().triangulation.points)
 
-    def build(self, inputs: Inputs) -> State:
+    def build(self, inputs: NumberedInputs) -> State:
         """Build the TIN of other inputs; nothing is changed yet."""
         return build_state(inputs)
