@@ -289,7 +289,9 @@ def _crossings(
 ) -> tuple[Crossings, _Visits]:
     """Return the crossings, and whose height counts at each vertex, by vertex."""
     vertex, line, height = _visits(walk, np.flatnonzero(is_crossing[walk.vertices]))
-    rank = np.where(np.isneginf(priority[line]), 0, part_of[line])  # parts of draped lines have no order
+    rank = np.where(
+        np.isneginf(priority[line]), 0, part_of[line]
+    )  # parts of draped lines have no order
     best = np.lexsort((line, height, rank, -priority[line], np.isnan(height), vertex))
     vertex, line, height = vertex[best], line[best], height[best]
     is_winner = np.ones(len(vertex), np.bool_)
