@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hypothesis
 import pytest
-from no_skips import (  # noqa: F401 - hooks
+from support.no_skips import (  # noqa: F401 - hooks
     pytest_addoption,
     pytest_make_collect_report,
     pytest_runtest_makereport,
