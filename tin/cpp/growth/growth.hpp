@@ -93,7 +93,7 @@ class Growth {
     search_.move_to(v, level.cell_size);
     if (waiting_.is_untouched(v)) {
       const Vertex w = search_.nearest();
-      const HalfEdge first = half_edge(out_.size(), 2);
+      const HalfEdge first = half_edge(out_.next(), 2);
       const HalfEdge last = grow_sector(v, w, w, kNoHalfEdge);
       out_.join(first, last);
       return;
@@ -114,8 +114,8 @@ class Growth {
     const Vertex first = w;
     while (true) {
       const Vertex c = third_point(w, is_full_turn && w == first ? kNoVertex : hint);
-      const std::int32_t triangle = out_.add(v, w, c);
-      if (std::min(number(w), number(c)) < own_.begin) last_shared_ = triangle;
+      const Triangle triangle = out_.add(v, w, c);
+      if (std::min(number(w), number(c)) < own_.begin) last_shared_ = static_cast<std::int32_t>(number(triangle));
       const HalfEdge across = waiting_.match_or_add(w, c, half_edge(triangle, 0));
       out_.join(half_edge(triangle, 0), across);
       out_.join(half_edge(triangle, 2), behind);

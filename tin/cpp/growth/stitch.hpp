@@ -46,7 +46,8 @@ class alignas(kCacheLine) GrownPart {
         out.neighbors[to + k] = neighbor;
         if (neighbor == kUnknownNeighbor) {
           open_.push_back({corners[(k + 1) % 3], corners[(k + 2) % 3],
-                           static_cast<std::int32_t>(to) + k});
+                           half_edge(Triangle{static_cast<std::uint32_t>(base + at)},
+                                     static_cast<std::uint32_t>(k))});
         }
       }
     }
@@ -54,7 +55,8 @@ class alignas(kCacheLine) GrownPart {
 
   // An edge to another part: from vertex to vertex, as the half-edge of a written triangle.
   struct OpenEdge {
-    std::int32_t from, to, half_edge;
+    std::int32_t from, to;
+    HalfEdge edge;
   };
   const std::vector<OpenEdge>& open() const { return open_; }
 
@@ -154,11 +156,12 @@ inline void join_open_edges(const std::vector<GrownPart>& parts, Triangles out) 
   for (std::size_t i = 0; i < open.size(); ++i) {
     const bool is_joined = i + 1 < open.size() && ends(open[i]) == ends(open[i + 1]);
     if (!is_joined) {
-      out.neighbors[open[i].half_edge] = kNoNeighbor;
+      out.neighbors[entry_of(open[i].edge)] = kNoNeighbor;
       continue;
     }
-    out.neighbors[open[i].half_edge] = open[i + 1].half_edge / 3;
-    out.neighbors[open[i + 1].half_edge] = open[i].half_edge / 3;
+    const HalfEdge e = open[i].edge, f = open[i + 1].edge;
+    out.neighbors[entry_of(e)] = static_cast<std::int32_t>(number(triangle_of(f)));
+    out.neighbors[entry_of(f)] = static_cast<std::int32_t>(number(triangle_of(e)));
     ++i;
   }
 }

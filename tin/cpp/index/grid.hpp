@@ -19,36 +19,13 @@
 #include <cstdint>
 #include <vector>
 
-#include "../base/ids.hpp"
 #include "../base/arrays.hpp"
+#include "../base/box.hpp"
+#include "../base/ids.hpp"
 #include "../base/parallel.hpp"
-#include "../predicates/predicates.hpp"
+#include "../base/point.hpp"
 
 namespace tinsmith {
-
-// The caller's points: n rows of (x, y, ...), `stride` doubles apart.
-struct PointRows {
-  const double* data;
-  std::int64_t count;
-  std::int64_t stride;
-
-  Point operator[](std::int64_t row) const {
-    return {data[row * stride], data[row * stride + 1]};
-  }
-};
-
-struct Box {
-  double west, east, south, north;
-
-  bool within(const Box& outer) const {
-    return west >= outer.west && east <= outer.east && south >= outer.south &&
-           north <= outer.north;
-  }
-  bool meets(const Box& other) const {
-    return west <= other.east && other.west <= east && south <= other.north &&
-           other.south <= north;
-  }
-};
 
 // One grid of the index. The cell of a point is monotone in x and in y, so the cells of a box's
 // corners bound the cells of all points in it.
@@ -69,7 +46,7 @@ struct Level {
     level.box = box;
     level.begin = begin;
     level.end = end;
-    const double width = box.east - box.west, height = box.north - box.south;
+    const double width = box.width(), height = box.height();
     const double cells = std::max(1.0, (end - begin) / points_per_cell);
     level.cell_size = std::max(
         {std::sqrt(width / cells) * std::sqrt(height), width / cells, height / cells});

@@ -78,15 +78,12 @@ class GridBuilder {
   Box box_of_rows() {
     team_.run([this](int part) {
       const Range range = part_of(rows_.count, part, team_.size());
-      Box box{rows_[0].x, rows_[0].x, rows_[0].y, rows_[0].y};
-      for (std::int32_t i = range.begin; i < range.end; ++i) extend(box, rows_[i]);
+      Box box;
+      for (std::int32_t i = range.begin; i < range.end; ++i) box.include(rows_[i]);
       parts_[part].box = box;
     });
-    Box box = parts_[0].box;
-    for (const Part& part : parts_) {
-      extend(box, {part.box.west, part.box.south});
-      extend(box, {part.box.east, part.box.north});
-    }
+    Box box;
+    for (const Part& part : parts_) box.include(part.box);
     return box;
   }
 
@@ -178,13 +175,6 @@ class GridBuilder {
     }
   }
 
-  static void extend(Box& box, Point p) {
-    box.west = std::min(box.west, p.x);
-    box.east = std::max(box.east, p.x);
-    box.south = std::min(box.south, p.y);
-    box.north = std::max(box.north, p.y);
-  }
-
   void store(std::int32_t position, const Entry& entry) {
     grid_.x_[position] = entry.p.x;
     grid_.y_[position] = entry.p.y;
@@ -243,8 +233,8 @@ class GridBuilder {
   // Put the points of a cell into a level of their own; false if they are all at one place.
   bool spread(std::int32_t begin, std::int32_t end) {
     const std::vector<Entry> entries = copy(begin, end);
-    Box box{entries[0].p.x, entries[0].p.x, entries[0].p.y, entries[0].p.y};
-    for (const Entry& e : entries) extend(box, e.p);
+    Box box;
+    for (const Entry& e : entries) box.include(e.p);
     if (box.west == box.east && box.south == box.north) return false;
     Level level = Level::fitted(box, begin, end, kPointsPerCell);
     auto& start = grid_.start_;

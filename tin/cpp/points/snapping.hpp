@@ -8,8 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "../index/grid.hpp"
-#include "../predicates/predicates.hpp"
+#include "../base/point.hpp"
 
 namespace tinsmith {
 

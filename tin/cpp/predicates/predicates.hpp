@@ -15,6 +15,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "../base/point.hpp"
 #include "expansion.hpp"
 
 namespace tinsmith {
@@ -23,18 +24,6 @@ constexpr double kSmallestCoordinate = 0x1p-200;
 constexpr double kLargestCoordinate = 0x1p250;
 
 constexpr double kUnitRoundoff = 0x1p-53;
-
-struct Point {
-  double x;
-  double y;
-};
-
-inline bool operator==(Point a, Point b) { return a.x == b.x && a.y == b.y; }
-
-// Order by easting, then northing: the order that breaks ties between cocircular points.
-inline bool lexicographically_before(Point a, Point b) {
-  return a.x < b.x || (a.x == b.x && a.y < b.y);
-}
 
 namespace detail {
 

@@ -3,66 +3,65 @@
 
 #include <cmath>
 #include <cstdint>
-#include <vector>
+#include <stdexcept>
 
-#include "../base/arrays.hpp"
+#include "../base/ids.hpp"
 #include "../insertion/straight_walk.hpp"
 #include "../predicates/predicates.hpp"
 #include "mesh.hpp"
+#include "mesh_points.hpp"
 
 namespace tinsmith {
-
-using MeshPoints = ScratchVector<Point>;  // by slot; one without a vertex holds anything
 
 struct MeshLocation {
   enum class Where { kInside, kOnEdge, kAtVertex, kOutside };
   Where where;
-  MeshEdge edge;  // of the triangle; the edge; one that leaves the vertex; of the ghost
+  HalfEdge edge;  // of the triangle; the edge; one that leaves the vertex; of the ghost
 };
 
 // One walk: exact, and no longer than a few times what the distance asks for.
-class MeshWalk {
+class PointSearch {
  public:
   // `state` of the random choices, which never show in the result.
-  MeshWalk(const Mesh& mesh, const MeshPoints& points, std::int32_t vertex_count,
+  PointSearch(const Mesh& mesh, const MeshPoints& points, std::int32_t vertex_count,
            std::uint64_t& state)
       : mesh_(mesh), points_(points), count_(vertex_count), state_(state) {}
 
-  // `last` is an edge that may be near, or kNoMeshEdge; `landmark` a vertex that may be, or kGhost.
-  MeshLocation locate(Point p, MeshEdge last, std::int32_t landmark) {
-    MeshEdge e = nearest_start(p, last, landmark);
+  // `last` is an edge that may be near, or kNoHalfEdge; `landmark` a vertex that may be, or kGhost.
+  MeshLocation locate(Point p, HalfEdge last, Vertex landmark) {
+    HalfEdge e = nearest_start(p, last, landmark);
     if (mesh_.is_ghost(triangle_of(e))) e = real_side(triangle_of(e));
-    const std::uint32_t start = triangle_of(e);
-    std::uint32_t t = start;
-    std::uint32_t entry = kNoPlace;
+    const Triangle start = triangle_of(e);
+    Triangle t = start;
+    std::uint32_t entry = kNoCorner;
     for (int steps = most_steps(); steps > 0; --steps) {
-      const std::uint32_t place = place_beyond(p, t, entry);
-      if (place == kNoPlace) return location_in(p, t);
-      const MeshEdge across = mesh_.twin(mesh_edge(t, place));
-      if (mesh_.corner(across) == kGhost) return {MeshLocation::Where::kOutside, across};
+      const std::uint32_t corner = corner_beyond(p, t, entry);
+      if (corner == kNoCorner) return location_in(p, t);
+      const HalfEdge across = mesh_.twin(half_edge(t, corner));
+      if (mesh_.apex(across) == kGhost) return {MeshLocation::Where::kOutside, across};
       t = triangle_of(across);
-      entry = place_of(across);
+      entry = corner_of(across);
     }
     return locate_straight(p, start);
   }
 
  private:
-  static constexpr std::uint32_t kNoPlace = 3;
+  static constexpr std::uint32_t kNoCorner = 3;
 
   // The walk begins at the last change, at the landmark, or at the nearest of a few vertices drawn
   // at random: as many as make the walk from there as short as the drawing.
-  MeshEdge nearest_start(Point p, MeshEdge last, std::int32_t landmark) {
-    MeshEdge best = last;
-    if (best == kNoMeshEdge || mesh_.is_free(triangle_of(best))) best = first_edge();
+  HalfEdge nearest_start(Point p, HalfEdge last, Vertex landmark) {
+    HalfEdge best = last;
+    if (best == kNoHalfEdge || mesh_.is_free(triangle_of(best))) best = first_edge();
     double nearest = distance_to(p, best);
     if (nearest <= kShortWalk * square_of(best)) return best;
     if (landmark != kGhost && mesh_.is_alive(landmark)) {
-      const MeshEdge there = mesh_.leaving(landmark);
+      const HalfEdge there = mesh_.leaving(landmark);
       return distance_to(p, there) < nearest ? there : best;
     }
     const auto draws = static_cast<std::int32_t>(0.5 * std::cbrt(static_cast<double>(count_)));
     for (std::int32_t i = 0; i < draws; ++i) {
-      const auto v = static_cast<std::int32_t>(random() % points_.size());
+      const Vertex v{static_cast<std::int32_t>(random() % static_cast<std::uint64_t>(points_.slots()))};
       if (!mesh_.is_alive(v)) continue;
       const double distance = distance_to(p, mesh_.leaving(v));
       if (distance < nearest) {
@@ -76,12 +75,12 @@ class MeshWalk {
   static constexpr double kShortWalk = 64.0;  // as a square: eight edges
 
   // Squares, of the distance to the edge's start and of its length.
-  double distance_to(Point p, MeshEdge e) const {
-    const std::int32_t v = mesh_.from(e) == kGhost ? mesh_.to(e) : mesh_.from(e);
+  double distance_to(Point p, HalfEdge e) const {
+    const Vertex v = mesh_.from(e) == kGhost ? mesh_.to(e) : mesh_.from(e);
     return square(points_[v], p);
   }
-  double square_of(MeshEdge e) const {
-    const std::int32_t a = mesh_.from(e), b = mesh_.to(e);
+  double square_of(HalfEdge e) const {
+    const Vertex a = mesh_.from(e), b = mesh_.to(e);
     return a == kGhost || b == kGhost ? 0.0 : square(points_[a], points_[b]);
   }
   static double square(Point p, Point q) {
@@ -89,17 +88,19 @@ class MeshWalk {
     return dx * dx + dy * dy;
   }
 
-  MeshEdge first_edge() const {
-    std::uint32_t t = 0;
-    while (mesh_.is_free(t)) ++t;
-    return mesh_edge(t, 0);
+  HalfEdge first_edge() const {
+    for (const Triangle t : mesh_.triangles()) {
+      if (!mesh_.is_free(t)) return half_edge(t, 0);
+    }
+    throw std::logic_error("a mesh without triangles holds no point");
   }
 
   // An edge of the triangle on the other side of a ghost's hull edge.
-  MeshEdge real_side(std::uint32_t ghost) const {
-    std::uint32_t place = 0;
-    while (mesh_[ghost].corner[place] != kGhost) ++place;
-    return mesh_[ghost].twin[place];
+  HalfEdge real_side(Triangle ghost) const {
+    for (const HalfEdge e : half_edges(ghost)) {
+      if (mesh_.apex(e) == kGhost) return mesh_.twin(e);
+    }
+    throw std::logic_error("a triangle without the ghost is no ghost");
   }
 
   // From a start within a share of the landmarks' cells a walk takes some dozen steps, from one of
@@ -107,47 +108,46 @@ class MeshWalk {
   // slivers.
   int most_steps() const { return 100 + static_cast<int>(8.0 * std::cbrt(static_cast<double>(count_))); }
 
-  MeshLocation locate_straight(Point p, std::uint32_t start) const {
-    const auto triangle_at = [this](std::uint32_t t) -> const GhostTriangle& { return mesh_[t]; };
-    const auto point_at = [this](std::int32_t vertex) { return points_[vertex]; };
-    const std::uint32_t t = StraightWalk(triangle_at, point_at).find(p, start);
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      if (mesh_[t].corner[k] == kGhost) return outside_or_on(p, mesh_edge(t, k));
+  MeshLocation locate_straight(Point p, Triangle start) const {
+    const auto triangle_at = [this](Triangle t) -> const GhostTriangle& { return mesh_[t]; };
+    const auto point_at = [this](Vertex v) { return points_[v]; };
+    const Triangle t = StraightWalk(triangle_at, point_at, mesh_.triangle_slots()).find(p, start);
+    for (const HalfEdge e : half_edges(t)) {
+      if (mesh_.apex(e) == kGhost) return outside_or_on(p, e);
     }
     return location_in(p, t);
   }
 
   // p is beyond the hull edge of a ghost, or on it.
-  MeshLocation outside_or_on(Point p, MeshEdge ghost) const {
+  MeshLocation outside_or_on(Point p, HalfEdge ghost) const {
     const bool is_on = orientation(points_[mesh_.from(ghost)], points_[mesh_.to(ghost)], p) == 0;
     if (is_on) return location_in(p, triangle_of(mesh_.twin(ghost)));
     return {MeshLocation::Where::kOutside, ghost};
   }
 
-  // The place of an edge that has p on its other side, or kNoPlace. The edges are tried from a
+  // The corner opposite an edge that has p on its other side, or kNoCorner. The edges are tried from a
   // random one on: among fixed edges a walk in fixed order could go round and round.
-  std::uint32_t place_beyond(Point p, std::uint32_t t, std::uint32_t entry) {
-    std::uint32_t place = static_cast<std::uint32_t>(random() % 3);
-    for (int i = 0; i < 3; ++i, place = place_after(place)) {
-      if (place == entry) continue;
-      const MeshEdge e = mesh_edge(t, place);
-      if (orientation(points_[mesh_.from(e)], points_[mesh_.to(e)], p) < 0) return place;
+  std::uint32_t corner_beyond(Point p, Triangle t, std::uint32_t entry) {
+    std::uint32_t corner = static_cast<std::uint32_t>(random() % 3);
+    for (int i = 0; i < 3; ++i, corner = corner_after(corner)) {
+      if (corner == entry) continue;
+      const HalfEdge e = half_edge(t, corner);
+      if (orientation(points_[mesh_.from(e)], points_[mesh_.to(e)], p) < 0) return corner;
     }
-    return kNoPlace;
+    return kNoCorner;
   }
 
   // p is in the triangle or on its rim.
-  MeshLocation location_in(Point p, std::uint32_t t) const {
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      if (points_[mesh_[t].corner[k]] == p) return {MeshLocation::Where::kAtVertex, mesh_edge(t, place_before(k))};
+  MeshLocation location_in(Point p, Triangle t) const {
+    for (const HalfEdge e : half_edges(t)) {
+      if (points_[mesh_.apex(e)] == p) return {MeshLocation::Where::kAtVertex, Mesh::before(e)};
     }
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      const MeshEdge e = mesh_edge(t, k);
+    for (const HalfEdge e : half_edges(t)) {
       if (orientation(points_[mesh_.from(e)], points_[mesh_.to(e)], p) == 0) {
         return {MeshLocation::Where::kOnEdge, e};
       }
     }
-    return {MeshLocation::Where::kInside, mesh_edge(t, 0)};
+    return {MeshLocation::Where::kInside, half_edge(t, 0)};
   }
 
   std::uint64_t random() {

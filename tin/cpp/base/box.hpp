@@ -1,0 +1,57 @@
+// Boxes: the axis-parallel rectangles that bound points, cells, segments and triangles.
+#pragma once
+
+#include <algorithm>
+#include <limits>
+
+#include "point.hpp"
+
+namespace tinsmith {
+
+// Sides belong to it. One that was made without sides is empty: it grows as things are included.
+struct Box {
+  double west = std::numeric_limits<double>::infinity();
+  double east = -std::numeric_limits<double>::infinity();
+  double south = std::numeric_limits<double>::infinity();
+  double north = -std::numeric_limits<double>::infinity();
+
+  static Box of(Point a, Point b) {
+    return {std::min(a.x, b.x), std::max(a.x, b.x), std::min(a.y, b.y), std::max(a.y, b.y)};
+  }
+
+  // A coordinate that is not a number changes nothing.
+  void include(Point p) {
+    west = std::min(west, p.x);
+    east = std::max(east, p.x);
+    south = std::min(south, p.y);
+    north = std::max(north, p.y);
+  }
+  void include(const Box& other) {
+    west = std::min(west, other.west);
+    east = std::max(east, other.east);
+    south = std::min(south, other.south);
+    north = std::max(north, other.north);
+  }
+
+  // Without branches: these are asked for thousands of boxes.
+  bool holds(Point p) const {
+    return (p.x >= west) & (p.x <= east) & (p.y >= south) & (p.y <= north);
+  }
+  bool meets(const Box& other) const {
+    return (other.west <= east) & (other.east >= west) & (other.south <= north) &
+           (other.north >= south);
+  }
+  bool within(const Box& outer) const {
+    return (west >= outer.west) & (east <= outer.east) & (south >= outer.south) &
+           (north <= outer.north);
+  }
+
+  double width() const { return east - west; }
+  double height() const { return north - south; }
+  Point center() const { return {west + 0.5 * width(), south + 0.5 * height()}; }
+  Box grown_by(double reach) const {
+    return {west - reach, east + reach, south - reach, north + reach};
+  }
+};
+
+}  // namespace tinsmith
