@@ -8,12 +8,12 @@
 #include <utility>
 #include <vector>
 
-#include "base/ids.hpp"
 #include "base/arrays.hpp"
+#include "base/ids.hpp"
 #include "base/parallel.hpp"
 #include "growth/growth.hpp"
-#include "growth/work_stealing.hpp"
 #include "growth/stitch.hpp"
+#include "growth/work_stealing.hpp"
 #include "hull/convex_hull.hpp"
 #include "index/grid.hpp"
 #include "insertion/canonical_order.hpp"
@@ -47,7 +47,8 @@ class Triangulator {
  public:
   // `keep_going` is asked now and then, on the calling thread, whether to go on.
   Triangulator(const PointRows& rows, const Options& options, std::function<bool()> keep_going)
-      : rows_(rows), options_(options),
+      : rows_(rows),
+        options_(options),
         team_(static_cast<int>(std::min<std::int64_t>(options.threads, rows.count)),
               std::move(keep_going)) {}
 
@@ -81,10 +82,8 @@ class Triangulator {
     const bool is_curve = static_cast<std::int32_t>(hull.size()) > grid.count() / kMostOnHull &&
                           grid.count() > kLeastToInsert;
     const bool is_worth_growing =
-        options_.method == Method::kGrowth ||
-        (options_.method == Method::kAutomatic && !is_curve);
-    const bool is_grown = is_worth_growing &&
-                          with_path(options_.path, [&](auto tag) {
+        options_.method == Method::kGrowth || (options_.method == Method::kAutomatic && !is_curve);
+    const bool is_grown = is_worth_growing && with_path(options_.path, [&](auto tag) {
                             return grow<typename decltype(tag)::Type>(grid, hull);
                           });
     if (is_grown || team_.is_stopped()) return;
@@ -97,7 +96,7 @@ class Triangulator {
     explicit Grown(TriangleStore made) : store(std::move(made)) {}
     TriangleStore store;
     int task = 0;
-    std::int32_t last_shared = -1;
+    Triangle last_shared = kNoTriangle;
     SearchCounts counts;
   };
 
@@ -112,13 +111,12 @@ class Triangulator {
       for (int task = part; task != WorkStealing::kNone; task = work.steal()) {
         const Range own = work.range(task);
         grown[part].emplace_back(task == 0 ? TriangleStore(result_.arrays())
-                                            : TriangleStore(expected_triangles(own)));
+                                           : TriangleStore(expected_triangles(own)));
         Grown& made = grown[part].back();
         Growth<Near> growth(grid, hull, own, made.store);
-        const Outcome outcome =
-            growth.run([&] { return !is_too_costly && team_.keeps_going(part); },
-                       options_.method == Method::kAutomatic,
-                       [&] { return work.next_block(task); });
+        const Outcome outcome = growth.run(
+            [&] { return !is_too_costly && team_.keeps_going(part); },
+            options_.method == Method::kAutomatic, [&] { return work.next_block(task); });
         if (outcome == Outcome::kTooCostly) is_too_costly = true;
         made.task = task;
         made.counts = growth.counts();

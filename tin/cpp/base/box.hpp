@@ -21,16 +21,16 @@ struct Box {
 
   // A coordinate that is not a number changes nothing.
   void include(Point p) {
-    west = std::min(west, p.x);
-    east = std::max(east, p.x);
-    south = std::min(south, p.y);
-    north = std::max(north, p.y);
+    west = p.x < west ? p.x : west;
+    east = p.x > east ? p.x : east;
+    south = p.y < south ? p.y : south;
+    north = p.y > north ? p.y : north;
   }
   void include(const Box& other) {
-    west = std::min(west, other.west);
-    east = std::max(east, other.east);
-    south = std::min(south, other.south);
-    north = std::max(north, other.north);
+    west = other.west < west ? other.west : west;
+    east = other.east > east ? other.east : east;
+    south = other.south < south ? other.south : south;
+    north = other.north > north ? other.north : north;
   }
 
   // Without branches: these are asked for thousands of boxes.

@@ -67,9 +67,10 @@ class ContactSearch {
   ContactSearch(const Segments& segments, std::int32_t vertex_count, double distance, Team& team)
       : distance_(distance), found_(team.size()) {
     const SegmentBoxes tree(segments, distance);
-    tree.visit_pairs(0, team, [&](int part, const SegmentBoxes::Item& s, const SegmentBoxes::Item& t) {
-      distance > 0.0 ? compare_near(s, t, found_[part]) : compare(s, t, found_[part]);
-    });
+    tree.visit_pairs(
+        0, team, [&](int part, const SegmentBoxes::Item& s, const SegmentBoxes::Item& t) {
+          distance > 0.0 ? compare_near(s, t, found_[part]) : compare(s, t, found_[part]);
+        });
     if (team.is_stopped()) return;
     touches = touches_of_others(segments, vertex_count, team);
     for (Found& found : found_) {

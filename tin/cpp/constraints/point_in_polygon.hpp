@@ -116,7 +116,11 @@ class PointInPolygon {
   }
 
   Chain chain_of(std::int32_t first_corner, std::int32_t edge_count) const {
-    return {Box(), first_corner, edge_count, 0, corners_[first_corner].y,
+    return {Box(),
+            first_corner,
+            edge_count,
+            0,
+            corners_[first_corner].y,
             corners_[first_corner + edge_count].y};
   }
 
@@ -158,8 +162,7 @@ class PointInPolygon {
   }
 
   // East of the box, the ends' northings count: the same for all points, or left open.
-  static void settle_eastern(const Chain& chain, std::int32_t number, const Box& box,
-                             Open& open) {
+  static void settle_eastern(const Chain& chain, std::int32_t number, const Box& box, Open& open) {
     if (chain.start_y == chain.end_y) return;
     const double low = std::min(chain.start_y, chain.end_y);
     const double high = std::max(chain.start_y, chain.end_y);

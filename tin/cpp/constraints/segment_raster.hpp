@@ -44,7 +44,7 @@ class SegmentRaster {
  private:
   static constexpr std::uint32_t kWord = 64;
   static constexpr std::uint32_t kLeastSide = kWord;
-  static constexpr std::uint32_t kMostSide = 4096;     // the bits fit the second-level cache
+  static constexpr std::uint32_t kMostSide = 4096;      // the bits fit the second-level cache
   static constexpr std::int64_t kCellsPerSegment = 32;  // then few cells are near one
   static constexpr double kRounding = 0x1p-20;  // in cells; far more than the roundings make
 

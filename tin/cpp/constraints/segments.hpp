@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "../base/parallel.hpp"
 #include "../base/box.hpp"
+#include "../base/parallel.hpp"
 #include "../predicates/predicates.hpp"
 
 namespace tinsmith {
@@ -24,9 +24,7 @@ struct Segments {
     return ends[2 * static_cast<std::size_t>(segment) + k];
   }
   Point point(std::int32_t segment, int k) const { return points[end(segment, k)]; }
-  Box box_of(std::int32_t segment) const {
-    return Box::of(point(segment, 0), point(segment, 1));
-  }
+  Box box_of(std::int32_t segment) const { return Box::of(point(segment, 0), point(segment, 1)); }
 };
 
 // How far a segment reaches for vertices.

@@ -117,7 +117,8 @@ class TouchSearch {
       for (std::int32_t i = begin; i < end; ++i) {
         const Vertex& vertex = vertices_[i];
         if (vertex.number == first || vertex.number == second) continue;
-        if (touches_interior(a, b, vertex.point, distance)) found.push_back({segment, vertex.number});
+        if (!touches_interior(a, b, vertex.point, distance)) continue;
+        found.push_back({segment, vertex.number});
       }
       return false;
     });
@@ -142,10 +143,9 @@ inline std::vector<std::int32_t> vertices_at(const Point* vertices, std::int32_t
   const PointFilter filter(points, point_count);
   for (std::int32_t v = 0; v < vertex_count; ++v) {
     if (!filter.may_hold(vertices[v])) continue;
-    auto at = std::lower_bound(order.begin(), order.end(), vertices[v],
-                               [&](std::int32_t i, Point p) {
-                                 return lexicographically_before(points[i], p);
-                               });
+    auto at = std::lower_bound(
+        order.begin(), order.end(), vertices[v],
+        [&](std::int32_t i, Point p) { return lexicographically_before(points[i], p); });
     for (; at != order.end() && points[*at] == vertices[v]; ++at) {
       if (found[*at] == kNone) found[*at] = v;
     }

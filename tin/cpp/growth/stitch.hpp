@@ -20,9 +20,9 @@ namespace tinsmith {
 class alignas(kCacheLine) GrownPart {
  public:
   GrownPart() = default;
-  GrownPart(Range own, Triangles triangles, std::int32_t count, std::int32_t last_shared)
+  GrownPart(Range own, Triangles triangles, std::int32_t count, Triangle last_shared)
       : own_(own), triangles_(triangles), count_(count) {
-    number_seam(last_shared);
+    if (last_shared != kNoTriangle) number_seam(static_cast<std::int32_t>(number(last_shared)));
   }
 
   // Triangles whose first vertex is in the range.
@@ -113,9 +113,8 @@ class alignas(kCacheLine) GrownPart {
       });
       if (!follows) starts.push_back(t);
     }
-    std::sort(starts.begin(), starts.end(), [this](std::int32_t a, std::int32_t b) {
-      return corner(a, 1) < corner(b, 1);
-    });
+    std::sort(starts.begin(), starts.end(),
+              [this](std::int32_t a, std::int32_t b) { return corner(a, 1) < corner(b, 1); });
     for (const std::int32_t start : starts) {
       auto at = std::find(kept.begin(), kept.end(), start);
       for (; at != kept.end(); at = starting_at(corner(sorted.back(), 2))) sorted.push_back(*at);
@@ -147,7 +146,9 @@ class alignas(kCacheLine) GrownPart {
 // Join the open edges of all parts; one without a counterpart is on the hull.
 inline void join_open_edges(const std::vector<GrownPart>& parts, Triangles out) {
   std::vector<GrownPart::OpenEdge> open;
-  for (const GrownPart& part : parts) open.insert(open.end(), part.open().begin(), part.open().end());
+  for (const GrownPart& part : parts) {
+    open.insert(open.end(), part.open().begin(), part.open().end());
+  }
   const auto ends = [](const GrownPart::OpenEdge& edge) {
     return std::pair(std::min(edge.from, edge.to), std::max(edge.from, edge.to));
   };

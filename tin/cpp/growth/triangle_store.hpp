@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <utility>
 
-#include "../base/ids.hpp"
 #include "../base/arrays.hpp"
+#include "../base/ids.hpp"
 #include "../base/parallel.hpp"
 
 namespace tinsmith {
@@ -48,7 +48,8 @@ class alignas(kCacheLine) TriangleStore {
 
  private:
   static std::int32_t neighbor_at(HalfEdge beyond) {
-    return beyond == kOutside ? kNoNeighbor : static_cast<std::int32_t>(number(triangle_of(beyond)));
+    return beyond == kOutside ? kNoNeighbor
+                              : static_cast<std::int32_t>(number(triangle_of(beyond)));
   }
 
   void enlarge(std::int64_t capacity) {

@@ -1,10 +1,10 @@
 // Work stealing: the vertices of the sweep, dealt out to threads that take over from each other.
 //
-// After Blumofe and Leiserson, "Scheduling multithreaded computations by work stealing" (1999), with
-// ranges for tasks. Every thread begins with a task of equal size and finishes it from the front,
-// block by block. One that is through steals the later half of what the largest task still holds:
-// so a core that is slow, or busy with something else, holds nobody up. (Which thread made which
-// triangle shows nowhere in the result.)
+// After Blumofe and Leiserson, "Scheduling multithreaded computations by work stealing" (1999),
+// with ranges for tasks. Every thread begins with a task of equal size and finishes it from the
+// front, block by block. One that is through steals the later half of what the largest task still
+// holds: so a core that is slow, or busy with something else, holds nobody up. (Which thread made
+// which triangle shows nowhere in the result.)
 //
 //      task 0  |=====>        |             thread 1 is through, and takes the later half of
 //      task 1  |=============>|             what is left of task 0:   |=====>  |      |

@@ -48,8 +48,8 @@ struct Level {
     level.end = end;
     const double width = box.width(), height = box.height();
     const double cells = std::max(1.0, (end - begin) / points_per_cell);
-    level.cell_size = std::max(
-        {std::sqrt(width / cells) * std::sqrt(height), width / cells, height / cells});
+    level.cell_size =
+        std::max({std::sqrt(width / cells) * std::sqrt(height), width / cells, height / cells});
     if (!(level.cell_size > 0.0)) level.cell_size = 1.0;
     level.per_cell = 1.0 / level.cell_size;
     level.columns = 1 + static_cast<std::int32_t>(width * level.per_cell);
@@ -180,15 +180,14 @@ class PointGrid {
 
   template <typename Region, typename Visit>
   std::int64_t visit_row_with_children(const Level& level, std::int32_t row, std::int32_t first,
-                                       std::int32_t last, const Region& region,
-                                       Range those, Visit& visit) const {
+                                       std::int32_t last, const Region& region, Range those,
+                                       Visit& visit) const {
     std::int64_t looked_at = 0;
     std::int32_t begin = start(level, row, first);
     const Child* child = children_.data() + child_row_[level.first_child_row + row];
     const Child* end = children_.data() + child_row_[level.first_child_row + row + 1];
-    child = std::lower_bound(child, end, first, [](const Child& c, std::int32_t column) {
-      return c.column < column;
-    });
+    child = std::lower_bound(child, end, first,
+                             [](const Child& c, std::int32_t column) { return c.column < column; });
     for (; child != end && child->column <= last; ++child) {
       const Level& inner = levels_[child->level];
       visit_run(begin, inner.begin, those, visit);

@@ -151,8 +151,8 @@ class GridBuilder {
 
   void sort_band(std::int32_t band, Range held, Part& part) {
     const std::int64_t first = static_cast<std::int64_t>(band) << band_shift_;
-    const std::int64_t last = std::min(first + (std::int64_t{1} << band_shift_),
-                                       grid_.levels_.front().cell_count());
+    const std::int64_t last =
+        std::min(first + (std::int64_t{1} << band_shift_), grid_.levels_.front().cell_count());
     std::int32_t* start = grid_.start_.data();
     for (std::int32_t i = held.begin; i < held.end; ++i) ++start[entries_[i].cell];
     std::int32_t total = held.begin;
@@ -371,7 +371,7 @@ class GridBuilder {
   Team& team_;
   std::vector<Part> parts_;
   StreamedArray<Entry> entries_;  // by band
-  int band_shift_ = 0;  // cell >> band_shift_ is the band
+  int band_shift_ = 0;            // cell >> band_shift_ is the band
   std::int32_t bands_ = 1;
   std::int32_t crowded_ = kCrowdedIfEven;
   std::int32_t nested_ = 0;  // cells looked at

@@ -97,8 +97,8 @@ class HilbertOrder {
 
   static constexpr std::int32_t kCrowd = 16;
   static constexpr std::int32_t kShort = 256;  // ranges that are sorted by comparing
-  static constexpr int kDigitBits = 11;       // so many counters fit the first-level cache
-  static constexpr int kCellsPerPoint = 16;  // crowds along lines need many cells
+  static constexpr int kDigitBits = 11;        // so many counters fit the first-level cache
+  static constexpr int kCellsPerPoint = 16;    // crowds along lines need many cells
 
   // False if all points are at one point.
   template <typename PointOf>
@@ -160,8 +160,7 @@ class HilbertOrder {
     if (range.size() == count_) {
       entries_.swap(spare_);
     } else {
-      std::copy(spare_.get() + range.begin, spare_.get() + range.end,
-                entries_.get() + range.begin);
+      std::copy(spare_.get() + range.begin, spare_.get() + range.end, entries_.get() + range.begin);
     }
   }
 

@@ -13,8 +13,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "../base/ids.hpp"
 #include "../base/arrays.hpp"
+#include "../base/ids.hpp"
 #include "../growth/triangle_store.hpp"
 #include "../index/grid.hpp"
 #include "../predicates/predicates.hpp"
@@ -172,9 +172,8 @@ class CanonicalOrder {
       if (rays_[i].is_start) starts_.push_back(i);
     }
     if (starts_.empty()) starts_.push_back(nearest_ray(v));
-    std::sort(starts_.begin(), starts_.end(), [this](std::int32_t a, std::int32_t b) {
-      return rays_[a].from < rays_[b].from;
-    });
+    std::sort(starts_.begin(), starts_.end(),
+              [this](std::int32_t a, std::int32_t b) { return rays_[a].from < rays_[b].from; });
     for (const std::int32_t start : starts_) begin = number_sector(start, begin);
   }
 
@@ -247,7 +246,7 @@ class CanonicalOrder {
   const GhostTriangle* triangles_;
   std::uint32_t count_;
   ScratchArray<std::int32_t> number_of_;  // of each triangle of the mesh; ghosts have none
-  std::vector<std::int32_t> end_of_;    // of each owner's triangles, the ghost's in front
+  std::vector<std::int32_t> end_of_;      // of each owner's triangles, the ghost's in front
   std::int32_t* corners_ = nullptr;
   std::int32_t* neighbors_ = nullptr;
   std::vector<Ray> rays_;

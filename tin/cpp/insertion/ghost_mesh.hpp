@@ -3,8 +3,8 @@
 // One ghost vertex stands outside; a ghost triangle joins it to every hull edge, and its circle is
 // the open half-plane beyond that edge. n points make 2n - 2 triangles, ghosts included.
 //
-// Six numbers a triangle, together in memory: a step of a walk touches one place. Twin k is the edge
-// opposite corner k, as seen from the triangle across it.
+// Six numbers a triangle, together in memory: a step of a walk touches one place. Twin k is the
+// edge opposite corner k, as seen from the triangle across it.
 #pragma once
 
 #include <cstdint>

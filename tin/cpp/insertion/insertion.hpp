@@ -14,8 +14,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "../base/ids.hpp"
 #include "../base/arrays.hpp"
+#include "../base/ids.hpp"
 #include "../index/grid.hpp"
 #include "../index/hilbert_order.hpp"
 #include "../predicates/predicates.hpp"
@@ -202,7 +202,7 @@ class Insertion {
   const PointGrid& grid_;
   std::int32_t count_;
   WithGhost<Vertex> sweep_of_;  // by place on the curve, which is the number of a vertex here
-  WithGhost<Point> points_;           // likewise
+  WithGhost<Point> points_;     // likewise
   GhostMesh mesh_;
   std::int64_t walk_steps_ = 0;
 };

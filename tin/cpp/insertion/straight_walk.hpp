@@ -43,12 +43,8 @@ class StraightWalk {
  private:
   const GhostTriangle& at(HalfEdge edge) const { return triangle_at_(triangle_of(edge)); }
   Vertex apex(HalfEdge edge) const { return at(edge).corner[corner_of(edge)]; }
-  Vertex right(HalfEdge edge) const {
-    return at(edge).corner[corner_after(corner_of(edge))];
-  }
-  Vertex left(HalfEdge edge) const {
-    return at(edge).corner[corner_before(corner_of(edge))];
-  }
+  Vertex right(HalfEdge edge) const { return at(edge).corner[corner_after(corner_of(edge))]; }
+  Vertex left(HalfEdge edge) const { return at(edge).corner[corner_before(corner_of(edge))]; }
   bool is_ghost_at(HalfEdge edge) const {
     return apex(edge) == kGhost || right(edge) == kGhost || left(edge) == kGhost;
   }

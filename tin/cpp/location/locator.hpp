@@ -98,10 +98,11 @@ class Locator {
   template <typename KeepGoing>
   bool interpolate(const Point* queries, std::int64_t count, double* result,
                    KeepGoing&& keep_going) const {
-    return visit_queries(queries, count, keep_going, [&](std::int64_t i, Point p, Triangle triangle) {
-      result[i] = triangle == kNoTriangle ? std::numeric_limits<double>::quiet_NaN()
-                                       : elevation_at(p, triangle);
-    });
+    return visit_queries(
+        queries, count, keep_going, [&](std::int64_t i, Point p, Triangle triangle) {
+          result[i] = triangle == kNoTriangle ? std::numeric_limits<double>::quiet_NaN()
+                                              : elevation_at(p, triangle);
+        });
   }
 
  private:
@@ -112,7 +113,7 @@ class Locator {
   // Queries in spatial order, so that walks are short and memory is near.
   template <typename KeepGoing, typename Visit>
   bool visit_queries(const Point* all_queries, std::int64_t count, KeepGoing&& keep_going,
-                    Visit&& visit) const {
+                     Visit&& visit) const {
     Triangle last = kNoTriangle;
     for (std::int64_t begin = 0; begin < count; begin += kQueriesAtATime) {
       const auto size = static_cast<std::int32_t>(std::min(kQueriesAtATime, count - begin));

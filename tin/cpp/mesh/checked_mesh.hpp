@@ -114,9 +114,8 @@ class CheckedMesh {
   // The fixed edges that are not Delaunay, as (from, to) pairs.
   std::vector<std::int32_t> illegal_fixed_edges() {
     std::vector<std::int32_t> illegal;
-    editor_.visit_illegal_fixed_edges([&](Vertex from, Vertex to) {
-      illegal.insert(illegal.end(), {number(from), number(to)});
-    });
+    editor_.visit_illegal_fixed_edges(
+        [&](Vertex from, Vertex to) { illegal.insert(illegal.end(), {number(from), number(to)}); });
     return illegal;
   }
 

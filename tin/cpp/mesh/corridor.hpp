@@ -95,7 +95,8 @@ class Corridor {
     };
     for (RimEdge& next : rim) {
       Open last{next.from, next.to, kNoHalfEdge, &next};
-      while (!open.empty() && orientation(points[open.back().from], points[last.from], points[last.to]) > 0) {
+      while (!open.empty() &&
+             orientation(points[open.back().from], points[last.from], points[last.to]) > 0) {
         const Open before = open.back();
         open.pop_back();
         const Triangle t = spare_.back();

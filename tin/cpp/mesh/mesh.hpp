@@ -281,19 +281,19 @@ class Mesh {
     }
   }
 
-  void put(Triangle t, Vertex a, Vertex b, Vertex c, Side opposite_a,
-           Side opposite_b, Side opposite_c) {
+  void put(Triangle t, Vertex a, Vertex b, Vertex c, Side opposite_a, Side opposite_b,
+           Side opposite_c) {
     set_corners(t, a, b, c);
     join(half_edge(t, 0), opposite_a.twin);
     join(half_edge(t, 1), opposite_b.twin);
     join(half_edge(t, 2), opposite_c.twin);
     bits(t) = static_cast<std::uint8_t>(opposite_a.is_fixed | opposite_b.is_fixed << 1 |
-                                          opposite_c.is_fixed << 2);
+                                        opposite_c.is_fixed << 2);
   }
 
   ScratchVector<GhostTriangle> triangles_;
   ScratchVector<std::uint8_t> fixed_;  // bits by corner, both sides of an edge alike; mark
-  std::vector<Triangle> free_;    // triangles to use again
+  std::vector<Triangle> free_;         // triangles to use again
   ScratchVector<HalfEdge> leaving_;    // one edge that leaves each vertex
 };
 

@@ -18,7 +18,8 @@
 namespace tinsmith {
 
 // Triangles of the whole convex hull, or of a surface with any boundary, three entries each:
-// corners, neighbours (kNoNeighbor outside) and whether the edge opposite the corner is fixed (null: none is).
+// corners, neighbours (kNoNeighbor outside) and whether the edge opposite the corner is fixed
+// (null: none is).
 struct GivenTriangles {
   const std::int32_t* corners;
   const std::int32_t* neighbors;
@@ -160,9 +161,8 @@ class MeshArrays {
         const HalfEdge twin = mesh_[t].twin[k];
         ghosts_ += v == kGhost;
         to.corner[k] = v == kGhost ? kGhost : sweep_of[number_of_[number(v)]];
-        to.twin[k] = in_copy.empty()
-                         ? twin
-                         : half_edge(in_copy[number(triangle_of(twin))], corner_of(twin));
+        to.twin[k] =
+            in_copy.empty() ? twin : half_edge(in_copy[number(triangle_of(twin))], corner_of(twin));
       }
     }
     return copy;

@@ -1,8 +1,8 @@
 // Local change: the constrained Delaunay triangulation of points and fixed edges, kept so while
 // points come and go and edges are fixed and released.
 //
-// By flips (Lawson, "Software for C1 surface interpolation", 1977); a vertex goes by flips too, which
-// cut the ears of its star (Devillers, "On deletion in Delaunay triangulations", 1999).
+// By flips (Lawson, "Software for C1 surface interpolation", 1977); a vertex goes by flips too,
+// which cut the ears of its star (Devillers, "On deletion in Delaunay triangulations", 1999).
 //
 // Every change makes any valid triangulation of the part that it touches, and then flips edges
 // that are not Delaunay until none is left. Ties are decided by the points alone (is_in_circle),
@@ -32,15 +32,14 @@ class MeshEditor {
   enum class Forced { kDone, kBlocked };
 
   // A mesh with its points, ready to be changed.
-  MeshEditor(Mesh mesh, MeshPoints points)
-      : mesh_(std::move(mesh)), points_(std::move(points)) {
+  MeshEditor(Mesh mesh, MeshPoints points) : mesh_(std::move(mesh)), points_(std::move(points)) {
     for (const Vertex v : vertices()) count_ += mesh_.is_alive(v);
   }
 
   const Mesh& mesh() const { return mesh_; }
   std::int32_t slots() const { return points_.slots(); }
   Ids<Vertex> vertices() const { return Ids<Vertex>(slots()); }  // those that are gone, too
-  std::int32_t count() const { return count_; }  // of vertices
+  std::int32_t count() const { return count_; }                  // of vertices
   Point point(Vertex v) const { return points_[v]; }
 
   // Make every edge Delaunay that is not fixed, of a mesh that was not so.
@@ -59,8 +58,8 @@ class MeshEditor {
 
   // The vertex at p, which is `slot` if there was none; a fixed edge through p is split.
   Vertex insert(Point p, Vertex slot) {
-    return insert_at(PointSearch(mesh_, points_, count_, state_).locate(p, last_, landmark_near(p)), p,
-                     slot);
+    return insert_at(PointSearch(mesh_, points_, count_, state_).locate(p, last_, landmark_near(p)),
+                     p, slot);
   }
 
   // The same where it is known in which triangle or on which edge p lies. A point that is only near
@@ -152,8 +151,8 @@ class MeshEditor {
     return Forced::kDone;
   }
 
-  // Call `visit(from, to, is_fixed)` for every edge that the way from a to b crosses; an edge that runs along
-  // it is passed over.
+  // Call `visit(from, to, is_fixed)` for every edge that the way from a to b crosses; an edge that
+  // runs along it is passed over.
   template <typename Visit>
   void cross(Vertex a, Vertex b, Visit&& visit) const {
     while (a != b) {
@@ -264,7 +263,8 @@ class MeshEditor {
       const HalfEdge f = mesh_.twin(e);
       mesh_.flip(e);
       const Triangle t = triangle_of(e), u = triangle_of(f);
-      for (const HalfEdge side : {half_edge(t, 0), half_edge(t, 2), half_edge(u, 0), half_edge(u, 2)}) {
+      for (const HalfEdge side :
+           {half_edge(t, 0), half_edge(t, 2), half_edge(u, 0), half_edge(u, 2)}) {
         put_off(side);
       }
     }
@@ -440,9 +440,7 @@ class MeshEditor {
     throw std::logic_error("a way through the mesh did not reach its end");
   }
 
-  int side_of(Vertex a, Vertex b, Vertex v) const {
-    return v == kGhost ? 0 : turn(a, b, v);
-  }
+  int side_of(Vertex a, Vertex b, Vertex v) const { return v == kGhost ? 0 : turn(a, b, v); }
 
   Mesh mesh_;
   MeshPoints points_;

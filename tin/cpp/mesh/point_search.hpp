@@ -24,7 +24,7 @@ class PointSearch {
  public:
   // `state` of the random choices, which never show in the result.
   PointSearch(const Mesh& mesh, const MeshPoints& points, std::int32_t vertex_count,
-           std::uint64_t& state)
+              std::uint64_t& state)
       : mesh_(mesh), points_(points), count_(vertex_count), state_(state) {}
 
   // `last` is an edge that may be near, or kNoHalfEdge; `landmark` a vertex that may be, or kGhost.
@@ -61,7 +61,8 @@ class PointSearch {
     }
     const auto draws = static_cast<std::int32_t>(0.5 * std::cbrt(static_cast<double>(count_)));
     for (std::int32_t i = 0; i < draws; ++i) {
-      const Vertex v{static_cast<std::int32_t>(random() % static_cast<std::uint64_t>(points_.slots()))};
+      const Vertex v{
+          static_cast<std::int32_t>(random() % static_cast<std::uint64_t>(points_.slots()))};
       if (!mesh_.is_alive(v)) continue;
       const double distance = distance_to(p, mesh_.leaving(v));
       if (distance < nearest) {
@@ -106,7 +107,9 @@ class PointSearch {
   // From a start within a share of the landmarks' cells a walk takes some dozen steps, from one of
   // the drawn vertices a few times the cube root of all; one that takes more has strayed among
   // slivers.
-  int most_steps() const { return 100 + static_cast<int>(8.0 * std::cbrt(static_cast<double>(count_))); }
+  int most_steps() const {
+    return 100 + static_cast<int>(8.0 * std::cbrt(static_cast<double>(count_)));
+  }
 
   MeshLocation locate_straight(Point p, Triangle start) const {
     const auto triangle_at = [this](Triangle t) -> const GhostTriangle& { return mesh_[t]; };
@@ -125,8 +128,8 @@ class PointSearch {
     return {MeshLocation::Where::kOutside, ghost};
   }
 
-  // The corner opposite an edge that has p on its other side, or kNoCorner. The edges are tried from a
-  // random one on: among fixed edges a walk in fixed order could go round and round.
+  // The corner opposite an edge that has p on its other side, or kNoCorner. The edges are tried
+  // from a random one on: among fixed edges a walk in fixed order could go round and round.
   std::uint32_t corner_beyond(Point p, Triangle t, std::uint32_t entry) {
     std::uint32_t corner = static_cast<std::uint32_t>(random() % 3);
     for (int i = 0; i < 3; ++i, corner = corner_after(corner)) {

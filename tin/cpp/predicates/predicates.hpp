@@ -171,9 +171,9 @@ inline int in_circle_expanded(const TwoDoubles (&d)[6]) {
 }
 
 inline int in_circle_exact(Point a, Point b, Point c, Point d) {
-  const TwoDoubles difference[6] = {
-      exact_difference(a.x, d.x), exact_difference(a.y, d.y), exact_difference(b.x, d.x),
-      exact_difference(b.y, d.y), exact_difference(c.x, d.x), exact_difference(c.y, d.y)};
+  const TwoDoubles difference[6] = {exact_difference(a.x, d.x), exact_difference(a.y, d.y),
+                                    exact_difference(b.x, d.x), exact_difference(b.y, d.y),
+                                    exact_difference(c.x, d.x), exact_difference(c.y, d.y)};
 #ifdef __SIZEOF_INT128__
   IntegerInCircle integers;
   if (integers.load(difference)) return integers.sign();
@@ -232,8 +232,8 @@ inline int in_circle(Point a, Point b, Point c, Point d) {
   const double a_lift = adx * adx + ady * ady;
   const double b_lift = bdx * bdx + bdy * bdy;
   const double c_lift = cdx * cdx + cdy * cdy;
-  const double determinant = a_lift * (bdx_cdy - cdx_bdy) + b_lift * (cdx_ady - adx_cdy) +
-                             c_lift * (adx_bdy - bdx_ady);
+  const double determinant =
+      a_lift * (bdx_cdy - cdx_bdy) + b_lift * (cdx_ady - adx_cdy) + c_lift * (adx_bdy - bdx_ady);
   const double permanent = (std::fabs(bdx_cdy) + std::fabs(cdx_bdy)) * a_lift +
                            (std::fabs(cdx_ady) + std::fabs(adx_cdy)) * b_lift +
                            (std::fabs(adx_bdy) + std::fabs(bdx_ady)) * c_lift;

@@ -69,8 +69,8 @@ inline auto contacts(const GivenXy& xy, const GivenPairs& segments, double dista
   require_distance(distance);
   const Segments given = segments_of(xy, segments);
   const std::int32_t count = row_count(xy.shape(0));
-  const ContactSearch found = unlocked(
-      threads, [&](Team& team) { return ContactSearch(given, count, distance, team); });
+  const ContactSearch found =
+      unlocked(threads, [&](Team& team) { return ContactSearch(given, count, distance, team); });
   return std::make_tuple(hand_over(found.crossings), hand_over(found.touches));
 }
 
@@ -78,9 +78,8 @@ inline Xy intersections(const GivenXy& xy, const GivenPairs& segments, const Giv
   const Segments given = segments_of(xy, segments);
   require_numbers(pairs.data(), 2 * pairs.shape(0), given.count);
   const std::int32_t count = row_count(pairs.shape(0));
-  const auto found = unlocked(1, [&](Team& team) {
-    return find_intersections(given, pairs.data(), count, team);
-  });
+  const auto found =
+      unlocked(1, [&](Team& team) { return find_intersections(given, pairs.data(), count, team); });
   return copy_over<Xy, double>(found, {pairs.shape(0), 2});
 }
 

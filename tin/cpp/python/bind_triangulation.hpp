@@ -73,8 +73,7 @@ inline void bind_triangulation(nb::module_& m) {
         "path"_a = fastest,
         "Triangles, neighbours, kept row of each row (or None) and the number of distinct points.");
   m.def("count_work", &count_work, "points"_a.noconvert(), "method"_a = Method::kAutomatic,
-        "threads"_a = 1, "path"_a = fastest,
-        "Triangulate and return how much the searches did.");
+        "threads"_a = 1, "path"_a = fastest, "Triangulate and return how much the searches did.");
   m.def("vector_paths", &names_of_vector_paths,
         "Names of the vector instructions that this processor has, slowest first.");
 }

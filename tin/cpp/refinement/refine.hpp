@@ -13,9 +13,9 @@ namespace tinsmith {
 
 // New vertices are numbered after the given ones.
 struct Refined {
-  std::vector<Point> points;              // of the new vertices
-  std::vector<std::int32_t> splits;       // of segments: from, to, middle
-  std::vector<std::int32_t> misses;       // triangles that miss the goal: three corners, why
+  std::vector<Point> points;         // of the new vertices
+  std::vector<std::int32_t> splits;  // of segments: from, to, middle
+  std::vector<std::int32_t> misses;  // triangles that miss the goal: three corners, why
   std::int64_t triangle_count = 0;
   Refiner::Ended ended = Refiner::Ended::kDone;
 };

@@ -9,10 +9,10 @@
 //      encroach upon one, that segment is split instead.
 //
 // At an input vertex with a small angle, segments are split on circles around it whose radii are
-// powers of two, so that both sides are cut alike and do not cut each other on and on [Ruppert 1995].
-// A triangle whose shortest edge joins two such segments at one circle, across the mouth of an angle
-// below 60 degrees, is left [Miller, Pav, Walkington 2003], and so is one that only edges much
-// shorter than any of the input could mend: this is why it always ends.
+// powers of two, so that both sides are cut alike and do not cut each other on and on [Ruppert
+// 1995]. A triangle whose shortest edge joins two such segments at one circle, across the mouth of
+// an angle below 60 degrees, is left [Miller, Pav, Walkington 2003], and so is one that only edges
+// much shorter than any of the input could mend: this is why it always ends.
 #pragma once
 
 #include <algorithm>
@@ -49,8 +49,8 @@ class Refiner {
         input_segment_of_(editor.slots(), kNoSegment) {
     editor_.legalize_all();
     editor_.watch();
-    const double squared_size = std::min({squared_shortest_edge(), goal.largest_area,
-                                          goal.longest_edge * goal.longest_edge});
+    const double squared_size = std::min(
+        {squared_shortest_edge(), goal.largest_area, goal.longest_edge * goal.longest_edge});
     const double floor = std::max(kFloor * std::sqrt(squared_size), kRoom * rounding());
     squared_floor_ = floor * floor;
   }
@@ -440,13 +440,14 @@ class Refiner {
   ShapeTest shape_;
   std::int32_t input_count_;
   double squared_floor_ = 0.0;
-  std::vector<std::int32_t> input_segment_of_;                // of vertices put on segments
-  std::vector<std::array<Vertex, 2>> input_segments_;   // ends of the input's segments that were split
-  std::vector<bool> is_free_;                        // of the vertices put in: inside the surface
+  std::vector<std::int32_t> input_segment_of_;  // of vertices put on segments
+  std::vector<std::array<Vertex, 2>>
+      input_segments_;         // ends of the input's segments that were split
+  std::vector<bool> is_free_;  // of the vertices put in: inside the surface
   std::vector<Split> splits_;
-  std::unordered_set<std::uint64_t> stuck_;          // segments that have no room for a point
+  std::unordered_set<std::uint64_t> stuck_;  // segments that have no room for a point
   std::vector<Triangle> touched_;
-  std::set<TriangleKey> given_up_;                   // triangles that cannot be mended
+  std::set<TriangleKey> given_up_;  // triangles that cannot be mended
   WorkQueue<SegmentWork> segments_;
   WorkQueue<TriangleWork> triangles_;
 };

@@ -45,8 +45,7 @@ struct TurnedTriangle {
     int best = 0;
     for (int k = 1; k < 3; ++k) {
       const double size = opposite(corner, k), least = opposite(corner, best);
-      if (size < least ||
-          (size == least && lexicographically_before(corner[k], corner[best]))) {
+      if (size < least || (size == least && lexicographically_before(corner[k], corner[best]))) {
         best = k;
       }
     }
@@ -88,8 +87,8 @@ class ShapeTest {
   // but by splitting the segment: 180 degrees less twice the least angle [Chew 1993].
   bool encroaches(Point c, Point a, Point b) const {
     const double dot = dot_product(c, a, b);
-    return dot < 0.0 && dot * dot >= cosine_of_twice_ * cosine_of_twice_ *
-                                         squared_distance(c, a) * squared_distance(c, b);
+    return dot < 0.0 && dot * dot >= cosine_of_twice_ * cosine_of_twice_ * squared_distance(c, a) *
+                                         squared_distance(c, b);
   }
 
   // Where a point mends the triangle: the centre of its circle, or nearer to the shortest edge the
