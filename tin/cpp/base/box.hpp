@@ -11,25 +11,25 @@ namespace tinsmith {
 // Sides belong to it. One that was made without sides is empty: it grows as things are included.
 struct Box {
   double west = std::numeric_limits<double>::infinity();
-  double east = -std::numeric_limits<double>::infinity();
   double south = std::numeric_limits<double>::infinity();
+  double east = -std::numeric_limits<double>::infinity();
   double north = -std::numeric_limits<double>::infinity();
 
   static Box of(Point a, Point b) {
-    return {std::min(a.x, b.x), std::max(a.x, b.x), std::min(a.y, b.y), std::max(a.y, b.y)};
+    return {std::min(a.x, b.x), std::min(a.y, b.y), std::max(a.x, b.x), std::max(a.y, b.y)};
   }
 
   // A coordinate that is not a number changes nothing.
   void include(Point p) {
     west = p.x < west ? p.x : west;
-    east = p.x > east ? p.x : east;
     south = p.y < south ? p.y : south;
+    east = p.x > east ? p.x : east;
     north = p.y > north ? p.y : north;
   }
   void include(const Box& other) {
     west = other.west < west ? other.west : west;
-    east = other.east > east ? other.east : east;
     south = other.south < south ? other.south : south;
+    east = other.east > east ? other.east : east;
     north = other.north > north ? other.north : north;
   }
 
@@ -50,7 +50,7 @@ struct Box {
   double height() const { return north - south; }
   Point center() const { return {west + 0.5 * width(), south + 0.5 * height()}; }
   Box grown_by(double reach) const {
-    return {west - reach, east + reach, south - reach, north + reach};
+    return {west - reach, south - reach, east + reach, north + reach};
   }
 };
 

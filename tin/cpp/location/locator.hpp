@@ -71,19 +71,11 @@ struct Surface {
 class Locator {
  public:
   // The surface's arrays must outlive the locator, and its points and corners be sound.
-  explicit Locator(const Surface& surface) : surface_(surface) {
-    std::vector<Point> centers(surface.triangle_count);
-    for (const Triangle t : Ids<Triangle>(surface.triangle_count)) {
-      centers[number(t)] = surface.box_of(t).center();
-    }
-    const auto count = static_cast<std::int32_t>(surface.triangle_count);
-    const HilbertOrder order(centers.data(), count);
-    triangles_.resize(count);
-    for (std::int32_t i = 0; i < count; ++i) {
-      triangles_[i] = Triangle{static_cast<std::uint32_t>(order[i])};
-    }
-    tree_ = BoxTree(count, [&](std::int32_t i) { return surface.box_of(triangles_[i]); });
-  }
+  explicit Locator(const Surface& surface)
+      : surface_(surface),
+        triangles_(in_spatial_order(surface)),
+        tree_(static_cast<std::int32_t>(surface.triangle_count),
+              [&](std::int32_t i) { return surface.box_of(triangles_[i]); }) {}
 
   // Triangle of each query, -1 outside. False if asked to stop.
   template <typename KeepGoing>
@@ -109,6 +101,20 @@ class Locator {
   static constexpr std::int64_t kQueriesAtATime = std::int64_t{1} << 22;  // bounds the memory
   static constexpr std::int32_t kBlock = 4096;  // fits the first-level cache
   static constexpr int kLongestWalk = 24;       // as costly as a search
+
+  static std::vector<Triangle> in_spatial_order(const Surface& surface) {
+    std::vector<Point> centers(surface.triangle_count);
+    for (const Triangle t : Ids<Triangle>(surface.triangle_count)) {
+      centers[number(t)] = surface.box_of(t).center();
+    }
+    const auto count = static_cast<std::int32_t>(surface.triangle_count);
+    const HilbertOrder order(centers.data(), count);
+    std::vector<Triangle> triangles(surface.triangle_count);
+    for (std::int32_t i = 0; i < count; ++i) {
+      triangles[i] = Triangle{static_cast<std::uint32_t>(order[i])};
+    }
+    return triangles;
+  }
 
   // Queries in spatial order, so that walks are short and memory is near.
   template <typename KeepGoing, typename Visit>

@@ -36,24 +36,24 @@ class TriangleCopy {
       : given_(given), hull_(hull) {}
 
   std::uint8_t operator()(Triangle t, GhostTriangle& made) const {
+    const std::size_t row = entry_of(t, 0);
     std::uint8_t fixed = 0;
     for (std::uint32_t k = 0; k < 3; ++k) {
-      const std::size_t at = entry_of(t, k);
-      made.corner[k] = Vertex{given_.corners[at]};
-      made.twin[k] = twin(half_edge(t, k), given_.neighbors[at]);
-      if (given_.fixed != nullptr) fixed |= static_cast<std::uint8_t>(given_.fixed[at] << k);
+      made.corner[k] = Vertex{given_.corners[row + k]};
+      made.twin[k] = twin(t, k, given_.neighbors[row + k]);
+      if (given_.fixed != nullptr) fixed |= static_cast<std::uint8_t>(given_.fixed[row + k] << k);
     }
     return fixed;
   }
 
  private:
-  HalfEdge twin(HalfEdge e, std::int32_t neighbor) const {
+  HalfEdge twin(Triangle t, std::uint32_t k, std::int32_t neighbor) const {
     if (neighbor == kNoNeighbor) {
-      hull_.push_back(e);
+      hull_.push_back(half_edge(t, k));
       return kNoHalfEdge;
     }
     const Triangle across{static_cast<std::uint32_t>(neighbor)};
-    const auto own = static_cast<std::int32_t>(number(triangle_of(e)));
+    const auto own = static_cast<std::int32_t>(number(t));
     const std::int32_t* const back = given_.neighbors + entry_of(across, 0);
     return half_edge(across, (back[1] == own) + 2u * (back[2] == own));
   }

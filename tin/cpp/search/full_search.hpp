@@ -306,7 +306,7 @@ class ThirdPointSearch {
     const Point center{0.5 * (ex_ - ey_ * circle.cotangent), 0.5 * (ey_ + ex_ * circle.cotangent)};
     const Box cap = box_of_cap({ex_, ey_}, center, radius);
     const double slack = slack_of(radius);
-    const Box box{ax_ + cap.west - slack, ax_ + cap.east + slack, ay_ + cap.south - slack,
+    const Box box{ax_ + cap.west - slack, ay_ + cap.south - slack, ax_ + cap.east + slack,
                   ay_ + cap.north + slack};
     return Cap(box, {ax_ + center.x, ay_ + center.y}, circle, *this);
   }
@@ -341,7 +341,7 @@ class ThirdPointSearch {
 
   Box box_around(double radius) const {
     const double reach = radius + slack_of(radius);
-    return {ax_ - reach, ax_ + reach, ay_ - reach, ay_ + reach};
+    return Box::of({ax_, ay_}, {ax_, ay_}).grown_by(reach);
   }
 
   // The box, and on a plain grid all of every cell that meets it (is_searched relies on it).
