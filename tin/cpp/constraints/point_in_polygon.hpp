@@ -1,4 +1,7 @@
-// Which points lie in rings, by the even-odd rule over all rings together?
+// Which points lie in polygons, by the even-odd rule over all rings together?
+//
+// The crossing test of Shimrat, "Algorithm 112: position of point relative to polygon" (1962), for
+// many points at once.
 //
 // The ray east from a point crosses the rings an odd number of times if the point is inside. Rings
 // are cut into chains of edges, halves of halves. For a group of points, a chain

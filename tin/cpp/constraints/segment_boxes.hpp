@@ -1,4 +1,5 @@
-// Segments in spatial order under a tree of boxes: which pairs come near each other?
+// Segments in spatial order under a tree of boxes (index/box_tree.hpp): which pairs come near each
+// other?
 //
 // Groups of neighbours ask the tree together. The cost follows the number of pairs whose boxes
 // overlap: few for segments not much longer than they are apart, all for long slanting parallels.

@@ -1,5 +1,8 @@
 // Growth: the triangulation, vertex by vertex in the order of the sweep.
 //
+// Incremental construction (McLain, "Two dimensional interpolation from random data", 1976), among
+// the cells of a grid (Dwyer, "Higher-dimensional Voronoi diagrams in linear expected time", 1991).
+//
 // All triangles around a vertex are made before the next vertex is begun: finished vertices are a
 // prefix of the order, so removing them from the search costs nothing. Each triangle is found
 // once, when its first vertex is finished, from the open edges at that vertex:

@@ -1,4 +1,8 @@
 // Convex hull, exact, with the points that lie on its edges kept.
+//
+// The monotone chain of Andrew, "Another efficient algorithm for convex hulls in two dimensions"
+// (1979), of the points outside a polygon of extreme ones (Akl and Toussaint, "A fast convex hull
+// algorithm", 1978).
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,7 @@
 // Tree of boxes over a sequence of items: which items may hold a point?
 //
+// A packed R-tree (Kamel and Faloutsos, "On packing R-trees", 1993).
+//
 // Level 0 has one box around every kItemsPerLeaf items in the order given; each level above has
 // one box around every kFanOut boxes, up to a single one. The better the order keeps neighbours
 // together, the fewer boxes hold a point.

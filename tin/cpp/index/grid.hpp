@@ -1,5 +1,8 @@
 // Index: points bucketed into square cells of about two, stored row of cells by row of cells.
 //
+// Cells after Bentley, Weide and Yao, "Optimal expected-time algorithms for closest point problems"
+// (1980); crowded ones are divided again.
+//
 // The storage order is the sweep order. A cell that is crowded holds a grid of its own, fitted to
 // its points, and so on: the index adapts to clusters, tracks and contour lines, and is a plain
 // grid where the points are even. Within a cell points are sorted by easting, then northing, so

@@ -1,7 +1,9 @@
 // Order points so that neighbours in the order are neighbours in the plane.
 //
-// Points are sorted by square cells along Hilbert's curve. A cell that stays crowded is sorted the
-// same way within its own bounds, so clusters within clusters are ordered as well as even data.
+// Points are sorted by square cells along the curve of Hilbert, "Ueber die stetige Abbildung einer
+// Linie auf ein Flaechenstueck" (1891), digit by digit (radix sort). A cell that stays crowded is
+// sorted the same way within its own bounds, so clusters within clusters are ordered as well as
+// even data.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,8 @@
 // The domain of influence of a new point: carve it out of the mesh and fill it with a fan.
 //
+// Bowyer, "Computing Dirichlet tessellations", and Watson, "Computing the n-dimensional Delaunay
+// tessellation with application to Voronoi polytopes" (both 1981).
+//
 // The triangles whose circle holds the point hang together and surround no vertex, so they form a
 // tree: crossing from one into the next through an edge never meets a triangle twice.
 //

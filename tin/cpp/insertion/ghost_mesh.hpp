@@ -1,5 +1,8 @@
 // A triangulation closed to a sphere, so that insertion needs no special case at the hull.
 //
+// The vertex at infinity of Boissonnat, Devillers, Pion, Teillaud and Yvinec, "Triangulations in
+// CGAL" (2002), here called the ghost.
+//
 // One ghost vertex stands outside; a ghost triangle joins it to every hull edge, and its circle is
 // the open half-plane beyond that edge. n points make 2n - 2 triangles, ghosts included.
 //

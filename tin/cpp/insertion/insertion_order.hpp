@@ -1,5 +1,8 @@
 // The order in which points are inserted: rounds in random sample, each round along one curve.
 //
+// The biased randomized insertion order of Amenta, Choi and Rote, "Incremental constructions con
+// BRIO" (2003).
+//
 // Sorted along Hilbert's curve each point is found a few triangles from the one before. But a
 // triangulation grown from one side has long, thin triangles at its front, and in the worst case
 // all of them change again and again. So the points come in rounds, a sample of one point in

@@ -1,4 +1,5 @@
-// Landmarks: vertices spread over the mesh from which a walk may begin.
+// Landmarks: vertices spread over the mesh from which a walk may begin, instead of those that
+// jump-and-walk draws at random (point_search.hpp).
 #pragma once
 
 #include <algorithm>

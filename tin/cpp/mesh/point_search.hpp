@@ -1,4 +1,9 @@
-// Walking through a mesh to the triangle that holds a place.
+// Walking through a mesh to the triangle that holds a point.
+//
+// Jump-and-walk (Muecke, Saias and Zhu, "Fast randomized point location without preprocessing in
+// two- and three-dimensional Delaunay triangulations", 1999); the walk is the stochastic one of
+// Devillers, Pion and Teillaud, "Walking in a triangulation" (2002), with the straight one behind
+// it.
 #pragma once
 
 #include <cmath>

@@ -1,5 +1,8 @@
 // Exact predicates on plane coordinates: which side of a line, inside which circle.
 //
+// Adaptive as those of Shewchuk, "Adaptive precision floating-point arithmetic and fast robust
+// geometric predicates" (1997).
+//
 // Each decides in stages and stops at the first that is certain: plain doubles with an error
 // bound; wide integers where the differences of the coordinates have a common unit that is not too
 // small (they have for neighbouring points of any survey or raster); expansions for all else.
@@ -245,8 +248,10 @@ inline int in_circle(Point a, Point b, Point c, Point d) {
 // As in_circle, but never 0: of four cocircular points the lexicographically last decides.
 //
 // Each point's lifted height x^2 + y^2 is thought raised by an infinitesimal that grows with its
-// rank in lexicographic order, each beyond comparison with all before it. So the triangulation is
-// unique and a function of the point set alone. The signs are the cofactors of the heights in
+// rank in lexicographic order, each beyond comparison with all before it: the symbolic perturbation
+// of Edelsbrunner and Muecke, "Simulation of simplicity" (1990), as Devillers and Teillaud use it
+// ("Perturbations and vertex removal in a 3D Delaunay triangulation", 2003). So the triangulation
+// is unique and a function of the point set alone. The signs are the cofactors of the heights in
 // the in-circle determinant.
 inline bool is_in_circle(Point a, Point b, Point c, Point d) {
   const int side = in_circle(a, b, c, d);

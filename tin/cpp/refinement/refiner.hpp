@@ -1,8 +1,11 @@
 // Refiner: points are added to a constrained Delaunay mesh until its triangles are good.
 //
-// Delaunay refinement after Ruppert (1995) and Chew (1993), with the off-centres of Ungor (2004):
+// Delaunay refinement after Ruppert, "A Delaunay refinement algorithm for quality 2-dimensional
+// mesh generation" (1995) and Chew, "Guaranteed-quality mesh generation for curved surfaces"
+// (1993), with the off-centres of Uengoer, "Off-centers: a new type of Steiner points" (2004):
 //
-//   1. A segment (a fixed edge; every edge of the rim is one) that a corner beside it encroaches
+//   1. A segment (a fixed edge; every edge of the boundary is one) that a corner beside it
+//   encroaches
 //      upon, or that is too long, is split. Points put inside the surface before and now within
 //      the circle on the segment are taken out first.
 //   2. A bad triangle gets a point at its remedy. If a segment is in the way, or the point would

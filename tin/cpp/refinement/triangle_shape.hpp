@@ -92,7 +92,7 @@ class ShapeTest {
   }
 
   // Where a point mends the triangle: the centre of its circle, or nearer to the shortest edge the
-  // place that sees it under just the least angle [Ungor 2004]. Not finite for a triangle so thin
+  // place that sees it under just the least angle [Uengoer 2004]. Not finite for a triangle so thin
   // that its area is rounded away, if there is no least angle.
   Point remedy(const TurnedTriangle& t) const {
     const double px = t.p.x - t.apex.x, py = t.p.y - t.apex.y;
