@@ -8,8 +8,8 @@
 //           v . .|  . | .  |        edge, does not leave the cells.
 //           +----+----+----+
 //
-// Without the proof the search goes on over the whole index (full_search.hpp). On even data 98 of
-// 100 searches end here.
+// Without the proof the search goes on over the whole index (full_search.hpp). Of random points 96
+// searches in 100 end here, of rasters all.
 #pragma once
 
 #include <algorithm>
