@@ -6,7 +6,7 @@
 // The storage order is the sweep order. A cell that is crowded holds a grid of its own, fitted to
 // its points, and so on: the index adapts to clusters, tracks and contour lines, and is a plain
 // grid where the points are even. Within a cell points are sorted by easting, then northing, so
-// the order is a function of the point set, and rows at one place stand together.
+// the order is a function of the point set, and rows at one point stand together.
 //
 //      +----+----+----+----+        a level: columns x rows of square cells
 //      | .  |. . |  . | .  |
@@ -93,7 +93,7 @@ class PointGrid {
     spans_ = {};
   }
 
-  // For each input row the first row at its place; empty if no two rows share a place.
+  // For each input row the first row at its point; empty if no two rows share one.
   const std::vector<std::int32_t>& kept_row() const { return kept_row_; }
 
   // Vector loads may begin at any position, one or two at once: so many doubles.

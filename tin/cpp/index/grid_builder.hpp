@@ -43,7 +43,7 @@ class GridBuilder {
   static constexpr double kEven = 4.0;
   // Cells up to here are sorted by insertion.
   static constexpr std::int32_t kShort = 32;
-  // Each level divides its box by the number of its points; what is crowded still is at places
+  // Each level divides its box by the number of its points; what is crowded still is at points
   // closer together than any survey's, and is searched as one cell.
   static constexpr int kDeepest = 12;
   // Rows between two questions whether to go on.
@@ -230,7 +230,7 @@ class GridBuilder {
     for (const auto& [cell, child] : inner) nest_all(child, depth + 1);
   }
 
-  // Put the points of a cell into a level of their own; false if they are all at one place.
+  // Put the points of a cell into a level of their own; false if they are all at one point.
   bool spread(std::int32_t begin, std::int32_t end) {
     const std::vector<Entry> entries = copy(begin, end);
     Box box;
@@ -276,7 +276,7 @@ class GridBuilder {
     grid_.child_row_.push_back(static_cast<std::int64_t>(grid_.children_.size()));
   }
 
-  // Insertion sort for the usual cell; stable, so rows at one place stay in the caller's order.
+  // Insertion sort for the usual cell; stable, so rows at one point stay in the caller's order.
   void sort_cell(std::int32_t begin, std::int32_t end) {
     if (end - begin > kShort) return sort_long_cell(begin, end);
     for (std::int32_t i = begin + 1; i < end; ++i) {
@@ -310,7 +310,7 @@ class GridBuilder {
     }
   }
 
-  // ------------------------------------------------------------- rows at one place
+  // ------------------------------------------------------------- rows at one point
 
   bool repeats(std::int32_t i, std::int32_t earlier) const {
     return grid_.x_[i] == grid_.x_[earlier] && grid_.y_[i] == grid_.y_[earlier];
@@ -377,21 +377,21 @@ class GridBuilder {
   std::int32_t nested_ = 0;  // cells looked at
 };
 
-// Rows at the place of another must not show in the order of the sweep: where there are any, the
-// index is built of the distinct places alone.
+// Rows at the point of another must not show in the order of the sweep: where there are any, the
+// index is built of the distinct points alone.
 inline PointGrid::PointGrid(const PointRows& rows, Team& team) {
   GridBuilder(*this, rows, team).build();
   if (kept_row_.empty() || team.is_stopped()) return;
-  std::vector<Point> places(count_);
+  std::vector<Point> points(count_);
   for (std::int32_t i = 0; i < count_; ++i) {
-    places[number(rows_[i])] = point(static_cast<Vertex>(i));
+    points[number(rows_[i])] = point(static_cast<Vertex>(i));
   }
   std::vector<std::int32_t> kept_row = std::move(kept_row_);
   drop_cells();
   x_.reset();
   y_.reset();
   rows_.reset();
-  *this = PointGrid({&places[0].x, count_, 2}, team);
+  *this = PointGrid({&points[0].x, count_, 2}, team);
   kept_row_ = std::move(kept_row);
 }
 

@@ -89,7 +89,7 @@ class CanonicalOrder {
     return triangle.corner[2] < first ? 2 : is_second;
   }
 
-  // One place on from its owner, so that the ghost's are counted in front.
+  // One entry on from its owner, so that the ghost's are counted in front.
   void count_owned(std::int64_t begin, std::int64_t end) {
     for (std::int64_t t = begin; t < end; ++t) {
       const auto& corner = triangles_[t].corner;

@@ -8,7 +8,7 @@
 //
 //        .-------.            edges yet to cross stand in a queue; each leads to a triangle that
 //       / \ ... / \           either goes, and adds its two other edges, or stays: then the edge
-//      /...\.p./...\          is on the rim. In the end each edge of the rim gets a triangle of
+//      /...\.p./...\          is on the boundary. In the end each edge there gets a triangle of
 //     .-----.-.-----.         the fan about p, in the places of those removed and two new ones.
 //      \ ..../.\... /
 //       `---'   `--'
@@ -78,7 +78,7 @@ class Cavity {
     Ends ends;
     HalfEdge outer;  // as seen from the triangle across
   };
-  struct RimEdge {
+  struct BoundaryEdge {
     Ends ends;
     HalfEdge outer;
   };
@@ -90,7 +90,7 @@ class Cavity {
     room_ = room;
     corners_.resize(room + 3);
     edges_.resize(2 * room + 5);
-    rim_.resize(room + 3);
+    boundary_.resize(room + 3);
     removed_.resize(room + 3);
     spokes_.resize(room + 3);
   }
@@ -116,17 +116,17 @@ class Cavity {
     next_edge_ = 0;
     edge_count_ = 3;
     removed_count_ = 1;
-    rim_count_ = 0;
+    boundary_count_ = 0;
   }
 
   // Cross the edges in the queue. False if there is no room for more.
   bool spread() {
     Corner* const corners = corners_.data();
     Edge* const edges = edges_.data();
-    RimEdge* const rim = rim_.data();
+    BoundaryEdge* const boundary = boundary_.data();
     Triangle* const removed = removed_.data();
     std::uint32_t edge_count = edge_count_, removed_count = removed_count_;
-    std::uint32_t rim_count = rim_count_, next = next_edge_;
+    std::uint32_t boundary_count = boundary_count_, next = next_edge_;
     for (; next < edge_count && removed_count < room_; ++next) {
       const HalfEdge outer = edges[next].outer;
       const std::uint32_t opposite = corner_of(outer);
@@ -154,15 +154,15 @@ class Cavity {
       added[1].ends = {new_corner, ends.to()};
       added[1].outer = across.twin[corner_before(opposite)];
       removed[removed_count] = triangle_of(outer);
-      rim[rim_count].ends = ends;
-      rim[rim_count].outer = outer;
+      boundary[boundary_count].ends = ends;
+      boundary[boundary_count].outer = outer;
       edge_count += 2 * goes;
       removed_count += goes;
-      rim_count += 1 - goes;
+      boundary_count += 1 - goes;
     }
     edge_count_ = edge_count;
     removed_count_ = removed_count;
-    rim_count_ = rim_count;
+    boundary_count_ = boundary_count;
     next_edge_ = next;
     return next == edge_count;
   }
@@ -188,23 +188,23 @@ class Cavity {
     removed_[removed_count_] = Triangle{mesh_.count++};
     removed_[removed_count_ + 1] = Triangle{mesh_.count++};
     const Triangle* const fan = removed_.data();
-    const RimEdge* const rim = rim_.data();
+    const BoundaryEdge* const boundary = boundary_.data();
     Spokes* const spokes = spokes_.data();
-    for (std::uint32_t i = 0; i < rim_count_; ++i) {
-      spokes[rim[i].ends.from()].after = half_edge(fan[i], 2);
-      spokes[rim[i].ends.to()].before = half_edge(fan[i], 1);
+    for (std::uint32_t i = 0; i < boundary_count_; ++i) {
+      spokes[boundary[i].ends.from()].after = half_edge(fan[i], 2);
+      spokes[boundary[i].ends.to()].before = half_edge(fan[i], 1);
     }
     Triangle some{0};
-    for (std::uint32_t i = 0; i < rim_count_; ++i) {
-      const std::uint64_t from = rim[i].ends.from(), to = rim[i].ends.to();
+    for (std::uint32_t i = 0; i < boundary_count_; ++i) {
+      const std::uint64_t from = boundary[i].ends.from(), to = boundary[i].ends.to();
       GhostTriangle& made = at(fan[i]);
       made.corner[0] = vertex;
       made.corner[1] = corners_[from].vertex;
       made.corner[2] = corners_[to].vertex;
-      made.twin[0] = rim[i].outer;
+      made.twin[0] = boundary[i].outer;
       made.twin[1] = spokes[to].after;
       made.twin[2] = spokes[from].before;
-      at(triangle_of(rim[i].outer)).twin[corner_of(rim[i].outer)] = half_edge(fan[i], 0);
+      at(triangle_of(boundary[i].outer)).twin[corner_of(boundary[i].outer)] = half_edge(fan[i], 0);
       const bool is_ghost = (number(made.corner[1]) | number(made.corner[2])) < 0;
       some = is_ghost ? some : fan[i];
     }
@@ -216,10 +216,10 @@ class Cavity {
   const Point* points_;
   Point p_{};
   std::uint32_t room_ = 0;
-  std::uint32_t next_edge_ = 0, edge_count_ = 0, removed_count_ = 0, rim_count_ = 0;
+  std::uint32_t next_edge_ = 0, edge_count_ = 0, removed_count_ = 0, boundary_count_ = 0;
   std::vector<Corner> corners_;  // the first triangle's, then one for each further triangle
   std::vector<Edge> edges_;
-  std::vector<RimEdge> rim_;
+  std::vector<BoundaryEdge> boundary_;
   std::vector<Triangle> removed_;
   std::vector<Spokes> spokes_;  // by corner
 };

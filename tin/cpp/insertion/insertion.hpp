@@ -4,7 +4,7 @@
 // A new point alters only its domain of influence: the triangles whose circle holds it. They are
 // removed and the hole is filled with a fan about the point (cavity.hpp). Ties are decided by the
 // point set alone (is_in_circle), so the result is the growth's. The order of insertion
-// (insertion_order.hpp) only sets the speed.
+// (insertion_rounds.hpp) only sets the speed.
 #pragma once
 
 #include <cmath>
@@ -21,7 +21,7 @@
 #include "../predicates/predicates.hpp"
 #include "cavity.hpp"
 #include "ghost_mesh.hpp"
-#include "insertion_order.hpp"
+#include "insertion_rounds.hpp"
 #include "straight_walk.hpp"
 
 namespace tinsmith {
@@ -201,7 +201,7 @@ class Insertion {
 
   const PointGrid& grid_;
   std::int32_t count_;
-  WithGhost<Vertex> sweep_of_;  // by place on the curve, which is the number of a vertex here
+  WithGhost<Vertex> sweep_of_;  // by position on the curve, which is the number of a vertex here
   WithGhost<Point> points_;     // likewise
   GhostMesh mesh_;
   std::int64_t walk_steps_ = 0;

@@ -6,7 +6,7 @@
 //
 //        .------.                     .------.
 //       / \    / \                   /        \        all triangles that a-b crosses go; the
-//      a---\--/---b     becomes     a----------b       rims on both sides are filled
+//      a---\--/---b     becomes     a----------b       boundaries on both sides are filled
 //       \   \/   /                   \        /
 //        .---.--.                     .---.--.
 #pragma once
@@ -25,20 +25,20 @@ namespace tinsmith {
 
 class Corridor {
  public:
-  // Collect the triangles that the way from a to b crosses, and their rim on its right and left;
-  // `e` is the first edge across, from right to left. False if a fixed edge is in the way.
+  // Collect the triangles that the way from a to b crosses, and their boundary on its right and
+  // left; `e` is the first edge across, from right to left. False if a fixed edge is in the way.
   bool open(const Mesh& mesh, const MeshPoints& points, Vertex a, Vertex b, HalfEdge e) {
     triangles_.assign(1, triangle_of(e));
-    right_rim_.assign(1, rim_edge(mesh, mesh.before(e)));
-    left_rim_.assign(1, rim_edge(mesh, mesh.after(e)));
+    right_boundary_.assign(1, boundary_edge(mesh, mesh.before(e)));
+    left_boundary_.assign(1, boundary_edge(mesh, mesh.after(e)));
     for (std::uint32_t most = mesh.triangle_slots(); most > 0; --most) {
       if (mesh.is_fixed(e)) return false;
       const HalfEdge f = mesh.twin(e);
       const Vertex ahead = mesh.apex(f);
       const int side = ahead == b ? 0 : orientation(points[a], points[b], points[ahead]);
       triangles_.push_back(triangle_of(f));
-      if (side <= 0) right_rim_.push_back(rim_edge(mesh, mesh.after(f)));
-      if (side >= 0) left_rim_.push_back(rim_edge(mesh, mesh.before(f)));
+      if (side <= 0) right_boundary_.push_back(boundary_edge(mesh, mesh.after(f)));
+      if (side >= 0) left_boundary_.push_back(boundary_edge(mesh, mesh.before(f)));
       if (side == 0) return true;
       e = side > 0 ? mesh.after(f) : mesh.before(f);
     }
@@ -50,11 +50,11 @@ class Corridor {
     spare_ = triangles_;
     inner_.clear();
     find_twice(mesh);
-    std::reverse(left_rim_.begin(), left_rim_.end());
-    const HalfEdge right = fill(mesh, points, right_rim_);
-    const HalfEdge left = fill(mesh, points, left_rim_);
+    std::reverse(left_boundary_.begin(), left_boundary_.end());
+    const HalfEdge right = fill(mesh, points, right_boundary_);
+    const HalfEdge left = fill(mesh, points, left_boundary_);
     mesh.join(right, left);
-    join_rim(mesh);
+    join_boundary(mesh);
     return left;
   }
 
@@ -63,37 +63,37 @@ class Corridor {
   const std::vector<HalfEdge>& inner_edges() const { return inner_; }
 
  private:
-  // An edge on the rim of the triangles that are replaced: as seen from within, from without, and
-  // from the triangle that comes in their place.
-  struct RimEdge {
+  // An edge on the boundary of the triangles that are replaced: as seen from within, from without,
+  // and from the triangle that comes in their place.
+  struct BoundaryEdge {
     Vertex from, to;
     HalfEdge inner, outer, made;
     bool is_fixed, is_twice;  // is_twice: with the corridor on both of its sides
   };
   struct Open {
     Vertex from, to;
-    HalfEdge beyond;  // of a triangle made already,
-    RimEdge* rim;     // or on the rim
+    HalfEdge beyond;         // of a triangle made already,
+    BoundaryEdge* boundary;  // or on the boundary
   };
-  static RimEdge rim_edge(const Mesh& mesh, HalfEdge e) {
+  static BoundaryEdge boundary_edge(const Mesh& mesh, HalfEdge e) {
     return {mesh.from(e), mesh.to(e), e, mesh.twin(e), kNoHalfEdge, mesh.is_fixed(e), false};
   }
 
-  // Triangulate between a rim, counter-clockwise, and the edge from its end to its start: wherever
-  // two edges turn left, a triangle takes their place. Every vertex of the rim sees the closing
-  // edge, so none lies in the way. Returns the closing edge, as seen from within.
-  HalfEdge fill(Mesh& mesh, const MeshPoints& points, std::vector<RimEdge>& rim) {
+  // Triangulate between a boundary, counter-clockwise, and the edge from its end to its start:
+  // wherever two edges turn left, a triangle takes their place. Every vertex of the boundary sees
+  // the closing edge, so none lies in the way. Returns the closing edge, as seen from within.
+  HalfEdge fill(Mesh& mesh, const MeshPoints& points, std::vector<BoundaryEdge>& boundary) {
     std::vector<Open>& open = open_;
     open.clear();
     const auto attach = [this, &mesh](const Open& edge, HalfEdge side) {
-      if (edge.rim == nullptr) {
+      if (edge.boundary == nullptr) {
         mesh.join(side, edge.beyond);
         inner_.push_back(side);
       } else {
-        edge.rim->made = side;
+        edge.boundary->made = side;
       }
     };
-    for (RimEdge& next : rim) {
+    for (BoundaryEdge& next : boundary) {
       Open last{next.from, next.to, kNoHalfEdge, &next};
       while (!open.empty() &&
              orientation(points[open.back().from], points[last.from], points[last.to]) > 0) {
@@ -113,15 +113,15 @@ class Corridor {
 
   void find_twice(Mesh& mesh) {
     for (const Triangle t : triangles_) mesh.mark(t);
-    for (std::vector<RimEdge>* const rim : {&right_rim_, &left_rim_}) {
-      for (RimEdge& edge : *rim) edge.is_twice = mesh.is_marked(triangle_of(edge.outer));
+    for (std::vector<BoundaryEdge>* const boundary : {&right_boundary_, &left_boundary_}) {
+      for (BoundaryEdge& edge : *boundary) edge.is_twice = mesh.is_marked(triangle_of(edge.outer));
     }
   }
 
-  void join_rim(Mesh& mesh) {
+  void join_boundary(Mesh& mesh) {
     twice_.clear();
-    for (std::vector<RimEdge>* const rim : {&right_rim_, &left_rim_}) {
-      for (RimEdge& edge : *rim) {
+    for (std::vector<BoundaryEdge>* const boundary : {&right_boundary_, &left_boundary_}) {
+      for (BoundaryEdge& edge : *boundary) {
         if (edge.is_twice) {
           twice_.push_back(&edge);
         } else {
@@ -134,21 +134,23 @@ class Corridor {
   }
 
   void join_twice(Mesh& mesh) {
-    const auto is_before = [](const RimEdge* a, const RimEdge* b) { return a->inner < b->inner; };
+    const auto is_before = [](const BoundaryEdge* a, const BoundaryEdge* b) {
+      return a->inner < b->inner;
+    };
     std::sort(twice_.begin(), twice_.end(), is_before);
-    for (RimEdge* const edge : twice_) {
+    for (BoundaryEdge* const edge : twice_) {
       const auto other = std::lower_bound(
           twice_.begin(), twice_.end(), edge->outer,
-          [](const RimEdge* candidate, HalfEdge sought) { return candidate->inner < sought; });
-      if (other == twice_.end()) throw std::logic_error("a corridor's rim is not closed");
+          [](const BoundaryEdge* candidate, HalfEdge sought) { return candidate->inner < sought; });
+      if (other == twice_.end()) throw std::logic_error("a corridor's boundary is not closed");
       mesh.join(edge->made, (*other)->made);
       mesh.fix(edge->made, edge->is_fixed);
     }
   }
 
   std::vector<Triangle> triangles_, spare_;
-  std::vector<RimEdge> right_rim_, left_rim_;
-  std::vector<RimEdge*> twice_;
+  std::vector<BoundaryEdge> right_boundary_, left_boundary_;
+  std::vector<BoundaryEdge*> twice_;
   std::vector<HalfEdge> inner_;
   std::vector<Open> open_;
 };

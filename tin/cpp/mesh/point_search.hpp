@@ -145,7 +145,7 @@ class PointSearch {
     return kNoCorner;
   }
 
-  // p is in the triangle or on its rim.
+  // p is in the triangle or on its boundary.
   MeshLocation location_in(Point p, Triangle t) const {
     for (const HalfEdge e : half_edges(t)) {
       if (points_[mesh_.apex(e)] == p) return {MeshLocation::Where::kAtVertex, Mesh::before(e)};

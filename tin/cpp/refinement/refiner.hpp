@@ -193,7 +193,7 @@ class Refiner {
 
   bool is_bad(Triangle t, const TurnedTriangle& turned) const {
     if (shape_.is_large(turned)) return true;
-    return shape_.has_small_angle(turned) && !is_angle_given(t, turned.place_of_apex);
+    return shape_.has_small_angle(turned) && !is_angle_given(t, turned.corner_of_apex);
   }
 
   Why why_left(Triangle t, const TurnedTriangle& turned) const {
@@ -207,9 +207,9 @@ class Refiner {
 
   // Whether the small angle is one between segments that meet, seen from their own vertex or, on
   // one of the circles around it, from elsewhere.
-  bool is_angle_given(Triangle t, int place_of_apex) const {
-    const auto place = static_cast<std::uint32_t>(place_of_apex);
-    const HalfEdge base = half_edge(t, place);
+  bool is_angle_given(Triangle t, int corner_of_apex) const {
+    const auto corner = static_cast<std::uint32_t>(corner_of_apex);
+    const HalfEdge base = half_edge(t, corner);
     if (mesh_.is_fixed(Mesh::after(base)) && mesh_.is_fixed(Mesh::before(base))) return true;
     const std::int32_t s = input_segment_of(mesh_.from(base)), u = input_segment_of(mesh_.to(base));
     if (s == kNoSegment || u == kNoSegment || s == u) return false;

@@ -39,7 +39,7 @@ inline Point midpoint(Point a, Point b) {
 // short ones that with the first apex in lexicographic order, whatever the order of the corners.
 struct TurnedTriangle {
   Point p, q, apex;
-  int place_of_apex;  // among the corners as given
+  int corner_of_apex;  // among the corners as given
 
   static TurnedTriangle of(const Point (&corner)[3]) {
     int best = 0;

@@ -21,7 +21,7 @@ namespace tinsmith {
 // Relative slack on boxes and radii; far above what a dozen roundings add up to.
 constexpr double kSlack = 1e-14;
 
-// Farther than the roundings of places in the box, and of the cells that hold them, add up to.
+// Farther than the roundings of points in the box, and of the cells that hold them, add up to.
 inline double coordinate_slack(const Box& box) {
   return kSlack * 4.0 *
          std::max({std::fabs(box.west), std::fabs(box.east), std::fabs(box.south),

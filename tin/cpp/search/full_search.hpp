@@ -297,7 +297,7 @@ class ThirdPointSearch {
 
   // ------------------------------------------------------------- boxes
 
-  // Farther than what a dozen roundings add up to, for places on a circle of this radius.
+  // Farther than what a dozen roundings add up to, for points on a circle of this radius.
   double slack_of(double radius) const { return coordinate_slack_ + kSlack * radius; }
 
   Cap cap_of(const Circle& circle) const {
