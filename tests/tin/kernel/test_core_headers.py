@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[3]
 CORE = ROOT / "tin" / "cpp"
 COMPILER = os.environ.get("CXX") or "g++"
 OPTIONS = [
