@@ -85,6 +85,7 @@ mutants: $(READY) ## Change the code at random and list what the tests miss: MUT
 format: $(READY) ## Format the code
 	$(BIN)/ruff format .
 	$(BIN)/ruff check --fix .
+	$(BIN)/clang-format -i $$(git ls-files "tin/cpp/*.hpp" "tin/cpp/*.inc" "tin/cpp/*.cpp" "tests/cpp/*.cpp")
 
 clean: ## Remove what was built
 	rm -rf $(VENV) build demo

@@ -48,6 +48,7 @@ def output_of(program):
 
 
 @needs_compiler
+@pytest.mark.proof
 @pytest.mark.parametrize("header", HEADERS)
 def test_each_header_can_be_included_alone(header, tmp_path):
     source = tmp_path / "alone.cpp"
