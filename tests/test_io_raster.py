@@ -202,6 +202,21 @@ def test_centres_on_the_bounds_of_a_window_are_within(raster, transform):
         assert len(survey.points) == (5 * 8 if k in (0, 2) else 6 * 7)
 
 
+@pytest.mark.parametrize("transform", [UPRIGHT, SOUTH_UP])
+@pytest.mark.parametrize("side", range(5))
+def test_window_beyond_a_side_of_the_raster_holds_what_there_is(raster, transform, side):
+    array = heights(20, 20)
+    everything = points_by_loop(array, transform)
+    low, high = np.quantile(everything[:, :2], [0.3, 0.7], axis=0)
+    limits = np.array([*low, *high])
+    wide = np.array([*(low - 1000), *(high + 1000)])
+    limits = np.where(np.arange(4) == side, wide, limits) if side < 4 else wide
+    survey = read(raster(array, transform=transform), window=ts.Bounds(*limits))
+    x, y = everything[:, :2].T
+    inside = (limits[0] <= x) & (x <= limits[2]) & (limits[1] <= y) & (y <= limits[3])
+    assert np.allclose(survey.points, everything[inside], rtol=0, atol=1e-9)
+
+
 @pytest.mark.parametrize(
     "window",
     [

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(os.environ.get("TINSMITH_SOURCES", Path(__file__).parents[1]))  # or mutants
 COMPILER = os.environ.get("CXX") or "g++"
 
 

@@ -441,3 +441,18 @@ def test_corners_of_a_boundary_within_water_have_its_level():
     inside = ((xy >= 30) & (xy <= 70)).all(axis=1)
     assert (tin.points[inside, 2] == 2.5).all()
     assert ts.check(tin).ok
+
+
+@pytest.mark.parametrize(
+    ("line", "sentence"),
+    [
+        ([["a", "b"], ["c", "d"]], "A breakline is no table of real numbers."),
+        ([[1, 2], [3]], "A breakline is no table of real numbers."),
+        ({"a": [0, 1], "b": [2, 3]}, "columns 'a', 'b', and none of them is called easting"),
+    ],
+)
+def test_what_is_no_line_is_told_of_the_line(line, sentence):
+    with pytest.raises(ts.LinesError) as caught:
+        ts.Breakline(line)
+    assert sentence in str(caught.value)
+    assert "table" not in str(caught.value).replace(sentence, "")

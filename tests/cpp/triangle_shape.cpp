@@ -63,6 +63,15 @@ void examine_triangle(double least_angle, const Point (&corner)[3]) {
   expect(distance(remedy, t.p) <= radius * (1 + 1e-9), "off-center beyond the center");
 }
 
+void examine_lines(Point a, Point b, Point c, double twice_area) {
+  const double height = std::fabs(twice_area) / distance(a, b);
+  const double found = std::sqrt(tinsmith::squared_height(c, a, b));
+  expect(std::fabs(found - height) < 1e-9 * (1.0 + height), "height");
+  const Point m = tinsmith::midpoint(a, b);
+  expect(std::fabs(distance(m, a) - 0.5 * distance(a, b)) < 1e-9, "midpoint");
+  expect(std::fabs(distance(m, b) - 0.5 * distance(a, b)) < 1e-9, "midpoint");
+}
+
 void examine_size(const Point (&corner)[3]) {
   const TurnedTriangle t = TurnedTriangle::of(corner);
   double longest = 0.0;
@@ -80,22 +89,32 @@ void examine_size(const Point (&corner)[3]) {
   expect(!shape_of(20, INFINITY, 1.001 * edge).is_long(a, b), "segment allowed");
 }
 
+// What is just as long or as large as is allowed stays.
+void examine_limits() {
+  const Point corner[3] = {{0.0, 0.0}, {4.0, 0.0}, {0.0, 3.0}};
+  expect(!shape_of(20, 6.0, 5.0).is_large(TurnedTriangle::of(corner)), "limits");
+  expect(!shape_of(20, INFINITY, 5.0).is_long(corner[1], corner[2]), "limits");
+}
+
 }  // namespace
 
 int main() {
+  examine_limits();
   std::mt19937_64 rng(1);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
   for (int n = 0; n < 20000; ++n) {
-    const auto place = [&] { return Point{10 * unit(rng), 10 * unit(rng)}; };
+    const double size = n % 2 == 0 ? 10.0 : 0.1;
+    const auto place = [&] { return Point{size * unit(rng), size * unit(rng)}; };
     const Point corner[3] = {place(), place(), place()};
     const double cross = (corner[1].x - corner[0].x) * (corner[2].y - corner[0].y) -
                          (corner[1].y - corner[0].y) * (corner[2].x - corner[0].x);
-    if (std::fabs(cross) < 0.1) continue;
+    if (std::fabs(cross) < 1e-3 * size * size) continue;
     const Point turned[3] = {corner[0], cross > 0 ? corner[1] : corner[2],
                              cross > 0 ? corner[2] : corner[1]};
     const double least_angle = 1.0 + 16.0 * (unit(rng) + 1.0);
     examine_lens(least_angle, turned[0], turned[1], turned[2]);
     examine_triangle(least_angle, turned);
+    examine_lines(turned[0], turned[1], turned[2], cross);
     examine_size(turned);
   }
 }

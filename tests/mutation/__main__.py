@@ -51,7 +51,7 @@ NEAREST = {
     "location": ("locate",),
     "lines": ("noding", "lines", "rings", "contacts"),
     "mesh": ("mesh", "editing", "lines"),
-    "refinement": ("refine", "conforming"),
+    "refinement": ("error_bounds", "refine", "conforming"),
     "predicates": ("predicates", "error_bounds"),
     "points": ("points", "duplicates"),
 }
@@ -60,7 +60,7 @@ NEAREST = {
 BUILDERS = ("points", "growth", "kernel_seams")
 NO_TESTS = 5
 N_NEAREST = 3
-SECONDS_OF_TESTS = 60.0
+SECONDS_OF_TESTS = 25.0
 """Of the tests that run a place, the shortest that together take so long are run."""
 
 
@@ -209,6 +209,7 @@ class Workshop:
 
     def __init__(self, number: int, kind: str) -> None:
         self.folder = BUILD / f"{kind}-{number}"
+        self.kind = kind
         self.noticed_by = ""
         shutil.rmtree(self.folder / "tree", ignore_errors=True)
         package = self.folder / "tree" / "tinsmith"
@@ -226,7 +227,8 @@ class Workshop:
 
     def _copy_sources(self) -> None:
         source = self.folder / "source"
-        shutil.copytree(ROOT / "tin" / "cpp", source / "tin" / "cpp", dirs_exist_ok=True)
+        for folder in (Path("tin", "cpp"), Path("tests", "cpp")):
+            shutil.copytree(ROOT / folder, source / folder, dirs_exist_ok=True)
         shutil.copy(ROOT / "CMakeLists.txt", source)
         nanobind = subprocess.check_output([sys.executable, "-m", "nanobind", "--cmake_dir"])
         subprocess.run(
@@ -296,6 +298,7 @@ class Workshop:
             "PYTHONPATH": f"{self.folder / 'tree'}:{TESTS}",
             "HYPOTHESIS_STORAGE_DIRECTORY": str(self.folder / "hypothesis"),
             "MUTATION_DURATIONS": str(DURATIONS),
+            "TINSMITH_SOURCES": str(self.folder / "source" if self.kind == "core" else ROOT),
         }
 
     def map_coverage(self) -> int:

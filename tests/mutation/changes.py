@@ -82,6 +82,8 @@ class _Python:
         if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "__all__":
             return
         yield node
+        if isinstance(node, ast.keyword) and node.arg == "slots":  # of a dataclass: memory only
+            return
         skipped = {"annotation", "returns", "type_comment"}
         for name, value in ast.iter_fields(node):
             if name in skipped:
@@ -114,7 +116,7 @@ class _Python:
             yield from self._swapped(node)
         elif isinstance(node, ast.Return) and node.value is not None:
             start, stop = self.span(node.value)
-            if self.text[start:stop] != "None":
+            if self.text[start:stop] not in ("None", "False"):  # as false as None
                 yield Change(start, stop, "None", "returns None")
 
     def _operator(self, left, right, table, operator) -> Iterator[Change]:  # type: ignore[no-untyped-def]

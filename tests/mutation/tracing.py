@@ -67,7 +67,9 @@ def leave_lines() -> None:
     test = os.environ.get("MUTATION_TEST", "")
     if test and _lines:
         found = {"test": test, "lines": take_lines()}
-        FOLDER.joinpath(f"child-{os.getpid()}-{id(found)}.json").write_text(json.dumps(found))
+        part = FOLDER / f"part-{os.getpid()}-{id(found)}"
+        part.write_text(json.dumps(found))
+        part.rename(FOLDER / f"child-{part.name}.json")  # whole, or not at all if it is killed
 
 
 def leave_lines_at_exit_of_forks() -> None:
