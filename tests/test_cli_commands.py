@@ -12,6 +12,7 @@ from click.testing import CliRunner
 
 import tinsmith as ts
 from tinsmith.cli import group, main
+from tinsmith.cli.facts import file_size
 from tinsmith.cli.options import DUPLICATES, KINDS
 
 SAMPLES = Path(__file__).parents[1] / "sample_data"
@@ -375,3 +376,25 @@ def test_every_row_that_was_left_out_is_in_report_and_json(tmp_path):
     assert json.loads(report.read_text())["skipped_lines"] == expected
     info = json.loads(run("info", path, "--skip-bad", "--json").stdout)
     assert info["skipped_lines"] == expected
+
+
+@pytest.mark.parametrize(
+    ("size", "words"),
+    [
+        (0, "0 bytes"),
+        (999, "999 bytes"),
+        (1_000, "1.0 kB"),
+        (99_900, "99.9 kB"),
+        (100_000, "100 kB"),
+        (999_000, "999 kB"),
+        (1_000_000, "1.0 MB"),
+        (123_000_000, "123 MB"),
+        (2_500_000_000, "2.5 GB"),
+        (3_000_000_000_000, "3000.0 GB"),
+    ],
+)
+def test_sizes_of_files_for_people(tmp_path, size, words):
+    path = tmp_path / "sparse"
+    with path.open("wb") as file:
+        file.truncate(size)
+    assert file_size(path) == words

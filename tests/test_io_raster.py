@@ -5,12 +5,15 @@ from __future__ import annotations
 import subprocess
 import sys
 import warnings
+from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import tinsmith as ts
 from tinsmith.io import CrsError, FormatError, ReadError, read
+from tinsmith.io import raster as reading
 
 rasterio = pytest.importorskip("rasterio")
 pyproj = pytest.importorskip("pyproj")
@@ -236,6 +239,15 @@ def test_window_beyond_a_side_of_the_raster_holds_what_there_is(raster, transfor
 )
 def test_window_that_the_raster_does_not_have(raster, window):
     assert "indow" in fault(raster(heights()), FormatError, window=window)
+
+
+@pytest.mark.parametrize("stride", [1, 3])
+def test_cells_are_no_more_than_an_int32_can_number(monkeypatch, stride):
+    monkeypatch.setattr(reading, "_free_memory", lambda: 1 << 60)
+    most = np.iinfo(np.int32).max
+    reading._require_room(SimpleNamespace(width=stride * most, height=1, stride=stride), Path("a"))
+    with pytest.raises(ReadError, match=f"{most + 1:,} cells .* {most:,} are the most that a TIN"):
+        reading._require_room(SimpleNamespace(width=stride * most + 1, height=1, stride=stride), Path("a"))
 
 
 @pytest.mark.parametrize("stride", [0, -2, 6, 100, 1.5, "2"])

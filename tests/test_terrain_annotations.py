@@ -145,6 +145,11 @@ def test_needle_and_letter_lie_to_the_north(view):
     assert letter[0] * axes[1][1] - letter[1] * axes[1][0] == pytest.approx(0.0, abs=1e-6)
     west = left[1] - center
     assert west @ np.linalg.pinv(axes)[:, 0] < 0 < (right[2] - center) @ np.linalg.pinv(axes)[:, 0]
+    (x, y), (other_x, other_y), notch = (
+        (place - center) @ np.linalg.pinv(axes) for place in (left[1], right[2], left[2])
+    )
+    assert (other_x, other_y) == pytest.approx((-x, y), abs=1e-6)  # both halves alike
+    assert y < notch[1] < 0
 
 
 def test_north_is_up_on_a_map():

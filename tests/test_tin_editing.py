@@ -120,6 +120,28 @@ def square(**options):
     return ts.triangulate([[0, 0, 5], [4, 0, 6], [4, 4, 7], [0, 4, 8], [2, 1, 9]], **options)
 
 
+@pytest.mark.parametrize("count", [10_000, 10_001])
+@pytest.mark.parametrize("size", [5, 60])
+def test_many_points_at_once_give_what_a_fresh_build_gives(count, size):
+    """Beyond 10,000 all are triangulated anew; some of them stand where others do."""
+    rng = np.random.default_rng(count)
+    before = np.c_[rng.integers(0, 20 * size, (size, 2)) + 0.5, rng.integers(0, 50, size)]
+    corners = np.array([[0.0, 0, 1], [3000, 0, 2], [0, 3000, 3]])
+    tin = ts.triangulate(np.concatenate([corners, before]), duplicates="last")
+    new = np.c_[rng.integers(0, 150, (count, 2)), rng.integers(0, 50, count)].astype(float)
+    new[:3] = before[:3] + [0, 0, 100]
+    tin.insert(new)
+    require_fresh(tin)
+    wanted = {(x, y): z for x, y, z in np.concatenate([corners, before, new]).tolist()}
+    assert {(x, y): z for x, y, z in tin.points.tolist()} == wanted
+    tin.insert([[7.25, 8.25, 9.0]])
+    tin.remove([3])
+    require_fresh(tin)
+    for _ in range(3):
+        tin.undo()
+    assert len(tin.points) == len(np.unique(np.concatenate([corners, before])[:, :2], axis=0))
+
+
 def test_vertices_behind_a_removed_one_move_up():
     tin = square()
     points = tin.points

@@ -456,3 +456,11 @@ def test_what_is_no_line_is_told_of_the_line(line, sentence):
         ts.Breakline(line)
     assert sentence in str(caught.value)
     assert "table" not in str(caught.value).replace(sentence, "")
+
+
+def test_equal_coordinates_are_equal_bytes():
+    line = ts.Breakline([[-0.0, 1.0, -0.0], [2.0, -0.0, 3.0]])
+    assert not np.signbit(line.coords).any()
+    assert not line.coords.flags.writeable
+    with pytest.raises(ts.LinesError, match=r"has 2 vertices that are not finite .*vertex 1, \[nan"):
+        ts.Breakline([[0, 0, 0], [np.nan, 1, 2], [3, np.inf, 4]])

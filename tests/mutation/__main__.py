@@ -300,13 +300,15 @@ class Workshop:
             "TINSMITH_SOURCES": str(self.folder / "source" if self.kind == "core" else ROOT),
         }
 
-    def map_coverage(self) -> int:
-        """Run all tests, followed; return pytest's exit status."""
-        shutil.rmtree(MAP, ignore_errors=True)
+    def map_coverage(self, only: str) -> int:
+        """Run all tests, followed, or add to the map those of some files; return the exit status."""
+        tests = [path for path in sorted(TESTS.rglob("test_*.py")) if only in str(path)]
+        if not only:
+            shutil.rmtree(MAP, ignore_errors=True)
         package = str(self.folder / "tree" / "tinsmith")
         options = ["-q", "-p", "no:cacheprovider", "-p", "mutation.shortest_first"]
         return subprocess.run(
-            [sys.executable, "-m", "pytest", *options, "-p", "mutation.tracing", str(TESTS)],
+            [sys.executable, "-m", "pytest", *options, "-p", "mutation.tracing", *map(str, tests)],
             cwd=ROOT, check=False,
             env={**self.environment(), "MUTATION_PACKAGE": package, "MUTATION_MAP": str(MAP)},
         ).returncode  # fmt: skip
@@ -376,11 +378,11 @@ def main() -> int:
     add("--limit", type=float, default=300.0, help="seconds for the tests of a mutant [300]")
     add("--skip", type=int, default=0, help="of the mutants drawn, leave out the first so many")
     add("--minutes", type=float, default=math.inf, help="begin no mutant after so many [all]")
-    add("--only", default="", metavar="TEXT", help="files whose path holds this, or PATH:LINE")
+    add("--only", default="", metavar="TEXT", help="files whose path holds this (of tests for map), or PATH:LINE")
     given = parser.parse_args()
     BUILD.mkdir(parents=True, exist_ok=True)
     if given.kind == "map":
-        return Workshop(0, "python").map_coverage()
+        return Workshop(0, "python").map_coverage(given.only)
     mutants = draw(given.kind, given.count, given.seed, given.only)[given.skip :]
     verdicts = run(mutants, given)
     survivors = sorted(verdicts.get("SURVIVED", []))

@@ -1,7 +1,7 @@
 """Which tests run a place of the package, by what `mutation.tracing` noted of each test.
 
 The map is built once (`python -m mutation map`) and kept in `build/mutants`. Tests written since are
-not in it: those of files that are newer than the map are added whole.
+added by `python -m mutation map --only test_of_mine`.
 """
 
 from __future__ import annotations
