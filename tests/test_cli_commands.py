@@ -282,6 +282,35 @@ def test_convert_keeps_points_as_points(folder):
     np.testing.assert_array_equal(ts.io.read("out.xyz").points, ts.io.read(SURVEY).points)
 
 
+@pytest.mark.parametrize("as_json", [False, True])
+@pytest.mark.parametrize("writes", [False, True])
+def test_view_passes_on_what_is_asked_for(pyramid, tmp_path, monkeypatch, as_json, writes):
+    asked = []
+
+    def draw(tin, **options):
+        asked.append((len(tin.points), options))
+        if options["output"] is not None:
+            options["output"].write_bytes(b"7 bytes")
+
+    monkeypatch.setattr("tinsmith.terrain.preview", draw)
+    picture = tmp_path / "a.png"
+    output = ["-o", picture] if writes else []
+    result = run("view", pyramid, *output, *(["--json"] if as_json else []))
+    wanted = {"output": picture if writes else None, "view": "oblique", "title": "pyramid"}
+    wanted |= {"exaggeration": None, "edges": False, "lines": True}
+    assert asked == [(5, wanted)]
+    assert ("(7 bytes)" in result.stderr) is writes
+    if writes and as_json:
+        assert json.loads(result.stdout) == {"input": str(pyramid), "output": str(picture)}
+    else:
+        assert result.stdout == ""
+    asked.clear()
+    options = ["--top", "--no-lines", "--edges", "--title", "A hill", "--exaggeration", "3"]
+    run("view", pyramid, *output, *options)
+    wanted |= {"view": "top", "lines": False, "edges": True, "title": "A hill"}
+    assert asked == [(5, wanted | {"exaggeration": 3.0})]
+
+
 def test_view_writes_a_picture(pyramid, tmp_path, can_draw):
     pytest.importorskip("pyvista")
     picture = tmp_path / "out.png"

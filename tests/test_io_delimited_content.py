@@ -60,7 +60,7 @@ def test_the_layout_that_nothing_speaks_against_is_taken(columns, area, word):
     if area is not None:
         start = word.index("Z") - 2
         other = word[:start] + ("EN" if start else "XY") + word[start + 2 :]
-        other = other if other != word else f"{word[:start]}NE{word[start + 2:]}"
+        other = other if other != word else f"{word[:start]}NE{word[start + 2 :]}"
         assert other in note.partition(" would lie outside the area of use of EPSG:32616")[0]
 
 
@@ -189,7 +189,13 @@ def test_elevations_lie_between_the_deepest_trench_and_the_highest_summit(z, is_
 
 @pytest.mark.parametrize(
     ("relief", "extent", "is_steep"),
-    [(3.0, 1.0, False), (3.001, 1.0, True), (5.0, 0.0, False), (0.0, 0.0, False), (0.0, 9.0, False)],
+    [
+        (3.0, 1.0, False),
+        (3.001, 1.0, True),
+        (5.0, 0.0, False),
+        (0.0, 0.0, False),
+        (0.0, 9.0, False),
+    ],
 )
 def test_ground_rises_by_three_times_its_extent_at_most(relief, extent, is_steep):
     assert is_too_steep(relief, extent) is is_steep
@@ -228,6 +234,7 @@ def test_a_twentieth_of_the_values_at_either_end_counts_for_nothing():
 def test_decimal_commas_at_commas_are_refused(rows, delimiter, is_refused):
     body = [row.split(delimiter) for row in rows]
     if not is_refused:
-        return require_no_split_decimals(body, delimiter)
+        require_no_split_decimals(body, delimiter)
+        return
     with pytest.raises(ReadError, match="its commas may be delimiters or decimal marks"):
         require_no_split_decimals(body, delimiter)

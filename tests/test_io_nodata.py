@@ -11,7 +11,14 @@ from tinsmith.io.nodata import as_nodata, describe_suspects, find_suspect_elevat
 NINES = [-99.0, -999.0, -9999.0, -99999.0, -999999.0, -99.9, -999.9, -9999.9]
 POSITIVE_NINES = [9999.0, 99999.0, 999999.0]
 INTEGERS = [-32768.0, -32767.0, 32767.0]
-FLOATS = [float(np.finfo(np.float32).max), float(np.finfo(np.float64).max), 1e30, 1e20, 1e38, 3.4e38]
+FLOATS = [
+    float(np.finfo(np.float32).max),
+    float(np.finfo(np.float64).max),
+    1e30,
+    1e20,
+    1e38,
+    3.4e38,
+]
 SURFER = [1.70141e38, 1.70141183460469e38]
 HILLS = np.linspace(300.0, 340.0, 50)
 
@@ -129,5 +136,7 @@ def test_values_that_callers_name(given, values):
 
 @pytest.mark.parametrize("given", ["none", [1, "x"], {}, 10**400])
 def test_what_is_no_value_is_refused(given):
-    with pytest.raises(ts.FormatError, match="Invalid nodata .*: a number, or several, are needed"):
+    with pytest.raises(
+        ts.FormatError, match=r"Invalid nodata .*: a number, or several, are needed"
+    ):
         as_nodata(given)

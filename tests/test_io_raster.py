@@ -247,7 +247,9 @@ def test_cells_are_no_more_than_an_int32_can_number(monkeypatch, stride):
     most = np.iinfo(np.int32).max
     reading._require_room(SimpleNamespace(width=stride * most, height=1, stride=stride), Path("a"))
     with pytest.raises(ReadError, match=f"{most + 1:,} cells .* {most:,} are the most that a TIN"):
-        reading._require_room(SimpleNamespace(width=stride * most + 1, height=1, stride=stride), Path("a"))
+        reading._require_room(
+            SimpleNamespace(width=stride * most + 1, height=1, stride=stride), Path("a")
+        )
 
 
 @pytest.mark.parametrize("stride", [0, -2, 6, 100, 1.5, "2"])

@@ -129,7 +129,7 @@ def test_many_points_at_once_give_what_a_fresh_build_gives(count, size):
     corners = np.array([[0.0, 0, 1], [3000, 0, 2], [0, 3000, 3]])
     tin = ts.triangulate(np.concatenate([corners, before]), duplicates="last")
     new = np.c_[rng.integers(0, 150, (count, 2)), rng.integers(0, 50, count)].astype(float)
-    new[:3] = before[:3] + [0, 0, 100]
+    new[:3] = np.add(before[:3], [0, 0, 100])
     tin.insert(new)
     require_fresh(tin)
     wanted = {(x, y): z for x, y, z in np.concatenate([corners, before, new]).tolist()}
@@ -517,6 +517,9 @@ def test_tin_that_is_not_delaunay_is_not_edited():
         ("remove", {"vertices": 5}, "no vertex 5"),
         ("remove", {"vertices": -1}, "no vertex -1"),
         ("remove", {"vertices": 1.5}, "whole numbers"),
+        ("remove", {"vertices": [[1], [2, 3]]}, r"Invalid vertices .*: whole numbers are needed"),
+        ("remove", {"vertices": np.ma.masked_less([0, 3], 1)}, "whole numbers are needed"),
+        ("remove", {"vertices": [3, 7, 9]}, "no vertex 7: numbers 0 to 4 are allowed"),
         ("remove", {"vertices": [1, 1]}, "twice"),
         ("remove", {"vertices": [0, 1, 2]}, "No triangle"),
         ("move", {"vertex": 0, "point": [2, 1, 0]}, "already"),

@@ -462,5 +462,7 @@ def test_equal_coordinates_are_equal_bytes():
     line = ts.Breakline([[-0.0, 1.0, -0.0], [2.0, -0.0, 3.0]])
     assert not np.signbit(line.coords).any()
     assert not line.coords.flags.writeable
-    with pytest.raises(ts.LinesError, match=r"has 2 vertices that are not finite .*vertex 1, \[nan"):
+    with pytest.raises(
+        ts.LinesError, match=r"has 2 vertices that are not finite .*vertex 1, \[nan"
+    ):
         ts.Breakline([[0, 0, 0], [np.nan, 1, 2], [3, np.inf, 4]])

@@ -85,7 +85,7 @@ def test_words_and_flags():
     assert not is_one_of("a", ())
     assert as_flag("name", np.True_) is True
     assert as_flag("name", False) is False
-    with pytest.raises(ts.PointsError, match="Invalid name 1: True or False is needed."):
+    with pytest.raises(ts.PointsError, match=r"Invalid name 1: True or False is needed\."):
         as_flag("name", 1)
 
 
@@ -105,9 +105,15 @@ POLYGON = [[0.5, 0.5], [3.5, 0.5], [3.5, 2.5]]
         (lambda: compare(CORNERS, limit=0), "Invalid limit 0: a whole number >= 1 is needed."),
         (lambda: compare(CORNERS, limit=2.5), "Invalid limit 2.5: a whole number >= 1"),
         (lambda: compare(CORNERS, limit=4), "5 points are too many to compare"),
-        (lambda: improved(CORNERS, distance="far"), "Invalid distance 'far': it must be 'circle' or"),
+        (
+            lambda: improved(CORNERS, distance="far"),
+            "Invalid distance 'far': it must be 'circle' or",
+        ),
         (lambda: improved(CORNERS, empty="x"), "Invalid empty 'x': it must be '"),
-        (lambda: improved(CORNERS, most_triangles=0), "Invalid most_triangles 0: a whole number >= 1"),
+        (
+            lambda: improved(CORNERS, most_triangles=0),
+            "Invalid most_triangles 0: a whole number >= 1",
+        ),
         (lambda: improved(CORNERS, removal=1), "Invalid removal 1: True or False is needed."),
         (lambda: as_elevations([[1.0, 2.0]]), r"Elevations have shape \(1, 2\): one, or a row"),
         (lambda: as_elevations(np.ma.masked_less([1.0, 2.0], 2)), "An elevation is masked"),

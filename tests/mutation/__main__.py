@@ -2,9 +2,10 @@
 
 Which tests run a place of Python is in a map that `map` builds once (minutes); without it, the test
 files that name the module are run. A mutant is noticed if a test fails, hangs or crashes; tests
-that took least time run first, and the first that fails ends the run. Survivors are to be judged one by one: a test is missing, or the
-change changes nothing that can be relied on (an equivalent mutant). Those that were judged so stand
-in `judged.toml`, each with its reason, and are not run again.
+that took least time run first, and the first that fails ends the run. Survivors are to be judged
+one by one: a test is missing, or the change changes nothing that can be relied on (an equivalent
+mutant). Those that were judged so stand in `judged.toml`, each with its reason, and are not run
+again.
 """
 
 from __future__ import annotations
@@ -290,7 +291,6 @@ class Workshop:
         self.noticed_by = failed[1] if failed else "a crash or hang"
         return "SURVIVED" if done.returncode in (0, NO_TESTS) else "noticed"
 
-
     def environment(self) -> dict[str, str]:
         return {
             **os.environ,
@@ -301,7 +301,7 @@ class Workshop:
         }
 
     def map_coverage(self, only: str) -> int:
-        """Run all tests, followed, or add to the map those of some files; return the exit status."""
+        """Follow all tests, or add those of some files to the map; return the exit status."""
         tests = [path for path in sorted(TESTS.rglob("test_*.py")) if only in str(path)]
         if not only:
             shutil.rmtree(MAP, ignore_errors=True)
@@ -378,7 +378,12 @@ def main() -> int:
     add("--limit", type=float, default=300.0, help="seconds for the tests of a mutant [300]")
     add("--skip", type=int, default=0, help="of the mutants drawn, leave out the first so many")
     add("--minutes", type=float, default=math.inf, help="begin no mutant after so many [all]")
-    add("--only", default="", metavar="TEXT", help="files whose path holds this (of tests for map), or PATH:LINE")
+    add(
+        "--only",
+        default="",
+        metavar="TEXT",
+        help="files whose path holds this (of tests for map), or PATH:LINE",
+    )
     given = parser.parse_args()
     BUILD.mkdir(parents=True, exist_ok=True)
     if given.kind == "map":

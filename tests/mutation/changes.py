@@ -43,6 +43,9 @@ ARITHMETIC = {
     ast.BitOr: ("|", "&"),
 }
 
+SYMMETRIC = {"max", "min", "maximum", "minimum", "hypot", "gcd"}
+"""Functions to which it is the same which argument comes first."""
+
 
 def python_changes(text: str) -> list[Change]:
     """Return all changes of a module; type hints, docstrings and `__all__` stay as they are."""
@@ -143,6 +146,8 @@ class _Python:
 
     def _swapped(self, node: ast.Call) -> Iterator[Change]:
         given = node.args[:2]
+        if ast.unparse(node.func).split(".")[-1] in SYMMETRIC:
+            return
         if len(given) < 2 or any(isinstance(one, ast.Starred) for one in given):
             return
         (a, b), (c, d) = self.span(given[0]), self.span(given[1])

@@ -1,7 +1,7 @@
 """Which tests run a place of the package, by what `mutation.tracing` noted of each test.
 
-The map is built once (`python -m mutation map`) and kept in `build/mutants`. Tests written since are
-added by `python -m mutation map --only test_of_mine`.
+The map is built once (`python -m mutation map`) and kept in `build/mutants`. Tests written since
+are added by `python -m mutation map --only test_of_mine`.
 """
 
 from __future__ import annotations
@@ -56,7 +56,9 @@ class CoverageMap:
 
 def places_that_tell(tree: ast.Module, line: int) -> Iterator[Iterable[int]]:
     """Yield sets of lines, from the statement of a line to all functions of the module."""
-    functions = [n for n in ast.walk(tree) if isinstance(n, (ast.FunctionDef, ast.AsyncFunctionDef))]
+    functions = [
+        n for n in ast.walk(tree) if isinstance(n, (ast.FunctionDef, ast.AsyncFunctionDef))
+    ]
     around = [one for one in functions if first_line(one) <= line <= (one.end_lineno or 0)]
     if around:
         function = max(around, key=lambda one: one.lineno)

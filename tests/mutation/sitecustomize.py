@@ -1,4 +1,4 @@
-"""Look for tinsmith on the path, before where it is installed; follow children of a followed test."""
+"""Look for tinsmith on the path, before where it is installed; follow children of a test."""
 
 import os
 import sys
