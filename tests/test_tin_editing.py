@@ -569,3 +569,31 @@ def test_the_last_line_cannot_go_when_no_points_are_left(options):
 def test_bad_scripts_name_the_edit(script, sentence):
     with pytest.raises(ts.PointsError, match=sentence):
         apply_edits(square(), script)
+
+
+def test_a_vertex_is_not_moved_while_all_others_are_in_line():
+    tin = ts.triangulate([[0, 0, 0], [1, 0, 0], [2, 0, 0], [1, 1, 0]])
+    before = state(tin)
+    with pytest.raises(ts.PointsError, match="while all others are in line: insert a point first"):
+        tin.move(3, [1, 2, 0])
+    require_state(tin, before)
+    tin.insert([[0, 5, 5]])
+    tin.move(3, [1, 2, 0])
+    require_fresh(tin)
+
+
+@pytest.mark.parametrize("gone", [0, 1, 2, 3])
+def test_a_ring_without_one_of_its_vertices_stays_closed(gone):
+    """Also without the vertex at which it closes, whose elevation is the ring's twice."""
+    ring = [[2, 2, 1], [6, 2, 2], [6, 6, 3], [2, 6, 4]]
+    ground = [[0, 0, 0], [9, 0, 0], [9, 9, 0], [0, 9, 0]]
+    tin = ts.triangulate(ground, breaklines=[[*ring, ring[0]]])
+    tin.remove(4 + gone)
+    (chain,) = [*tin.lines.chains()]
+    left = np.array(ring[gone + 1 :] + ring[:gone], float)
+    found = tin.points[chain]
+    np.testing.assert_array_equal(found[0], found[-1])
+    assert sorted(found[:-1].tolist()) == sorted(left.tolist())
+    fresh = ts.triangulate(ground, breaklines=[[*left, left[0]]])
+    assert tin.area == fresh.area
+    assert set(map(tuple, tin.points.tolist())) == set(map(tuple, fresh.points.tolist()))

@@ -36,6 +36,8 @@ def pytest_configure() -> None:
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     if _CHOSEN:
         chosen = set(json.loads(Path(_CHOSEN).read_text()))
+        gone = chosen - {name for item in items for name in names_of(item)}
+        chosen |= {name.partition("[")[0] for name in gone}  # their parameters were changed since
         wanted = {one for one in items if chosen & set(names_of(one))}
         config.hook.pytest_deselected(items=[one for one in items if one not in wanted])
         items[:] = [one for one in items if one in wanted]
