@@ -402,3 +402,13 @@ def test_virtual_raster_and_one_whose_source_is_gone(raster, tmp_path):
 def test_raster_becomes_a_tin(raster):
     tin = ts.triangulate(read(raster(heights())))
     assert len(tin.triangles) == 2 * 5 * 8
+
+
+@pytest.mark.parametrize(
+    "transform",
+    [(2.0, 4.0, 0.0, 1.0, 2.0, 0.0), (np.inf, 0, 0, 0, -1, 0), (1.0, 0, np.nan, 0, -1.0, 0)],
+)
+def test_cells_without_a_size_are_refused(transform):
+    header = SimpleNamespace(transform=transform, bounds=(0.0, 0.0, 1.0, 1.0))
+    with pytest.raises(ReadError, match="in which a cell has no size, or none that is finite"):
+        reading._require_place(header, Path("a.tif"))
