@@ -137,6 +137,10 @@ def test_needle_and_letter_lie_to_the_north(view):
     assert (dark, light) == (INK, PAPER)
     circle = max((p for p, _ in overlay.lines), key=len)
     center = (circle.max(axis=0) + circle.min(axis=0)) / 2
+    np.testing.assert_allclose(circle[0], circle[-1], atol=1e-9)  # once around
+    reach = np.hypot(*((circle - center) @ np.linalg.pinv(axes)).T)
+    np.testing.assert_allclose(reach, reach[0], rtol=1e-6)
+    assert np.abs(np.diff(circle, axis=0)).max() < 0.14 * np.abs(circle - center).max()
     tip = left[0]
     np.testing.assert_array_equal(tip, right[0])
     np.testing.assert_allclose(tip - center, 1.25 * 32.0 * axes[1], atol=1e-6)

@@ -481,3 +481,18 @@ def test_draped_lines_cross_alike_in_any_order():
         rows, same = (one.points[np.lexsort(one.points.T)] for one in (tin, other))
         np.testing.assert_array_equal(rows, same)
     assert crossings > 10
+
+
+@pytest.mark.parametrize("first", range(4))
+def test_a_crossing_that_rounds_to_a_given_vertex_is_that_vertex(first):
+    """Lines through (1/3, 1/3), which is no double: the nearest double is a point, on neither."""
+    third = 1.0 / 3.0
+    points = [[third, third, 7], [3, 0, 1], [3, 3, 2], [-3, -3, 3]]
+    points = np.roll(points, first, axis=0)
+    lines = [[[0, 1, 0], [1, -1, 0]], [[-1, 1, 5], [3, -1, 5]]]
+    tin = ts.triangulate(points, breaklines=lines)
+    assert ts.check(tin, points=ts.Survey(points=points, breaklines=lines)).ok
+    assert len(np.unique(tin.points[:, :2], axis=0)) == len(tin.points) == 8
+    (place,) = tin.report.crossings.xy
+    assert place.tolist() == [third, third]
+    assert tin.report.crossings.vertices.tolist() == [first]
