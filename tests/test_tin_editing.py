@@ -597,3 +597,27 @@ def test_a_ring_without_one_of_its_vertices_stays_closed(gone):
     fresh = ts.triangulate(ground, breaklines=[[*left, left[0]]])
     assert tin.area == fresh.area
     assert set(map(tuple, tin.points.tolist())) == set(map(tuple, fresh.points.tolist()))
+
+
+@pytest.mark.parametrize(("count", "steps"), [(3, 3), (10_001, 1)])
+def test_edits_after_one_that_failed_are_as_if_it_had_not_been(count, steps):
+    rng = np.random.default_rng(3)
+    points = np.c_[rng.integers(0, 40, (60, 2)) * 1.0, rng.integers(0, 9, 60)]
+    points = points[np.unique(points[:, :2], axis=0, return_index=True)[1]]
+    tin, same = (ts.triangulate(points) for _ in range(2))
+    new = np.c_[rng.random((count, 2)) * 40, np.zeros(count)]
+    new[count // 2] = points[5] + [0, 0, 1]
+
+    def edit(step):
+        for one in (tin, same):
+            one.insert([[0.5 + step, 0.25, 9.0], [1.5, 7.25 + step, 8.0]])
+            one.remove([7, len(one.points) - 2])
+            one.move(3, [0.125 + step, 3.0625, 2.0])
+
+    for step in range(steps):
+        edit(step)
+        with pytest.raises(ts.PointsError, match="allows none"):
+            tin.insert(new, duplicates="error")
+    edit(steps)
+    require_state(tin, state(same))
+    require_fresh(tin)
