@@ -122,7 +122,8 @@ def test_a_comma_that_may_separate_thousands_is_refused():
     ("text", "mark"),
     [
         (b"1,5 2,5", ","), (b"1.5 2.5", "."), (b"1.5 2,5", "."), (b"1, 2, 3", "."),
-        (b"a,b 1 ,5 5, ", "."), (b"", "."), (b",", "."), (b"0,9", ","), (b"9,0", ","), (b"9.0,", "."),
+        (b"a,b 1 ,5 5, ", "."), (b"", "."), (b",", "."), (b"0,9", ","), (b"9,0", ","),
+        (b"9.0,", "."),
     ],
 )  # fmt: skip
 def test_the_mark_between_digits(text, mark):
