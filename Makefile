@@ -66,11 +66,11 @@ SANITIZE_PYTEST := -m pytest -q -p no:cacheprovider --capture=sys --timeout 1800
 sanitize: sanitize-address sanitize-thread ## Run tests and campaigns under ASan, UBSan and TSan
 sanitize-address: $(READY)
 	$(BIN)/python -m pip install --quiet --group sanitize
-	$(SANITIZE) address $(SANITIZE_PYTEST) -n auto tests/test_tin_*.py
+	$(SANITIZE) address $(SANITIZE_PYTEST) -n auto tests/tin
 	$(SANITIZE) address -m fuzz --no-memory-limit --folder build/sanitize/fuzz --cases $(SANITIZE_CASES) --seed $(SEED) $(addprefix --campaign ,$(SANITIZE_CAMPAIGNS))
 sanitize-thread: $(READY)
 	$(BIN)/python -m pip install --quiet --group sanitize
-	$(SANITIZE) thread $(SANITIZE_PYTEST) tests/test_tin_threads.py tests/test_tin_concurrency.py
+	$(SANITIZE) thread $(SANITIZE_PYTEST) tests/tin/test_threads.py tests/tin/editing/test_concurrency.py
 
 # make mutants MUTANTS=60 SEED=3 KIND=core; survivors are listed in build/mutants, too.
 MUTANTS ?= 150

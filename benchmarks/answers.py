@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tinsmith.tin import TIN, PointsError, check
-from tinsmith.tin.findings import Problem
+from tinsmith.tin.checking.findings import Problem
 
 __all__ = [
     "AS_MANY",

@@ -91,7 +91,7 @@ def _triangulate(points: Floats, threads: int | None = 1) -> Any:
 
 def _grow(points: Floats, threads: int | None = 1) -> Any:
     from tinsmith.tin import _kernel
-    from tinsmith.tin.threads import thread_count
+    from tinsmith.tin.validation.threads import thread_count
 
     return _kernel.grow(points, threads=thread_count(threads, len(points)))
 

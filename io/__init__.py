@@ -1,41 +1,33 @@
 """The world room: readers, writers and the format registry."""
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from .._lazy import lazy_names
 
 if TYPE_CHECKING:
-    from .codes import lines_from_codes
-    from .crs import LengthUnit, length_unit, transform_points
-    from .errors import CrsError, FormatError, ReadError, WriteError
-    from .formats import Format, find_format, known_formats, read, write
-    from .vectors import read_lines, read_polygons, read_rings, read_water
-    from .vectors_survey import with_lines
+    from ..errors import CrsError, FormatError, ReadError, WriteError
+    from .field_codes import lines_from_codes
+    from .reading import read
+    from .registry import Format, find_format, known_formats
+    from .reprojection.transformation import LengthUnit, length_unit, transform_points
+    from .vector.reading import read_lines, read_polygons, read_rings, read_water
+    from .vector.survey_lines import with_lines
+    from .writing import write
 
-# The module that each public name lives in. They are loaded when a name is first used: the
-# processes that read files for native libraries start without them.
-_NAMES_OF_MODULE = {
-    "codes": ("lines_from_codes",),
-    "crs": ("LengthUnit", "length_unit", "transform_points"),
-    "errors": ("CrsError", "FormatError", "ReadError", "WriteError"),
-    "formats": ("Format", "find_format", "known_formats", "read", "write"),
-    "vectors": ("read_lines", "read_polygons", "read_rings", "read_water"),
-    "vectors_survey": ("with_lines",),
-}
-_MODULE_OF_NAME = {name: module for module, names in _NAMES_OF_MODULE.items() for name in names}
-
-
-def __getattr__(name: str) -> Any:
-    """Load a module, or a public name from its module, when it is first used."""
-    if name in _NAMES_OF_MODULE:
-        return import_module(f"{__name__}.{name}")
-    if name in _MODULE_OF_NAME:
-        return getattr(import_module(f"{__name__}.{_MODULE_OF_NAME[name]}"), name)
-    raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
-
-
-def __dir__() -> list[str]:
-    return sorted(__all__)
-
+# The processes that read files for native libraries start without what they do not use.
+__getattr__, __dir__ = lazy_names(
+    __name__,
+    {
+        ".field_codes": ("lines_from_codes",),
+        ".reprojection.transformation": ("LengthUnit", "length_unit", "transform_points"),
+        "..errors": ("CrsError", "FormatError", "ReadError", "WriteError"),
+        ".reading": ("read",),
+        ".registry": ("Format", "find_format", "known_formats"),
+        ".vector.reading": ("read_lines", "read_polygons", "read_rings", "read_water"),
+        ".vector.survey_lines": ("with_lines",),
+        ".writing": ("write",),
+    },
+)
 
 __all__ = [
     "CrsError",

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..tin.options import shown
-from .errors import FormatError
+from ..errors import FormatError
+from ..tin.validation.options import shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

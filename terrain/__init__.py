@@ -1,10 +1,10 @@
 """The meaning room: what a terrain surface says. Knows no files."""
 
-from .comparison import comparison_picture
-from .errors import OptionError, RenderError
-from .histogram import histogram
+from ..errors import OptionError, RenderError
+from .charts.comparison import comparison_picture
+from .charts.histogram import histogram
 from .lift import lift
-from .preview import preview
+from .preview.picture import preview
 from .slope import aspect, slope
 
 __all__ = [

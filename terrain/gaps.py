@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..tin.regions import Surface, trimmed
+from ..tin.constraints.clipping import Surface, trimmed
 from ..tin.topology import NO_NEIGHBOR
 from .slope import slope
 

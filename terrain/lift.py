@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .. import _optional as extras
 from ..crs import scale_elevations
-from . import extras
-from .errors import OptionError
+from ..errors import OptionError
 from .slope import aspect, slope
 
 if TYPE_CHECKING:

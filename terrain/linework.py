@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..tin.regions import edge_keys
-from . import extras
+from .. import _optional as extras
+from ..tin.constraints.clipping import edge_keys
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

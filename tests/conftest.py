@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import hypothesis
 import pytest
-from no_skips import (  # noqa: F401 - hooks
+from support.no_skips import (  # noqa: F401 - hooks
     pytest_addoption,
     pytest_make_collect_report,
     pytest_runtest_makereport,
 )
 
-from tinsmith.terrain import opengl
+from tinsmith.terrain.preview import opengl
 from tinsmith.tin import TinsmithError
 
 # A timing is never a test; a test that hangs ends at pytest's own limit.

@@ -30,7 +30,7 @@ def fuzz(*arguments: object, timeout: float = 280) -> subprocess.CompletedProces
 
 def run_planted(folder: Path, name: str, *arguments: object):
     """Run a planted campaign; return the process and the find that it wrote."""
-    planted = ("--module", "planted_campaigns", "--folder", folder)
+    planted = ("--module", "support.planted_campaigns", "--folder", folder)
     done = fuzz(
         *planted, "--shrink-seconds", 3, "--campaign", name, *(arguments or ("--cases", 20))
     )
@@ -49,7 +49,7 @@ def test_a_planted_failure_is_found_minimised_and_replayed(tmp_path):
     assert find["case"]["numbers"][0] > 900
     assert "a number above 900" in done.stdout
     assert f"--only {find['number']}" in done.stdout
-    planted = ("--module", "planted_campaigns")
+    planted = ("--module", "support.planted_campaigns")
     again = fuzz(*planted, "--replay", file)
     assert again.returncode == 1
     assert "a number above 900" in again.stdout
@@ -60,7 +60,7 @@ def test_a_planted_failure_is_found_minimised_and_replayed(tmp_path):
 def test_a_find_that_is_mended_replays_as_sound(tmp_path):
     find = {"campaign": "fails", "seed": 1, "number": 0, "case": {"numbers": [3], "word": ""}}
     (tmp_path / "find.json").write_text(json.dumps(find))
-    done = fuzz("--module", "planted_campaigns", "--replay", tmp_path / "find.json")
+    done = fuzz("--module", "support.planted_campaigns", "--replay", tmp_path / "find.json")
     assert (done.returncode, done.stdout) == (0, "small\n")
 
 

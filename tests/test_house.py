@@ -108,7 +108,7 @@ def test_public_examples_run():
     names = ["tinsmith"]
     for room in (tinsmith.tin, tinsmith.io, tinsmith.terrain):
         names += [
-            module.name for module in pkgutil.iter_modules(room.__path__, f"{room.__name__}.")
+            module.name for module in pkgutil.walk_packages(room.__path__, f"{room.__name__}.")
         ]
     tried = 0
     for name in names:

@@ -21,7 +21,7 @@ SKIPS = {
 def run_pytest(folder: Path, *options: str, **environment: str):
     clean = {k: v for k, v in os.environ.items() if k != "CI" and not k.startswith("PYTEST")}
     return subprocess.run(
-        [sys.executable, "-m", "pytest", "-q", "-p", "no_skips", *options, str(folder)],
+        [sys.executable, "-m", "pytest", "-q", "-p", "support.no_skips", *options, str(folder)],
         env={**clean, "PYTHONPATH": str(TESTS), **environment},
         cwd=folder,
         capture_output=True,

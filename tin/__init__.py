@@ -1,18 +1,18 @@
 """The shape room: points become triangles. Knows no files, no CRS, no pictures."""
 
+from ..errors import CheckError, LinesError, MissingExtraError, PointsError, TinsmithError
 from . import paper
-from .check import CheckResult, check
-from .compare import Comparison, Outcome, compare
-from .errors import CheckError, LinesError, MissingExtraError, PointsError, TinsmithError
-from .lines import Breakline, Lines, Water
-from .quality import Quality, quality
-from .refine import refine
+from .checking.checker import CheckResult, check
+from .constraints.breaklines import Breakline, Lines, Water
+from .construction import triangulate
+from .meshing.refinement import refine
+from .meshing.shape_quality import Quality, quality
+from .paper.comparison import Comparison, Outcome, compare
 from .report import Merge, Report
 from .surface import TIN
 from .survey import Survey
-from .triangulate import triangulate
 from .types import Bounds, Grid
-from .voronoi import Voronoi
+from .voronoi.diagram import Voronoi
 
 __all__ = [
     "TIN",

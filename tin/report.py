@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from .frozen import Frozen
-from .unmended import Unmended
+from .._sentences import counted
+from .types import Frozen
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .editing import Edit
+    from .editing.session import Edit
 
-__all__ = ["LEFT_OUT", "Crossings", "Merge", "Overruled", "Report"]
+__all__ = ["LEFT_OUT", "UNMENDED_WHY", "Crossings", "Merge", "Overruled", "Report", "Unmended"]
 
 LEFT_OUT = (
     "erased",
@@ -28,6 +28,13 @@ LEFT_OUT = (
     "masked",
 )
 """Why a row of points has no vertex; ``Report.left_out_why`` holds places in this list."""
+
+UNMENDED_WHY = (
+    "lines or the rim meet there under a small angle",
+    "only far shorter edges would help",
+    "a line or the rim in the way has no room for a further vertex",
+)
+"""Why a triangle stays as it is; ``Unmended.why`` holds places in this list."""
 
 
 class Merge(NamedTuple):
@@ -96,6 +103,49 @@ class Overruled(NamedTuple):
     lines: NDArray[np.int32]
     heights: NDArray[np.float64]
     taken: NDArray[np.float64]
+
+
+class Unmended(NamedTuple):
+    """Triangles of a refined mesh with too small an angle, too large, or with too long an edge.
+
+    Attributes
+    ----------
+    triangles : (k,) int32 array
+        Their numbers, ascending; of the mesh as refined, before any edits.
+    why : (k,) int8 array
+        Places in ``UNMENDED_WHY``.
+    angles : (k,) float64 array
+        Smallest angle of each in the plane, degrees.
+    """
+
+    triangles: NDArray[np.int32]
+    why: NDArray[np.int8]
+    angles: NDArray[np.float64]
+
+    @classmethod
+    def none(cls) -> Unmended:
+        """Return none."""
+        return cls(np.empty(0, np.int32), np.empty(0, np.int8), np.empty(0))
+
+    def sentences(self) -> tuple[str, ...]:
+        """Tell for each reason how many there are, and the least angle of them."""
+        return tuple(
+            f"{counted(group['count'], 'triangle')} with angles from "
+            f"{group['least_angle']:.3g} degrees on could not be mended: {group['why']}."
+            for group in self.to_list()
+        )
+
+    def to_list(self) -> list[dict[str, Any]]:
+        """Return for each reason count, least angle and numbers, as plain values."""
+        return [
+            {
+                "why": UNMENDED_WHY[code],
+                "count": int((self.why == code).sum()),
+                "least_angle": float(self.angles[self.why == code].min()),
+                "triangles": self.triangles[self.why == code].tolist(),
+            }
+            for code in np.unique(self.why).tolist()
+        ]
 
 
 def _no_crossings() -> Crossings:

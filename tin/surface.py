@@ -8,22 +8,22 @@ from typing import TYPE_CHECKING, Any, ClassVar, Never
 import numpy as np
 
 from ..crs import CRS, Unit, require_one_unit, scale_elevations, shorten_crs
+from ..errors import PointsError
 from . import _kernel, topology
-from .editable import Editable
-from .errors import PointsError
-from .lines import Lines
-from .points import as_points, as_xy
+from .constraints.breaklines import Lines
+from .editing.editable import Editable
+from .editing.version import Version
 from .report import Report
 from .triangulation import Triangulation
-from .version import Version
+from .validation.points import as_points, as_xy
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from ..crs import CrsLike, UnitLike
-    from .recipe import Recipe
+    from .building.inputs import Recipe
     from .types import Bounds
-    from .voronoi import Voronoi
+    from .voronoi.diagram import Voronoi
 
 
 __all__ = ["TIN"]
@@ -385,7 +385,7 @@ class TIN(Editable):
         >>> tin.voronoi(pad=0).areas
         array([4., 6., 6.])
         """
-        from .voronoi import voronoi
+        from .voronoi.diagram import voronoi
 
         return voronoi(self, boundary=boundary, pad=pad)
 

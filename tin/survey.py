@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..crs import CRS, Unit, require_one_unit, shorten_crs
-from .lines import Breakline, Water
-from .tables import as_table
+from .constraints.breaklines import Breakline, Water
 from .types import Bounds
+from .validation.tables import as_table
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .errors import PointsError
+from ..errors import PointsError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

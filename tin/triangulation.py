@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from . import _kernel, topology
-from .frozen import Frozen, seal
-from .types import Bounds
+from .types import Bounds, Frozen, seal
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

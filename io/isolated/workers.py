@@ -18,9 +18,9 @@ from collections.abc import Generator, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from ..errors import ReadError
-from ..forking import Fork, can_fork
+from ...errors import ReadError
 from .answers import Answer, BrokenMessageError, receive, send
+from .forking import Fork, can_fork
 from .limits import START_SECONDS, Limits, limits_for
 
 __all__ = ["run_isolated", "stream_isolated"]

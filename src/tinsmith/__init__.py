@@ -6,74 +6,77 @@
 array([6.5])
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from ._lazy import lazy_names
 
 if TYPE_CHECKING:
     from . import io, terrain, tin
     from .crs import CRS, Unit
-    from .io import CrsError, FormatError, ReadError, WriteError, read, write
-    from .terrain import OptionError, RenderError
+    from .errors import (
+        CheckError,
+        CrsError,
+        FormatError,
+        LinesError,
+        MissingExtraError,
+        OptionError,
+        PointsError,
+        ReadError,
+        RenderError,
+        TinsmithError,
+        WriteError,
+    )
+    from .io import read, write
     from .tin import (
         TIN,
         Bounds,
         Breakline,
-        CheckError,
         CheckResult,
         Grid,
         Lines,
-        LinesError,
-        MissingExtraError,
-        PointsError,
         Report,
         Survey,
-        TinsmithError,
         Water,
         check,
         triangulate,
     )
 
-# The room that each public name lives in; rooms are loaded when a name is first used.
-_NAMES_OF_ROOM = {
-    "crs": ("CRS", "Unit"),
-    "io": ("CrsError", "FormatError", "ReadError", "WriteError", "read", "write"),
-    "terrain": ("OptionError", "RenderError"),
-    "tin": (
-        "TIN",
-        "Bounds",
-        "Breakline",
-        "CheckError",
-        "CheckResult",
-        "Grid",
-        "Lines",
-        "LinesError",
-        "MissingExtraError",
-        "PointsError",
-        "Report",
-        "Survey",
-        "TinsmithError",
-        "Water",
-        "check",
-        "triangulate",
-    ),
-}
-_ROOM_OF_NAME = {name: room for room, names in _NAMES_OF_ROOM.items() for name in names}
-
 __version__ = "0.1.0"
 
-
-def __getattr__(name: str) -> Any:
-    """Load a room, or a public name from its room, when it is first used."""
-    if name in _NAMES_OF_ROOM:
-        return import_module(f"{__name__}.{name}")
-    if name in _ROOM_OF_NAME:
-        return getattr(import_module(f"{__name__}.{_ROOM_OF_NAME[name]}"), name)
-    raise AttributeError(f"module 'tinsmith' has no attribute '{name}'")
-
-
-def __dir__() -> list[str]:
-    return sorted(__all__)
-
+__getattr__, __dir__ = lazy_names(
+    __name__,
+    {
+        ".crs": ("CRS", "Unit"),
+        ".errors": (
+            "CheckError",
+            "CrsError",
+            "FormatError",
+            "LinesError",
+            "MissingExtraError",
+            "OptionError",
+            "PointsError",
+            "ReadError",
+            "RenderError",
+            "TinsmithError",
+            "WriteError",
+        ),
+        ".io": ("read", "write"),
+        ".terrain": (),
+        ".tin": (
+            "TIN",
+            "Bounds",
+            "Breakline",
+            "CheckResult",
+            "Grid",
+            "Lines",
+            "Report",
+            "Survey",
+            "Water",
+            "check",
+            "triangulate",
+        ),
+    },
+)
 
 __all__ = [
     "CRS",

@@ -1,10 +1,28 @@
-"""The root of all errors, and those that every package may raise. Imports nothing of tinsmith."""
+"""Errors: one root, and each also the built-in that it resembles. Knows no package."""
 
 from __future__ import annotations
 
-import re
+from typing import TYPE_CHECKING, Any
 
-__all__ = ["CrsError", "OptionError", "TinsmithError", "counted", "inflect"]
+from ._sentences import printable
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+    from pathlib import Path
+
+__all__ = [
+    "CheckError",
+    "CrsError",
+    "FormatError",
+    "LinesError",
+    "MissingExtraError",
+    "OptionError",
+    "PointsError",
+    "ReadError",
+    "RenderError",
+    "TinsmithError",
+    "WriteError",
+]
 
 
 class TinsmithError(Exception):
@@ -42,26 +60,116 @@ class CrsError(TinsmithError, ValueError):
         self.crs = crs
 
 
-_INFLECTED = re.compile(r"\[([^\[|\]]*)\|([^\[|\]]*)\]")
+class PointsError(TinsmithError, ValueError):
+    """Points, or options for them, that cannot make a TIN.
 
-
-def inflect(sentence: str, count: int) -> str:
-    """Take, of words written ``[singular|plural]``, those that fit a count.
-
-    Examples
-    --------
-    >>> inflect("{count} [row is|rows are] missing.", 1)
-    '{count} row is missing.'
+    Attributes
+    ----------
+    rows : tuple of int
+        The first few row numbers (0-based, in the caller's own input) at fault; may be empty.
     """
-    return _INFLECTED.sub(r"\1" if count == 1 else r"\2", sentence)
+
+    def __init__(self, message: str, *, rows: Iterable[int] = ()) -> None:
+        super().__init__(message)
+        self.rows = tuple(int(row) for row in rows)
 
 
-def counted(number: int, noun: str, plural: str = "") -> str:
-    """Return a number with its noun, for sentences.
+class LinesError(TinsmithError, ValueError):
+    """Breaklines, rings or options for them that the surface cannot hold.
 
-    Examples
-    --------
-    >>> counted(1, "row"), counted(2000, "vertex", "vertices")
-    ('1 row', '2,000 vertices')
+    Attributes
+    ----------
+    lines : tuple of int
+        The first few lines (0-based, in the caller's own input) at fault; may be empty.
     """
-    return f"{number:,} {noun if number == 1 else plural or noun + 's'}"
+
+    def __init__(self, message: str, *, lines: Iterable[int] = ()) -> None:
+        super().__init__(message)
+        self.lines = tuple(int(line) for line in lines)
+
+
+class CheckError(TinsmithError, ValueError):
+    """A TIN that is not what it should be; the text is one sentence for each kind of problem.
+
+    Attributes
+    ----------
+    problems : tuple of Problem
+        As in :class:`tinsmith.tin.CheckResult`.
+    """
+
+    def __init__(self, message: str, *, problems: Sequence[Any] = ()) -> None:
+        super().__init__(message)
+        self.problems = tuple(problems)
+
+
+class ReadError(TinsmithError, ValueError):
+    """A file that cannot be read, or whose content is not what it should be.
+
+    Attributes
+    ----------
+    path : Path or None
+        The file.
+    lines : tuple of int
+        The first few line numbers at fault, counted from 1 as an editor does; may be empty.
+    """
+
+    def __init__(
+        self, message: str, *, path: Path | None = None, lines: Sequence[int] = ()
+    ) -> None:
+        super().__init__(printable(message))
+        self.path = path
+        self.lines = tuple(int(line) for line in lines)
+
+    @property
+    def line(self) -> int | None:
+        """The first line at fault, None if the fault is not in one line."""
+        return self.lines[0] if self.lines else None
+
+
+class WriteError(TinsmithError, OSError):
+    """A file that cannot be written; a file that was there before is left whole.
+
+    Attributes
+    ----------
+    path : Path or None
+        The file.
+    """
+
+    def __init__(self, message: str, *, path: Path | None = None) -> None:
+        super().__init__(message)
+        self.path = path
+
+
+class FormatError(TinsmithError, ValueError):
+    """No format fits, or an option, or its value, that the format does not have.
+
+    Attributes
+    ----------
+    known : tuple of str
+        The names, suffixes, options or values that would be accepted; may be empty.
+    """
+
+    def __init__(self, message: str, *, known: Sequence[str] = ()) -> None:
+        super().__init__(printable(message))
+        self.known = tuple(known)
+
+
+class RenderError(TinsmithError, RuntimeError):
+    """A picture that cannot be made or written; the sentence names the way out."""
+
+
+class MissingExtraError(TinsmithError, ImportError):
+    """An optional library is not installed; the sentence names the extra that brings it.
+
+    Attributes
+    ----------
+    extra : str
+        Name of the extra, as in ``pip install "tinsmith[extra]"``.
+    """
+
+    def __init__(self, library: str, *, extra: str, purpose: str) -> None:
+        super().__init__(
+            f"{purpose} needs {library}, which is not installed: "
+            f'run pip install "tinsmith[{extra}]".'
+        )
+        self.extra = extra

@@ -6,7 +6,7 @@ from collections import defaultdict
 from typing import Any
 
 import numpy as np
-import oracles
+from support import oracles
 
 import tinsmith as ts
 

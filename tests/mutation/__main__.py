@@ -45,20 +45,28 @@ JUDGED = tomllib.loads((Path(__file__).parent / "judged.toml").read_text())["mut
 NOT_RUN = ("does not compile", "judged", "unsure", "out of time", "not begun")
 MOST_FILES = 8
 CORE_TESTS = (
-    "predicates", "growth", "kernel_seams", "points", "locate", "rings", "mesh", "editing",
-    "noding", "lines", "refine", "threads", "kernel_work", "duplicates", "kernel_datasets",
+    "kernel/test_predicates", "kernel/test_growth", "kernel/test_seams", "validation/test_points",
+    "kernel/test_locate", "kernel/test_point_in_polygon", "kernel/test_mesh",
+    "editing/test_session", "constraints/test_noding", "constraints/test_breaklines",
+    "meshing/test_refinement", "test_threads", "kernel/test_work", "building/test_duplicates",
+    "kernel/test_datasets",
 )  # fmt: skip
 NEAREST = {
-    "location": ("locate",),
-    "lines": ("noding", "lines", "rings", "contacts"),
-    "mesh": ("mesh", "editing", "lines"),
-    "refinement": ("error_bounds", "refine", "conforming"),
-    "predicates": ("predicates", "error_bounds"),
-    "points": ("points", "duplicates"),
-}
+    "location": ("kernel/test_locate",),
+    "lines": (
+        "constraints/test_noding", "constraints/test_breaklines", "kernel/test_point_in_polygon",
+        "kernel/test_contacts",
+    ),
+    "mesh": ("kernel/test_mesh", "editing/test_session", "constraints/test_breaklines"),
+    "refinement": (
+        "kernel/test_error_bounds", "meshing/test_refinement", "constraints/test_conforming",
+    ),
+    "predicates": ("kernel/test_predicates", "kernel/test_error_bounds"),
+    "points": ("validation/test_points", "building/test_duplicates"),
+}  # fmt: skip
 """Test files that are likeliest to notice changes in a folder of the core; they run first."""
 
-BUILDERS = ("points", "growth", "kernel_seams")
+BUILDERS = ("validation/test_points", "kernel/test_growth", "kernel/test_seams")
 NO_TESTS = 5
 N_NEAREST = 3
 SECONDS_OF_TESTS = 10.0
@@ -107,7 +115,11 @@ def tests_of(path: Path) -> tuple[Path, ...]:
     """Test files of a module, by what they name, then those of the modules that import it."""
     own = ranked_tests(path, {path.stem}, names_of(path))
     both = dict.fromkeys((*own, *ranked_tests(path, *importers_of(path))))
-    return tuple(both)[:MOST_FILES] or tuple(sorted(TESTS.glob(f"test_{path.parent.name}_*.py")))
+    return tuple(both)[:MOST_FILES] or tuple(sorted((TESTS / room_of(path)).rglob("test_*.py")))
+
+
+def room_of(path: Path) -> str:
+    return inside_package(path).parts[0]
 
 
 def names_of(path: Path) -> set[str]:
@@ -129,13 +141,13 @@ def ranked_tests(path: Path, modules: set[str], names: set[str]) -> tuple[Path, 
         return ()
     imported = rf"import .*\b(?:{any_of(modules)})\b|from .*\b(?:{any_of(modules)}) import"
     pattern = re.compile(rf"{imported}|\b(?:{any_of(names)})\b" if names else imported)
-    room = inside_package(path).parts[0]
+    mirrored = TESTS / inside_package(path).parent / f"test_{path.stem}.py"
     scores = {}
     for test in sorted(TESTS.rglob("test_*.py")):
         text = test.read_text().replace("from __future__ import annotations", "")
         score = len(pattern.findall(text))
-        score += 50 * any(f"test_{room}_{one.split('_')[0]}" in test.stem for one in modules)
-        score *= 3 if test.stem.startswith(f"test_{room}") else 1
+        score += 50 * (test == mirrored)
+        score *= 3 if test.is_relative_to(TESTS / room_of(path)) else 1
         scores[test] = score
     return tuple(sorted((t for t in scores if scores[t]), key=lambda t: -scores[t])[:MOST_FILES])
 
@@ -198,7 +210,7 @@ def inside_package(path: Path) -> Path:
 
 def core_tests_of(path: Path) -> tuple[Path, ...]:
     names = dict.fromkeys((*NEAREST.get(path.parent.name, BUILDERS), *CORE_TESTS))
-    return tuple(path for n in names if (path := TESTS / f"test_tin_{n}.py").exists())
+    return tuple(TESTS / "tin" / f"{name}.py" for name in names)
 
 
 # ---------------------------------------------------------------------------- running

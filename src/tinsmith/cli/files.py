@@ -11,9 +11,9 @@ from typing import IO, TYPE_CHECKING, Any
 
 import click
 
-from ..errors import counted
-from .console import emit_file
-from .failures import Failure, note_written
+from .._sentences import counted
+from .output.console import emit_file
+from .output.failures import Failure, note_written
 from .paths import STANDARD, Named, name_of, require_separate
 
 if TYPE_CHECKING:
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
     from ..io import Format
     from ..tin import TIN, Survey
-    from .console import Console
     from .options import Reading, Triangulating, Writing
+    from .output.console import Console
 
 __all__ = [
     "Output",
@@ -57,7 +57,7 @@ class Output:
 def read_input(path: Path, reading: Reading, console: Console) -> Survey | TIN:
     """Read points or a TIN, showing progress."""
     from ..io import read
-    from ..io.formats import read_stream
+    from ..io.reading import read_stream
     from ..tin import Bounds
 
     options = {name: value for name, value in asdict(reading).items() if value is not None}
@@ -107,7 +107,8 @@ def with_lines(survey: Survey, how: Triangulating, console: Console) -> Survey:
 
 def triangulated(survey: Survey, how: Triangulating, console: Console) -> TIN:
     """Build the TIN of a survey, showing progress; rows at fault are named by point number too."""
-    from ..tin import PointsError, triangulate
+    from ..errors import PointsError
+    from ..tin import triangulate
 
     try:
         with console.steps() as steps, steps.step(f"Triangulating {counted(len(survey), 'point')}"):
@@ -147,7 +148,7 @@ def inputs_of(
     file: Path, how: Triangulating | None = None, *, script: Path | None = None
 ) -> list[Named]:
     """Return all files that a command reads."""
-    from ..io.vectors_survey import path_and_layer
+    from ..io.vector.survey_lines import path_and_layer
 
     inputs = [Named(file, "the input")]
     if script is not None:
@@ -227,7 +228,7 @@ def require_picture(
 
 def write_figure(figure: Any, path: Path, *, dpi: int) -> None:
     """Write a figure of matplotlib, whole or not at all, with no version in its bytes."""
-    from ..io.atomic import replacing
+    from .._atomic import replacing
 
     with replacing(path) as picture:
         figure.savefig(picture, format="png", dpi=dpi, metadata={"Software": None})
@@ -259,7 +260,8 @@ def _require_taken(left_over: set[str]) -> None:
 
 
 def _output_format(path: Path, name: str | None) -> Format:
-    from ..io import FormatError, find_format, known_formats
+    from ..errors import FormatError
+    from ..io import find_format, known_formats
 
     if name is not None:
         chosen = find_format(name)
@@ -312,7 +314,7 @@ def _write_to_stdout(obj: TIN | Survey, output: Output, options: dict[str, Any])
 
 def written_text(outputs: Sequence[Output]) -> str:
     """Return what was written for a summary, a line each."""
-    from .facts import file_size
+    from .output.summaries import file_size
 
     return "\n".join(
         "standard output"
@@ -331,7 +333,7 @@ def _shows_progress(one: Format) -> bool:
 
 def write_text(path: Path, text: str) -> None:
     """Write a whole text file or none."""
-    from ..io.atomic import replacing
+    from .._atomic import replacing
 
     with replacing(path, binary=False) as file:
         file.write(text)

@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .. import __version__
-from ..io.forking import permit_forks
-from .failures import Failure, failures_as_sentences, show_failure
-from .streams import (
+from ..io.isolated.forking import permit_forks
+from .output.failures import Failure, failures_as_sentences, show_failure
+from .output.streams import (
     Terminated,
     accept_any_text,
     reserve_standard_streams,
@@ -47,7 +47,7 @@ class _Commands(click.Group):
         cmd_name: str,
     ) -> click.Command | None:
         if cmd_name in _BUILT_IN:
-            module = import_module(f".{cmd_name}", __package__)
+            module = import_module(f".commands.{cmd_name}", __package__)
             built_in: click.Command = getattr(module, cmd_name)
             return built_in
         entry = _plug_ins().get(cmd_name)

@@ -10,8 +10,8 @@ from typing import Any, TypeVar
 
 import click
 
-from .console import Console
 from .line_options import LINE_OPTIONS
+from .output.console import Console
 from .paths import INPUT
 
 __all__ = [

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
-from .streams import escape_unprintable
+from .output.streams import escape_unprintable
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -102,7 +102,7 @@ def require_separate(inputs: Iterable[Named], outputs: Sequence[Named]) -> None:
     WriteError
         If an output cannot be written where it should be.
     """
-    from ..io.atomic import require_writable
+    from .._atomic import require_writable
 
     taken: dict[object, Named] = {}
     for one in _files(inputs, "input"):

@@ -1,0 +1,338 @@
+"""The columns of a table without a header, told by what is in them.
+
+Every customary layout that the columns could have is a candidate. What speaks against one is an
+objection in words; the candidate without any is taken, and the objections to the others are the
+reason. Where several are left a convention may decide, else the table is refused.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...errors import ReadError
+from .columns import Columns, columns_by_word
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+    from numpy.typing import NDArray
+
+    from ..reprojection.area_of_use import AreaOfUse
+
+__all__ = [
+    "Column",
+    "columns_by_content",
+    "is_too_steep",
+    "plausible_elevations",
+    "relief_and_extent",
+    "require_no_split_decimals",
+]
+
+_LOWEST, _HIGHEST = -37_000.0, 30_000.0
+"""Feet of the deepest trench and the highest summit, in whatever unit: nothing lies beyond."""
+
+_STEEPEST = 3.0
+"""Relief over extent: no ground rises by more than 70 degrees from one end to the other."""
+
+_SOME = 4_096
+_FEW_ROWS = 3
+_DISTINCT_SHARE = 0.5
+_ODD_SHARE = 0.1
+_DECIMAL_DIGITS = 4
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Column:
+    """What is in a column.
+
+    Attributes
+    ----------
+    values : (n,) float64 array
+        NaN where a cell is no number.
+    is_text : bool
+        Whether most cells are no numbers.
+    is_whole : bool
+        Whether all numbers are whole, none below zero, and written without a decimal mark.
+    is_padded : bool
+        Whether numbers have leading zeros.
+    text_share, distinct_share : float
+        Of the cells, those that are no numbers and not empty; of the values, those that differ.
+    """
+
+    values: NDArray[np.float64]
+    is_text: bool = False
+    is_whole: bool = False
+    is_padded: bool = False
+    text_share: float = 0.0
+    distinct_share: float = 1.0
+
+    @property
+    def counts_rows(self) -> bool:
+        """Whether the values are whole and grow by one from row to row."""
+        return self.is_whole and bool((np.diff(self.values) == 1.0).all())
+
+
+@dataclass(frozen=True, slots=True)
+class _Candidate:
+    """A layout: its letters, the column of the first coordinate, and what speaks against it."""
+
+    word: str
+    start: int
+    is_northing_first: bool
+    objections: list[str] = field(default_factory=list)
+    is_outside: bool = False
+
+    @property
+    def is_plausible(self) -> bool:
+        return not self.objections and not self.is_outside
+
+    def coordinates(self, columns: Sequence[Column]) -> NDArray[np.float64]:
+        """Return some of the points that it gives."""
+        first, second, third = range(self.start, self.start + 3)
+        order = (second, first, third) if self.is_northing_first else (first, second, third)
+        step = max(1, len(columns[0].values) // _SOME)
+        points = np.column_stack([columns[i].values[::step] for i in order])
+        return points[np.isfinite(points).all(axis=1)]
+
+
+def columns_by_content(
+    columns: Sequence[Column],
+    area: AreaOfUse | None,
+    *,
+    is_scan: bool = False,
+    is_announced: bool = False,
+) -> tuple[Columns, str]:
+    """Tell the columns by what is in them.
+
+    Parameters
+    ----------
+    columns : sequence of Column
+    area : AreaOfUse or None
+        Where the points must lie, if their CRS is known.
+    is_scan : bool
+        Whether the suffix says that rows begin with x, y, z.
+    is_announced : bool
+        Whether a point count on top says it, too.
+
+    Returns
+    -------
+    columns : Columns
+    note : str
+        What they are taken for, and why.
+
+    Raises
+    ------
+    ReadError
+        If no layout fits, or more than one.
+    """
+    candidates = _candidates(columns)
+    may_differ = len({one.start for one in candidates}) > 1
+    for candidate in candidates:
+        candidate.objections.extend(_objections(candidate, columns))
+        if may_differ:
+            candidate.objections.extend(_differences(candidate, columns))
+    candidates = _placed(candidates, columns, area)
+    left = [one for one in candidates if one.is_plausible]
+    chosen, reason = _customary(left, columns, is_scan=is_scan, is_announced=is_announced)
+    if len(left) == 1:
+        chosen, reason = left[0], _reason(candidates, area)
+    if chosen is None:
+        raise ReadError(_refusal(candidates, left, area))
+    found = columns_by_word(chosen.word, [], len(columns))
+    return found, f"No header: the columns are taken as {found.layout} ({chosen.word}){reason}."
+
+
+# ------------------------------------------------------------------ candidates
+
+
+def _candidates(columns: Sequence[Column]) -> list[_Candidate]:
+    """Return the customary layouts that columns of numbers and text could have."""
+    is_text = [column.is_text for column in columns]
+    if len(columns) < 3 or len(columns) - sum(is_text) < 3:
+        raise ReadError(
+            f"its {len(columns)} columns do not hold three of numbers: easting, northing and "
+            "elevation are needed."
+        )
+    found: list[_Candidate] = []
+    if len(columns) > 3 and not any(is_text[1:4]) and _may_number(columns[0]):
+        found += _both_orders(columns, 1)
+    if not any(is_text[:3]):
+        found += _both_orders(columns, 0)
+    if not found:
+        raise ReadError(
+            "it has no header, and its columns are not those of a known layout: say with the "
+            "option columns what they are, for example columns='PNEZD'."
+        )
+    return found
+
+
+def _may_number(column: Column) -> bool:
+    """Whether a column may number the points: by names, or whole numbers in any order."""
+    return column.is_text or column.is_whole or column.is_padded
+
+
+def _both_orders(columns: Sequence[Column], start: int) -> Iterator[_Candidate]:
+    first = "" if start == 0 else "P"
+    if start == 1 and columns[0].is_text and columns[0].distinct_share < _DISTINCT_SHARE:
+        first = "D"  # a few words again and again are codes
+    text = next((i for i in range(start + 3, len(columns)) if columns[i].is_text), None)
+    has_tail = text is not None and first != "D"
+    tail = "-" * (text - start - 3) + "D" if text is not None and has_tail else ""
+    yield _Candidate(f"{first}NEZ{tail}", start, is_northing_first=True)
+    middle = "ENZ" if start else "XYZ"
+    yield _Candidate(f"{first}{middle}{tail}", start, is_northing_first=False)
+
+
+# ------------------------------------------------------------------ objections
+
+
+def _objections(candidate: _Candidate, columns: Sequence[Column]) -> Iterator[str]:
+    """Say what speaks against a layout, CRS aside."""
+    points = candidate.coordinates(columns)
+    used = columns[candidate.start : candidate.start + 3]
+    if len(points) and not plausible_elevations(points[:, 2]):
+        low, high = np.percentile(points[:, 2], [5, 95], method="nearest")
+        yield f"would have elevations of {low:,.0f} to {high:,.0f}"
+    if any(column.is_padded for column in used):
+        yield "would have coordinates with leading zeros"
+    if candidate.start == 0:
+        yield from _signs_of_numbers(columns)
+
+
+def _differences(candidate: _Candidate, columns: Sequence[Column]) -> Iterator[str]:
+    """Say what speaks against other columns; where only axes may be exchanged it tells nothing."""
+    if any(one.text_share > _ODD_SHARE for one in columns[candidate.start : candidate.start + 3]):
+        yield "would have coordinates that are no numbers"
+    relief, extent = relief_and_extent(candidate.coordinates(columns))
+    if is_too_steep(relief, extent):
+        yield f"would rise by {relief:,.6g} within an extent of {extent:,.6g}"
+
+
+def _signs_of_numbers(columns: Sequence[Column]) -> Iterator[str]:
+    """Say what makes the first column one of point numbers, rather than of coordinates."""
+    first, second = columns[0], columns[1]
+    if not first.is_whole or len(first.values) < _FEW_ROWS:
+        return
+    others_divide = not second.is_whole and not columns[2].is_whole
+    if first.counts_rows and (len(columns) > 3 or others_divide):
+        yield "would have coordinates that count 1, 2, 3"
+    elif len(columns) > 3 and not second.is_whole and first.distinct_share >= _DISTINCT_SHARE:
+        yield "would have whole numbers in one coordinate and decimals in the other"
+
+
+def plausible_elevations(z: NDArray[np.float64]) -> bool:
+    """Whether at least half of some elevations are such as the earth has, in metres or feet."""
+    return bool(2 * ((z >= _LOWEST) & (z <= _HIGHEST)).sum() >= len(z))
+
+
+def is_too_steep(relief: float, extent: float) -> bool:
+    """Whether no ground rises by so much within an extent."""
+    return relief > _STEEPEST * extent > 0.0
+
+
+def relief_and_extent(points: NDArray[np.float64]) -> tuple[float, float]:
+    """Return relief and extent, outliers aside."""
+    if len(points) == 0:
+        return 0.0, 0.0
+    low, high = np.percentile(points, [5, 95], axis=0, method="nearest")
+    with np.errstate(over="ignore", invalid="ignore"):
+        span = high - low
+        return float(span[2]), float(np.hypot(span[0], span[1]))
+
+
+def _placed(
+    candidates: Sequence[_Candidate], columns: Sequence[Column], area: AreaOfUse | None
+) -> list[_Candidate]:
+    """Find out which candidates lie outside the area of use; if all do, it tells nothing."""
+    if area is None:
+        return list(candidates)
+    inside = [area.covers_most(one.coordinates(columns)[:, :2]) for one in candidates]
+    if not any(inside):
+        return list(candidates)
+    return [
+        _Candidate(one.word, one.start, one.is_northing_first, one.objections, not is_in)
+        for one, is_in in zip(candidates, inside, strict=True)
+    ]
+
+
+# ------------------------------------------------------------------ the choice
+
+
+def _customary(
+    left: Sequence[_Candidate], columns: Sequence[Column], *, is_scan: bool, is_announced: bool
+) -> tuple[_Candidate | None, str]:
+    """Return x, y, z where that is the convention: files that say so, and numbers alone."""
+    xyz = next((one for one in left if one.start == 0 and not one.is_northing_first), None)
+    if xyz is None or len(left) < 2:
+        return None, ""
+    is_numbered = any(one.start > 0 for one in left)
+    first, second, third = (column.is_whole for column in columns[:3])
+    if is_announced or (is_scan and (not is_numbered or (first == second != third))):
+        return xyz, ", the convention for files of this kind"
+    may_be_code = len(columns) in (4, 5) and columns[3].is_whole
+    has_other = is_numbered or xyz.word != "XYZ" or may_be_code
+    return (None, "") if has_other else (xyz, ", the convention for columns of numbers alone")
+
+
+def _reason(candidates: Iterable[_Candidate], area: AreaOfUse | None) -> str:
+    """Say what speaks against the candidates that were not taken."""
+    reasons: dict[str, list[str]] = {}
+    for one in candidates:
+        if not one.is_plausible:
+            reasons.setdefault(_objection(one, area), []).append(one.word)
+    clauses = [f"{_listed(words)} {why}" for why, words in reasons.items()]
+    return f", since {_listed(clauses)}"
+
+
+def _listed(words: Sequence[str]) -> str:
+    """Join words with commas and an "and"."""
+    return " and ".join(filter(None, (", ".join(words[:-1]), words[-1])))
+
+
+def _objection(one: _Candidate, area: AreaOfUse | None) -> str:
+    if one.is_outside and area is not None:
+        return f"would lie outside the area of use of {area.label}"
+    return one.objections[0]
+
+
+def _refusal(
+    candidates: Sequence[_Candidate], left: Sequence[_Candidate], area: AreaOfUse | None
+) -> str:
+    """Say which layouts are plausible, or why none is, and what would settle it."""
+    named = left or candidates
+    settled = " or ".join(f"columns='{one.word}'" for one in named)
+    if not left:
+        faults = "; ".join(f"{one.word} {_objection(one, area)}" for one in candidates)
+        return f"it has no header, and no customary layout fits: {faults}. Say which by {settled}."
+    first = " (its first column may be point numbers)" if {one.start for one in left} > {0} else ""
+    may_tell = "; the CRS of the points may tell, too" if area is None else ""
+    return (
+        f"it has no header, and its columns may be {' or '.join(one.word for one in left)}{first}: "
+        f"say which by {settled}{may_tell}."
+    )
+
+
+# ------------------------------------------------------------------ commas
+
+
+def require_no_split_decimals(body: Sequence[Sequence[str]], delimiter: str) -> None:
+    """Refuse rows that may be decimal commas split at a comma: 4,25,7,50 for 4.25 and 7.50."""
+    if delimiter != "," or not body:
+        return
+    numbers = [i for i in range(len(body[0])) if _are_whole(body, i)]
+    start = len(numbers) - 6
+    if start not in (0, 1) or numbers != list(range(len(numbers))):
+        return
+    if all(len(row[start + i]) <= _DECIMAL_DIGITS for row in body for i in (1, 3, 5)):
+        raise ReadError(
+            "its commas may be delimiters or decimal marks: say with the option columns what the "
+            "columns are, or write the table with another delimiter."
+        )
+
+
+def _are_whole(body: Sequence[Sequence[str]], column: int) -> bool:
+    """Whether all cells of a column are whole numbers."""
+    return all(row[column].lstrip("+-").isdecimal() for row in body)

@@ -1,0 +1,191 @@
+"""What a reader of survey points finds odd: places, elevations, numbers; told or refused."""
+
+from __future__ import annotations
+
+from itertools import permutations
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...errors import CrsError
+from ..nodata import describe_suspects, find_suspect_elevations
+from .content import is_too_steep, plausible_elevations, relief_and_extent
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from ..reprojection.area_of_use import AreaOfUse
+    from .columns import Columns
+    from .table import Fault
+
+__all__ = [
+    "describe_faults",
+    "describe_left_out",
+    "find_odd_elevations",
+    "find_repeated_numbers",
+    "require_in_area",
+]
+
+_SHOWN = 5
+_SOME = 4_096
+_FEW_POINTS = 3
+
+
+def require_in_area(
+    points: NDArray[np.float64],
+    rows: NDArray[np.int64],
+    columns: Columns,
+    area: AreaOfUse | None,
+    path: Path,
+) -> list[str]:
+    """Say which points lie outside the area of use of their CRS.
+
+    Parameters
+    ----------
+    points : (n, 3) float64 array
+        As they are in the file.
+    rows : (n,) int64 array
+        Their lines, from 0.
+    columns : Columns
+    area : AreaOfUse or None
+        None says nothing.
+    path : Path
+        For sentences.
+
+    Raises
+    ------
+    CrsError
+        If most of them do, and with coordinates exchanged most would not.
+    """
+    if area is None:
+        return []
+    if area.is_local(points[:, :2]):
+        x, y = points[0, :2].tolist()
+        return [
+            f"The points lie about the origin of {area.source.label} (first: easting {x:.10g}, "
+            f"northing {y:.10g}), outside its area of use: check that they are no local "
+            "coordinates, and no degrees."
+        ]
+    outside = area.outside(points[:, :2])
+    if len(outside) == 0:
+        return []
+    if 2 * len(outside) > len(points):
+        _require_no_exchange(points, columns, area, path)
+        return [
+            f"{_count(len(outside), len(points))} outside the area of use of {area.label}: check "
+            "that the CRS of the points is the right one."
+        ]
+    fits = area.covers(points[outside][:, [1, 0]])
+    exchanged = f"; {_count(int(fits.sum()))} inside if exchanged" if fits.any() else ""
+    return [
+        f"{_count(len(outside), len(points))} outside the area of use of {area.label} "
+        f"({_lines(rows[outside])}){exchanged}."
+    ]
+
+
+def _count(number: int, total: int = 0) -> str:
+    of_all = f" of {total:,} points" if total else ""
+    return f"{number:,}{of_all} {'lies' if number == 1 else 'lie'}"
+
+
+def _require_no_exchange(
+    points: NDArray[np.float64], columns: Columns, area: AreaOfUse, path: Path
+) -> None:
+    """Refuse points that lie in the area once their columns are exchanged."""
+    orders = sorted(permutations(range(3)), key=lambda order: order != (1, 0, 2))
+    for order in orders:
+        moved = points[:, list(order)]
+        if plausible_elevations(moved[:, 2]) and area.covers_most(moved[:, :2]):
+            right = columns.permuted(order)
+            places = (
+                f"{role} in {right.label(right.roles[role])}"
+                for role in ("easting", "northing", "elevation")
+            )
+            raise CrsError(
+                f"'{path}': read as {columns.word} the points lie outside the area of use of "
+                f"{area.label}, and read as {right.word} inside it: columns='{right.word}' takes "
+                f"the {', the '.join(places)}."
+            )
+
+
+def find_odd_elevations(points: NDArray[np.float64]) -> list[str]:
+    """Say whether elevations may stand for no data, or are none that the earth has.
+
+    Parameters
+    ----------
+    points : (n, 3) float64 array
+    """
+    z = points[:, 2]
+    notes = describe_suspects(find_suspect_elevations(z))
+    some = points[:: max(1, len(points) // _SOME)]
+    if not plausible_elevations(some[:, 2]):
+        low, high = np.percentile(some[:, 2], [5, 95], method="nearest")
+        notes.append(
+            f"Most elevations lie between {low:,.6g} and {high:,.6g}, where no ground is: check "
+            "the columns."
+        )
+    relief, extent = relief_and_extent(some)
+    if len(points) >= _FEW_POINTS and not notes and is_too_steep(relief, extent):
+        notes.append(
+            f"The points rise by {relief:,.6g} within an extent of {extent:,.6g}: check the "
+            "columns, and that eastings and northings are no degrees."
+        )
+    return notes
+
+
+def find_repeated_numbers(numbers: NDArray[Any] | None, rows: NDArray[np.int64]) -> list[str]:
+    """Say which point numbers occur more than once.
+
+    Parameters
+    ----------
+    numbers : (n,) array or None
+    rows : (n,) int64 array
+        Lines of the points, from 0.
+    """
+    if numbers is None or len(numbers) < 2:
+        return []
+    if numbers.dtype.kind in "iu" and (numbers[1:] > numbers[:-1]).all():
+        return []
+    import pandas as pd
+
+    series = pd.Series(numbers)
+    is_repeated = (series.duplicated(keep=False) & series.notna() & (series != "")).to_numpy()
+    if not is_repeated.any():
+        return []
+    places: dict[Any, list[int]] = {}
+    for row in np.flatnonzero(is_repeated).tolist():
+        places.setdefault(numbers[row], []).append(row)
+    shown = "; ".join(
+        f"{_number(one)} in {_lines(rows[at])}" for one, at in list(places.items())[:_SHOWN]
+    )
+    more = "; ..." if len(places) > _SHOWN else ""
+    verb = "number occurs" if len(places) == 1 else "numbers occur"
+    return [f"{len(places):,} point {verb} more than once: {shown}{more}."]
+
+
+def _number(value: Any) -> str:
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def describe_left_out(why: str, lines: Sequence[int]) -> str:
+    """Say which points have been left out, and why; ``lines`` count from 1."""
+    points = "point is" if len(lines) == 1 else "points are"
+    return f"{len(lines):,} {points} left out, {why}: {_lines(np.asarray(lines) - 1)}."
+
+
+def describe_faults(faults: Sequence[Fault]) -> str:
+    """Say which bad rows have been left out, and what is wrong with the first of them."""
+    shown = "; ".join(f"line {one.line + 1}: {one.what}" for one in faults[:_SHOWN])
+    more = "; ..." if len(faults) > _SHOWN else ""
+    rows = "row is" if len(faults) == 1 else "rows are"
+    return f"{len(faults):,} bad {rows} left out ({shown}{more})."
+
+
+def _lines(rows: NDArray[np.int64]) -> str:
+    """Name lines, counted from 1."""
+    numbers = [f"{row + 1}" for row in rows[:_SHOWN].tolist()]
+    more = ", ..." if len(rows) > _SHOWN else ""
+    return f"line{'s' * (len(rows) > 1)} {', '.join(numbers)}{more}"

@@ -1,0 +1,516 @@
+"""The layout of a table, found by looking at some of its lines."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..._sentences import counted
+from ...errors import ReadError
+from .cells import BLANKS, is_number, is_number_like, is_padded, split_line
+from .columns import (
+    Columns,
+    columns_by_header,
+    columns_by_word,
+    list_names,
+    meanings,
+    role_of,
+    unit_of,
+)
+from .content import require_no_split_decimals
+from .lines import COMMENT_PREFIXES
+from .marks import (
+    DecimalMark,
+    as_decimal,
+    as_delimiter,
+    decimal_between_digits,
+    decimal_of,
+    delimiter_of,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from .lines import TextLines
+
+__all__ = ["Layout", "find_layout"]
+
+_TOP_LINES = 100
+_SPREAD_LINES = 200
+_MOST_COLUMNS = 1_000
+_SCAN_SUFFIXES = frozenset({".xyz", ".pts"})
+_UNIT_WORDS = frozenset(
+    {*("m", "metre", "metres", "meter", "meters", "ft", "feet", "foot", "usft", "mm", "cm", "deg")}
+    | {*("degrees", "text", "unit", "units", "number", "string", "float", "int", "-", "")}
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """How to read the table of a text file.
+
+    Attributes
+    ----------
+    delimiter : str
+        One letter; ``BLANKS`` for runs of spaces and tabs.
+    decimal : str
+        Decimal mark, "." or ",".
+    is_decimal_told : bool
+        Whether the caller named the decimal mark.
+    count : int
+        Number of columns.
+    columns : Columns or None
+        What they mean, by the caller's word or the header; None if their content must tell.
+    rows : (n,) int64 array
+        Line numbers (from 0) of the rows.
+    has_text_tail : bool
+        Whether the last column is text that may itself hold the delimiter.
+    may_lack_tail : bool
+        Whether a row that is one cell short lacks this text: it is never a number.
+    text_columns : frozenset of int
+        Columns to be kept as text.
+    mostly_text : frozenset of int
+        Columns most of whose cells are no numbers.
+    padded : frozenset of int
+        Columns with whole numbers that have leading zeros.
+    divided : frozenset of int
+        Columns with a decimal mark or an exponent.
+    is_scan : bool
+        Whether the suffix says that rows begin with x, y, z.
+    is_announced : bool
+        Whether a point count above the table says it, too.
+    skipped : mapping of str to int
+        Lines that are no rows.
+    notes : tuple of str
+        What was assumed, in sentences.
+    """
+
+    delimiter: str
+    decimal: str
+    is_decimal_told: bool
+    count: int
+    columns: Columns | None
+    rows: NDArray[np.int64]
+    has_text_tail: bool
+    may_lack_tail: bool
+    text_columns: frozenset[int]
+    mostly_text: frozenset[int]
+    padded: frozenset[int]
+    divided: frozenset[int]
+    is_scan: bool
+    is_announced: bool
+    skipped: Mapping[str, int]
+    notes: tuple[str, ...] = ()
+
+    @property
+    def elevation_unit(self) -> str | None:
+        """Word that the header uses for the unit of elevations, None if it names none."""
+        return None if self.columns is None else self.columns.units.get("elevation")
+
+
+@dataclass(frozen=True, slots=True)
+class _Wishes:
+    """What the caller says about the layout; None is found by looking."""
+
+    columns: str | Sequence[str] | Mapping[str, str | int] | None = None
+    delimiter: str | None = None
+    decimal: str | None = None
+    comment: str | None = None
+
+
+@dataclass(slots=True)
+class _Top:
+    """What stands above the first row of the table."""
+
+    header: list[str] | None = None
+    units: list[str] = field(default_factory=list)
+    n_lines: int = 0
+    announced: int | None = None
+    counts: Counter[str] = field(default_factory=Counter)
+
+
+def find_layout(
+    lines: TextLines,
+    path: Path,
+    *,
+    columns: str | Sequence[str] | Mapping[str, str | int] | None = None,
+    delimiter: str | None = None,
+    decimal: str | None = None,
+    comment: str | None = None,
+) -> Layout:
+    """Find how to read a table.
+
+    Parameters
+    ----------
+    lines : TextLines
+    path : Path
+        For sentences.
+    columns : str, sequence of str, or mapping of str to str or int, optional
+        See :func:`columns_by_word`.
+    delimiter, decimal, comment : str, optional
+        As the caller knows them; found by looking otherwise.
+
+    Raises
+    ------
+    ReadError
+        If no table is there, or its columns cannot be told.
+    FormatError
+        If an option has a value that it cannot have.
+
+    Notes
+    -----
+    Some hundred lines are looked at: the first ones, and others spread over the file.
+
+    1. Lines that are blank or start with a comment prefix are set aside.
+    2. The delimiter is the one that gives the most numbers a line, and the same count of cells.
+    3. The lines above the first row are titles, the header, a line of units, or a point count.
+    4. Columns are found by the caller's word, else by the header; their content is judged when all
+       of it has been read.
+    """
+    wishes = _Wishes(columns, as_delimiter(delimiter), as_decimal(decimal), comment)
+    data, skipped = _data_lines(lines, wishes)
+    if len(data) == 0:
+        raise ReadError(f"'{path}' holds no points: only blank and comment lines.", path=path)
+    sample = lines.texts(_sampled(data))
+    found = wishes.delimiter or delimiter_of(sample)
+    if found is None and all(text.lstrip().startswith(COMMENT_PREFIXES) for text in sample):
+        raise ReadError(f"'{path}' holds no points: only blank and comment lines.", path=path)
+    if found is None:
+        raise ReadError(
+            f"'{path}' holds no table of points: no delimiter (comma, semicolon, tab, pipe, spaces)"
+            f" gives three columns of numbers; its first line is '{sample[0][:60]}'.",
+            path=path,
+        )
+    data, skipped = _without_fillers(lines, data, skipped, found, wishes)
+    cells = [split_line(text, found) for text in lines.texts(_sampled(data))]
+    try:
+        mark = _decimal_mark(lines, data, cells, found, wishes)
+        return _table_layout(lines, data, skipped, cells, (found, mark), wishes, path)
+    except ReadError as error:
+        raise ReadError(f"'{path}': {error}", path=path, lines=error.lines) from None
+
+
+def _decimal_mark(
+    lines: TextLines,
+    data: NDArray[np.int64],
+    cells: list[list[str]],
+    delimiter: str,
+    wishes: _Wishes,
+) -> DecimalMark:
+    """Return the mark that the caller names, else that of the lines looked at, else of any."""
+    if wishes.decimal is not None:
+        return DecimalMark(wishes.decimal)
+    found = decimal_of(cells, delimiter)
+    if found is None and delimiter != ",":
+        found = DecimalMark(decimal_between_digits(lines.joined(data)))
+    return found or DecimalMark(".")
+
+
+def _table_layout(
+    lines: TextLines,
+    data: NDArray[np.int64],
+    skipped: Counter[str],
+    cells: list[list[str]],
+    marks: tuple[str, DecimalMark],
+    wishes: _Wishes,
+    path: Path,
+) -> Layout:
+    delimiter, (decimal, note) = marks
+    count, has_text_tail = _column_count(cells, delimiter, decimal, wishes)
+    if count > _MOST_COLUMNS:
+        raise ReadError(f"its rows have {count:,} columns; at most {_MOST_COLUMNS:,} are read.")
+    top = _top(cells[:_TOP_LINES], count, decimal)
+    rows = data[top.n_lines :]
+    if len(rows) == 0:
+        raise ReadError("there is no row of numbers below the header.")
+    if top.announced not in (None, len(rows)):
+        raise ReadError(
+            f"the first line announces {counted(top.announced or 0, 'point')}, but "
+            f"{counted(len(rows), 'row')} {'follows' if len(rows) == 1 else 'follow'}: "
+            "the file may be truncated."
+        )
+    body = _even_rows(cells[top.n_lines :], count, has_text_tail=has_text_tail)
+    columns = _told_columns(lines, top, int(rows[0]), (delimiter, count), body, wishes)
+    kinds = _Kinds.of(body, count, decimal)
+    is_described = columns is not None and columns.roles.get("description") == count - 1
+    return Layout(
+        delimiter=delimiter,
+        decimal=decimal,
+        is_decimal_told=wishes.decimal is not None,
+        count=count,
+        columns=columns,
+        rows=rows,
+        has_text_tail=has_text_tail or is_described or count - 1 in kinds.mostly_text,
+        may_lack_tail=count - 1 not in kinds.has_numbers,
+        text_columns=_text_columns(columns, kinds),
+        mostly_text=kinds.mostly_text,
+        padded=kinds.padded,
+        divided=kinds.divided,
+        is_scan=path.suffix.lower() in _SCAN_SUFFIXES,
+        is_announced=top.announced is not None,
+        skipped={what: many for what, many in (skipped + top.counts).items() if many},
+        notes=((note,) if note else ()) + (() if columns is None else columns.notes),
+    )
+
+
+def _even_rows(
+    rows: Sequence[Sequence[str]], count: int, *, has_text_tail: bool
+) -> list[Sequence[str]]:
+    """Return the rows that have the right number of cells, a text at the end as one cell."""
+    if not has_text_tail:
+        return [row for row in rows if len(row) == count]
+    return [
+        [*row[: count - 1], " ".join(row[count - 1 :])] for row in rows if len(row) >= count - 1
+    ]
+
+
+def _told_columns(
+    lines: TextLines,
+    top: _Top,
+    first_row: int,
+    shape: tuple[str, int],
+    body: Sequence[Sequence[str]],
+    wishes: _Wishes,
+) -> Columns | None:
+    """Return what the caller or a header says of the columns; None if nobody does."""
+    delimiter, count = shape
+    header = top.header or _header_in_comment(lines, first_row, delimiter, count)
+    named = _fitted_header(header, count, body, wishes)
+    if named or wishes.columns is not None:
+        return _columns_by_name(named, top.units, count, wishes)
+    if wishes.decimal is None:
+        require_no_split_decimals(body, delimiter)
+    return None
+
+
+# ------------------------------------------------------------------ lines
+
+
+def _data_lines(lines: TextLines, wishes: _Wishes) -> tuple[NDArray[np.int64], Counter[str]]:
+    """Set blank and comment lines aside; ``;`` is judged when the delimiter is known."""
+    is_blank = lines.is_blank
+    is_comment = np.zeros(len(lines), np.bool_)
+    prefixes = COMMENT_PREFIXES if wishes.comment is None else (wishes.comment,)
+    for prefix in prefixes:
+        if prefix and not (wishes.comment is None and prefix == ";"):
+            is_comment |= lines.starts_with(prefix)
+    data = np.flatnonzero(~is_blank & ~is_comment)
+    if len(data) == 0 and wishes.comment is None:
+        is_comment[:] = False
+        data = np.flatnonzero(~is_blank)
+    counts = {"blank lines": int(is_blank.sum()), "comment lines": int(is_comment.sum())}
+    return data, Counter(counts)
+
+
+def _without_fillers(
+    lines: TextLines,
+    data: NDArray[np.int64],
+    skipped: Counter[str],
+    delimiter: str,
+    wishes: _Wishes,
+) -> tuple[NDArray[np.int64], Counter[str]]:
+    """Set aside rows of nothing but delimiters, and comments that start with a semicolon."""
+    if delimiter != BLANKS:
+        starters = data[lines.starts_with(delimiter)[data]]
+        fillers = [i for i in starters if not lines.text(i).strip(f"{delimiter} \t")]
+        data = np.delete(data, np.searchsorted(data, np.array(fillers, np.int64)))
+        skipped = skipped + Counter({"blank lines": len(fillers)})
+    if wishes.comment is None and delimiter != ";":
+        is_comment = lines.starts_with(";")[data]
+        if not is_comment.all():
+            data = data[~is_comment]
+            skipped = skipped + Counter({"comment lines": int(is_comment.sum())})
+    return data, skipped
+
+
+def _sampled(data: NDArray[np.int64]) -> list[int]:
+    top, rest = data[:_TOP_LINES], data[_TOP_LINES:]
+    spread = rest[:: max(1, len(rest) // _SPREAD_LINES)]
+    return [*top.tolist(), *spread.tolist()]
+
+
+# ------------------------------------------------------------------ rows
+
+
+def _column_count(
+    rows: Sequence[Sequence[str]], delimiter: str, decimal: str, wishes: _Wishes
+) -> tuple[int, bool]:
+    """Return the number of columns, and whether the last is text that may hold the delimiter."""
+    body = [row for row in rows if sum(is_number(cell, decimal) for cell in row) >= 2] or rows
+    counts = Counter(map(len, body))
+    count = counts.most_common(1)[0][0]
+    told = _told_count(rows, wishes)
+    if told and (delimiter == BLANKS or told <= count):
+        return told, True
+    tails = Counter(_text_tail(row, decimal) for row in body)
+    tail = tails.most_common(1)[0][0]
+    if tail is None or (delimiter != BLANKS and len(counts) == 1):
+        return count, False
+    return (tail + 1, True) if delimiter == BLANKS or tail + 1 <= count else (count, False)
+
+
+def _told_count(rows: Sequence[Sequence[str]], wishes: _Wishes) -> int | None:
+    """Return the number of columns if caller or header say that the last is a description."""
+    if wishes.columns is not None and not isinstance(wishes.columns, Mapping):
+        given = meanings(wishes.columns)
+        return len(given) if given[-1:] == ["description"] else None
+    for row in rows[:_TOP_LINES]:
+        known = columns_by_header(row, strict=False)
+        if known is not None and known.roles.get("description") == len(row) - 1:
+            return len(row)
+    return None
+
+
+def _text_tail(row: Sequence[str], decimal: str) -> int | None:
+    """Return where, behind the coordinates, nothing but text follows."""
+    texts = [not is_number_like(cell, decimal) for cell in row]
+    first = next((i for i in range(3, len(row)) if texts[i]), None)
+    return first if first is not None and texts[first] and not _resumes(texts, first) else None
+
+
+def _resumes(texts: Sequence[bool], first: int) -> bool:
+    """Whether the row ends in numbers behind a single word, so that the word is a column."""
+    return len(texts) - first > 2 and not any(texts[first + 1 :])
+
+
+def _top(rows: Sequence[Sequence[str]], count: int, decimal: str) -> _Top:
+    """Walk down to the first row of the table."""
+    top = _Top()
+    is_known = False
+    for row in rows:
+        kind = _kind(row, count, decimal, is_known)
+        if kind == "row":
+            break
+        if kind == "point count":
+            top.announced = int(row[0])
+        if kind == "header lines" and not is_known:
+            is_known = columns_by_header(row, strict=False) is not None
+            top.header = list(row)
+        elif kind == "header lines":
+            top.units = list(row)
+        top.counts[kind] += 1
+        top.n_lines += 1
+    return top
+
+
+def _kind(row: Sequence[str], count: int, decimal: str, is_header_known: bool) -> str:
+    """Tell what a line above the first row is, or that it is the first row."""
+    numbers = sum(is_number(cell, decimal) for cell in row)
+    if is_header_known:
+        is_units = all(
+            cell.strip("()[]").lower() in _UNIT_WORDS or unit_of(f"({cell.strip('()[]')})")
+            for cell in row
+        )
+        return "header lines" if is_units and numbers == 0 else "row"
+    if columns_by_header(row, strict=False) is not None:
+        return "header lines"
+    if len(row) == 1 and count > 1 and row[0].isdecimal():
+        return "point count"
+    if abs(len(row) - count) <= 1 and not any(
+        is_number_like(cell, decimal) for cell in row if cell
+    ):
+        return "header lines" if len(row) > 1 else "title lines"
+    if len(row) != count and numbers < 2 and not is_number_like(row[0], decimal):
+        return "title lines"
+    return "row"
+
+
+def _header_in_comment(
+    lines: TextLines, first_row: int, delimiter: str, count: int
+) -> list[str] | None:
+    """Return the names in the comment line right above the table, if it is a header."""
+    if first_row == 0:
+        return None
+    above = lines.text(first_row - 1).strip()
+    for prefix in ("", *COMMENT_PREFIXES):
+        if above.startswith(prefix):
+            names = split_line(above.removeprefix(prefix), delimiter)
+            if len(names) == count and columns_by_header(names, strict=False) is not None:
+                return names
+    return None
+
+
+# ------------------------------------------------------------------ columns
+
+
+def _fitted_header(
+    header: list[str] | None, count: int, body: Sequence[Sequence[str]], wishes: _Wishes
+) -> list[str]:
+    """Return one name a column; a delimiter at the end of rows or header makes no column."""
+    if header is None or len(header) == count:
+        return header or []
+    if len(header) == count - 1 and not any(row[-1] for row in body):
+        return [*header, ""]
+    if len(header) == count + 1 and not header[-1]:
+        return header[:-1]
+    if wishes.columns is not None and not isinstance(wishes.columns, Mapping):
+        return []
+    raise ReadError(
+        f"the header names {len(header)} columns ({list_names(header)}), but rows have {count}: "
+        "say with the option columns what they are, and check delimiter and decimal mark."
+    )
+
+
+def _columns_by_name(
+    header: list[str], units: Sequence[str], count: int, wishes: _Wishes
+) -> Columns:
+    """Find the columns by the caller's word, else by the header."""
+    if wishes.columns is not None:
+        return columns_by_word(wishes.columns, header, count, units)
+    columns = columns_by_header(header, units)
+    if columns is None:
+        found = [f"{role_of(name)} '{name}'" for name in header[:_TOP_LINES] if role_of(name)]
+        raise ReadError(
+            f"the header ({list_names(header)}) does not name easting, northing and elevation "
+            f"(known: {', '.join(found) or 'none of it'}): say with the option columns which "
+            "columns they are."
+        )
+    return columns
+
+
+@dataclass(frozen=True, slots=True)
+class _Kinds:
+    """Columns by what their cells look like in the rows looked at."""
+
+    has_text: frozenset[int]
+    has_numbers: frozenset[int]
+    mostly_text: frozenset[int]
+    padded: frozenset[int]
+    divided: frozenset[int]
+
+    @classmethod
+    def of(cls, body: Sequence[Sequence[str]], count: int, decimal: str) -> _Kinds:
+        """Look at every cell of some rows."""
+        columns = [[row[i] for row in body] for i in range(count)]
+        texts = [[c for c in cells if not is_number_like(c, decimal)] for cells in columns]
+        marks = (decimal, "e", "E")
+
+        def where(which: Callable[[int], bool]) -> frozenset[int]:
+            return frozenset(filter(which, range(count)))
+
+        def are_divided(i: int) -> bool:
+            return any(m in c for c in columns[i] if is_number(c, decimal) for m in marks)
+
+        return cls(
+            has_text=where(lambda i: bool(texts[i])),
+            has_numbers=where(lambda i: any(is_number(c, decimal) for c in columns[i])),
+            mostly_text=where(lambda i: 2 * len(texts[i]) > len(body)),
+            padded=where(lambda i: any(map(is_padded, columns[i]))),
+            divided=where(are_divided),
+        )
+
+
+def _text_columns(columns: Columns | None, kinds: _Kinds) -> frozenset[int]:
+    """Return description, point numbers with leading zeros, and other columns of text."""
+    text = kinds.has_text | kinds.padded
+    if columns is None:
+        return text
+    described = {columns.roles["description"]} if "description" in columns.roles else set()
+    return (text | described) - set(columns.coordinates)

@@ -1,0 +1,216 @@
+"""The bytes of a text file as UTF-8 lines, each with its number and kind."""
+
+from __future__ import annotations
+
+import codecs
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...errors import ReadError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+__all__ = ["COMMENT_PREFIXES", "TextLines", "decoded", "read_lines"]
+
+COMMENT_PREFIXES = ("#", "//", ";", "!", "%")
+
+_BOMS = (
+    (codecs.BOM_UTF8, "utf-8"),
+    (codecs.BOM_UTF32_LE, "utf-32-le"),
+    (codecs.BOM_UTF32_BE, "utf-32-be"),
+    (codecs.BOM_UTF16_LE, "utf-16-le"),
+    (codecs.BOM_UTF16_BE, "utf-16-be"),
+)
+_SPACE, _TAB, _LINE_FEED = 32, 9, 10
+_PROBE = 4096
+_LONGEST_LINE = 1_000_000
+
+
+@dataclass(frozen=True, eq=False)
+class TextLines:
+    r"""Text in UTF-8 whose lines end with ``"\n"``, and where its lines are.
+
+    Attributes
+    ----------
+    data : bytes
+    starts, ends : (k,) int64 arrays
+        First byte of every line and the byte behind its last, without the line end.
+    is_whole : bool
+        Whether the last line has an end, too.
+    """
+
+    data: bytes
+    starts: NDArray[np.int64]
+    ends: NDArray[np.int64]
+    is_whole: bool
+
+    @classmethod
+    def of(cls, data: bytes) -> TextLines:
+        r"""Find the lines of UTF-8 text; every customary line end becomes ``"\n"``."""
+        if b"\r" in data:
+            data = data.replace(b"\r\r\n", b"\n").replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+        breaks = np.flatnonzero(np.frombuffer(data, np.uint8) == _LINE_FEED)
+        is_whole = data.endswith(b"\n")
+        starts = np.concatenate([[0], breaks + 1])
+        ends = np.append(breaks, len(data))
+        n_lines = len(ends) - is_whole
+        return cls(data, starts[:n_lines], ends[:n_lines], is_whole)
+
+    def __len__(self) -> int:
+        return len(self.starts)
+
+    @property
+    def codes(self) -> NDArray[np.uint8]:
+        """The bytes as numbers."""
+        return np.frombuffer(self.data, np.uint8)
+
+    def text(self, line: int) -> str:
+        """Return one line; ``line`` counts from 0."""
+        return self.data[self.starts[line] : self.ends[line]].decode()
+
+    def texts(self, lines: Iterable[int]) -> list[str]:
+        """Return some lines."""
+        return [self.text(line) for line in lines]
+
+    @cached_property
+    def firsts(self) -> NDArray[np.int64]:
+        """First byte of every line that is no space or tab; the line's end where there is none."""
+        codes = self.codes
+        firsts = self.starts.copy()
+        active = np.flatnonzero(firsts < self.ends)
+        while len(active):
+            found = codes[firsts[active]]
+            active = active[(found == _SPACE) | (found == _TAB)]
+            firsts[active] += 1
+            active = active[firsts[active] < self.ends[active]]
+        return firsts
+
+    @property
+    def is_blank(self) -> NDArray[np.bool_]:
+        """Whether a line holds nothing but spaces and tabs, (k,) array."""
+        blank: NDArray[np.bool_] = self.firsts == self.ends
+        return blank
+
+    def starts_with(self, prefix: str) -> NDArray[np.bool_]:
+        """Whether a line starts with a prefix, leading spaces aside, (k,) array."""
+        codes = self.codes
+        fits = np.ones(len(self), np.bool_)
+        for place, code in enumerate(prefix.encode()):
+            at = self.firsts + place
+            fits &= at < self.ends
+            fits[fits] = codes[at[fits]] == code
+        return fits
+
+    def joined(self, lines: NDArray[np.int64]) -> bytes:
+        """Return the chosen lines (ascending numbers) as one text."""
+        if len(lines) == 0:
+            return b""
+        gaps = np.flatnonzero(np.diff(lines) != 1)
+        run_starts = self.starts[lines[np.append(0, gaps + 1)]]
+        run_ends = self.ends[lines[np.append(gaps, len(lines) - 1)]]
+        view = memoryview(self.data)
+        runs = [view[start:end] for start, end in zip(run_starts, run_ends, strict=True)]
+        return b"\n".join(runs)
+
+
+def read_lines(path: Path, *, encoding: str | None = None) -> TextLines:
+    """Read a text file.
+
+    Parameters
+    ----------
+    path : Path
+    encoding : str, optional
+        Default by looking: a byte-order mark, UTF-8, UTF-16, else Windows-1252.
+
+    Raises
+    ------
+    ReadError
+        If the file cannot be read, holds binary data, or is not in the encoding named.
+    """
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise ReadError(f"Cannot read '{path}': {error.strerror or error}.", path=path) from error
+    text = _as_utf8(data, encoding, path)
+    if b"\x00" in text:
+        raise ReadError(f"'{path}' holds binary data, not delimited text.", path=path)
+    lines = TextLines.of(text.rstrip(b"\x1a"))
+    _require_short(lines, path)
+    return lines
+
+
+def _require_short(lines: TextLines, path: Path) -> None:
+    """Refuse a line so long that it is no row, before anything tries to understand it."""
+    lengths = lines.ends - lines.starts
+    if len(lengths) and lengths.max() > _LONGEST_LINE:
+        line = int(lengths.argmax())
+        raise ReadError(
+            f"'{path}', line {line + 1}: {lengths[line]:,} bytes are no row of points; at most "
+            f"{_LONGEST_LINE:,} are read.",
+            path=path,
+            lines=[line + 1],
+        )
+
+
+def decoded(head: bytes) -> str | None:
+    """Return the first bytes of a file as text, None if they are none; a cut line is dropped."""
+    encoding, skipped = _encoding(head)
+    text = head[skipped:].decode(encoding, errors="replace")
+    if "\x00" in text:
+        return None
+    whole, line_end, _ = text.rpartition("\n")
+    return whole if line_end else text
+
+
+def _as_utf8(data: bytes, encoding: str | None, path: Path) -> bytes:
+    found, skipped = _encoding(data)
+    try:
+        if encoding is not None:
+            return data.decode(encoding).lstrip("\ufeff").encode()
+        if found == "utf-8":
+            return _checked_utf8(data[skipped:] if skipped else data)
+        return data[skipped:].decode(found).encode()
+    except LookupError as error:
+        raise ReadError(f"Unknown encoding '{encoding}' for '{path}'.", path=path) from error
+    except UnicodeError as error:
+        raise ReadError(
+            f"'{path}' is not {encoding or found} text: {getattr(error, 'reason', error)}; "
+            "the option encoding names another.",
+            path=path,
+        ) from error
+
+
+def _checked_utf8(data: bytes) -> bytes:
+    if data.isascii():
+        return data
+    try:
+        data.decode()
+    except UnicodeDecodeError:
+        return _western(data).encode()
+    return data
+
+
+def _western(data: bytes) -> str:
+    """Decode Windows-1252, where it has no letter Latin-1, which takes every byte."""
+    try:
+        return data.decode("cp1252")
+    except UnicodeDecodeError:
+        return data.decode("latin-1")
+
+
+def _encoding(data: bytes) -> tuple[str, int]:
+    """Return the encoding by the first bytes, and how many of them are the mark of it."""
+    for bom, encoding in _BOMS:
+        if data.startswith(bom):
+            return encoding, len(bom)
+    even, odd = data[:_PROBE:2].count(0), data[1:_PROBE:2].count(0)
+    if max(even, odd) * 4 > min(len(data), _PROBE) and min(even, odd) == 0:
+        return ("utf-16-le" if odd else "utf-16-be"), 0
+    return "utf-8", 0

@@ -1,0 +1,191 @@
+"""Delimiter and decimal mark of a table, told by the caller or found by looking."""
+
+from __future__ import annotations
+
+from collections import Counter
+from statistics import median_high
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ...errors import FormatError, ReadError
+from .cells import BLANKS, is_grouped, is_number, is_number_like, may_group_or_divide, split_line
+from .columns import columns_by_header
+from .lines import COMMENT_PREFIXES, decoded
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+__all__ = [
+    "DecimalMark",
+    "as_decimal",
+    "as_delimiter",
+    "decimal_between_digits",
+    "decimal_of",
+    "delimiter_of",
+    "looks_like_table",
+]
+
+_TOP_LINES = 100
+_DELIMITERS = ("\t", ";", "|", ",", BLANKS)
+_VISIBLE = (",", ";", "|")
+_SPOKEN = {
+    "comma": ",",
+    "semicolon": ";",
+    "tab": "\t",
+    "\\t": "\t",
+    "pipe": "|",
+    "space": BLANKS,
+    "spaces": BLANKS,
+    "whitespace": BLANKS,
+}
+
+
+def looks_like_table(head: bytes) -> bool:
+    """Whether the first bytes of a file are delimited rows with three numbers or more."""
+    text = decoded(head)
+    if text is None:
+        return False
+    stripped = (line.strip() for line in text.split("\n")[:_TOP_LINES])
+    sample = [line for line in stripped if line and not line.startswith(COMMENT_PREFIXES)]
+    delimiter = delimiter_of(sample) if sample else None
+    if delimiter is None:
+        return False
+    numbers = [_count_numbers(split_line(line, delimiter), delimiter) for line in sample]
+    return 2 * sum(number >= 3 for number in numbers) >= len(numbers)
+
+
+def as_delimiter(word: str | None) -> str | None:
+    """Return the delimiter that the caller names; None stays None.
+
+    Raises
+    ------
+    FormatError
+        If it is neither one letter that may be a delimiter nor the name of one.
+    """
+    if word is None:
+        return None
+    delimiter = _SPOKEN.get(word.strip().lower(), word) if word != BLANKS else word
+    if len(delimiter) != 1 or delimiter.isalnum() or delimiter in '"\n\r.+-' or delimiter > "~":
+        raise FormatError(
+            f"Invalid delimiter '{word}': one letter such as ',' or one of {', '.join(_SPOKEN)}.",
+            known=tuple(_SPOKEN),
+        )
+    return delimiter
+
+
+def as_decimal(word: str | None) -> str | None:
+    """Return the decimal mark that the caller names; None stays None.
+
+    Raises
+    ------
+    FormatError
+        If it is neither "." nor ",".
+    """
+    if word not in (None, ".", ","):
+        raise FormatError(
+            f"Invalid decimal mark '{word}': '.' or ',' is allowed.", known=(".", ",")
+        )
+    return word
+
+
+def _count_numbers(cells: Sequence[str], delimiter: str) -> int:
+    """Count the cells that are numbers with either decimal mark, or stand in place of one."""
+    marks = "." if delimiter == "," else ".,"
+    return sum(
+        bool(cell)
+        and not _clings(cell)
+        and not (delimiter == "," and " " in cell)  # what groups 4 024 240 is no comma
+        and any(is_number_like(cell, mark) for mark in marks)
+        for cell in cells
+    )
+
+
+def _clings(cell: str) -> bool:
+    """Whether a cell begins or ends with what must be a delimiter: blanks stand beside it."""
+    return cell.startswith(_VISIBLE) or cell.endswith(_VISIBLE)
+
+
+def delimiter_of(sample: Sequence[str]) -> str | None:
+    """Choose the delimiter that gives the most numbers and the most even rows."""
+    scores = {delimiter: _delimiter_score(sample, delimiter) for delimiter in _DELIMITERS}
+    best = max(scores, key=scores.__getitem__)
+    return best if scores[best] > (0, 0.0, 0) else None
+
+
+def _delimiter_score(sample: Sequence[str], delimiter: str) -> tuple[int, float, int]:
+    """Return how many numbers a line has, the share of lines that are even, and their cells."""
+    rows = [split_line(line, delimiter) for line in sample]
+    counts = [_count_numbers(row, delimiter) for row in rows]
+    numbers = max(
+        median_high(counts),
+        max(3 * (columns_by_header(row, strict=False) is not None) for row in rows[:_TOP_LINES]),
+    )
+    if numbers < 2 or max(map(len, rows)) < 3:
+        return 0, 0.0, 0
+    even = [row for row in rows if delimiter != BLANKS or not any(map(_clings, row))]
+    count, times = Counter(map(len, even)).most_common(1)[0] if even else (0, 0)
+    return min(numbers, 3), times / len(rows), count
+
+
+# ------------------------------------------------------------------ decimal marks
+
+
+class DecimalMark(NamedTuple):
+    """The decimal mark of a table, and what was assumed to tell it."""
+
+    mark: str
+    note: str = ""
+
+
+def decimal_of(rows: Iterable[Sequence[str]], delimiter: str) -> DecimalMark | None:
+    """Choose the decimal mark by the cells of some rows; None if no cell has one.
+
+    Raises
+    ------
+    ReadError
+        If every comma may be a decimal mark or separate thousands.
+
+    Notes
+    -----
+    A cell such as 4000,12 proves the decimal comma, one such as 4000.12 the point; 752,700 proves
+    nothing. Where both are proved the mark of more cells is taken, and the others are bad cells.
+    Between semicolons, which are delimiters because commas are decimal marks, the comma is taken.
+    """
+    cells = [cell for row in rows for cell in row]
+    commas = [cell for cell in cells if "," in cell.strip(",") and is_number(cell, ",")]
+    points = [cell for cell in cells if "." in cell and is_number(cell, ".")]
+    sure_commas = sum(not may_group_or_divide(cell) for cell in commas)
+    sure_points = sum(not may_group_or_divide(cell.replace(".", ",")) for cell in points)
+    if sure_commas or sure_points:
+        return DecimalMark("," if sure_commas > sure_points else ".")
+    if delimiter == "," or (points and not commas):
+        return DecimalMark(".") if points else None
+    if any(is_grouped(cell, ".") and cell.count(",") > 1 for cell in cells):
+        return DecimalMark(".")
+    return _assumed_comma(commas, delimiter) if commas else None
+
+
+def _assumed_comma(commas: Sequence[str], delimiter: str) -> DecimalMark:
+    if delimiter != ";":
+        raise ReadError(
+            f"its commas may be decimal marks or separate thousands ('{commas[0]}'): decimal=',' "
+            "or decimal='.' settles it."
+        )
+    return DecimalMark(
+        ",",
+        "The commas in its numbers are taken as decimal marks, as is usual between semicolons "
+        f"('{commas[0]}').",
+    )
+
+
+def decimal_between_digits(text: bytes) -> str:
+    """Choose the decimal mark by what stands between digits anywhere: "," where no point does."""
+    codes = np.frombuffer(text, np.uint8)
+    is_digit = (codes >= ord("0")) & (codes <= ord("9"))
+
+    def is_there(mark: str) -> bool:
+        places = np.flatnonzero(codes[1:-1] == ord(mark)) + 1
+        return bool((is_digit[places - 1] & is_digit[places + 1]).any())
+
+    return "," if is_there(",") and not is_there(".") else "."

@@ -1,0 +1,500 @@
+"""The rows of a table become arrays: checked for shape, parsed by pandas, checked for numbers.
+
+A row that is wrong is a fault with its line; whether faults are refused or left out is for the
+caller to say.
+"""
+
+from __future__ import annotations
+
+import csv
+from dataclasses import dataclass
+from io import BytesIO, StringIO
+from itertools import chain
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ..._sentences import counted, inflect
+from ...errors import ReadError
+from .cells import (
+    BLANKS,
+    as_grouped,
+    as_number,
+    is_grouped,
+    is_missing,
+    is_number,
+    proves_groups,
+    split_line,
+)
+from .columns import COORDINATES
+from .content import Column
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+    from pathlib import Path
+
+    import pandas as pd
+    from numpy.typing import NDArray
+
+    from .columns import Columns
+    from .layout import Layout
+    from .lines import TextLines
+
+__all__ = [
+    "Cells",
+    "Fault",
+    "Table",
+    "describe_columns",
+    "faults_error",
+    "read_cells",
+    "read_table",
+]
+
+_SHOWN = 5
+_QUOTED_ROWS = 2_000
+_QUOTE, _SPACE, _TAB, _LINE_FEED = b'" \t\n'
+_REWRITTEN_DELIMITER = "\t"
+_GROUP_DIGITS = 3
+
+
+class Fault(NamedTuple):
+    """What is wrong with a row: its line (from 0), the kind of fault, and what is there."""
+
+    line: int
+    kind: str
+    what: str
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Cells:
+    """The rows of a table that have the right number of cells, and those that have not.
+
+    Attributes
+    ----------
+    frame : DataFrame
+    rows : (n,) int64 array
+        Line number (from 0) of each row of the frame.
+    faults : tuple of Fault
+    """
+
+    frame: pd.DataFrame
+    rows: NDArray[np.int64]
+    faults: tuple[Fault, ...] = ()
+
+
+class Table(NamedTuple):
+    """Coordinates, other columns by name, lines, and the rows that are left out.
+
+    Elevations are NaN where the row has none.
+    """
+
+    points: NDArray[np.float64]
+    attributes: dict[str, NDArray[Any]]
+    rows: NDArray[np.int64]
+    faults: tuple[Fault, ...]
+    n_grouped: int
+
+
+def read_cells(lines: TextLines, layout: Layout, path: Path) -> Cells:
+    """Read the cells of every row.
+
+    Parameters
+    ----------
+    lines : TextLines
+    layout : Layout
+    path : Path
+        For sentences.
+
+    Raises
+    ------
+    ReadError
+        If not a single row has the right number of cells.
+
+    Notes
+    -----
+    Rows whose quotes and delimiters are regular go to pandas as they are; others are rewritten
+    one by one, by the rules of Python's csv module, on the way. Every number is the float64
+    nearest to its text.
+    """
+    data = lines.joined(layout.rows)
+    if _is_regular(data, layout):
+        return Cells(_parsed(data, layout.delimiter, layout, len(layout.rows), path), layout.rows)
+    data, rows, faults = _rewritten(lines, layout)
+    if len(rows) == 0:
+        raise faults_error(faults, len(layout.rows), lines, layout, path)
+    frame = _parsed(data, _REWRITTEN_DELIMITER, layout, len(rows), path)
+    return Cells(frame, rows, tuple(faults))
+
+
+def _parsed(data: bytes, delimiter: str, layout: Layout, n_rows: int, path: Path) -> pd.DataFrame:
+    import pandas as pd
+
+    numbers = [i for i in range(layout.count) if i not in layout.text_columns]
+    # From pandas 3.1 on every number is parsed exactly, and asking for it is deprecated.
+    is_exact = tuple(int(part) for part in pd.__version__.split(".")[:2]) >= (3, 1)
+    options: dict[str, Any] = {} if is_exact else {"float_precision": "round_trip"}
+    options |= {
+        "sep": r"\s+" if delimiter == BLANKS else delimiter,
+        "header": None,
+        "names": list(range(layout.count)),
+        "index_col": False,
+        "dtype": dict.fromkeys(sorted(layout.text_columns), object),
+        "decimal": layout.decimal,
+        "skipinitialspace": True,
+        "skip_blank_lines": False,
+        "keep_default_na": False,
+        "na_values": {i: [""] for i in numbers},
+        "encoding": "utf-8",
+        "engine": "c",
+        "low_memory": False,
+    }
+    frame: pd.DataFrame = pd.read_csv(BytesIO(data), **options)
+    if len(frame) != n_rows:
+        raise ReadError(
+            f"'{path}' has {n_rows} rows, but the parser made {len(frame)} of them: "
+            "check its quotes.",
+            path=path,
+        )
+    return frame
+
+
+def faults_error(
+    faults: Sequence[Fault], n_rows: int, lines: TextLines, layout: Layout, path: Path
+) -> ReadError:
+    """Return the error that counts the rows at fault, and shows the first of the first kind."""
+    kind = "quote" if any(fault.kind == "quote" for fault in faults) else faults[0].kind
+    wrong = [fault for fault in faults if fault.kind == kind]
+    numbers = [fault.line + 1 for fault in wrong[:_SHOWN]]
+    if kind == "quote":
+        sentence = f"'{path}', line {numbers[0]}: {wrong[0].what}."
+        return ReadError(sentence, path=path, lines=numbers)
+    join = " " if kind == "columns" else ": "
+    shown = ", ".join(f"line {one.line + 1}{join}{one.what}" for one in wrong[:_SHOWN])
+    mark = "point" if layout.decimal == "." else "comma"
+    fails = {
+        "columns": f"[does|do] not have {layout.count} columns",
+        "number": f"[has|have] a coordinate that is not a finite number with decimal {mark}",
+    }[kind]
+    is_cut = kind == "columns" and wrong[-1].line == len(lines) - 1 and not lines.is_whole
+    hint = "; the last line has no end, so the file may be truncated" if is_cut else ""
+    return ReadError(
+        f"'{path}': {len(wrong)} of {counted(n_rows, 'row')} {inflect(fails, len(wrong))} "
+        f"({shown}{', ...' if len(wrong) > _SHOWN else ''}){hint}; the option skip_bad leaves "
+        "such rows out.",
+        path=path,
+        lines=numbers,
+    )
+
+
+# ------------------------------------------------------------------ shape
+
+
+def _is_regular(data: bytes, layout: Layout) -> bool:
+    """Whether every row has the right number of cells by a count that pandas agrees with."""
+    if layout.delimiter == layout.decimal:
+        return False
+    codes = np.frombuffer(data, np.uint8)
+    ends = np.append(np.flatnonzero(codes == _LINE_FEED), len(codes))
+    starts = np.append(0, ends[:-1] + 1)
+    if layout.delimiter == BLANKS:
+        return b'"' not in data and _has_even_words(codes, starts, ends, layout.count)
+    places = np.flatnonzero(codes == ord(layout.delimiter))
+    if b'"' in data:
+        quotes = np.flatnonzero(codes == _QUOTE)
+        if not _are_plain(quotes, codes, ord(layout.delimiter), ends):
+            return False
+        places = _outside(places, quotes)
+    return _has_even(places, starts, ends, layout.count - 1)
+
+
+def _has_even(
+    places: NDArray[np.int64], starts: NDArray[np.int64], ends: NDArray[np.int64], count: int
+) -> bool:
+    """Whether exactly ``count`` of the places (ascending) lie in every line."""
+    if len(places) != count * len(starts):
+        return False
+    by_line = places.reshape(-1, count)
+    return bool((by_line[:, 0] >= starts).all() and (by_line[:, -1] < ends).all())
+
+
+def _has_even_words(
+    codes: NDArray[np.uint8], starts: NDArray[np.int64], ends: NDArray[np.int64], count: int
+) -> bool:
+    is_gap = (codes == _SPACE) | (codes == _TAB) | (codes == _LINE_FEED)
+    is_word_start = ~is_gap
+    is_word_start[1:] &= is_gap[:-1]
+    return _has_even(np.flatnonzero(is_word_start), starts, ends, count)
+
+
+def _are_plain(
+    quotes: NDArray[np.int64], codes: NDArray[np.uint8], delimiter: int, ends: NDArray[np.int64]
+) -> bool:
+    """Whether no quote stands where only care can read it.
+
+    Quotes are plain if they are closed on their line, open at the start of a cell, and close at
+    the end of one or are doubled.
+    """
+    if len(quotes) % 2:
+        return False
+    opening, closing = quotes[0::2], quotes[1::2]
+    if (np.searchsorted(ends, opening) != np.searchsorted(ends, closing)).any():
+        return False
+    before, behind = opening - 1, closing + 1
+    beside = codes[np.concatenate([before[before >= 0], behind[behind < len(codes)]])]
+    return bool(np.isin(beside, [delimiter, _QUOTE, _LINE_FEED]).all())
+
+
+def _outside(places: NDArray[np.int64], quotes: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the places (ascending) that do not lie between an opening and its closing quote."""
+    first = np.searchsorted(places, quotes[0::2])
+    counts = np.searchsorted(places, quotes[1::2]) - first
+    running = np.cumsum(counts)
+    total = int(running[-1])
+    return np.delete(places, np.repeat(first - running + counts, counts) + np.arange(total))
+
+
+def _rewritten(lines: TextLines, layout: Layout) -> tuple[bytes, NDArray[np.int64], list[Fault]]:
+    """Write the rows anew with plain quotes; leave those out that have not the right cells."""
+    text = StringIO(newline="")
+    writer = csv.writer(text, delimiter=_REWRITTEN_DELIMITER, lineterminator="\n")
+    kept: list[int] = []
+    faults: list[Fault] = []
+    last = -1 if lines.is_whole else len(lines) - 1
+    for line, raw, cells in _rows(lines, layout):
+        if isinstance(cells, str):
+            faults.append(Fault(line, "quote", cells))
+            continue
+        if layout.has_text_tail:
+            cells = _with_tail(cells, raw, layout, line == last)
+        if len(cells) == layout.count:
+            writer.writerow(cells)
+            kept.append(line)
+        else:
+            faults.append(Fault(line, "columns", f"has {len(cells)}"))
+    return text.getvalue().encode(), np.array(kept, np.int64), faults
+
+
+def _rows(lines: TextLines, layout: Layout) -> Iterator[tuple[int, str, list[str] | str]]:
+    """Walk the rows: line number (from 0), its text, and its cells or what is wrong with them."""
+    for start in range(0, len(layout.rows), _QUOTED_ROWS):
+        rows = layout.rows[start : start + _QUOTED_ROWS]
+        text = lines.joined(rows).decode()
+        if layout.delimiter == BLANKS:
+            texts = [line.strip(" ") for line in text.replace("\t", " ").split("\n")]
+        else:
+            texts = text.split("\n")
+        split = _split(texts, layout.delimiter)
+        yield from zip(rows.tolist(), texts, split, strict=True)
+
+
+def _split(texts: Sequence[str], delimiter: str) -> Iterator[list[str] | str]:
+    """Split texts by the rules of CSV; begin anew behind one that is at fault."""
+    done = 0
+    while done < len(texts):
+        # An empty text at the end is what a quote left open would swallow.
+        reader = csv.reader(chain(texts[done:], [""]), delimiter=delimiter, skipinitialspace=True)
+        for number in range(1, len(texts) - done + 1):
+            try:
+                cells = next(reader)
+            except csv.Error as error:
+                yield str(error)
+                break
+            if reader.line_num != number:
+                yield (
+                    "a quote opens a cell and is not closed on the line; a quote at the start of "
+                    'a cell must be doubled ("")'
+                )
+                break
+            yield cells
+        done += number
+
+
+def _with_tail(cells: list[str], raw: str, layout: Layout, is_cut: bool) -> list[str]:
+    """Join the cells of a text that holds the delimiter; a row that is whole may have none."""
+    count = layout.count
+    if len(cells) == count - 1 and not is_cut and layout.may_lack_tail:
+        return [*cells, ""]
+    if len(cells) <= count or _may_be_split_numbers(cells[count - 2 :], layout):
+        return cells
+    if layout.delimiter == BLANKS:
+        return [*cells[: count - 1], " ".join(cells[count - 1 :])]
+    if '"' in raw:
+        return [*cells[: count - 1], layout.delimiter.join(cells[count - 1 :])]
+    return [*cells[: count - 1], raw.split(layout.delimiter, count - 1)[-1].strip()]
+
+
+def _may_be_split_numbers(cells: Sequence[str], layout: Layout) -> bool:
+    """Whether a text that seems to hold the delimiter may be numbers that do: 1,032.5 or 2,50.
+
+    ``cells`` begin with the one before the text.
+    """
+    before, first, second = [cell.strip() for cell in (*cells, "", "")][:3]
+    mark = layout.decimal
+    if not is_number(first, mark):
+        return False
+    is_group = len(first.partition(mark)[0]) == _GROUP_DIGITS and before.lstrip("+-").isdecimal()
+    return is_group or layout.delimiter != BLANKS or is_number(second, mark)
+
+
+# ------------------------------------------------------------------ numbers
+
+
+class _Numbers(NamedTuple):
+    """A column as floats, NaN for what is none; where cells are empty; how many were grouped."""
+
+    values: NDArray[np.float64]
+    is_missing: NDArray[np.bool_]
+    n_grouped: int = 0
+
+
+def _numbers(column: pd.Series[Any], layout: Layout, *, has_groups: bool) -> _Numbers:
+    """Read the numbers of a column, those with thousands separators where these are proved."""
+    if column.dtype.kind in "fiu":
+        values = column.to_numpy(np.float64)
+        return _Numbers(values, np.isnan(values))
+    if column.dtype.kind == "b":
+        return _Numbers(np.full(len(column), np.nan), np.zeros(len(column), np.bool_))
+    cells = _texts(column)
+    decimal = layout.decimal
+    values = np.fromiter((as_number(cell, decimal) for cell in cells), np.float64, len(cells))
+    odd = np.flatnonzero(np.isnan(values)).tolist()
+    missing = np.zeros(len(cells), np.bool_)
+    missing[[i for i in odd if is_missing(cells[i])]] = True
+    grouped = [i for i in odd if has_groups and is_grouped(cells[i], decimal)]
+    values[grouped] = [as_grouped(cells[i], decimal) for i in grouped]
+    return _Numbers(values, missing, len(grouped))
+
+
+def _texts(column: pd.Series[Any]) -> list[str]:
+    return [cell.strip() for cell in column.fillna("").astype(str)]
+
+
+def _has_groups(frame: pd.DataFrame, columns: Iterable[int], layout: Layout) -> bool:
+    """Whether separators of thousands are proved: by the caller, the decimal mark, or a cell.
+
+    1,234 alone may be 1.234; beside 12.5 or 4,024,240 it is a thousand and more.
+    """
+    if layout.is_decimal_told or layout.divided.intersection(columns):
+        return True
+    mark = layout.decimal
+    return any(
+        proves_groups(cell, mark) or (mark in cell and is_number(cell, mark))
+        for i in columns
+        if frame[i].dtype.kind not in "fiub"
+        for cell in _texts(frame[i])
+    )
+
+
+def describe_columns(cells: Cells, layout: Layout) -> list[Column]:
+    """Describe what is in each column, to tell what it means."""
+    numeric = [i for i in range(layout.count) if i not in layout.mostly_text]
+    has_groups = _has_groups(cells.frame, numeric, layout)
+    return [
+        _described(cells.frame[i], i, layout, has_groups=has_groups) for i in range(layout.count)
+    ]
+
+
+def _described(column: pd.Series[Any], i: int, layout: Layout, *, has_groups: bool) -> Column:
+    if i in layout.mostly_text:
+        distinct = column.nunique() / len(column)
+        return Column(np.full(len(column), np.nan), is_text=True, distinct_share=distinct)
+    numbers = _numbers(column, layout, has_groups=has_groups)
+    values = numbers.values
+    is_there = ~np.isnan(values)
+    known = values if is_there.all() else values[is_there]
+    is_whole = i not in layout.divided and len(known) > 0 and _are_whole(known)
+    return Column(
+        values,
+        is_whole=is_whole,
+        is_padded=i in layout.padded,
+        text_share=float((~is_there & ~numbers.is_missing).mean()),
+        distinct_share=_distinct_share(known) if is_whole else 1.0,
+    )
+
+
+def _are_whole(values: NDArray[np.float64]) -> bool:
+    with np.errstate(invalid="ignore"):
+        return bool((values >= 0).all() and (np.floor(values) == values).all())
+
+
+def _distinct_share(values: NDArray[np.float64]) -> float:
+    if len(values) < 2 or (np.diff(values) > 0).all():
+        return 1.0
+    return len(np.unique(values)) / len(values)
+
+
+# ------------------------------------------------------------------ the table
+
+
+def read_table(cells: Cells, layout: Layout, columns: Columns, lines: TextLines) -> Table:
+    """Take the coordinates and the attributes of rows; rows with bad numbers become faults.
+
+    Parameters
+    ----------
+    cells : Cells
+    layout : Layout
+    columns : Columns
+        What the columns mean.
+    lines : TextLines
+        For sentences.
+    """
+    has_groups = _has_groups(cells.frame, columns.coordinates, layout)
+    numbers = [
+        _numbers(cells.frame[column], layout, has_groups=has_groups)
+        for column in columns.coordinates
+    ]
+    points = np.column_stack([one.values for one in numbers])
+    is_bad = ~np.isfinite(points)
+    is_bad[:, 2] &= ~numbers[2].is_missing
+    bad = np.flatnonzero(is_bad.any(axis=1))
+    faults = [
+        Fault(int(cells.rows[row]), "number", _fault(lines, layout, columns, line, k))
+        for row, line, k in zip(
+            bad, cells.rows[bad].tolist(), is_bad[bad].argmax(axis=1).tolist(), strict=True
+        )
+    ]
+    good = np.delete(np.arange(len(points)), bad) if len(bad) else slice(None)
+    attributes = _attributes(cells.frame, columns)
+    return Table(
+        points[good],
+        {name: values[good] for name, values in attributes.items()},
+        cells.rows[good],
+        tuple(sorted((*cells.faults, *faults))),
+        sum(one.n_grouped for one in numbers),
+    )
+
+
+def _fault(lines: TextLines, layout: Layout, columns: Columns, line: int, k: int) -> str:
+    """Say which cell of a row is at fault, and what is in it."""
+    column = columns.coordinates[k]
+    cell = split_line(lines.text(line), layout.delimiter)[column]
+    value = f"is '{cell[:40]}'" if cell else "is empty"
+    return f"{COORDINATES[k]} in {columns.label(column)} {value}"
+
+
+# ------------------------------------------------------------------ attributes
+
+
+def _attributes(frame: pd.DataFrame, columns: Columns) -> dict[str, NDArray[Any]]:
+    """Return the columns that are no coordinates, by role or name; empty unnamed ones are left."""
+    roles = {column: role for role, column in columns.roles.items()}
+    attributes: dict[str, NDArray[Any]] = {}
+    for column, name in enumerate(columns.names):
+        if roles.get(column) in COORDINATES:
+            continue
+        values = _values(frame[column])
+        if name == f"column {column + 1}" and _is_empty(values):
+            continue
+        attributes[roles.get(column, name)] = values
+    return attributes
+
+
+def _values(column: pd.Series[Any]) -> NDArray[Any]:
+    """Return numbers as they are, anything else as text, an empty cell as an empty text."""
+    if column.dtype.kind in "fiub":
+        return column.to_numpy()
+    return column.fillna("").to_numpy(dtype=object)
+
+
+def _is_empty(values: NDArray[Any]) -> bool:
+    return bool((values == "").all() if values.dtype == object else np.isnan(values).all())

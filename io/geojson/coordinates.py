@@ -1,0 +1,154 @@
+"""Coordinates as GeoJSON wants them: WGS 84 by RFC 7946, or the CRS's own by the older rule."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ..._sentences import counted
+from ...crs import CRS, METRE
+from ...errors import CrsError, WriteError
+from ..reprojection.transformation import reproject
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from ...tin import TIN, Survey
+
+__all__ = ["Places", "crs_places", "require_one_piece", "texts", "wgs84_places"]
+
+DEGREE_DECIMALS = 9  # a tenth of a millimetre on the ground
+ELEVATION_DECIMALS = 6  # a micrometre
+_HALF_TURN = 180.0
+_BATCH = 65_536
+
+
+class Places(NamedTuple):
+    """Coordinates as they are written.
+
+    Attributes
+    ----------
+    xyz : (n, 3) float64 array
+    crs_member : str or None
+        JSON text of the old-style ``crs`` member; None where RFC 7946 forbids one.
+    members : tuple of (str, str)
+        Further members of the file, which tell the unit of elevations.
+    """
+
+    xyz: NDArray[np.float64]
+    crs_member: str | None = None
+    members: tuple[tuple[str, str], ...] = ()
+
+
+def wgs84_places(surface: TIN | Survey) -> Places:
+    """Move points to WGS 84 longitude, latitude and elevation in metres, rounded.
+
+    Parameters
+    ----------
+    surface : TIN or Survey
+
+    Raises
+    ------
+    CrsError
+        If the CRS is not known, or puts a point outside the range of longitude and latitude.
+
+    Notes
+    -----
+    The elevation's datum is changed only where the CRS has a vertical part, and then only as far
+    as PROJ finds the geoid grid; otherwise the elevation keeps its datum and only its unit
+    becomes the metre.
+    """
+    crs, points = surface.crs, surface.points
+    if crs is None:
+        raise CrsError(
+            "The CRS of these points is not known, and GeoJSON is in WGS 84: declare it, for "
+            'example crs="EPSG:32616", or keep the coordinates as they are with projected=True.'
+        )
+    has_datum = crs.vertical_unit is not None
+    target = CRS.of("EPSG:4979" if has_datum else "OGC:CRS84")
+    moved = reproject(points, crs, target, unit=surface.elevation_unit, wanted=METRE).points
+    _require_on_earth(moved, points, crs)
+    moved[:, :2] = np.round(moved[:, :2], DEGREE_DECIMALS)
+    moved[:, 2] = np.round(moved[:, 2], ELEVATION_DECIMALS)
+    return Places(moved + 0.0, members=_assumption(surface))
+
+
+def _assumption(surface: TIN | Survey) -> tuple[tuple[str, str], ...]:
+    """Tell which unit elevations were taken to have, where they were converted from it."""
+    usual = None if surface.crs is None else surface.crs.usual_elevation_unit
+    if surface.elevation_unit is not None or usual is None or usual == METRE:
+        return ()
+    text = f"metres; their unit was not known and taken to be the {usual.name}, that of the CRS"
+    return (("elevations", text),)
+
+
+def crs_places(surface: TIN | Survey) -> Places:
+    """Keep points as they are, and name their CRS by the rule of 2008 (``null``: unknown)."""
+    unit = surface.elevation_unit
+    members = () if unit is None else (("elevation_unit", unit.name),)
+    if surface.crs is None:
+        return Places(surface.points, "null", members)
+    authority = surface.crs.to_authority()
+    name = str(surface.crs)
+    if authority:
+        name = f"urn:ogc:def:crs:{authority[0]}::{authority[1]}"
+    return Places(
+        surface.points, json.dumps({"type": "name", "properties": {"name": name}}), members
+    )
+
+
+def texts(xyz: NDArray[np.float64]) -> NDArray[np.object_]:
+    """Return each position as JSON text, in the fewest digits that give the same double back."""
+    written = np.empty(len(xyz), object)
+    for start in range(0, len(xyz), _BATCH):
+        batch = xyz[start : start + _BATCH]
+        written[start : start + _BATCH] = list(
+            map("[%r,%r,%r]".__mod__, zip(*batch.T.tolist(), strict=True))
+        )
+    return written
+
+
+def require_one_piece(longitudes: NDArray[np.float64], path: Path) -> None:
+    """Refuse features that reach from one end of the longitudes to the other.
+
+    Parameters
+    ----------
+    longitudes : (m, k) float64 array, degrees
+        Of the k corners of each feature.
+
+    Raises
+    ------
+    WriteError
+        If two corners of a feature are more than half a turn apart.
+    """
+    wide = np.ptp(longitudes, axis=1) > _HALF_TURN
+    if wide.any():
+        raise WriteError(
+            f"Cannot write '{path}': {_crossing(int(wide.sum()))} a pole, "
+            "which longitude and latitude cannot show in one piece; keep the coordinates "
+            "of the CRS with projected=True.",
+            path=path,
+        )
+
+
+def _require_on_earth(moved: NDArray[np.float64], points: NDArray[np.float64], crs: CRS) -> None:
+    outside = (np.abs(moved[:, :2]) > (180.0, 90.0)).any(axis=1)
+    if outside.any():
+        row = int(np.argmax(outside))
+        x, y = points[row, :2]
+        count = int(outside.sum())
+        raise CrsError(
+            f"{counted(count, 'point')} {'is no place' if count == 1 else 'are no places'} on "
+            f"Earth in this CRS (first: point {row} at {x:.12g}, {y:.12g}): longitudes of -180 to "
+            "180 and latitudes of -90 to 90 are allowed; check that the CRS is the right one.",
+            crs=crs,
+        )
+
+
+def _crossing(count: int) -> str:
+    cross, hold = ("crosses", "holds") if count == 1 else ("cross", "hold")
+    return f"{counted(count, 'triangle')} {cross} the antimeridian or {hold}"

@@ -1,0 +1,89 @@
+"""Edges and lines of a surface as GeoJSON features."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...errors import FormatError
+from ...terrain.linework import EDGE_KINDS, line_edges
+from ...tin.constraints.clipping import edge_keys
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...tin import TIN
+
+__all__ = ["edge_words", "line_features", "line_vertices", "require_lines"]
+
+_LINE = (
+    '{"type":"Feature","properties":{"id":%d,"kind":%s,"name":%s,"source":%s},'
+    '"geometry":{"type":"LineString","coordinates":[%s]}}'
+)
+
+
+def edge_words(tin: TIN, flags: NDArray[np.bool_]) -> NDArray[np.object_]:
+    """Return the properties of each edge, as JSON, opposite each corner: (m, 3) array.
+
+    Parameters
+    ----------
+    tin : TIN
+    flags : (m, 3) bool array
+        Whether the edge is constrained.
+    """
+    kinds = np.full(flags.shape, -1, np.int8)
+    if len(tin.lines):
+        triangle, corner = np.nonzero(flags)
+        pairs = np.column_stack(
+            [tin.triangles[triangle, (corner + 1) % 3], tin.triangles[triangle, (corner + 2) % 3]]
+        )
+        kinds[triangle, corner] = _kinds_of(tin, pairs)
+    texts = ['"constrained":false,"kind":null', '"constrained":true,"kind":null']
+    texts += [f'"constrained":true,"kind":"{kind}"' for kind in EDGE_KINDS]
+    words: NDArray[np.object_] = np.array(texts, object)[np.where(kinds >= 0, kinds + 2, flags)]
+    return words
+
+
+def _kinds_of(tin: TIN, pairs: NDArray[np.int32]) -> NDArray[np.int8]:
+    """Return the kind of each edge, a place in ``EDGE_KINDS``; -1 where no line is known."""
+    known = line_edges(tin, guess=False)
+    keys = edge_keys(known.pairs, len(tin.points))
+    order = np.argsort(keys)
+    wanted = edge_keys(pairs, len(tin.points))
+    slot = np.minimum(np.searchsorted(keys[order], wanted), len(keys) - 1)
+    found = order[slot]
+    return np.where(keys[found] == wanted, known.kinds[found], -1).astype(np.int8)
+
+
+def require_lines(tin: TIN) -> None:
+    """Refuse a TIN that has no lines.
+
+    Raises
+    ------
+    FormatError
+    """
+    if not (len(tin.lines) or tin.constrained.any()):
+        raise FormatError(
+            "This TIN has no lines: breaklines, boundary, holes and water are given when it is "
+            "built.",
+            known=("triangles", "points", "edges", "hull"),
+        )
+
+
+def line_vertices(tin: TIN) -> list[NDArray[np.int32]]:
+    """Return the chains of a TIN; where none are known, its constrained edges one by one."""
+    return list(tin.lines.chains()) if len(tin.lines) else list(line_edges(tin).pairs)
+
+
+def line_features(tin: TIN, positions: NDArray[np.object_]) -> Iterator[str]:
+    """Give a feature for each line, given the positions of the vertices as JSON."""
+    lines = tin.lines
+    for number, vertices in enumerate(line_vertices(tin)):
+        properties: tuple[Any, ...] = ("null", '""', "null")
+        if len(lines):
+            kind, name = json.dumps(lines.kinds[number]), json.dumps(lines.names[number])
+            properties = (kind, name, int(lines.sources[number]))
+        yield _LINE % (number, *properties, ",".join(positions[vertices]))

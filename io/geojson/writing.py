@@ -1,0 +1,331 @@
+"""GeoJSON (RFC 7946): triangles, points, edges, lines or hull of a surface, for any GIS."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, get_args
+
+import numpy as np
+
+from ..._atomic import replacing
+from ..._sentences import counted
+from ...errors import FormatError, WriteError
+from ...terrain.slope import areas, aspect, ring_area, slope
+from ...tin import Survey
+from ..mesh.common import require_writable
+from .coordinates import Places, crs_places, require_one_piece, texts, wgs84_places
+from .lines import edge_words, line_features, line_vertices, require_lines
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from ...tin import TIN
+
+__all__ = ["Kind", "write"]
+
+Kind = Literal["triangles", "points", "edges", "lines", "hull"]
+
+_BATCH = 16_384
+_FEATURE = '{"type":"Feature","properties":%s,"geometry":{"type":"%s","coordinates":%s}}'
+_TRIANGLE = _FEATURE % (
+    '{"id":%d,"slope":%.4f,"aspect":%.4f,"area":%.9g}',
+    "Polygon",
+    "[[%s,%s,%s,%s]]",
+)
+_EDGE = _FEATURE % ('{"id":%d,%s}', "LineString", "[%s,%s]")
+_POINT = _FEATURE % ("%s", "Point", "%s")
+_HULL = _FEATURE % ('{"id":%d,"area":%.12g}', "Polygon", "[%s]")
+
+
+def write(
+    surface: TIN | Survey,
+    path: Path,
+    *,
+    kind: Kind | None = None,
+    projected: bool = False,
+    progress: Callable[[float], None] | None = None,
+) -> None:
+    """Write a surface, or the points of a survey, as GeoJSON.
+
+    Parameters
+    ----------
+    surface : TIN or Survey
+        Its CRS must be known, unless ``projected``.
+    path : Path
+    kind : {"triangles", "points", "edges", "lines", "hull"}, optional
+        One Polygon a triangle with the properties ``id``, ``slope`` and ``aspect`` (degrees; null
+        where there is none) and ``area`` (in the plane, square metres); one Point a vertex, or a
+        point of the survey with its attributes; one LineString an edge with ``constrained`` and
+        ``kind`` (that of its line: hard, soft, boundary, hole, water; null if none is known); one
+        LineString a line with ``kind``, ``name`` and ``source`` (its number in the input); or the
+        outline, holes included, with its ``area``. Default triangles, of a survey points.
+    projected : bool
+        Leave the coordinates in the CRS, every digit kept, and name it in the ``crs`` member of
+        the 2008 specification: not RFC 7946, but GDAL and QGIS understand it. Default WGS 84
+        longitude and latitude with 9 decimals, elevation in metres with 6.
+    progress : callable, optional
+        Called with the fraction done.
+
+    Raises
+    ------
+    CrsError
+        If the CRS is not known, or puts points outside the Earth.
+    FormatError
+        If there is no such kind, a survey is asked for triangles, or a TIN without lines for lines.
+    WriteError
+        If the file cannot be written, a coordinate is not finite, or the surface crosses the
+        antimeridian.
+
+    Notes
+    -----
+    RFC 7946 means metres above the ellipsoid by the third number. The vertical datum is changed
+    only where the CRS is a compound or 3D one (and PROJ has the geoid grid at hand); all other
+    elevations keep their datum, and become metres. If their unit is not known they are taken to be
+    in that of the eastings (metres above degrees), and the member ``elevations`` says so where that
+    is not the metre. With ``projected`` elevations stay as they are, and the member
+    ``elevation_unit`` names their unit if it is known. Slope is that of the true surface, as
+    :func:`tinsmith.terrain.slope` gives it. Areas are in CRS units squared where the CRS is not
+    known.
+
+    The file is written in batches; beside the surface itself memory holds about 100 bytes for
+    each vertex.
+    """
+    surface = require_writable(surface, path)
+    chosen = _checked_kind(surface, kind)
+    if chosen == "lines" and not isinstance(surface, Survey):
+        require_lines(surface)
+    _require_finite(surface.points, path)
+    place = crs_places if projected else wgs84_places
+    places = place(surface)
+    if isinstance(surface, Survey) or chosen == "points":
+        used, total = places.xyz, len(surface.points)
+        features = _points(surface, places)
+    else:
+        corners = places.xyz[surface.triangles, 0]
+        if places.crs_member is None:
+            require_one_piece(corners, path)
+        used = places.xyz[_used_vertices(surface, chosen)]
+        total = len(surface.triangles)
+        features = _SURFACE_FEATURES[chosen](surface, places)
+    with replacing(path, binary=False) as file:
+        file.write(_head(places, used))
+        separator = "\n"
+        for done, batch in features:
+            file.write(separator + batch)
+            separator = ",\n"
+            if progress is not None:
+                progress(min(1.0, done / max(total, 1)))
+        file.write("\n]}\n")
+
+
+def _checked_kind(surface: TIN | Survey, kind: str | None) -> str:
+    is_survey = isinstance(surface, Survey)
+    if kind is None:
+        return "points" if is_survey else "triangles"
+    allowed = get_args(Kind)
+    if kind not in allowed:
+        raise FormatError(f"Invalid kind '{kind}': one of {', '.join(allowed)}.", known=allowed)
+    if is_survey and kind != "points":
+        raise FormatError(
+            f"A survey has no {kind}, only points: triangulate it first.", known=("points",)
+        )
+    return kind
+
+
+def _require_finite(points: NDArray[np.float64], path: Path) -> None:
+    wrong = ~np.isfinite(points).all(axis=1)
+    if wrong.any():
+        row, count = int(np.argmax(wrong)), int(wrong.sum())
+        raise WriteError(
+            f"Cannot write '{path}': {counted(count, 'point')} "
+            f"{'is' if count == 1 else 'are'} not finite (first: point "
+            f"{row}, {points[row].tolist()}), and JSON has only finite numbers.",
+            path=path,
+        )
+
+
+def _head(places: Places, used: NDArray[np.float64]) -> str:
+    lines = ['"type":"FeatureCollection"']
+    if places.crs_member is not None:
+        lines.append(f'"crs":{places.crs_member}')
+    lines += [f"{json.dumps(name)}:{json.dumps(text)}" for name, text in places.members]
+    if len(used):
+        bbox = [*used.min(axis=0).tolist(), *used.max(axis=0).tolist()]
+        lines.append(f'"bbox":{json.dumps(bbox)}')
+    return "{" + ",\n".join(lines) + ',\n"features":['
+
+
+def _used_vertices(tin: TIN, kind: str) -> NDArray[np.bool_]:
+    used = np.zeros(len(tin.points), np.bool_)
+    used[np.concatenate(line_vertices(tin)) if kind == "lines" else tin.triangles] = True
+    return used
+
+
+def _batches(count: int) -> Iterator[tuple[int, slice]]:
+    """Cut a count into slices, each with the number done after it."""
+    for start in range(0, count, _BATCH):
+        stop = min(start + _BATCH, count)
+        yield stop, slice(start, stop)
+
+
+# -------------------------------------------------------------------------- triangles
+
+
+class _Measures(NamedTuple):
+    """Slope and aspect (degrees, NaN for none) and area (square metres) of each triangle."""
+
+    slope: NDArray[np.float64]
+    aspect: NDArray[np.float64]
+    area: NDArray[np.float64]
+
+
+def _measures(tin: TIN) -> _Measures:
+    # As written, a hair west of north must not become the full circle.
+    falls = np.round(aspect(tin), 4) % 360.0
+    return _Measures(slope(tin), falls, areas(tin))
+
+
+def _triangles(tin: TIN, places: Places) -> Iterator[tuple[int, str]]:
+    positions = texts(places.xyz)
+    measures = _measures(tin)
+    for done, part in _batches(len(tin.triangles)):
+        triangles = tin.triangles[part]
+        if places.crs_member is None:  # else the coordinates, and so the order, are the TIN's own
+            triangles = _counter_clockwise(triangles, places.xyz)
+        first, second, third = triangles.T
+        start = positions[first].tolist()
+        rows = zip(
+            range(part.start, part.stop),
+            measures.slope[part].tolist(),
+            measures.aspect[part].tolist(),
+            measures.area[part].tolist(),
+            start,
+            positions[second].tolist(),
+            positions[third].tolist(),
+            start,
+            strict=True,
+        )
+        # JSON has no NaN; no other text of these features holds the letters ":nan".
+        yield done, ",\n".join(map(_TRIANGLE.__mod__, rows)).replace(":nan", ":null")
+
+
+def _counter_clockwise(triangles: NDArray[np.int32], xyz: NDArray[np.float64]) -> NDArray[np.int32]:
+    """Turn the triangles that the written coordinates show clockwise."""
+    a, b, c = (xyz[triangles[:, k], :2] for k in range(3))
+    ab, ac = b - a, c - a
+    clockwise = ab[:, 0] * ac[:, 1] < ab[:, 1] * ac[:, 0]
+    return np.where(clockwise[:, None], triangles[:, ::-1], triangles)
+
+
+# ------------------------------------------------------------------------------ edges
+
+
+def _edges(tin: TIN, places: Places) -> Iterator[tuple[int, str]]:
+    positions = texts(places.xyz)
+    words = edge_words(tin, _flags_from_both_sides(tin))
+    across = np.arange(len(tin.triangles), dtype=np.int32)[:, None]
+    once = (tin.neighbors < 0) | (tin.neighbors > across)
+    written = 0
+    for done, part in _batches(len(tin.triangles)):
+        here = once[part]
+        starts = positions[tin.triangles[part][:, [1, 2, 0]][here]]
+        ends = positions[tin.triangles[part][:, [2, 0, 1]][here]]
+        ids = range(written, written + len(starts))
+        rows = zip(ids, words[part][here], starts, ends, strict=True)
+        if len(starts):
+            yield done, ",\n".join(map(_EDGE.__mod__, rows))
+        written += len(starts)
+
+
+def _flags_from_both_sides(tin: TIN) -> NDArray[np.bool_]:
+    """Return the flags of the edges, each edge flagged if either of its triangles says so."""
+    flags = tin.constrained.copy()
+    triangle, corner = np.nonzero(tin.constrained & (tin.neighbors >= 0))
+    other = tin.neighbors[triangle, corner]
+    row, back = np.nonzero(tin.neighbors[other] == triangle[:, None])
+    flags[other[row], back] = True
+    return flags
+
+
+def _lines(tin: TIN, places: Places) -> Iterator[tuple[int, str]]:
+    yield len(tin.triangles), ",\n".join(line_features(tin, texts(places.xyz)))
+
+
+# ------------------------------------------------------------------------------- hull
+
+
+def _hull(tin: TIN, places: Places) -> Iterator[tuple[int, str]]:
+    positions = texts(places.xyz)
+    features = []
+    for number, rings in enumerate(_outlines(tin)):
+        area = sum(ring_area(tin.crs, tin.points[ring]) for ring in rings)
+        turned = [_turned(ring, places.xyz, k == 0) for k, ring in enumerate(rings)]
+        written = ",".join(f"[{','.join(positions[ring])}]" for ring in turned)
+        features.append(_HULL % (number, area, written))
+    yield len(tin.triangles), ",\n".join(features)
+
+
+def _outlines(tin: TIN) -> list[list[NDArray[np.int32]]]:
+    """Group the boundary rings: an outer ring followed by its holes."""
+    from shapely import Polygon
+
+    outer = [ring for ring in tin.rings if _signed_area(tin.points[ring]) > 0]
+    holes = [ring for ring in tin.rings if _signed_area(tin.points[ring]) <= 0]
+    outer.sort(key=lambda ring: _signed_area(tin.points[ring]))
+    groups = [[ring] for ring in outer]
+    shapes = [Polygon(tin.points[ring, :2]) for ring in outer] if holes else []
+    for hole in holes:
+        shape = Polygon(tin.points[hole, :2])
+        home = next((i for i, around in enumerate(shapes) if around.covers(shape)), -1)
+        groups[home].append(hole)
+    return groups[::-1]
+
+
+def _signed_area(ring: NDArray[np.float64]) -> float:
+    """Area in the plane, positive counter-clockwise."""
+    x, y = (ring[:, :2] - ring[0, :2]).T
+    return float(np.dot(x, np.roll(y, -1)) - np.dot(np.roll(x, -1), y)) / 2
+
+
+def _turned(
+    ring: NDArray[np.int32], xyz: NDArray[np.float64], counter_clockwise: bool
+) -> NDArray[np.int32]:
+    closed = np.append(ring, ring[0])
+    return closed if (_signed_area(xyz[ring]) > 0) == counter_clockwise else closed[::-1]
+
+
+# ----------------------------------------------------------------------------- points
+
+
+def _points(surface: TIN | Survey, places: Places) -> Iterator[tuple[int, str]]:
+    attributes = surface.attributes if isinstance(surface, Survey) else {}
+    names = [json.dumps(str(name)) for name in attributes if name != "id"]
+    columns = [np.asarray(column) for name, column in attributes.items() if name != "id"]
+    ids = np.asarray(attributes.get("id", np.arange(len(places.xyz))))
+    properties = "{" + ",".join(f"{name.replace('%', '%%')}:%s" for name in ['"id"', *names]) + "}"
+    for done, part in _batches(len(places.xyz)):
+        values = zip(
+            *(map(_json, column[part].tolist()) for column in (ids, *columns)), strict=True
+        )
+        rows = zip(map(properties.__mod__, values), texts(places.xyz[part]), strict=True)
+        yield done, ",\n".join(map(_POINT.__mod__, rows))
+
+
+def _json(value: Any) -> str:
+    """Return a value of an attribute as JSON; what JSON has no word for becomes text or null."""
+    if value is None or value != value:  # NaN and NaT
+        return "null"
+    if isinstance(value, float) and not np.isfinite(value):
+        return "null"
+    return json.dumps(value if isinstance(value, bool | int | float | str) else str(value))
+
+
+_SURFACE_FEATURES: dict[str, Callable[[TIN, Places], Iterator[tuple[int, str]]]] = {
+    "triangles": _triangles,
+    "edges": _edges,
+    "lines": _lines,
+    "hull": _hull,
+}

@@ -1,0 +1,112 @@
+"""Pipes as files: what can be read only once is copied to a temporary file first."""
+
+from __future__ import annotations
+
+import shutil
+import stat
+import tempfile
+from contextlib import contextmanager
+from pathlib import Path
+from typing import IO, TYPE_CHECKING
+
+from ...errors import ReadError, TinsmithError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+__all__ = ["as_sentence", "ordinary_file", "spooled"]
+
+_CHUNK = 1 << 20
+
+
+@contextmanager
+def ordinary_file(path: Path) -> Iterator[Path]:
+    """Yield a file that can be opened several times: ``path`` itself, or a copy of what it sends.
+
+    Parameters
+    ----------
+    path : Path
+        A file, or a pipe (named, ``/dev/stdin``, a shell's process substitution).
+
+    Yields
+    ------
+    Path
+        Removed at the end if it is a copy; errors speak of ``path`` all the same.
+
+    Raises
+    ------
+    ReadError
+        If there is a device or a socket, or the pipe cannot be read.
+    """
+    if not _is_pipe(path):
+        yield path
+        return
+    with _faults(path):
+        stream = path.open("rb")
+    with stream, spooled(stream, path) as copy:
+        yield copy
+
+
+@contextmanager
+def spooled(stream: IO[bytes], path: Path) -> Iterator[Path]:
+    """Copy a stream to a temporary file of the same suffix, and yield that.
+
+    Parameters
+    ----------
+    stream : binary file object
+    path : Path
+        What errors speak of. Without a suffix, the content is taken to be text if it shows no
+        other format.
+
+    Raises
+    ------
+    ReadError
+        If the stream cannot be read, or there is no room for it.
+    """
+    with tempfile.TemporaryDirectory(prefix="tinsmith-") as folder:
+        copy = Path(folder) / f"piped{path.suffix or '.txt'}"
+        with _faults(path), copy.open("wb") as file:
+            shutil.copyfileobj(stream, file, _CHUNK)
+        try:
+            yield copy
+        except TinsmithError as error:
+            _rename(error, copy, path)
+            raise
+
+
+def as_sentence(path: Path, error: OSError) -> ReadError:
+    """Return the error of the system as one of the toolkit."""
+    if isinstance(error, FileNotFoundError):
+        return ReadError(f"There is no file '{path}'.", path=path)
+    if isinstance(error, PermissionError):
+        return ReadError(f"'{path}' may not be read: permission denied.", path=path)
+    return ReadError(f"Cannot read '{path}': {error.strerror or error}.", path=path)
+
+
+def _is_pipe(path: Path) -> bool:
+    """Whether a path is a pipe; files, folders and what is missing are left to the reader."""
+    try:
+        mode = path.stat().st_mode
+    except (OSError, ValueError):
+        return False
+    if stat.S_ISCHR(mode) or stat.S_ISBLK(mode) or stat.S_ISSOCK(mode):
+        what = "a socket" if stat.S_ISSOCK(mode) else "a device or a terminal"
+        raise ReadError(f"'{path}' is {what}: a file or a pipe is needed.", path=path)
+    return stat.S_ISFIFO(mode)
+
+
+@contextmanager
+def _faults(path: Path) -> Iterator[None]:
+    try:
+        yield
+    except OSError as error:
+        raise as_sentence(path, error) from error
+
+
+def _rename(error: TinsmithError, copy: Path, path: Path) -> None:
+    """Let an error about the copy speak of the original."""
+    if error.args and isinstance(error.args[0], str):
+        text = error.args[0].replace(str(copy), str(path)).replace(copy.name, path.name)
+        error.args = (text, *error.args[1:])
+    if getattr(error, "path", None) == copy:
+        error.path = path  # type: ignore[attr-defined]

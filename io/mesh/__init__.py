@@ -1,0 +1,1 @@
+"""Mesh formats: PLY, OBJ, STL, VTK, Gmsh."""

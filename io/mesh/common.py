@@ -1,0 +1,286 @@
+"""What the mesh formats share: a file's bytes, polygons cut into triangles, errors of the file."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ...crs import CRS, Unit
+from ...errors import CrsError, FormatError, OptionError, PointsError, ReadError
+from ...tin import TIN, Survey
+from ...tin.checking.overlaps import describe_overlaps
+from ..reprojection.placement import settle_unit
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from ...crs import CrsLike, UnitLike
+
+__all__ = [
+    "Fans",
+    "Reference",
+    "choose_reference",
+    "fans",
+    "file_content",
+    "one_line",
+    "require_tin",
+    "require_writable",
+    "survey_of",
+    "tin_of",
+    "unit_text",
+]
+
+
+class Fans(NamedTuple):
+    """Triangles of polygons.
+
+    Attributes
+    ----------
+    triangles : (m, 3) int64 array
+    polygon : (m,) int64 array
+        The polygon that each triangle comes from.
+    """
+
+    triangles: NDArray[np.int64]
+    polygon: NDArray[np.int64]
+
+
+def file_content(path: Path) -> bytes:
+    """Return the bytes of a file, or raise a ReadError that says why not."""
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise ReadError(f"Cannot read '{path}': {error.strerror or error}.", path=path) from error
+
+
+def require_writable(surface: object, path: Path) -> TIN | Survey:
+    """Return a TIN or a survey; refuse anything else."""
+    if isinstance(surface, TIN | Survey):
+        return surface
+    raise FormatError(
+        f"Cannot write '{path}': a {type(surface).__name__} is neither a TIN nor a Survey."
+    )
+
+
+def require_tin(surface: object, path: Path, *, format_name: str) -> TIN:
+    """Return a TIN; refuse a survey, which has no faces, and anything else."""
+    writable = require_writable(surface, path)
+    if isinstance(writable, TIN):
+        return writable
+    raise FormatError(
+        f"Cannot write '{path}': {format_name} holds triangles, and a survey has none; "
+        "triangulate it first."
+    )
+
+
+def one_line(crs: CRS) -> str:
+    """Return the text of a CRS without line breaks, for a comment."""
+    return " ".join(part.strip() for part in str(crs).splitlines())
+
+
+class Reference(NamedTuple):
+    """What the coordinates of a file are measured in; None for what is not known."""
+
+    crs: CRS | None
+    elevation_unit: Unit | None
+
+
+def choose_reference(
+    crs: CrsLike | None,
+    z_unit: UnitLike | None,
+    path: Path,
+    *,
+    found_crs: str | None = None,
+    found_unit: str | None = None,
+) -> Reference:
+    """Return CRS and unit of elevations: what the file says, else what the caller declares.
+
+    Raises
+    ------
+    CrsError
+        If PROJ does not know the CRS, or the caller names another than the file.
+    OptionError
+        If the unit is unknown, or another than that of the file or the CRS.
+    ReadError
+        If the file names a unit that is none.
+    """
+    declared, own = CRS.of(crs), _found_crs(found_crs, crs is not None)
+    if declared is not None and own is not None and not own.is_same(declared):
+        raise CrsError(
+            f"'{path}' is in {own.label}, and {declared.label} is another CRS: a TIN is not "
+            "reprojected, since its triangles would be no Delaunay triangles there; build it anew "
+            "from its points.",
+            crs=crs,
+        )
+    system = declared if own is None else own
+    known = _found_unit(found_unit, path)
+    vertical = None if system is None else system.vertical_unit
+    return Reference(system, settle_unit(Unit.of(z_unit), known or vertical, path))
+
+
+def _found_crs(text: str | None, is_declared: bool) -> CRS | None:
+    """Look the CRS of a file up; one that is unknown does no harm if the caller names another."""
+    try:
+        return CRS.of(text or None)
+    except CrsError:
+        if is_declared:
+            return None
+        raise
+
+
+def unit_text(surface: TIN | Survey) -> str:
+    """Return the name of the unit of elevations for a file; "" if it is not known."""
+    return "" if surface.elevation_unit is None else surface.elevation_unit.text
+
+
+def _found_unit(text: str | None, path: Path) -> Unit | None:
+    try:
+        return Unit.of(text or None)
+    except OptionError:
+        raise ReadError(f"'{path}': '{text}' is no unit of elevations.", path=path) from None
+
+
+def tin_of(
+    points: NDArray[Any],
+    triangles: NDArray[Any],
+    path: Path,
+    *,
+    constrained: NDArray[np.bool_] | None = None,
+    reference: Reference,
+) -> TIN:
+    """Make a TIN of what a file holds; what makes no TIN is a fault of the file.
+
+    What makes one in which triangles overlap, and the like, is told in the notes of its report.
+
+    Raises
+    ------
+    ReadError
+        As ``TIN.from_triangles`` raises PointsError.
+    """
+    try:
+        tin = TIN.from_triangles(
+            points,
+            triangles,
+            constrained=constrained,
+            crs=reference.crs,
+            z_unit=reference.elevation_unit,
+        )
+    except PointsError as error:
+        raise ReadError(f"'{path}' holds no TIN. {error}", path=path) from error
+    notes = describe_overlaps(tin)
+    return _with_notes(tin, notes) if notes else tin
+
+
+def _with_notes(tin: TIN, notes: list[str]) -> TIN:
+    return TIN(
+        points=tin.points,
+        triangles=tin.triangles,
+        neighbors=tin.neighbors,
+        constrained=tin.constrained,
+        vertex_of=tin.vertex_of,
+        report=replace(tin.report, notes=notes),
+        crs=tin.crs,
+        elevation_unit=tin.elevation_unit,
+    )
+
+
+def survey_of(
+    points: NDArray[np.float64],
+    path: Path,
+    *,
+    attributes: dict[str, NDArray[Any]] | None = None,
+    reference: Reference,
+) -> Survey:
+    """Make a survey of the points of a file.
+
+    Raises
+    ------
+    ReadError
+        If there are none, or one is not finite.
+    """
+    if len(points) == 0:
+        raise ReadError(f"'{path}' holds no points.", path=path)
+    wrong = ~np.isfinite(points).all(axis=1)
+    if wrong.any():
+        row, count = int(np.argmax(wrong)), int(wrong.sum())
+        raise ReadError(
+            f"'{path}': {count} {'point is' if count == 1 else 'points are'} not finite (first: "
+            f"point {row}, {points[row].tolist()}).",
+            path=path,
+        )
+    return Survey(
+        points=points,
+        attributes=attributes or {},
+        crs=reference.crs,
+        elevation_unit=reference.elevation_unit,
+        source=path.name,
+    )
+
+
+def fans(
+    corners: NDArray[np.int64], offsets: NDArray[np.int64], points: NDArray[np.float64], path: Path
+) -> Fans:
+    """Cut polygons into triangles about their first corner, quadrilaterals along an inner diagonal.
+
+    Parameters
+    ----------
+    corners : (k,) int array
+        Vertex numbers of all polygons, one after the other.
+    offsets : (n_polygons + 1,) int array
+    points : (n, 3) float64 array
+
+    Raises
+    ------
+    ReadError
+        If a polygon has fewer than three corners, or a vertex number is out of range.
+    """
+    lengths = np.diff(offsets)
+    if (lengths < 3).any():
+        row = int(np.argmax(lengths < 3))
+        raise ReadError(
+            f"'{path}': face {row} has {lengths[row]} "
+            f"corner{'' if lengths[row] == 1 else 's'}: 3 or more are needed.",
+            path=path,
+        )
+    wrong = (corners < 0) | (corners >= len(points))
+    if wrong.any():
+        first = int(np.argmax(wrong))
+        row = int(np.searchsorted(offsets, first, side="right")) - 1
+        raise ReadError(
+            f"'{path}': face {row} names vertex {corners[first]}, and the file has the vertices "
+            f"0 to {len(points) - 1}.",
+            path=path,
+        )
+    if (lengths == 3).all():
+        return Fans(corners.reshape(-1, 3), np.arange(len(lengths)))
+    corners = _quads_from_inner_diagonal(corners, offsets, points)
+    polygon = np.repeat(np.arange(len(lengths)), lengths - 2)
+    within = np.arange(len(polygon)) - np.repeat(
+        np.cumsum(lengths - 2) - (lengths - 2), lengths - 2
+    )
+    start = offsets[:-1][polygon]
+    triangles = [corners[start], corners[start + within + 1], corners[start + within + 2]]
+    return Fans(np.stack(triangles, axis=1), polygon)
+
+
+def _quads_from_inner_diagonal(
+    corners: NDArray[np.int64], offsets: NDArray[np.int64], points: NDArray[np.float64]
+) -> NDArray[np.int64]:
+    """Begin a quadrilateral one corner later where its first diagonal runs outside of it."""
+    starts = offsets[:-1][np.diff(offsets) == 4]
+    slots = starts[:, None] + np.arange(4)
+    quads = corners[slots]
+    a, b, c, d = (points[quads[:, k], :2] for k in range(4))
+    with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused later
+        outside = _cross(b - a, c - a) * _cross(c - a, d - a) < 0
+    corners = corners.copy()
+    corners[slots[outside]] = np.roll(quads[outside], -1, axis=1)
+    return corners
+
+
+def _cross(u: NDArray[np.float64], v: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.asarray(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])

@@ -1,0 +1,157 @@
+"""Gmsh meshes (``.msh``) through meshio, for finite element programs.
+
+The file is MSH 2.2 in text, which they all read. Triangles are in the physical group ``surface``.
+Edges of the rim and of lines are line elements for boundary conditions: of the rim in the group
+``boundary``, of a line in one with its name, else its kind and number. MSH has no place for CRS
+and units.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from importlib.util import find_spec
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ... import _optional as extras
+from ..._atomic import replacing_path
+from ...errors import MissingExtraError
+from ...tin.constraints.clipping import edge_keys
+from ...tin.topology import NO_NEIGHBOR, ends
+from ..isolated import run_isolated
+from .common import choose_reference, file_content, require_tin, survey_of, tin_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from ...crs import CrsLike, UnitLike
+    from ...tin import TIN, Survey
+
+__all__ = ["read", "write"]
+
+SURFACE = "surface"
+BOUNDARY = "boundary"
+UNNAMED = "constrained"
+
+_DIGITS = ".17g"
+_ODD_LETTERS = re.compile(r'["\r\n]')
+
+
+class _Edges(NamedTuple):
+    """Edges of rim and lines, each once, and the name of the group of each."""
+
+    pairs: NDArray[np.int32]
+    names: list[str]
+
+
+def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN | Survey:
+    """Read the triangles of a Gmsh file; line elements along their edges become constrained.
+
+    Parameters
+    ----------
+    path : Path
+    crs : CRS, str, int or pyproj.CRS, optional
+        CRS of the coordinates, which the file cannot tell.
+    z_unit : Unit or str, optional
+        Unit of the elevations, which the file cannot tell.
+
+    Returns
+    -------
+    TIN or Survey
+        A survey where the file has no triangles.
+
+    Raises
+    ------
+    MissingExtraError
+        If meshio is not installed.
+    ReadError
+        If the file is damaged, or its triangles are no TIN.
+    CrsError
+        If PROJ does not know the CRS, or the file names another.
+    OptionError
+        If the unit is unknown, or the file names another.
+    """
+    if find_spec("meshio") is None:
+        raise MissingExtraError("meshio", extra="mesh", purpose="Reading Gmsh files")
+    if not path.is_file():
+        file_content(path)  # says why it cannot be read
+    where = {"path": os.path.abspath(path), "shown": str(path)}  # noqa: PTH100 - links stay
+    arrays = run_isolated(f"{__package__}.gmsh_child:mesh", where, path=path).arrays
+    points, triangles = arrays["points"], arrays["triangles"]
+    reference = choose_reference(crs, z_unit, path)
+    if len(triangles) == 0:
+        return survey_of(points, path, reference=reference)
+    flags = _flags(triangles, arrays["lines"], len(points))
+    return tin_of(points, triangles, path, constrained=flags, reference=reference)
+
+
+def _flags(
+    triangles: NDArray[np.int32], lines: NDArray[np.int32], n_points: int
+) -> NDArray[np.bool_]:
+    flags = np.zeros(triangles.shape, np.bool_)
+    given = edge_keys(lines, n_points)
+    for corner in range(3):
+        edge = np.stack([triangles[:, (corner + 1) % 3], triangles[:, (corner + 2) % 3]], axis=1)
+        flags[:, corner] = np.isin(edge_keys(edge, n_points), given)
+    return flags
+
+
+def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None = None) -> None:
+    """Write a TIN as a Gmsh file, MSH 2.2 in text.
+
+    Parameters
+    ----------
+    surface : TIN
+    path : Path
+    progress : callable, optional
+        Called with 1.0 at the end.
+
+    Raises
+    ------
+    FormatError
+        If ``surface`` is no TIN.
+    MissingExtraError
+        If meshio is not installed.
+    WriteError
+        If the file cannot be written.
+    """
+    tin = require_tin(surface, path, format_name="Gmsh")
+    meshio = extras.meshio("Writing Gmsh files")
+    edges = _edges(tin)
+    number_of = {name: i for i, name in enumerate(dict.fromkeys([SURFACE, *edges.names]), start=1)}
+    numbers = [np.array([number_of[name] for name in edges.names], np.int32),
+               np.full(len(tin.triangles), number_of[SURFACE], np.int32)]  # fmt: skip
+    mesh = meshio.Mesh(
+        tin.points,
+        [("line", edges.pairs), ("triangle", tin.triangles)],
+        cell_data={"gmsh:physical": numbers, "gmsh:geometrical": numbers},
+        field_data={
+            name: np.array([number, 2 if name == SURFACE else 1])
+            for name, number in number_of.items()
+        },
+    )
+    with replacing_path(path) as beside:
+        meshio.gmsh.write(str(beside), mesh, fmt_version="2.2", binary=False, float_fmt=_DIGITS)
+    if progress is not None:
+        progress(1.0)
+
+
+def _edges(tin: TIN) -> _Edges:
+    """Gather edges by group, the rim first: an element has one group only."""
+    triangle, corner = np.nonzero(tin.neighbors == NO_NEIGHBOR)
+    groups = [(np.stack(ends(tin.triangles, triangle, corner), axis=1), BOUNDARY)]
+    for number, chain in enumerate(tin.lines.chains()):
+        name = tin.lines.names[number] or f"{tin.lines.kinds[number]} {tin.lines.sources[number]}"
+        groups.append((np.stack([chain[:-1], chain[1:]], axis=1), _ODD_LETTERS.sub("_", name)))
+    triangle, corner = np.nonzero(tin.constrained)
+    groups.append((np.stack(ends(tin.triangles, triangle, corner), axis=1), UNNAMED))
+    pairs = np.concatenate([pairs for pairs, _ in groups]).astype(np.int32)
+    names = [name for pairs, name in groups for _ in range(len(pairs))]
+    _, first = np.unique(edge_keys(pairs, len(tin.points)), return_index=True)
+    first.sort()
+    return _Edges(pairs[first], [names[i] for i in first.tolist()])

@@ -1,0 +1,226 @@
+"""Wavefront OBJ: vertices and faces as text, every digit kept, elevation up as it is.
+
+Comments keep the CRS, ``# crs: EPSG:32616``, and the unit of elevations where it is known,
+``# elevation unit: US survey foot``. Which edges are constrained is lost.
+"""
+
+from __future__ import annotations
+
+import re
+import warnings
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..._atomic import replacing
+from ...errors import ReadError
+from .common import (
+    choose_reference,
+    fans,
+    file_content,
+    one_line,
+    require_tin,
+    survey_of,
+    tin_of,
+    unit_text,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from ...crs import CrsLike, UnitLike
+    from ...tin import TIN, Survey
+
+__all__ = ["read", "write"]
+
+_BATCH = 65_536
+_SHOWN_LETTERS = 60
+_MOST_DIGITS = 18
+_CLAMPED = 2**63 - 1
+"""What NumPy makes of a larger number."""
+
+_VERTEX_NUMBER = re.compile(r"([-+]?)([0-9]+)(?:/|$)")
+
+
+def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN | Survey:
+    """Read the vertices and faces of an OBJ file.
+
+    Parameters
+    ----------
+    path : Path
+    crs : CRS, str, int or pyproj.CRS, optional
+        Declares the CRS; default the one in a comment ``# crs: ...``.
+    z_unit : Unit or str, optional
+        Declares the unit of the elevations; default the one in a comment
+        ``# elevation unit: ...``.
+
+    Returns
+    -------
+    TIN or Survey
+        A survey where the file has no faces. Polygons are cut into triangles; texture, normals,
+        colours, groups and materials are skipped.
+
+    Raises
+    ------
+    ReadError
+        If a line cannot be understood, or the faces are no TIN.
+    CrsError
+        If PROJ does not know the CRS, or the file names another.
+    OptionError
+        If the unit is unknown, or the file names another.
+    """
+    lines = _lines(file_content(path))
+    vertex_lines = [i for i, line in enumerate(lines) if line[:2] in ("v ", "v\t")]
+    face_lines = [i for i, line in enumerate(lines) if line[:2] in ("f ", "f\t")]
+    points = _points(lines, vertex_lines, path)
+    reference = choose_reference(
+        crs,
+        z_unit,
+        path,
+        found_crs=_comment(lines, "crs"),
+        found_unit=_comment(lines, "elevation unit"),
+    )
+    if not face_lines:
+        return survey_of(points, path, reference=reference)
+    corners, offsets = _faces(lines, vertex_lines, face_lines, path)
+    triangles = fans(corners, offsets, points, path).triangles
+    return tin_of(points, triangles, path, reference=reference)
+
+
+def _lines(content: bytes) -> list[str]:
+    """Cut into stripped lines; one that a backslash continues is followed by empty ones."""
+    text = content.decode("utf-8", errors="replace")
+    lines = [line.strip() for line in text.split("\n")]
+    if "\\" in text:
+        for i in range(len(lines) - 2, -1, -1):
+            if lines[i].endswith("\\") and not lines[i].startswith("#"):
+                lines[i] = f"{lines[i][:-1]} {lines[i + 1]}"
+                lines[i + 1] = ""
+    return lines
+
+
+def _comment(lines: Sequence[str], name: str) -> str | None:
+    """Return what is named so among the comments at the top."""
+    for line in lines:
+        if line.strip() and not line.startswith("#"):
+            return None
+        if line.startswith(f"# {name}: "):
+            return line.removeprefix(f"# {name}: ").strip() or None
+    return None
+
+
+def _points(lines: Sequence[str], vertex_lines: Sequence[int], path: Path) -> NDArray[np.float64]:
+    plain = _plain_numbers([lines[i] for i in vertex_lines], np.float64)
+    if plain is not None:
+        return plain
+    rows = [lines[i].split()[1:4] for i in vertex_lines]
+    for i, row in zip(vertex_lines, rows, strict=True):
+        if len(row) < 3:
+            raise _fault(lines, i, "a vertex needs x, y and z", path)
+    try:
+        return np.array(rows, np.float64).reshape(-1, 3)
+    except ValueError:
+        for i, row in zip(vertex_lines, rows, strict=True):
+            _require_numbers(row, lines, i, path)
+        raise
+
+
+def _plain_numbers(rows: Sequence[str], dtype: type[np.generic]) -> NDArray[Any] | None:
+    """Return the numbers of rows like ``v 1 2 3`` at once; None where a row is anything else."""
+    if any(row.count(" ") != 3 for row in rows):
+        return None
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", DeprecationWarning)
+        try:
+            numbers = np.fromstring(" ".join([row[2:] for row in rows]), dtype, sep=" ")
+        except (DeprecationWarning, ValueError):
+            return None
+    return numbers.reshape(-1, 3) if numbers.size == 3 * len(rows) else None
+
+
+def _require_numbers(words: Sequence[str], lines: Sequence[str], i: int, path: Path) -> None:
+    try:
+        np.array(words, np.float64)
+    except ValueError:
+        raise _fault(lines, i, "a coordinate is no number", path) from None
+
+
+def _faces(
+    lines: Sequence[str], vertex_lines: Sequence[int], face_lines: Sequence[int], path: Path
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return the vertex numbers, from 0 on, of all faces, and the offsets of each."""
+    plain = _plain_numbers([lines[i] for i in face_lines], np.int64)
+    if plain is not None and plain.min() > 0 and plain.max() < _CLAMPED:
+        return plain.ravel() - 1, np.arange(0, plain.size + 1, 3)
+    corners: list[int] = []
+    offsets = [0]
+    before = np.searchsorted(vertex_lines, face_lines).tolist()
+    for i, n_before in zip(face_lines, before, strict=True):
+        for word in lines[i].split()[1:]:
+            corners.append(_vertex_number(word, n_before, lines, i, path))
+        offsets.append(len(corners))
+    return np.array(corners, np.int64), np.array(offsets, np.int64)
+
+
+def _vertex_number(word: str, n_before: int, lines: Sequence[str], i: int, path: Path) -> int:
+    """Turn ``7``, ``7/1``, ``7//2`` or ``-1`` (the vertex just before) into a number from 0 on."""
+    shown = word if len(word) <= _SHOWN_LETTERS else f"{word[:_SHOWN_LETTERS]}..."
+    found = _VERTEX_NUMBER.match(word)
+    if found is None:
+        raise _fault(lines, i, f"'{shown}' names no vertex", path)
+    digits = found[2].lstrip("0")
+    if len(digits) > _MOST_DIGITS:
+        raise _fault(lines, i, f"'{shown}' names no vertex: the file has fewer", path)
+    number = int(digits or "0")
+    if number == 0 or (found[1] == "-" and number > n_before):
+        raise _fault(lines, i, f"'{shown}' names no vertex: they count from 1", path)
+    return n_before - number if found[1] == "-" else number - 1
+
+
+def _fault(lines: Sequence[str], i: int, what: str, path: Path) -> ReadError:
+    shown = lines[i].strip()[:_SHOWN_LETTERS]
+    return ReadError(f"'{path}', line {i + 1}: {what} ('{shown}').", path=path, lines=[i + 1])
+
+
+def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None = None) -> None:
+    """Write a TIN as OBJ; :func:`read` gives the same vertices and triangles back.
+
+    Parameters
+    ----------
+    surface : TIN
+    path : Path
+    progress : callable, optional
+        Called with the fraction done.
+
+    Raises
+    ------
+    FormatError
+        If ``surface`` is no TIN.
+    WriteError
+        If the file cannot be written.
+    """
+    tin = require_tin(surface, path, format_name="OBJ")
+    total = len(tin.points) + len(tin.triangles)
+    with replacing(path, binary=False) as file:
+        if tin.crs is not None:
+            file.write(f"# crs: {one_line(tin.crs)}\n")
+        if unit := unit_text(tin):
+            file.write(f"# elevation unit: {unit}\n")
+        done = 0
+        for count, batch in _batches(tin):
+            file.write(batch)
+            done += count
+            if progress is not None:
+                progress(done / total)
+
+
+def _batches(tin: TIN) -> Iterator[tuple[int, str]]:
+    for start in range(0, len(tin.points), _BATCH):
+        rows = tin.points[start : start + _BATCH]
+        yield len(rows), ("v %r %r %r\n" * len(rows)) % tuple(rows.ravel().tolist())
+    for start in range(0, len(tin.triangles), _BATCH):
+        faces = tin.triangles[start : start + _BATCH].astype(np.int64) + 1
+        yield len(faces), ("f %d %d %d\n" * len(faces)) % tuple(faces.ravel().tolist())

@@ -1,0 +1,231 @@
+"""The tables behind a PLY header, as arrays: single values as columns, lists as offsets and items.
+
+Text and binary files are read alike: a row is a run of cells (words of the text, or bytes), and a
+list is a cell for its length and then its items.
+"""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ....errors import ReadError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from .header import Element, Header
+
+_LINE_END = 3
+"""Bytes behind the last row that may be ends of lines."""
+
+__all__ = ["Ragged", "Table", "read_tables"]
+
+
+class Ragged(NamedTuple):
+    """Lists of any length, one after the other.
+
+    Attributes
+    ----------
+    items : (k,) array
+    offsets : (rows + 1,) int64 array
+    """
+
+    items: NDArray[Any]
+    offsets: NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """One element's values by property name."""
+
+    columns: dict[str, NDArray[Any]]
+    lists: dict[str, Ragged]
+
+
+def read_tables(content: bytes, header: Header, path: Path) -> dict[str, Table]:
+    """Read the tables up to the last of ``vertex`` and ``face``.
+
+    Raises
+    ------
+    ReadError
+        If the file ends before a table does, or text holds something that is no number.
+    """
+    wanted = [i for i, element in enumerate(header.elements) if element.name in ("vertex", "face")]
+    body = _Body(content, header, path)
+    read = header.elements[: max(wanted, default=-1) + 1]
+    tables = {element.name: body.table(element) for element in read}
+    if read and len(read) == len(header.elements):
+        body.require_end(read[-1])
+    return tables
+
+
+class _Body:
+    """Rows of cells, read from a cursor on; a cell of a text is one word, read as a number."""
+
+    def __init__(self, content: bytes, header: Header, path: Path) -> None:
+        self.path = path
+        self.cursor = 0
+        self.byte_order = header.byte_order
+        self.cells: NDArray[Any] = (
+            np.frombuffer(content, np.uint8)[header.size :]
+            if self.byte_order
+            else _numbers(content[header.size :], path)
+        )
+
+    def dtype(self, type_name: str) -> np.dtype[Any]:
+        """Type in which a value is stored."""
+        return np.dtype(self.byte_order + type_name) if self.byte_order else np.dtype(np.float64)
+
+    def width(self, type_name: str) -> int:
+        """Cells of one value."""
+        return self.dtype(type_name).itemsize // self.cells.itemsize
+
+    def picked(self, starts: NDArray[np.int64], type_name: str) -> NDArray[Any]:
+        """Return the values that begin at these cells."""
+        cells = self.cells[starts[:, None] + np.arange(self.width(type_name))]
+        values: NDArray[Any] = cells.view(self.dtype(type_name)).reshape(len(starts))
+        return values
+
+    def block(
+        self, start: int, stride: int, shape: tuple[int, int], type_name: str
+    ) -> NDArray[Any]:
+        """View ``shape[1]`` neighbouring values in each of ``shape[0]`` rows ``stride`` apart."""
+        dtype, cell = self.dtype(type_name), self.cells.itemsize
+        strides = (stride * cell, dtype.itemsize)
+        return np.ndarray(shape, dtype, self.cells.data, start * cell, strides)
+
+    def table(self, element: Element) -> Table:
+        """Read an element's rows and move the cursor behind them."""
+        self._require_room(element)
+        table = self._even_table(element) if element.count else None
+        return self._uneven_table(element) if table is None else table
+
+    def require_end(self, element: Element) -> None:
+        """Refuse a file that holds further rows: its header tells too small a count."""
+        rest = len(self.cells) - self.cursor
+        if rest >= max(_least(element, self), _LINE_END if self.byte_order else 1):
+            raise ReadError(
+                f"'{self.path}' goes on behind its last element: its header promises "
+                f"{_rows(element)}, and more follow.",
+                path=self.path,
+            )
+
+    def _require_room(self, element: Element) -> None:
+        """Refuse a count that the file cannot hold before anything is allocated for it."""
+        room = len(self.cells) - self.cursor
+        if element.count * max(_least(element, self), 1) > room:
+            raise self._truncated(element)
+
+    def _truncated(self, element: Element) -> ReadError:
+        return ReadError(
+            f"'{self.path}' ends too early: its header promises {_rows(element)}, more than the "
+            "file holds.",
+            path=self.path,
+        )
+
+    def _list_lengths(self, element: Element, start: int) -> tuple[list[int], int]:
+        """Walk one row: the lengths of its lists, and the cell after it."""
+        lengths = []
+        for prop in element.properties:
+            if prop.count_type is not None:
+                lengths.append(self._list_length(element, prop.count_type, start))
+                start += self.width(prop.count_type) + lengths[-1] * self.width(prop.type)
+            else:
+                start += self.width(prop.type)
+        if start > len(self.cells):
+            raise self._truncated(element)
+        return lengths, start
+
+    def _list_length(self, element: Element, count_type: str, start: int) -> int:
+        if start + self.width(count_type) > len(self.cells):
+            raise self._truncated(element)
+        length = self.block(start, 1, (1, 1), count_type)[0, 0]
+        if not (0 <= length < len(self.cells) and length == int(length)):
+            raise ReadError(
+                f"'{self.path}': a list of '{element.name}' has the length {length}.",
+                path=self.path,
+            )
+        return int(length)
+
+    def _even_table(self, element: Element) -> Table | None:
+        """Read all rows at once if each is as long as the first; otherwise return None."""
+        lengths, after = self._list_lengths(element, self.cursor)
+        stride = after - self.cursor
+        if self.cursor + stride * element.count > len(self.cells):
+            return None
+        table, start, following = Table({}, {}), self.cursor, iter(lengths)
+        for prop in element.properties:
+            length = 1
+            if prop.count_type is not None:
+                length = next(following)
+                if (self.block(start, stride, (element.count, 1), prop.count_type) != length).any():
+                    return None
+                start += self.width(prop.count_type)
+            values = self.block(start, stride, (element.count, length), prop.type)
+            start += length * self.width(prop.type)
+            if prop.count_type is None:
+                table.columns[prop.name] = values[:, 0]
+            else:
+                offsets = length * np.arange(element.count + 1, dtype=np.int64)
+                table.lists[prop.name] = Ragged(values.ravel(), offsets)
+        self.cursor += stride * element.count
+        return table
+
+    def _uneven_table(self, element: Element) -> Table:
+        starts, sizes = self._uneven_rows(element)
+        table, following = Table({}, {}), iter(sizes)
+        for prop in element.properties:
+            if prop.count_type is None:
+                table.columns[prop.name] = self.picked(starts, prop.type)
+                starts = starts + self.width(prop.type)
+            else:
+                lengths = next(following)
+                starts = starts + self.width(prop.count_type)
+                table.lists[prop.name] = self._gathered(starts, lengths, prop.type)
+                starts = starts + lengths * self.width(prop.type)
+        return table
+
+    def _uneven_rows(self, element: Element) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Walk the rows one by one: their start cells, and per list property the lengths."""
+        n_lists = sum(prop.count_type is not None for prop in element.properties)
+        starts = np.empty(element.count, np.int64)
+        sizes = np.empty((element.count, n_lists), np.int64)
+        for row in range(element.count):
+            starts[row] = self.cursor
+            sizes[row], self.cursor = self._list_lengths(element, self.cursor)
+        return starts, sizes.T
+
+    def _gathered(
+        self, starts: NDArray[np.int64], lengths: NDArray[np.int64], type_name: str
+    ) -> Ragged:
+        offsets = np.zeros(len(lengths) + 1, np.int64)
+        np.cumsum(lengths, out=offsets[1:])
+        within = np.arange(offsets[-1]) - np.repeat(offsets[:-1], lengths)
+        cells = np.repeat(starts, lengths) + within * self.width(type_name)
+        return Ragged(self.picked(cells, type_name), offsets)
+
+
+def _rows(element: Element) -> str:
+    return f"{element.count} {'row' if element.count == 1 else 'rows'} of '{element.name}'"
+
+
+def _least(element: Element, body: _Body) -> int:
+    """Return the cells of the shortest row that an element can have."""
+    return sum(body.width(prop.count_type or prop.type) for prop in element.properties)
+
+
+def _numbers(text: bytes, path: Path) -> NDArray[np.float64]:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", DeprecationWarning)
+        try:
+            return np.fromstring(text, dtype=np.float64, sep=" ")
+        except (DeprecationWarning, ValueError):
+            raise ReadError(
+                f"'{path}': the body of the PLY file holds something that is no number.", path=path
+            ) from None

@@ -1,0 +1,230 @@
+"""PLY: meshes and point clouds, written so that QGIS reads them and nothing of a TIN is lost.
+
+Written is binary little-endian with double coordinates, the face list ``vertex_indices``, and the
+CRS in a header line ``comment crs: EPSG:32616`` (WKT where there is no code). A line ``comment
+elevation unit: US survey foot`` keeps the unit of elevations where it is known. Constrained edges
+are the face properties ``constrained_0`` to ``constrained_2``, 1 where the edge opposite that
+corner is a breakline; a TIN without any goes without them.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...._atomic import replacing
+from ....errors import ReadError
+from ....tin import TIN, Survey
+from ..common import (
+    choose_reference,
+    fans,
+    file_content,
+    one_line,
+    require_writable,
+    survey_of,
+    tin_of,
+    unit_text,
+)
+from .body import Ragged, Table, read_tables
+from .header import parse_header
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from ....crs import CrsLike, UnitLike
+
+__all__ = ["read", "write"]
+
+_FLAGS = ("constrained_0", "constrained_1", "constrained_2")
+_COORDINATES = ("x", "y", "z")
+_FACE_LISTS = ("vertex_indices", "vertex_index")
+_TYPE_NAMES = {
+    "i1": "char",
+    "u1": "uchar",
+    "i2": "short",
+    "u2": "ushort",
+    "i4": "int",
+    "u4": "uint",
+}
+
+
+def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN | Survey:
+    """Read a PLY file, text or binary of either byte order.
+
+    Parameters
+    ----------
+    path : Path
+    crs : CRS, str, int or pyproj.CRS, optional
+        Declares the CRS; default the one named in the header.
+    z_unit : Unit or str, optional
+        Declares the unit of the elevations; default the one named there.
+
+    Returns
+    -------
+    TIN or Survey
+        A survey where the file has no faces, further vertex properties as attributes. Polygons
+        are cut into triangles; other properties and elements are skipped.
+
+    Raises
+    ------
+    ReadError
+        If the file is damaged, or its faces are no TIN.
+    CrsError
+        If PROJ does not know the CRS, or the file names another.
+    OptionError
+        If the unit is unknown, or the file names another.
+    """
+    content = file_content(path)
+    header = parse_header(content, path)
+    tables = read_tables(content, header, path)
+    vertices = tables.get("vertex")
+    if vertices is None or not set(_COORDINATES) <= vertices.columns.keys():
+        raise ReadError(f"'{path}' has no element 'vertex' with x, y and z.", path=path)
+    points = _points(vertices)
+    reference = choose_reference(
+        crs, z_unit, path, found_crs=header.crs, found_unit=header.elevation_unit
+    )
+    faces = _face_list(tables.get("face"))
+    if faces is None or len(faces.offsets) == 1:
+        return survey_of(points, path, attributes=_attributes(vertices), reference=reference)
+    made = fans(_whole_numbers(faces.items, path), faces.offsets, points, path)
+    flags = _flags(tables["face"], len(made.triangles))
+    return tin_of(points, made.triangles, path, constrained=flags, reference=reference)
+
+
+def _points(vertices: Table) -> NDArray[np.float64]:
+    columns = [vertices.columns[name] for name in _COORDINATES]
+    with np.errstate(invalid="ignore"):  # what is not finite is refused
+        return np.stack(columns, axis=1).astype(np.float64)
+
+
+def _face_list(table: Table | None) -> Ragged | None:
+    lists = {} if table is None else table.lists
+    return next((lists[name] for name in _FACE_LISTS if name in lists), None)
+
+
+def _whole_numbers(items: NDArray[Any], path: Path) -> NDArray[np.int64]:
+    if items.dtype.kind == "f" and not (np.abs(items) < 2.0**53).all():
+        raise ReadError(f"'{path}': a face names a vertex that is no number.", path=path)
+    whole = items.astype(np.int64)
+    if (whole != items).any():
+        raise ReadError(f"'{path}': a face names a vertex that is no whole number.", path=path)
+    return whole
+
+
+def _flags(faces: Table, n_triangles: int) -> NDArray[np.bool_] | None:
+    """Return the edge flags if the file has them and every face is a triangle."""
+    columns = [faces.columns[name] for name in _FLAGS if name in faces.columns]
+    if len(columns) < len(_FLAGS) or len(columns[0]) != n_triangles:
+        return None
+    flags: NDArray[np.bool_] = np.stack(columns, axis=1) != 0
+    return flags
+
+
+def _attributes(vertices: Table) -> dict[str, NDArray[Any]]:
+    return {
+        name: np.array(column, column.dtype.newbyteorder("="))
+        for name, column in vertices.columns.items()
+        if name not in _COORDINATES
+    }
+
+
+def write(
+    surface: TIN | Survey, path: Path, *, progress: Callable[[float], None] | None = None
+) -> None:
+    """Write a TIN, or the points of a survey, as binary PLY; :func:`read` gives it back.
+
+    Parameters
+    ----------
+    surface : TIN or Survey
+        Of a survey the points and those attributes that are numbers are written (whole numbers
+        beyond 32 bits as double); PLY has no text.
+    path : Path
+    progress : callable, optional
+        Called with the fraction done.
+
+    Raises
+    ------
+    FormatError
+        If ``surface`` is neither a TIN nor a survey.
+    WriteError
+        If the file cannot be written.
+    """
+    surface = require_writable(surface, path)
+    attributes = surface.attributes if isinstance(surface, Survey) else {}
+    vertices = _vertex_rows(surface.points, attributes)
+    faces = _face_rows(surface) if isinstance(surface, TIN) else None
+    with replacing(path) as file:
+        file.write(_header(surface, vertices, faces))
+        file.write(vertices.data)
+        if progress is not None:
+            progress(0.5)
+        if faces is not None:
+            file.write(faces.data)
+        if progress is not None:
+            progress(1.0)
+
+
+def _header(surface: TIN | Survey, vertices: NDArray[Any], faces: NDArray[Any] | None) -> bytes:
+    lines = ["ply", "format binary_little_endian 1.0"]
+    if surface.crs is not None:
+        lines.append(f"comment crs: {one_line(surface.crs)}")
+    if unit := unit_text(surface):
+        lines.append(f"comment elevation unit: {unit}")
+    lines.append(f"element vertex {len(vertices)}")
+    lines += [
+        f"property {_type_name(vertices.dtype[name])} {name}" for name in vertices.dtype.names or ()
+    ]
+    if faces is not None:
+        lines += [f"element face {len(faces)}", "property list uchar int vertex_indices"]
+        lines += [f"property uchar {name}" for name in _FLAGS if name in (faces.dtype.names or ())]
+    return ("\n".join([*lines, "end_header"]) + "\n").encode()
+
+
+def _type_name(dtype: np.dtype[Any]) -> str:
+    return _TYPE_NAMES.get(dtype.str[1:], "double")
+
+
+def _vertex_rows(points: NDArray[np.float64], attributes: Any) -> NDArray[Any]:
+    columns = _number_columns(attributes)
+    fields = [(name, "<f8") for name in _COORDINATES]
+    fields += [(name, column.dtype.newbyteorder("<").str) for name, column in columns.items()]
+    rows = np.empty(len(points), fields)
+    for name, column in zip(_COORDINATES, points.T, strict=True):
+        rows[name] = column
+    for name, column in columns.items():
+        rows[name] = column
+    return rows
+
+
+def _number_columns(attributes: Any) -> dict[str, NDArray[Any]]:
+    """Return the attributes that PLY can hold, under names of one word that are still free."""
+    columns: dict[str, NDArray[Any]] = {}
+    for given, values in attributes.items():
+        column = np.asarray(values)
+        name = "_".join(str(given).split())
+        if (
+            column.dtype.kind not in "biuf"
+            or not name.isascii()
+            or name in (*_COORDINATES, *columns)
+        ):
+            continue
+        if column.dtype.kind == "b":
+            column = column.astype(np.uint8)
+        columns[name] = column if column.dtype.str[1:] in _TYPE_NAMES else column.astype(np.float64)
+    return columns
+
+
+def _face_rows(tin: TIN) -> NDArray[Any]:
+    flags = _FLAGS if tin.constrained.any() else ()
+    fields: list[Any] = [("count", "u1"), ("corners", "<i4", (3,))]
+    rows = np.empty(len(tin.triangles), [*fields, *((name, "u1") for name in flags)])
+    rows["count"] = 3
+    rows["corners"] = tin.triangles
+    for k, name in enumerate(flags):
+        rows[name] = tin.constrained[:, k]
+    return rows

@@ -1,0 +1,175 @@
+"""The header of a PLY file: which elements follow, with which properties, in which encoding."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from ....errors import ReadError
+from ...signatures import is_ply
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+__all__ = ["SCALARS", "Element", "Header", "Property", "parse_header"]
+
+SCALARS = {
+    "char": "i1",
+    "int8": "i1",
+    "uchar": "u1",
+    "uint8": "u1",
+    "short": "i2",
+    "int16": "i2",
+    "ushort": "u2",
+    "uint16": "u2",
+    "int": "i4",
+    "int32": "i4",
+    "uint": "u4",
+    "uint32": "u4",
+    "float": "f4",
+    "float32": "f4",
+    "double": "f8",
+    "float64": "f8",
+}
+"""NumPy types of the names of the format, old and new."""
+
+LONGEST_HEADER = 1 << 20
+"""Bytes searched for the end of the header; a WKT takes some thousand."""
+
+_COUNT = re.compile(r"[0-9]{1,100}")  # all that a disk holds, and a sentence about more
+_LONGEST_FIRST_LINE = 200
+
+_BYTE_ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
+
+
+@dataclass(frozen=True, slots=True)
+class Property:
+    """One property of an element.
+
+    Attributes
+    ----------
+    name : str
+    type : str
+        NumPy type without byte order.
+    count_type : str or None
+        NumPy type of the length of a list; None for a single value.
+    """
+
+    name: str
+    type: str
+    count_type: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Element:
+    """A table of the file, for example ``vertex`` or ``face``."""
+
+    name: str
+    count: int
+    properties: list[Property] = field(default_factory=list)
+
+    @property
+    def has_lists(self) -> bool:
+        """Whether rows can differ in length."""
+        return any(one.count_type is not None for one in self.properties)
+
+
+@dataclass(frozen=True, slots=True)
+class Header:
+    """What the header says.
+
+    Attributes
+    ----------
+    byte_order : str
+        "<", ">", or "" for text.
+    elements : list of Element
+        In the order in which they follow.
+    crs : str or None
+        From the comment ``crs: ...``.
+    elevation_unit : str or None
+        From the comment ``elevation unit: ...``.
+    size : int
+        Bytes of the header.
+    """
+
+    byte_order: str
+    elements: list[Element]
+    crs: str | None
+    size: int
+    elevation_unit: str | None = None
+
+
+def parse_header(content: bytes, path: Path) -> Header:
+    """Read the header of a PLY file.
+
+    Raises
+    ------
+    ReadError
+        If it is not the header of a PLY file.
+    """
+    lines, size = _header_lines(content, path)
+    byte_order: str | None = None
+    elements: list[Element] = []
+    crs: str | None = None
+    unit: str | None = None
+    for number, line in enumerate(lines, start=1):
+        words = line.split()
+        match words:
+            case ["format", encoding, _] if encoding in _BYTE_ORDERS and byte_order is None:
+                byte_order = _BYTE_ORDERS[encoding]
+            case ["comment", "crs:", _, *_]:
+                crs = line.split("crs:", 1)[1].strip()
+            case ["comment", "elevation", "unit:", _, *_]:
+                unit = line.split("unit:", 1)[1].strip()
+            case ["element", name, count] if _is_new(name, elements) and _COUNT.fullmatch(count):
+                elements.append(Element(name, int(count)))
+            case ["property", *rest] if elements and (found := _property(rest)) is not None:
+                _require_new(found, elements[-1], number, path)
+                elements[-1].properties.append(found)
+            case [] | ["ply" | "comment" | "obj_info" | "end_header", *_]:
+                pass
+            case _:
+                raise ReadError(
+                    f"'{path}', line {number}: '{line[:60]}' is no line of a PLY header.",
+                    path=path,
+                    lines=[number],
+                )
+    if byte_order is None:
+        raise ReadError(f"'{path}': the PLY header has no line 'format'.", path=path)
+    return Header(byte_order, elements, crs, size, unit)
+
+
+def _header_lines(content: bytes, path: Path) -> tuple[list[str], int]:
+    if not is_ply(content[:_LONGEST_FIRST_LINE]):
+        raise ReadError(f"'{path}' is no PLY file: it does not begin with 'ply'.", path=path)
+    mark = content.find(b"\nend_header", 0, LONGEST_HEADER)
+    line_end = content.find(b"\n", mark + 1) if mark >= 0 else -1
+    if line_end < 0:
+        raise ReadError(f"'{path}': the PLY header does not end with 'end_header'.", path=path)
+    text = content[:line_end].decode("utf-8", errors="replace")
+    return [line.rstrip() for line in text.split("\n")], line_end + 1
+
+
+def _is_new(name: str, elements: list[Element]) -> bool:
+    return name not in [element.name for element in elements]
+
+
+def _require_new(added: Property, element: Element, number: int, path: Path) -> None:
+    if added.name in [one.name for one in element.properties]:
+        raise ReadError(
+            f"'{path}', line {number}: '{element.name}' has the property '{added.name}' twice.",
+            path=path,
+            lines=[number],
+        )
+
+
+def _property(words: list[str]) -> Property | None:
+    match words:
+        case ["list", count_type, item_type, name] if {count_type, item_type} <= SCALARS.keys():
+            if SCALARS[count_type][0] == "f":
+                return None
+            return Property(name, SCALARS[item_type], SCALARS[count_type])
+        case [value_type, name] if value_type in SCALARS:
+            return Property(name, SCALARS[value_type])
+    return None

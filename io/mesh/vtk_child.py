@@ -1,0 +1,159 @@
+"""VTK XML files through VTK itself, as the child process reads them."""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..isolated import Answer, Refusal
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+__all__ = ["errors_caught", "mesh", "prepare", "vtk_class"]
+
+_NO_FACES = frozenset({0, 1, 2, 3, 4})  # empty cell, vertices, lines
+_FACES = frozenset({5, 7, 9})  # triangle, polygon, quadrilateral
+
+
+def prepare() -> None:
+    """Load the library."""
+    import_module("pyvista")
+    import_module("vtkmodules.vtkIOXML")
+
+
+def mesh(path: str, shown: str, *, kind: str) -> Answer:
+    """Return the points and faces of a file.
+
+    Parameters
+    ----------
+    path : str
+    shown : str
+        The path as the user wrote it, for sentences.
+    kind : {"PolyData", "UnstructuredGrid"}
+
+    Returns
+    -------
+    Answer
+        The value holds ``crs``, ``elevation_unit`` and the names of the ``attributes``. The arrays
+        hold ``points``, the ``corners`` of faces, one face after the other, their ``offsets``, the
+        number of the cell that each is (``cells``), ``attribute 0`` ..., and where the file has
+        them ``flags`` of the faces' edges, ``origin``, ``exaggeration`` and ``elevation_scale``.
+    """
+    pv = import_module("pyvista")
+    reader = vtk_class(f"vtkXML{kind}Reader")()
+    reader.SetFileName(path)
+    with errors_caught(pv) as errors:
+        reader.Update()
+    if errors or reader.GetErrorCode():
+        raise Refusal(f"'{shown}' is a damaged VTK XML file.")
+    found = pv.wrap(reader.GetOutput())
+    faces = _faces_of_poly_data(found, shown) if kind == "PolyData" else _faces_of(found, shown)
+    attributes = _attributes(found)
+    arrays: dict[str, NDArray[Any]] = {
+        "points": np.array(found.points, np.float64).reshape(-1, 3),
+        **faces,
+    }
+    arrays |= {f"attribute {k}": values for k, values in enumerate(attributes.values())}
+    arrays |= _number_fields(found) | _flags(found, faces["cells"])
+    texts = {name: _text_field(found, name) for name in ("crs", "elevation_unit")}
+    return Answer({**texts, "attributes": list(attributes)}, arrays)
+
+
+def vtk_class(name: str) -> Any:
+    """Return a class of VTK's readers and writers of XML files."""
+    return getattr(import_module("vtkmodules.vtkIOXML"), name)
+
+
+@contextmanager
+def errors_caught(pv: Any) -> Iterator[list[Any]]:
+    """Collect what VTK would print to the terminal."""
+    from vtkmodules.vtkCommonCore import vtkLogger
+
+    before = vtkLogger.GetCurrentVerbosityCutoff()
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
+    errors: list[Any] = []
+    try:
+        with pv.VtkErrorCatcher(raise_errors=False, send_to_logging=False) as catcher:
+            yield errors
+        errors.extend(catcher.error_events)
+    finally:
+        vtkLogger.SetStderrVerbosity(before)
+
+
+def _whole(array: Any) -> NDArray[np.int64]:
+    """Return a VTK array of numbers of points or cells."""
+    numbers: NDArray[np.int64] = import_module("pyvista").convert_array(array).astype(np.int64)
+    return numbers
+
+
+def _number_fields(found: Any) -> dict[str, NDArray[np.float64]]:
+    """Return the fields that tell where the coordinates are, as far as they are sound."""
+    fields = {}
+    for name, size in (("origin", 3), ("exaggeration", 1), ("elevation_scale", 1)):
+        values = np.asarray(found.field_data.get(name, ()))
+        if values.size == size and values.dtype.kind in "iuf" and np.isfinite(values).all():
+            fields[name] = values.ravel().astype(np.float64)
+    return fields
+
+
+def _text_field(found: Any, name: str) -> str | None:
+    if name not in found.field_data:
+        return None
+    values = np.asarray(found.field_data[name]).ravel()
+    return (str(values[0]).strip() or None) if len(values) else None
+
+
+def _faces_of_poly_data(found: Any, shown: str) -> dict[str, NDArray[np.int64]]:
+    if found.n_strips:
+        raise Refusal(f"'{shown}' holds triangle strips, which are not read.")
+    polys = found.GetPolys()
+    first = found.GetVerts().GetNumberOfCells() + found.GetLines().GetNumberOfCells()
+    cells = np.arange(first, first + polys.GetNumberOfCells())
+    if len(cells) == 0:
+        corners, offsets = np.empty(0, np.int64), np.zeros(1, np.int64)
+    else:
+        corners = _whole(polys.GetConnectivityArray())
+        offsets = _whole(polys.GetOffsetsArray())
+    return {"corners": corners, "offsets": offsets, "cells": cells}
+
+
+def _faces_of(found: Any, shown: str) -> dict[str, NDArray[np.int64]]:
+    types = np.asarray(found.celltypes)
+    odd = ~np.isin(types, list(_NO_FACES | _FACES))
+    if odd.any():
+        count = int(odd.sum())
+        raise Refusal(
+            f"'{shown}' holds {count} cell{'s' if count > 1 else ''} that "
+            f"{'are no faces' if count > 1 else 'is no face'} (first: cell {int(np.argmax(odd))} "
+            f"of VTK type {types[np.argmax(odd)]}): triangles, quadrilaterals and polygons can be "
+            "read."
+        )
+    cells = np.flatnonzero(np.isin(types, list(_FACES)))
+    every = _whole(found.GetCells().GetOffsetsArray())
+    starts, lengths = every[cells], np.diff(every)[cells]
+    offsets = np.zeros(len(cells) + 1, np.int64)
+    np.cumsum(lengths, out=offsets[1:])
+    slots = np.repeat(starts - offsets[:-1], lengths) + np.arange(offsets[-1])
+    corners = _whole(found.GetCells().GetConnectivityArray())[slots]
+    return {"corners": corners, "offsets": offsets, "cells": cells}
+
+
+def _flags(found: Any, cells: NDArray[np.int64]) -> dict[str, NDArray[np.uint8]]:
+    """Return the edge flags of the faces if the file has them."""
+    if "constrained" not in found.cell_data:
+        return {}
+    flags = np.asarray(found.cell_data["constrained"])
+    if flags.ndim != 2 or flags.shape[1] != 3:
+        return {}
+    return {"flags": (flags[cells] != 0).astype(np.uint8)}
+
+
+def _attributes(found: Any) -> dict[str, NDArray[Any]]:
+    arrays = {str(name): np.array(values) for name, values in found.point_data.items()}
+    return {name: a for name, a in arrays.items() if a.ndim == 1 and a.dtype.kind in "biuf"}

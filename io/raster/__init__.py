@@ -1,0 +1,1 @@
+"""Elevation rasters as points, through GDAL in a child process."""

@@ -1,0 +1,533 @@
+"""Elevation rasters of any format that GDAL reads, as points at the pixel centres."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, replace
+from importlib.util import find_spec
+from numbers import Integral, Real
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ..._sentences import counted
+from ...crs import CRS, Unit
+from ...errors import FormatError, MissingExtraError, OptionError, ReadError
+from ...tin import Bounds, Survey
+from ..isolated import Limits, limits_for, run_isolated, stream_isolated
+from ..nodata import as_nodata, describe_suspects, find_suspect_elevations
+from ..reprojection.placement import place, settle_unit
+from .virtual import is_virtual, require_plain_sources
+from .voids import rings_around
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from ...crs import CrsLike, UnitLike
+
+__all__ = ["read", "recognises"]
+
+_STRIP_CELLS = 4_000_000
+"""Cells read at a time, so that memory holds little but the points."""
+
+LARGEST_RASTER = 2**31 - 1
+"""Cells that can be read at most: the vertices of a TIN are numbered with 32 bits."""
+
+BYTES_PER_CELL = 48
+"""Memory for a cell: its three coordinates, once in strips and once in one array."""
+
+_COLOURS = ("red", "green", "blue", "palette", "cyan", "magenta", "yellow", "black")
+
+
+@dataclass(frozen=True, slots=True)
+class _Cells:
+    """The cells to read: a window, every how many of its rows and columns, within which bounds."""
+
+    column: int
+    row: int
+    width: int
+    height: int
+    stride: int
+    bounds: Bounds | None = None
+
+    @property
+    def columns(self) -> NDArray[np.int64]:
+        return np.arange(self.column, self.column + self.width, self.stride)
+
+    def rows(self, start: int, stop: int) -> NDArray[np.int64]:
+        """Return the rows wanted among ``start`` to ``stop``."""
+        first = start + (self.row - start) % self.stride
+        return np.arange(first, stop, self.stride)
+
+
+def read(
+    path: Path,
+    *,
+    crs: CrsLike | None = None,
+    z_unit: UnitLike | None = None,
+    band: int | None = None,
+    window: Sequence[int] | Bounds | None = None,
+    stride: int = 1,
+    nodata: float | Sequence[float] | None = None,
+    fill: bool = False,
+) -> Survey:
+    """Read a raster as points, one at the centre of every cell that has an elevation.
+
+    Parameters
+    ----------
+    path : Path
+    crs : CRS, str, int or pyproj.CRS, optional
+        CRS wanted. The points are transformed to it, nothing is resampled. It declares the CRS
+        of a raster that has none.
+    z_unit : Unit or str, optional
+        Unit of the elevations, if neither the band nor the vertical axis of its CRS gives one; or
+        the one of the two that is right, if they differ.
+    band : int, optional
+        Band to read, from 1; default the first.
+    window : (4,) sequence of int, or Bounds, optional
+        Part to read: column and row of the first cell (from 0), width and height in cells; or
+        bounds in the raster's own CRS, which hold the centres of the cells wanted.
+    stride : int
+        Read every ``stride``-th row and column only.
+    nodata : float or sequence of float, optional
+        Elevations that stand for no data, besides the one that the raster declares.
+    fill : bool
+        Let the surface span the voids. Otherwise it ends at the cells around them, along the
+        rings of ``Survey.extent``.
+
+    Returns
+    -------
+    Survey
+        Rows of the raster from north to south, as stored. ``skipped["nodata cells"]`` counts
+        cells that are nodata, masked, NaN or infinite.
+
+    Raises
+    ------
+    ReadError
+        If GDAL cannot read the file, it is a picture or has no georeference, its CRS is in
+        degrees and no other is wanted, or no cell has an elevation.
+    FormatError
+        If band, window or stride is not one that the raster has, or nodata is no number.
+    CrsError
+        If the points cannot be transformed.
+    OptionError
+        If ``z_unit`` is unknown, or another than the raster's own.
+    MissingExtraError
+        If rasterio is not installed.
+
+    Notes
+    -----
+    Scale and offset of the band are applied. The raster is read in strips; memory is 48 bytes
+    for each valid cell at most, and a strip.
+    """
+    dataset = _header(path)
+    number = _band(dataset, band, path)
+    _require_elevations(dataset, number, band is not None, path)
+    target, source = CRS.of(crs), CRS.of(dataset.crs)
+    unit, said = _elevation_unit(dataset, number, source, Unit.of(z_unit))
+    cells = _cells(dataset, window, stride, path)
+    marks = as_nodata(nodata)
+    _require_room(cells, path)
+    place(_middle(dataset), source=source, target=target, path=path)
+    points, valid, n_nodata = _points(dataset, number, cells, marks)
+    if len(points) == 0:
+        raise ReadError(
+            f"'{path}': of {counted(n_nodata, 'cell')} of band {number}, none has an elevation but "
+            "nodata.",
+            path=path,
+        )
+    _require_finite(points, number, path)
+    notes = describe_suspects(find_suspect_elevations(points[:, 2]), "cell")
+    placed = place(points, source=source, target=target, path=path, unit=unit)
+    survey = Survey(
+        points=placed.points,
+        crs=placed.crs,
+        elevation_unit=placed.elevation_unit,
+        source=path.name,
+        skipped={"nodata cells": n_nodata} if n_nodata else {},
+        notes=[*said, *notes, *placed.notes],
+    )
+    return survey if fill or valid.all() else _with_voids(survey, valid)
+
+
+def _with_voids(survey: Survey, valid: NDArray[np.bool_]) -> Survey:
+    """Return the survey with the rings at which its surface ends."""
+    rings = rings_around(valid)
+    if not rings:
+        raise ReadError(
+            f"'{survey.source}': no three cells side by side have an elevation, so there is no "
+            "surface between voids: the option fill spans them."
+        )
+    note = (
+        "Voids of the raster stay: the surface ends at the cells around them; the option fill "
+        "spans them."
+    )
+    extent = [survey.points[ring] for ring in rings]
+    return replace(survey, extent=extent, notes=[*survey.notes, note])
+
+
+def recognises(path: Path) -> bool:
+    """Whether GDAL takes a file for a raster.
+
+    Raises
+    ------
+    MissingExtraError
+        If rasterio is not installed.
+    """
+    try:
+        _header(path)
+    except ReadError:
+        return False
+    return True
+
+
+# ------------------------------------------------------------------ the dataset
+
+
+class _Affine(NamedTuple):
+    """Easting is ``a * column + b * row + c``, northing ``d * column + e * row + f``."""
+
+    a: float
+    b: float
+    c: float
+    d: float
+    e: float
+    f: float
+
+    def apply(self, column: Any, row: Any) -> tuple[Any, Any]:
+        """Return easting and northing of places counted in columns and rows."""
+        return (
+            column * self.a + row * self.b + self.c,
+            column * self.d + row * self.e + self.f,
+        )
+
+    def inverse(self) -> _Affine:
+        """Return the transform from easting and northing to columns and rows."""
+        a, b, c, d, e, f = self
+        area = a * e - b * d
+        return _Affine(
+            *(e / area, -b / area, (b * f - c * e) / area),
+            *(-d / area, a / area, (c * d - a * f) / area),
+        )
+
+
+_NOWHERE = _Affine(1.0, 0.0, 0.0, 0.0, 1.0, 0.0)
+"""What GDAL tells of a raster without a georeference."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Header:
+    """What a raster says of itself, and how its cells are read; see raster_gdal.header."""
+
+    path: Path
+    count: int
+    subdatasets: list[str]
+    colours: list[str]
+    dtypes: list[str]
+    width: int
+    height: int
+    transform: _Affine
+    block_height: int
+    block_width: int
+    scales: list[float]
+    offsets: list[float]
+    units: list[str | None]
+    crs: str | None
+    limits: Limits
+
+    @property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """West, south, east, north of an upright box around all cells."""
+        columns = np.array([0, self.width, 0, self.width])
+        with np.errstate(over="ignore", invalid="ignore"):
+            x, y = self.transform.apply(columns, np.array([0, 0, self.height, self.height]))
+        return float(x.min()), float(y.min()), float(x.max()), float(y.max())
+
+
+def _header(path: Path) -> _Header:
+    """Let a child open a raster, and return what it says of itself."""
+    if find_spec("rasterio") is None:
+        raise MissingExtraError("rasterio", extra="raster", purpose="Reading a raster")
+    limits = limits_for(_bytes_of(path))
+    found = run_isolated(f"{_reader(path)}:header", _where(path), path=path, limits=limits).value
+    transform = _Affine(*found.pop("transform"))
+    return _Header(path=path, transform=transform, limits=limits, **found)
+
+
+def _reader(path: Path) -> str:
+    return f"{__package__}.virtual_child" if is_virtual(path) else f"{__package__}.gdal_child"
+
+
+def _where(path: Path) -> dict[str, Any]:
+    """Return what names the file to GDAL: an absolute path is never a scheme or a prefix."""
+    return {"path": os.path.abspath(path), "is_virtual": is_virtual(path)}  # noqa: PTH100 - links stay
+
+
+def _bytes_of(path: Path) -> int:
+    """Return the bytes of a raster, those of the sources of a virtual one included."""
+    sources = require_plain_sources(path) if is_virtual(path) else []
+    return sum(one.stat().st_size for one in [path, *sources] if one.is_file())
+
+
+def _band(dataset: _Header, band: int | None, path: Path) -> int:
+    if dataset.count == 0:
+        parts = ", ".join(dataset.subdatasets[:5])
+        raise ReadError(
+            f"'{path}' holds no band of its own"
+            + (f" but several rasters ({parts}): extract one of them first." if parts else "."),
+            path=path,
+        )
+    number = 1 if band is None else band
+    if not isinstance(number, Integral) or not 1 <= number <= dataset.count:
+        there_are = "only band 1 is" if dataset.count == 1 else f"bands 1 to {dataset.count} are"
+        raise FormatError(f"Invalid band {band!r}: {there_are} in '{path}'.")
+    return int(number)
+
+
+def _require_elevations(dataset: _Header, band: int, is_told: bool, path: Path) -> None:
+    """Refuse pictures, complex numbers and rasters whose place is unknown."""
+    meaning = dataset.colours[band - 1]
+    if meaning in _COLOURS and not is_told:
+        raise ReadError(
+            f"'{path}' is a picture (band 1 is its {meaning}), not a raster of elevations: name "
+            "the band if one holds them.",
+            path=path,
+        )
+    if dataset.dtypes[band - 1].startswith("complex"):
+        raise ReadError(f"'{path}': band {band} holds complex numbers, no elevations.", path=path)
+    _require_place(dataset, path)
+
+
+def _require_place(dataset: _Header, path: Path) -> None:
+    """Refuse a raster whose cells have no place, or one that is no area."""
+    if dataset.transform == _NOWHERE:
+        raise ReadError(
+            f"'{path}' has no georeference, so the coordinates of its cells are unknown: add a "
+            "world file or set the transform with a GIS.",
+            path=path,
+        )
+    a, b, _, d, e, _ = dataset.transform
+    if (
+        not np.isfinite([*dataset.transform, *dataset.bounds, a * e - b * d]).all()
+        or a * e == b * d
+    ):
+        raise ReadError(
+            f"'{path}' has the georeference {tuple(dataset.transform)}, in which a cell has no "
+            "size, or none that is finite.",
+            path=path,
+        )
+
+
+def _elevation_unit(
+    dataset: _Header, band: int, source: CRS | None, declared: Unit | None
+) -> tuple[Unit | None, list[str]]:
+    """Return the unit that band, vertical axis or caller give, and a note on one not understood."""
+    path, word = dataset.path, str(dataset.units[band - 1] or "").strip()
+    vertical = None if source is None else source.vertical_unit
+    try:
+        of_band = Unit.of(word or None)
+    except OptionError:
+        note = f"The unit of band {band}, '{word}', is no length: the elevations have none."
+        return settle_unit(declared, vertical, path), [] if declared or vertical else [note]
+    if of_band is None or vertical is None or of_band == vertical:
+        return settle_unit(declared, of_band or vertical, path), []
+    if declared in (of_band, vertical):
+        return declared, []
+    raise ReadError(
+        f"'{path}' gives its elevations two units: {of_band.name} (of band {band}) and "
+        f"{vertical.name} (of the vertical axis of its CRS); declare the one that is right.",
+        path=path,
+    )
+
+
+def _middle(dataset: _Header) -> NDArray[np.float64]:
+    x, y = dataset.transform.apply(dataset.width / 2, dataset.height / 2)
+    return np.array([[x, y, 0.0]])
+
+
+# ------------------------------------------------------------------ which cells
+
+
+def _cells(
+    dataset: _Header, window: Sequence[int] | Bounds | None, stride: int, path: Path
+) -> _Cells:
+    bounds = None
+    if window is None:
+        part = (0, 0, dataset.width, dataset.height)
+    elif isinstance(window, Bounds):
+        bounds = window
+        part = _part_of_bounds(dataset, bounds, path)
+    else:
+        part = _part_of_window(dataset, window, path)
+    smaller = min(part[2:])
+    if not isinstance(stride, Integral) or not (1 <= stride < smaller or stride == 1):
+        raise FormatError(
+            f"Invalid stride {stride!r}: a whole number from 1 to {max(1, smaller - 1)} is needed "
+            f"for the {counted(part[2], 'column')} and {counted(part[3], 'row')} to read."
+        )
+    return _Cells(*part, int(stride), bounds)
+
+
+def _part_of_window(
+    dataset: _Header, window: Sequence[int], path: Path
+) -> tuple[int, int, int, int]:
+    size = f"the raster has {counted(dataset.width, 'column')} and {counted(dataset.height, 'row')}"
+    try:
+        numbers = tuple(window)
+    except TypeError:
+        numbers = ()
+    if len(numbers) != 4 or not all(isinstance(one, Integral) for one in numbers):
+        raise FormatError(
+            f"Invalid window {window!r}: four whole numbers (first column, first row, width, "
+            f"height) or Bounds are needed; {size}."
+        )
+    column, row, width, height = (int(one) for one in numbers)
+    fits = 0 <= column < column + width <= dataset.width
+    if not (fits and 0 <= row < row + height <= dataset.height):
+        raise FormatError(f"Window {numbers} does not lie in '{path}': {size}.")
+    return column, row, width, height
+
+
+def _part_of_bounds(dataset: _Header, bounds: Bounds, path: Path) -> tuple[int, int, int, int]:
+    """Return the cells of the smallest upright window that covers the bounds."""
+    limits = (bounds.xmin, bounds.ymin, bounds.xmax, bounds.ymax)
+    if not all(isinstance(one, Real) and np.isfinite(one) for one in limits):
+        raise FormatError(f"Invalid window {bounds}: four finite numbers are needed.")
+    x = np.array([bounds.xmin, bounds.xmin, bounds.xmax, bounds.xmax])
+    y = np.array([bounds.ymin, bounds.ymax, bounds.ymin, bounds.ymax])
+    columns, rows = dataset.transform.inverse().apply(x, y)
+    column, row = max(0, int(np.floor(columns.min()))), max(0, int(np.floor(rows.min())))
+    right = min(dataset.width, int(np.ceil(columns.max())))
+    bottom = min(dataset.height, int(np.ceil(rows.max())))
+    if column >= right or row >= bottom or bounds.width < 0 or bounds.height < 0:
+        left, low, east, high = dataset.bounds
+        raise FormatError(
+            f"Window {limits} does not meet '{path}', which spans easting {left:g} to {east:g} "
+            f"and northing {low:g} to {high:g}."
+        )
+    return column, row, right - column, bottom - row
+
+
+def _require_room(cells: _Cells, path: Path) -> None:
+    """Refuse more cells than can be read, before memory is asked for."""
+    count = -(-cells.width // cells.stride) * -(-cells.height // cells.stride)
+    memory = _free_memory()
+    most = min(LARGEST_RASTER, memory // BYTES_PER_CELL)
+    if count > most:
+        raise ReadError(
+            f"'{path}': {count:,} cells are to be read, and {most:,} are the most that "
+            + ("a TIN" if most == LARGEST_RASTER else f"{memory / (1 << 30):.1f} GiB of memory")
+            + " can hold: read a part of it (window) or every n-th row and column (stride).",
+            path=path,
+        )
+
+
+def _free_memory() -> int:
+    """Return the bytes of memory that are available, where the system tells."""
+    try:
+        with Path("/proc/meminfo").open(encoding="ascii") as file:
+            found = next(line for line in file if line.startswith("MemAvailable:"))
+        return int(found.split()[1]) * 1024
+    except (OSError, StopIteration, ValueError, IndexError):
+        return LARGEST_RASTER * BYTES_PER_CELL
+
+
+# ------------------------------------------------------------------ points
+
+
+def _points(
+    dataset: _Header, band: int, cells: _Cells, marks: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.bool_], int]:
+    """Return the points of valid cells, which cells are valid, and how many have no elevation."""
+    strips = _strips_of_rows(dataset, cells)
+    window = {"band": band, "column": cells.column, "width": cells.width, "stride": cells.stride}
+    ends = [[int(rows[0]), int(rows[-1])] for rows in strips]
+    found: list[NDArray[np.float64]] = []
+    kept: list[NDArray[np.bool_]] = []
+    n_nodata = 0
+    with stream_isolated(
+        f"{_reader(dataset.path)}:strips",
+        {**_where(dataset.path), **window, "rows": ends},
+        path=dataset.path,
+        limits=dataset.limits,
+    ) as answers:
+        for rows, answer in zip(strips, answers, strict=False):
+            points, keep, missing = _strip(dataset, band, cells, rows, answer.arrays, marks)
+            found.append(points)
+            kept.append(keep)
+            n_nodata += missing
+    if not any(map(len, found)) and n_nodata == 0:
+        raise FormatError(f"Window {cells.bounds} holds no cell centre of '{dataset.path}'.")
+    return np.concatenate(found), np.concatenate(kept), n_nodata
+
+
+def _strips_of_rows(dataset: _Header, cells: _Cells) -> list[NDArray[np.int64]]:
+    """Cut the rows wanted into strips."""
+    height = _strip_height(dataset, cells)
+    end = cells.row + cells.height
+    strips = [
+        cells.rows(start, min(start + height, end)) for start in range(cells.row, end, height)
+    ]
+    return [rows for rows in strips if len(rows)]
+
+
+def _strip_height(dataset: _Header, cells: _Cells) -> int:
+    """Return a number of rows that are whole blocks of the file, of some million cells."""
+    block = max(1, dataset.block_height)
+    return max(1, _STRIP_CELLS // (block * cells.width)) * block
+
+
+def _strip(
+    dataset: _Header,
+    band: int,
+    cells: _Cells,
+    rows: NDArray[np.int64],
+    arrays: Mapping[str, NDArray[Any]],
+    marks: NDArray[np.float64],
+) -> tuple[NDArray[np.float64], NDArray[np.bool_], int]:
+    values, has_value = arrays["values"], arrays["valid"] != 0
+    x, y = _centres(dataset, cells.columns, rows)
+    wanted = _within(cells.bounds, x, y)
+    keep = has_value & wanted
+    elevation = values[keep].astype(np.float64)
+    scale, offset = dataset.scales[band - 1], dataset.offsets[band - 1]
+    if (scale, offset) != (1.0, 0.0):
+        with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused
+            elevation = elevation * scale + offset
+    points = np.stack([x[keep], y[keep], elevation], axis=1)
+    if len(marks):
+        is_value = ~np.isin(elevation, marks)
+        points, keep[keep] = points[is_value], is_value
+    return points, keep, int(np.count_nonzero(wanted & ~keep))
+
+
+def _require_finite(points: NDArray[np.float64], band: int, path: Path) -> None:
+    wrong = ~np.isfinite(points[:, 2])
+    if wrong.any():
+        count, first = int(wrong.sum()), points[int(np.argmax(wrong))].tolist()
+        raise ReadError(
+            f"'{path}': {count} {'cell' if count == 1 else 'cells'} of band {band} would have an "
+            f"elevation that is not finite (first at {first[0]:.10g}, {first[1]:.10g}): its scale "
+            "or offset is wrong.",
+            path=path,
+        )
+
+
+def _centres(
+    dataset: _Header, columns: NDArray[np.int64], rows: NDArray[np.int64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return easting and northing of the cell centres, (rows, columns) arrays."""
+    x, y = dataset.transform.apply(columns[None, :] + 0.5, rows[:, None] + 0.5)
+    return x, y
+
+
+def _within(
+    bounds: Bounds | None, x: NDArray[np.float64], y: NDArray[np.float64]
+) -> NDArray[np.bool_]:
+    if bounds is None:
+        return np.ones(x.shape, np.bool_)
+    inside: NDArray[np.bool_] = (x >= bounds.xmin) & (x <= bounds.xmax)
+    return inside & (y >= bounds.ymin) & (y <= bounds.ymax)

@@ -1,0 +1,148 @@
+"""Virtual rasters (VRT): a text that names other rasters, read only if those are plain files.
+
+GDAL would follow any reference: to the network, to pipelines, to any file of the machine. So a VRT
+is read under its own suffix alone, with the elements of a mosaic alone, and what it names must be
+plain rasters in its own folder or below.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+from xml.etree import ElementTree as ET
+
+from ...errors import ReadError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+__all__ = ["is_virtual", "require_plain_sources"]
+
+SUFFIX = ".vrt"
+
+LARGEST_TEXT = 1 << 26
+"""Bytes of a VRT: 100,000 sources take 50 MB."""
+
+_MOSAIC = frozenset(
+    {
+        *("VRTDataset", "SRS", "GeoTransform", "Metadata", "MDI", "BlockXSize", "BlockYSize"),
+        *("VRTRasterBand", "ColorInterp", "NoDataValue", "HideNoDataValue", "Scale", "Offset"),
+        *("UnitType", "Description", "CategoryNames", "Category", "ColorTable", "Entry"),
+        *("SimpleSource", "ComplexSource", "AveragedSource", "NoDataFromMaskSource"),
+        *("SourceFilename", "SourceBand", "SourceProperties", "SrcRect", "DstRect", "NODATA"),
+        *("ScaleOffset", "ScaleRatio", "LUT", "UseMaskBand", "MaskBand", "RemapValues"),
+        *("Histograms", "HistItem", "HistMin", "HistMax", "BucketCount", "IncludeOutOfRange"),
+        *("Approximate", "HistCounts", "OverviewList", "Exponent", "SrcMin", "SrcMax", "DstMin"),
+        *("DstMax", "ColorTableComponent", "MaskValueThreshold"),
+    }
+)
+"""Elements of a mosaic. Not among them: warped and derived rasters, raw bands, overviews."""
+
+_CLASSES = frozenset({None, "VRTSourcedRasterBand"})
+_BESIDE = (".aux.xml", ".ovr", ".msk")
+_REFERENCES = (b"OVERVIEW_FILE", b"SourceFilename", b"SourceDataset", b"/vsi")
+_HEAD = 1 << 16
+
+
+def is_virtual(path: Path) -> bool:
+    """Whether a path has the suffix of a VRT."""
+    return path.suffix.lower() == SUFFIX
+
+
+def require_plain_sources(path: Path) -> list[Path]:
+    """Return the rasters that a VRT is made of.
+
+    Raises
+    ------
+    ReadError
+        If the file is no VRT of a plain mosaic, or names something else than plain files in its
+        folder or below.
+    """
+    root = _parsed(path)
+    for element in root.iter():
+        _require_mosaic(element, path)
+    names = [
+        (one.text or "", one.get("relativeToVRT") == "1") for one in root.iter("SourceFilename")
+    ]
+    sources = [_source(name, relative, path) for name, relative in dict.fromkeys(names)]
+    for file in [path, *sources]:
+        _require_nothing_beside(file, path)
+    return sources
+
+
+def _parsed(path: Path) -> ET.Element:
+    try:
+        if path.stat().st_size > LARGEST_TEXT:
+            raise _refusal(path, f"is larger than {LARGEST_TEXT:,} bytes")
+        content = path.read_bytes()
+    except OSError as error:
+        raise ReadError(f"Cannot read '{path}': {error.strerror or error}.", path=path) from error
+    if b"<!DOCTYPE" in content or b"<!ENTITY" in content:
+        raise _refusal(path, "declares entities")
+    try:
+        root = ET.fromstring(content)
+    except (ET.ParseError, ValueError, LookupError) as error:
+        raise ReadError(
+            f"'{path}' is no virtual raster, or a damaged one: {str(error).rstrip('.')}.", path=path
+        ) from error
+    if root.tag != "VRTDataset":
+        raise ReadError(f"'{path}' is no virtual raster: it is a '{root.tag[:60]}'.", path=path)
+    return root
+
+
+def _require_mosaic(element: ET.Element, path: Path) -> None:
+    if element.tag not in _MOSAIC:
+        raise _refusal(path, f"has the element '{str(element.tag)[:60]}'")
+    if element.get("subClass") not in _CLASSES:
+        raise _refusal(path, f"is of the class '{str(element.get('subClass'))[:60]}'")
+    if element.tag == "MDI" and element.get("key") == "OVERVIEW_FILE":
+        raise _refusal(path, "names a file of overviews")
+
+
+def _source(name: str, is_relative: bool, path: Path) -> Path:
+    """Return the file that a source names."""
+    folder = path.absolute().parent
+    try:
+        file = (folder if is_relative else Path.cwd()) / name
+        inside = file.resolve().is_relative_to(folder.resolve())
+        is_file = inside and file.is_file()
+    except (OSError, ValueError):
+        raise _refusal(path, f"names '{name[:200]}', no path of a file") from None
+    if not inside:
+        raise _refusal(path, f"names '{name[:200]}', which is not in its folder or below")
+    if not is_file:
+        raise ReadError(
+            f"'{path}' is made of '{name[:200]}', and there is no such file.", path=path
+        )
+    if is_virtual(file) or _head(file).lstrip().startswith((b"<", b"{", b"\xef\xbb\xbf<")):
+        raise _refusal(path, f"names '{name[:200]}', which is itself a text of references")
+    return file
+
+
+def _require_nothing_beside(file: Path, path: Path) -> None:
+    """Refuse files beside a raster (overviews, masks, metadata) that name other files."""
+    for beside in _files_beside(file):
+        head = _head(beside)
+        is_text = beside.suffix != ".xml" and head.lstrip().startswith(b"<")
+        if is_text or any(reference in head for reference in _REFERENCES):
+            raise _refusal(path, f"has the file '{beside.name}' beside it, which names other files")
+
+
+def _files_beside(file: Path) -> Iterator[Path]:
+    for ending in _BESIDE:
+        for beside in (Path(f"{file}{ending}"), file.with_suffix(ending)):
+            if beside.is_file():
+                yield beside
+
+
+def _head(file: Path) -> bytes:
+    with file.open("rb") as opened:
+        return opened.read(_HEAD)
+
+
+def _refusal(path: Path, what: str) -> ReadError:
+    return ReadError(
+        f"'{path}' {what}: a virtual raster is read if it is a mosaic of plain rasters in its own "
+        "folder or below; make a GeoTIFF of any other.",
+        path=path,
+    )

@@ -1,0 +1,262 @@
+"""The formats: built-in ones and those of plug-ins.
+
+A format is a value; its reader and writer are named, and loaded when first used. Another package
+adds one through the entry-point group ``tinsmith.formats``: each entry names a :class:`Format`.
+"""
+
+from __future__ import annotations
+
+import inspect
+from dataclasses import dataclass
+from functools import cache
+from importlib import import_module
+from importlib.metadata import entry_points
+from typing import TYPE_CHECKING, Any
+
+from ..errors import FormatError
+from . import signatures
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+    from pathlib import Path
+
+__all__ = [
+    "Format",
+    "find_format",
+    "fitting_format",
+    "format_of_suffix",
+    "known_formats",
+    "known_suffixes",
+    "list_suffixes",
+    "load_function",
+    "require_options",
+]
+
+_ENTRY_POINTS = "tinsmith.formats"
+_OWN_PARAMETERS = frozenset({"crs", "z_unit", "progress"})
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Format:
+    """A file format.
+
+    Attributes
+    ----------
+    name : str
+        What ``format=`` calls it.
+    description : str
+        A few words for a list.
+    suffixes : tuple of str
+        Lower case, with the dot; a writer is chosen by them, a reader where the content is silent.
+    read, write : str, optional
+        ``"module:function"``. A reader takes ``(path, *, crs=None, z_unit=None, <options>)``, a CRS
+        and a Unit or None, and returns a Survey or a TIN; a writer ``(obj, path, *, <options>)``.
+    extra : str, optional
+        The extra of this package that brings the library it needs.
+    sniff : callable, optional
+        Whether the first bytes of a file are certainly of this format.
+    """
+
+    name: str
+    description: str
+    suffixes: tuple[str, ...]
+    read: str | None = None
+    write: str | None = None
+    extra: str | None = None
+    sniff: Callable[[bytes], bool] | None = None
+
+    def options(self, action: str) -> tuple[str, ...]:
+        """Return the names of the options of its reader or writer (``"read"``, ``"write"``)."""
+        target = getattr(self, action)
+        return () if target is None else _options(load_function(target))
+
+
+_DELIMITED = Format(
+    name="delimited",
+    description="Delimited text: survey points as CSV, TXT, XYZ",
+    suffixes=(".csv", ".txt", ".xyz", ".tsv", ".pts", ".dat", ".pnt"),
+    read="tinsmith.io.delimited.survey_text:read",
+    write="tinsmith.io.delimited.survey_text:write",
+)
+_BUILT_IN = (
+    _DELIMITED,
+    Format(
+        name="raster",
+        description="Elevation rasters that GDAL reads: GeoTIFF, VRT, IMG, HGT, ASC, netCDF ...",
+        suffixes=(
+            *(".tif", ".tiff", ".vrt", ".img", ".dem", ".hgt", ".asc", ".grd", ".nc", ".bil"),
+            *(".bip", ".bsq", ".flt", ".dt0", ".dt1", ".dt2", ".adf", ".sdat", ".rst", ".bt"),
+            *(".jp2", ".png", ".jpg", ".grb", ".grb2", ".ntf"),
+        ),
+        read="tinsmith.io.raster.dem:read",
+        extra="raster",
+        sniff=signatures.is_raster,
+    ),
+    Format(
+        name="geojson",
+        description="GeoJSON (RFC 7946)",
+        suffixes=(".geojson", ".json"),
+        write="tinsmith.io.geojson.writing:write",
+        sniff=signatures.is_geojson,
+    ),
+    Format(
+        name="ply",
+        description="PLY mesh (opens in QGIS, CloudCompare, MeshLab)",
+        suffixes=(".ply",),
+        read="tinsmith.io.mesh.ply.file:read",
+        write="tinsmith.io.mesh.ply.file:write",
+        sniff=signatures.is_ply,
+    ),
+    Format(
+        name="obj",
+        description="Wavefront OBJ mesh",
+        suffixes=(".obj",),
+        read="tinsmith.io.mesh.obj:read",
+        write="tinsmith.io.mesh.obj:write",
+        sniff=signatures.is_obj,
+    ),
+    Format(
+        name="stl",
+        description="STL mesh",
+        suffixes=(".stl",),
+        read="tinsmith.io.mesh.stl:read",
+        write="tinsmith.io.mesh.stl:write",
+        sniff=signatures.is_stl,
+    ),
+    Format(
+        name="vtk",
+        description="VTK XML mesh (opens in ParaView)",
+        suffixes=(".vtp", ".vtu"),
+        read="tinsmith.io.mesh.vtk:read",
+        write="tinsmith.io.mesh.vtk:write",
+        extra="view",
+        sniff=signatures.is_vtk_xml,
+    ),
+    Format(
+        name="gmsh",
+        description="Gmsh mesh, with the edges of rim and lines (for finite element programs)",
+        suffixes=(".msh",),
+        read="tinsmith.io.mesh.gmsh:read",
+        write="tinsmith.io.mesh.gmsh:write",
+        extra="mesh",
+        sniff=signatures.is_gmsh,
+    ),
+)
+
+
+@cache
+def known_formats() -> tuple[Format, ...]:
+    """Return the built-in formats, then those of installed plug-ins by name.
+
+    Raises
+    ------
+    FormatError
+        If a plug-in cannot be loaded, is no Format, or takes a name that is in use.
+    """
+    formats = list(_BUILT_IN)
+    for entry in sorted(entry_points(group=_ENTRY_POINTS), key=lambda entry: entry.name):
+        added = _from_plug_in(entry.name, entry.load)
+        if any(added.name == one.name for one in formats):
+            raise FormatError(f"Plug-in '{entry.name}' takes the name '{added.name}', in use.")
+        formats.append(added)
+    return tuple(formats)
+
+
+def _from_plug_in(name: str, load: Callable[[], object]) -> Format:
+    try:
+        added = load()
+    except Exception as error:
+        raise FormatError(f"Format plug-in '{name}' cannot be loaded: {error}.") from error
+    if not isinstance(added, Format):
+        raise FormatError(f"Format plug-in '{name}' is a {type(added).__name__}, not a Format.")
+    return added
+
+
+def find_format(name: str) -> Format:
+    """Look a format up by its name or one of its suffixes.
+
+    Raises
+    ------
+    FormatError
+        If there is none.
+
+    Examples
+    --------
+    >>> find_format("csv").name
+    'delimited'
+    """
+    wanted = name.strip().lower()
+    suffix = wanted if wanted.startswith(".") else f".{wanted}"
+    for one in known_formats():
+        if one.name == wanted or suffix in one.suffixes:
+            return one
+    names = tuple(one.name for one in known_formats())
+    raise FormatError(f"Unknown format '{name}': one of {', '.join(names)}.", known=names)
+
+
+def fitting_format(suffix: str, action: str) -> Format | None:
+    """Return the format of a suffix, one that can do the action first."""
+    fitting = [one for one in known_formats() if suffix in one.suffixes]
+    able = [one for one in fitting if getattr(one, action) is not None]
+    return next(iter(able + fitting), None)
+
+
+def format_of_suffix(path: Path, action: str) -> Format:
+    """Return the format of a file's suffix; refuse an unknown one."""
+    found = fitting_format(path.suffix.lower(), action)
+    if found is not None:
+        return found
+    suffix = f"has the unknown suffix '{path.suffix}'" if path.suffix else "has no suffix"
+    raise FormatError(
+        f"'{path}' {suffix}: {list_suffixes(action)} can be "
+        f"{'read' if action == 'read' else 'written'}; "
+        "the option format names one whatever the suffix.",
+        known=known_suffixes(action),
+    )
+
+
+def known_suffixes(action: str) -> tuple[str, ...]:
+    """Return the suffixes that can be read, or written."""
+    return tuple(
+        suffix
+        for one in known_formats()
+        if getattr(one, action) is not None
+        for suffix in one.suffixes
+    )
+
+
+def list_suffixes(action: str) -> str:
+    """List the suffixes that can be read, or written, for a sentence."""
+    return ", ".join(known_suffixes(action))
+
+
+def load_function(target: str) -> Callable[..., Any]:
+    """Load a reader or writer, ``"module:function"``."""
+    module, _, function = target.partition(":")
+    loaded: Callable[..., Any] = getattr(import_module(module), function)
+    return loaded
+
+
+def _options(function: Callable[..., Any]) -> tuple[str, ...]:
+    parameters = inspect.signature(function).parameters.values()
+    return tuple(
+        one.name
+        for one in parameters
+        if one.kind is one.KEYWORD_ONLY and one.name not in _OWN_PARAMETERS
+    )
+
+
+def require_options(
+    chosen: Format, action: str, function: Callable[..., Any], options: Mapping[str, object]
+) -> None:
+    """Refuse options that a reader or writer does not have."""
+    allowed = _options(function)
+    accepted = {*allowed, "progress", "z_unit"} & set(inspect.signature(function).parameters)
+    unknown = [name for name in options if name not in accepted]
+    if not unknown:
+        return
+    there_are = f"its options are {', '.join(allowed)}" if allowed else "it has no options"
+    raise FormatError(
+        f"Unknown option '{unknown[0]}' to {action} the format {chosen.name}: {there_are}.",
+        known=allowed,
+    )

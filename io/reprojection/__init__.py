@@ -1,0 +1,1 @@
+"""Coordinates from one CRS to another, and whether they lie where a CRS applies."""

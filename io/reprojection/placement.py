@@ -1,0 +1,126 @@
+"""Points of a file come to the CRS in which they are wanted; degrees do not make a TIN."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple, NoReturn
+
+import numpy as np
+
+from ...crs import require_same_unit
+from ...errors import CrsError, ReadError
+from .transformation import convert_elevations, fitting_utm, reproject, transform_points
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from ...crs import CRS, Unit
+
+__all__ = ["Placed", "place", "settle_unit"]
+
+_WGS84 = "EPSG:4326"
+
+
+class Placed(NamedTuple):
+    """Points in the CRS wanted.
+
+    Attributes
+    ----------
+    points : (n, 3) float64 array
+    crs : CRS or None
+    elevation_unit : Unit or None
+        None if it is not known.
+    notes : tuple of str
+        What was done to the elevations.
+    """
+
+    points: NDArray[np.float64]
+    crs: CRS | None
+    elevation_unit: Unit | None
+    notes: tuple[str, ...]
+
+
+def place(
+    points: NDArray[np.float64],
+    *,
+    source: CRS | None,
+    target: CRS | None,
+    path: Path,
+    unit: Unit | None = None,
+) -> Placed:
+    """Bring points into a projected CRS.
+
+    Parameters
+    ----------
+    points : (n, 3) float64 array
+    source : CRS, optional
+        CRS of the points; unknown points are declared to be in the target.
+    target : CRS, optional
+        CRS wanted; default the source.
+    path : Path
+        For sentences.
+    unit : Unit, optional
+        Unit of the elevations, if it is known otherwise than by the source.
+
+    Raises
+    ------
+    ReadError
+        If the points would be in degrees.
+    CrsError
+        If they cannot be transformed.
+    """
+    wanted = target if target is not None else source
+    if wanted is not None and wanted.is_geographic:
+        _refuse_degrees(points, wanted, source or wanted, path)
+    if source is None or wanted is None or source.is_same(wanted):
+        return _stay(points, wanted, unit)
+    try:
+        moved, known, note = reproject(points, source, wanted, unit=unit)
+    except CrsError as error:
+        raise CrsError(f"'{path}': {error}", crs=wanted) from error
+    return Placed(moved, wanted, known, () if note is None else (note,))
+
+
+def _stay(points: NDArray[np.float64], crs: CRS | None, unit: Unit | None) -> Placed:
+    """Leave points where they are; elevations take the unit of the CRS's vertical axis."""
+    vertical = None if crs is None else crs.vertical_unit
+    if vertical is None or unit is None or unit == vertical:
+        return Placed(points, crs, vertical or unit, ())
+    note = f"Elevations were converted from {unit.name} to {vertical.name}."
+    return Placed(convert_elevations(points, unit, vertical), crs, vertical, (note,))
+
+
+def settle_unit(declared: Unit | None, found: Unit | None, path: Path) -> Unit | None:
+    """Return the unit of a file's elevations: what the file says, else what the caller declares.
+
+    Raises
+    ------
+    OptionError
+        If the two differ.
+    """
+    if declared is not None and found is not None:
+        require_same_unit(found, declared, f"as '{path}' itself says")
+    return declared if found is None else found
+
+
+def _refuse_degrees(points: NDArray[np.float64], wanted: CRS, source: CRS, path: Path) -> NoReturn:
+    suggestion = _suggestion(points, source)
+    fitting = f"crs='{suggestion}'" if suggestion else "the option crs"
+    raise ReadError(
+        f"'{path}': {wanted.label} measures in degrees, and a TIN needs a projected CRS: "
+        f"give {fitting} to reproject from longitude and latitude.",
+        path=path,
+    )
+
+
+def _suggestion(points: NDArray[np.float64], source: CRS) -> str | None:
+    """Return the UTM zone of the middle of the points."""
+    if len(points) == 0:
+        return None
+    middle = np.append((points[:, :2].min(axis=0) + points[:, :2].max(axis=0)) / 2, 0.0)
+    try:
+        longitude, latitude, _ = transform_points(middle[None, :], source, _WGS84)[0]
+    except CrsError:
+        return None
+    return fitting_utm(float(longitude), float(latitude))

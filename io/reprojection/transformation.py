@@ -1,0 +1,231 @@
+"""Points move from one coordinate reference system to another, and elevations change their unit.
+
+What a CRS is, and which units there are, is told by :mod:`tinsmith.crs`.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ..._sentences import counted
+from ...crs import CRS, METRE, UNKNOWN, Unit, assume_elevation_unit
+from ...errors import CrsError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...crs import CrsLike, UnitLike
+
+__all__ = [
+    "METRE",
+    "LengthUnit",
+    "Reprojected",
+    "conversion_factor",
+    "convert_elevations",
+    "fitting_utm",
+    "is_geographic",
+    "length_unit",
+    "reproject",
+    "transform_points",
+]
+
+LengthUnit = Unit
+"""The name of :class:`tinsmith.Unit` in the first version."""
+
+
+class Reprojected(NamedTuple):
+    """Points in another CRS.
+
+    Attributes
+    ----------
+    points : (n, 3) float64 array
+    unit : Unit or None
+        Of their elevations; None if it is still not known.
+    note : str or None
+        What was done to the elevations, in a sentence; None if nothing.
+    """
+
+    points: NDArray[np.float64]
+    unit: Unit | None
+    note: str | None
+
+
+def is_geographic(crs: CrsLike | None) -> bool:
+    """Whether coordinates in this CRS are longitude and latitude; False where it is not known."""
+    return crs is not None and CRS.of(crs).is_geographic
+
+
+def length_unit(crs: CrsLike | None) -> Unit:
+    """Return the unit of eastings and northings; ``metres`` is None where it is no known length.
+
+    Examples
+    --------
+    >>> length_unit("EPSG:2274")
+    Unit(name='US survey foot', symbol='US ft', metres=0.3048006096012192)
+    """
+    return UNKNOWN if crs is None else CRS.of(crs).horizontal_unit
+
+
+def transform_points(
+    points: NDArray[np.float64],
+    source: CrsLike,
+    target: CrsLike,
+    *,
+    z_unit: UnitLike | None = None,
+) -> NDArray[np.float64]:
+    """Transform points from one CRS to another.
+
+    Parameters
+    ----------
+    points : (n, 3) float64 array
+        Easting (longitude), northing (latitude), elevation.
+    source, target : CRS, str, int or pyproj.CRS
+    z_unit : Unit or str, optional
+        Unit of the elevations; default that of the source: its vertical axis, else its eastings,
+        metres above degrees.
+
+    Returns
+    -------
+    (n, 3) float64 array
+        Elevations are converted as :func:`reproject` tells.
+
+    Raises
+    ------
+    CrsError
+        If a CRS is unknown, no transformation exists, or a point lies outside its domain.
+    OptionError
+        If the unit is unknown.
+    """
+    return reproject(points, CRS.of(source), CRS.of(target), unit=Unit.of(z_unit)).points
+
+
+def reproject(
+    points: NDArray[np.float64],
+    source: CRS,
+    target: CRS,
+    *,
+    unit: Unit | None,
+    wanted: Unit | None = None,
+) -> Reprojected:
+    """Transform points, and convert their elevations where the unit changes.
+
+    Parameters
+    ----------
+    points : (n, 3) float64 array
+    source, target : CRS
+    unit : Unit or None
+        Unit of the elevations, if it is known otherwise than by the source.
+    wanted : Unit, optional
+        Unit that they are to have; default the usual one of the target: feet in a CRS in feet,
+        metres in one in metres or degrees. A vertical axis of the target goes before it.
+
+    Raises
+    ------
+    CrsError
+        If no transformation exists, or a point lies outside its domain.
+
+    Notes
+    -----
+    Where both systems have a vertical axis PROJ changes datum and unit. Otherwise elevations keep
+    their datum, and only their unit becomes the one wanted.
+    """
+    points = np.asarray(points, np.float64)
+    known = unit if unit is not None else source.vertical_unit
+    had = assume_elevation_unit(source, known)
+    wanted = target.vertical_unit or wanted or target.usual_elevation_unit or had
+    if source.vertical_unit is not None and target.vertical_unit is not None:
+        points = _with_elevations(points, known, source.vertical_unit)
+        moved = _transform(points, source, target)
+    else:
+        # In the plane alone: PROJ would let the elevation, whatever its unit, move the place.
+        xy = _transform(points[:, :2], source.horizontal, target.horizontal)
+        moved = np.column_stack([xy, points[:, 2]])
+        moved = _with_elevations(moved, had, wanted)
+    is_known = known is not None or target.vertical_unit is not None
+    note = _note(source, target, known, wanted)
+    return Reprojected(np.ascontiguousarray(moved), wanted if is_known else None, note)
+
+
+def convert_elevations(
+    points: NDArray[np.float64], unit: Unit | None, wanted: Unit | None
+) -> NDArray[np.float64]:
+    """Return points with elevations in another unit; as they are where either is not known."""
+    return _with_elevations(np.asarray(points, np.float64), unit, wanted)
+
+
+def _with_elevations(
+    points: NDArray[np.float64], unit: Unit | None, wanted: Unit | None
+) -> NDArray[np.float64]:
+    factor = conversion_factor(unit, wanted)
+    return points if factor == 1.0 else points * (1.0, 1.0, factor)
+
+
+def conversion_factor(unit: Unit | None, wanted: Unit | None) -> float:
+    """Return how many of the wanted unit are in one unit; 1 where either is not known."""
+    if unit is None or wanted is None or unit == wanted:
+        return 1.0
+    if unit.metres is None or wanted.metres is None:
+        return 1.0
+    return unit.metres / wanted.metres
+
+
+def _note(source: CRS, target: CRS, known: Unit | None, wanted: Unit | None) -> str | None:
+    had = assume_elevation_unit(source, known)
+    if had is None or wanted is None or had == wanted:
+        return None
+    if known is not None:
+        return f"Elevations were converted from {had.name} to {wanted.name}."
+    return (
+        f"The unit of the elevations is not told: taken to be {had.name}, as is usual in "
+        f"{source.label}, they were converted to {wanted.name} for {target.label}."
+    )
+
+
+def _transform(points: NDArray[np.float64], source: CRS, target: CRS) -> NDArray[np.float64]:
+    import pyproj
+    from pyproj.exceptions import ProjError
+
+    names = f"from {source.label} to {target.label}"
+    try:
+        transformer = pyproj.Transformer.from_crs(
+            source.to_pyproj(), target.to_pyproj(), always_xy=True
+        )
+        moved = np.stack(transformer.transform(*points.T), axis=1)
+    except ProjError as error:
+        raise CrsError(f"No transformation {names} is known.", crs=target) from error
+    _require_images(points, moved, names, target)
+    return moved
+
+
+def _require_images(
+    points: NDArray[np.float64], moved: NDArray[np.float64], names: str, target: CRS
+) -> None:
+    lost = ~np.isfinite(moved).all(axis=1)
+    if lost.any():
+        row = int(np.argmax(lost))
+        x, y = points[row, :2]
+        count = int(lost.sum())
+        raise CrsError(
+            f"{counted(count, 'point')} {'has' if count == 1 else 'have'} no image {names} "
+            f"(first: point {row} at {x:g}, {y:g}): "
+            "check that the CRS of the points is the right one.",
+            crs=target,
+        )
+
+
+def fitting_utm(longitude: float, latitude: float) -> str:
+    """Return the code of the WGS 84 UTM zone (near the poles: UPS) that holds a place.
+
+    Examples
+    --------
+    >>> fitting_utm(-84.2, 36.4)
+    'EPSG:32616'
+    """
+    if latitude >= 84.0:
+        return "EPSG:32661"
+    if latitude < -80.0:
+        return "EPSG:32761"
+    zone = int((longitude + 180.0) % 360.0 // 6.0) + 1
+    return f"EPSG:{326 if latitude >= 0 else 327}{zone:02d}"

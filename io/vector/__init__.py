@@ -1,0 +1,1 @@
+"""Lines and polygons of vector files, through GDAL in a child process."""

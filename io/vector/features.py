@@ -1,0 +1,207 @@
+"""Features of a vector file through GDAL: geometries, columns and CRS, or one clear sentence."""
+
+from __future__ import annotations
+
+import os
+import struct
+from importlib.util import find_spec
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ..._sentences import counted
+from ...crs import CRS
+from ...errors import CrsError, MissingExtraError, ReadError
+from ..isolated import limits_for, run_isolated
+from ..isolated.local_files import require_local
+from ..isolated.spooling import as_sentence, ordinary_file
+from ..signatures import HEAD_BYTES, reference_kind
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+__all__ = ["Features", "read_features"]
+
+_FOLDERS = (".gdb",)
+"""Suffixes of formats that are folders."""
+
+_SHAPEFILE = b"\x00\x00\x27\x0a"
+
+
+class Features(NamedTuple):
+    """What a layer holds.
+
+    Attributes
+    ----------
+    path : Path
+    numbers : (n,) int64 array
+        Feature numbers as GDAL counts them.
+    geometries : (n,) object array
+        Shapely geometries, none of them missing or empty.
+    columns : dict of str to (n,) array
+        By their names in lower case.
+    crs : CRS or None
+    notes : tuple of str
+        What was left out.
+    """
+
+    path: Path
+    numbers: NDArray[np.int64]
+    geometries: NDArray[np.object_]
+    columns: dict[str, NDArray[Any]]
+    crs: CRS | None
+    notes: tuple[str, ...]
+
+    def label(self, row: int) -> str:
+        """Return what a feature is called in sentences."""
+        return f"'{self.path}': feature {self.numbers[row]}"
+
+
+def read_features(path: Path, *, layer: str | None = None, where: str | None = None) -> Features:
+    """Read the features of one layer of a vector file that GDAL reads.
+
+    Parameters
+    ----------
+    path : Path
+    layer : str, optional
+        Needed if several layers have geometry.
+    where : str, optional
+        Condition on the columns, as in SQL.
+
+    Raises
+    ------
+    MissingExtraError
+        If pyogrio is not installed.
+    ReadError
+        If the file or layer is missing, damaged, empty, or no vector file.
+    """
+    require_local(path)
+    with ordinary_file(path) as local:
+        features = _read_layer(local, layer, where)
+    if local == path:
+        return features
+    notes = tuple(note.replace(local.name, path.name) for note in features.notes)
+    return features._replace(path=path, notes=notes)
+
+
+def _read_layer(path: Path, layer: str | None, where: str | None) -> Features:
+    if find_spec("pyogrio") is None:
+        raise MissingExtraError("pyogrio", extra="vector", purpose="Reading vector files")
+    _require_whole_file(path)
+    where_it_is = {"path": os.path.abspath(path), "shown": str(path)}  # noqa: PTH100 - links stay
+    value, arrays = run_isolated(
+        f"{__package__}.gdal_child:features",
+        {**where_it_is, "layer": layer, "where": where},
+        path=path,
+        limits=limits_for(_bytes_of(path)),
+    )
+    if len(arrays["numbers"]) == 0:
+        raise ReadError(f"'{path}' has no features{_where_text(value['layer'], where)}.", path=path)
+    return _with_geometry(
+        Features(
+            path,
+            arrays["numbers"],
+            _shapes(arrays, path),
+            _columns(value, arrays),
+            _crs_of(value["crs"], path),
+            (),
+        )
+    )
+
+
+def _crs_of(text: str | None, path: Path) -> CRS | None:
+    try:
+        return CRS.of(text)
+    except CrsError as error:
+        raise CrsError(f"'{path}': {error}", crs=text) from error
+
+
+def _columns(value: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
+    """Return the columns by their names in lower case."""
+    columns = {}
+    for k, name in enumerate(value["names"]):
+        texts = value["texts"].get(str(k))
+        column = arrays[f"column {k}"] if texts is None else np.array(texts, object)
+        columns[name.lower()] = column
+    return columns
+
+
+def _bytes_of(path: Path) -> int:
+    """Return the bytes of a file, or of all files of a format that is a folder."""
+    if not path.is_dir():
+        return path.stat().st_size
+    return sum(file.stat().st_size for file in path.iterdir() if file.is_file())
+
+
+def _require_whole_file(path: Path) -> None:
+    """Refuse a file that is missing, empty, or a shapefile shorter than it says."""
+    try:
+        if path.is_dir():
+            if path.suffix.lower() in _FOLDERS:
+                return
+            raise ReadError(f"'{path}' is a folder: name a file in it.", path=path)
+        size = path.stat().st_size
+        with path.open("rb") as file:
+            head = file.read(HEAD_BYTES)
+    except ReadError:
+        raise
+    except OSError as error:
+        raise as_sentence(path, error) from error
+    if size == 0:
+        raise ReadError(f"'{path}' is empty: there are no lines in it.", path=path)
+    kind = reference_kind(head)
+    if kind is not None:
+        raise ReadError(f"'{path}' is {kind}: only files of lines themselves are read.", path=path)
+    if head.startswith(_SHAPEFILE) and len(head) >= 28:
+        (words,) = struct.unpack(">i", head[24:28])  # the length is counted in 16-bit words
+        if size < 2 * words:
+            raise ReadError(
+                f"'{path}' is cut short: it has {size} of {2 * words} bytes.", path=path
+            )
+
+
+def _where_text(layer: str, where: str | None) -> str:
+    return f" in layer '{layer}'" if where is None else f" where {where}"
+
+
+def _shapes(arrays: dict[str, NDArray[Any]], path: Path) -> NDArray[np.object_]:
+    import shapely
+
+    wkb, lengths = arrays["wkb"].tobytes(), arrays["lengths"]
+    ends = np.cumsum(np.maximum(lengths, 0))
+    parts = zip((ends - np.maximum(lengths, 0)).tolist(), ends.tolist(), strict=True)
+    geometries = np.array([wkb[start:end] or None for start, end in parts], object)
+    with np.errstate(invalid="ignore"):  # what is not finite is refused later
+        shapes: NDArray[np.object_] = shapely.from_wkb(geometries, on_invalid="ignore")
+    wrong = shapely.is_missing(shapes) & (lengths >= 0)
+    if wrong.any():
+        raise ReadError(
+            f"'{path}': feature {arrays['numbers'][np.argmax(wrong)]} has a geometry of another "
+            "kind: lines or polygons are needed.",
+            path=path,
+        )
+    return shapes
+
+
+def _with_geometry(features: Features) -> Features:
+    """Leave out the features that have no geometry, and note them."""
+    import shapely
+
+    is_empty = shapely.is_missing(features.geometries) | shapely.is_empty(features.geometries)
+    if not is_empty.any():
+        return features
+    if is_empty.all():
+        raise ReadError(
+            f"'{features.path}': of {counted(len(is_empty), 'feature')}, none has a geometry.",
+            path=features.path,
+        )
+    count, first = int(is_empty.sum()), features.numbers[np.argmax(is_empty)]
+    have = "feature has" if count == 1 else "features have"
+    return features._replace(
+        numbers=features.numbers[~is_empty],
+        geometries=features.geometries[~is_empty],
+        columns={name: column[~is_empty] for name, column in features.columns.items()},
+        notes=(f"'{features.path.name}': {count} {have} no geometry (first: {first}).",),
+    )

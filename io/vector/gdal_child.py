@@ -1,0 +1,116 @@
+"""Features of a vector file through pyogrio, as the child process reads them."""
+
+from __future__ import annotations
+
+import re
+import warnings
+from typing import Any
+
+import numpy as np
+
+from ..isolated import Answer, Refusal
+from ..isolated.gdal import REFERRING_DRIVERS, VECTOR_DRIVERS, environment
+
+__all__ = ["ENVIRONMENT", "features", "prepare"]
+
+ENVIRONMENT = environment()
+
+_GDAL_SOURCE = re.compile(r"^\S+\.cpp, \d+: ")
+
+
+def prepare() -> None:
+    """Load the library, and switch every driver off that is not allowed."""
+    import pyogrio
+    from pyogrio import _ogr
+
+    unwanted = pyogrio.list_drivers().keys() - set(VECTOR_DRIVERS)
+    pyogrio.set_gdal_config_options(
+        {"GDAL_SKIP": ",".join(sorted(unwanted | set(REFERRING_DRIVERS)))}
+    )
+    if hasattr(_ogr, "_register_drivers"):
+        _ogr._register_drivers()
+    loaded = pyogrio.list_drivers().keys() & set(REFERRING_DRIVERS)
+    if loaded:
+        raise RuntimeError(f"the GDAL driver {min(loaded)} cannot be switched off")
+
+
+def features(path: str, shown: str, *, layer: str | None, where: str | None) -> Answer:
+    """Return the features of one layer.
+
+    Parameters
+    ----------
+    path : str
+    shown : str
+        The path as the user wrote it, for sentences.
+    layer, where : str, optional
+
+    Returns
+    -------
+    Answer
+        The value holds ``layer``, ``crs``, ``names`` of the columns, and ``texts``, the columns
+        that are no numbers, by their place. The arrays hold ``numbers`` of the features, ``wkb``
+        of all geometries, ``lengths`` of each (-1 where there is none), and ``column 0`` ...
+    """
+    from pyogrio import raw
+    from pyogrio.errors import DataSourceError
+
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            chosen = _chosen_layer(path, shown, layer)
+            meta, numbers, geometries, values = raw.read(
+                path, layer=chosen, where=where, return_fids=True
+            )
+    except DataSourceError as error:
+        if "not recognized" in str(error):
+            raise Refusal(f"'{shown}' is no vector file that GDAL knows.") from error
+        raise RuntimeError(_reason(error)) from error
+    except (RuntimeError, ValueError, IndexError) as error:
+        raise RuntimeError(_reason(error)) from error
+    arrays = {"numbers": np.asarray(numbers, np.int64), **_geometries(geometries)}
+    arrays |= {f"column {k}": column for k, column in enumerate(values) if _is_plain(column)}
+    texts = {str(k): _texts(column) for k, column in enumerate(values) if not _is_plain(column)}
+    names = [str(name) for name in meta["fields"]]
+    value = {"layer": chosen, "crs": meta["crs"], "names": names, "texts": texts}
+    return Answer(value, arrays)
+
+
+def _chosen_layer(path: str, shown: str, layer: str | None) -> str:
+    import pyogrio
+
+    layers = [str(name) for name, kind in pyogrio.list_layers(path) if kind is not None]
+    if not layers:
+        raise Refusal(f"'{shown}' has no layer with geometry, or is damaged.")
+    if layer is None and len(layers) > 1:
+        raise Refusal(
+            f"'{shown}' has {len(layers)} layers: name one of {', '.join(layers)} "
+            f"(layer={layers[0]!r}, or the path '{shown}:{layers[0]}')."
+        )
+    if layer is not None and layer not in layers:
+        raise Refusal(
+            f"'{shown}' has no layer '{layer}' with geometry: there is {', '.join(layers)}."
+        )
+    return layers[0] if layer is None else layer
+
+
+def _reason(error: Exception) -> str:
+    text = " ".join(str(error).split("; ")[-1].split())
+    return _GDAL_SOURCE.sub("", text).rstrip(".") or type(error).__name__
+
+
+def _geometries(geometries: Any) -> dict[str, Any]:
+    lengths = [-1 if one is None else len(one) for one in geometries]
+    wkb = b"".join(one for one in geometries if one is not None)
+    return {
+        "wkb": np.frombuffer(wkb, np.uint8),
+        "lengths": np.array(lengths, np.int64),
+    }
+
+
+def _is_plain(column: Any) -> bool:
+    return np.asarray(column).dtype.kind in "biuf"
+
+
+def _texts(column: Any) -> list[str | None]:
+    """Return values as text: dates, lists and bytes have no other use here."""
+    return [None if value is None or value != value else str(value) for value in column.tolist()]

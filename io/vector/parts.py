@@ -1,0 +1,258 @@
+"""Single lines and rings of features, as arrays in the CRS wanted."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple, NoReturn
+
+import numpy as np
+
+from ..._sentences import counted
+from ...crs import assume_elevation_unit
+from ...errors import ReadError
+from ..reprojection.placement import place, settle_unit
+from ..reprojection.transformation import conversion_factor
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...crs import CRS, Unit
+    from .features import Features
+
+__all__ = ["Part", "Wanted", "elevation_factor", "parts_of"]
+
+_POLYGON = 3
+
+
+class Part(NamedTuple):
+    """A line or ring.
+
+    Attributes
+    ----------
+    coords : (k, 2) or (k, 3) float64 array
+    row : int
+        Of its feature.
+    is_closed : bool
+    ring : int
+        0 for lines and outer rings, 1, 2, ... for the inner rings of a polygon.
+    """
+
+    coords: NDArray[np.float64]
+    row: int
+    is_closed: bool
+    ring: int
+
+
+class Wanted(NamedTuple):
+    """What lines are to be measured in, that of the points, and what the caller declares of them.
+
+    Attributes
+    ----------
+    crs : CRS or None
+        Of the points.
+    elevation_unit : Unit or None
+        Of their elevations, if it is known.
+    z_unit : Unit or None
+        Of the elevations in the file, if its CRS does not tell.
+    """
+
+    crs: CRS | None = None
+    elevation_unit: Unit | None = None
+    z_unit: Unit | None = None
+
+
+class _Lines(NamedTuple):
+    """Shapely lines and rings, the row of the feature of each, and its ring as in Part."""
+
+    shapes: NDArray[np.object_]
+    rows: NDArray[np.int64]
+    rings: NDArray[np.int64]
+
+
+def parts_of(
+    features: Features, wanted: Wanted, *, drape: bool, notes: list[str] | None
+) -> list[Part]:
+    """Return the lines and rings of all features, in their order.
+
+    Parameters
+    ----------
+    features : Features
+    wanted : Wanted
+        Without a CRS lines stay in the file's own.
+    drape : bool
+        Leave heights aside.
+    notes : list of str, optional
+        What had to be assumed is appended to it.
+
+    Raises
+    ------
+    ReadError
+        If there are points, coordinates that are not finite, or degrees would come out.
+    CrsError
+        If the lines cannot be brought into the CRS.
+    """
+    import shapely
+
+    lines = _lines_of(features)
+    xyz = shapely.get_coordinates(lines.shapes, include_z=True)
+    bounds = np.concatenate([[0], np.cumsum(shapely.get_num_coordinates(lines.shapes))])
+    has_z = shapely.has_z(lines.shapes) & (not drape)
+    _require_finite(xyz, np.repeat(has_z, np.diff(bounds)), bounds, lines.rows, features)
+    said = list(features.notes) + _crs_notes(features, wanted)
+    if has_z.any():
+        xyz[:, 2] *= elevation_factor(features, wanted, notes=said)
+    if notes is not None:
+        notes.extend(said)
+    xyz[:, :2] = _moved(xyz[:, :2], features, wanted.crs)
+    return [
+        Part(xyz[start:end, :width], row, is_closed, ring)
+        for start, end, width, row, is_closed, ring in zip(
+            bounds[:-1].tolist(),
+            bounds[1:].tolist(),
+            np.where(has_z, 3, 2).tolist(),
+            lines.rows.tolist(),
+            shapely.is_closed(lines.shapes).tolist(),
+            lines.rings.tolist(),
+            strict=True,
+        )
+    ]
+
+
+def _lines_of(features: Features) -> _Lines:
+    """Take collections and polygons apart."""
+    import shapely
+
+    shapes, rows = features.geometries, np.arange(len(features.geometries))
+    while (shapely.get_type_id(shapes) > _POLYGON).any():
+        shapes, index = shapely.get_parts(shapes, return_index=True)
+        rows = rows[index]
+    there = ~shapely.is_empty(shapes)
+    shapes, rows = shapes[there], rows[there]
+    types = shapely.get_type_id(shapes)
+    _require_lines(types, rows, features)
+    is_polygon = types == _POLYGON
+    rings, of_polygon = shapely.get_rings(shapes[is_polygon], return_index=True)
+    slots = np.concatenate([np.flatnonzero(~is_polygon), np.flatnonzero(is_polygon)[of_polygon]])
+    order = np.argsort(slots, kind="stable")
+    slots = slots[order]
+    numbers = np.arange(len(slots)) - np.searchsorted(slots, slots)
+    return _Lines(np.concatenate([shapes[~is_polygon], rings])[order], rows[slots], numbers)
+
+
+def _require_lines(types: NDArray[np.int32], rows: NDArray[np.int64], features: Features) -> None:
+    points = np.flatnonzero(types == 0)
+    if len(points):
+        raise ReadError(
+            f"'{features.path}' has {counted(len(points), 'point')} (first: feature "
+            f"{features.numbers[rows[points[0]]]}): lines or polygons are needed.",
+            path=features.path,
+        )
+
+
+def _require_finite(
+    xyz: NDArray[np.float64],
+    has_z: NDArray[np.bool_],
+    bounds: NDArray[np.int64],
+    rows: NDArray[np.int64],
+    features: Features,
+) -> None:
+    wrong = ~np.isfinite(xyz[:, :2]).all(axis=1) | (has_z & ~np.isfinite(xyz[:, 2]))
+    if not wrong.any():
+        return
+    first = int(np.argmax(wrong))
+    line = int(np.searchsorted(bounds, first, side="right")) - 1
+    raise ReadError(
+        f"'{features.path}' has {_not_finite(int(wrong.sum()))} (first: vertex "
+        f"{first - int(bounds[line])} of feature {features.numbers[rows[line]]}, "
+        f"{xyz[first].tolist()}): every coordinate must be a finite number.",
+        path=features.path,
+    )
+
+
+# --------------------------------------------------------------------------- CRS
+
+
+def _moved(xy: NDArray[np.float64], features: Features, crs: CRS | None) -> NDArray[np.float64]:
+    """Reproject in the plane."""
+    level = np.column_stack([xy, np.zeros(len(xy))])
+    source, target = _flat(features.crs), _flat(crs)
+    return place(level, source=source, target=target, path=features.path).points[:, :2]
+
+
+def _flat(crs: CRS | None) -> CRS | None:
+    """Return the horizontal part of a CRS, so that no vertical datum plays a part."""
+    return None if crs is None else crs.horizontal
+
+
+def _crs_notes(features: Features, wanted: Wanted) -> list[str]:
+    source, crs, name = features.crs, wanted.crs, features.path.name
+    if source is None:
+        return [] if crs is None else [f"'{name}' names no CRS: taken to be in {crs.label}."]
+    if crs is None:
+        return [f"'{name}' is in {source.label}: taken to be the CRS of the points."]
+    return []
+
+
+# ------------------------------------------------------------------------- units
+
+
+def elevation_factor(features: Features, wanted: Wanted, *, notes: list[str]) -> float:
+    """Return the factor from a file's elevations to those of the points; their datum stays.
+
+    Parameters
+    ----------
+    features : Features
+    wanted : Wanted
+    notes : list of str
+        What had to be assumed or converted is appended to it.
+
+    Raises
+    ------
+    OptionError
+        If the unit declared is not that of the file's CRS.
+    ReadError
+        If the unit of the points is known, that of the file is not, and its CRS is usual with
+        another one.
+    """
+    source = features.crs or wanted.crs
+    vertical = None if features.crs is None else features.crs.vertical_unit
+    theirs = settle_unit(wanted.z_unit, vertical, features.path)
+    ours = wanted.elevation_unit or (None if wanted.crs is None else wanted.crs.vertical_unit)
+    if theirs is None and features.crs is None:
+        return 1.0
+    from_unit = assume_elevation_unit(source, theirs)
+    to_unit = assume_elevation_unit(wanted.crs, ours) or from_unit
+    factor = conversion_factor(from_unit, to_unit)
+    if factor != 1.0 and from_unit is not None and to_unit is not None:
+        if theirs is None and ours is not None:
+            _refuse_unknown(features, from_unit, ours)
+        notes.append(_conversion(features, theirs, ours, (from_unit, to_unit)))
+    return factor
+
+
+def _refuse_unknown(features: Features, usual: Unit, ours: Unit) -> NoReturn:
+    raise ReadError(
+        f"'{features.path}' does not tell the unit of its elevations: the points have theirs in "
+        f"{ours.name}, and {usual.name} is usual in the CRS of the file; declare the unit of the "
+        "lines' elevations.",
+        path=features.path,
+    )
+
+
+def _conversion(
+    features: Features, theirs: Unit | None, ours: Unit | None, units: tuple[Unit, Unit]
+) -> str:
+    """Say which elevations were converted, and what was assumed for it."""
+    text = f"'{features.path.name}': elevations were converted from {units[0].name} to "
+    text += f"{units[1].name}, the unit of the points"
+    guessed = []
+    if theirs is None:
+        guessed.append(f"of the lines {units[0].name}")
+    if ours is None:
+        guessed.append(f"of the points {units[1].name}")
+    reason = f"; not told and taken as usual in the CRS: {', '.join(guessed)}" if guessed else ""
+    return f"{text}{reason}."
+
+
+def _not_finite(count: int) -> str:
+    vertices = counted(count, "vertex", "vertices")
+    return f"{vertices} that {'is' if count == 1 else 'are'} not finite"

@@ -1,0 +1,331 @@
+"""Lines, rings and water of vector files, in the CRS of the points they belong to.
+
+Whatever GDAL reads will do: GeoPackage, Shapefile, GeoJSON, FlatGeobuf, DXF ... Geometry with
+heights keeps them; without, it is draped on the surface.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, get_args
+
+import numpy as np
+
+from ...crs import CRS, Unit
+from ...errors import ReadError
+from ...tin import Breakline, Water
+from ...tin.constraints.breaklines import BreaklineKind, as_ring
+from .features import Features, read_features
+from .parts import Part, Wanted, elevation_factor, parts_of
+
+if TYPE_CHECKING:
+    import os
+
+    from numpy.typing import NDArray
+
+    from ...crs import CrsLike, UnitLike
+
+__all__ = ["read_lines", "read_polygons", "read_rings", "read_water"]
+
+LARGEST_PRIORITY = 2**31 - 1
+"""Priorities of lines that a file can give: whole numbers of 32 bits."""
+
+_SHOWN_LETTERS = 60
+_WATER_COLUMNS = ("z", "level", "elevation", "height")
+
+
+def read_lines(
+    path: str | os.PathLike[str],
+    *,
+    crs: CrsLike | None = None,
+    elevation_unit: UnitLike | None = None,
+    z_unit: UnitLike | None = None,
+    layer: str | None = None,
+    where: str | None = None,
+    kind: BreaklineKind | None = None,
+    drape: bool = False,
+    notes: list[str] | None = None,
+) -> list[Breakline]:
+    """Read breaklines.
+
+    Lines of several parts become several breaklines; the rings of polygons become closed ones.
+    The columns ``kind`` (hard, soft), ``priority`` and ``name`` are honoured where they exist.
+
+    Parameters
+    ----------
+    path : path-like
+    crs : CRS, str, int or pyproj.CRS, optional
+        CRS wanted, that of the points; default the file's own.
+    elevation_unit : Unit or str, optional
+        Unit wanted, that of the elevations of the points, if it is known.
+    z_unit : Unit or str, optional
+        Unit of the elevations in the file, if its CRS has no vertical axis that tells.
+    layer : str, optional
+        Needed if several layers have geometry.
+    where : str, optional
+        Condition on the columns, as in SQL.
+    kind : {"hard", "soft"}, optional
+        Kind of all of them, whatever the file says.
+    drape : bool
+        Leave heights in the file aside.
+    notes : list of str, optional
+        What had to be assumed is appended to it, a sentence each.
+
+    Returns
+    -------
+    list of Breakline
+        (k, 3) with the file's heights in the unit of the points, their datum left alone; or (k, 2)
+        to drape. Where a unit is not known it is taken to be the usual one of the CRS, that of the
+        eastings (metres above degrees), and a note says so if it made a difference.
+
+    Raises
+    ------
+    MissingExtraError
+        If pyogrio is not installed.
+    ReadError
+        If the file cannot be read, has no lines, coordinates that are not finite, or columns with
+        other values.
+    CrsError
+        If the lines cannot be brought into the CRS.
+    OptionError
+        If a unit is unknown, or not that of the file's CRS.
+    """
+    features = read_features(Path(path), layer=layer, where=where)
+    parts = parts_of(features, _wanted(crs, elevation_unit, z_unit), drape=drape, notes=notes)
+    kinds = _kinds(features) if kind is None else [kind] * len(features.numbers)
+    priorities, names = _priorities(features), _texts(features, "name")
+    return [
+        Breakline(
+            part.coords, kind=kinds[part.row], priority=priorities[part.row], name=names[part.row]
+        )
+        for part in parts
+    ]
+
+
+def read_rings(
+    path: str | os.PathLike[str],
+    *,
+    crs: CrsLike | None = None,
+    elevation_unit: UnitLike | None = None,
+    z_unit: UnitLike | None = None,
+    layer: str | None = None,
+    where: str | None = None,
+    drape: bool = False,
+    notes: list[str] | None = None,
+) -> list[NDArray[np.float64]]:
+    """Read rings: polygons, all their rings, and closed lines.
+
+    Parameters
+    ----------
+    path, crs, elevation_unit, z_unit, layer, where, drape, notes
+        As in :func:`read_lines`.
+
+    Returns
+    -------
+    list of (k, 2) or (k, 3) float64 arrays
+        Corners in order, the first not repeated.
+
+    Raises
+    ------
+    MissingExtraError, ReadError, CrsError
+        As :func:`read_lines`; ReadError also if a line is not closed.
+    LinesError
+        If a ring has fewer than three corners.
+    """
+    features = read_features(Path(path), layer=layer, where=where)
+    parts = parts_of(features, _wanted(crs, elevation_unit, z_unit), drape=drape, notes=notes)
+    return [_ring(part, features) for part in parts]
+
+
+def read_polygons(
+    path: str | os.PathLike[str],
+    *,
+    crs: CrsLike | None = None,
+    elevation_unit: UnitLike | None = None,
+    z_unit: UnitLike | None = None,
+    layer: str | None = None,
+    where: str | None = None,
+    drape: bool = False,
+    notes: list[str] | None = None,
+) -> list[list[NDArray[np.float64]]]:
+    """Read polygons with their islands, as ``holes`` and ``erase`` of a survey take them.
+
+    Parameters
+    ----------
+    path, crs, elevation_unit, z_unit, layer, where, drape, notes
+        As in :func:`read_lines`.
+
+    Returns
+    -------
+    list of lists of (k, 2) or (k, 3) float64 arrays
+        Of each polygon the outer ring, then those of its islands; a closed line is one ring.
+
+    Raises
+    ------
+    MissingExtraError, ReadError, CrsError, LinesError
+        As :func:`read_rings`.
+    """
+    features = read_features(Path(path), layer=layer, where=where)
+    polygons: list[list[NDArray[np.float64]]] = []
+    wanted = _wanted(crs, elevation_unit, z_unit)
+    for part in parts_of(features, wanted, drape=drape, notes=notes):
+        if part.ring == 0:
+            polygons.append([])
+        polygons[-1].append(_ring(part, features))
+    return polygons
+
+
+def read_water(
+    path: str | os.PathLike[str],
+    *,
+    z: float | str | None = None,
+    crs: CrsLike | None = None,
+    elevation_unit: UnitLike | None = None,
+    z_unit: UnitLike | None = None,
+    layer: str | None = None,
+    where: str | None = None,
+    notes: list[str] | None = None,
+) -> list[Water]:
+    """Read flat polygons; a column ``name`` is honoured.
+
+    Parameters
+    ----------
+    path, crs, elevation_unit, z_unit, layer, where, notes
+        As in :func:`read_lines`.
+    z : float or str, optional
+        Height of all of them, in the unit of the points, or the column that holds it. Default the
+        column ``z``, ``level``, ``elevation`` or ``height``; without one the heights of the
+        corners, if all are equal.
+
+    Returns
+    -------
+    list of Water
+
+    Raises
+    ------
+    MissingExtraError, ReadError, CrsError, LinesError
+        As :func:`read_rings`; ReadError also if a height is missing, or a polygon has islands.
+    """
+    features = read_features(Path(path), layer=layer, where=where)
+    wanted = _wanted(crs, elevation_unit, z_unit)
+    parts = parts_of(features, wanted, drape=False, notes=notes)
+    island = next((part for part in parts if part.ring > 0), None)
+    if island is not None:
+        raise ReadError(
+            f"{features.label(island.row)} has an island, and a water polygon has one ring: "
+            "cut the polygon in two along the island.",
+            path=features.path,
+        )
+    rings = [_ring(part, features) for part in parts]
+    names, levels = _texts(features, "name"), _levels(features, wanted, z)
+    return [
+        Water(ring, _level(ring, levels, part.row, features), name=names[part.row])
+        for ring, part in zip(rings, parts, strict=True)
+    ]
+
+
+def _ring(part: Part, features: Features) -> NDArray[np.float64]:
+    if not part.is_closed:
+        raise ReadError(
+            f"{features.label(part.row)} is an open line: a polygon or a closed line is needed.",
+            path=features.path,
+        )
+    return as_ring(part.coords, f"the ring of feature {features.numbers[part.row]}")
+
+
+def _wanted(
+    crs: CrsLike | None, elevation_unit: UnitLike | None, z_unit: UnitLike | None
+) -> Wanted:
+    return Wanted(CRS.of(crs), Unit.of(elevation_unit), Unit.of(z_unit))
+
+
+# ----------------------------------------------------------------------- columns
+
+
+def _kinds(features: Features) -> list[BreaklineKind]:
+    allowed: dict[str, BreaklineKind] = {kind: kind for kind in get_args(BreaklineKind)}
+    kinds = []
+    for row, text in enumerate(_texts(features, "kind")):
+        chosen = allowed.get(text.lower() or "hard")
+        if chosen is None:
+            raise ReadError(
+                f"{features.label(row)} has the kind '{_shown(text)}': "
+                f"{' or '.join(allowed)}, or none, is allowed.",
+                path=features.path,
+            )
+        kinds.append(chosen)
+    return kinds
+
+
+def _priorities(features: Features) -> list[int]:
+    priorities = []
+    for row, text in enumerate(_texts(features, "priority")):
+        value = _number(text or "0")
+        if value is None or value != round(value) or abs(value) > LARGEST_PRIORITY:
+            raise ReadError(
+                f"{features.label(row)} has the priority '{_shown(text)}': a whole number from "
+                f"-{LARGEST_PRIORITY} to {LARGEST_PRIORITY} is needed.",
+                path=features.path,
+            )
+        priorities.append(int(value))
+    return priorities
+
+
+def _texts(features: Features, name: str) -> list[str]:
+    """Return a column as text, empty where there is no value or no such column."""
+    column = features.columns.get(name)
+    if column is None:
+        return [""] * len(features.numbers)
+    return ["" if _is_missing(value) else str(value).strip() for value in column.tolist()]
+
+
+def _shown(text: str) -> str:
+    return text if len(text) <= _SHOWN_LETTERS else f"{text[:_SHOWN_LETTERS]}..."
+
+
+def _is_missing(value: object) -> bool:
+    return value is None or value != value
+
+
+def _number(text: str) -> float | None:
+    try:
+        value = float(text)
+    except ValueError:
+        return None
+    return value if np.isfinite(value) else None
+
+
+def _levels(features: Features, wanted: Wanted, z: float | str | None) -> list[float | None]:
+    """Return the height of each feature, None where the corners must tell; columns converted."""
+    if z is not None and not isinstance(z, str):
+        return [float(z)] * len(features.numbers)
+    if z is not None and z.lower() not in features.columns:
+        raise ReadError(
+            f"'{features.path}' has no column '{z}': there is "
+            f"{', '.join(features.columns) or 'none at all'}.",
+            path=features.path,
+        )
+    names = [z.lower()] if z is not None else [n for n in _WATER_COLUMNS if n in features.columns]
+    found = [_number(text) for text in _texts(features, names[0] if names else "")]
+    if all(level is None for level in found):
+        return found
+    factor = elevation_factor(features, wanted, notes=[])
+    return [None if level is None else level * factor for level in found]
+
+
+def _level(
+    ring: NDArray[np.float64], levels: list[float | None], row: int, features: Features
+) -> float:
+    level = levels[row]
+    if level is not None:
+        return level
+    has_heights = ring.shape[1] == 3
+    if has_heights and np.ptp(ring[:, 2]) == 0:
+        return float(ring[0, 2])
+    found = f"heights from {ring[:, 2].min():g} to {ring[:, 2].max():g}" if has_heights else "none"
+    raise ReadError(
+        f"{features.label(row)} needs one height and has {found}: water gets it from a column "
+        f"({', '.join(_WATER_COLUMNS)}), from corners of one height, or for all from the option "
+        "water_z.",
+        path=features.path,
+    )

@@ -1,0 +1,156 @@
+"""A survey gains the lines of vector files."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import chain
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...errors import ReadError
+from ...tin import Bounds, Breakline, Water
+from .nesting import nesting_notes
+from .reading import read_lines, read_polygons, read_water
+
+if TYPE_CHECKING:
+    import os
+    from collections.abc import Callable, Iterable, Sequence
+
+    from numpy.typing import NDArray
+
+    from ...crs import UnitLike
+    from ...tin import Survey
+
+    Source = str | os.PathLike[str]
+
+__all__ = ["path_and_layer", "with_lines"]
+
+_FAR = 10.0
+"""Lines further from the points than this many diagonals of their extent are somewhere else."""
+
+
+def with_lines(
+    survey: Survey,
+    *,
+    breaklines: Sequence[Source] = (),
+    soft_breaklines: Sequence[Source] = (),
+    boundary: Sequence[Source] = (),
+    holes: Sequence[Source] = (),
+    erase: Sequence[Source] = (),
+    water: Sequence[Source] = (),
+    water_z: float | str | None = None,
+    drape: bool = False,
+    z_unit: UnitLike | None = None,
+) -> Survey:
+    """Add the lines of vector files to a survey, in its CRS.
+
+    Parameters
+    ----------
+    survey : Survey
+    breaklines, soft_breaklines, boundary, holes, erase, water : sequence of path-like
+        Files; ``"plan.gpkg:kerbs"`` names a layer. The survey's own lines come first. The islands
+        of polygons stay: they are no part of a hole, are not erased, and lie outside a boundary.
+    water_z : float or str, optional
+        Height of the water, or the column that holds it.
+    drape : bool
+        Take the heights of breaklines, boundary and holes from the surface, whatever the files
+        say.
+    z_unit : Unit or str, optional
+        Unit of the elevations in the files, where their CRS has no vertical axis that tells.
+
+    Returns
+    -------
+    Survey
+        What had to be assumed is in its notes.
+
+    Raises
+    ------
+    MissingExtraError, ReadError, CrsError, LinesError
+        As :func:`tinsmith.io.read_lines`; ReadError also if lines lie far away from the points, or
+        if polygons of a boundary overlap.
+
+    Examples
+    --------
+    >>> from tinsmith import Survey
+    >>> with_lines(Survey(points=np.zeros((3, 3))))
+    <Survey: 3 points, crs unknown>
+    """
+    notes = list(survey.notes)
+    units: dict[str, Any] = {
+        "crs": survey.crs,
+        "elevation_unit": survey.elevation_unit,
+        "z_unit": z_unit,
+    }
+
+    def read(reader: Callable[..., list[Any]], sources: Iterable[Source], **how: Any) -> list[Any]:
+        found = []
+        for source in sources:
+            path, layer = path_and_layer(source)
+            lines = reader(path, layer=layer, notes=notes, **units, **how)
+            _require_near(survey, [xy for line in lines for xy in _coords_of(line)], path)
+            if reader is read_polygons and sources is boundary:
+                notes.extend(nesting_notes(lines, path))
+            found += lines
+        return found
+
+    return replace(
+        survey,
+        breaklines=[
+            *survey.breaklines,
+            *read(read_lines, breaklines, drape=drape),
+            *read(read_lines, soft_breaklines, kind="soft", drape=drape),
+        ],
+        boundary=[*survey.boundary, *chain(*read(read_polygons, boundary, drape=drape))],
+        holes=[*survey.holes, *map(_plain, read(read_polygons, holes, drape=drape))],
+        erase=[*survey.erase, *map(_plain, read(read_polygons, erase, drape=True))],
+        water=[*survey.water, *read(read_water, water, z=water_z)],
+        notes=notes,
+    )
+
+
+def _plain(rings: list[NDArray[np.float64]]) -> NDArray[np.float64] | list[NDArray[np.float64]]:
+    """Return a polygon without islands as its ring."""
+    return rings[0] if len(rings) == 1 else rings
+
+
+def path_and_layer(source: Source) -> tuple[Path, str | None]:
+    """Split a layer's name off a path, unless a file of the whole name exists."""
+    path = Path(source)
+    before, colon, layer = str(source).rpartition(":")
+    if not path.exists() and colon and layer and Path(before).exists():
+        return Path(before), layer
+    return path, None
+
+
+def _coords_of(line: Breakline | Water | list[NDArray[np.float64]]) -> list[NDArray[np.float64]]:
+    if isinstance(line, list):
+        return line
+    return [line.coords if isinstance(line, Breakline) else line.ring]
+
+
+def _require_near(survey: Survey, coords: Sequence[NDArray[np.float64]], path: Path) -> None:
+    """Refuse lines that lie so far away that their CRS must be wrong."""
+    if len(survey) == 0:
+        return
+    ours = survey.bounds
+    xy = np.concatenate([line[:, :2] for line in coords])
+    theirs = Bounds.of(xy)
+    reach = _FAR * ours.diagonal
+    apart = max(
+        theirs.xmin - ours.xmax,
+        ours.xmin - theirs.xmax,
+        theirs.ymin - ours.ymax,
+        ours.ymin - theirs.ymax,
+    )
+    if apart > reach:
+        raise ReadError(
+            f"'{path}': its lines are nowhere near the points (lines: {_extent(theirs)}; points: "
+            f"{_extent(ours)}): check the CRS of both.",
+            path=path,
+        )
+
+
+def _extent(box: Bounds) -> str:
+    return f"x {box.xmin:.10g} to {box.xmax:.10g}, y {box.ymin:.10g} to {box.ymax:.10g}"

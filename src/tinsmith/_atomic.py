@@ -1,0 +1,147 @@
+"""Whole files or none: write beside the target, then rename."""
+
+from __future__ import annotations
+
+import os
+import secrets
+from contextlib import contextmanager
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, Literal, overload
+
+from .errors import TinsmithError, WriteError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from contextlib import AbstractContextManager
+
+__all__ = ["replacing", "replacing_path", "require_writable"]
+
+_STEM = 40
+"""Letters of a name that the name of the file beside it begins with: names have 255 bytes."""
+
+
+@overload
+def replacing(path: Path, *, binary: Literal[True] = True) -> AbstractContextManager[IO[bytes]]: ...
+@overload
+def replacing(path: Path, *, binary: Literal[False]) -> AbstractContextManager[IO[str]]: ...
+@contextmanager  # type: ignore[misc]
+def replacing(path: Path, *, binary: bool = True) -> Iterator[IO[bytes] | IO[str]]:
+    r"""Open a file that takes the place of ``path`` when the block ends without an error.
+
+    Parameters
+    ----------
+    path : Path
+    binary : bool
+        Bytes; otherwise UTF-8 text whose line ends are written as given (``"\n"``).
+
+    Yields
+    ------
+    file object
+
+    Raises
+    ------
+    WriteError
+        If the file cannot be written (no such folder, no permission, disk full). The file that
+        was at ``path`` is then as it was.
+    """
+    with replacing_path(path) as beside:
+        if binary:
+            with beside.open("wb") as raw:
+                yield raw
+        else:
+            with beside.open("w", encoding="utf-8", newline="") as text:
+                yield text
+
+
+@contextmanager
+def replacing_path(path: Path) -> Iterator[Path]:
+    """Yield the path of an empty file beside ``path``, same suffix, for libraries that open files.
+
+    Yields
+    ------
+    Path
+        Takes the place of ``path`` when the block ends without an error; removed otherwise.
+
+    Raises
+    ------
+    WriteError
+        As :func:`replacing`.
+    """
+    with _faults_as_sentences(path):
+        target = _target(path)
+        _require_replaceable(path, target)
+        beside = _path_beside(target)
+        try:  # begins before the file is there, so that no signal can come in between
+            _create(beside, target)
+            yield beside
+            beside.replace(target)
+        finally:
+            beside.unlink(missing_ok=True)
+
+
+def require_writable(path: Path) -> None:
+    """Find out, before any work is done, whether a file can be written at ``path``.
+
+    Raises
+    ------
+    WriteError
+        If there is no such folder, it may not be written to, or what is there is a folder, a
+        device or read-only.
+    """
+    with _faults_as_sentences(path):
+        target = _target(path)
+        _require_replaceable(path, target)
+        if not os.access(target.parent, os.W_OK | os.X_OK):
+            raise WriteError(
+                f"Cannot write '{path}': the folder '{path.parent}' may not be written to.",
+                path=path,
+            )
+
+
+@contextmanager
+def _faults_as_sentences(path: Path) -> Iterator[None]:
+    """Turn what the system says into a sentence."""
+    try:
+        yield
+    except TinsmithError:
+        raise
+    except OSError as error:
+        reason = error.strerror or str(error) or type(error).__name__
+        raise WriteError(f"Cannot write '{path}': {reason}.", path=path) from error
+
+
+def _target(path: Path) -> Path:
+    """Follow links, so that the file itself is replaced and not the link to it."""
+    try:
+        return Path(os.path.realpath(path))
+    except ValueError as error:
+        raise WriteError(f"Cannot write {str(path)!r}: {error}.", path=path) from error
+
+
+def _require_replaceable(path: Path, target: Path) -> None:
+    if target.is_dir():
+        raise WriteError(f"Cannot write '{path}': it is a folder; name a file in it.", path=path)
+    if not target.parent.is_dir():
+        raise WriteError(
+            f"Cannot write '{path}': there is no folder '{path.parent}'; create it first.",
+            path=path,
+        )
+    if target.exists() and not target.is_file():
+        raise WriteError(
+            f"Cannot write '{path}': it is a device or a pipe; name an ordinary file.", path=path
+        )
+    if target.exists() and not os.access(target, os.W_OK):
+        raise WriteError(f"Cannot write '{path}': the file there is read-only.", path=path)
+
+
+def _path_beside(target: Path) -> Path:
+    """Return a new name in the folder of the target: hidden, with its suffix."""
+    return target.with_name(f".{target.stem[:_STEM]}-{secrets.token_hex(4)}{target.suffix}")
+
+
+def _create(beside: Path, target: Path) -> None:
+    """Create the file with the permissions that the target has, or that a new file gets."""
+    descriptor = os.open(beside, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666)
+    os.close(descriptor)
+    if target.exists():
+        beside.chmod(target.stat().st_mode & 0o777)

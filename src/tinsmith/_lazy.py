@@ -1,0 +1,37 @@
+"""Public names that are loaded when they are first used."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+__all__ = ["lazy_names"]
+
+
+def lazy_names(
+    package: str, names_of: Mapping[str, tuple[str, ...]]
+) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
+    """Return ``__getattr__`` and ``__dir__`` of a package whose names are in other modules.
+
+    Parameters
+    ----------
+    package : str
+        Its ``__name__``.
+    names_of : mapping
+        Names by the module that has them, relative to the package: ``".registry"``. A module
+        within the package can be used as an attribute, too.
+    """
+    module_of = {name: module for module, names in names_of.items() for name in names}
+    modules = {module.split(".")[1] for module in names_of if not module.startswith("..")}
+
+    def load(name: str) -> Any:
+        if name in module_of:
+            return getattr(import_module(module_of[name], package), name)
+        if name in modules:
+            return import_module(f".{name}", package)
+        raise AttributeError(f"module '{package}' has no attribute '{name}'")
+
+    return load, lambda: sorted({*module_of, *modules})

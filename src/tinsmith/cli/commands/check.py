@@ -1,0 +1,81 @@
+"""``tinsmith check``: prove that a TIN is sound."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+
+from ..._sentences import counted
+from ..options import console_options, input_file, reading_options, triangulating_options
+from ..output.failures import Failure
+from ..paths import name_of
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from ...tin.checking.checker import CheckResult
+    from ..options import Reading, Triangulating
+    from ..output.console import Console, Field
+
+__all__ = ["check"]
+
+_PROVED = {
+    1: "indices, neighbours and edge flags agree",
+    2: "sound, and its triangles tile the hull with no gap or overlap",
+    3: "exactly Delaunay, and its triangles tile the hull with no gap or overlap",
+}
+
+
+@click.command(short_help="Check that a TIN is sound and Delaunay.")
+@input_file("file")
+@click.option(
+    "--level",
+    type=click.IntRange(1, 3),
+    default=3,
+    show_default=True,
+    help="1: indices and neighbours. 2: also orientation, hull, areas. "
+    "3: also every edge exactly Delaunay, every point present.",
+)
+@reading_options
+@triangulating_options
+@console_options
+def check(file: Path, level: int, reading: Reading, how: Triangulating, console: Console) -> None:
+    """Check the TIN in FILE, exactly; of a file of points, the TIN built from them.
+
+    The exit code is 1 if a problem is found.
+
+    \b
+    Example:
+      tinsmith check sample_data/site_survey.csv
+    """  # noqa: D301 - click reads the control character
+    from ...tin.checking.checker import check as check_tin
+    from ..files import read_tin
+
+    tin, survey = read_tin(file, reading, how, console)
+    triangles = counted(len(tin.triangles), "triangle")
+    with console.steps() as steps, steps.step(f"Checking {triangles}"):
+        result = check_tin(tin, level=level, points=survey)
+    console.answer(_fields(file, result), {"input": str(file)} | result.to_dict())
+    if not result.ok:
+        raise Failure(f"The TIN of '{file}' is not sound: {_kinds(result)}.")
+
+
+def _fields(file: Path, result: CheckResult) -> list[Field]:
+    counts = ", ".join(
+        counted(result.counts[name], one, name)
+        for name, one in (("vertices", "vertex"), ("triangles", "triangle"), ("edges", "edge"))
+        if name in result.counts
+    )
+    verdict = _PROVED[result.level] if result.ok else f"failed: {_kinds(result)}"
+    return [
+        ("File", name_of(file)),
+        ("Counted", counts),
+        (f"Level {result.level}", verdict),
+        *(("Problem", problem.sentence) for problem in result.problems),
+        *(("Note", note.sentence) for note in result.notes),
+    ]
+
+
+def _kinds(result: CheckResult) -> str:
+    return ", ".join(dict.fromkeys(problem.kind for problem in result.problems))

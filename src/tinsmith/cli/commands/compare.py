@@ -1,0 +1,158 @@
+"""``tinsmith compare``: the paper's algorithms beside the exact kernel."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ..._sentences import counted
+from ..options import console_options, input_file, reading_options
+from ..output.failures import Failure
+from ..paths import OUTPUT, name_of, title_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from ...tin import Comparison, Outcome
+    from ..options import Reading
+    from ..output.console import Console, Field
+
+__all__ = ["compare"]
+
+_COLUMN = 16
+
+
+@click.command(short_help="Compare the paper's algorithms with the exact kernel.")
+@input_file("file")
+@click.option(
+    "-o",
+    "--output",
+    metavar="FILE",
+    type=OUTPUT,
+    help="Picture to write (.png): the triangles side by side, faults marked.",
+)
+@click.option(
+    "--sample",
+    metavar="N",
+    type=click.IntRange(min=3),
+    help="Take N of the points at random, the same every time.",
+)
+@reading_options
+@console_options
+def compare(
+    file: Path, output: Path | None, sample: int | None, reading: Reading, console: Console
+) -> None:
+    """Triangulate the points in FILE by the paper's algorithms and by the exact kernel.
+
+    Of each: triangles, time, memory, searches, angles, and faults. Without --sample at most 2,500
+    points, for the paper's algorithms take quadratic time.
+
+    \b
+    Example:
+      tinsmith compare sample_data/site_survey.csv --sample 200 -o comparison.png
+    """  # noqa: D301 - click reads the control character
+    from ...tin import TIN
+    from ...tin import compare as compare_points
+    from ..files import inputs_of, read_input, require_picture
+
+    if output is not None:
+        require_picture(output, place="--output", inputs=inputs_of(file))
+    found = read_input(file, reading, console)
+    if isinstance(found, TIN):
+        raise Failure(f"'{file}' holds a TIN: 'tinsmith compare' needs points.")
+    points = _sampled(found.points, sample)
+    with console.steps() as steps, steps.step(f"Comparing on {counted(len(points), 'point')}"):
+        result = compare_points(points, limit=len(points))
+    facts = {"input": str(file)} | result.to_dict()
+    if output is not None:
+        _draw(result, file, output, console)
+        facts["output"] = str(output)
+    console.answer(_fields(file, result, output), facts)
+
+
+def _sampled(points: NDArray[Any], count: int | None) -> NDArray[Any]:
+    """Return some of the points, in their order; all of them if no number is given."""
+    import numpy as np
+
+    from ...tin.paper.comparison import MOST_POINTS
+
+    if count is None:
+        if len(points) > MOST_POINTS:
+            raise Failure(
+                f"{len(points):,} points would take too long, for the paper's algorithms take "
+                f"quadratic time: --sample {MOST_POINTS} takes so many of them."
+            )
+        return points
+    if count > len(points):
+        raise Failure(
+            f"--sample {count:,} asks for more than the {len(points):,} points there are."
+        )
+    rows = np.random.default_rng(0).choice(len(points), count, replace=False)
+    return points[np.sort(rows)]
+
+
+def _draw(result: Comparison, file: Path, output: Path, console: Console) -> None:
+    """Write the picture, whole or not at all."""
+    from ...terrain import comparison_picture
+    from ..files import write_figure
+
+    title = f"{title_of(file) or 'points'}: {len(result.points):,} points"
+    with console.steps() as steps, steps.step("Drawing"):
+        figure = comparison_picture(result, title=title)
+        write_figure(figure, output, dpi=120)
+
+
+# ---------------------------------------------------------------- for people
+
+
+def _fields(file: Path, result: Comparison, output: Path | None) -> list[Field]:
+    from ..output.summaries import file_size
+
+    hull = f"{len(result.points):,} points, {len(result.hull):,} of them on the hull"
+    due = f"2n - 2 - h = {result.expected:,} triangles make a triangulation"
+    fields = [("File", name_of(file)), ("Points", f"{hull}: {due}"), ("", "")]
+    fields += [_row(label, result, text) for label, text in _ROWS]
+    if output is not None:
+        fields.append(("Written", f"{output} ({file_size(output)})"))
+    return fields
+
+
+def _row(label: str, result: Comparison, text: Callable[[Outcome, Comparison], str]) -> Field:
+    cells = (text(outcome, result) for outcome in result.outcomes)
+    return label, "".join(f"{cell:>{_COLUMN}}" for cell in cells)
+
+
+def _triangles(outcome: Outcome, _: Comparison) -> str:
+    return f"{len(outcome.triangles):,}" + (" (stopped)" if outcome.is_stopped else "")
+
+
+def _without_removal(outcome: Outcome, _: Comparison) -> str:
+    count = outcome.candidates_without_removal
+    return "-" if count is None else f"{count / len(outcome.triangles):,.1f}"
+
+
+def _share(part: float, whole: float) -> str:
+    return f"{100 * part / whole:.2f} %"
+
+
+_ROWS: list[tuple[str, Callable[[Outcome, Comparison], str]]] = [
+    ("", lambda one, _: one.name),
+    ("Triangles", _triangles),
+    ("Open edges", lambda one, _: f"{len(one.unextended):,}"),
+    ("In circle", lambda one, _: _share(one.violating.sum(), len(one.triangles))),
+    ("Overlapping", lambda one, _: _share(one.overlapping.sum(), len(one.triangles))),
+    ("  area", lambda one, all_: _share(one.overlap, all_.area)),
+    ("Gaps, area", lambda one, all_: _share(one.gap, all_.area)),
+    ("Least angle", lambda one, _: f"{one.angles.min():.2f}°"),
+    ("  below 20°", lambda one, _: _share(one.angle_counts[:2].sum(), len(one.triangles))),
+    ("Searched", lambda one, _: f"{one.candidates / len(one.triangles):,.1f}"),
+    ("  no removal", _without_removal),
+    ("Tests", lambda one, _: f"{one.tests:,}"),
+    ("Time", lambda one, _: f"{1000 * one.seconds:,.2f} ms"),
+    ("Memory", lambda one, _: f"{one.memory / 1000:,.0f} kB"),
+]
+"""Searched: points looked at for each triangle; In circle: triangles with a point in theirs."""

@@ -1,0 +1,157 @@
+"""``tinsmith edit``: changes from a script, made to a TIN."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from time import perf_counter
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ..._sentences import counted
+from ..options import (
+    console_options,
+    input_file,
+    output_files,
+    reading_options,
+    triangulating_options,
+    writing_options,
+)
+from ..output.console import plain
+from ..paths import INPUT, OUTPUT, STANDARD, name_of
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from ...tin import TIN
+    from ..options import Reading, Triangulating, Writing
+    from ..output.console import Console
+
+__all__ = ["edit"]
+
+
+@click.command(short_help="Change a TIN by a script of edits.")
+@input_file("file")
+@click.argument("script", type=INPUT)
+@output_files
+@reading_options
+@triangulating_options
+@writing_options
+@click.option(
+    "--report",
+    metavar="FILE",
+    type=OUTPUT,
+    help="JSON file that accounts for every row and every edit.",
+)
+@console_options
+def edit(
+    file: Path,
+    script: Path,
+    outputs: tuple[Path, ...],
+    reading: Reading,
+    how: Triangulating,
+    writing: Writing,
+    report: Path | None,
+    console: Console,
+) -> None:
+    """Change the TIN in FILE, or that of the points in it, by the edits in SCRIPT.
+
+    SCRIPT is a JSON list of edits, done in their order: insert, remove, move, set_z, flip,
+    add_breakline, remove_breakline. The report of an earlier run will do as well. Vertices are
+    numbered as they are then: those behind a removed one move up. A breakline that is removed
+    takes along the vertices that only it had.
+
+    \b
+    Example:
+      tinsmith edit sample_data/site_survey.csv sample_data/edits.json --crs EPSG:32616 -o site.ply
+
+    \b
+    A script:
+      [{"op": "insert", "points": [[752700.5, 4024250.0, 322.1]]},
+       {"op": "remove", "vertices": [17]},
+       {"op": "move", "vertex": 3, "point": [752771.2, 4024321.0, 329.1]},
+       {"op": "set_z", "vertices": [4, 5], "z": [320.0, 320.5]},
+       {"op": "add_breakline", "coords": [[752650, 4024200, 321], [752700, 4024300, 323]]}]
+    """  # noqa: D301 - click reads the control character
+    from ...tin.editing.session import apply_edits
+    from ..files import inputs_of, plan_outputs, read_tin, write_outputs, write_text, written_text
+    from ..output.line_summaries import mesh_counts
+
+    started = perf_counter()
+    planned = plan_outputs(
+        outputs,
+        writing,
+        inputs=inputs_of(file, how, script=script),
+        console=console,
+        report=report,
+    )
+    edits = _read_script(script)
+    tin, _ = read_tin(file, reading, how, console)
+    before = mesh_counts(tin)
+    with console.steps() as steps, steps.step(f"Making {counted(len(edits), 'edit')}"):
+        apply_edits(tin, edits)
+    write_outputs(tin, planned, console)
+    if report is not None:
+        write_text(report, plain(tin.report.to_dict()) + "\n")
+    console.summarise(
+        [
+            ("Read", f"a TIN of {before} from {name_of(file)}"),
+            ("Edits", _counted(tin)),
+            ("TIN", mesh_counts(tin)),
+            *(("Note", note) for one in tin.edits for note in one.notes),
+            ("Written", written_text(planned)),
+            ("Time", f"{perf_counter() - started:.2f} s"),
+        ]
+    )
+    if console.as_json:
+        console.emit(plain(_facts(file, script, tin, [str(one.path) for one in planned])))
+
+
+def _counted(tin: TIN) -> str:
+    counts = Counter(one.operation for one in tin.edits)
+    named = ", ".join(f"{count} {operation}" for operation, count in counts.items())
+    return f"{len(tin.edits):,} ({named})" if named else "none"
+
+
+def _facts(file: Path, script: Path, tin: TIN, outputs: list[str]) -> dict[str, Any]:
+    from ..output.summaries import tin_facts
+
+    return {
+        "input": str(file),
+        "script": str(script),
+        "tin": tin_facts(tin),
+        "report": tin.report.to_dict(),
+        "outputs": outputs,
+    }
+
+
+def _read_script(path: Path) -> list[dict[str, Any]]:
+    from ..output.failures import Failure
+
+    wanted = 'a list of edits is needed, such as [{"op": "remove", "vertices": [3]}]'
+    try:
+        content = json.loads(_content(path).decode("utf-8-sig"))
+    except json.JSONDecodeError as error:
+        raise Failure(
+            f"'{path}' is no JSON (line {error.lineno}: {error.msg}): {wanted}."
+        ) from error
+    except UnicodeDecodeError as error:
+        raise Failure(f"'{path}' is no text in UTF-8: {wanted}.") from error
+    edits = content.get("edits") if isinstance(content, dict) else content
+    if not isinstance(edits, list) or not all(isinstance(one, dict) for one in edits):
+        raise Failure(f"'{path}' holds something else: {wanted}.")
+    return edits
+
+
+def _content(path: Path) -> bytes:
+    from ...io.isolated.spooling import as_sentence, ordinary_file
+    from ..files import standard_input
+
+    if path == STANDARD:
+        return standard_input().read()
+    with ordinary_file(path) as local:
+        try:
+            return local.read_bytes()
+        except OSError as error:
+            raise as_sentence(path, error) from error

@@ -1,0 +1,149 @@
+"""``tinsmith refine``: a mesh for finite elements."""
+
+from __future__ import annotations
+
+from time import perf_counter
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ..._sentences import counted
+from ..flags import name_flags
+from ..options import (
+    console_options,
+    input_file,
+    output_files,
+    reading_options,
+    triangulating_options,
+    writing_options,
+)
+from ..output.console import plain
+from ..output.failures import Failure
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from ...tin import TIN, Quality
+    from ...tin.report import Unmended
+    from ..options import Reading, Triangulating, Writing
+    from ..output.console import Console, Field
+
+__all__ = ["refine"]
+
+
+@click.command(short_help="Make a finite element mesh of a TIN.")
+@input_file("file")
+@output_files
+@click.option(
+    "--min-angle",
+    metavar="DEGREES",
+    type=float,
+    default=25.0,
+    show_default=True,
+    help="Least angle of a triangle, up to 33.",
+)
+@click.option(
+    "--max-area", metavar="AREA", type=float, help="Largest triangle, in CRS units squared."
+)
+@click.option(
+    "--max-side",
+    metavar="LENGTH",
+    type=float,
+    help="Longest side of a triangle, in CRS units. (--max-edge trims the TIN before.)",
+)
+@click.option(
+    "--max-vertices",
+    metavar="N",
+    type=int,
+    default=10_000_000,
+    show_default=True,
+    help="So many vertices are allowed.",
+)
+@reading_options
+@triangulating_options
+@writing_options
+@console_options
+def refine(
+    file: Path,
+    outputs: tuple[Path, ...],
+    min_angle: float,
+    max_area: float | None,
+    max_side: float | None,
+    max_vertices: int,
+    reading: Reading,
+    how: Triangulating,
+    writing: Writing,
+    console: Console,
+) -> None:
+    """Add points to the TIN in FILE, or that of the points in it, until its triangles are good.
+
+    Rim, boundary, holes and breaklines stay, and the new points lie on the surface.
+
+    \b
+    Example:
+      tinsmith refine sample_data/site_survey.csv --codes --max-area 20 -o site.msh -o site.vtu
+    """  # noqa: D301 - click reads the control character
+    from ...errors import TinsmithError
+    from ...tin import quality
+    from ...tin import refine as refine_tin
+    from ..files import inputs_of, plan_outputs, read_tin, write_outputs, written_text
+    from ..output.line_summaries import mesh_counts
+
+    started = perf_counter()
+    planned = plan_outputs(outputs, writing, inputs=inputs_of(file, how), console=console)
+    tin, _ = read_tin(file, reading, how, console)
+    _require_lengths(tin, file)
+    triangles = counted(len(tin.triangles), "triangle")
+    with console.steps() as steps, steps.step(f"Refining {triangles}"):
+        try:
+            refined = refine_tin(
+                tin,
+                min_angle=min_angle,
+                max_area=max_area,
+                max_edge=max_side,
+                max_vertices=max_vertices,
+                threads=how.threads,
+            )
+        except TinsmithError as error:  # its max_edge is not --max-edge, which trims
+            raise Failure(name_flags(str(error), max_edge="--max-side")) from error
+    write_outputs(refined, planned, console)
+    shapes = quality(refined)
+    written = [str(one.path) for one in planned]
+    console.summarise(
+        [
+            ("Read", mesh_counts(tin)),
+            ("Mesh", mesh_counts(refined)),
+            *_angles(quality(tin), shapes, refined.report.unmended),
+            ("Written", written_text(planned)),
+            ("Time", f"{perf_counter() - started:.2f} s"),
+        ]
+    )
+    if console.as_json:
+        console.emit(plain(_facts(file, refined, shapes, written)))
+
+
+def _require_lengths(tin: TIN, file: Path) -> None:
+    from ...io.reprojection.transformation import is_geographic
+
+    if is_geographic(tin.crs):
+        raise Failure(
+            f"'{file}' is in degrees, where angles and areas are not those on the ground: build "
+            "the TIN in a projected CRS, such as EPSG:32616."
+        )
+
+
+def _angles(given: Quality, refined: Quality, unmended: Unmended) -> list[Field]:
+    before, after = given.min_angle, refined.min_angle
+    fields = [("Angles", f"from {after.min():.1f}° on, before from {before.min():.1f}°")]
+    return fields + [("", sentence) for sentence in unmended.sentences()]
+
+
+def _facts(file: Path, refined: TIN, shapes: Quality, outputs: list[str]) -> dict[str, Any]:
+    from ..output.summaries import tin_facts
+
+    return {
+        "input": str(file),
+        "tin": tin_facts(refined) | {"quality": shapes.summary()},
+        "report": refined.report.to_dict(),
+        "outputs": outputs,
+    }

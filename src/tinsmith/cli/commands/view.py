@@ -1,0 +1,81 @@
+"""``tinsmith view``: a picture or a window in 3D."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+
+from ..options import console_options, input_file, reading_options, triangulating_options
+from ..output.failures import note_written
+from ..paths import OUTPUT, title_of
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from ..options import Reading, Triangulating
+    from ..output.console import Console, Field
+
+__all__ = ["view"]
+
+
+@click.command(short_help="Show a TIN in 3D, in a window or as a picture.")
+@input_file("file")
+@click.option(
+    "-o",
+    "--output",
+    metavar="FILE",
+    type=OUTPUT,
+    help="Picture to write (.png, .jpg, .tif) instead of opening a window.",
+)
+@click.option(
+    "--exaggeration", metavar="FACTOR", type=float, help="Vertical exaggeration; chosen if absent."
+)
+@click.option("--edges", is_flag=True, help="Draw the edges of the triangles.")
+@click.option(
+    "--lines/--no-lines", default=True, show_default=True, help="Draw breaklines and rims."
+)
+@click.option("--top", is_flag=True, help="Look straight down, north up.")
+@click.option("--title", metavar="TEXT", help="Title in the picture; default the file's name.")
+@reading_options
+@triangulating_options
+@console_options
+def view(
+    file: Path,
+    output: Path | None,
+    reading: Reading,
+    how: Triangulating,
+    console: Console,
+    **drawing: object,
+) -> None:
+    """Show the TIN in FILE, or of the points in it.
+
+    \b
+    Example:
+      tinsmith view sample_data/site_survey.csv --crs EPSG:32616 --codes -o site.png
+    """  # noqa: D301 - click reads the control character
+    from ...terrain import preview
+    from ...terrain.preview.picture import PICTURE_SUFFIXES
+    from ..files import inputs_of, read_tin, require_picture
+
+    if output is not None:
+        require_picture(
+            output, place="--output", inputs=inputs_of(file, how), suffixes=PICTURE_SUFFIXES
+        )
+
+    tin, _ = read_tin(file, reading, how, console)
+    top = drawing.pop("top")
+    drawing["title"] = drawing["title"] or title_of(file)
+    with console.steps() as steps, steps.step("Drawing"):
+        preview(tin, output=output, view="top" if top else "oblique", **drawing)  # type: ignore[arg-type]
+    if output is not None:
+        note_written(output)
+        console.summarise(_fields(output))
+        if console.as_json:
+            console.answer([], {"input": str(file), "output": str(output)})
+
+
+def _fields(output: Path) -> list[Field]:
+    from ..output.summaries import file_size
+
+    return [("Written", f"{output} ({file_size(output)})")]

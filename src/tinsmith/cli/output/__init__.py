@@ -1,0 +1,1 @@
+"""What a command says: results, summaries, progress, failures."""

@@ -1,0 +1,123 @@
+"""The console: summaries for people on stderr, results on stdout."""
+
+from __future__ import annotations
+
+import json
+import math
+import shutil
+import sys
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ..flags import name_flags
+from .failures import Failure, note_answer
+from .progress import Steps
+from .streams import escape_unprintable, silence, tell
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+    from pathlib import Path
+
+__all__ = ["Console", "Field", "emit_file", "plain"]
+
+Field = tuple[str, str]
+"""A label and what it says; further lines stand under the first."""
+
+_LABEL_WIDTH = 11
+
+
+@dataclass(frozen=True)
+class Console:
+    """How a command speaks.
+
+    Attributes
+    ----------
+    quiet : bool
+        Leave out summary and progress; errors and results are still written.
+    as_json : bool
+        Write the result as JSON on stdout instead of for people.
+    """
+
+    quiet: bool = False
+    as_json: bool = False
+
+    def steps(self) -> Steps:
+        """Return the context in which long work shows its progress."""
+        return Steps(quiet=self.quiet)
+
+    def summarise(self, fields: Iterable[Field]) -> None:
+        """Write a summary to stderr."""
+        if not self.quiet:
+            tell(_lines(fields))
+
+    def answer(self, fields: Iterable[Field], facts: Mapping[str, Any]) -> None:
+        """Write the result to stdout: fields for people, or facts as JSON."""
+        self.emit(plain(facts) if self.as_json else _lines(fields))
+
+    def emit(self, text: str) -> None:
+        """Write to stdout, to the last byte.
+
+        Raises
+        ------
+        Failure
+            If it cannot be written, for example to a full disk.
+        """
+        if sys.stdout is None:
+            raise Failure("Cannot write to standard output: it is closed.")
+        note_answer()
+        try:
+            click.echo(text)
+            sys.stdout.flush()
+        except BrokenPipeError:
+            raise
+        except OSError as error:
+            silence(sys.stdout)
+            raise Failure(f"Cannot write to standard output: {error.strerror}.") from error
+
+
+def emit_file(path: Path) -> None:
+    """Copy a file to stdout, to the last byte.
+
+    Raises
+    ------
+    Failure
+        As :meth:`Console.emit`.
+    """
+    if sys.stdout is None:
+        raise Failure("Cannot write to standard output: it is closed.")
+    try:
+        with path.open("rb") as file:
+            shutil.copyfileobj(file, sys.stdout.buffer)
+        sys.stdout.buffer.flush()
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        silence(sys.stdout)
+        raise Failure(f"Cannot write to standard output: {error.strerror}.") from error
+
+
+def _lines(fields: Iterable[Field]) -> str:
+    indent = "\n" + " " * (_LABEL_WIDTH + 1)
+    return "\n".join(
+        click.style(f"{label:<{_LABEL_WIDTH}}", bold=True)
+        + " "
+        + indent.join(map(escape_unprintable, name_flags(text).split("\n")))
+        for label, text in fields
+    )
+
+
+def plain(facts: Mapping[str, Any]) -> str:
+    """Return facts as strict JSON: a number that is not finite becomes null."""
+    return json.dumps(_finite(facts), indent=2, allow_nan=False)
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _finite(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(item) for item in value]
+    if hasattr(value, "item"):  # a number of numpy
+        value = value.item()
+    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -1,0 +1,155 @@
+"""Failures as sentences: whatever goes wrong, the user reads one line and no traceback.
+
+Exit codes: 1 the data cannot do it, 2 wrong usage, 128 + n ended by signal n (130 is Ctrl-C). With
+``--json`` the sentence is on stdout too, as an object.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import sys
+import warnings
+from contextlib import contextmanager
+from typing import IO, TYPE_CHECKING, Any
+
+import click
+
+from ..flags import name_flags
+from .streams import Terminated, escape_unprintable, silence, tell
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+    from pathlib import Path
+
+__all__ = ["Failure", "failures_as_sentences", "note_answer", "note_written", "show_failure"]
+
+DEBUG = "TINSMITH_DEBUG"
+"""Environment variable that, when set, lets every traceback through."""
+
+_WRITTEN = "tinsmith.written"
+_ANSWERED = "tinsmith.answered"
+
+
+class Failure(click.ClickException):
+    """A sentence on stderr and exit code 1."""
+
+    label = "Error: "
+    translated = ""
+    """The sentence with flags in place of the library's names of options."""
+
+    def format_message(self) -> str:
+        """Return the sentence, on one line."""
+        return escape_unprintable(self.translated or self.message)
+
+    def show(self, file: IO[Any] | None = None) -> None:
+        """Write the sentence to stderr, or to ``file``."""
+        label = click.style(self.label, fg="red", bold=True) if self.label else ""
+        text = f"{label}{self.format_message()}"
+        if file is None:
+            tell(text)
+        else:
+            click.echo(text, file=file)
+
+
+class Interruption(Failure):
+    """A signal ended the program; the exit code is 128 + its number, as shells count."""
+
+    label = ""
+
+    def __init__(self, message: str, number: int) -> None:
+        super().__init__(message)
+        setattr(self, "exit_code", 128 + number)  # noqa: B010 - click has it as a constant
+
+
+def note_written(path: Path) -> None:
+    """Remember that a file is complete, for the case that the user interrupts what follows."""
+    click.get_current_context().find_root().meta.setdefault(_WRITTEN, []).append(str(path))
+
+
+def note_answer() -> None:
+    """Remember that the result is on stdout, so that no second object follows it."""
+    context = click.get_current_context(silent=True)
+    if context is not None:
+        context.find_root().meta[_ANSWERED] = True
+
+
+def show_failure(error: click.ClickException, arguments: Sequence[str]) -> int:
+    """Tell a failure on stderr, and on stdout if JSON is wanted there; return the exit code."""
+    try:
+        error.show()
+    except OSError:
+        silence(sys.stderr)
+    if _wants_json(arguments) and not getattr(error, "is_answered", False):
+        facts = {"error": error.format_message(), "exit_code": error.exit_code}
+        try:
+            click.echo(json.dumps(facts, indent=2))
+            if sys.stdout is not None:
+                sys.stdout.flush()
+        except OSError:
+            silence(sys.stdout)
+    return error.exit_code
+
+
+def _wants_json(arguments: Sequence[str]) -> bool:
+    """Whether ``--json`` is among the options, also if these could not be understood."""
+    options = arguments[: arguments.index("--")] if "--" in arguments else arguments
+    return "--json" in options
+
+
+@contextmanager
+def failures_as_sentences(ctx: click.Context) -> Iterator[None]:
+    """Turn exceptions into :class:`Failure`, and warnings into one line each."""
+    if os.environ.get(DEBUG):
+        yield
+        return
+    with warnings.catch_warnings():
+        warnings.showwarning = _show_warning
+        try:
+            yield
+        except click.ClickException as error:
+            raise _marked(error, ctx) from error.__cause__
+        except (click.exceptions.Exit, click.Abort, BrokenPipeError):
+            raise
+        except KeyboardInterrupt:
+            raise _marked(_interruption(ctx, signal.SIGINT), ctx) from None
+        except Terminated as ended:
+            raise _marked(_interruption(ctx, ended.number), ctx) from None
+        except Exception as error:
+            raise _marked(_failure(error), ctx) from error
+
+
+def _marked(error: click.ClickException, ctx: click.Context) -> click.ClickException:
+    """Return the error in the words of this command, and whether the result is on stdout."""
+    if isinstance(error, Failure):
+        error.translated = name_flags(error.message)
+    error.is_answered = _ANSWERED in ctx.find_root().meta  # type: ignore[attr-defined]
+    return error
+
+
+def _interruption(ctx: click.Context, number: int) -> Interruption:
+    written = ctx.find_root().meta.get(_WRITTEN, [])
+    outcome = f"already written: {', '.join(written)}" if written else "nothing was written"
+    return Interruption(f"Interrupted; {outcome}.", number)
+
+
+def _failure(error: Exception) -> Failure:
+    from ...errors import TinsmithError
+
+    if isinstance(error, TinsmithError):
+        return Failure(str(error))
+    if isinstance(error, MemoryError):
+        return Failure("There is not enough memory for so many points.")
+    if isinstance(error, OSError) and error.strerror:
+        where = f" '{error.filename}'" if error.filename else ""
+        return Failure(f"The system refuses{where}: {error.strerror}.")
+    what = " ".join(f"{type(error).__name__}: {error}".split())
+    return Failure(
+        f"A bug in tinsmith: {what} (set {DEBUG}=1 to see the traceback, and please report it)."
+    )
+
+
+def _show_warning(message: Warning | str, *_: object, **__: object) -> None:
+    label = click.style("Warning: ", fg="yellow", bold=True)
+    tell(f"{label}{escape_unprintable(name_flags(' '.join(str(message).split())))}")

@@ -1,0 +1,318 @@
+"""Facts about points and TINs: as plain values for JSON, and as fields for people."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import asdict, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..._sentences import counted
+from ...crs import assume_elevation_unit
+from ...io.reprojection.transformation import is_geographic, length_unit
+from ...terrain import slope
+from ...terrain.slope import areas
+from ...tin import TIN, Bounds, Survey, quality
+from .line_summaries import (
+    constrained_edges,
+    elevation_symbol,
+    given_lines,
+    given_lines_text,
+    tin_counts,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from ...crs import CRS
+    from ...tin import Merge, Quality, Report
+    from .console import Field
+
+__all__ = [
+    "crs_field",
+    "extent_fields",
+    "file_size",
+    "merge_field",
+    "quality_fields",
+    "quality_of",
+    "reading_fields",
+    "report_facts",
+    "survey_facts",
+    "survey_fields",
+    "tin_facts",
+    "tin_fields",
+    "unit_note",
+    "units",
+]
+
+_EXPECTED = "header lines"
+"""What every file may have, and nobody needs to be told of."""
+
+
+def survey_facts(survey: Survey) -> dict[str, Any]:
+    """Describe points as plain values."""
+    return {
+        "kind": "points",
+        "points": len(survey),
+        **_place_facts(survey),
+        "attributes": list(survey.attributes),
+        **given_lines(survey),
+        "skipped": dict(survey.skipped),
+        "skipped_lines": {what: list(rows) for what, rows in survey.skipped_lines.items()},
+        "notes": list(survey.notes),
+    }
+
+
+def tin_facts(tin: TIN) -> dict[str, Any]:
+    """Describe a TIN as plain values; areas are None in degrees."""
+    return {
+        "kind": "tin",
+        "vertices": len(tin.points),
+        "triangles": len(tin.triangles),
+        "edges": len(tin.edges),
+        "hull_vertices": len(tin.hull),
+        "rings": len(tin.rings),
+        "constrained_edges": constrained_edges(tin),
+        "lines": {kind: tin.lines.kinds.count(kind) for kind in sorted(set(tin.lines.kinds))},
+        **_place_facts(tin),
+        **_ground_facts(tin),
+        "notes": list(tin.report.notes),
+    }
+
+
+def quality_of(tin: TIN) -> Quality | None:
+    """Measure the triangles in the plane; None in degrees, where angles are not those on earth."""
+    return None if is_geographic(tin.crs) else quality(tin)
+
+
+def report_facts(report: Report, survey: Survey, gaps: Sequence[str] = ()) -> dict[str, Any]:
+    """Return the report, with the gaps found, and the point numbers of merged rows."""
+    facts = report.to_dict()
+    facts["notes"] += gaps
+    facts["skipped_lines"] = {what: list(rows) for what, rows in survey.skipped_lines.items()}
+    numbers = survey.attributes.get("number")
+    if numbers is not None:
+        for merge in facts["merges"]:
+            merge["numbers"] = [_plain(numbers[row]) for row in merge["rows"]]
+    return facts
+
+
+def _plain(value: Any) -> Any:
+    return value.item() if isinstance(value, np.generic) else value
+
+
+def _place_facts(found: Survey | TIN) -> dict[str, Any]:
+    z, crs = found.points[:, 2], found.crs
+    return {
+        "bounds": asdict(Bounds.of(found.points)),
+        "elevation": {
+            "min": float(z.min()),
+            "max": float(z.max()),
+            "mean": float(z.mean()),
+            "unit_assumed": _assumed_unit(found),
+        },
+        "crs": None if crs is None else str(crs),
+        "crs_name": None if crs is None else crs.name,
+        "units": _unit_names(found),
+    }
+
+
+def _unit_names(found: Survey | TIN) -> dict[str, str]:
+    return {
+        "horizontal": "unknown" if found.crs is None else found.crs.horizontal_unit.name,
+        "vertical": "unknown" if found.elevation_unit is None else found.elevation_unit.name,
+    }
+
+
+def _assumed_unit(found: Survey | TIN) -> str | None:
+    """Name what elevations are taken to be measured in where that is not known."""
+    usual = assume_elevation_unit(found.crs, None)
+    return usual.name if found.elevation_unit is None and usual is not None else None
+
+
+def _ground_facts(tin: TIN) -> dict[str, Any]:
+    degrees, in_degrees = slope(tin), is_geographic(tin.crs)
+    return {
+        "area": None if in_degrees else tin.area,
+        "surface_area": None if in_degrees else tin.surface_area,
+        "slope": {
+            "min": float(degrees.min()),
+            "mean": float(np.average(degrees, weights=areas(tin))),
+            "max": float(degrees.max()),
+        },
+    }
+
+
+# ---------------------------------------------------------------- for people
+
+
+def units(found: Survey | TIN) -> tuple[str, str]:
+    """Return the symbols behind horizontal and vertical numbers, with the space before them."""
+    across = length_unit(found.crs).symbol
+    return across if across == "°" else f" {across}", elevation_symbol(found)
+
+
+def unit_note(found: Survey | TIN) -> str:
+    """Say what the unit of elevations is taken to be where it is not known; else nothing."""
+    if found.elevation_unit is not None:
+        return ""
+    usual = assume_elevation_unit(found.crs, None)
+    if usual is None or found.crs is None:
+        return "unit not known"
+    return f"unit not known, taken to be {usual.name}, the usual one in {found.crs.label}"
+
+
+def survey_fields(survey: Survey) -> list[Field]:
+    """Describe points."""
+    fields = [("Points", f"{len(survey):,}"), *reading_fields(survey)]
+    if survey.attributes:
+        fields.append(("Columns", ", ".join(survey.attributes)))
+    if survey.has_lines:
+        fields.append(("Lines", given_lines_text(survey)))
+    return [*fields, *extent_fields(survey), crs_field(survey.crs)]
+
+
+def tin_fields(tin: TIN) -> list[Field]:
+    """Describe a TIN."""
+    facts = _ground_facts(tin)
+    across, _ = units(tin)
+    fields = [
+        ("TIN", tin_counts(tin)),
+        ("Edges", f"{len(tin.edges):,}, {len(tin.hull):,} of them on the hull"),
+        *extent_fields(tin),
+    ]
+    if facts["area"] is not None:
+        fields += [
+            ("Area", f"{facts['area']:,.1f}{across}² in the plane"),
+            ("", f"{facts['surface_area']:,.1f}{across}² in space"),
+        ]
+    low, mean, high = (facts["slope"][name] for name in ("min", "mean", "max"))
+    fields.append(("Slope", f"{low:.1f}° to {high:.1f}°, mean {mean:.1f}°"))
+    return [*fields, crs_field(tin.crs), *reading_fields(tin)]
+
+
+def quality_fields(shapes: Quality | None) -> list[Field]:
+    """Describe the shapes of triangles in two lines; in none if they were not measured."""
+    if shapes is None:
+        return []
+    found = shapes.summary()
+    smallest, aspect = found["min_angle"], found["aspect_ratio"]
+    below = 100 * found["shares"]["min_angle_below"]["20"]
+    return [
+        (
+            "Quality",
+            f"smallest angle: median {smallest['median']:.1f}°, worst {smallest['min']:.2g}°, "
+            f"below 20° in {below:.1f} % of triangles",
+        ),
+        ("", f"aspect ratio: median {aspect['median']:.2f}, worst {_ratio(aspect['max'])}"),
+    ]
+
+
+def _ratio(value: float) -> str:
+    return f"{value:,.0f}" if 100 <= value < 1e9 else f"{value:.3g}"
+
+
+def extent_fields(found: Survey | TIN) -> list[Field]:
+    """Describe where points lie, and how high."""
+    across, up = units(found)
+    in_degrees = is_geographic(found.crs)
+    digits = 7 if in_degrees else 3
+    box = Bounds.of(found.points)
+    low, high = found.points[:, 2].min(), found.points[:, 2].max()
+    east, north = ("longitude", "latitude") if in_degrees else ("easting", "northing")
+    note = unit_note(found)
+    return [
+        ("Extent", f"{box.width:,.{digits}f}{across} x {box.height:,.{digits}f}{across}"),
+        ("", f"{east} {box.xmin:.{digits}f} to {box.xmax:.{digits}f}"),
+        ("", f"{north} {box.ymin:.{digits}f} to {box.ymax:.{digits}f}"),
+        ("Elevation", f"{low:,.3f} to {high:,.3f}{up}{f' ({note})' if note else ''}"),
+    ]
+
+
+def crs_field(crs: CRS | None) -> Field:
+    """Name the CRS."""
+    if crs is None:
+        return ("CRS", "unknown (name it with --crs)")
+    return ("CRS", crs.name if crs.label == crs.name else f"{crs}, {crs.name}")
+
+
+def reading_fields(found: Survey | TIN) -> list[Field]:
+    """Say what the reader left out, what it assumed and what it found odd, if anything."""
+    if not isinstance(found, Survey):
+        return [("Note", note) for note in found.report.notes]
+    skipped = [
+        counted(number, _singular(what), what)
+        for what, number in found.skipped.items()
+        if what != _EXPECTED
+    ]
+    fields = [("Skipped", ", ".join(skipped))] if skipped else []
+    return [*fields, *(("Note", note) for note in found.notes)]
+
+
+def _singular(what: str) -> str:
+    """Return what was skipped as one thing: "nodata cells", "rows without an elevation"."""
+    return re.sub(r"\b(cell|row|line|point)s\b", r"\1", what, count=1)
+
+
+def merge_field(report: Report, survey: Survey) -> list[Field]:
+    """Say how many rows were merged and where their elevations differ most."""
+    surplus = len(report.merged_rows) - len(report.merged_vertices)
+    if surplus == 0:
+        return []
+    text = f"{counted(surplus, 'row')} at {counted(len(report.merged_vertices), 'place')}"
+    starts = report.merged_offsets[:-1]
+    spread = np.maximum.reduceat(report.merged_heights, starts) - np.minimum.reduceat(
+        report.merged_heights, starts
+    )
+    worst = int(spread.argmax())
+    if spread[worst] == 0:
+        return [("Merged", f"{text}, with equal elevations")]
+    merge = next(_merges_from(report, worst))
+    up = elevation_symbol(survey)
+    differing = int(np.count_nonzero(spread))
+    return [
+        ("Merged", f"{text}, elevation by '{report.duplicates}'"),
+        (
+            "",
+            f"elevations differ at {counted(differing, 'place')}, most by {spread[worst]:.3f}{up}: "
+            f"{_rows_text(merge, survey)}",
+        ),
+    ]
+
+
+def _merges_from(report: Report, index: int) -> Any:
+    """Walk the merges from the one at ``index``."""
+    begin = report.merged_offsets[index]
+    return replace(
+        report,
+        merged_vertices=report.merged_vertices[index:],
+        merged_offsets=report.merged_offsets[index:] - begin,
+        merged_rows=report.merged_rows[begin:],
+        merged_heights=report.merged_heights[begin:],
+        merged_shifts=report.merged_shifts[begin:],
+        vertex_heights=report.vertex_heights[index:],
+    ).merges()
+
+
+def _rows_text(merge: Merge, survey: Survey) -> str:
+    """Name the rows of a merge, by point number where there is one, with their elevations."""
+    numbers = survey.attributes.get("number")
+    names = merge.rows if numbers is None else [numbers[row] for row in merge.rows]
+    shown = ", ".join(
+        f"{name} ({height:.3f})"
+        for name, height in list(zip(names, merge.heights, strict=True))[:4]
+    )
+    more = "" if len(merge.rows) <= 4 else " ..."
+    return f"{'rows' if numbers is None else 'points'} {shown}{more}"
+
+
+def file_size(path: Path) -> str:
+    """Return the size of a file for people."""
+    size = float(path.stat().st_size)
+    for unit in ("bytes", "kB", "MB"):
+        if size < 1000:
+            return f"{size:.0f} {unit}" if unit == "bytes" or size >= 100 else f"{size:.1f} {unit}"
+        size /= 1000
+    return f"{size:.1f} GB"

@@ -1,0 +1,1 @@
+"""Charts: distributions and comparisons as flat pictures."""

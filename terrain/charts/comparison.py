@@ -1,0 +1,146 @@
+"""Picture of a comparison: what each algorithm made of the same points, faults marked."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ... import _optional as extras
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...tin.paper.comparison import Comparison, Outcome
+
+__all__ = ["comparison_picture"]
+
+_PURPOSE = "A picture of a comparison"
+_INK = "#333333"
+_EDGE = "#5b6670"
+_SOUND = "#ffffff"
+_GAP = "#c9d1d8"
+_VIOLATING = "#f2b134"
+_OVERLAPPING = "#c8371b"
+_UNEXTENDED = "#1f5fbf"
+_VEIL = 0.22
+"""Opacity of an overlapping triangle: the more of them, the darker."""
+
+_PADDING = 0.14  # inches above and below titles
+_COLUMNS = 3
+
+_WIDTH = 17.0
+"""Of the picture, inches."""
+
+_CROWD = 300
+"""Points above which they are not drawn and edges are thin."""
+
+
+def comparison_picture(comparison: Comparison, *, title: str | None = None) -> Any:
+    """Draw the triangles of every algorithm side by side, faults marked.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        Of :func:`tinsmith.tin.compare`.
+    title : str, optional
+        Default the number of points.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Drawn without a screen; ``savefig`` writes it.
+
+    Raises
+    ------
+    MissingExtraError
+        If matplotlib is not installed.
+
+    Examples
+    --------
+    >>> from tinsmith.tin import compare
+    >>> found = compare([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8], [2, 1, 9]])
+    >>> len(comparison_picture(found).axes)
+    5
+    """
+    xy = comparison.points[:, :2] - comparison.points[:, :2].min(axis=0)
+    width, height = xy.max(axis=0)
+    panel = _WIDTH / _COLUMNS * min(max(height / width, 0.3), 1.5)
+    size = (_WIDTH, 2 * panel + 2.0)
+    figure = extras.matplotlib(_PURPOSE).Figure(figsize=size, layout="constrained")
+    figure.get_layout_engine().set(h_pad=_PADDING)
+    heading = " ".join((title or f"{len(xy):,} points").split())
+    figure.suptitle(heading, fontsize=15, color=_INK, parse_math=False)
+    *grid, last = figure.subplots(2, _COLUMNS).ravel()
+    last.remove()
+    for axes, outcome in zip(grid, comparison.outcomes, strict=True):
+        _draw(axes, xy, comparison.hull, outcome)
+        axes.set_title(_caption(outcome, comparison.expected), fontsize=11, color=_INK)
+    _add_legend(figure)
+    return figure
+
+
+def _caption(outcome: Outcome, expected: int) -> str:
+    count = len(outcome.triangles)
+    stopped = ", stopped" if outcome.is_stopped else ""
+    first = f"{outcome.name}: {count:,} of {expected:,} triangles{stopped}"
+    violating, overlapping = int(outcome.violating.sum()), int(outcome.overlapping.sum())
+    return f"{first}\n{violating:,} with a point in the circle, {overlapping:,} overlapping"
+
+
+def _draw(axes: Any, xy: NDArray[np.float64], hull: NDArray[np.int32], outcome: Outcome) -> None:
+    is_crowded = len(xy) > _CROWD
+    line = 0.35 if is_crowded else 0.8
+    axes.fill(*xy[hull].T, facecolor=_GAP, edgecolor=_INK, linewidth=line, zorder=1)
+    for chosen, color, alpha in (
+        (~outcome.violating, _SOUND, 1.0),
+        (outcome.violating, _VIOLATING, 1.0),
+        (outcome.overlapping, _OVERLAPPING, _VEIL),
+    ):
+        corners = xy[outcome.triangles[chosen]]
+        axes.add_collection(
+            _collections().PolyCollection(corners, facecolors=color, alpha=alpha, linewidths=0)
+        )
+    axes.add_collection(_lines(xy, _edges(outcome.triangles), _EDGE, line))
+    axes.add_collection(_lines(xy, outcome.unextended, _UNEXTENDED, 3 * line))
+    if not is_crowded:
+        axes.plot(*xy.T, ".", color=_INK, markersize=4, zorder=4)
+    axes.set_aspect("equal")
+    axes.margins(0.03)
+    axes.set_axis_off()
+
+
+def _edges(triangles: NDArray[np.int32]) -> NDArray[np.int32]:
+    """Return every edge once, (k, 2) array."""
+    both = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+    return np.unique(np.sort(both, axis=1), axis=0)
+
+
+def _lines(xy: NDArray[np.float64], edges: NDArray[np.int32], color: str, width: float) -> Any:
+    return _collections().LineCollection(xy[edges], colors=color, linewidths=width, zorder=3)
+
+
+def _collections() -> Any:
+    from matplotlib import collections
+
+    return collections
+
+
+def _add_legend(figure: Any) -> None:
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    edge: dict[str, Any] = {"edgecolor": _EDGE, "linewidth": 0.8}
+    figure.legend(
+        handles=[
+            Patch(facecolor=_SOUND, label="empty circle", **edge),
+            Patch(facecolor=_VIOLATING, label="point in the circle", **edge),
+            Patch(facecolor=_OVERLAPPING, alpha=2 * _VEIL, label="overlapping", **edge),
+            Patch(facecolor=_GAP, label="not covered", **edge),
+            Line2D([], [], color=_UNEXTENDED, linewidth=2.4, label="edge not extended"),
+        ],
+        loc="outside lower center",
+        ncols=5,
+        frameon=False,
+        fontsize=11,
+    )

@@ -1,0 +1,196 @@
+"""Histogram: how the shapes of a TIN's triangles are spread, as a picture."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ... import _optional as extras
+from ..rounding import ticks
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...tin import Quality
+
+__all__ = ["histogram"]
+
+_PURPOSE = "A histogram"
+_SIZE = (11.0, 7.0)
+"""Of the picture, inches."""
+
+_BARS = 60
+_BAR = "#5f8f6b"
+_INK = "#333333"
+_MEDIAN = "#b3472d"
+_TAIL = 0.002
+"""Share of values at each end that may lie outside a panel without ends of its own."""
+
+_LEAST_SPAN = 1.5
+"""Highest over lowest value of a logarithmic axis, at least."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Panel:
+    """One measure: its values, what it is called, the unit behind numbers, and its axis."""
+
+    title: str
+    values: NDArray[np.float64]
+    unit: str
+    edges: NDArray[np.float64]
+    note: str
+    is_log: bool = False
+
+
+def histogram(quality: Quality, *, title: str | None = None, unit: str = "") -> Any:
+    """Draw histograms of smallest and largest angle, aspect ratio and edge length.
+
+    Parameters
+    ----------
+    quality : Quality
+        Of :func:`tinsmith.tin.quality`.
+    title : str, optional
+        Default "Triangle quality".
+    unit : str, optional
+        Symbol of the unit of lengths, for example "m".
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Drawn without a screen; ``savefig`` writes it.
+
+    Raises
+    ------
+    MissingExtraError
+        If matplotlib is not installed.
+
+    Notes
+    -----
+    Bars are shares of all triangles. Aspect ratios and lengths stand on logarithmic axes, which
+    leave out at most 0.2 percent of the values at either end, as the panel then says. An edge
+    between two triangles counts for both.
+
+    Examples
+    --------
+    >>> from tinsmith import TIN
+    >>> from tinsmith.tin import quality
+    >>> tin = TIN.from_triangles([[0, 0, 0], [4, 0, 0], [0, 3, 0]], [[0, 1, 2]])
+    >>> len(histogram(quality(tin), unit="m").axes)
+    4
+    """
+    figure = extras.matplotlib(_PURPOSE).Figure(figsize=_SIZE, layout="constrained")
+    heading = " ".join((title or "Triangle quality").split())
+    figure.suptitle(heading, fontsize=15, color=_INK, parse_math=False)
+    where = "in space" if quality.space else "in the plane"
+    figure.supxlabel(f"{len(quality):,} triangles, measured {where}", fontsize=10, color=_INK)
+    grid = figure.subplots(2, 2)
+    for axes, panel in zip(grid.ravel(), _panels(quality, unit), strict=True):
+        _draw(axes, panel)
+    return figure
+
+
+def _panels(quality: Quality, unit: str) -> list[_Panel]:
+    small, large = quality.min_angle, quality.max_angle
+    lengths = quality.edge_lengths.ravel()
+    return [
+        _angle_panel("Smallest angle", small, (0, 60), _share(small < 20, "below 20°")),
+        _angle_panel("Largest angle", large, (60, 180), _share(large > 120, "above 120°")),
+        _log_panel("Aspect ratio", quality.aspect_ratio, "", low=1.0),
+        _log_panel("Edge length", lengths, f" {unit}" if unit else ""),
+    ]
+
+
+def _angle_panel(
+    title: str, values: NDArray[np.float64], span: tuple[float, float], note: str
+) -> _Panel:
+    edges = np.linspace(*span, _BARS + 1)
+    return _Panel(title, np.clip(values, *span), "°", edges, note)
+
+
+def _log_panel(
+    title: str, values: NDArray[np.float64], unit: str, *, low: float | None = None
+) -> _Panel:
+    """Return a panel whose bars are equally wide on a logarithmic axis."""
+    finite = values[np.isfinite(values)]
+    tails = (
+        np.quantile(finite, [_TAIL, 1 - _TAIL], method="inverted_cdf") if len(finite) else [1, 1]
+    )
+    first = float(tails[0]) if low is None else low
+    last = max(float(tails[1]), _LEAST_SPAN * first)
+    values = values if low is None else np.maximum(values, low)
+    edges = np.geomspace(first, last, _BARS + 1)
+    # Logarithm and power round: the ends must hold the values that they are.
+    edges[0], edges[-1] = first, last
+    outside = np.mean((values < edges[0]) | (values > edges[-1]))
+    note = f"{100 * outside:.2f} % off the axis" if outside else ""
+    return _Panel(title, values, unit, edges, note, is_log=True)
+
+
+def _share(chosen: NDArray[np.bool_], what: str) -> str:
+    return f"{100 * np.mean(chosen):.1f} % {what}"
+
+
+# ---------------------------------------------------------------- drawing
+
+
+def _draw(axes: Any, panel: _Panel) -> None:
+    counts, edges = np.histogram(panel.values, panel.edges)
+    axes.stairs(100 * counts / len(panel.values), edges, fill=True, color=_BAR)
+    axes.set_title(panel.title, loc="left", fontsize=12, color=_INK)
+    low, high = _number(panel.values.min()), _number(panel.values.max())
+    spread = f"{low} to {high}{panel.unit}" + (f", {panel.note}" if panel.note else "")
+    axes.set_title(spread, loc="right", fontsize=9, color=_INK)
+    _dress(axes, panel)
+    _mark_median(axes, panel)
+
+
+def _mark_median(axes: Any, panel: _Panel) -> None:
+    middle = float(np.quantile(panel.values, 0.5, method="inverted_cdf"))
+    if not np.isfinite(middle):
+        return
+    axes.axvline(middle, color=_MEDIAN, linewidth=1.5)
+    is_left = np.searchsorted(panel.edges, middle) < len(panel.edges) / 2
+    axes.annotate(
+        f"median {_number(middle)}{panel.unit}",
+        (middle, 1.0),
+        xycoords=("data", "axes fraction"),
+        xytext=(5 if is_left else -5, -10),
+        textcoords="offset points",
+        ha="left" if is_left else "right",
+        color=_MEDIAN,
+        fontsize=9,
+    )
+
+
+def _dress(axes: Any, panel: _Panel) -> None:
+    low, high = panel.edges[0], panel.edges[-1]
+    places = ticks(low, high, count=6)
+    if panel.is_log:
+        axes.set_xscale("log")
+        places = _log_ticks(low, high) or places
+        axes.minorticks_off()
+    axes.set_xticks(places, [f"{place:g}{panel.unit}" for place in places])
+    axes.set_xlim(low, high)
+    axes.set_ylim(0, 1.14 * (axes.dataLim.ymax or 1.0))
+    axes.set_ylabel("share, %", color=_INK)
+    axes.grid(axis="y", color="#dddddd", linewidth=0.6)
+    axes.set_axisbelow(True)
+    axes.tick_params(colors=_INK)
+    axes.spines[["top", "right"]].set_visible(False)
+
+
+def _number(value: float) -> str:
+    return f"{value:,.0f}" if 1000 <= value < 1e9 else f"{value:.3g}"
+
+
+def _log_ticks(low: float, high: float) -> list[float]:
+    """Return 1, 2, 5 times powers of ten within [low, high], or powers alone; none if too few."""
+    powers = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
+    leads = (1, 2, 5) if len(powers) <= 4 else (1,)
+    step = 1 + len(powers) // 10
+    places = [float(lead * 10.0**power) for power in powers[::step] for lead in leads]
+    within = [place for place in places if low <= place <= high]
+    return within if len(within) >= 3 else []

@@ -1,0 +1,185 @@
+"""Scene: the surface with its tints, the block it stands on, and the light from northwest."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ... import _optional as extras
+from ..lift import default_origin
+from .tints import tints
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...tin import TIN
+    from ..units import Ground
+
+__all__ = ["add_lights", "add_terrain", "choose_exaggeration", "fade_edges", "scene_points"]
+
+_PURPOSE = "A preview"
+
+RELIEF_SHARE = 0.1
+"""Least share of the extent that the relief takes in a picture; below, heights are exaggerated."""
+
+_EXAGGERATIONS = (1.0, 1.5, 2.0, 3.0, 5.0, 10.0, 15.0, 20.0, 30.0, 50.0, 100.0)
+
+_BLOCK_SHARE = 0.025
+"""Depth of the block below the lowest point, as a share of the extent."""
+
+_BLOCK_COLOR = (206, 203, 197)
+_BLOCK_AMBIENT = 0.72
+_EDGE_COLOR = (40, 46, 50)
+_EDGE_OPACITY = 0.42
+_FAINTEST_EDGE = 0.04
+_CLEAR_SIDE = 16.0
+"""Side of a triangle, in design pixels, from which its edges are drawn at full strength."""
+
+_AMBIENT = 0.36
+_LIGHTS = ((315.0, 45.0, 0.58), (225.0, 50.0, 0.10), (45.0, 50.0, 0.06), (0.0, 90.0, 0.10))
+"""Azimuth and height (degrees) and strength: the cartographer's sun, and a weak sky around it.
+Level ground is lit so that its tint is that of the legend."""
+
+
+def choose_exaggeration(tin: TIN, ground: Ground) -> float:
+    """Choose a round vertical exaggeration that shows the relief.
+
+    Parameters
+    ----------
+    tin : TIN
+    ground : Ground
+
+    Returns
+    -------
+    float
+        The smallest of 1, 1.5, 2, 3, 5, 10, 15, ... 100 that lifts the relief to a tenth of the
+        extent (and so to at most a fifth, if 1 is not enough); 1 for level ground.
+    """
+    spans = np.ptp(tin.points, axis=0) * ground.scale
+    extent, relief = max(spans[0], spans[1]), spans[2]
+    if relief == 0:
+        return 1.0
+    wanted = RELIEF_SHARE * extent / relief
+    return next((factor for factor in _EXAGGERATIONS if factor >= wanted), _EXAGGERATIONS[-1])
+
+
+def scene_points(tin: TIN, ground: Ground, exaggeration: float) -> NDArray[np.float64]:
+    """Return the vertices as drawn: true to scale on the ground, near the origin."""
+    east, north, height = ground.scale
+    return (tin.points - default_origin(tin)) * (east, north, height * exaggeration)
+
+
+def add_terrain(
+    plotter: Any, tin: TIN, points: NDArray[np.float64], *, edges: bool
+) -> tuple[Any, NDArray[np.float64]]:
+    """Add the surface and its block to a plotter.
+
+    Parameters
+    ----------
+    plotter : pyvista.Plotter
+    tin : TIN
+    points : (n, 3) float64 array
+        Its vertices as drawn.
+    edges : bool
+        Whether to draw the triangles' edges.
+
+    Returns
+    -------
+    actor : pyvista.Actor
+        The surface.
+    seen : (k, 3) float64 array
+        All points that must be in the picture.
+    """
+    pv = extras.pyvista(_PURPOSE)
+
+    surface = pv.PolyData.from_regular_faces(points, np.array(tin.triangles))
+    surface.point_data["elevation"] = tin.points[:, 2].copy()
+    surface.point_data.active_normals = _vertex_normals(points, tin.triangles)
+    actor = plotter.add_mesh(surface, **_tinting(pv, tin), **_lighting(), show_scalar_bar=False)
+    actor.prop.interpolation = "Phong"
+    block = _block(pv, tin, points)
+    plotter.add_mesh(block, color=_BLOCK_COLOR, culling="back", **_lighting(_BLOCK_AMBIENT))
+    if edges:
+        actor.prop.show_edges = True
+        actor.prop.edge_color = _EDGE_COLOR
+    return actor, np.vstack([points, block.points])
+
+
+def fade_edges(actor: Any, tin: TIN, ground: Ground, pixels: float) -> None:
+    """Draw the edges fainter where triangles are small, or they would hide the tints.
+
+    Parameters
+    ----------
+    actor : pyvista.Actor
+        The surface.
+    tin : TIN
+    ground : Ground
+    pixels : float
+        Design pixels for a length of 1 in the scene.
+    """
+    area = tin.area * ground.scale[0] * ground.scale[1] / len(tin.triangles)
+    side = math.sqrt(2 * area) * pixels
+    strength = min(side / _CLEAR_SIDE, 1.0)
+    actor.prop.edge_opacity = max(_EDGE_OPACITY * strength, _FAINTEST_EDGE)
+
+
+def add_lights(plotter: Any) -> None:
+    """Light the scene from northwest, 45 degrees high, wherever the camera stands."""
+    pv = extras.pyvista(_PURPOSE)
+
+    plotter.remove_all_lights()
+    for azimuth, height, strength in _LIGHTS:
+        turn, rise = math.radians(azimuth), math.radians(height)
+        flat = math.cos(rise)
+        sun = pv.Light(light_type="scene light", intensity=strength)
+        sun.position = (flat * math.sin(turn), flat * math.cos(turn), math.sin(rise))
+        sun.focal_point = (0.0, 0.0, 0.0)
+        plotter.add_light(sun)
+
+
+def _lighting(ambient: float = _AMBIENT) -> dict[str, float]:
+    diffuse = (1.0 - ambient) / (1.0 - _AMBIENT)
+    return {"ambient": ambient, "diffuse": diffuse, "specular": 0.0}
+
+
+def _tinting(pv: Any, tin: TIN) -> dict[str, Any]:
+    low, high = float(tin.points[:, 2].min()), float(tin.points[:, 2].max())
+    if low == high:
+        low, high = low - 0.5, high + 0.5
+    colors = np.column_stack([tints(), np.full(256, 255, np.uint8)])
+    return {"scalars": "elevation", "cmap": pv.LookupTable(values=colors, scalar_range=(low, high))}
+
+
+def _vertex_normals(
+    points: NDArray[np.float64], triangles: NDArray[np.int32]
+) -> NDArray[np.float32]:
+    """Average the unit normals of the triangles at each vertex, weighted by area in the plane.
+
+    So the steep slivers along a hull, which have hardly any area in the plane, do not darken
+    their neighbours.
+    """
+    first, second, third = (points[triangles[:, k]] for k in range(3))
+    faces = np.cross(second - first, third - first)
+    faces *= (faces[:, 2] / np.linalg.norm(faces, axis=1))[:, np.newaxis]
+    corners = triangles.ravel()
+    sums = [np.bincount(corners, np.repeat(part, 3), len(points)) for part in faces.T]
+    normals = np.column_stack(sums)
+    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+    return (normals / np.where(lengths > 0, lengths, 1.0)).astype(np.float32)
+
+
+def _block(pv: Any, tin: TIN, points: NDArray[np.float64]) -> Any:
+    """Return the walls from the boundary down to a level base."""
+    triangle, corner = np.nonzero(tin.neighbors < 0)
+    start = tin.triangles[triangle, (corner + 1) % 3]
+    stop = tin.triangles[triangle, (corner + 2) % 3]
+    extent = float(np.ptp(points[:, :2], axis=0).max())
+    base = points[:, 2].min() - _BLOCK_SHARE * extent
+    upper = np.concatenate([points[start], points[stop]])
+    lower = upper * (1.0, 1.0, 0.0) + (0.0, 0.0, base)
+    count = np.arange(len(start))
+    walls = np.column_stack([count, 2 * len(start) + count, 3 * len(start) + count])
+    walls = np.column_stack([walls, len(start) + count])
+    return pv.PolyData.from_regular_faces(np.concatenate([upper, lower]), walls)

@@ -1,0 +1,427 @@
+"""Benchmarks: every one runs at a tiny size and its answers hold; no timing is looked at."""
+
+from __future__ import annotations
+
+import json
+from fractions import Fraction
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from support import oracles
+
+import tinsmith as ts
+from benchmarks import edits, kernel, lines, locate, readers, writers
+from benchmarks.__main__ import main
+from benchmarks.answers import EQUAL, Verdict, ranked, verdict
+from benchmarks.cgal import CgalMissingError, build, harness
+from benchmarks.datasets import DATASETS, UTM_CORNER, dataset
+from benchmarks.edit_tasks import BATCH, EDIT_TASKS, INSERT_ALL, WHAT, edit_task
+from benchmarks.edit_tools import ALL_EDIT_TOOLS, BUILD, EDIT_TOOLS, OPENED, WITH_ARRAYS
+from benchmarks.goals import judged as goals_of
+from benchmarks.line_datasets import LINE_DATASETS, line_dataset
+from benchmarks.line_tools import ALL_LINE_TOOLS, CGAL_INDICES, LINE_TOOLS
+from benchmarks.measure import OURS, Outcome, Result, alternate, is_installed
+from benchmarks.tasks import read_task, write_task
+from benchmarks.tool_process import ToolFailedError, ToolProcess
+from benchmarks.triangulators import CGAL, KERNEL, TOOLS
+
+N = 2_000
+
+
+def distances(points):
+    """Distance of each place to its nearest other one."""
+    from scipy.spatial import KDTree
+
+    local = points[:, :2] - UTM_CORNER
+    return KDTree(local).query(local, k=2)[0][:, 1]
+
+
+# -------------------------------------------------------------------- data sets
+
+
+@pytest.mark.parametrize("name", DATASETS)
+def test_data_sets_are_large_distinct_and_repeatable(name):
+    points = dataset(name, N)
+    assert points.shape[1] == 3
+    assert 0.98 * N <= len(points) <= N
+    assert len(np.unique(points[:, :2], axis=0)) == len(points)
+    assert np.abs(points[:, 0] - 500_000).max() < 100_000
+    assert np.abs(points[:, 1] - 4_000_000).max() < 100_000
+    np.testing.assert_array_equal(points, dataset(name, N))
+
+
+@pytest.mark.parametrize("name", DATASETS)
+def test_tinsmith_is_right_on_every_data_set(name):
+    points = dataset(name, 600)
+    tin = ts.triangulate(points)
+    ts.check(tin, level=3, points=points).raise_if_failed()
+    assert len(tin.triangles) == 2 * len(points) - 2 - oracles.hull_size(points)
+
+
+def test_raster_has_exact_spacing_and_runs_from_north_to_south():
+    x, y, _ = dataset("raster", N).T
+    assert set(np.diff(np.unique(x))) == set(np.diff(np.unique(y))) == {30.0}
+    assert (np.diff(y) <= 0).all()
+
+
+def test_decimal_raster_holds_the_doubles_nearest_to_decimals():
+    x, y, _ = dataset("decimal raster", N).T
+    np.testing.assert_array_equal(x, [float(f"{value:.1f}") for value in x])
+    np.testing.assert_array_equal(y, [float(f"{value:.1f}") for value in y])
+    assert len(set(np.diff(np.unique(x)))) > 1  # 0.1 is no binary number
+
+
+def test_scan_lines_are_rounded_to_cm_and_near_their_lines():
+    points = dataset("scan lines", N)
+    np.testing.assert_array_equal(points[:, :2], np.round(points[:, :2], 2))
+    across = points[:, 1] - np.round(points[:, 1])
+    assert 0.0 < np.abs(across).max() <= 0.051
+
+
+def test_clusters_are_narrow_and_wide():
+    near = distances(dataset("clusters", N))
+    assert near.min() < 0.02
+    assert near.max() > 100.0
+
+
+@pytest.mark.parametrize(("name", "apart"), [("contour lines", 100.0), ("survey tracks", 200.0)])
+def test_lines_are_dense_along_and_sparse_across(name, apart):
+    points = dataset(name, 50_000)
+    assert np.median(distances(points)) < apart / 2
+
+
+def test_rails_are_two_parallel_lines():
+    xy = dataset("rails", N)[:, :2] - UTM_CORNER
+    first, second = np.split(xy, 2)
+    np.testing.assert_allclose(np.hypot(*(second - first).T), 1.435, atol=1e-8)
+    np.testing.assert_allclose(np.hypot(*np.diff(first, axis=0).T), 0.2, atol=1e-8)
+
+
+def test_circle_is_one_circle():
+    xy = dataset("circle", N)[:, :2] - UTM_CORNER
+    np.testing.assert_allclose(np.hypot(*xy.T), 1000.0, atol=1e-8)
+
+
+def test_few_circles_are_seven():
+    xy = dataset("few circles", N)[:, :2]
+    for ring in np.split(xy, 7):
+        radius = np.hypot(*(ring - (ring.min(axis=0) + ring.max(axis=0)) / 2).T)
+        assert np.ptp(radius) < 0.01 * radius.max()
+
+
+def test_dense_corner_holds_one_percent_in_one_metre():
+    xy = dataset("dense corner", N)[:, :2] - UTM_CORNER
+    assert np.count_nonzero(((xy >= 1.0) & (xy <= 2.0)).all(axis=1)) == N // 100
+
+
+# ----------------------------------------------------------------------- verdicts
+
+
+@pytest.fixture(scope="module")
+def tin():
+    return ts.triangulate(dataset("uniform", 300))
+
+
+def judged(tin, answer):
+    return verdict(tin, answer, ranked(tin.triangles))
+
+
+def test_verdict_accepts_any_order_of_triangles_and_corners(tin):
+    shuffled = np.roll(tin.triangles[::-1], 1, axis=1)
+    assert judged(tin, shuffled) == Verdict(True, EQUAL)
+    assert judged(tin, tin.points[shuffled, :2]) == Verdict(True, EQUAL)
+
+
+def test_verdict_names_missing_triangles_and_points(tin):
+    found = judged(tin, tin.triangles[1:])
+    assert not found.is_right
+    assert found.text.startswith("1 triangles missing")
+    around = (tin.triangles == np.setdiff1d(np.arange(300), tin.hull)[0]).any(axis=1)
+    assert judged(tin, tin.triangles[~around]).text.startswith("1 points lost")
+
+
+def test_verdict_names_points_that_were_not_given(tin):
+    corners = tin.points[tin.triangles, :2] + [1e-9, 0.0]
+    assert judged(tin, corners) == Verdict(False, "has points that were not given")
+
+
+def flipped(tin):
+    """Exchange the diagonal of the first two triangles that make a convex quadrangle."""
+    xy = tin.points[:, :2]
+    for t, (a, b, c) in enumerate(tin.triangles):
+        other = tin.neighbors[t, 0]
+        if other < 0:
+            continue
+        (d,) = set(tin.triangles[other]) - {b, c}
+        turns = [
+            np.cross(np.append(xy[q] - xy[p], 0), np.append(xy[r] - xy[p], 0))[2]
+            for p, q, r in ((a, b, d), (a, d, c))
+        ]
+        if min(turns) > 0:
+            made = tin.triangles.copy()
+            made[t], made[other] = (a, b, d), (a, d, c)
+            return made
+    raise AssertionError
+
+
+def test_verdict_tells_a_wrong_edge_from_a_broken_tie(tin):
+    assert judged(tin, flipped(tin)) == Verdict(False, "1 edges not Delaunay")
+    grid = ts.triangulate(dataset("raster", 300))
+    assert judged(grid, flipped(grid)) == Verdict(True, "Delaunay; 1 ties broken otherwise")
+
+
+def test_a_wrong_answer_of_an_exact_tool_is_a_failure():
+    wrong = Verdict(False, "3 triangles missing")
+    assert kernel._accepted("SciPy", wrong) is wrong
+    for tool in (OURS, KERNEL, CGAL, "Triangle"):
+        with pytest.raises(AssertionError, match="3 triangles missing"):
+            kernel._accepted(tool, wrong)
+
+
+# ------------------------------------------------------------------------- kernel
+
+
+def test_every_tool_triangulates():
+    outcome = kernel.run([("raster", 300)], repeats=2)
+    found = {result.tool: result for result in outcome.results}
+    present = kernel.available_tools(kernel.ALL_TOOLS, Outcome())
+    assert list(found) == [*present, kernel.WORK]
+    assert {OURS, KERNEL} <= set(present)
+    assert found[OURS].note == found[KERNEL].note == EQUAL
+    for tool in present:
+        assert found[tool].count == 289
+        assert len(found[tool].runs) == 2
+        if tool == CGAL or TOOLS[tool].is_exact:
+            assert found[tool].extra["is_right"], f"{tool}: {found[tool].note}"
+    assert found[kernel.WORK].extra["searches"] > 0
+
+
+def test_a_tool_that_exceeds_the_limit_is_described(tmp_path):
+    points = dataset("uniform", 300)
+    with ToolProcess(OURS, points, tmp_path, limit=0.0) as process:
+        with pytest.raises(ToolFailedError, match="no answer within 0 s"):
+            process.run()
+        with pytest.raises(ToolFailedError, match="its process ended"):
+            process._answer(60.0)
+
+
+def test_a_tool_answers_the_same_at_every_run(tmp_path, tin):
+    with ToolProcess(KERNEL, tin.points, tmp_path, limit=60.0) as process:
+        assert process.run() > 0
+        assert process.run() > 0
+        np.testing.assert_array_equal(process.triangles(), tin.triangles)
+
+
+def test_a_missing_cgal_is_said(monkeypatch, tmp_path):
+    monkeypatch.setattr(build, "BUILT", tmp_path / "harness")
+    monkeypatch.setattr(build.shutil, "which", lambda name: None)
+    with pytest.raises(CgalMissingError, match=r"g\+\+ is not installed"):
+        harness()
+    outcome = Outcome()
+    assert kernel.available_tools([OURS, CGAL], outcome) == [OURS]
+    assert outcome.skipped == ["CGAL: skipped, g++ is not installed."]
+
+
+def test_every_tool_is_either_here_or_named():
+    outcome = Outcome()
+    present = kernel.available_tools(kernel.ALL_TOOLS, outcome)
+    assert len(present) + len(outcome.skipped) == len(kernel.ALL_TOOLS) == len(TOOLS) + 1
+
+
+# -------------------------------------------------------------------------- lines
+
+
+@pytest.mark.parametrize("name", LINE_DATASETS)
+def test_lines_do_not_cross_and_are_given_twice_the_same(name):
+    import shapely
+
+    task = line_dataset(name, N)
+    assert 0.95 * N <= len(task.vertices) <= 1.2 * N
+    assert len(np.unique(task.vertices, axis=0)) == len(task.vertices)
+    drawn = shapely.MultiLineString([line[:, :2] for line in task.breaklines()])
+    assert drawn.is_simple
+    pairs = shapely.MultiLineString(list(task.vertices[task.segments]))
+    assert len(drawn.geoms) < len(pairs.geoms) or name == "long lines"
+    assert drawn.equals(pairs)
+    cut = shapely.MultiLineString(list(task.vertices[task.steps]))
+    assert cut.length == pytest.approx(drawn.length, rel=1e-12)
+
+
+def test_nested_rings_lie_each_in_the_next():
+    import shapely
+
+    rings = [shapely.Polygon(line) for line in line_dataset("nested rings", 20 * N).breaklines()]
+    assert len(rings) == 20 * N // 140
+    assert all(b.contains_properly(a) for a, b in pairwise(rings))
+    heights = [line[0, 2] for line in line_dataset("nested rings", N).breaklines()]
+    assert (np.diff(heights) < 0).all()
+
+
+def test_steps_of_raster_lines_are_cut_where_points_are_on_them_exactly():
+    task = line_dataset("raster lines", N)
+    exact = [[Fraction(x), Fraction(y)] for x, y in task.vertices.tolist()]
+    wanted = set()
+    for start, end in task.segments.tolist():
+        (ax, ay), (bx, by) = exact[start], exact[end]
+        on = [i for i, (x, y) in enumerate(exact)
+              if (bx - ax) * (y - ay) == (by - ay) * (x - ax)
+              and min(ax, bx) <= x <= max(ax, bx) and min(ay, by) <= y <= max(ay, by)]  # fmt: skip
+        on.sort(key=lambda i: abs(exact[i][0] - ax) + abs(exact[i][1] - ay))
+        wanted |= {frozenset(pair) for pair in pairwise(on)}
+    assert {frozenset(step) for step in task.steps.tolist()} == wanted
+    assert len(wanted) > len(task.segments)
+
+
+def test_tasks_survive_their_file(tmp_path):
+    for task in (line_dataset("hills", N), edit_task("mixed edits", 300)):
+        write_task(task, tmp_path / "task.npz")
+        for array, found in zip(task, read_task(type(task), tmp_path / "task.npz"), strict=True):
+            np.testing.assert_array_equal(array, found)
+
+
+def test_every_tool_holds_the_lines():
+    outcome = lines.run(1_000, names=["raster lines", "nested rings"], repeats=1)
+    present = lines.available_tools(ALL_LINE_TOOLS, LINE_TOOLS, "constrained", Outcome())
+    assert [r.tool for r in outcome.results] == 2 * present
+    assert {OURS} <= set(present)
+    for result in outcome.results:
+        assert result.seconds > 0
+        assert result.extra["is_right"] or result.tool == "Triangle", result
+
+
+def test_verdict_names_edges_of_lines_that_are_missing():
+    corners = [[0, 0, 0], [9, 0, 0], [9, 4, 0], [0, 5, 0]]
+    tin = ts.triangulate(corners, breaklines=[[corners[0], corners[2]]])
+    other = np.array([[0, 1, 3], [1, 2, 3]])
+    wanted, steps = ranked(tin.triangles), np.array([[2, 0]])
+    assert verdict(tin, tin.triangles, wanted, steps=steps) == Verdict(True, EQUAL)
+    lost = Verdict(False, "1 edges of lines missing")
+    assert verdict(tin, other, wanted, steps=steps) == lost
+
+
+def test_verdict_lets_an_edge_be_wrong_only_for_a_line():
+    corners = np.array([[0, 0, 0], [9, 0, 0], [9, 4, 0], [0, 5, 0.0]])
+    free = ts.triangulate(corners)
+    pair = [1, 3] if [0, 2] in np.sort(free.edges, axis=1).tolist() else [0, 2]
+    a, b = (i for i in range(4) if i not in pair)
+    crossed = np.array([[*pair, a], [*pair, b]])
+    wanted = ranked(free.triangles)
+    assert not verdict(free, crossed, wanted).is_right
+    assert verdict(free, crossed, wanted, steps=np.array([pair])).is_right
+
+
+# -------------------------------------------------------------------------- edits
+
+
+def test_points_after_edits_are_those_of_edits_one_by_one():
+    task = edit_task("mixed edits", 100)
+    points = task.points.tolist()
+    assert set(task.script[:, 0]) == {0.0, 1.0, 2.0, 3.0}
+    for what, number, vertex, *xyz in task.script.tolist():
+        at = int(vertex)
+        if WHAT[int(what)] == "insert":
+            points.append(xyz)
+            continue
+        assert points[at] == task.points[int(number)].tolist()
+        if WHAT[int(what)] == "remove":
+            del points[at]
+        else:
+            points[at] = xyz
+    np.testing.assert_array_equal(task.afterwards(), points)
+
+
+def test_batch_is_as_many_points_again():
+    task = edit_task(BATCH, 300)
+    assert set(task.script[:, 0]) == {INSERT_ALL}
+    assert len(task.afterwards()) == len(np.unique(task.afterwards()[:, :2], axis=0)) == 600
+
+
+def test_every_tool_edits():
+    outcome = edits.run(400, repeats=1)
+    present = lines.available_tools(ALL_EDIT_TOOLS, EDIT_TOOLS, "edits", Outcome())
+    assert {OURS, OPENED, WITH_ARRAYS, BUILD} <= set(present)
+    assert {r.tool for r in outcome.results} == set(present)
+    assert len({r.task for r in outcome.results}) == len(EDIT_TASKS) + 1
+    for result in outcome.results:
+        assert result.seconds > 0
+        assert result.extra["is_right"] or result.tool == "startinpy", result
+
+
+# -------------------------------------------------------------------------- goals
+
+
+def test_goals_take_the_quicker_way_of_cgal_and_the_worse_data_set():
+    times = {
+        ("nested rings", OURS): 2.0,
+        ("nested rings", CGAL): 5.0,
+        ("nested rings", CGAL_INDICES): 4.0,
+        ("hills", OURS): 1.0,
+        ("hills", CGAL): 0.5,
+        ("hills", CGAL_INDICES): float("nan"),
+    }
+    results = [Result("lines", *key, 1_000_000, seconds) for key, seconds in times.items()]
+    (row,) = goals_of(results)
+    assert row[1:] == ["hills (worst of 2)", "\u2265 1", "1.5", "0.50", "\u2717"]
+    (row,) = goals_of(results[:3])
+    assert row[1:] == ["nested rings", "\u2265 1", "1.5", "2.00", "\u2713"]
+
+
+# ------------------------------------------------------------------ other sections
+
+
+def test_tools_take_turns():
+    order = []
+    calls = {name: lambda name=name: order.append(name) or name for name in "ABC"}
+    answers, runs = alternate(calls, 2)
+    assert order == list("ABCABC")
+    assert answers == {"A": "A", "B": "B", "C": "C"}
+    assert {len(seconds) for seconds in runs.values()} == {2}
+
+
+@pytest.mark.parametrize(("run", "tasks"), [(locate.run, 2), (readers.run, 3), (writers.run, 2)])
+def test_section_runs_and_its_answers_agree(run, tasks):
+    outcome = run(500, repeats=1)
+    ours = [result for result in outcome.results if result.tool == OURS]
+    assert len({result.task for result in ours}) == len(ours)
+    assert len(ours) == tasks - sum("skipped, rasterio" in line for line in outcome.skipped)
+    for result in outcome.results:
+        assert 450 <= result.count <= 50_000
+        assert result.seconds > 0
+
+
+# ------------------------------------------------------------------------- report
+
+
+def test_report_is_a_page_data_and_a_plot(tmp_path, capsys):
+    arguments = ["kernel", "writers", "--points", "300", "--only", "circle", "--repeats", "1",
+                 "--tools", OURS, KERNEL, "--output", str(tmp_path)]  # fmt: skip
+    main(arguments)
+    page = (tmp_path / "benchmarks.md").read_text(encoding="utf-8")
+    data = json.loads((tmp_path / "benchmarks.json").read_text(encoding="utf-8"))
+    assert "| circle, 300 |" in page
+    assert "## Writers" in page
+    assert "## Readers" not in page
+    tools = [r["tool"] for r in data["results"] if r["section"] == "kernel"]
+    assert tools == [OURS, KERNEL, kernel.WORK]
+    assert data["command"].startswith("python -m benchmarks kernel writers --points 300")
+    assert (tmp_path / "benchmarks.png").exists() == is_installed("matplotlib")
+    assert str(tmp_path / "benchmarks.md") in capsys.readouterr().out
+
+
+def test_report_has_lines_and_edits(tmp_path):
+    arguments = ["lines", "edits", "--points", "400", "--only", "hills", "--repeats", "1",
+                 "--output", str(tmp_path)]  # fmt: skip
+    main(arguments)
+    page = (tmp_path / "benchmarks.md").read_text(encoding="utf-8")
+    assert "| hills, 980 |" in page
+    assert "short lines, " not in page
+    assert "| mixed edits, TIN of 400 points | tinsmith | 100 |" in page
+    assert (tmp_path / "benchmarks-lines.png").exists() == is_installed("matplotlib")
+    assert ("benchmarks-lines.png" in page) == is_installed("matplotlib")
+
+
+def test_too_few_points_are_refused(capsys):
+    with pytest.raises(SystemExit):
+        main(["--points", "10"])
+    assert "at least 200 are needed" in capsys.readouterr().err

@@ -1,0 +1,429 @@
+"""What the commands do: answers, files, options, help."""
+
+import json
+import re
+from pathlib import Path
+from typing import get_args
+
+import click
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import tinsmith as ts
+from tinsmith.cli import group, main
+from tinsmith.cli.options import DUPLICATES, KINDS
+from tinsmith.cli.output.summaries import file_size
+
+SAMPLES = Path(__file__).parents[2] / "sample_data"
+SURVEY = str(SAMPLES / "site_survey.csv")
+UTM = ("--crs", "EPSG:32616")
+COMMANDS = ("build", "info", "check", "view", "refine", "compare", "edit", "convert", "formats")
+
+
+def run(*arguments, code=0):
+    result = CliRunner().invoke(main, [str(one) for one in arguments])
+    assert result.exit_code == code, result.output
+    return result
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """Be in an empty folder that holds the samples, as after a download."""
+    (tmp_path / "sample_data").symlink_to(SAMPLES)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.fixture(scope="module")
+def pyramid(tmp_path_factory):
+    path = tmp_path_factory.mktemp("pyramid") / "pyramid.ply"
+    points = [[0, 0, 0], [4, 0, 0], [4, 4, 0], [0, 4, 0], [2, 2, 2]]
+    ts.io.write(ts.triangulate(points, crs="EPSG:32616"), path)
+    return path
+
+
+# ------------------------------------------------------------------ help
+
+
+def examples():
+    found = []
+    for name in (None, *COMMANDS):
+        command = main if name is None else main.get_command(click.Context(main), name)
+        lines = [line.strip() for line in command.help.splitlines()]
+        found += [pytest.param(line, id=line) for line in lines if line.startswith("tinsmith ")]
+    return found
+
+
+@pytest.mark.parametrize("line", examples())
+def test_example_of_the_help_runs_as_written(line, folder, request):
+    if line.startswith("tinsmith view"):
+        request.getfixturevalue("can_draw")
+    run(*line.split()[1:])
+    for name in re.findall(r"-o (\S+)", line):
+        assert (folder / name).stat().st_size > 0
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_command_has_help_with_an_example(name):
+    shown = run(name, "--help").output
+    assert "Example:" in shown
+    assert f"tinsmith {name}" in shown
+
+
+def test_help_lists_every_command_with_a_sentence():
+    shown = run("--help").output
+    for name in COMMANDS:
+        assert re.search(rf"^  {name} +[A-Z].*\.$", shown, re.MULTILINE)
+
+
+def test_version_is_the_package_version():
+    assert run("--version").output == f"tinsmith {ts.__version__}\n"
+
+
+def test_choices_are_those_of_the_library():
+    from tinsmith.io.geojson.writing import Kind
+    from tinsmith.tin.building.duplicates import DuplicatePolicy
+
+    assert get_args(DuplicatePolicy) == DUPLICATES
+    assert get_args(Kind) == KINDS
+
+
+# ------------------------------------------------------------------ build
+
+
+def test_build_writes_rfc_7946_that_tiles_the_hull(folder):
+    pyogrio = pytest.importorskip("pyogrio")
+    shapely = pytest.importorskip("shapely")
+    run("build", "sample_data/site_survey.csv", *UTM, "-o", "out.geojson")
+    meta, _, shapes, _ = pyogrio.raw.read("out.geojson")
+    polygons = shapely.from_wkb(shapes)
+    assert meta["crs"] in {"EPSG:4326", "EPSG:4979"}  # GDAL's names of WGS 84 without and with z
+    assert shapely.is_valid(polygons).all()
+    assert shapely.has_z(polygons).all()
+    assert shapely.is_ccw(shapely.get_exterior_ring(polygons)).all()
+    union = shapely.union_all(shapely.set_precision(shapely.force_2d(polygons), 1e-9))
+    hull = shapely.convex_hull(shapely.multipoints(shapely.get_coordinates(polygons)))
+    assert shapely.area(polygons).sum() == pytest.approx(hull.area, rel=1e-6)
+    assert union.area == pytest.approx(hull.area, rel=1e-6)
+
+
+def test_build_makes_every_point_a_vertex(folder):
+    pyproj = pytest.importorskip("pyproj")
+    run("build", "sample_data/site_survey.csv", *UTM, "-o", "out.geojson")
+    features = json.loads(Path("out.geojson").read_text())["features"]
+    corners = np.array([one["geometry"]["coordinates"][0] for one in features])
+    built = {tuple(place) for place in corners[..., :2].reshape(-1, 2)}
+    table = np.loadtxt(SURVEY, delimiter=",", skiprows=1, usecols=(1, 2), encoding="utf-8")
+    to_globe = pyproj.Transformer.from_crs(32616, 4326, always_xy=True)
+    lon, lat = to_globe.transform(table[:, 1], table[:, 0])
+    wanted = set(zip(np.round(lon, 9).tolist(), np.round(lat, 9).tolist(), strict=True))
+    assert built == wanted
+    assert len(built) == 2121
+
+
+def test_build_summary_accounts_for_the_duplicates(folder):
+    result = run("build", "sample_data/site_survey.csv", *UTM, "-o", "out.ply")
+    assert result.stdout == ""
+    assert "2,123 from sample_data/site_survey.csv" in result.stderr
+    assert "2 rows at 2 places" in result.stderr
+    assert "0.034: points 1407 (327.766), 3583 (327.800)" in result.stderr
+    assert "2,121 vertices, 4,222 triangles" in result.stderr
+
+
+def test_build_json_is_the_only_thing_on_stdout(folder):
+    result = run("build", "sample_data/site_survey.csv", *UTM, "-o", "out.ply", "--json")
+    facts = json.loads(result.stdout)
+    assert facts["survey"]["points"] == 2123
+    assert facts["tin"]["vertices"] == 2121
+    assert facts["report"]["merges"][0]["numbers"] == [1407, 3583]
+    assert facts["report"]["merges"][0]["rows"] == [562, 2122]
+    assert facts["outputs"][0]["bytes"] == Path("out.ply").stat().st_size
+
+
+def test_build_quiet_says_nothing(folder):
+    result = run("build", "sample_data/site_survey.csv", "-o", "out.ply", "--quiet")
+    assert result.output == ""
+
+
+def test_build_report_file_equals_the_report(folder):
+    arguments = ("build", "sample_data/site_survey.csv", "-o", "out.ply", "--report", "r.json")
+    run(*arguments)
+    kept = json.loads(Path("r.json").read_text())
+    expected = ts.triangulate(ts.io.read(SURVEY)).report.to_dict()
+    for merge in kept["merges"]:
+        merge.pop("numbers")
+    assert kept.pop("skipped_lines") == {}
+    told, kept["notes"] = kept["notes"], kept["notes"][: len(expected["notes"])]
+    assert kept == json.loads(json.dumps(expected))
+    assert all("edges of up to" in gap for gap in told[len(expected["notes"]) :])
+
+
+def test_build_duplicates_and_snap_are_passed_on(folder):
+    arguments = ("build", "sample_data/site_survey.csv", "--json", "-q", "-o", "out.ply")
+    lowest = json.loads(run(*arguments, "--duplicates", "lowest").stdout)
+    assert lowest["report"]["merges"][0]["height"] == 327.766
+    snapped = json.loads(run(*arguments, "--snap", "3").stdout)
+    assert snapped["tin"]["vertices"] == len(ts.triangulate(ts.io.read(SURVEY), snap=3).points)
+    assert snapped["tin"]["vertices"] < 2121
+
+
+def test_build_writes_several_files_of_one_tin(folder):
+    outputs = ("-o", "out.ply", "-o", "out.obj", "-o", "hull.geojson")
+    run("build", "sample_data/site_survey.csv", *UTM, *outputs, "--kind", "hull")
+    assert len(json.loads(Path("hull.geojson").read_text())["features"]) == 1
+    np.testing.assert_array_equal(ts.io.read("out.ply").triangles, ts.io.read("out.obj").triangles)
+
+
+def test_build_of_a_dem_keeps_its_crs(folder):
+    pytest.importorskip("rasterio")
+    run("build", "sample_data/jacksboro.tif", "--stride", "8", "-o", "out.ply")
+    tin = ts.io.read("out.ply")
+    assert tin.crs == "EPSG:32616"
+    assert len(tin.points) == 52 * 49
+
+
+def test_build_of_a_window_of_a_dem(folder):
+    pytest.importorskip("rasterio")
+    window = ("--window", 745_000, 4_010_000, 747_000, 4_011_000)
+    run("build", "sample_data/jacksboro.tif", *window, "-o", "out.ply")
+    box = ts.io.read("out.ply").bounds
+    assert 745_000 <= box.xmin < 745_075
+    assert 746_925 < box.xmax <= 747_000
+    assert 4_010_000 <= box.ymin < 4_010_075
+    assert 4_010_925 < box.ymax <= 4_011_000
+
+
+def test_build_of_a_tin_names_convert(pyramid, folder):
+    result = run("build", pyramid, "-o", "out.ply", code=1)
+    assert "tinsmith convert" in result.stderr
+
+
+# ------------------------------------------------------------------ info, check, convert, view
+
+
+def test_info_of_a_tin_has_its_measures(pyramid):
+    facts = json.loads(run("info", pyramid, "--json").stdout)
+    assert (facts["vertices"], facts["triangles"], facts["edges"]) == (5, 4, 8)
+    assert facts["area"] == pytest.approx(16.0)
+    assert facts["surface_area"] == pytest.approx(16.0 * np.sqrt(2))
+    for key in ("min", "mean", "max"):
+        assert facts["slope"][key] == pytest.approx(45.0)
+
+
+@pytest.mark.parametrize(
+    ("crs", "vertical", "assumed", "metres"),
+    [
+        ("EPSG:2274", "unknown", "US survey foot", 1200 / 3937),
+        ("EPSG:2274+5703", "metre", None, 1.0),
+    ],
+)
+def test_info_slope_minds_feet(crs, vertical, assumed, metres, tmp_path):
+    """Elevations of a CRS in feet are taken for feet, unless its vertical axis says otherwise."""
+    height = 2 * (1200 / 3937) / metres
+    points = np.array([[0, 0, 0], [4, 0, 0], [4, 4, 0], [0, 4, 0], [2, 2, height]])
+    ts.io.write(ts.triangulate(points, crs=crs), tmp_path / "feet.ply")
+    facts = json.loads(run("info", tmp_path / "feet.ply", "--json").stdout)
+    assert facts["slope"]["mean"] == pytest.approx(45.0)
+    assert facts["units"] == {"horizontal": "US survey foot", "vertical": vertical}
+    assert facts["elevation"]["unit_assumed"] == assumed
+
+
+def test_info_in_degrees_claims_no_areas(tmp_path):
+    points = [[-84.2, 36.3, 0], [-84.1, 36.3, 0], [-84.2, 36.4, 9]]
+    ts.io.write(ts.triangulate(points, crs="EPSG:4326"), tmp_path / "degrees.ply")
+    facts = json.loads(run("info", tmp_path / "degrees.ply", "--json").stdout)
+    assert facts["surface_area"] is facts["area"] is None
+    gradient = 9 / (0.1 * 111_000)
+    assert facts["slope"]["mean"] == pytest.approx(np.degrees(np.arctan(gradient)), rel=0.01)
+    assert "longitude -84.2" in run("info", tmp_path / "degrees.ply").stdout
+
+
+def test_info_of_points_has_columns_and_extent(folder):
+    facts = json.loads(run("info", "sample_data/site_survey.csv", *UTM, "--json").stdout)
+    assert facts["kind"] == "points"
+    assert facts["points"] == 2123
+    assert facts["crs_name"] == "WGS 84 / UTM zone 16N"
+    assert facts["elevation"]["min"] == pytest.approx(316.501)
+    assert "description" in facts["attributes"]
+
+
+def test_info_of_points_without_crs_says_how_to_name_it(folder):
+    assert "--crs" in run("info", "sample_data/site_survey.csv").stdout
+
+
+def test_check_passes_points_and_tin(pyramid, folder):
+    assert "exactly Delaunay" in run("check", "sample_data/site_survey.csv").stdout
+    assert json.loads(run("check", pyramid, "--json").stdout)["ok"] is True
+
+
+def test_check_fails_a_tin_that_is_not_delaunay(tmp_path):
+    points = [[0, 0, 0], [4, -1, 0], [8, 0, 0], [4, 1, 0]]
+    flat = ts.TIN.from_triangles(points, [[0, 1, 2], [0, 2, 3]])
+    ts.io.write(flat, tmp_path / "flat.ply")
+    result = run("check", tmp_path / "flat.ply", code=1)
+    assert "delaunay" in result.stderr
+    assert "Problem" in result.stdout
+    assert json.loads(run("check", tmp_path / "flat.ply", "--json", code=1).stdout)["ok"] is False
+    run("check", tmp_path / "flat.ply", "--level", "2")
+
+
+@pytest.mark.parametrize("suffix", [".obj", ".stl", ".ply", ".vtp", ".vtu"])
+def test_convert_keeps_the_surface(pyramid, tmp_path, suffix):
+    if suffix in {".vtp", ".vtu"}:
+        pytest.importorskip("pyvista")
+    run("convert", pyramid, "-o", tmp_path / f"out{suffix}")
+    again = ts.io.read(tmp_path / f"out{suffix}")
+    assert again.surface_area == pytest.approx(ts.io.read(pyramid).surface_area, rel=1e-6)
+
+
+def test_convert_keeps_points_as_points(folder):
+    run("convert", "sample_data/site_survey.csv", "-o", "out.xyz")
+    np.testing.assert_array_equal(ts.io.read("out.xyz").points, ts.io.read(SURVEY).points)
+
+
+@pytest.mark.parametrize("as_json", [False, True])
+@pytest.mark.parametrize("writes", [False, True])
+def test_view_passes_on_what_is_asked_for(pyramid, tmp_path, monkeypatch, as_json, writes):
+    asked = []
+
+    def draw(tin, **options):
+        asked.append((len(tin.points), options))
+        if options["output"] is not None:
+            options["output"].write_bytes(b"7 bytes")
+
+    monkeypatch.setattr("tinsmith.terrain.preview", draw)
+    picture = tmp_path / "a.png"
+    output = ["-o", picture] if writes else []
+    result = run("view", pyramid, *output, *(["--json"] if as_json else []))
+    wanted = {"output": picture if writes else None, "view": "oblique", "title": "pyramid"}
+    wanted |= {"exaggeration": None, "edges": False, "lines": True}
+    assert asked == [(5, wanted)]
+    assert ("(7 bytes)" in result.stderr) is writes
+    if writes and as_json:
+        assert json.loads(result.stdout) == {"input": str(pyramid), "output": str(picture)}
+    else:
+        assert result.stdout == ""
+    asked.clear()
+    options = ["--top", "--no-lines", "--edges", "--title", "A hill", "--exaggeration", "3"]
+    run("view", pyramid, *output, *options)
+    wanted |= {"view": "top", "lines": False, "edges": True, "title": "A hill"}
+    assert asked == [(5, wanted | {"exaggeration": 3.0})]
+
+
+def test_view_writes_a_picture(pyramid, tmp_path, can_draw):
+    pytest.importorskip("pyvista")
+    picture = tmp_path / "out.png"
+    result = run("view", pyramid, "-o", picture, "--edges", "--top", "--exaggeration", "2")
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    assert "out.png" in result.stderr
+
+
+# ------------------------------------------------------------------ formats, plug-ins
+
+
+def test_formats_lists_every_known_format():
+    known = ts.io.known_formats()
+    table = run("formats").stdout
+    listed = json.loads(run("formats", "--json").stdout)["formats"]
+    assert [one["name"] for one in listed] == [one.name for one in known]
+    assert all(re.search(rf"^ ?{one.name} ", table, re.MULTILINE) for one in known)
+
+
+class Entry:
+    """An entry point, as an installed package declares it."""
+
+    def __init__(self, name, value):
+        self.name, self.value = name, value
+
+    def load(self):
+        if isinstance(self.value, Exception):
+            raise self.value
+        return self.value
+
+
+@pytest.fixture
+def plug_in(monkeypatch):
+    def install(*entries):
+        monkeypatch.setattr(group, "entry_points", lambda group: entries)
+        group._plug_ins.cache_clear()
+
+    yield install
+    group._plug_ins.cache_clear()
+
+
+def test_plug_in_adds_a_command(plug_in):
+    plug_in(Entry("hello", click.Command("hello", callback=lambda: click.echo("hi"))))
+    assert run("hello").stdout == "hi\n"
+    assert "hello" in run("--help").output
+
+
+@pytest.mark.parametrize("value", [ImportError("no module 'x'"), "a text"])
+def test_broken_plug_in_says_so_and_harms_no_other(plug_in, value):
+    plug_in(Entry("broken", value))
+    assert "build" in run("--help").output
+    result = run("broken", "--option", "x", code=1)
+    assert "plug-in 'broken' cannot be loaded" in result.stderr
+
+
+def test_plug_in_cannot_replace_a_built_in_command(plug_in):
+    plug_in(Entry("formats", click.Command("formats", callback=lambda: click.echo("mine"))))
+    assert "mine" not in run("formats").stdout
+
+
+def test_formats_names_the_extras():
+    shown = " ".join(run("formats").stdout.split())
+    assert "tinsmith[raster]" in shown
+    assert "tinsmith[view]" in shown
+
+
+def test_mean_slope_is_weighted_by_area(tmp_path):
+    """A level square of 10 by 10, and beside it a strip of 1 by 10 that rises by 1."""
+    points = [[0, 0, 0], [10, 0, 0], [10, 10, 0], [0, 10, 0], [11, 0, 1], [11, 10, 1]]
+    ts.write(ts.triangulate(points, crs="EPSG:32616"), tmp_path / "a.ply")
+    found = json.loads(run("info", tmp_path / "a.ply", "--json").stdout)["slope"]
+    assert found["mean"] == pytest.approx(45 * 10 / 110, rel=1e-9)
+    assert (found["min"], found["max"]) == (pytest.approx(0), pytest.approx(45))
+
+
+def test_json_knows_no_infinity_and_no_numpy():
+    from tinsmith.cli.output.console import plain
+
+    given = {"a": float("inf"), "b": [float("nan"), np.float64("-inf")], "c": np.int32(3)}
+    assert json.loads(plain(given)) == {"a": None, "b": [None, None], "c": 3}
+
+
+def test_every_row_that_was_left_out_is_in_report_and_json(tmp_path):
+    path, report = tmp_path / "a.csv", tmp_path / "report.json"
+    rows = ["x,y,z", "0,0,1", "4,0,2", "odd,0,2", "0,4,3", "2,2,", "5,5,4"]
+    path.write_text("\n".join(rows) + "\n")
+    how = ["--skip-bad", "--json", "--report", report, "-o", tmp_path / "a.ply"]
+    facts = json.loads(run("build", path, *how).stdout)
+    expected = {"bad rows": [4], "points without elevation": [6]}
+    assert facts["survey"]["skipped_lines"] == expected
+    assert facts["report"]["skipped_lines"] == expected
+    assert json.loads(report.read_text())["skipped_lines"] == expected
+    info = json.loads(run("info", path, "--skip-bad", "--json").stdout)
+    assert info["skipped_lines"] == expected
+
+
+@pytest.mark.parametrize(
+    ("size", "words"),
+    [
+        (0, "0 bytes"),
+        (999, "999 bytes"),
+        (1_000, "1.0 kB"),
+        (99_900, "99.9 kB"),
+        (100_000, "100 kB"),
+        (999_000, "999 kB"),
+        (1_000_000, "1.0 MB"),
+        (123_000_000, "123 MB"),
+        (2_500_000_000, "2.5 GB"),
+        (3_000_000_000_000, "3000.0 GB"),
+    ],
+)
+def test_sizes_of_files_for_people(tmp_path, size, words):
+    path = tmp_path / "sparse"
+    with path.open("wb") as file:
+        file.truncate(size)
+    assert file_size(path) == words

@@ -1,0 +1,211 @@
+"""Lines from survey codes: marks begin, end and close them, and faults are named by point."""
+
+import csv
+import re
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import tinsmith as ts
+from tinsmith.io import lines_from_codes
+from tinsmith.io.field_codes import MARKS, RULES
+
+SAMPLE = Path(__file__).parents[2] / "sample_data" / "site_survey.csv"
+
+
+def survey(*descriptions, numbers=None, z=None):
+    n = len(descriptions)
+    points = np.column_stack([np.arange(n) * 3.0, np.arange(n) ** 2 % 7, np.full(n, 5.0)])
+    if z is not None:
+        points[:, 2] = z
+    attributes = {"description": np.array(descriptions, object)}
+    if numbers is not None:
+        attributes["number"] = np.array(numbers)
+    return ts.Survey(points=points, attributes=attributes)
+
+
+def lines(*descriptions, **given):
+    """Return names and the rows of their vertices."""
+    found = lines_from_codes(survey(*descriptions, **given)).breaklines
+    return [(line.name, (line.coords[:, 0] / 3).astype(int).tolist()) for line in found]
+
+
+def refused(words, *descriptions, rules=None, **given):
+    with pytest.raises(ts.LinesError, match=words) as caught:
+        lines_from_codes(survey(*descriptions, **given), rules)
+    assert str(caught.value).endswith(".")
+
+
+def test_a_line_for_each_code_and_number():
+    found = lines("EP1", "EP2", "GS", "EP1", "EP2", "TR OAK", "CL1", "CL1")
+    assert found == [("EP1", [0, 3]), ("EP2", [1, 4]), ("CL1", [6, 7])]
+
+
+def test_marks_begin_and_end_lines_of_one_name():
+    found = lines("EP1 B", "EP1", "EP1 E", "EP1 BEG", "EP1", "EP1 B", "EP1 end")
+    assert found == [("EP1", [0, 1, 2]), ("EP1", [3, 4]), ("EP1", [5, 6])]
+
+
+def test_a_closed_line_comes_back_to_its_first_point():
+    assert lines("BLDG2 BEG", "BLDG2", "BLDG2", "BLDG2 CLS") == [("BLDG2", [0, 1, 2, 3, 0])]
+
+
+@pytest.mark.parametrize("mark", MARKS)
+def test_every_mark_is_understood_in_either_case(mark):
+    rows = {"begin": ("EP1", f"EP1 {mark}"), "end": ("EP1 B", "EP1", f"EP1 {mark}")}
+    rows["close"] = rows["end"]
+    descriptions = [text.lower() for text in rows[MARKS[mark]]]
+    if MARKS[mark] == "begin":
+        descriptions += [*descriptions[:1], "EP1"]
+        assert len(lines("EP1", *descriptions)) == 2
+    else:
+        (only,) = lines(*descriptions)
+        assert only[1] == ([0, 1, 2, 0] if MARKS[mark] == "close" else [0, 1, 2])
+
+
+@pytest.mark.parametrize(
+    "description",
+    [
+        *("EP 1", "ep1", "EP1 'CRACKED'", 'EP1 "BROKEN KERB"', "EP1, SEALED", "EP1 / SEE SKETCH"),
+        *("EP1 (OLD)", "EP1 ; X", " EP1 ", "EP1\tB", "EP1 BEG/NOTE", 'EP1 B "NOTE"', "EP1 B NOTE"),
+    ],
+)
+def test_spaces_case_and_notes(description):
+    assert lines(description, "EP1") == [("EP1", [0, 1])]
+
+
+def test_other_codes_are_no_lines():
+    assert lines("EPX1", "EP1A", "CP1", "GS 12", "", "EP1", "EP1") == [("EP1", [5, 6])]
+
+
+def test_the_order_is_that_of_the_point_numbers():
+    assert lines("EP1", "EP1 E", "EP1 B", numbers=[20, 30, 10]) == [("EP1", [2, 0, 1])]
+    assert lines("EP1", "EP1", numbers=["B7", "A9"]) == [("EP1", [0, 1])]
+
+
+def test_water_is_level_at_the_median_of_its_points():
+    given = survey("WE1", "WE1", "WE1", "WE1 CLS", z=[4.9, 5.0, 5.1, 9.0])
+    made = lines_from_codes(given)
+    assert [(water.name, water.z) for water in made.water] == [("WE1", 5.05)]
+    assert np.array_equal(made.water[0].ring, given.points[:, :2])
+    assert "5.050, the median of its 4 points (4.900 to 9.000)" in made.notes[0]
+    assert made.points is given.points
+
+
+@pytest.mark.parametrize("role", ["boundary", "hole", "erase", "water", "soft"])
+def test_rules_choose_what_a_line_becomes(role):
+    given = survey("XY1 B", "XY1", "XY1 C", "EP1", "EP1")
+    made = lines_from_codes(given, {"xy": role})
+    if role == "soft":
+        assert [(line.kind, len(line.coords)) for line in made.breaklines] == [("soft", 4)]
+        return
+    assert len(made.breaklines) == 0
+    ring = {
+        "boundary": made.boundary,
+        "hole": made.holes,
+        "erase": made.erase,
+        "water": [water.ring for water in made.water],
+    }[role][0]
+    assert np.array_equal(ring, given.points[:3, : ring.shape[1]])
+
+
+def test_lines_are_added_to_those_that_there_are():
+    once = lines_from_codes(survey("EP1", "EP1", "WE1", "WE1", "WE1"))
+    twice = lines_from_codes(once)
+    assert (len(twice.breaklines), len(twice.water)) == (2, 2)
+
+
+def test_faults_are_counted_and_named_by_point():
+    refused("No description begins with a line code: RDG", "GS", "TR")
+    refused("Invalid rule 'wall' for the code 'W'", "W1", rules={"W": "wall"})
+
+
+def warned(words, *descriptions, **given):
+    """Return names and vertex counts of the lines, and require one note with the words."""
+    before = survey(*descriptions, **given)
+    made = lines_from_codes(before)
+    (note,) = made.notes
+    assert re.search(words, note)
+    assert note.endswith(".")
+    assert made.points is before.points
+    return [(line.name, len(line.coords)) for line in made.breaklines]
+
+
+def test_lines_of_too_few_points_are_left_out_and_named():
+    words = "1 line is left out, which has too few points .EP1: point 7."
+    assert warned(words, "EP1 B", "GS", numbers=[7, 8]) == []
+    words = "2 lines are left out, which have too few points .EP1: row 0, EP2: row 1."
+    assert warned(words, "EP1", "EP2", "CL1", "CL1") == [("CL1", 2)]
+    assert warned("WE1: row 0, row 1", "WE1", "WE1") == []
+    words = "BLDG1: row 0, row 1.: a line needs two, a closed one three"
+    assert warned(words, "BLDG1", "BLDG1 C") == []
+
+
+def test_unknown_marks_are_remarks_and_named():
+    words = "2 unknown marks .* .'X' at point 3, 'STOP' at point 4."
+    assert warned(words, "EP1 X", "EP1 STOP", numbers=[3, 4]) == [("EP1", 2)]
+    assert warned("1 unknown mark behind .* is taken for", "EP1 X", "EP1") == [("EP1", 2)]
+
+
+def test_a_survey_without_descriptions():
+    with pytest.raises(ts.LinesError, match="no descriptions"):
+        lines_from_codes(ts.Survey(points=np.zeros((3, 3))))
+
+
+# -------------------------------------------------------------------------- the sample
+
+
+@pytest.fixture(scope="module")
+def sample():
+    return lines_from_codes(ts.read(SAMPLE, crs="EPSG:32616"))
+
+
+def coded_rows():
+    """Read the sample's rows by name of their line, with nothing of tinsmith."""
+    rows = {}
+    with SAMPLE.open(encoding="utf-8", newline="") as file:
+        for number, north, east, z, description in list(csv.reader(file))[1:]:
+            found = re.match(r"([A-Z]+)(\d+)\b", description)
+            if found and found[1] in RULES:
+                place = (int(number), float(east), float(north), float(z), description)
+                rows.setdefault(found[0], []).append(place)
+    return rows
+
+
+def test_the_sample_has_the_lines_of_its_codes(sample):
+    rows = coded_rows()
+    for line in sample.breaklines:
+        expected = [row[1:4] for row in sorted(rows[line.name])]
+        if line.name.startswith("BLDG"):
+            expected.append(expected[0])
+        assert np.array_equal(line.coords, expected)
+    assert {line.name for line in sample.breaklines} | {"WE1"} == set(rows)
+    (pond,) = sample.water
+    assert pond.z == pytest.approx(np.median([row[3] for row in rows["WE1"]]))
+    assert pond.z == pytest.approx(318.4, abs=0.01)
+
+
+def test_every_step_of_the_sample_s_lines_is_an_edge(sample):
+    tin = ts.triangulate(sample)
+    edges = {frozenset(edge) for edge in tin.edges.tolist()}
+    place = {(x, y): i for i, (x, y) in enumerate(tin.points[:, :2].tolist())}
+    steps = 0
+    for line in sample.breaklines:
+        vertices = [place[x, y] for x, y in line.coords[:, :2].tolist()]
+        for step in pairwise(vertices):
+            assert frozenset(step) in edges
+            steps += 1
+    assert steps == 446
+    assert ts.check(tin, points=sample).ok
+
+
+def test_the_pond_of_the_sample_is_flat(sample):
+    tin = ts.triangulate(sample)
+    level = sample.water[0].z
+    inside = sample.water[0].ring.mean(axis=0) + np.random.default_rng(3).uniform(-9, 9, (50, 2))
+    assert (tin.interpolate(inside) == level).all()
+    soundings = np.array([d == "BOT" for d in sample.attributes["description"]])
+    assert (tin.vertex_of[soundings] == -1).all()
+    assert tin.report.to_dict()["left_out"] == {"in water": np.flatnonzero(soundings).tolist()}

@@ -1,0 +1,357 @@
+"""The choice of a format, what bad files get, and writing whole files or none."""
+
+from __future__ import annotations
+
+import os
+import stat
+from importlib.metadata import EntryPoint
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import tinsmith as ts
+from tinsmith._atomic import replacing, replacing_path
+from tinsmith.io import (
+    Format,
+    FormatError,
+    ReadError,
+    WriteError,
+    find_format,
+    known_formats,
+    read,
+    write,
+)
+from tinsmith.io import registry as formats
+from tinsmith.io.reading import detect
+
+SURVEY = "x,y,z\n1,2,3\n4,5,6\n7,8.5,9\n"
+TABLE = b"1.5 2.5 3.5\n4.5 5.5 6.5\n"
+GRID = b"ncols 3\nnrows 2\nxllcorner 0\n"
+
+
+def fault(error, action):
+    with pytest.raises(error) as caught:
+        action()
+    message = str(caught.value)
+    assert "\n" not in message
+    assert message.endswith(".")
+    return message
+
+
+# ------------------------------------------------------------------ content and suffix
+
+
+@pytest.mark.parametrize(
+    ("name", "head", "expected"),
+    [
+        ("a.csv", b"x,y,z\n1,2,3\n", "delimited"),
+        ("a.CSV", b"anything", "delimited"),
+        ("a.tif", b"II*\x00rest", "raster"),
+        ("a.txt", b"MM\x00*rest", "raster"),
+        ("a.txt", b"II+\x00rest", "raster"),
+        ("a.csv", b"\x89PNG\r\n\x1a\n", "raster"),
+        ("a.tif", TABLE, "delimited"),
+        ("a.asc", TABLE, "delimited"),
+        ("a.asc", GRID, "raster"),
+        ("a.asc", b"NCOLS 3\r\nNROWS 2\r\n", "raster"),
+        ("a.xyz", GRID, "raster"),
+        ("a.ply", b"ply\nformat ascii 1.0\n", "ply"),
+        ("a.txt", b"ply\r\nformat ascii 1.0\r\n", "ply"),
+        ("a.ply", TABLE, "delimited"),
+        ("a.obj", b"# made\nmtllib a\nv 1 2 3\nv 4 5 6\nf 1 2 3\n", "obj"),
+        ("a.txt", b"v 1 2 3\nv 4 5 6\nf 1 2 3\n", "obj"),
+        ("a.stl", b"solid x\n facet normal 0 0 1\n", "stl"),
+        ("a.stl", b"\x01" * 84, "stl"),
+        ("a.vtp", b'<?xml version="1.0"?>\n<VTKFile type="PolyData">', "vtk"),
+        ("a.xml", b'<VTKFile type="UnstructuredGrid">', "vtk"),
+        ("a.json", b'{"type": "FeatureCollection", "features": []}', "geojson"),
+        ("a.nothing", b"II*\x00rest", "raster"),
+        ("a.hgt", b"\x00\x01\x02\x03" * 9, "raster"),
+        ("a.dem", b"ENDWELL", "raster"),
+    ],
+)
+def test_content_decides_before_the_suffix(name, head, expected):
+    assert detect(Path(name), head).name == expected
+
+
+@pytest.mark.parametrize(
+    ("content", "kind"),
+    [
+        (b"PK\x03\x04rest", "ZIP"),
+        (b"%PDF-1.7", "PDF"),
+        (b"LASF\x00\x00", "LAS"),
+        (b"\x1f\x8b\x08", "gzip"),
+        (b"<!DOCTYPE html><html>", "HTML"),
+        (b'<?xml version="1.0"?>\n<LandXML version="1.2">', "LandXML"),
+        (b"  0\nSECTION\n  2\nHEADER\n", "DXF"),
+        (b"SQLite format 3\x00", "SQLite"),
+    ],
+)
+def test_foreign_content_is_named(tmp_path, content, kind):
+    path = tmp_path / "points.csv"
+    path.write_bytes(content)
+    assert kind in fault(FormatError, lambda: read(path))
+
+
+def test_table_with_a_rasters_suffix_is_read(tmp_path):
+    path = tmp_path / "points.tif"
+    path.write_text(SURVEY)
+    assert read(path).points.tolist() == [[1, 2, 3], [4, 5, 6], [7, 8.5, 9]]
+
+
+def test_raster_with_a_tables_suffix_is_read(tmp_path):
+    rasterio = pytest.importorskip("rasterio")
+    affine = pytest.importorskip("affine")
+    path = tmp_path / "dem.txt"
+    size = {"width": 3, "height": 2, "count": 1, "dtype": "int16"}
+    with rasterio.open(
+        path, "w", "GTiff", transform=affine.Affine(2, 0, 10, 0, -2, 20), **size
+    ) as to:
+        to.write(np.arange(6, dtype=np.int16).reshape(2, 3), 1)
+    assert read(path).points[0].tolist() == [11, 19, 0]
+
+
+def test_suffix_of_a_table_on_binary_data(tmp_path):
+    path = tmp_path / "points.csv"
+    path.write_bytes(b"\x07\x00\x01\x02" * 300)
+    assert "binary" in fault(ReadError, lambda: read(path))
+
+
+def test_unknown_suffix_names_the_known_ones(tmp_path):
+    for name, word in (("points.abc", "'.abc'"), ("points", "no suffix")):
+        (tmp_path / name).write_text(SURVEY)
+        message = fault(FormatError, lambda name=name: read(tmp_path / name))
+        assert word in message
+        assert ".csv" in message
+        assert ".tif" in message
+        assert len(read(tmp_path / name, format="delimited")) == 3
+        assert len(read(tmp_path / name, format="csv")) == 3
+
+
+def test_unknown_binary_file(tmp_path):
+    path = tmp_path / "data.bin"
+    path.write_bytes(bytes(range(256)) * 20)
+    assert "'.bin'" in fault(FormatError, lambda: read(path))
+
+
+# ------------------------------------------------------------------ files that cannot be read
+
+
+def test_missing_empty_and_folder(tmp_path):
+    (tmp_path / "empty.csv").touch()
+    assert "no file" in fault(ReadError, lambda: read(tmp_path / "missing.csv"))
+    assert "folder" in fault(ReadError, lambda: read(tmp_path))
+    assert "empty" in fault(ReadError, lambda: read(tmp_path / "empty.csv"))
+    assert "no file" in fault(ReadError, lambda: read(str(tmp_path / "missing.csv")))
+    fault(ReadError, lambda: read("a\x00b.csv"))
+
+
+def test_file_without_permission(tmp_path, monkeypatch):
+    path = tmp_path / "secret.csv"
+    path.write_text(SURVEY)
+
+    def refuse(*_, **__):
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(Path, "open", refuse)
+    assert "permission" in fault(ReadError, lambda: read(path))
+
+
+def test_format_by_name_prevails(tmp_path):
+    path = tmp_path / "points.csv"
+    path.write_text(SURVEY)
+    assert "'abc'" in fault(FormatError, lambda: read(path, format="abc"))
+    fault(ReadError, lambda: read(path, format="ply"))
+    pytest.importorskip("rasterio")
+    fault(ReadError, lambda: read(path, format="raster"))
+
+
+def test_format_that_is_only_written(tmp_path):
+    path = tmp_path / "a.geojson"
+    path.write_text('{"type": "FeatureCollection", "features": []}')
+    message = fault(FormatError, lambda: read(path))
+    assert "written, not read" in message
+    assert ".csv" in message
+
+
+def test_unknown_option_names_those_there_are(tmp_path):
+    path = tmp_path / "points.csv"
+    path.write_text(SURVEY)
+    message = fault(FormatError, lambda: read(path, bnad=1))
+    assert "'bnad'" in message
+    assert "columns, delimiter, decimal" in message
+    with pytest.raises(FormatError) as caught:
+        write(read(path), tmp_path / "b.csv", precision=3)
+    assert caught.value.known == ("columns", "delimiter", "header")
+
+
+def test_writers_are_found_by_suffix(tmp_path):
+    survey = ts.Survey(points=np.eye(3))
+    assert "'.abc'" in fault(FormatError, lambda: write(survey, tmp_path / "a.abc"))
+    assert "read, not written" in fault(FormatError, lambda: write(survey, tmp_path / "a.tif"))
+    assert write(survey, str(tmp_path / "a.CSV")) == tmp_path / "a.CSV"
+    assert write(survey, tmp_path / "b.abc", format="csv").exists()
+
+
+# ------------------------------------------------------------------ the registry
+
+
+def test_every_reader_and_writer_is_there():
+    for one in known_formats():
+        assert one.read or one.write
+        assert all(suffix == suffix.lower() and suffix[0] == "." for suffix in one.suffixes)
+        for action in ("read", "write"):
+            assert "path" not in one.options(action)
+            assert {"crs", "progress"}.isdisjoint(one.options(action))
+
+
+def test_formats_by_name_or_suffix():
+    assert find_format("raster") is find_format(".TIF") is find_format("tiff")
+    assert find_format("vtu").name == "vtk"
+
+
+MINE = Format(
+    name="mine",
+    description="A format of a plug-in",
+    suffixes=(".mine",),
+    read=f"{__name__}:read_mine",
+    sniff=lambda head: head.startswith(b"MINE"),
+)
+
+
+def read_mine(path, *, crs=None, shift=0.0):
+    return ts.Survey(points=np.full((1, 3), shift), crs=crs, source=path.name)
+
+
+@pytest.fixture
+def plug_in(monkeypatch):
+    """Return a function that makes objects of this module the installed plug-ins."""
+
+    def install(**objects):
+        entries = []
+        for name, one in objects.items():
+            monkeypatch.setattr(f"{__name__}.plugged_{name}", one, raising=False)
+            entries.append(EntryPoint(name, f"{__name__}:plugged_{name}", "tinsmith.formats"))
+        monkeypatch.setattr(formats, "entry_points", lambda group: entries)
+        known_formats.cache_clear()
+
+    yield install
+    known_formats.cache_clear()
+
+
+def test_plug_in_reads_its_files(plug_in, tmp_path):
+    plug_in(mine=MINE)
+    (tmp_path / "a.csv").write_bytes(b"MINE")
+    survey = read(tmp_path / "a.csv", shift=2.5, crs="epsg:32616")
+    assert survey.points.tolist() == [[2.5, 2.5, 2.5]]
+    assert survey.crs == "EPSG:32616"
+    assert find_format("mine").options("read") == ("shift",)
+
+
+@pytest.mark.parametrize(
+    "faulty", [3, Format(name="raster", description="Twice", suffixes=(".tif",))]
+)
+def test_faulty_plug_ins_are_named(plug_in, faulty):
+    plug_in(broken=faulty)
+    assert "broken" in fault(FormatError, known_formats)
+
+
+def test_plug_in_that_cannot_be_loaded(monkeypatch):
+    entry = EntryPoint("gone", "no_such_module:thing", "tinsmith.formats")
+    monkeypatch.setattr(formats, "entry_points", lambda group: [entry])
+    known_formats.cache_clear()
+    assert "gone" in fault(FormatError, known_formats)
+    known_formats.cache_clear()
+
+
+# ------------------------------------------------------------------ whole files or none
+
+
+def test_file_appears_whole(tmp_path):
+    path = tmp_path / "a.txt"
+    with replacing(path, binary=False) as file:
+        file.write("höhe\n")
+        assert not path.exists()
+    assert path.read_bytes() == "höhe\n".encode()
+    with replacing(path) as file:
+        file.write(b"\x00\x01")
+    assert path.read_bytes() == b"\x00\x01"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.parametrize("error", [RuntimeError, KeyboardInterrupt, OSError])
+def test_failure_leaves_the_old_file(tmp_path, error):
+    path = tmp_path / "a.txt"
+    path.write_text("old")
+
+    def fail_half_way():
+        with replacing(path) as file:
+            file.write(b"new")
+            raise error
+
+    with pytest.raises(WriteError if error is OSError else error):
+        fail_half_way()
+    assert path.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_full_disk_is_a_sentence(tmp_path):
+    full = Path("/dev/full")
+    if not full.exists():
+        pytest.skip("needs a device that is always full")
+
+    def write_to_full():
+        with replacing_path(tmp_path / "a.txt") as beside:
+            beside.unlink()
+            beside.symlink_to(full)
+            with beside.open("w") as file:
+                file.write("x")
+
+    assert "No space left" in fault(WriteError, write_to_full)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_places_that_cannot_be_written(tmp_path, monkeypatch):
+    def attempt(path):
+        with replacing(path):
+            pass
+
+    assert "no folder" in fault(WriteError, lambda: attempt(tmp_path / "none" / "a.txt"))
+    assert "folder" in fault(WriteError, lambda: attempt(tmp_path))
+    assert "device" in fault(WriteError, lambda: attempt(Path(os.devnull)))
+    assert stat.S_ISCHR(Path(os.devnull).stat().st_mode)
+    protected = tmp_path / "protected.txt"
+    protected.write_text("old")
+    monkeypatch.setattr(os, "access", lambda *_: False)
+    assert "read-only" in fault(WriteError, lambda: attempt(protected))
+    assert protected.read_text() == "old"
+
+
+def test_link_stays_and_its_target_is_replaced(tmp_path):
+    target, link = tmp_path / "target.txt", tmp_path / "link.txt"
+    target.write_text("old")
+    link.symlink_to(target)
+    with replacing(link) as file:
+        file.write(b"new")
+    assert link.is_symlink()
+    assert target.read_text() == "new"
+
+
+def test_permissions_are_kept_or_those_of_a_new_file(tmp_path):
+    path, plain = tmp_path / "a.txt", tmp_path / "b.txt"
+    path.write_text("old")
+    path.chmod(0o640)
+    plain.touch()
+    with replacing(path):
+        pass
+    assert stat.S_IMODE(path.stat().st_mode) == 0o640
+    with replacing(tmp_path / "c.txt"):
+        pass
+    assert (tmp_path / "c.txt").stat().st_mode == plain.stat().st_mode
+
+
+def test_file_beside_has_the_same_suffix(tmp_path):
+    with replacing_path(tmp_path / ("n" * 240 + ".vtp")) as beside:
+        assert beside.suffix == ".vtp"
+        assert beside.parent == tmp_path

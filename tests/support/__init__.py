@@ -1,0 +1,1 @@
+"""What tests share: oracles, data, and functions that children are asked for."""

@@ -1,0 +1,326 @@
+"""Annotations measured: what is drawn is as long, as high and turned as the words say."""
+
+from __future__ import annotations
+
+import importlib
+import math
+
+import numpy as np
+import pytest
+
+from tinsmith import triangulate
+from tinsmith.terrain.preview.annotations import (
+    INK,
+    PAPER,
+    Caption,
+    Sheet,
+    annotate,
+    scale_bar_length,
+)
+from tinsmith.terrain.preview.camera import VIEWS, View, aim, ground_axes, pixels_per_unit
+from tinsmith.terrain.preview.overlay import Overlay
+from tinsmith.terrain.preview.scene import add_lights, scene_points
+from tinsmith.terrain.preview.tints import tints
+from tinsmith.terrain.units import METRE, ground_of
+from tinsmith.tin import Bounds
+
+pv = pytest.importorskip("pyvista")
+
+SHEET = Sheet(1400.0, 900.0)
+EXTENT = 500.0
+
+
+class Recorder:
+    """An overlay that draws nothing and keeps all that it was asked for."""
+
+    def __init__(self):
+        self.rectangles, self.polygons, self.lines, self.texts = [], [], [], []
+
+    def clear(self):
+        self.__init__()
+
+    def rectangle(self, corner, size, color):
+        self.rectangles.append((*corner, *size, tuple(color)))
+
+    def polygon(self, corners, color):
+        self.polygons.append((np.array(corners, float), tuple(color)))
+
+    def line(self, places, color, *, width=1.0):
+        self.lines.append((np.array(places, float), tuple(color)))
+
+    def text(self, place, words, color, *, size, bold=False, align="left"):
+        self.texts.append((words, *place, align))
+
+    def text_width(self, words, *, size, bold=False):
+        return 0.6 * size * len(words)
+
+    def place_of(self, words):
+        (found,) = [(x, y) for said, x, y, _ in self.texts if said == words]
+        return np.array(found)
+
+
+def annotated(view, *, extent=EXTENT, elevations=(312.4, 398.6), exaggeration=2.0):
+    """The annotations of a view of a square, and its camera."""
+    camera, overlay = pv.Camera(), Recorder()
+    square = np.array([[x, y, 0.0] for x in (0, extent) for y in (0, extent)])
+    aim(camera, square, view=view, frame=SHEET.frame, size=(SHEET.width, SHEET.height))
+    caption = Caption("Title", "Subtitle", exaggeration, elevations, "m", METRE)
+    annotate(overlay, SHEET, caption, camera)
+    return overlay, camera
+
+
+def tinsmith_hill(crs):
+    axis = np.linspace(0.0, 100.0, 11)
+    x, y = (part.ravel() for part in np.meshgrid(axis, axis))
+    return triangulate(np.column_stack([x, y, 300 + 20 * np.sin(x / 30) * y / 100]), crs=crs)
+
+
+# ------------------------------------------------------------------ exaggeration
+
+
+@pytest.mark.parametrize("factor", [1.0, 2.5, 5.0, 100.0])
+@pytest.mark.parametrize("crs", ["EPSG:32616", "EPSG:2264+5703"])
+def test_elevations_are_drawn_with_the_exaggeration(crs, factor):
+    tin = tinsmith_hill(crs)
+    ground = ground_of(tin)
+    plain, drawn = scene_points(tin, ground, 1.0), scene_points(tin, ground, factor)
+    np.testing.assert_array_equal(drawn[:, :2], plain[:, :2])
+    np.testing.assert_allclose(np.ptp(drawn[:, 2]), factor * np.ptp(plain[:, 2]), rtol=1e-12)
+    assert np.ptp(drawn[:, 2]) == pytest.approx(
+        np.ptp(tin.points[:, 2]) * ground.scale[2] * factor, rel=1e-12
+    )
+    order = np.argsort(tin.points[:, 2], kind="stable")
+    assert (np.diff(drawn[order, 2]) >= 0).all()
+
+
+@pytest.mark.parametrize("factor", [1.0, 5.0])
+def test_the_caption_states_the_exaggeration_that_is_drawn(factor):
+    overlay, _ = annotated(View(200.0, 35.0), exaggeration=factor)
+    (words,) = [said for said, *_ in overlay.texts if "exaggeration" in said]
+    assert words.startswith(f"Vertical exaggeration {factor:g}\N{MULTIPLICATION SIGN}")
+    assert words.endswith("(true to scale)") == (factor == 1)
+
+
+# -------------------------------------------------------------------- scale bar
+
+
+@pytest.mark.parametrize("extent", [0.7, 37.0, 500.0, 8_300.0, 120_000.0])
+def test_the_scale_bar_is_as_long_as_it_says(extent):
+    overlay, camera = annotated(VIEWS["top"], extent=extent)
+    pixels = pixels_per_unit(camera, SHEET.height)
+    length, shown, symbol = scale_bar_length(METRE, pixels)
+    parts = [r for r in overlay.rectangles if r[3] == 7.0]
+    assert [color for *_, color in parts] == [INK, PAPER, INK, PAPER]
+    left = parts[0][0]
+    for k, (x, _, width, _, _) in enumerate(parts):
+        assert x == pytest.approx(left + k * length * pixels / 4)
+        assert width == pytest.approx(length * pixels / 4)
+    (outline,) = [p for p, _ in overlay.lines if len(p) == 5 and np.ptp(p[:, 1]) == 7.0]
+    assert np.ptp(outline[:, 0]) == pytest.approx(length * pixels)
+    assert outline[:, 0].min() == pytest.approx(left)
+    assert 0.4 * 260 <= length * pixels <= 260
+    words = f"{shown:,.12g}"
+    assert overlay.place_of(words)[0] == pytest.approx(left + length * pixels)
+    assert overlay.place_of("0")[0] == pytest.approx(left)
+    assert overlay.place_of(symbol)[0] > left + length * pixels
+
+
+@pytest.mark.parametrize(
+    ("length", "expected"),
+    [(1000, (1000, 1, "km")), (500, (500, 500, "m")), (2000, (2000, 2, "km"))],
+)
+def test_kilometres_begin_at_one(length, expected):
+    assert scale_bar_length(METRE, 259.9 / length) == expected
+
+
+# ------------------------------------------------------------------ north arrow
+
+
+@pytest.mark.parametrize("view", [*VIEWS.values(), View(90.0, 90.0), View(300.0, 20.0)])
+def test_needle_and_letter_lie_to_the_north(view):
+    overlay, camera = annotated(view)
+    axes = ground_axes(camera)
+    (left, dark), (right, light) = overlay.polygons
+    assert (dark, light) == (INK, PAPER)
+    circle = max((p for p, _ in overlay.lines), key=len)
+    center = (circle.max(axis=0) + circle.min(axis=0)) / 2
+    np.testing.assert_allclose(circle[0], circle[-1], atol=1e-9)  # once around
+    reach = np.hypot(*((circle - center) @ np.linalg.pinv(axes)).T)
+    np.testing.assert_allclose(reach, reach[0], rtol=1e-6)
+    assert np.abs(np.diff(circle, axis=0)).max() < 0.14 * np.abs(circle - center).max()
+    tip = left[0]
+    np.testing.assert_array_equal(tip, right[0])
+    np.testing.assert_allclose(tip - center, 1.25 * 32.0 * axes[1], atol=1e-6)
+    letter = overlay.place_of("N") - center
+    letter[1] += 6.0
+    assert letter @ axes[1] > (tip - center) @ axes[1]
+    assert letter[0] * axes[1][1] - letter[1] * axes[1][0] == pytest.approx(0.0, abs=1e-6)
+    west = left[1] - center
+    assert west @ np.linalg.pinv(axes)[:, 0] < 0 < (right[2] - center) @ np.linalg.pinv(axes)[:, 0]
+    (x, y), (other_x, other_y), notch = (
+        (place - center) @ np.linalg.pinv(axes) for place in (left[1], right[2], left[2])
+    )
+    assert (other_x, other_y) == pytest.approx((-x, y), abs=1e-6)  # both halves alike
+    assert y < notch[1] < 0
+
+
+def test_north_is_up_on_a_map():
+    overlay, _ = annotated(VIEWS["top"])
+    tip = overlay.polygons[0][0][0]
+    assert overlay.place_of("N")[1] + 6.0 > tip[1] > overlay.polygons[0][0][1][1]
+
+
+# ----------------------------------------------------------------------- legend
+
+
+@pytest.mark.parametrize("elevations", [(312.4, 398.6), (-20.0, 5.0), (0.01, 0.09)])
+def test_the_legend_rises_from_left_to_right(elevations):
+    overlay, _ = annotated(VIEWS["top"], elevations=elevations)
+    low, high = elevations
+    boxes = [r for r in overlay.rectangles if r[3] == 14.0]
+    assert [color for *_, color in boxes] == [tuple(c) for c in tints(100).tolist()]
+    assert (np.diff([x for x, *_ in boxes]) > 0).all()
+    left = boxes[0][0]
+    width = boxes[-1][0] - left + boxes[1][0] - left
+    ticks = sorted((x, words) for words, x, y, align in overlay.texts if y == 62.0 - 19.0)
+    assert len(ticks) >= 3
+    for x, words in ticks:
+        value = float(words.replace(",", "").replace("\N{MINUS SIGN}", "-"))
+        assert left + width * (value - low) / (high - low) == pytest.approx(x, abs=width * 0.01)
+    assert ticks[0][0] == pytest.approx(left)
+    assert ticks[-1][0] == pytest.approx(left + width)
+    marks = {p[0][0] for p, _ in overlay.lines if len(p) == 2 and p[0][0] == p[1][0]}
+    assert {x for x, _ in ticks} <= marks
+
+
+def test_the_legend_of_level_ground_has_one_number():
+    overlay, _ = annotated(VIEWS["top"], elevations=(7.0, 7.0))
+    ticks = [words for words, _, y, _ in overlay.texts if y == 62.0 - 19.0]
+    assert len(ticks) == 1
+    assert math.isclose(float(ticks[0]), 7.0)
+    assert overlay.place_of("Elevation (m)")[1] > 62.0
+
+
+# -------------------------------------------------------------------- the sheet
+
+
+def test_the_margins_keep_the_terrain_from_the_words():
+    overlay, _ = annotated(VIEWS["top"])
+    frame = SHEET.frame
+    assert isinstance(frame, Bounds)
+    below, above = overlay.rectangles[:2]
+    assert below[:2] == (0.0, 0.0)
+    assert below[2] == above[2] == SHEET.width
+    assert frame.ymin - 20 < below[3] <= frame.ymin
+    assert frame.ymax <= above[1] < frame.ymax + 20
+    assert above[1] + above[3] >= SHEET.height
+    assert overlay.place_of("Title")[1] > overlay.place_of("Subtitle")[1] > above[1]
+
+
+def test_a_title_too_long_for_the_sheet_is_cut_and_shows_it():
+    overlay = Recorder()
+    camera = pv.Camera()
+    aim(camera, np.eye(3), view=VIEWS["top"], frame=SHEET.frame, size=(1400, 900))
+    caption = Caption("word " * 60, "short", 1.0, (0.0, 1.0), "m", METRE)
+    annotate(overlay, SHEET, caption, camera)
+    (title,) = [said for said, *_ in overlay.texts if said.startswith("word")]
+    assert title.endswith("...")
+    assert 0.8 * 1312 < overlay.text_width(title, size=30.0) <= 1312
+
+
+@pytest.mark.parametrize("length", [100, 101])
+def test_a_title_is_cut_to_the_last_letter_that_fits(length):
+    overlay = Recorder()
+    camera = pv.Camera()
+    aim(camera, np.eye(3), view=VIEWS["top"], frame=SHEET.frame, size=(1400, 900))
+    annotate(overlay, SHEET, Caption("x" * length, "short", 1.0, (0.0, 1.0), "m", METRE), camera)
+    (title,) = [said for said, *_ in overlay.texts if said.startswith("x")]
+    letter = overlay.text_width("x", size=30.0)
+    assert 1312 - letter < overlay.text_width(title, size=30.0) <= 1312
+
+
+# ----------------------------------------------------------------------- lights
+
+
+def test_the_sun_stands_in_the_northwest_and_the_sky_around():
+    plotter = pv.Plotter(off_screen=True)
+    add_lights(plotter)
+    found = []
+    for light in plotter.renderer.lights:
+        east, north, up = light.position
+        assert math.hypot(east, north, up) == pytest.approx(1.0)
+        assert light.focal_point == (0.0, 0.0, 0.0)
+        azimuth = math.degrees(math.atan2(east, north)) % 360 if up < 1 - 1e-9 else 0.0
+        found.append((azimuth, math.degrees(math.asin(min(1.0, up))), light.intensity))
+    found.sort(key=lambda one: -one[2])
+    assert len(found) == 4
+    assert found[0] == pytest.approx((315.0, 45.0, 0.58))
+    assert all(height >= 45.0 - 1e-9 for _, height, _ in found)
+    assert all(strength <= 0.10 for *_, strength in found[1:])
+    assert max(height for _, height, _ in found) == pytest.approx(90.0, abs=1e-4)
+    assert {round(azimuth) for azimuth, *_ in found[1:]} == {0, 45, 225}
+
+
+def test_the_settings_of_vtk_come_back_after_drawing():
+    from vtkmodules.vtkRenderingFreeType import vtkMathTextFreeTypeTextRenderer
+
+    drawing = importlib.import_module("tinsmith.terrain.preview.picture")
+    words = vtkMathTextFreeTypeTextRenderer.GetInstance()
+    before = words.GetDefaultBackend()
+    try:
+        for backend in (words.MathText, words.FreeType):
+            words.SetDefaultBackend(backend)
+            with drawing._plain_vtk():
+                assert words.GetDefaultBackend() == words.FreeType
+            assert words.GetDefaultBackend() == backend
+    finally:
+        words.SetDefaultBackend(before)
+
+
+@pytest.mark.parametrize("factor", [1.0, 2.0])
+def test_what_an_overlay_draws_is_where_it_was_asked_for(factor, can_draw):
+    """In design pixels from the lower left corner, times the factor."""
+    red, green, blue, black = (255, 0, 0), (0, 255, 0), (0, 0, 255), (0, 0, 0)
+    plotter = pv.Plotter(off_screen=True, window_size=[int(200 * factor), int(120 * factor)])
+    plotter.background_color = "white"
+    plotter.disable_anti_aliasing()
+    overlay = Overlay(plotter.renderer, factor=factor)
+    overlay.rectangle((20, 10), (60, 30), red)
+    overlay.polygon([(100, 10), (140, 10), (100, 50)], green)
+    overlay.line([(20, 80), (80, 80), (80, 110)], blue, width=3.0)
+    for align in ("left", "center", "right"):
+        overlay.text(
+            (150, {"left": 20, "center": 60, "right": 95}[align]),
+            "HHH",
+            black,
+            size=16,
+            align=align,
+        )
+    width = overlay.text_width("HHH", size=16)
+    shot = plotter.screenshot(return_img=True)[::-1].astype(int)
+
+    def box_of(color):
+        rows, columns = np.nonzero(np.abs(shot - color).sum(axis=2) < 120)
+        corners = columns.min(), rows.min(), columns.max() + 1, rows.max() + 1
+        return np.array(corners) / factor, len(rows) / factor**2
+
+    box, area = box_of(red)
+    assert box == pytest.approx([20, 10, 80, 40], abs=1.1)
+    assert area == pytest.approx(60 * 30, rel=0.06)
+    box, area = box_of(green)
+    assert box == pytest.approx([100, 10, 140, 50], abs=1.6)
+    assert area == pytest.approx(40 * 40 / 2, rel=0.08)
+    box, area = box_of(blue)
+    assert box == pytest.approx([20, 79, 81, 110], abs=2.1)
+    assert area == pytest.approx(3 * 90, rel=0.15)
+    dark = np.abs(shot - black).sum(axis=2) < 120
+    for align, low in (("left", 20), ("center", 60), ("right", 95)):
+        strip = dark[int((low - 4) * factor) : int((low + 20) * factor)]
+        columns = np.flatnonzero(strip.any(axis=0)) / factor
+        middle = 150 + {"left": width / 2, "center": 0, "right": -width / 2}[align]
+        assert (columns.min() + columns.max()) / 2 == pytest.approx(middle, abs=2.5)
+        assert 0.75 * width < np.ptp(columns) < width + 2
+    overlay.clear()
+    plotter.render()
+    assert (plotter.screenshot(return_img=True) == 255).all()
+    plotter.close()

@@ -1,0 +1,324 @@
+"""Points and lines become the constrained Delaunay triangulation of their convex hull.
+
+The main path: rows at one place become one vertex, lines are cut where they meet, the points are
+triangulated, and the steps of the lines are forced into the triangulation.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+
+import numpy as np
+
+from .. import _kernel
+from ..constraints.clipping import Surface, edge_keys, in_rings
+from ..constraints.conforming import conform
+from ..constraints.constraint_set import ABOVE_ALL, BELOW_ALL, LineSet
+from ..constraints.noding import Chains, Noded, node, untouched
+from ..constraints.polylines import Pieces
+from ..constraints.pslg import force, mesh_of, mesh_of_growth
+from ..report import Overruled
+from ..validation.points import require_three
+from .duplicates import DuplicatePolicy, merge_rows
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["CrossingPolicy", "Draft", "LineOptions", "draft"]
+
+CrossingPolicy = Literal["split", "error"]
+
+
+class LineOptions(NamedTuple):
+    """How rows are merged and lines cut."""
+
+    duplicates: DuplicatePolicy = "mean"
+    snap: float = 0.0
+    crossing: CrossingPolicy = "split"
+    threads: int = 1
+
+
+class Draft(NamedTuple):
+    """The triangulated hull with its lines.
+
+    Attributes
+    ----------
+    surface : Surface
+    vertex_of : (n,) int32 array
+        The vertex of each row of points, -1 for rows in water.
+    line_vertices : (k,) int32 array
+        Likewise of each given vertex of the lines.
+    pieces : Pieces
+        What is left of the lines, water excluded.
+    merges : dict
+        Fields of the report about merged rows.
+    noded : Noded
+        Where lines met; its vertices are numbered as ``number_of`` says.
+    overruled : Overruled
+        Likewise.
+    number_of : (v,) int32 array
+        The vertex of the surface for each vertex before water took its share, -1 for none.
+    """
+
+    surface: Surface
+    vertex_of: NDArray[np.int32]
+    line_vertices: NDArray[np.int32]
+    pieces: Pieces
+    merges: dict[str, Any]
+    noded: Noded
+    overruled: Overruled
+    number_of: NDArray[np.int32]
+
+
+class _Merged(NamedTuple):
+    points: NDArray[np.float64]
+    vertex_of: NDArray[np.int32]
+    chains: Chains
+    growth: _kernel.Growth
+    merges: dict[str, Any]
+    overruled: Overruled
+
+
+def draft(
+    points: NDArray[np.float64],
+    rows: NDArray[np.int64],
+    lines: LineSet,
+    options: LineOptions,
+    *,
+    conforming: bool = False,
+) -> Draft:
+    """Triangulate rows of points, and lines; all lines have heights.
+
+    Raises
+    ------
+    PointsError
+        If there is no triangle, or rows coincide that must not.
+    LinesError
+        If lines cross that must not.
+    """
+    xyz = points[rows]
+    merged = _merge(xyz, rows, lines, options)
+    mesh, noded = mesh_of_growth(merged.points, merged.growth), untouched(merged.chains)
+    is_simple = options.snap == 0.0 and not (lines.priorities == ABOVE_ALL).any()
+    is_forced = is_simple and _is_forced(mesh, _as_pieces(noded.chains))
+    if not is_forced:
+        noded = _noded(merged, lines, options)
+        if is_simple:  # edges were fixed in vain
+            mesh = mesh_of_growth(merged.points, merged.growth)
+        if len(noded.new_points):
+            mesh.insert(np.ascontiguousarray(noded.new_points[:, :2]))
+    points = np.concatenate([merged.points, noded.new_points])
+    pieces = _as_pieces(noded.chains)
+    overruled = _passed_by(points, noded, merged.overruled)
+    pieces, wet, overruled = _flooded(points, pieces, lines, overruled)
+    if not is_forced:
+        mesh.remove(np.flatnonzero(wet).astype(np.int32))
+        force(mesh, pieces)
+    number_of = np.where(wet, -1, np.cumsum(~wet) - 1).astype(np.int32)
+    points, pieces = points[~wet], pieces.renumbered(number_of)
+    if conforming:
+        if wet.any():  # numbers without gaps
+            mesh = mesh_of(points, pieces, threads=options.threads)
+        mesh, points, pieces = conform(
+            mesh, points, pieces, lines.priorities, threads=options.threads
+        )
+    triangles, neighbors, constrained = mesh.arrays(options.threads)
+    return Draft(
+        Surface(points, triangles, neighbors, constrained),
+        number_of[merged.vertex_of[: len(xyz)]],
+        number_of[merged.vertex_of[len(xyz) :]],
+        pieces,
+        merged.merges,
+        noded,
+        overruled,
+        number_of,
+    )
+
+
+def _is_forced(mesh: _kernel.Mesh, pieces: Pieces) -> bool:
+    """Fix the steps of lines as they are given; tell whether nothing was in the way of any."""
+    steps, _ = pieces.steps()
+    passed, blocked = mesh.force(steps)
+    return not (len(passed) or len(blocked))
+
+
+def _noded(merged: _Merged, lines: LineSet, options: LineOptions) -> Noded:
+    return node(
+        np.ascontiguousarray(merged.points[:, :2]),
+        merged.chains,
+        lines.priorities,
+        snap=options.snap,
+        crossing=options.crossing,
+        threads=options.threads,
+        names=lines.labels(),
+    )
+
+
+def _as_pieces(chains: Chains) -> Pieces:
+    lines = np.arange(len(chains.offsets) - 1, dtype=np.int32)
+    return Pieces(chains.vertices, chains.offsets, lines)
+
+
+# ------------------------------------------------------------------------- rows
+
+
+def _merge(
+    xyz: NDArray[np.float64], rows_of: NDArray[np.int64], lines: LineSet, options: LineOptions
+) -> _Merged:
+    """Make one vertex of all rows at one place; a line's height counts more than a point's."""
+    n = len(xyz)
+    require_three(n + len(lines.xy))
+    rows = np.concatenate([xyz, np.column_stack([lines.xy, np.nan_to_num(lines.heights)])])
+    place = _kernel.snap(rows, options.snap) if options.snap > 0 else None
+    own = np.arange(len(rows), dtype=np.int32)
+    growth = _kernel.grow(rows if place is None else rows[place == own], threads=options.threads)
+    place = growth.kept_row if place is None else place
+    place = own if place is None else place
+    is_kept = place == own
+    vertex_of = (np.cumsum(is_kept, dtype=np.int32) - np.int32(1))[place]
+    points = rows[is_kept]
+    merges = _merge_points(xyz, rows_of, vertex_of[:n], points, options.duplicates)
+    overruled = _line_heights(points, vertex_of, n, lines)
+    chains = Chains(vertex_of[n:], lines.offsets.astype(np.int32), lines.heights)
+    return _Merged(points, vertex_of, chains, growth, merges, overruled)
+
+
+def _merge_points(
+    xyz: NDArray[np.float64],
+    rows_of: NDArray[np.int64],
+    vertex_of: NDArray[np.int32],
+    points: NDArray[np.float64],
+    policy: DuplicatePolicy,
+) -> dict[str, Any]:
+    """Give vertices the heights of their points; return the account of merged rows."""
+    n = len(xyz)
+    first = np.full(len(points), n, np.int32)
+    np.minimum.at(first, vertex_of, np.arange(n, dtype=np.int32))
+    merged = merge_rows(xyz, first[vertex_of], policy, rows_of)
+    of_vertex = np.flatnonzero(first < n)
+    of_vertex = of_vertex[np.argsort(first[of_vertex], kind="stable")].astype(np.int32)
+    points[:, 2] = np.nan
+    points[of_vertex, 2] = merged.points[:, 2]
+    account = dict(merged.account)
+    if account:
+        account["merged_vertices"] = of_vertex[account["merged_vertices"]]
+        moved = xyz[account["merged_rows"], :2] - points[vertex_of[account["merged_rows"]], :2]
+        account["merged_shifts"] = np.hypot(*moved.T)
+        account["merged_rows"] = rows_of[account["merged_rows"]].astype(np.int32)
+    return account
+
+
+def _line_heights(
+    points: NDArray[np.float64], vertex_of: NDArray[np.int32], n: int, lines: LineSet
+) -> Overruled:
+    """Give vertices on lines the height of the line that counts most there, its lowest."""
+    vertices, line_of = vertex_of[n:], lines.line_of
+    priority = lines.priorities[line_of]
+    rank = np.where(priority == BELOW_ALL, 0, line_of)  # parts of draped lines have no order
+    order = np.lexsort((line_of, lines.heights, rank, -priority, vertices))
+    is_first = np.append(True, np.diff(vertices[order]) > 0)[: len(order)]
+    best = order[is_first]
+    before = points[vertices[best], 2].copy()
+    counts = (priority[best] > BELOW_ALL) | np.isnan(before)
+    points[vertices[best[counts]], 2] = lines.heights[best[counts]]
+    taken = points[vertices[best], 2]
+    gave_way = np.flatnonzero(~np.isnan(before) & (before != taken))
+    other = np.flatnonzero(lines.heights != points[vertices, 2])
+    return Overruled(
+        np.concatenate([vertices[best[gave_way]], vertices[other]]),
+        np.concatenate([np.full(len(gave_way), -1), line_of[other]]).astype(np.int32),
+        np.concatenate([before[gave_way], lines.heights[other]]),
+        np.concatenate([taken[gave_way], points[vertices[other], 2]]),
+    )
+
+
+def _passed_by(points: NDArray[np.float64], noded: Noded, overruled: Overruled) -> Overruled:
+    """Add the heights of lines that run through a vertex of others, where they differ."""
+    met = noded.touches
+    taken = points[met.vertex, 2]
+    rounding = 8 * np.spacing(np.maximum(np.abs(taken), np.abs(met.height)))
+    other = np.abs(met.height - taken) > rounding
+    return Overruled(
+        np.append(overruled.vertices, met.vertex[other]),
+        np.append(overruled.lines, met.line[other]).astype(np.int32),
+        np.append(overruled.heights, met.height[other]),
+        np.append(overruled.taken, taken[other]),
+    )
+
+
+# ------------------------------------------------------------------------ water
+
+
+def _flooded(
+    points: NDArray[np.float64], pieces: Pieces, lines: LineSet, overruled: Overruled
+) -> tuple[Pieces, NDArray[np.bool_], Overruled]:
+    """Put shores at the height of their water, and leave out what is in it.
+
+    Parameters
+    ----------
+    points : (n, 3) float64 array
+        Changed in place.
+
+    Returns
+    -------
+    pieces : Pieces
+        Without the steps in water, but for those of boundaries and holes, which lie on it.
+    wet : (n,) bool array
+        Which vertices are in water, and go.
+    overruled : Overruled
+        With the heights that gave way to the water's.
+    """
+    wet = np.zeros(len(points), np.bool_)
+    if not (lines.priorities == ABOVE_ALL).any():
+        return pieces, wet, overruled
+    is_ring = np.array([kind in ("boundary", "hole") for kind in lines.kinds], np.bool_)
+    given = pieces
+    for line in np.flatnonzero(lines.priorities == ABOVE_ALL).tolist():
+        shore = given.vertices[given.offsets[line] : given.offsets[line + 1]]
+        inside = _inside(points[:, :2], points[shore, :2])
+        steps, line_of = pieces.steps()
+        middle = points[steps[:, 0], :2] / 2 + points[steps[:, 1], :2] / 2
+        drowned = inside[steps].any(axis=1) | _inside(middle, points[shore, :2])
+        stays = (line_of == line) | is_ring[line_of] | _runs_along(steps, shore, len(points))
+        held = np.unique(steps[drowned & is_ring[line_of]])
+        level = float(lines.heights[lines.offsets[line]])
+        overruled = _set_level(points, np.union1d(shore, held), level, overruled)
+        pieces = pieces.kept(~drowned | stays)
+        inside[held] = False
+        wet |= inside
+    steps, _ = pieces.steps()
+    is_dry = np.asarray(~wet[steps].any(axis=1), np.bool_)
+    return pieces.kept(is_dry), wet, overruled
+
+
+def _set_level(
+    points: NDArray[np.float64], vertices: NDArray[np.int32], level: float, overruled: Overruled
+) -> Overruled:
+    wrong = vertices[points[vertices, 2] != level]
+    before = points[wrong, 2]
+    points[wrong, 2] = level
+    return Overruled(
+        np.append(overruled.vertices, wrong).astype(np.int32),
+        np.append(overruled.lines, np.full(len(wrong), -1, np.int32)),
+        np.append(overruled.heights, before),
+        np.append(overruled.taken, np.full(len(wrong), level)),
+    )
+
+
+def _runs_along(
+    steps: NDArray[np.int32], chain: NDArray[np.int32], n_vertices: int
+) -> NDArray[np.bool_]:
+    own = np.stack([chain[:-1], chain[1:]], axis=1)
+    return np.isin(edge_keys(steps, n_vertices), edge_keys(own, n_vertices))
+
+
+def _inside(xy: NDArray[np.float64], ring: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Tell which places lie strictly inside a ring whose first corner is repeated."""
+    if len(ring) < 4:
+        return np.zeros(len(xy), np.bool_)
+    low, high = ring.min(axis=0), ring.max(axis=0)
+    near = np.flatnonzero(((xy > low) & (xy < high)).all(axis=1))
+    inside = np.zeros(len(xy), np.bool_)
+    if len(near):
+        inside[near] = in_rings(xy[near], [ring[:-1]]) > 0
+    return inside

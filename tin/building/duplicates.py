@@ -1,0 +1,141 @@
+"""Rows at one place become one vertex, and every one of them is accounted for."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+
+import numpy as np
+
+from ...errors import PointsError
+from ..validation.points import SHOWN
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["DuplicatePolicy", "Merged", "merge_rows"]
+
+DuplicatePolicy = Literal["mean", "first", "last", "lowest", "highest", "error"]
+
+
+class Merged(NamedTuple):
+    """Vertices, the vertex of every row, and the report's fields about merges."""
+
+    points: NDArray[np.float64]
+    vertex_of: NDArray[np.int32]
+    account: dict[str, Any]
+
+
+def merge_rows(
+    xyz: NDArray[np.float64],
+    kept_row: NDArray[np.int32] | None,
+    policy: DuplicatePolicy,
+    rows_of: NDArray[np.int64] | None = None,
+) -> Merged:
+    """Merge rows that share a kept row.
+
+    Parameters
+    ----------
+    xyz : (n, 3) float64 array
+    kept_row : (n,) int32 array or None
+        For each row the row whose place it takes (its own for a kept one); None if all are kept.
+    policy : DuplicatePolicy
+        How the elevation of a merged vertex is chosen. ``"mean"`` adds in order of height, so
+        that it does not depend on the order of the rows.
+    rows_of : (n,) int array, optional
+        Their numbers in the caller's input, for the sentence of an error.
+
+    Raises
+    ------
+    PointsError
+        If rows are merged and the policy is ``"error"``.
+    """
+    n = len(xyz)
+    if kept_row is None:
+        return Merged(xyz, np.arange(n, dtype=np.int32), {})
+    is_kept = kept_row == np.arange(n, dtype=np.int32)
+    vertex_at = np.cumsum(is_kept, dtype=np.int32) - np.int32(1)
+    vertex_of = vertex_at[kept_row]
+    rows, offsets, vertices = _groups(vertex_of, kept_row, is_kept)
+    if policy == "error" and len(rows):
+        _refuse(xyz, rows, offsets, rows_of)
+    points = xyz[is_kept]
+    heights = _chosen_heights(xyz[rows, 2], offsets, policy)
+    points[vertices, 2] = heights
+    account = {
+        "merged_vertices": vertices,
+        "merged_offsets": offsets,
+        "merged_rows": rows,
+        "merged_heights": xyz[rows, 2],
+        "merged_shifts": np.hypot(*(xyz[rows, :2] - xyz[kept_row[rows], :2]).T),
+        "vertex_heights": heights,
+    }
+    return Merged(points, vertex_of, account)
+
+
+def _groups(
+    vertex_of: NDArray[np.int32], kept_row: NDArray[np.int32], is_kept: NDArray[np.bool_]
+) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]]:
+    """Return rows of merged vertices, group after group and ascending within, with offsets."""
+    is_shared = np.zeros(len(kept_row), np.bool_)
+    is_shared[kept_row[~is_kept]] = True
+    rows = np.flatnonzero(is_shared[kept_row]).astype(np.int32)
+    rows = rows[np.argsort(vertex_of[rows], kind="stable")]
+    vertices, counts = np.unique(vertex_of[rows], return_counts=True)
+    offsets = np.zeros(len(vertices) + 1, np.int32)
+    np.cumsum(counts, out=offsets[1:])
+    return rows, offsets, vertices
+
+
+def _chosen_heights(
+    heights: NDArray[np.float64], offsets: NDArray[np.int32], policy: DuplicatePolicy
+) -> NDArray[np.float64]:
+    starts, ends = offsets[:-1], offsets[1:]
+    if policy == "first":
+        return heights[starts]
+    if policy == "last":
+        return heights[ends - 1]
+    if policy == "lowest":
+        return np.minimum.reduceat(heights, starts)
+    if policy == "highest":
+        return np.maximum.reduceat(heights, starts)
+    return _mean_heights(heights, starts, ends - starts)
+
+
+def _mean_heights(
+    heights: NDArray[np.float64], starts: NDArray[np.int32], counts: NDArray[np.int32]
+) -> NDArray[np.float64]:
+    """Average what lies above the lowest of each group, all made small enough not to overflow."""
+    group = np.repeat(np.arange(len(counts)), counts)
+    ascending = heights[np.lexsort((heights, group))]
+    halvings = _needed_halvings(heights, counts)
+    ascending = np.ldexp(ascending, -halvings)
+    lowest = ascending[starts]
+    excess = np.add.reduceat(ascending - lowest[group], starts) / counts
+    return np.asarray(np.ldexp(lowest + excess, halvings), np.float64)
+
+
+def _needed_halvings(heights: NDArray[np.float64], counts: NDArray[np.int32]) -> int:
+    """Return how often to halve so that differences and their sums stay finite."""
+    _, size = np.frexp(np.abs(heights).max(initial=0.0))
+    _, most = np.frexp(float(counts.max(initial=1)))
+    return max(0, int(size) + int(most) + 1 - np.finfo(np.float64).maxexp)
+
+
+def _refuse(
+    xyz: NDArray[np.float64],
+    rows: NDArray[np.int32],
+    offsets: NDArray[np.int32],
+    rows_of: NDArray[np.int64] | None,
+) -> None:
+    surplus = len(rows) - (len(offsets) - 1)
+    group = rows[offsets[0] : offsets[1]]
+    numbers = group if rows_of is None else rows_of[group]
+    x, y, _ = xyz[group[0]].tolist()
+    heights = ", ".join(f"{z:g}" for z in xyz[group[:SHOWN], 2])
+    shown = ", ".join(str(row) for row in numbers[:SHOWN])
+    raise PointsError(
+        f"{surplus} of {len(xyz)} rows repeat the place of another "
+        f"(first: rows {shown} at x {x}, y {y} with "
+        f'elevations {heights}): duplicates="error" allows none.',
+        rows=numbers[:SHOWN],
+    )

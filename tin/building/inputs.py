@@ -1,0 +1,254 @@
+"""Recipe: all that a TIN is a function of."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, Literal, get_args
+
+import numpy as np
+
+from ...crs import CRS, Unit, require_one_unit, require_same_unit
+from ...errors import CrsError, LinesError, PointsError
+from .. import _kernel
+from ..constraints.constraint_set import (
+    LineSet,
+    as_sequence,
+    gather_extent,
+    gather_lines,
+    gather_regions,
+    gather_rings,
+    require_length,
+)
+from ..constraints.polygons import starts_with_elevations
+from ..survey import Survey
+from ..validation.options import as_flag, is_finite_number, require_one_of, shown
+from ..validation.points import as_masked_points, require_three
+from ..validation.threads import thread_count
+from .constrained import CrossingPolicy, LineOptions
+from .duplicates import DuplicatePolicy
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from ...crs import CrsLike, UnitLike
+    from ..constraints.breaklines import Breakline, Water
+
+__all__ = ["Recipe", "TrimPolicy", "recipe_of"]
+
+TrimPolicy = Literal["perimeter", "everywhere"]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Recipe:
+    """Points, lines and options, checked: the same recipe gives the same TIN.
+
+    Attributes
+    ----------
+    points : (n, 3) float64 array
+    is_masked : (n,) bool array or None
+        Rows that are left out; None if there are none.
+    lines : LineSet
+    boundary, extent : list of (k, 2) float64 arrays
+        Rings, the first corner not repeated.
+    holes, erase : list of lists of (k, 2) float64 arrays
+        The rings of each region: the outer one, then its islands.
+    max_edge : float
+        Infinity for none.
+    has_rim : bool
+        Whether some of the lines are edges of the rim of existing triangles.
+    """
+
+    points: NDArray[np.float64]
+    is_masked: NDArray[np.bool_] | None
+    lines: LineSet
+    boundary: list[NDArray[np.float64]]
+    extent: list[NDArray[np.float64]]
+    holes: list[list[NDArray[np.float64]]]
+    erase: list[list[NDArray[np.float64]]]
+    max_edge: float
+    trim: TrimPolicy
+    conforming: bool
+    options: LineOptions
+    crs: CRS | None
+    elevation_unit: Unit | None = None
+    has_rim: bool = False
+    skipped: Mapping[str, int] = field(default_factory=dict)
+    notes: Sequence[str] = ()
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether there are only points, all of which count, and all of the hull is the surface."""
+        is_whole = not (self.lines.kinds or self.erase or np.isfinite(self.max_edge))
+        return is_whole and self.is_masked is None
+
+    @property
+    def is_clipped(self) -> bool:
+        """Whether only a part of the hull may be the surface."""
+        has_rings = bool(self.boundary or self.extent or self.holes or self.has_rim)
+        return has_rings or bool(np.isfinite(self.max_edge))
+
+    def with_lines(self, lines: LineSet) -> Recipe:
+        """Return the recipe with other lines, rings among them.
+
+        Raises
+        ------
+        LinesError
+            If all vertices of a line are at one place, or a ring crosses itself.
+        """
+        require_length(lines)
+        _require_simple_rings(lines)
+        if self.has_rim:
+            return replace(self, lines=lines)
+        rings = {kind: _rings_of(lines, kind) for kind in ("boundary", "hole")}
+        corners = iter(rings["hole"])
+        return replace(
+            self,
+            lines=lines,
+            boundary=rings["boundary"][: len(self.boundary)],
+            extent=rings["boundary"][len(self.boundary) :],
+            holes=[[next(corners) for _ in hole] for hole in self.holes],
+        )
+
+
+def _rings_of(lines: LineSet, kind: str) -> list[NDArray[np.float64]]:
+    """Return the rings of a kind, the first corner not repeated."""
+    return [
+        lines.xy[lines.offsets[line] : lines.offsets[line + 1] - 1]
+        for line, own in enumerate(lines.kinds)
+        if own == kind
+    ]
+
+
+def recipe_of(
+    points: Survey | ArrayLike,
+    *,
+    breaklines: Sequence[Breakline | ArrayLike],
+    boundary: Sequence[Any],
+    holes: Sequence[Any],
+    erase: Sequence[Any],
+    water: Sequence[Water],
+    max_edge: float | None,
+    trim: TrimPolicy,
+    crossing: CrossingPolicy,
+    conforming: bool,
+    duplicates: DuplicatePolicy,
+    snap: float,
+    threads: int | None,
+    crs: CrsLike | None,
+    z_unit: UnitLike | None,
+) -> Recipe:
+    """Check everything; lines come on top of the survey's own.
+
+    Raises
+    ------
+    PointsError, LinesError, CrsError, OptionError
+        As :func:`tinsmith.triangulate`.
+    """
+    _require_options(duplicates, snap, trim, crossing, max_edge)
+    survey = points if isinstance(points, Survey) else None
+    own = survey if survey is not None else Survey(points=np.empty((0, 3)))
+    system, unit = _reference(own, CRS.of(crs), Unit.of(z_unit))
+    xyz, is_masked = as_masked_points(
+        points.points if isinstance(points, Survey) else points, threads=threads
+    )
+    outer = [*own.boundary, *as_sequence(boundary, "boundary")]
+    inner = [*own.holes, *as_sequence(holes, "holes")]
+    lines = gather_lines(
+        [*own.breaklines, *as_sequence(breaklines, "breaklines")],
+        outer,
+        inner,
+        [*own.water, *as_sequence(water, "water")],
+    )
+    if not lines.kinds:
+        require_three(len(xyz))
+    _require_simple_rings(lines)
+    rings = gather_rings(outer, "boundary")
+    if own.extent:
+        lines = LineSet.joined([lines, gather_extent(own.extent, len(rings))])
+    return Recipe(
+        points=xyz,
+        is_masked=is_masked,
+        lines=lines,
+        boundary=rings,
+        extent=gather_rings(own.extent, "extent"),
+        holes=gather_regions(inner, "hole"),
+        erase=gather_regions([*own.erase, *as_sequence(erase, "erase")], "erase"),
+        max_edge=np.inf if max_edge is None else float(max_edge),
+        trim=trim,
+        conforming=as_flag("conforming", conforming),
+        options=LineOptions(duplicates, float(snap), crossing, thread_count(threads, len(xyz))),
+        crs=system,
+        elevation_unit=unit,
+        skipped=own.skipped,
+        notes=(*own.notes, *_notes_on_rings(outer, inner)),
+    )
+
+
+def _notes_on_rings(boundary: Sequence[Any], holes: Sequence[Any]) -> list[str]:
+    """Tell where rings close with several elevations."""
+    starts = [*starts_with_elevations(boundary, "boundary"), *starts_with_elevations(holes, "hole")]
+    if not starts:
+        return []
+    label, start = starts[0]
+    x, y, lowest = start[0].tolist()
+    return [
+        f"{len(starts)} ring{'s close' if len(starts) > 1 else ' closes'} with more than one "
+        f"elevation (first: {label} at x {x:.12g}, y {y:.12g}, {lowest:.10g} to "
+        f"{start[-1, 2]:.10g}): the lowest was taken."
+    ]
+
+
+def _reference(own: Survey, crs: CRS | None, unit: Unit | None) -> tuple[CRS | None, Unit | None]:
+    """Return CRS and unit of elevations, which a caller may add to the survey's own, not change."""
+    if crs is not None and own.crs is not None and not _adds_to(own.crs, crs):
+        raise CrsError(
+            f"The survey is in {own.crs.label}, and {crs.label} is another CRS: its points must be "
+            "reprojected first, for example while they are read.",
+            crs=crs,
+        )
+    if own.elevation_unit is not None and unit is not None:
+        require_same_unit(own.elevation_unit, unit, "that of the survey")
+    system = own.crs if crs is None else crs
+    return system, require_one_unit(system, unit or own.elevation_unit)
+
+
+def _adds_to(own: CRS, crs: CRS) -> bool:
+    """Whether a CRS is the same as another, or that with a vertical axis."""
+    return own.is_same(crs) or (own.vertical_unit is None and own.is_same(crs.horizontal))
+
+
+def _require_options(
+    duplicates: str, snap: float, trim: str, crossing: str, max_edge: float | None
+) -> None:
+    for name, value, kind in (
+        ("duplicates", duplicates, DuplicatePolicy),
+        ("trim", trim, TrimPolicy),
+        ("crossing", crossing, CrossingPolicy),
+    ):
+        require_one_of(name, value, get_args(kind))
+    if not (is_finite_number(snap) and snap >= 0):
+        raise PointsError(f"Invalid snap {shown(snap)}: a distance >= 0 in CRS units is needed.")
+    if max_edge is not None and not (is_finite_number(max_edge) and max_edge > 0):
+        raise PointsError(
+            f"Invalid max_edge {shown(max_edge)}: a length > 0 in CRS units is needed."
+        )
+
+
+def _require_simple_rings(lines: LineSet) -> None:
+    for line, kind in enumerate(lines.kinds):
+        if kind in ("hard", "soft") or lines.sources[line] < 0:
+            continue
+        rows = np.arange(lines.offsets[line], lines.offsets[line + 1], dtype=np.int32)
+        corners = np.append(rows[:-1], rows[0]) - rows[0]
+        xy = np.ascontiguousarray(lines.xy[rows[:-1]])
+        segments = np.ascontiguousarray(np.stack([corners[:-1], corners[1:]], axis=1))
+        crossings = _kernel.crossings(xy, segments)
+        if len(crossings):
+            x, y = _kernel.intersections(xy, segments, crossings[:1])[0]
+            label = lines.label(line)
+            raise LinesError(
+                f"{label[0].upper() + label[1:]} crosses itself at {len(crossings)} places "
+                f"(first: x {x:.6g}, y {y:.6g}): a ring must not.",
+                lines=[line],
+            )

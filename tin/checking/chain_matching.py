@@ -1,0 +1,376 @@
+"""Follow the chains of a TIN along the lines that were given, and note what must be proved."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from math import hypot
+from operator import itemgetter
+from typing import TYPE_CHECKING, Literal, NamedTuple, get_args
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ..constraints.breaklines import Lines
+    from ..constraints.constraint_set import LineSet
+
+__all__ = ["UNSEEN_CUTS", "Walk", "distance", "walk_along"]
+
+UNSEEN_CUTS = 16
+"""Cuts that are allowed for in a part of a line that is left out."""
+
+Place = list[float]
+Between = tuple[int, int, int]
+"""Position of a vertex that is none of its line, and the rows of the line's before and after."""
+Passing = Literal["first", "nearest", "last", "beyond"]
+"""Which of successive vertices within ``snap`` became one of the line's: one of the next chain's
+(``"beyond"``) where they end a chain."""
+_PASSINGS: tuple[Passing, ...] = get_args(Passing)
+
+
+class Walk(NamedTuple):
+    """What was met on the way.
+
+    Attributes
+    ----------
+    between : (k, 3) int64 array
+        Vertices that are none of their line, in order: number, and the rows of the line's vertices
+        before and after.
+    gap_rows : list of int
+        Rows of the line's vertices behind which a part is left out.
+    gap_places, gap_lines : lists of places and of int
+        Vertices left out and middles between them, and their lines.
+    end_vertices, end_lines : lists of int
+        Where chains begin or end, but not their line.
+    lost : list of int
+        Lines with a chain that is not found on them.
+    """
+
+    between: NDArray[np.int64]
+    gap_rows: list[int]
+    gap_places: list[Place]
+    gap_lines: list[int]
+    end_vertices: list[int]
+    end_lines: list[int]
+    lost: list[int]
+
+
+def walk_along(
+    xy: NDArray[np.float64], lines: Lines, given: LineSet, *, snap: float, unit: float
+) -> Walk:
+    """Follow the chains of every given line.
+
+    Parameters
+    ----------
+    xy : (n, 2) float64 array
+        The vertices of the TIN.
+    lines : Lines
+    given : LineSet
+    snap : float
+        How far a vertex of a line may have been moved.
+    unit : float
+        How far a line may be moved by one cut.
+    """
+    walker = _Walker(lines.vertices.tolist(), xy[lines.vertices].tolist(), given, snap, unit)
+    chains: dict[tuple[str, int], list[range]] = {}
+    spans = [range(*span) for span in pairwise(lines.offsets.tolist())]
+    for key, span in zip(zip(lines.kinds, lines.sources.tolist(), strict=True), spans, strict=True):
+        chains.setdefault(key, []).append(span)
+    for line, key in enumerate(zip(given.kinds, given.sources.tolist(), strict=True)):
+        walker.follow(line, chains.get(key, []))
+    return walker.walk
+
+
+class _Course(NamedTuple):
+    """How a chain may run along its line.
+
+    Attributes
+    ----------
+    begin, end : int
+        Numbers of the line's vertices passed first, or just before, and last.
+    between : list of Between
+    deviation : float
+        How far it leaves the line, or goes back.
+    is_close, is_kept : bool
+        Whether it is as near to the line as the cuts seen allow, or with unseen ones, too.
+    """
+
+    begin: int
+    end: int
+    between: list[Between]
+    deviation: float
+    is_close: bool
+    is_kept: bool
+
+
+class _Walker:
+    """Keeps to the earliest way along a line that its chains can have taken.
+
+    ``at`` counts the line's vertices, without repetitions: a chain has passed number ``at`` and
+    not yet the next one. Chains are ranges of positions among the vertices of all chains.
+    """
+
+    def __init__(
+        self,
+        vertices: list[int],
+        places: list[Place],
+        given: LineSet,
+        snap: float,
+        unit: float,
+    ) -> None:
+        self._vertices = vertices
+        self._places = places
+        self._xy = given.xy
+        self._given: list[Place] = given.xy.tolist()
+        self._offsets: list[int] = given.offsets.tolist()
+        self._snap = snap
+        self._unit = unit
+        self._between: list[Between] = []
+        self._gaps = Walk(np.empty((0, 3), np.int64), [], [], [], [], [], [])
+
+    @property
+    def walk(self) -> Walk:
+        """All that was met."""
+        between = np.array(self._between, np.int64).reshape(-1, 3)
+        between[:, 0] = np.array(self._vertices, np.int64)[between[:, 0]]
+        return self._gaps._replace(between=between)
+
+    def follow(self, line: int, chains: list[range]) -> None:
+        """Follow the chains of one line."""
+        rows = self._rows_of(line)
+        if not chains and self._is_point(rows):
+            return
+        courses = self._courses_of(rows, chains)
+        if courses is None:
+            self._gaps.lost.append(line)
+            return
+        at, here = 0, None
+        for chain, course in zip(chains, courses, strict=True):
+            if here is not None or not self._is_at(self._places[chain[0]], rows[0]):
+                self._pass_gap(line, rows[at : course.begin + 1], here, chain[0])
+            self._between += course.between
+            at, here = course.end, chain[-1]
+        if here is None or at < len(rows) - 1:
+            self._pass_gap(line, rows[at:], here, None)
+
+    def _courses_of(self, rows: list[int], chains: list[range]) -> list[_Course] | None:
+        """Find courses for all chains, as near to the line as cuts allow; None if there are none.
+
+        What a chain begins behind, and which vertex within ``snap`` became one of the line's, may
+        have several answers, and the next chains tell which are wrong. One way along the line
+        proves that the chains follow it, whichever was taken.
+        """
+        courses: list[_Course] = []
+        tried: set[tuple[int, int]] = set()
+        waiting = [self._courses(rows, 0, None, chains[0])] if chains else []
+        while waiting:
+            n = len(waiting)
+            course = next(waiting[-1], None)
+            del courses[n - 1 :]
+            if course is None:
+                waiting.pop()
+            elif (n, course.end) not in tried:
+                tried.add((n, course.end))
+                courses.append(course)
+                if n == len(chains):
+                    return courses
+                waiting.append(self._courses(rows, course.end, chains[n - 1][-1], chains[n]))
+        return None if chains else []
+
+    def _rows_of(self, line: int) -> list[int]:
+        """Return the rows of a line, without repeated places."""
+        rows = range(self._offsets[line], self._offsets[line + 1])
+        given = self._given
+        return [row for row in rows if row == rows[0] or given[row] != given[row - 1]]
+
+    def _is_point(self, rows: list[int]) -> bool:
+        """Tell if snapping may have made one place of a line."""
+        first = self._given[rows[0]]
+        return all(_far(first, self._given[row]) <= 2 * self._snap for row in rows)
+
+    def _is_at(self, place: Place, row: int) -> bool:
+        given = self._given[row]
+        return place == given or (self._snap > 0 and _far(place, given) <= self._snap)
+
+    def _courses(
+        self, rows: list[int], at: int, here: int | None, chain: range
+    ) -> Iterator[_Course]:
+        """Yield courses of a chain behind ``at``, the likeliest first."""
+        begins = self._entries(rows, at, here, chain)
+        likely = next(begins, None)
+        if likely is None:
+            return
+        course = self._run(rows, likely, chain, is_first=here is None)
+        if course.is_close:
+            yield course
+        ways = [(course.deviation, course.begin, course)]
+        for begin in begins:
+            for passing in _PASSINGS if self._snap > 0 else _PASSINGS[:1]:
+                course = self._run(rows, begin, chain, is_first=here is None, passing=passing)
+                ways.append((course.deviation, course.begin, course))
+        ways = [way for way in ways if way[2].is_kept]
+        yield from (course for *_, course in sorted(ways, key=itemgetter(0, 1)))
+
+    def _entries(self, rows: list[int], at: int, here: int | None, chain: range) -> Iterator[int]:
+        """Yield behind which vertices a chain may begin, the likeliest first, then all."""
+        if here is None and self._begins_with(rows, chain):
+            yield 0
+        off = self._offsets_from(rows, at, here, chain)
+        best = off.min(initial=np.inf)
+        allowed = (1 + UNSEEN_CUTS + len(chain)) * self._unit
+        if best > allowed:
+            return
+        fits = at + np.flatnonzero(off <= max(best, 2 * self._unit))
+        worst = np.zeros(len(fits))
+        if len(fits) > 1:
+            worst = np.array(
+                [self._run(rows, n, chain, is_first=False).deviation for n in fits.tolist()]
+            )
+        yield int(fits[np.argmax(worst <= worst.min() + self._unit)])
+        yield from (at + np.flatnonzero(off <= allowed)).tolist()
+
+    def _offsets_from(
+        self, rows: list[int], at: int, here: int | None, chain: range
+    ) -> NDArray[np.float64]:
+        """Return how far from each segment a chain's first step is; inf if it goes back there."""
+        first, second = (np.array([self._places[position]]) for position in chain[:2])
+        a, b = self._xy[rows[at:-1]], self._xy[rows[at + 1 :]]
+        off = np.maximum(distance(first, a, b), distance(second, a, b))
+        begin, end = _along(first, a, b), _along(second, a, b)
+        off[end < begin - self._unit] = np.inf
+        if here is not None and len(begin):  # not behind the end of the chain before; both may move
+            passed = _along(np.array(self._places[here]), a[:1], b[:1]) - 2 * self._unit
+            off[:1][begin[:1] < passed] = np.inf
+        return off
+
+    def _measure(
+        self, between: list[Between]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64]]:
+        """Return how far vertices are off their line, and back of the one before; its rows."""
+        positions, before, after = np.array(between, np.int64).reshape(-1, 3).T
+        places = np.array([self._places[position] for position in positions]).reshape(-1, 2)
+        a, b = self._xy[before], self._xy[after]
+        back = np.zeros(len(before))
+        back[1:] = np.where(np.diff(before) == 0, -np.diff(_along(places, a, b)), 0.0)
+        return distance(places, a, b), back, before
+
+    def _begins_with(self, rows: list[int], chain: range) -> bool:
+        """Tell if a chain begins where its line does, and in the same direction."""
+        if not self._is_at(self._places[chain[0]], rows[0]):
+            return False
+        (ax, ay), (bx, by) = self._given[rows[0]], self._given[rows[1]]
+        x, y = self._places[chain[1]]
+        across = (bx - ax) * (y - ay) - (by - ay) * (x - ax)
+        is_ahead = (bx - ax) * (x - ax) + (by - ay) * (y - ay) > 0
+        # m vertices between two of the line's are within m + 1 units (see check_given); the chain
+        # has m <= len(chain) - 1 behind this one. It is only asked where the chain begins: that it
+        # keeps to the line is judged by the vertices that there are between each two.
+        allowed = len(chain) * self._unit
+        return is_ahead and abs(across) <= allowed * hypot(bx - ax, by - ay)
+
+    def _run(
+        self,
+        rows: list[int],
+        begin: int,
+        chain: range,
+        *,
+        is_first: bool,
+        passing: Passing = "first",
+    ) -> _Course:
+        """Walk a chain to its end, and tell how well it keeps to the line."""
+        end, between = self._align(rows, begin, chain, passing=passing)
+        off, back, before = self._measure(between)
+        row = before - rows[begin]
+        cuts = np.bincount(row, minlength=rows[end] - rows[begin] + 1)
+        unseen = np.zeros_like(cuts)
+        if not (is_first and self._is_at(self._places[chain[0]], rows[0])):
+            unseen[0] = UNSEEN_CUTS
+        if end < len(rows) - 1:
+            unseen[-1] = UNSEEN_CUTS
+        allowed = self._unit * (1 + np.stack([cuts, cuts + unseen])[:, row])
+        is_within = (off <= allowed) & (back <= 2 * allowed)
+        deviation = float(max(off.max(initial=0.0), back.max(initial=0.0)))
+        is_close, is_kept = (bool(rows_within.all()) for rows_within in is_within)
+        return _Course(begin, end, between, deviation, is_close, is_kept)
+
+    def _align(
+        self, rows: list[int], at: int, chain: range, *, passing: Passing
+    ) -> tuple[int, list[Between]]:
+        """Return what a chain passes last of its line's own vertices, and what lies between."""
+        places, last = self._places, len(rows) - 1
+        is_passed = self._is_at(places[chain[0]], rows[at])
+        between = []
+        for position in chain:
+            while at < last and self._is_at(places[position], rows[at + 1]):
+                if self._is_later(position, chain[-1], rows[at + 1], passing):
+                    break
+                at, is_passed = at + 1, True
+            if not is_passed:
+                before = min(at, last - 1)
+                between.append((position, rows[before], rows[before + 1]))
+            is_passed = False
+        return at, between
+
+    def _is_later(self, position: int, end: int, row: int, passing: Passing) -> bool:
+        """Tell if one of the line's vertices is to be passed behind this one of the chain."""
+        if position == end:
+            return passing == "beyond"
+        given, after = self._given[row], self._places[position + 1]
+        if passing == "nearest":
+            return _far(after, given) < _far(self._places[position], given)
+        return passing in ("last", "beyond") and self._is_at(after, row)
+
+    def _pass_gap(self, line: int, rows: Sequence[int], here: int | None, then: int | None) -> None:
+        """Note the part of a line from one chain to the next, or from or to its ends."""
+        ends = [self._places[position] for position in (here, then) if position is not None]
+        left_out = list(rows[here is not None :])
+        while left_out and here is not None and self._is_at(ends[0], left_out[0]):
+            del left_out[0]
+        while left_out and then is not None and self._is_at(ends[-1], left_out[-1]):
+            del left_out[-1]
+        nodes = [*ends[: here is not None], *(self._given[row] for row in left_out)]
+        nodes += ends[len(ends) - (then is not None) :]
+        if len(nodes) < 2 or (not left_out and nodes[0] == nodes[1]):
+            return
+        gaps = self._gaps
+        gaps.gap_rows.extend(rows)
+        places = [
+            *(self._given[row] for row in left_out),
+            *([p[0] / 2 + q[0] / 2, p[1] / 2 + q[1] / 2] for p, q in pairwise(nodes)),
+        ]
+        gaps.gap_places.extend(places)
+        gaps.gap_lines.extend([line] * len(places))
+        for position in (here, then):
+            if position is not None:
+                gaps.end_vertices.append(self._vertices[position])
+                gaps.end_lines.append(line)
+
+
+# -------------------------------------------------------------------- measures
+
+
+def _far(p: Place, q: Place) -> float:
+    return hypot(p[0] - q[0], p[1] - q[1])
+
+
+def _along(
+    p: NDArray[np.float64], a: NDArray[np.float64], b: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return how far along the segments a-b the feet of p are."""
+    foot: NDArray[np.float64] = ((p - a) * (b - a)).sum(axis=1) / np.hypot(*(b - a).T)
+    return foot
+
+
+def distance(
+    p: NDArray[np.float64], a: NDArray[np.float64], b: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Measure from places to segments a-b, (k, 2) arrays."""
+    u, v = b - a, p - a
+    square = (u * u).sum(axis=1)
+    share = np.clip((u * v).sum(axis=1) / np.where(square > 0, square, 1.0), 0.0, 1.0)
+    across = np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]) / np.sqrt(np.where(square, square, 1.0))
+    to_end = np.hypot(*(v - share[:, None] * u).T)
+    measured: NDArray[np.float64] = np.where((share > 0) & (share < 1), across, to_end)
+    return measured

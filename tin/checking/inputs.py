@@ -1,0 +1,194 @@
+"""Level 3 of a check: rows and lines that were given are in the surface.
+
+**How far may a chain run beside its line?** A line is cut where it meets others. A cut moves it by
+no more than one unit: ``snap``, or the rounding of a crossing, at most a unit in the last place of
+the largest coordinate; the parts are straight again, and are cut again. A vertex of the d-th such
+generation lies within one unit of a segment whose ends belong to earlier ones, and no place on a
+segment is further from the line than both its ends. So it lies within d units of the line, or
+d + 1 if the line's own vertices were moved by ``snap`` first; and d is at most the number m of
+vertices between two vertices of the line. Allowed are m + 1 units.
+
+Of a part of a line that is left out, outside the surface or in water, the number of cuts is not
+known: 16 more are allowed for, where that matters. It must lie outside the surface or in water, by
+its vertices and the middles between them, and the chain must end at the rim or at water.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..report import LEFT_OUT
+from .boundary_sweep import sides_of
+from .chain_matching import UNSEEN_CUTS, Walk, distance, walk_along
+from .shape import has_sound_rim, rim_of
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ..constraints.constraint_set import LineSet
+    from ..surface import TIN
+    from .findings import Findings
+
+__all__ = ["check_given_lines", "check_rows"]
+
+_ROUNDING = 4 * 2.0**-53
+_UNITS_OF_ROUNDING = 4  # one for a crossing or a bend; the rest for measuring the distance
+_OUTSIDE = ("outside the boundary", "in a hole", "trimmed")
+
+
+def check_rows(tin: TIN, rows: NDArray[np.float64], found: Findings) -> None:
+    """Check that every input row is at its vertex, or within the distance of snapping.
+
+    Those left out are named in the report, as level 1 tells; if they are said to be outside the
+    surface, they are.
+    """
+    if len(rows) != len(tin.vertex_of):
+        found.fail(
+            "rows", f"There are {len(rows)} rows, but the TIN was made of {len(tin.vertex_of)}."
+        )
+        return
+    moved = np.abs(tin.points[tin.vertex_of, :2] - rows[:, :2])
+    moved[tin.vertex_of < 0] = 0.0
+    is_moved = moved.any(axis=1)
+    if tin.report.snap > 0:
+        is_moved = np.hypot(moved[:, 0], moved[:, 1]) > tin.report.snap * (1 + _ROUNDING)
+    found.report(
+        "rows",
+        np.flatnonzero(is_moved),
+        "{count} [row is not where its|rows are not where their] vertex is, "
+        f"within snap {tin.report.snap:g} (first: [row|rows] {{first}}).",
+    )
+    if not has_sound_rim(found):
+        return
+    codes = [LEFT_OUT.index(reason) for reason in _OUTSIDE]
+    outside = tin.report.left_out_rows[np.isin(tin.report.left_out_why, codes)]
+    slack = (1 + UNSEEN_CUTS) * _unit(tin, rows)
+    found.report(
+        "rows",
+        outside[_is_inside(tin, rows[outside, :2], slack)],
+        "{count} [row is|rows are] left out as outside the surface, but [lies|lie] inside "
+        "(first: [row|rows] {first}).",
+    )
+
+
+def check_given_lines(tin: TIN, given: LineSet, found: Findings) -> None:
+    """Check that every line is there as chains of its source, vertices in order, parts in place.
+
+    Parameters
+    ----------
+    tin : TIN
+        Chains and rim sound.
+    given : LineSet
+        Lines as the caller gave them, draped ones without heights. Chains of further lines are
+        not looked at.
+    """
+    xy, snap = tin.points[:, :2], tin.report.snap
+    unit = _unit(tin, given.xy)
+    walk = walk_along(xy, tin.lines, given, snap=snap * (1 + _ROUNDING), unit=unit)
+    found.report(
+        "lines",
+        walk.lost,
+        "{count} [line has|lines have] chains that do not begin on [it|them] "
+        "(first: [line|lines] {first}).",
+    )
+    most = _check_course(xy, given, walk, unit, found)
+    slack = (1 + most + UNSEEN_CUTS) * unit
+    _check_gaps(tin, given, walk, slack, found)
+    _check_ends(tin, given, walk, slack, found)
+
+
+def _unit(tin: TIN, xy: NDArray[np.float64]) -> float:
+    """Return by how much one cut may move a line."""
+    largest = max(np.abs(tin.points[:, :2]).max(), np.abs(xy[:, :2]).max(initial=0.0))
+    return float(tin.report.snap + _UNITS_OF_ROUNDING * np.spacing(largest))
+
+
+def _check_course(
+    xy: NDArray[np.float64], given: LineSet, walk: Walk, unit: float, found: Findings
+) -> int:
+    """Check that vertices between those given lie on the line, in order; count the most cuts."""
+    if not len(walk.between):
+        return 0
+    vertices, before, after = walk.between.T
+    p, a, b = xy[vertices], given.xy[before], given.xy[after]
+    cuts = np.bincount(before, minlength=len(given.xy))
+    cuts[np.array(walk.gap_rows, np.int64)] += UNSEEN_CUTS
+    allowed = (1 + cuts[before]) * unit
+    along = ((p - a) * (b - a)).sum(axis=1) / np.hypot(*(b - a).T)
+    is_same = np.append(False, np.diff(before) == 0)
+    is_wrong = is_same & (np.append(0.0, np.diff(along)) < -2 * allowed)
+    is_wrong |= distance(p, a, b) > allowed
+    found.report(
+        "lines",
+        np.unique(given.line_of[before[is_wrong]]),
+        "{count} [line has|lines have] chains that leave their course "
+        "(first: [line|lines] {first}).",
+    )
+    return int(cuts.max())
+
+
+def _check_gaps(tin: TIN, given: LineSet, walk: Walk, slack: float, found: Findings) -> None:
+    """Check that what is left out of lines lies outside the surface or in water."""
+    places = np.array(walk.gap_places, np.float64).reshape(-1, 2)
+    is_wrong = _is_inside(tin, places, slack)
+    is_wrong[is_wrong] = ~_is_drowned(places[is_wrong], given, slack)
+    found.report(
+        "lines",
+        np.unique(np.array(walk.gap_lines, np.int64)[is_wrong]),
+        "{count} [line has|lines have] parts inside the surface that are missing "
+        "(first: [line|lines] {first}).",
+    )
+
+
+def _check_ends(tin: TIN, given: LineSet, walk: Walk, slack: float, found: Findings) -> None:
+    """Check that chains end with their line, at the rim or at water."""
+    vertices = np.array(walk.end_vertices, np.int64)
+    is_wet = np.repeat([kind == "water" for kind in tin.lines.kinds], np.diff(tin.lines.offsets))
+    shore = tin.lines.vertices[is_wet.astype(np.bool_)]
+    loose = np.flatnonzero(~np.isin(vertices, np.append(rim_of(tin).start, shore)))
+    places = tin.points[vertices[loose], :2]
+    is_wrong = _is_inside(tin, places, slack)
+    is_wrong[is_wrong] = ~_is_drowned(places[is_wrong], given, slack)
+    found.report(
+        "lines",
+        np.unique(np.array(walk.end_lines, np.int64)[loose[is_wrong]]),
+        "{count} [line ends|lines end] inside the surface, before [its|their] end "
+        "(first: [line|lines] {first}).",
+    )
+
+
+def _is_inside(tin: TIN, places: NDArray[np.float64], slack: float) -> NDArray[np.bool_]:
+    """Tell which places lie inside the surface, further than ``slack`` from its rim."""
+    low, high = tin.points[:, :2].min(axis=0), tin.points[:, :2].max(axis=0)
+    candidates = np.flatnonzero(((places > low) & (places < high)).all(axis=1))
+    is_inside = np.zeros(len(places), np.bool_)
+    if len(candidates):
+        rim = rim_of(tin)
+        a, b = rim.points[rim.start, :2], rim.points[rim.end, :2]
+        for number in candidates[sides_of(rim, places[candidates]) > 0]:
+            is_inside[number] = distance(places[number], a, b).min() > slack
+    return is_inside
+
+
+def _is_drowned(places: NDArray[np.float64], given: LineSet, slack: float) -> NDArray[np.bool_]:
+    """Tell which places lie in water, or within ``slack`` of its shore."""
+    shores = [
+        given.xy[given.offsets[line] : given.offsets[line + 1]]
+        for line, kind in enumerate(given.kinds)
+        if kind == "water"
+    ]
+    drowned = [any(_is_in_ring(place, shore, slack) for shore in shores) for place in places]
+    return np.array(drowned, np.bool_)
+
+
+def _is_in_ring(place: NDArray[np.float64], ring: NDArray[np.float64], slack: float) -> bool:
+    """Tell if a place lies in a closed ring, or nearly."""
+    a, b = ring[:-1], ring[1:]
+    if distance(place, a, b).min() <= slack:
+        return True
+    spans = (a[:, 1] <= place[1]) != (b[:, 1] <= place[1])
+    a, b = a[spans], b[spans]
+    crossing = a[:, 0] + (place[1] - a[:, 1]) * (b[:, 0] - a[:, 0]) / (b[:, 1] - a[:, 1])
+    return bool(np.count_nonzero(crossing > place[0]) % 2)

@@ -1,0 +1,103 @@
+"""What triangles of other programs may be wrong in although they fit together: told, not refused.
+
+Triangles that are counter-clockwise and agree about their edges cover a place as often as their
+boundary winds about it (see :mod:`.check`). So the boundary alone tells whether they overlap, and
+a boundary that is one convex ring needs no further look.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..._sentences import inflect
+from ..predicates import Columns, columns, is_last, orientation
+from ..topology import NO_NEIGHBOR
+from .boundary_sweep import Rim, find_fault
+from .shape import rim_of
+
+if TYPE_CHECKING:
+    from ..surface import TIN
+
+__all__ = ["describe_overlaps"]
+
+_MOST_EDGES = 20_000
+"""Edges of a boundary that are looked at here, in half a second; a check looks at any number."""
+
+
+def describe_overlaps(tin: TIN) -> list[str]:
+    """Tell in sentences what is wrong with a TIN made of existing triangles.
+
+    Parameters
+    ----------
+    tin : TIN
+        As :meth:`TIN.from_triangles` makes it.
+
+    Returns
+    -------
+    list of str
+        About triangles that overlap, vertices of no triangle, and edges that are constrained on
+        one side only. Empty where :func:`check` at level 2 would find nothing but a boundary that
+        is concave or in several rings, as surfaces may have.
+
+    Examples
+    --------
+    >>> from tinsmith import TIN
+    >>> points = [[0, 0, 1], [4, 0, 1], [0, 4, 1], [1, 1, 5], [5, 1, 5], [1, 5, 5]]
+    >>> describe_overlaps(TIN.from_triangles(points, [[0, 1, 2], [3, 4, 5]]))[0]
+    'Triangles overlap (westernmost place: near vertex 3); a check tells more.'
+    """
+    return [*_overlaps(rim_of(tin), tin), *_unused(tin), *_one_sided(tin)]
+
+
+def _overlaps(rim: Rim, tin: TIN) -> list[str]:
+    if _is_convex(columns(tin.points), rim):
+        return []
+    if len(rim.start) > _MOST_EDGES:
+        return [
+            f"The boundary has {len(rim.start):,} edges: whether triangles overlap was not looked "
+            "at; a check tells."
+        ]
+    fault = find_fault(rim)
+    if fault is None:
+        return []
+    return [
+        f"Triangles overlap (westernmost place: near vertex {fault.vertex}); a check tells more."
+    ]
+
+
+def _is_convex(xy: Columns, rim: Rim) -> bool:
+    """Whether the boundary is one ring that never turns right and goes round once."""
+    order = np.argsort(rim.start)
+    start = rim.start[order]
+    if (start[1:] == start[:-1]).any():  # rings touch
+        return False
+    following = order[np.searchsorted(start, rim.end)]
+    turns = orientation(xy, rim.start, rim.end, rim.end[following])
+    is_extreme = is_last(xy, rim.end, rim.start) & is_last(xy, rim.end, rim.end[following])
+    return bool((turns >= 0).all() and np.count_nonzero(is_extreme) == 1)
+
+
+def _unused(tin: TIN) -> list[str]:
+    is_used = np.zeros(len(tin.points), np.bool_)
+    is_used[tin.triangles] = True
+    count = len(is_used) - int(np.count_nonzero(is_used))
+    if count == 0:
+        return []
+    sentence = (
+        f"[vertex belongs|vertices belong] to no triangle (first: vertex {np.argmin(is_used)})."
+    )
+    return [f"{count:,} {inflect(sentence, count)}"]
+
+
+def _one_sided(tin: TIN) -> list[str]:
+    triangle, corner = np.nonzero(tin.constrained)
+    across = tin.neighbors[triangle, corner]
+    inner = across != NO_NEIGHBOR
+    triangle, across = triangle[inner], across[inner]
+    back = np.argmax(tin.neighbors[across] == triangle[:, None], axis=1)
+    count = int(np.count_nonzero(~tin.constrained[across, back]))
+    if count == 0:
+        return []
+    return [f"{count:,} {inflect('[edge is|edges are] constrained on one side only.', count)}"]

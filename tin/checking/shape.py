@@ -1,0 +1,161 @@
+"""Level 2 of a check: turns, boundary, overlaps, Euler count and areas."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .. import topology
+from ..predicates import Columns, columns, is_last, orientation
+from .boundary_sweep import Rim, find_fault
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ..surface import TIN
+    from .findings import Findings
+
+__all__ = ["check_shape", "has_sound_rim", "rim_of"]
+
+_UNIT_ROUNDOFF = 2.0**-53
+
+
+def check_shape(tin: TIN, found: Findings) -> None:
+    """Check turns, rim, overlaps, Euler count and areas."""
+    xy = columns(tin.points)
+    clockwise = np.flatnonzero(orientation(xy, *tin.triangles.T) <= 0)
+    found.report(
+        "orientation",
+        clockwise,
+        "{count} [triangle is|triangles are] not counter-clockwise "
+        "(first: [triangle|triangles] {first}).",
+    )
+    rings = topology.boundary_rings(tin.triangles, tin.neighbors)
+    found.counts["rings"] = len(rings)
+    if not rings:
+        found.fail("boundary", "The surface has no boundary: it closes upon itself.")
+        return
+    is_convex, is_free = _check_rim(tin, xy, rings, found)
+    if not (is_convex or len(clockwise)):
+        _check_overlaps(tin, found)
+    if is_free and len(rings) > 1:
+        found.fail(
+            "boundary",
+            f"The boundary has {len(rings)} rings: one is allowed if it is not constrained.",
+        )
+    _check_euler(rings, is_free, found)
+    _check_areas(tin, rings, found)
+
+
+def _check_rim(
+    tin: TIN, xy: Columns, rings: list[NDArray[np.int32]], found: Findings
+) -> tuple[bool, bool]:
+    """Check that the boundary is convex where it is not constrained.
+
+    Returns whether it is one convex ring, and whether any of it is not constrained.
+    """
+    here = np.concatenate(rings)
+    before = np.concatenate([np.roll(ring, 1) for ring in rings])
+    after = np.concatenate([np.roll(ring, -1) for ring in rings])
+    is_constrained = _flags_on_rim(tin, here, after)
+    came_constrained = _flags_on_rim(tin, before, here)
+    is_reflex = orientation(xy, before, here, after) < 0
+    is_allowed = is_constrained & came_constrained
+    found.report(
+        "hull",
+        np.unique(here[is_reflex & ~is_allowed]),
+        "The boundary turns inwards at {count} [vertex|vertices] "
+        "(first: [vertex|vertices] {first}).",
+    )
+    is_start = is_last(xy, before, here) & is_last(xy, after, here)
+    if not is_reflex.any() and np.count_nonzero(is_start) != len(rings):
+        found.fail("hull", "The boundary winds about itself: a convex ring turns round once.")
+    return len(rings) == 1 and not is_reflex.any(), not is_constrained.all()
+
+
+def has_sound_rim(found: Findings) -> bool:
+    """Tell whether a level 2 without faults says which places lie inside the surface."""
+    faults = {"orientation", "boundary", "hull", "overlap"}
+    return faults.isdisjoint(problem.kind for problem in found.problems)
+
+
+def rim_of(tin: TIN) -> Rim:
+    """Return the edges with a triangle on one side only."""
+    triangle, corner = np.nonzero(tin.neighbors == topology.NO_NEIGHBOR)
+    start, end = topology.ends(tin.triangles, triangle, corner)
+    return Rim(tin.points, start, end)
+
+
+def _check_overlaps(tin: TIN, found: Findings) -> None:
+    """Check that the rim meets itself in vertices only, with the surface on one side of it."""
+    fault = find_fault(rim_of(tin))
+    if fault is not None:
+        what = (
+            "The boundary crosses or overlaps itself, or runs through a vertex of itself"
+            if fault.is_meeting
+            else "Parts of the surface lie over each other"
+        )
+        found.report("overlap", [fault.vertex], f"{what} (westernmost: near vertex {{first}}).")
+
+
+def _flags_on_rim(tin: TIN, start: NDArray[np.int32], end: NDArray[np.int32]) -> NDArray[np.bool_]:
+    """Return whether the boundary edges from ``start`` to ``end`` are constrained."""
+    triangle, corner = np.nonzero(tin.neighbors == topology.NO_NEIGHBOR)
+    rim_start, rim_end = topology.ends(tin.triangles, triangle, corner)
+    keys = rim_start * len(tin.points) + rim_end
+    order = np.argsort(keys)
+    wanted = start.astype(np.int64) * len(tin.points) + end
+    slot = order[np.searchsorted(keys, wanted, sorter=order)]
+    flags: NDArray[np.bool_] = tin.constrained[triangle[slot], corner[slot]]
+    return flags
+
+
+def _check_euler(rings: list[NDArray[np.int32]], is_free: bool, found: Findings) -> None:
+    """Check V - E + F + rings, which is 2 for every piece of a surface in the plane.
+
+    The outer face is not counted; a vertex where the boundary touches itself counts each time.
+    A constrained boundary may cut the surface into pieces.
+    """
+    counts = found.counts
+    unused = sum(problem.count for problem in found.problems if problem.kind == "unused")
+    rim = np.concatenate(rings)
+    touches = len(rim) - len(np.unique(rim))
+    vertices = counts["vertices"] - unused + touches
+    total = vertices - counts["edges"] + counts["triangles"] + len(rings)
+    if total < 2 or total % 2 or (is_free and total > 2):
+        found.fail(
+            "euler",
+            f"Vertices - edges + triangles + boundary rings is {total}: "
+            "a surface in one piece has 2.",
+        )
+
+
+def _check_areas(tin: TIN, rings: list[NDArray[np.int32]], found: Findings) -> None:
+    """Compare the areas of all triangles with what the boundary encloses, rounding bounded."""
+    corners = [tin.triangles[:, k] for k in range(3)]
+    inside, inside_error = _doubled_area(tin.points, *corners)
+    start = np.concatenate(rings)
+    end = np.concatenate([np.roll(ring, -1) for ring in rings])
+    enclosed, enclosed_error = _doubled_area(tin.points, np.full_like(start, start[0]), start, end)
+    if not abs(inside - enclosed) <= inside_error + enclosed_error:
+        found.fail(
+            "area",
+            f"The areas of the triangles add up to {inside / 2:.17g}, "
+            f"but the boundary encloses {enclosed / 2:.17g}.",
+        )
+
+
+def _doubled_area(
+    points: NDArray[np.float64], a: NDArray[np.int32], b: NDArray[np.int32], c: NDArray[np.int32]
+) -> tuple[float, float]:
+    """Return twice the signed area of triangles, and a bound for its error.
+
+    A term suffers four roundings; numpy's pairwise sum of n of them 16 + log2(n) more.
+    """
+    x, y = points[:, 0], points[:, 1]
+    left = (x[b] - x[a]) * (y[c] - y[a])
+    right = (y[b] - y[a]) * (x[c] - x[a])
+    roundings = 4 + 16 + np.log2(len(a) + 1.0)
+    size = np.abs(left).sum() + np.abs(right).sum()
+    return float((left - right).sum()), float(2 * roundings * _UNIT_ROUNDOFF * size)

@@ -1,0 +1,288 @@
+"""Lines that the surface must hold: breaklines, rings and water, as callers give them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any, Literal, get_args
+
+import numpy as np
+
+from ...errors import LinesError, PointsError
+from ..types import Frozen
+from ..validation.options import is_finite_number, require_one_of, shown
+from ..validation.tables import as_table
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["Breakline", "BreaklineKind", "LineKind", "Lines", "Water"]
+
+MOST_PRIORITY = 2**53
+"""Up to here whole numbers are told apart as floats, which priorities become."""
+
+BreaklineKind = Literal["hard", "soft"]
+LineKind = Literal["hard", "soft", "boundary", "hole", "water"]
+
+
+@dataclass(frozen=True, eq=False)
+class Breakline:
+    """A polyline that must be edges of the surface.
+
+    Attributes
+    ----------
+    coords : (k, 3) or (k, 2) float64 array
+        Vertices, k >= 2, CRS units; first and last equal if it is closed. With two columns it is
+        draped: its heights are taken from the surface of everything that has heights.
+    kind : {"hard", "soft"}
+        A soft breakline shapes the surface, but is no break of slope.
+    priority : int
+        Where breaklines cross, the height of the higher one counts; among equals, of the first.
+    name : str
+        For reports and pictures.
+
+    Raises
+    ------
+    LinesError
+        For another shape, coordinates that are not finite, or an unknown kind.
+
+    Examples
+    --------
+    >>> Breakline([[0, 0, 5], [4, 0, 6]], name="kerb")
+    <Breakline: hard, 2 vertices, 'kerb'>
+    """
+
+    coords: NDArray[np.float64]
+    kind: BreaklineKind = "hard"
+    priority: int = 0
+    name: str = ""
+
+    def __init__(
+        self,
+        coords: ArrayLike,
+        *,
+        kind: BreaklineKind = "hard",
+        priority: int = 0,
+        name: str = "",
+    ) -> None:
+        require_one_of("breakline kind", kind, get_args(BreaklineKind), LinesError)
+        is_whole = isinstance(priority, int | np.integer) and not isinstance(priority, bool)
+        if not is_whole or abs(int(priority)) > MOST_PRIORITY:
+            raise LinesError(
+                f"Invalid priority {shown(priority)}: a whole number from {-MOST_PRIORITY} to "
+                f"{MOST_PRIORITY} is needed."
+            )
+        name = _as_name(name)
+        what = f"breakline '{name}'" if name else "a breakline"
+        object.__setattr__(self, "coords", as_coords(coords, what, least=2))
+        object.__setattr__(self, "kind", kind)
+        object.__setattr__(self, "priority", int(priority))
+        object.__setattr__(self, "name", str(name))
+
+    @property
+    def is_draped(self) -> bool:
+        """Whether the heights come from the surface."""
+        return int(self.coords.shape[1]) == 2
+
+    def __repr__(self) -> str:
+        draped = ", draped" if self.is_draped else ""
+        name = f", '{self.name}'" if self.name else ""
+        return f"<Breakline: {self.kind}, {len(self.coords)} vertices{draped}{name}>"
+
+
+@dataclass(frozen=True, eq=False)
+class Water:
+    """A flat polygon: a pond, a slab, a building's footprint.
+
+    Points and breaklines inside it are left out, and said so in the report.
+
+    Attributes
+    ----------
+    ring : (k, 2) float64 array
+        Corners in order, the first not repeated, k >= 3, CRS units.
+    z : float
+        Its constant height.
+    name : str
+
+    Raises
+    ------
+    LinesError
+        For another shape or coordinates that are not finite.
+    """
+
+    ring: NDArray[np.float64]
+    z: float
+    name: str = ""
+
+    def __init__(self, ring: ArrayLike, z: float, *, name: str = "") -> None:
+        name = _as_name(name)
+        what = f"water '{name}'" if name else "a water polygon"
+        if not is_finite_number(z):
+            raise LinesError(f"Invalid height {shown(z)} of {what}: a finite number is needed.")
+        object.__setattr__(self, "ring", as_ring(ring, what)[:, :2])
+        object.__setattr__(self, "z", float(z))
+        object.__setattr__(self, "name", str(name))
+
+    def __repr__(self) -> str:
+        name = f", '{self.name}'" if self.name else ""
+        return f"<Water: {len(self.ring)} corners at {self.z:g}{name}>"
+
+
+def _no_numbers() -> NDArray[np.int32]:
+    return np.empty(0, np.int32)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Lines(Frozen):
+    """The lines in a TIN: chains of vertices, every step of which is an edge of the TIN.
+
+    Chain ``i`` is ``vertices[offsets[i]:offsets[i + 1]]``, in the direction of the line that it
+    comes from; a closed one ends where it begins. A line of which parts are left out, outside the
+    boundary or in water, has several chains or none.
+
+    Attributes
+    ----------
+    vertices : (k,) int32 array
+    offsets : (l + 1,) int32 array
+    kinds : tuple of LineKind
+        Of each chain.
+    sources : (l,) int32 array
+        The caller's line that each chain comes from, counted within breaklines, boundary rings,
+        holes and water.
+    names : tuple of str
+        Of each chain, ``""`` if it has none.
+    """
+
+    vertices: NDArray[np.int32] = field(default_factory=_no_numbers)
+    offsets: NDArray[np.int32] = field(default_factory=lambda: np.zeros(1, np.int32))
+    kinds: tuple[LineKind, ...] = ()
+    sources: NDArray[np.int32] = field(default_factory=_no_numbers)
+    names: tuple[str, ...] = ()
+
+    def __len__(self) -> int:
+        return len(self.kinds)
+
+    def chains(self) -> Iterator[NDArray[np.int32]]:
+        """Walk the chains, as vertex numbers."""
+        for start, end in pairwise(self.offsets.tolist()):
+            yield self.vertices[start:end]
+
+    def steps(self) -> NDArray[np.int32]:
+        """Return the edges that the chains walk, (s, 2) vertex pairs in order."""
+        is_step = np.ones(len(self.vertices), np.bool_)
+        is_step[self.offsets[1:] - 1] = False
+        start = np.flatnonzero(is_step)
+        return np.stack([self.vertices[start], self.vertices[start + 1]], axis=1)
+
+    def has_breakline(self, source: int) -> bool:
+        """Tell whether some of a breakline is there."""
+        return any(
+            kind in ("hard", "soft") and own == source
+            for kind, own in zip(self.kinds, self.sources.tolist(), strict=True)
+        )
+
+    def with_breakline(self, vertices: list[int], line: Breakline) -> Lines:
+        """Return the lines, all of them breaklines, and a further one through some vertices."""
+        return Lines(
+            vertices=np.append(self.vertices, np.array(vertices, np.int32)),
+            offsets=np.append(self.offsets, np.int32(len(self.vertices) + len(vertices))),
+            kinds=(*self.kinds, line.kind),
+            sources=np.append(self.sources, np.int32(len(self))),
+            names=(*self.names, line.name),
+        )
+
+    def renumbered(self, number: NDArray[np.int32]) -> Lines:
+        """Return the same lines with vertex ``v`` called ``number[v]``."""
+        return replace(self, vertices=number[self.vertices])
+
+    def __repr__(self) -> str:
+        kinds = ", ".join(f"{self.kinds.count(kind)} {kind}" for kind in get_args(LineKind))
+        return f"<Lines: {kinds}; {len(self.vertices)} vertices>"
+
+
+def _as_name(name: Any) -> str:
+    if not isinstance(name, str | int | float | np.number):
+        raise LinesError(f"Invalid name {shown(name)}: text is needed.")
+    return str(name)
+
+
+def as_coords(coords: ArrayLike, what: str, *, least: int) -> NDArray[np.float64]:
+    """Return a (k, 2) or (k, 3) float64 array of at least ``least`` finite rows, read-only.
+
+    Raises
+    ------
+    LinesError
+        Otherwise; the sentence begins with ``what``.
+    """
+    subject = what[0].upper() + what[1:]
+    array = _as_numbers(coords, subject)
+    if array.ndim != 2 or array.shape[1] not in (2, 3) or len(array) < least:
+        raise LinesError(
+            f"{subject} has shape {array.shape}: (k, 3), or (k, 2) to drape it, "
+            f"with k >= {least} is needed."
+        )
+    if not np.isfinite(array).all():
+        wrong = ~np.isfinite(array).all(axis=1)
+        row = int(np.argmax(wrong))
+        raise LinesError(
+            f"{subject} has {int(wrong.sum())} vertices that are not finite "
+            f"(first: vertex {row}, {array[row].tolist()}): "
+            "every coordinate must be a finite number."
+        )
+    array += 0.0  # no -0.0: equal coordinates are equal bytes
+    array.flags.writeable = False
+    return array
+
+
+def _as_numbers(coords: Any, subject: str) -> NDArray[np.float64]:
+    try:
+        values, is_masked = as_table(coords, subject, least=2)
+    except PointsError as error:
+        if str(error).startswith(f"{subject} are no table"):
+            raise LinesError(f"{subject} is no table of real numbers.") from None
+        raise LinesError(str(error)) from None
+    if is_masked is not None:
+        raise LinesError(
+            f"{subject} has {int(is_masked.sum())} masked vertices (first: vertex "
+            f"{int(np.argmax(is_masked))}): a line needs all of its vertices."
+        )
+    return values.copy()
+
+
+def as_ring(ring: ArrayLike, what: str) -> NDArray[np.float64]:
+    """Return the corners of a ring, the first not repeated at the end; as :func:`as_coords`.
+
+    Of several elevations where it closes the lowest is taken, whichever way the ring runs.
+    """
+    coords = as_coords(ring, what, least=3)
+    is_start = _is_start(coords)
+    if coords.shape[1] == 3 and is_start.sum() > 1:
+        lowest = coords[is_start, 2].min()
+        coords = coords.copy()
+        coords[is_start, 2] = lowest
+    if is_start[-1]:
+        coords = coords[:-1]
+    coords.flags.writeable = False
+    n_corners = len(np.unique(coords[:, :2], axis=0))
+    if n_corners < 3:
+        number = "two corners" if n_corners == 2 else "one corner"
+        raise LinesError(f"{what[0].upper() + what[1:]} has {number}: a ring needs three.")
+    return coords
+
+
+def elevations_at_start(ring: ArrayLike, what: str) -> NDArray[np.float64]:
+    """Return the vertices where a ring closes, one for each elevation, ascending; none if flat."""
+    coords = as_coords(ring, what, least=3)
+    if coords.shape[1] == 2:
+        return np.empty((0, 3))
+    found: NDArray[np.float64] = np.unique(coords[_is_start(coords)], axis=0)
+    return found
+
+
+def _is_start(ring: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Tell which vertices are where a ring begins and ends: repeated ones next to the first."""
+    is_there = (ring[:, :2] == ring[0, :2]).all(axis=1)
+    ahead, behind = np.logical_and.accumulate(is_there), np.logical_and.accumulate(is_there[::-1])
+    is_start: NDArray[np.bool_] = ahead | behind[::-1]
+    return is_start

@@ -1,0 +1,289 @@
+"""Which part of a triangulated hull is the surface: boundary, holes, trimming at long edges."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ...errors import LinesError
+from .. import _kernel, topology
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = [
+    "BOUNDARY",
+    "EXTENT",
+    "HOLES",
+    "RIM",
+    "RingSteps",
+    "Surface",
+    "clipped",
+    "edge_keys",
+    "in_rings",
+    "is_inside",
+    "trimmed",
+]
+
+
+class Surface(NamedTuple):
+    """Triangles over vertices, as in a TIN."""
+
+    points: NDArray[np.float64]
+    triangles: NDArray[np.int32]
+    neighbors: NDArray[np.int32]
+    constrained: NDArray[np.bool_]
+
+
+def in_rings(xy: NDArray[np.float64], rings: Sequence[NDArray[np.float64]]) -> NDArray[np.int8]:
+    """Tell where places lie: +1 inside an odd number of rings, 0 on one, -1 outside."""
+    offsets = np.concatenate([[0], np.cumsum([len(ring) for ring in rings])]).astype(np.int32)
+    corners = np.ascontiguousarray(np.concatenate([ring[:, :2] for ring in rings]))
+    return _kernel.places_in_rings(np.ascontiguousarray(xy), corners, offsets)
+
+
+def edge_keys(pairs: NDArray[np.int32], n_vertices: int) -> NDArray[np.int64]:
+    """Return one number for each (k, 2) pair of vertices, whatever its direction."""
+    low = pairs.min(axis=1).astype(np.int64)
+    keys: NDArray[np.int64] = low * n_vertices + pairs.max(axis=1)
+    return keys
+
+
+RIM = -1
+"""Group of the steps of a rim: the surface is on their left, and nothing on their right."""
+
+BOUNDARY = 0
+"""Group of the steps of all boundary rings together."""
+
+EXTENT = 1
+"""Group of the steps of all rings together within which there is data."""
+
+HOLES = 2
+"""Group of the steps of the first hole, its islands included; hole ``k`` has ``HOLES + k``."""
+
+
+class RingSteps(NamedTuple):
+    """Edges along rings, (k, 2) vertex pairs, and the group of each."""
+
+    pairs: NDArray[np.int32]
+    groups: NDArray[np.int64]
+
+
+def is_inside(
+    surface: Surface,
+    steps: RingSteps,
+    boundary: Sequence[NDArray[np.float64]],
+    extent: Sequence[NDArray[np.float64]],
+    holes: Sequence[Sequence[NDArray[np.float64]]],
+) -> NDArray[np.bool_]:
+    """Tell which triangles lie inside the boundary, where there is data, and in no hole.
+
+    Inside is what an odd number of rings of a group holds, so the islands of a hole stay.
+
+    The triangles between the rings are regions. Where the largest triangle of all lies is found by
+    comparing its middle with the rings, which leaves no doubt. From there on every ring that is
+    crossed changes sides, so slivers between rings that nearly coincide are told exactly.
+
+    Raises
+    ------
+    LinesError
+        If a hole cuts nothing away.
+    """
+    half = _half_edges(surface, steps)
+    region, largest = _regions(surface, half)
+    is_out = np.zeros(len(largest), np.bool_)
+    is_out[region[half.triangle[half.is_behind_rim]]] = True
+    toggles = _toggles(steps, len(surface.points))
+    place = _center(surface, largest)
+    side = _Sides(boundary, extent, holes)
+    bits = _spread(surface, region, half, toggles, is_out, largest, place, side)
+    keep = ~is_out & np.array([side.is_kept(own) for own in bits])
+    _require_all_cut(bits, is_out, side)
+    chosen: NDArray[np.bool_] = keep[region]
+    return chosen
+
+
+class _HalfEdges(NamedTuple):
+    """Constrained half-edges along rings."""
+
+    triangle: NDArray[np.int64]
+    corner: NDArray[np.int64]
+    key: NDArray[np.int64]
+    is_behind_rim: NDArray[np.bool_]
+
+
+def _half_edges(surface: Surface, steps: RingSteps) -> _HalfEdges:
+    n = len(surface.points)
+    triangle, corner = np.nonzero(surface.constrained)
+    start, end = topology.ends(surface.triangles, triangle, corner)
+    key = edge_keys(np.stack([start, end], axis=1).astype(np.int32), n)
+    is_ring = np.isin(key, edge_keys(steps.pairs, n))
+    triangle, corner, key = triangle[is_ring], corner[is_ring], key[is_ring]
+    rim = steps.pairs[steps.groups == RIM].astype(np.int64)
+    backwards = rim[:, 1] * n + rim[:, 0]
+    is_behind = np.isin(start[is_ring] * n + end[is_ring], backwards)
+    return _HalfEdges(triangle, corner, key, is_behind)
+
+
+def _regions(surface: Surface, half: _HalfEdges) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    barrier = np.zeros(surface.constrained.shape, np.bool_)
+    barrier[half.triangle, half.corner] = True
+    xy = np.ascontiguousarray(surface.points[:, :2])
+    return _kernel.regions(xy, surface.triangles, surface.neighbors, barrier)
+
+
+def _toggles(steps: RingSteps, n_vertices: int) -> dict[int, int]:
+    """Return for each edge along rings the groups that lie on other sides of it, as bits."""
+    toggles: dict[int, int] = {}
+    keys = edge_keys(steps.pairs, n_vertices).tolist()
+    for key, group in zip(keys, steps.groups.tolist(), strict=True):
+        toggles[key] = toggles.get(key, 0) ^ (0 if group == RIM else 1 << group)
+    return toggles
+
+
+class _Sides:
+    """Which rings hold a place, as bits by group."""
+
+    def __init__(
+        self,
+        boundary: Sequence[NDArray[np.float64]],
+        extent: Sequence[NDArray[np.float64]],
+        holes: Sequence[Sequence[NDArray[np.float64]]],
+    ) -> None:
+        self._groups = {BOUNDARY: boundary, EXTENT: extent, **dict(enumerate(holes, HOLES))}
+        self._needed = sum(1 << group for group in (BOUNDARY, EXTENT) if self._groups[group])
+        self.n_holes = len(holes)
+
+    def at(self, place: NDArray[np.float64]) -> int:
+        bits = 0
+        for group, rings in self._groups.items():
+            if len(rings) and in_rings(place[None], rings)[0] > 0:
+                bits |= 1 << group
+        return bits
+
+    def is_within(self, bits: int) -> bool:
+        return bits & self._needed == self._needed
+
+    def is_kept(self, bits: int) -> bool:
+        return self.is_within(bits) and bits >> HOLES == 0
+
+
+def _spread(
+    surface: Surface,
+    region: NDArray[np.int32],
+    half: _HalfEdges,
+    toggles: dict[int, int],
+    is_out: NDArray[np.bool_],
+    largest: NDArray[np.int32],
+    place: NDArray[np.float64],
+    side: _Sides,
+) -> list[int]:
+    """Return the bits of every region, from the largest one across the rings."""
+    beside = _beside(surface, region, half)
+    bits: list[int | None] = [None] * len(largest)
+    for start in _by_size(surface, largest):
+        if bits[start] is not None:
+            continue
+        bits[start] = side.at(place[start])
+        pending = [start] if not is_out[start] else []
+        while pending:
+            here = pending.pop()
+            for there, key in beside.get(here, ()):
+                if bits[there] is None and not is_out[there]:
+                    bits[there] = (bits[here] or 0) ^ toggles[key]
+                    pending.append(there)
+    return [own or 0 for own in bits]
+
+
+def _beside(
+    surface: Surface, region: NDArray[np.int32], half: _HalfEdges
+) -> dict[int, list[tuple[int, int]]]:
+    """Return for each region those across a ring, with an edge between them."""
+    across = surface.neighbors[half.triangle, half.corner]
+    inner = across != topology.NO_NEIGHBOR
+    pairs = np.stack([region[half.triangle[inner]], region[across[inner]]], axis=1)
+    _, first = np.unique(pairs, axis=0, return_index=True)
+    found: dict[int, list[tuple[int, int]]] = {}
+    for (here, there), key in zip(
+        pairs[first].tolist(), half.key[inner][first].tolist(), strict=True
+    ):
+        found.setdefault(here, []).append((there, key))
+    return found
+
+
+def _by_size(surface: Surface, largest: NDArray[np.int32]) -> list[int]:
+    a, b, c = (surface.points[surface.triangles[largest, k], :2] for k in range(3))
+    (x, y), (u, v) = (b - a).T, (c - a).T
+    order: list[int] = np.argsort(-(x * v - y * u), kind="stable").tolist()
+    return order
+
+
+def _require_all_cut(bits: list[int], is_out: NDArray[np.bool_], side: _Sides) -> None:
+    cut = 0
+    for own, out in zip(bits, is_out.tolist(), strict=True):
+        if not out and side.is_within(own):
+            cut |= own
+    for number in range(side.n_holes):
+        if not cut >> (number + HOLES) & 1:
+            raise LinesError(
+                f"Hole {number} lies outside the surface: it must cut away a part of it.",
+                lines=[number],
+            )
+
+
+def _center(surface: Surface, triangles: NDArray[np.int32]) -> NDArray[np.float64]:
+    a, b, c = (surface.points[surface.triangles[triangles, k], :2] for k in range(3))
+    center: NDArray[np.float64] = a + ((b - a) + (c - a)) / 3.0
+    return center
+
+
+def trimmed(
+    surface: Surface, keep: NDArray[np.bool_], max_edge: float, *, everywhere: bool
+) -> NDArray[np.bool_]:
+    """Drop triangles at edges longer than ``max_edge`` that are no lines.
+
+    From the perimeter only the triangles go that lie at a long outer edge, as long as there are
+    any; everywhere all that have a long edge.
+    """
+    a, b, c = (surface.points[surface.triangles[:, k], :2] for k in range(3))
+    sides = np.stack([np.hypot(*(c - b).T), np.hypot(*(a - c).T), np.hypot(*(b - a).T)], axis=1)
+    is_long = (sides > max_edge) & ~surface.constrained
+    keep = keep.copy()
+    if everywhere:
+        keep &= ~is_long.any(axis=1)
+        return keep
+    candidates = np.flatnonzero(keep & is_long.any(axis=1))
+    while len(candidates):
+        beside = surface.neighbors[candidates]
+        is_outer = (beside == topology.NO_NEIGHBOR) | ~keep[beside]
+        gone = candidates[(is_long[candidates] & is_outer).any(axis=1)]
+        keep[gone] = False
+        near = surface.neighbors[gone].ravel()
+        near = near[near != topology.NO_NEIGHBOR]
+        candidates = np.unique(near[keep[near]])
+    return keep
+
+
+def clipped(surface: Surface, keep: NDArray[np.bool_]) -> tuple[Surface, NDArray[np.int32]]:
+    """Return the kept triangles with the vertices that they use, and the new number of each vertex.
+
+    Vertices without a triangle have number -1. The new rim is constrained.
+    """
+    number = np.cumsum(keep, dtype=np.int32) - np.int32(1)
+    beside = surface.neighbors[keep]
+    is_outer = (beside == topology.NO_NEIGHBOR) | ~keep[beside]
+    corners = surface.triangles[keep]
+    is_used = np.zeros(len(surface.points), np.bool_)
+    is_used[corners] = True
+    vertex = np.where(is_used, np.cumsum(is_used, dtype=np.int32) - np.int32(1), np.int32(-1))
+    return (
+        Surface(
+            surface.points[is_used],
+            vertex[corners],
+            np.where(is_outer, np.int32(topology.NO_NEIGHBOR), number[beside]),
+            surface.constrained[keep] | is_outer,
+        ),
+        vertex,
+    )

@@ -1,0 +1,205 @@
+"""Conforming: segments of lines are split until every edge of the surface is Delaunay.
+
+Rounds, each a function of the sets of points and segments:
+
+1. Every segment that is not Delaunay is split. A segment is halved; next to a vertex that was
+   there before it is cut at a power of two from there [1]_, so that segments that meet under an
+   acute angle do not split each other for ever.
+2. A split point is rounded to coordinates, so its segment bends, by a unit in the last place. If it
+   meets another vertex or segment then, all lines are noded again, exactly, and the points are
+   triangulated anew.
+
+A round makes segments shorter and never joins any. How many it takes depends on angles and
+distances, not on the number of points; so new vertices are limited in number.
+
+References
+----------
+.. [1] J. Ruppert, A Delaunay Refinement Algorithm for Quality 2-Dimensional Mesh Generation,
+   Journal of Algorithms 18 (1995), doi:10.1006/jagm.1995.1021.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...errors import LinesError
+from .. import _kernel
+from .clipping import edge_keys
+from .noding import Chains, node_again
+from .polylines import Pieces
+from .pslg import mesh_of
+from .splitting import interpolate_linearly, is_before
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["conform"]
+
+_MOST_ROUNDS = 1000  # from the largest coordinate to the smallest are some 450 halvings
+_LEAST_LIMIT = 20_000  # of new vertices, for any few lines
+_NEW_PER_VERTEX = 50  # the limit for many
+
+
+def conform(
+    mesh: _kernel.Mesh,
+    points: NDArray[np.float64],
+    pieces: Pieces,
+    priorities: NDArray[Any],
+    *,
+    threads: int,
+) -> tuple[_kernel.Mesh, NDArray[np.float64], Pieces]:
+    """Split segments that are not Delaunay.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Of the points, with the segments of all pieces fixed. Not to be used any more.
+    points : (n, 3) float64 array
+    pieces : Pieces
+        Noded.
+    priorities : (l,) array
+        Of the lines that the pieces belong to: whose elevation counts where two meet anew.
+    threads : int
+
+    Returns
+    -------
+    mesh : Mesh
+    points : (n + s, 3) float64 array
+        With the new vertices, elevations linear along the segments.
+    pieces : Pieces
+
+    Raises
+    ------
+    LinesError
+        If a segment is too short to be split, or too many vertices would be needed.
+    """
+    n_given, most = len(points), max(_LEAST_LIMIT, _NEW_PER_VERTEX * len(points))
+    for _ in range(_MOST_ROUNDS):
+        bad = _segments_to_split(mesh, points)
+        if not len(bad):
+            return mesh, points, pieces
+        if len(points) + len(bad) - n_given > most:
+            raise _hopeless(f"{most} new vertices", points, bad)
+        points, pieces, is_noded = _split(mesh, points, pieces, bad, n_given)
+        if not is_noded:
+            mesh, points, pieces = _node_again(mesh, points, pieces, priorities, threads)
+    raise _hopeless(f"{_MOST_ROUNDS} rounds of splitting", points, bad)
+
+
+def _hopeless(what: str, points: NDArray[np.float64], bad: NDArray[np.int32]) -> LinesError:
+    x, y, _ = points[bad[0, 0]].tolist()
+    return LinesError(
+        f"The lines are not conforming after {what}: {len(bad)} segments (first: at x {x!r}, "
+        f"y {y!r}) still run too close to others, or meet them under too small an angle."
+    )
+
+
+def _segments_to_split(mesh: _kernel.Mesh, points: NDArray[np.float64]) -> NDArray[np.int32]:
+    """Return the segments that are not Delaunay, as pairs of ends, in order of their places."""
+    ends = mesh.illegal_fixed_edges().reshape(-1, 2)
+    start, end = points[ends[:, 0], :2], points[ends[:, 1], :2]
+    is_backward = is_before(end, start)
+    ends = np.where(is_backward[:, None], ends[:, ::-1], ends)
+    start, end = points[ends[:, 0], :2], points[ends[:, 1], :2]
+    order = np.lexsort((*end.T, *start.T))
+    return np.ascontiguousarray(ends[order])
+
+
+def _split(
+    mesh: _kernel.Mesh,
+    points: NDArray[np.float64],
+    pieces: Pieces,
+    bad: NDArray[np.int32],
+    n_given: int,
+) -> tuple[NDArray[np.float64], Pieces, bool]:
+    """Split segments in the mesh too; tell whether the lines are still noded.
+
+    If not, a split point fell on a vertex or another segment, or something is in the way of the
+    halves: only the new points and pieces are right then, not the mesh.
+    """
+    middle = _split_points(points, bad, n_given)
+    splits_before = mesh.fixed_splits
+    mesh.release(bad)
+    vertex = mesh.insert(np.ascontiguousarray(middle[:, :2]))
+    is_noded = bool((vertex == len(points) + np.arange(len(middle))).all())
+    points = np.concatenate([points, middle])
+    pieces = _with_middles(pieces, bad, vertex, len(points))
+    halves = np.concatenate([np.stack([bad[:, 0], vertex], 1), np.stack([vertex, bad[:, 1]], 1)])
+    passed, blocked = mesh.force(np.ascontiguousarray(halves))
+    is_noded &= mesh.fixed_splits == splits_before and not (len(passed) or len(blocked))
+    return points, pieces, is_noded
+
+
+def _split_points(
+    points: NDArray[np.float64], segments: NDArray[np.int32], n_given: int
+) -> NDArray[np.float64]:
+    start, end = points[segments[:, 0]], points[segments[:, 1]]
+    length = np.hypot(*(end - start)[:, :2].T)
+    shell = np.exp2(np.round(np.log2(length / 2))) / length
+    is_given = segments < n_given
+    share = np.where(is_given[:, 0], shell, np.where(is_given[:, 1], 1 - shell, 0.5))
+    share = np.where(is_given.all(axis=1), 0.5, share)
+    middle = np.empty_like(start)
+    middle[:, :2] = _in_exact_range(start[:, :2] + share[:, None] * (end - start)[:, :2])
+    middle[:, 2] = interpolate_linearly(start[:, 2], end[:, 2], share)
+    _require_between(middle[:, :2], start[:, :2], end[:, :2])
+    return middle
+
+
+def _in_exact_range(xy: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Round to 0 what is too small for the predicates."""
+    smallest, _ = _kernel.EXACT_RANGE
+    return np.where(np.abs(xy) < smallest, 0.0, xy)
+
+
+def _require_between(
+    middle: NDArray[np.float64], start: NDArray[np.float64], end: NDArray[np.float64]
+) -> None:
+    stuck = (middle == start).all(axis=1) | (middle == end).all(axis=1)
+    if stuck.any():
+        x, y = middle[np.argmax(stuck)].tolist()
+        raise LinesError(
+            f"The lines cannot be made conforming at x {x!r}, y {y!r}: a segment there is too "
+            "short to be split."
+        )
+
+
+def _with_middles(
+    pieces: Pieces, split: NDArray[np.int32], vertex: NDArray[np.int32], n: int
+) -> Pieces:
+    """Put a vertex between the ends of some segments, wherever a piece takes them."""
+    keys = edge_keys(split, n)
+    order = np.argsort(keys)
+    steps, _ = pieces.steps()
+    own = edge_keys(steps, n)
+    slot = np.minimum(np.searchsorted(keys, own, sorter=order), len(keys) - 1)
+    hit = np.flatnonzero(keys[order[slot]] == own)
+    is_start = np.ones(len(pieces.vertices), np.bool_)
+    is_start[pieces.offsets[1:] - 1] = False
+    after = np.flatnonzero(is_start)[hit] + 1
+    added = np.searchsorted(after, pieces.offsets, side="left")
+    added[-1] = len(after)
+    return Pieces(
+        np.insert(pieces.vertices, after, vertex[order[slot[hit]]]).astype(np.int32),
+        (pieces.offsets + added).astype(np.int32),
+        pieces.lines,
+    )
+
+
+def _node_again(
+    mesh: _kernel.Mesh,
+    points: NDArray[np.float64],
+    pieces: Pieces,
+    priorities: NDArray[Any],
+    threads: int,
+) -> tuple[_kernel.Mesh, NDArray[np.float64], Pieces]:
+    """Node the pieces exactly, and triangulate the vertices anew, numbered without gaps."""
+    alive = mesh.alive()
+    number_of = (np.cumsum(alive) - 1).astype(np.int32)
+    points, pieces = points[alive], pieces.renumbered(number_of)
+    chains = Chains(pieces.vertices, pieces.offsets, points[pieces.vertices, 2])
+    points, chains = node_again(points, chains, priorities[pieces.lines], threads=threads)
+    pieces = Pieces(chains.vertices, chains.offsets, pieces.lines)
+    return mesh_of(points, pieces, threads=threads), points, pieces

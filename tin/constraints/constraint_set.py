@@ -1,0 +1,340 @@
+"""The lines of a survey as flat arrays, ready to be put into a surface."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ...errors import LinesError
+from .. import _kernel
+from ..validation.options import shown
+from .breaklines import Breakline, LineKind, Water, as_ring
+from .polygons import rings_of
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+__all__ = [
+    "ABOVE_ALL",
+    "BELOW_ALL",
+    "LineSet",
+    "as_sequence",
+    "gather_extent",
+    "gather_lines",
+    "gather_regions",
+    "gather_rings",
+    "gather_water",
+    "require_length",
+]
+
+ABOVE_ALL = np.inf
+"""Priority of water: it stays flat whatever crosses it."""
+
+BELOW_ALL = -np.inf
+"""Priority of draped lines: they never change a height."""
+
+
+class LineSet(NamedTuple):
+    """Lines as ragged arrays; line ``i`` has the rows ``offsets[i]:offsets[i + 1]``.
+
+    Attributes
+    ----------
+    xy : (k, 2) float64 array
+    heights : (k,) float64 array
+        NaN for draped lines.
+    offsets : (l + 1,) int64 array
+    kinds : tuple of LineKind
+    sources : (l,) int32 array
+        The caller's number within breaklines, boundary, holes or water.
+    priorities : (l,) float64 array
+    names : tuple of str
+    """
+
+    xy: NDArray[np.float64]
+    heights: NDArray[np.float64]
+    offsets: NDArray[np.int64]
+    kinds: tuple[LineKind, ...]
+    sources: NDArray[np.int32]
+    priorities: NDArray[np.float64]
+    names: tuple[str, ...]
+
+    @property
+    def is_draped(self) -> NDArray[np.bool_]:
+        """Whether each line takes its heights from the surface."""
+        return np.isnan(self.heights[self.offsets[:-1]])
+
+    @property
+    def line_of(self) -> NDArray[np.int64]:
+        """The line of each row."""
+        return np.repeat(np.arange(len(self.kinds)), np.diff(self.offsets))
+
+    def label(self, line: int) -> str:
+        """Return what a line is called in sentences."""
+        kind = self.kinds[line]
+        noun = "breakline" if kind in ("hard", "soft") else kind
+        name = f" '{self.names[line]}'" if self.names[line] else ""
+        return f"{noun} {int(self.sources[line])}{name}"
+
+    def labels(self) -> list[str]:
+        """Return what the lines are called."""
+        return [self.label(line) for line in range(len(self.kinds))]
+
+    def title(self, line: int) -> str:
+        """Return what a line is called at the beginning of a sentence."""
+        label = self.label(line)
+        return label[0].upper() + label[1:]
+
+    @classmethod
+    def joined(cls, sets: Sequence[LineSet]) -> LineSet:
+        """Return the lines of several sets as one."""
+        counts = np.concatenate([np.diff(part.offsets) for part in sets])
+        return cls(
+            np.concatenate([part.xy for part in sets]),
+            np.concatenate([part.heights for part in sets]),
+            np.concatenate([[0], np.cumsum(counts)]),
+            tuple(kind for part in sets for kind in part.kinds),
+            np.concatenate([part.sources for part in sets]),
+            np.concatenate([part.priorities for part in sets]),
+            tuple(name for part in sets for name in part.names),
+        )
+
+    def chosen(self, is_chosen: NDArray[np.bool_]) -> LineSet:
+        """Return some of the lines."""
+        rows = np.repeat(is_chosen, np.diff(self.offsets))
+        counts = np.diff(self.offsets)[is_chosen]
+        numbers = np.flatnonzero(is_chosen)
+        return LineSet(
+            self.xy[rows],
+            self.heights[rows],
+            np.concatenate([[0], np.cumsum(counts)]),
+            tuple(self.kinds[i] for i in numbers),
+            self.sources[is_chosen],
+            self.priorities[is_chosen],
+            tuple(self.names[i] for i in numbers),
+        )
+
+
+_NONE = LineSet(
+    np.empty((0, 2)),
+    np.empty(0),
+    np.zeros(1, np.int64),
+    (),
+    np.empty(0, np.int32),
+    np.empty(0),
+    (),
+)
+
+
+def gather_lines(
+    breaklines: Sequence[Breakline | ArrayLike],
+    boundary: Sequence[ArrayLike],
+    holes: Sequence[Any],
+    water: Sequence[Water],
+) -> LineSet:
+    """Put all lines into one set: breaklines, then boundary rings, holes and water.
+
+    Raises
+    ------
+    LinesError
+        If a line has another shape, too few vertices, coordinates that are not finite or too
+        large, or if a ring crosses itself.
+    """
+    if not (len(breaklines) or len(boundary) or len(holes) or len(water)):
+        return _NONE
+    found = None if boundary or holes or water else _arrays_alone(breaklines)
+    if found is None:
+        found = _gathered(breaklines, boundary, holes, water)
+    _require_exact_range(found)
+    require_length(found)
+    return found
+
+
+def _arrays_alone(breaklines: Sequence[Any]) -> LineSet | None:
+    """Return sound (k, 3) arrays as hard breaklines, all at once; None for anything else."""
+    if not (isinstance(breaklines, list | tuple) and all(map(_is_array_of_vertices, breaklines))):
+        return None
+    coords = np.concatenate(breaklines)
+    if not np.isfinite(coords).all():
+        return None
+    coords += 0.0  # no -0.0: equal coordinates are equal bytes
+    n = len(breaklines)
+    kind: LineKind = "hard"
+    return LineSet(
+        np.ascontiguousarray(coords[:, :2]),
+        coords[:, 2],
+        offsets=np.concatenate([[0], np.cumsum([len(c) for c in breaklines], dtype=np.int64)]),
+        kinds=(kind,) * n,
+        sources=np.arange(n, dtype=np.int32),
+        priorities=np.zeros(n),
+        names=("",) * n,
+    )
+
+
+def _is_array_of_vertices(line: Any) -> bool:
+    is_array = isinstance(line, np.ndarray) and line.dtype == np.float64
+    return is_array and line.ndim == 2 and line.shape[1] == 3 and len(line) >= 2
+
+
+def _gathered(
+    breaklines: Sequence[Breakline | ArrayLike],
+    boundary: Sequence[Any],
+    holes: Sequence[Any],
+    water: Sequence[Water],
+) -> LineSet:
+    lines = [
+        line if isinstance(line, Breakline) else Breakline(line)
+        for line in as_sequence(breaklines, "breaklines")
+    ]
+    rings = [
+        *_rings(boundary, "boundary"),
+        *_rings(holes, "hole"),
+    ]
+    ponds = gather_water(water)
+    coords = [
+        *(line.coords for line in lines),
+        *(_closed(ring) for _, ring in rings),
+        *(_closed(_level(pond)) for pond in ponds),
+    ]
+    kinds: list[LineKind] = [line.kind for line in lines]
+    kinds += [kind for kind, _ in rings]
+    kinds += ["water" for _ in ponds]
+    return LineSet(
+        *_stacked(coords),
+        offsets=np.concatenate([[0], np.cumsum([len(c) for c in coords], dtype=np.int64)]),
+        kinds=tuple(kinds),
+        sources=_sources(kinds),
+        priorities=np.array(
+            [
+                *(BELOW_ALL if line.is_draped else line.priority for line in lines),
+                *(BELOW_ALL if ring.shape[1] == 2 else 0.0 for _, ring in rings),
+                *(ABOVE_ALL for _ in ponds),
+            ],
+            np.float64,
+        ),
+        names=(*(line.name for line in lines), *("" for _ in rings), *(p.name for p in ponds)),
+    )
+
+
+def gather_extent(extent: Sequence[ArrayLike], n_boundary: int) -> LineSet:
+    """Return the rings within which there is data as lines, numbered behind those given."""
+    rings = [_closed(as_ring(ring, f"extent ring {number}")) for number, ring in enumerate(extent)]
+    n = len(rings)
+    if n == 0:
+        return _NONE
+    kind: LineKind = "boundary"
+    return LineSet(
+        *_stacked(rings),
+        offsets=np.concatenate([[0], np.cumsum([len(ring) for ring in rings], dtype=np.int64)]),
+        kinds=(kind,) * n,
+        sources=np.arange(n_boundary, n_boundary + n, dtype=np.int32),
+        priorities=np.where([ring.shape[1] == 2 for ring in rings], BELOW_ALL, 0.0),
+        names=("",) * n,
+    )
+
+
+def gather_rings(rings: Sequence[Any], what: str) -> list[NDArray[np.float64]]:
+    """Return rings, and those of polygons, as (k, 2) arrays, the first corner not repeated."""
+    return [ring for region in gather_regions(rings, what) for ring in region]
+
+
+def gather_regions(regions: Sequence[Any], what: str) -> list[list[NDArray[np.float64]]]:
+    """Return the rings of each region: one, or those of a polygon with islands."""
+    return [[ring[:, :2] for ring in rings] for rings in rings_of(as_sequence(regions, what), what)]
+
+
+def gather_water(water: Sequence[Water]) -> list[Water]:
+    """Return the water polygons, or say what is none."""
+    ponds = list(as_sequence(water, "water"))
+    for pond in ponds:
+        if not isinstance(pond, Water):
+            raise LinesError(f"Invalid water {type(pond).__name__}: a tinsmith.Water is needed.")
+    return ponds
+
+
+def as_sequence(lines: Any, what: str) -> list[Any]:
+    """Return several lines; one line alone is told apart by its rows being numbers."""
+    if isinstance(lines, Breakline | Water) or hasattr(lines, "__geo_interface__"):
+        return [lines]
+    if isinstance(lines, np.ndarray) and lines.ndim == 2 and lines.dtype != object:
+        return [lines]
+    try:
+        return list(lines)
+    except TypeError:
+        raise LinesError(
+            f"Invalid {what} {shown(lines)}: a sequence of lines is needed, each an array of "
+            "vertices."
+        ) from None
+
+
+def _rings(regions: Sequence[Any], kind: LineKind) -> list[tuple[LineKind, NDArray[np.float64]]]:
+    found = rings_of(as_sequence(regions, kind), kind)
+    return [(kind, ring) for rings in found for ring in rings]
+
+
+def _level(pond: Water) -> NDArray[np.float64]:
+    return np.column_stack([pond.ring, np.full(len(pond.ring), pond.z)])
+
+
+def _closed(ring: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.concatenate([ring, ring[:1]])
+
+
+def _stacked(coords: list[NDArray[np.float64]]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    if not coords:
+        return np.empty((0, 2)), np.empty(0)
+    xy = np.concatenate([line[:, :2] for line in coords])
+    draped = [len(line) if line.shape[1] == 2 else 0 for line in coords]
+    heights = np.concatenate(
+        [np.full(n, np.nan) if n else line[:, 2] for n, line in zip(draped, coords, strict=True)]
+    )
+    return np.ascontiguousarray(xy), heights
+
+
+def _sources(kinds: Sequence[str]) -> NDArray[np.int32]:
+    counts: dict[str, int] = {}
+    numbers = []
+    for kind in kinds:
+        group = "breakline" if kind in ("hard", "soft") else kind
+        numbers.append(counts.get(group, 0))
+        counts[group] = numbers[-1] + 1
+    return np.array(numbers, np.int32)
+
+
+def require_length(lines: LineSet) -> None:
+    """Refuse a line whose vertices are all at one place.
+
+    Raises
+    ------
+    LinesError
+    """
+    starts = lines.offsets[:-1]
+    begins_at_one_place = (lines.xy[starts] == lines.xy[starts + 1]).all(axis=1)
+    for line in np.flatnonzero(begins_at_one_place).tolist():
+        rows = lines.xy[lines.offsets[line] : lines.offsets[line + 1]]
+        if (rows != rows[0]).any():
+            continue
+        label = lines.label(line)
+        x, y = lines.xy[lines.offsets[line]]
+        raise LinesError(
+            f"{label[0].upper() + label[1:]} has all its vertices at one place (x {x:g}, y {y:g}): "
+            "a line needs two places.",
+            lines=[line],
+        )
+
+
+def _require_exact_range(lines: LineSet) -> None:
+    smallest, largest = _kernel.EXACT_RANGE
+    size = np.abs(lines.xy)
+    wrong = ((size > largest) | ((size < smallest) & (size > 0))).any(axis=1)
+    if wrong.any():
+        row = int(np.argmax(wrong))
+        line = int(lines.line_of[row])
+        label, (x, y) = lines.label(line), lines.xy[row].tolist()
+        raise LinesError(
+            f"{label[0].upper() + label[1:]} has a vertex outside the exact range "
+            f"(x {x!r}, y {y!r}): magnitudes from {smallest:.0e} to {largest:.0e}, or 0, are "
+            "allowed.",
+            lines=[line],
+        )

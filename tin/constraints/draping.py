@@ -1,0 +1,233 @@
+"""Draping: lines without heights are laid on a surface, and get a vertex at every edge of it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from .. import _kernel, topology
+from .clipping import Surface, in_rings
+from .constraint_set import BELOW_ALL, LineSet
+from .noding import Chains, node
+from .polylines import Pieces
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["Draped", "drape"]
+
+
+class Draped(NamedTuple):
+    """Lines with heights.
+
+    Attributes
+    ----------
+    lines : LineSet
+        The given lines, cut where they leave the surface; kind, source and name are kept.
+    rim : LineSet
+        The parts of the surface's rim that got vertices where lines leave it.
+    n_cut : int
+        Lines of which a part lies outside the surface.
+    """
+
+    lines: LineSet
+    rim: LineSet
+    n_cut: int
+
+
+def drape(surface: Surface, lines: LineSet, *, threads: int) -> Draped:
+    """Lay lines on a surface that fills its convex hull.
+
+    Between its own vertices a line gets one at every edge of the surface that it crosses, so that
+    it follows the ground. Parts outside the surface are left out.
+    """
+    hull = topology.boundary_rings(surface.triangles, surface.neighbors)[0]
+    ring = np.ascontiguousarray(surface.points[hull, :2])
+    if (in_rings(lines.xy, [ring]) >= 0).all():
+        xy, pieces = _vertices_once(lines)
+        whole = _with_heights(surface, xy, np.full(len(xy), np.nan), pieces, lines)
+        return Draped(whole, _no_lines(lines), 0)
+    return _cut_at_rim(surface, hull, lines, threads=threads)
+
+
+def _no_lines(lines: LineSet) -> LineSet:
+    return lines.chosen(np.zeros(len(lines.kinds), np.bool_))
+
+
+def _vertices_once(lines: LineSet) -> tuple[NDArray[np.float64], Pieces]:
+    """Return the places of the lines' vertices, and the lines as chains of these."""
+    xy, vertex_of = np.unique(lines.xy, axis=0, return_inverse=True)
+    pieces = Pieces(
+        vertex_of.reshape(-1).astype(np.int32),
+        lines.offsets.astype(np.int32),
+        np.arange(len(lines.kinds), dtype=np.int32),
+    )
+    return xy, pieces
+
+
+def _cut_at_rim(
+    surface: Surface, hull: NDArray[np.int32], lines: LineSet, *, threads: int
+) -> Draped:
+    rim = surface.points[np.append(hull, hull[0])]
+    both = np.concatenate([lines.xy, rim[:, :2]])
+    xy, inverse = np.unique(both, axis=0, return_inverse=True)
+    vertex_of: NDArray[np.int32] = inverse.reshape(-1).astype(np.int32)
+    chains = Chains(
+        vertex_of,
+        np.append(lines.offsets, len(both)).astype(np.int32),
+        np.concatenate([lines.heights, rim[:, 2]]),
+    )
+    noded = node(xy, chains, np.append(lines.priorities, 0.0), threads=threads)
+    offsets = noded.chains.offsets
+    rim_chain = noded.chains.vertices[offsets[-2] :]
+    rim_heights = noded.chains.heights[offsets[-2] :]
+    places = np.concatenate([xy, noded.new_points[:, :2]])
+    side = in_rings(places, [rim[:-1, :2]])
+    side[rim_chain] = 0
+    pieces = Pieces(
+        noded.chains.vertices[: offsets[-2]],
+        offsets[:-1],
+        np.arange(len(lines.kinds), dtype=np.int32),
+    )
+    steps, line_of = pieces.steps()
+    is_inside = np.asarray((side[steps] >= 0).all(axis=1), np.bool_)
+    heights = np.full(len(places), np.nan)
+    heights[rim_chain] = rim_heights
+    return Draped(
+        _with_heights(surface, places, heights, pieces.kept(is_inside), lines),
+        _split_rim(places, rim_chain, rim_heights, vertex_of[len(lines.xy) :]),
+        len(np.unique(line_of[~is_inside])),
+    )
+
+
+def _split_rim(
+    places: NDArray[np.float64],
+    chain: NDArray[np.int32],
+    heights: NDArray[np.float64],
+    own: NDArray[np.int32],
+) -> LineSet:
+    """Return the edges of the rim that have vertices between their ends, as lines.
+
+    Edges that such a vertex hides belong to them: where rounding put it beyond the rim, a sliver
+    that is no surface lies between it and the next edges in line::
+
+        rim  --------- v ----.         v is above the rim by a rounding; the edge from a to b tells
+             ______.--' `--. a ___ b   the sliver v, a, b apart from the surface below
+    """
+    corner = np.flatnonzero(np.isin(chain, own))
+    is_split = np.diff(corner) > 1
+    is_split |= _hidden_edges(places[chain], corner, is_split)
+    begins, ends = corner[:-1][is_split], corner[1:][is_split] + 1
+    counts = ends - begins
+    total = int(counts.sum())
+    offsets = np.concatenate([[0], np.cumsum(counts)])
+    rows = np.arange(total) + np.repeat(begins - offsets[:-1], counts)
+    return LineSet(
+        places[chain[rows]],
+        heights[rows],
+        offsets,
+        tuple("boundary" for _ in counts),
+        np.full(len(counts), -1, np.int32),
+        np.full(len(counts), BELOW_ALL),
+        ("",) * len(counts),
+    )
+
+
+def _hidden_edges(
+    xy: NDArray[np.float64], corner: NDArray[np.int64], is_split: NDArray[np.bool_]
+) -> NDArray[np.bool_]:
+    """Tell which edges of a closed rim, from corner to corner, a vertex on another one hides."""
+    is_hidden = np.zeros(len(is_split), np.bool_)
+    n = len(is_split)
+    for edge in np.flatnonzero(is_split).tolist():
+        between = xy[corner[edge] + 1 : corner[edge + 1]]
+        for turn in (1, -1):
+            for step in range(1, n):
+                other = (edge + turn * step) % n
+                if not _are_beyond(between, xy[corner[[other, other + 1]]]).any():
+                    break
+                is_hidden[other] = True
+    return is_hidden
+
+
+def _are_beyond(xy: NDArray[np.float64], edge: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Tell which places lie to the right of an edge from its first end to its second."""
+    start, end = (np.ascontiguousarray(np.broadcast_to(place, xy.shape)) for place in edge)
+    beyond: NDArray[np.bool_] = _kernel.orientation(start, end, np.ascontiguousarray(xy)) < 0
+    return beyond
+
+
+def _with_heights(
+    surface: Surface,
+    places: NDArray[np.float64],
+    heights: NDArray[np.float64],
+    pieces: Pieces,
+    lines: LineSet,
+) -> LineSet:
+    """Give pieces a vertex at every edge of the surface, and every vertex its height."""
+    xy, owner = _along_surface(surface, places, pieces)
+    z = _kernel.Locator(surface.points, surface.triangles, surface.neighbors).interpolate(xy)
+    known = _heights_at(xy, places, heights)
+    z = np.where(np.isnan(known), z, known)
+    keep = ~np.isnan(z)
+    xy, z, owner = xy[keep], z[keep], owner[keep]
+    counts = np.bincount(owner, minlength=len(pieces.lines))
+    return LineSet(
+        xy,
+        z,
+        np.concatenate([[0], np.cumsum(counts)]),
+        tuple(lines.kinds[i] for i in pieces.lines),
+        lines.sources[pieces.lines],
+        np.full(len(pieces.lines), BELOW_ALL),
+        tuple(lines.names[i] for i in pieces.lines),
+    )
+
+
+def _heights_at(
+    xy: NDArray[np.float64], places: NDArray[np.float64], heights: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Look up the heights of places that have one already; NaN elsewhere."""
+    known = np.flatnonzero(~np.isnan(heights))
+    found = np.full(len(xy), np.nan)
+    if len(known):
+        both = np.concatenate([places[known], xy])
+        _, number = np.unique(both, axis=0, return_inverse=True)
+        number = number.reshape(-1)
+        table = np.full(int(number.max()) + 1, np.nan)
+        table[number[: len(known)]] = heights[known]
+        found = table[number[len(known) :]]
+    return found
+
+
+def _along_surface(
+    surface: Surface, places: NDArray[np.float64], pieces: Pieces
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Return the places along every piece, with those where it crosses edges, and the piece."""
+    mesh = _kernel.Mesh(
+        surface.points,
+        surface.triangles,
+        surface.neighbors,
+        np.ones(surface.triangles.shape, np.bool_),  # so that every edge is there to be crossed
+    )
+    slots = np.full(len(places), -1, np.int32)
+    used = np.unique(pieces.vertices)
+    slots[used] = mesh.insert(np.ascontiguousarray(places[used]))
+    steps, _ = pieces.steps()
+    n_own = len(surface.points)
+    crossed = mesh.crossed(np.ascontiguousarray(slots[steps]), True).reshape(-1, 3)
+    xy = np.concatenate([surface.points[:, :2], np.empty((mesh.slots - n_own, 2))])
+    xy[slots[used]] = places[used]
+    pairs = np.stack([crossed[:, 0], len(steps) + np.arange(len(crossed))], axis=1)
+    segments = np.concatenate([slots[steps], crossed[:, 1:]]).astype(np.int32)
+    meets = _kernel.intersections(
+        np.ascontiguousarray(xy), np.ascontiguousarray(segments), pairs.astype(np.int32)
+    )
+    piece_of = np.repeat(np.arange(len(pieces.lines)), np.diff(pieces.offsets))
+    start_row = np.flatnonzero(~np.isin(np.arange(len(pieces.vertices)), pieces.offsets[1:] - 1))
+    after = start_row[crossed[:, 0]] + 1
+    along = np.insert(places[pieces.vertices], after, meets, axis=0)
+    owner = np.insert(piece_of, after, piece_of[start_row[crossed[:, 0]]])
+    is_new = np.ones(len(along), np.bool_)
+    is_new[1:] = (np.diff(along, axis=0) != 0).any(axis=1) | (np.diff(owner) != 0)
+    return along[is_new], owner[is_new]

@@ -1,0 +1,109 @@
+"""Polygons as rings: a ring alone, or several of which the inner ones leave islands."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...errors import LinesError
+from .breaklines import as_ring, elevations_at_start
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["rings_of", "starts_with_elevations"]
+
+
+def rings_of(regions: Sequence[Any], what: str) -> list[list[NDArray[np.float64]]]:
+    """Return the rings of regions, one list for each.
+
+    Parameters
+    ----------
+    regions : sequence
+        Of each: a ring, (k, 2) or (k, 3); a sequence of rings; or an object that has a
+        ``__geo_interface__`` with polygons, such as one of shapely, every polygon of which is a
+        region.
+    what : str
+        What the rings are, for sentences.
+
+    Raises
+    ------
+    LinesError
+        For anything else.
+
+    Examples
+    --------
+    >>> [len(rings) for rings in rings_of([[[0, 0], [1, 0], [0, 1]]], "hole")]
+    [1]
+    """
+    return [[as_ring(*one) for one in rings] for rings in _labelled(regions, what)]
+
+
+def starts_with_elevations(
+    regions: Sequence[Any], what: str
+) -> list[tuple[str, NDArray[np.float64]]]:
+    """Return the rings that close with several elevations: name, vertices with the lowest first."""
+    rings = [one for rings in _labelled(regions, what) for one in rings]
+    starts = [(label, elevations_at_start(ring, label)) for ring, label in rings]
+    return [(label, start) for label, start in starts if len(start) > 1]
+
+
+def _labelled(regions: Sequence[Any], what: str) -> Iterator[list[tuple[Any, str]]]:
+    """Walk the regions, each a list of rings with their names."""
+    number = 0
+    for region in regions:
+        for rings in _as_rings(region, what):
+            yield [(ring, f"{what} ring {number + i}") for i, ring in enumerate(rings)]
+            number += len(rings)
+
+
+def _as_rings(region: Any, what: str) -> Iterator[Sequence[Any]]:
+    """Walk the regions that something given as one holds, each as a sequence of rings."""
+    interface = getattr(region, "__geo_interface__", None)
+    if interface is not None:
+        yield from _of_geometry(interface, what)
+    elif _is_sequence_of_rings(region):
+        if len(region) == 0:
+            raise LinesError(f"Invalid {what}: a polygon without a ring.")
+        yield region
+    else:
+        yield [region]
+
+
+def _is_sequence_of_rings(region: Any) -> bool:
+    """Whether there is one more level than in a ring: rings, of vertices, of numbers."""
+    if isinstance(region, np.ndarray) and region.dtype != object:
+        return region.ndim == 3
+    first = region
+    for _ in range(2):
+        if not isinstance(first, Sequence | np.ndarray) or isinstance(first, str) or not len(first):
+            return False
+        first = first[0]
+    return isinstance(first, Sequence | np.ndarray) and np.ndim(first) == 1
+
+
+def _of_geometry(given: Mapping[str, Any], what: str) -> Iterator[Sequence[Any]]:
+    """Take collections apart; an object may be a feature or several."""
+    pending = [given]
+    while pending:
+        geometry = pending.pop(0) or {"type": "nothing"}
+        kind = geometry["type"]
+        if kind == "Polygon":
+            if len(geometry["coordinates"]):
+                yield geometry["coordinates"]
+        elif kind == "MultiPolygon":
+            yield from geometry["coordinates"]
+        elif kind in ("LinearRing", "LineString") and _is_closed(geometry["coordinates"]):
+            yield [geometry["coordinates"]]
+        elif kind == "Feature":
+            pending.insert(0, geometry["geometry"])
+        elif kind in ("FeatureCollection", "GeometryCollection"):
+            pending[:0] = geometry["features" if kind[0] == "F" else "geometries"]
+        else:
+            raise LinesError(f"Invalid {what}: a {kind} is no polygon.")
+
+
+def _is_closed(coords: Sequence[Any]) -> bool:
+    return len(coords) > 3 and tuple(coords[0]) == tuple(coords[-1])

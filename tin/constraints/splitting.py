@@ -1,0 +1,392 @@
+"""Splitting: cut the steps of lines where they touch and cross, and keep what is known of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ...errors import LinesError
+from .. import _kernel
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["Splitting", "Steps", "Walk", "interpolate_linearly", "is_before"]
+
+MOST_ROUNDS = 1000  # cascades of roundings end after a few
+
+
+class Steps(NamedTuple):
+    """Steps of all chains, and the distinct segments that they walk.
+
+    Attributes
+    ----------
+    start : (s,) int64 array
+        Position of the vertex from which each step goes.
+    segment : (s,) int64 array
+        The segment of each step.
+    is_backward : (s,) bool array
+        Whether it goes from the segment's second end to the first.
+    keys : (m,) int64 array
+        Of the segments, ascending: both vertex numbers in one.
+    ends : (m, 2) int32 array
+        Vertices of each segment, the first by x, then y, in front.
+    first_step : (m,) int64 array
+        The first step along each segment.
+    """
+
+    start: NDArray[np.int64]
+    segment: NDArray[np.int64]
+    is_backward: NDArray[np.bool_]
+    keys: NDArray[np.int64]
+    ends: NDArray[np.int32]
+    first_step: NDArray[np.int64]
+
+    @classmethod
+    def along(cls, walk: Walk, xy: NDArray[np.float64]) -> Steps:
+        """Take the chains apart."""
+        start = np.flatnonzero(walk.line[:-1] == walk.line[1:])
+        a, b = (walk.vertices[at].astype(np.int64) for at in (start, start + 1))
+        keys, first_step, segment = np.unique(
+            _key_of(np.minimum(a, b), np.maximum(a, b)), return_index=True, return_inverse=True
+        )
+        ends = np.stack(_numbers_of(keys), axis=1).astype(np.int32)
+        swapped = is_before(xy[ends[:, 1]], xy[ends[:, 0]])
+        ends[swapped] = ends[swapped, ::-1]
+        return cls(start, segment, ends[segment, 0] != a, keys, ends, first_step)
+
+
+class Walk(NamedTuple):
+    """All chains one after the other.
+
+    Attributes
+    ----------
+    vertices : (k,) int32 array
+    heights : (k,) float64 array
+        The line's own.
+    line : (k,) int32 array
+    is_given : (k,) bool array
+        Whether the line names the vertex itself.
+    """
+
+    vertices: NDArray[np.int32]
+    heights: NDArray[np.float64]
+    line: NDArray[np.int32]
+    is_given: NDArray[np.bool_]
+
+    @classmethod
+    def along(
+        cls,
+        vertices: NDArray[np.int32],
+        offsets: NDArray[np.int32],
+        heights: NDArray[np.float64],
+    ) -> Walk:
+        """Join the chains; repeated vertices in a row count once, by their lowest height.
+
+        Where a chain closes, too: snapping may have merged the first vertex with the next ones.
+        """
+        line = np.repeat(np.arange(len(offsets) - 1, dtype=np.int32), np.diff(offsets))
+        moves = np.ones(len(line), np.bool_)
+        moves[1:] = (np.diff(vertices) != 0) | (np.diff(line) != 0)
+        given = np.ones(int(moves.sum()), np.bool_)
+        starts = np.flatnonzero(moves)
+        lowest = np.minimum.reduceat(heights, starts) if len(starts) else heights
+        ends = _closing_ends(vertices, offsets, heights)
+        run = np.searchsorted(starts, ends, side="right") - 1
+        lowest[run] = lowest[run].min(axis=0)
+        return cls(vertices[moves], lowest, line[moves], given)
+
+    def with_vertices(
+        self, at: NDArray[np.int64], vertices: NDArray[np.int32], heights: NDArray[np.float64]
+    ) -> Walk:
+        """Insert vertices behind the positions ``at``, which ascend."""
+        behind = at + 1
+        return Walk(
+            np.insert(self.vertices, behind, vertices),
+            np.insert(self.heights, behind, heights),
+            np.insert(self.line, behind, self.line[at]),
+            np.insert(self.is_given, behind, values=False),
+        )
+
+
+def _closing_ends(
+    vertices: NDArray[np.int32], offsets: NDArray[np.int32], heights: NDArray[np.float64]
+) -> NDArray[np.int64]:
+    """Return where chains begin and end that close with one height, (2, c).
+
+    Others keep both of their heights: a ramp may end above its begin.
+    """
+    has_vertices = np.diff(offsets) > 0
+    ends = np.stack([offsets[:-1], offsets[1:] - 1])[:, has_vertices].astype(np.int64)
+    closes = (vertices[ends[0]] == vertices[ends[1]]) & (heights[ends[0]] == heights[ends[1]])
+    return ends[:, closes]
+
+
+def _key_of(first: NDArray[Any], second: NDArray[Any]) -> NDArray[np.int64]:
+    """Make one number of two below 2^31."""
+    key: NDArray[np.int64] = (first.astype(np.int64) << 32) | second
+    return key
+
+
+def _numbers_of(keys: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    return keys >> 32, keys & 0xFFFFFFFF
+
+
+def _is_in(keys: NDArray[np.int64], known: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Tell which of the keys are among the known ones; both ascend."""
+    if len(known) == 0:
+        return np.zeros(len(keys), np.bool_)
+    at = np.minimum(np.searchsorted(known, keys), len(known) - 1)
+    found: NDArray[np.bool_] = known[at] == keys
+    return found
+
+
+class Splitting:
+    """Lines in the making, and what is known about them."""
+
+    def __init__(self, xy: NDArray[np.float64], walk: Walk, snap: float, threads: int) -> None:
+        self.xy = xy
+        self.n_given = len(self.xy)
+        self.walk = walk
+        self.steps = Steps.along(walk, self.xy)
+        self.crossing_vertices = np.empty(0, np.int32)
+        self._snap = snap
+        self._threads = threads
+        self._is_rounded = False  # whether vertices within a rounding of a segment are on it
+        self._untouched = np.empty(0, np.int64)  # segments that the first vertices do not touch
+        self._n_touched = 0  # the number of those vertices
+        self._uncrossed = np.empty(0, np.int64)  # segments that do not cross one another
+
+    def split_everywhere(
+        self, refuse: Callable[[NDArray[np.int64]], LinesError] | None = None
+    ) -> None:
+        """Split steps where they touch and cross until nothing does.
+
+        Parameters
+        ----------
+        refuse : callable, optional
+            Makes the error of pairs of segments that cross, if they must not.
+        """
+        self.split_at_touches()
+        for _ in range(MOST_ROUNDS):
+            pairs = self.find_crossings()
+            if len(pairs) == 0:
+                return
+            if refuse is not None:
+                raise refuse(pairs)
+            self.split_at_crossings(pairs)
+            self.split_at_touches()
+        raise endless()
+
+    # ---------------------------------------------------------------- touches
+
+    def split_at_touches(self) -> None:
+        """Split steps at the vertices on them until there is none."""
+        for _ in range(MOST_ROUNDS):
+            segment, vertex = self._find_touches()
+            bends = self._snap > 0 or self._is_rounded
+            if len(segment) and bends:
+                segment, vertex = self._shortening(segment, vertex)
+            if len(segment):
+                self._split(segment, vertex, bends=bends)
+            if len(segment) == 0 or not bends:  # exact splits leave no touches
+                self._untouched = self.steps.keys
+                self._n_touched = len(self.xy)
+                return
+        raise endless()
+
+    def _find_touches(self) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
+        """Ask new segments about all vertices, known ones about new vertices."""
+        if self._n_touched == 0:
+            return self._find_contacts()
+        is_known = _is_in(self.steps.keys, self._untouched)
+        found = []
+        for asked, first in ((~is_known, 0), (is_known, self._n_touched)):
+            numbers = np.flatnonzero(asked)
+            ends = self.steps.ends[numbers]
+            if len(numbers) and first < len(self.xy):
+                pairs = _kernel.touches(
+                    self.xy, ends, self._snap, first, self._is_rounded, self._threads
+                )
+                found.append((numbers[pairs[:, 0]], pairs[:, 1]))
+        if not found:
+            return np.empty(0, np.int64), np.empty(0, np.int32)
+        segment, vertex = (np.concatenate(column) for column in zip(*found, strict=True))
+        return segment, vertex
+
+    def _find_contacts(self) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
+        """Ask all segments about all, and note those that cross none."""
+        ends = self.steps.ends
+        crossings, touches = _kernel.contacts(self.xy, ends, self._snap, self._threads)
+        crossed = np.zeros(len(ends), np.bool_)
+        crossed[crossings.ravel()] = True
+        touched = np.zeros(len(ends), np.bool_)
+        touched[touches[:, 0]] = True
+        self._uncrossed = self.steps.keys[~crossed]
+        self._untouched = self.steps.keys[~touched]
+        self._n_touched = len(self.xy)
+        return touches[:, 0].astype(np.int64), touches[:, 1]
+
+    def _shortening(
+        self, segment: NDArray[np.int64], vertex: NDArray[np.int32]
+    ) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
+        """Keep all touches of a segment if that leaves shorter parts, else only the nearest."""
+        segment, vertex = self._in_order(segment, vertex, bends=True)
+        a, b, p = self._ends_and_places(segment, vertex)
+        is_first = np.append(True, np.diff(segment) != 0)
+        before = np.where(is_first[:, None], a, np.roll(p, 1, axis=0))
+        after = np.where(np.roll(is_first, -1)[:, None], b, np.roll(p, -1, axis=0))
+        whole = _square(a, b)
+        grows = (_square(before, p) >= whole) | (_square(p, after) >= whole)
+        keep = ~np.isin(segment, segment[grows])
+        nearest = np.lexsort((p[:, 1], p[:, 0], np.abs(_cross(a, b, p)), segment))
+        keep[nearest[is_first]] = True  # both orders are by segment first
+        return segment[keep], vertex[keep]
+
+    # ---------------------------------------------------------------- crossings
+
+    def find_crossings(self) -> NDArray[np.int64]:
+        """Return the pairs of distinct segments that cross, (c, 2)."""
+        is_known = _is_in(self.steps.keys, self._uncrossed)
+        if is_known.all():
+            return np.empty((0, 2), np.int64)
+        order = np.argsort(~is_known, kind="stable")
+        pairs = _kernel.crossings(
+            self.xy, self.steps.ends[order], int(is_known.sum()), self._threads
+        )
+        if len(pairs) == 0:
+            self._uncrossed = self.steps.keys
+        crossing: NDArray[np.int64] = np.sort(order[pairs], axis=1)
+        return crossing
+
+    def split_at_crossings(self, pairs: NDArray[np.int64]) -> None:
+        """Split the segments of all pairs where they cross."""
+        vertex = np.repeat(self._vertices_at(self.places_of(pairs)), 2)
+        segment = pairs.ravel()
+        inside = (self.steps.ends[segment] != vertex[:, None]).all(axis=1)
+        split, at = _numbers_of(np.unique(_key_of(segment[inside], vertex[inside])))
+        # Of every pair at least one is split: the others do not cross one another.
+        uncrossed = np.ones(len(self.steps.keys), np.bool_)
+        uncrossed[split] = False
+        self._uncrossed = self.steps.keys[uncrossed]
+        self._split(split, at.astype(np.int32), bends=False)
+        self._is_rounded = True
+
+    def places_of(self, pairs: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Return where the segments of each pair cross, (c, 2)."""
+        return _kernel.intersections(self.xy, self.steps.ends, pairs.astype(np.int32))
+
+    def _vertices_at(self, places: NDArray[np.float64]) -> NDArray[np.int32]:
+        """Find or make the vertex at each place."""
+        order = np.lexsort((places[:, 1], places[:, 0]))
+        is_first = np.append(True, (np.diff(places[order], axis=0) != 0).any(axis=1))
+        distinct = places[order[is_first]]
+        vertices = _kernel.vertices_at(self.xy, distinct)
+        is_new = vertices < 0
+        vertices[is_new] = len(self.xy) + np.arange(is_new.sum(), dtype=np.int32)
+        self.xy = np.concatenate([self.xy, distinct[is_new]])
+        self.crossing_vertices = np.union1d(self.crossing_vertices, vertices)
+        number = np.empty(len(places), np.int32)
+        number[order] = vertices[np.cumsum(is_first) - 1]
+        return number
+
+    # ---------------------------------------------------------------- splitting
+
+    def _split(
+        self,
+        segment: NDArray[np.int64],
+        vertex: NDArray[np.int32],
+        *,
+        bends: bool,
+    ) -> None:
+        """Split every step along a segment at the vertices given with it."""
+        steps = self.steps
+        segment, vertex = self._in_order(segment, vertex, bends=bends)
+        count = np.bincount(segment, minlength=len(steps.keys))
+        first = np.cumsum(count) - count
+        step = np.repeat(np.arange(len(steps.start)), count[steps.segment])
+        nth = np.arange(len(step)) - np.searchsorted(step, step)
+        on = steps.segment[step]
+        row = first[on] + np.where(steps.is_backward[step], count[on] - 1 - nth, nth)
+        at, vertex = steps.start[step], vertex[row]
+        self.walk = self.walk.with_vertices(at, vertex, self.heights_at(step, self.xy[vertex]))
+        self.steps = Steps.along(self.walk, self.xy)
+
+    def _in_order(
+        self, segment: NDArray[np.int64], vertex: NDArray[np.int32], *, bends: bool
+    ) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
+        """Sort by segment, then from its first end to the second.
+
+        Rounding is monotone: exact places and rounded crossings are in order by x and by y. Where
+        lines bend, the projection decides; of two places across an upright or level segment, which
+        are then equally far along it, the coordinates.
+        """
+        a, b, p = self._ends_and_places(segment, vertex)
+        x, y = (np.sign(b - a) * p).T
+        keys = (*p.T, y, x, _projection(a, b, p)) if bends else (y, x)
+        order = np.lexsort((*keys, segment))
+        return segment[order], vertex[order]
+
+    def _ends_and_places(
+        self, segment: NDArray[np.int64], vertex: NDArray[np.int32]
+    ) -> tuple[NDArray[np.float64], ...]:
+        first, second = self.steps.ends[segment].T
+        return self.xy[first], self.xy[second], self.xy[vertex]
+
+    def heights_at(
+        self, step: NDArray[np.int64], places: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Interpolate the heights of steps at places on them; the same both ways."""
+        start, backward = self.steps.start[step], self.steps.is_backward[step]
+        first, second = self.steps.ends[self.steps.segment[step]].T
+        a, b = self.xy[first], self.xy[second]
+        z_a = self.walk.heights[start + backward]
+        z_b = self.walk.heights[start + ~backward]
+        return interpolate_linearly(z_a, z_b, _projection(a, b, places) / _square(a, b))
+
+
+def endless() -> LinesError:
+    """Return the error for lines that do not come to an end."""
+    return LinesError(
+        f"The lines still meet at new places after {MOST_ROUNDS} rounds of splitting: "
+        "too many run within a rounding of one another; leave some of them out."
+    )
+
+
+# -------------------------------------------------------------------- measures
+
+
+def interpolate_linearly(
+    start: NDArray[np.float64], end: NDArray[np.float64], share: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return elevations between two, never beyond either; halved so that nothing overflows."""
+    between = 2.0 * (start / 2 + share * (end / 2 - start / 2))
+    return np.clip(between, np.minimum(start, end), np.maximum(start, end))
+
+
+def _projection(
+    a: NDArray[np.float64], b: NDArray[np.float64], p: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    along: NDArray[np.float64] = ((p - a) * (b - a)).sum(axis=1)
+    return along
+
+
+def _cross(
+    a: NDArray[np.float64], b: NDArray[np.float64], p: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    u, v = b - a, p - a
+    area: NDArray[np.float64] = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
+    return area
+
+
+def _square(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
+    square: NDArray[np.float64] = ((b - a) ** 2).sum(axis=1)
+    return square
+
+
+def is_before(p: NDArray[np.float64], q: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Tell which places come before others by x, then y."""
+    before: NDArray[np.bool_] = (p[:, 0] < q[:, 0]) | ((p[:, 0] == q[:, 0]) & (p[:, 1] < q[:, 1]))
+    return before

@@ -1,0 +1,1 @@
+"""Changes of a TIN: operations on its inputs, their history, and a mesh changed in place."""

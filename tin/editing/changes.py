@@ -1,0 +1,235 @@
+"""Inputs: what an edited TIN is the build of, and how an edit changes it.
+
+Rows have numbers that never change: those given come first, those inserted follow, and a removed
+one leaves a gap. Lines are called by their place in the set.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, NamedTuple, Protocol
+
+import numpy as np
+
+from ...errors import LinesError
+from ..constraints.breaklines import Breakline
+from ..constraints.constraint_set import ABOVE_ALL, LineSet, gather_lines
+from ..types import Frozen
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ..building.inputs import Recipe
+
+__all__ = [
+    "NO_ROWS",
+    "NO_XYZ",
+    "AddLine",
+    "Change",
+    "DropLines",
+    "DropVertices",
+    "Inputs",
+    "LineChange",
+    "PutVertices",
+    "SetElevations",
+    "count_breaklines",
+    "has_own_heights",
+]
+
+NO_ROWS = np.empty(0, np.int64)
+NO_XYZ = np.empty((0, 3))
+
+
+class LineChange(Protocol):
+    """A change of a set of lines."""
+
+    def apply(self, lines: LineSet) -> LineSet:
+        """Return the changed lines."""
+        ...
+
+
+class Change(NamedTuple):
+    """What an edit does to the inputs.
+
+    Attributes
+    ----------
+    removed : (r,) int64 array
+        Rows, by their lasting numbers.
+    moved, places : (k,) int64 array, (k, 3) float64 array
+        Rows, and where they are now.
+    added : (a, 3) float64 array
+        New rows.
+    lines : sequence of LineChange
+        One after the other.
+    """
+
+    removed: NDArray[np.int64] = NO_ROWS
+    moved: NDArray[np.int64] = NO_ROWS
+    places: NDArray[np.float64] = NO_XYZ
+    added: NDArray[np.float64] = NO_XYZ
+    lines: tuple[LineChange, ...] = ()
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Inputs(Frozen):
+    """The recipe of an edited TIN.
+
+    Attributes
+    ----------
+    recipe : Recipe
+        Of the rows and lines that are there.
+    rows : (n,) int64 array
+        The lasting number of each of its rows, ascending.
+    n_rows : int
+        Rows that are or were there.
+    """
+
+    recipe: Recipe
+    rows: NDArray[np.int64]
+    n_rows: int
+
+    @classmethod
+    def of(cls, recipe: Recipe) -> Inputs:
+        """Return the inputs of a TIN before its first edit."""
+        count = len(recipe.points)
+        return cls(recipe=recipe, rows=np.arange(count), n_rows=count)
+
+    def after(self, changes: Sequence[Change]) -> Inputs:
+        """Return the inputs after some changes.
+
+        Raises
+        ------
+        LinesError
+            If a line vanishes, or a ring crosses itself.
+        """
+        if not changes:
+            return self
+        n_rows = self.n_rows + sum(len(change.added) for change in changes)
+        points, is_there = np.empty((n_rows, 3)), np.zeros(n_rows, np.bool_)
+        points[self.rows], is_there[self.rows] = self.recipe.points, True
+        is_masked = np.zeros(n_rows, np.bool_)
+        if self.recipe.is_masked is not None:
+            is_masked[self.rows] = self.recipe.is_masked
+        end, lines = self.n_rows, self.recipe.lines
+        for change in changes:
+            points[end : end + len(change.added)] = change.added
+            is_there[end : end + len(change.added)] = True
+            end += len(change.added)
+            points[change.moved] = change.places
+            is_there[change.removed] = False
+            for line_change in change.lines:
+                lines = line_change.apply(lines)
+        masked = is_masked[is_there] if is_masked[is_there].any() else None
+        recipe = replace(self.recipe, points=points[is_there], is_masked=masked)
+        if lines is not self.recipe.lines:
+            recipe = recipe.with_lines(lines)
+        return Inputs(recipe=recipe, rows=np.flatnonzero(is_there), n_rows=n_rows)
+
+
+# ------------------------------------------------------------------------- lines
+
+
+def count_breaklines(lines: LineSet) -> int:
+    """Count the breaklines; they come first."""
+    is_other = [kind not in ("hard", "soft") for kind in lines.kinds]
+    return is_other.index(True) if any(is_other) else len(is_other)
+
+
+def has_own_heights(lines: LineSet) -> NDArray[np.bool_]:
+    """Tell which vertices of lines have heights that can change: not draped ones, nor water's."""
+    is_level = (lines.priorities == ABOVE_ALL)[lines.line_of]
+    has_own: NDArray[np.bool_] = ~np.isnan(lines.heights) & ~is_level
+    return has_own
+
+
+class AddLine(NamedTuple):
+    """A breakline behind the others."""
+
+    breakline: Breakline
+
+    def apply(self, lines: LineSet) -> LineSet:
+        """Return the changed lines."""
+        is_breakline = np.arange(len(lines.kinds)) < count_breaklines(lines)
+        return _numbered(
+            [lines.chosen(is_breakline), gather_lines([self.breakline], (), (), ())],
+            lines.chosen(~is_breakline),
+        )
+
+
+class DropLines(NamedTuple):
+    """Breaklines that go."""
+
+    numbers: tuple[int, ...]
+
+    def apply(self, lines: LineSet) -> LineSet:
+        """Return the changed lines."""
+        stays = ~np.isin(np.arange(len(lines.kinds)), self.numbers)
+        is_breakline = np.arange(len(lines.kinds)) < count_breaklines(lines)
+        return _numbered([lines.chosen(is_breakline & stays)], lines.chosen(~is_breakline))
+
+
+class PutVertices(NamedTuple):
+    """Vertices of lines, by their rows in the set, at another place."""
+
+    rows: NDArray[np.int64]
+    point: NDArray[np.float64]
+
+    def apply(self, lines: LineSet) -> LineSet:
+        """Return the changed lines."""
+        xy, heights = lines.xy.copy(), lines.heights.copy()
+        xy[self.rows] = self.point[:2]
+        heights[self.rows[has_own_heights(lines)[self.rows]]] = self.point[2]
+        return lines._replace(xy=xy, heights=heights)
+
+
+class SetElevations(NamedTuple):
+    """Vertices of lines, by their rows in the set, at other elevations."""
+
+    rows: NDArray[np.int64]
+    elevations: NDArray[np.float64]
+
+    def apply(self, lines: LineSet) -> LineSet:
+        """Return the changed lines."""
+        heights = lines.heights.copy()
+        heights[self.rows] = self.elevations
+        return lines._replace(heights=heights)
+
+
+class DropVertices(NamedTuple):
+    """Vertices of lines, by their rows in the set, that go; the lines run straight on."""
+
+    rows: NDArray[np.int64]
+
+    def apply(self, lines: LineSet) -> LineSet:
+        """Return the changed lines; a closed one stays closed."""
+        keep = np.ones(len(lines.xy), np.bool_)
+        keep[self.rows] = False
+        source = np.arange(len(lines.xy))
+        for line in np.unique(lines.line_of[self.rows]).tolist():
+            first, last = int(lines.offsets[line]), int(lines.offsets[line + 1]) - 1
+            is_closed = bool((lines.xy[first] == lines.xy[last]).all())
+            left = np.flatnonzero(keep[first:last]) + first
+            if len(left) + (not is_closed and bool(keep[last])) < (3 if is_closed else 2):
+                raise LinesError(
+                    f"{lines.title(line)} would vanish with the vertex: "
+                    "remove_breakline removes a line."
+                )
+            if is_closed and not keep[last]:
+                keep[last], source[last] = True, left[0]
+        counts = np.add.reduceat(keep, lines.offsets[:-1])
+        rows = source[keep]
+        return lines._replace(
+            xy=lines.xy[rows],
+            heights=lines.heights[rows],
+            offsets=np.concatenate([[0], np.cumsum(counts)]),
+        )
+
+
+def _numbered(breaklines: Iterable[LineSet], others: LineSet) -> LineSet:
+    """Return all lines, the breaklines numbered from 0."""
+    together = LineSet.joined([*breaklines, others])
+    sources = together.sources.copy()
+    count = len(together.kinds) - len(others.kinds)
+    sources[:count] = np.arange(count, dtype=np.int32)
+    return together._replace(sources=sources)

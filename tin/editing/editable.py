@@ -1,0 +1,289 @@
+"""Editable: the methods of a TIN that change it, its copies, and who may do what at a time.
+
+A TIN holds a version, an immutable value, and since its first edit a session. An edit changes the
+session alone; the next version is made of it when one is looked at, and takes the place of the old
+one in one assignment. A reader holds on to one version, so it never sees half of an edit; a lock
+lets one thread at a time into the session.
+"""
+
+from __future__ import annotations
+
+from threading import RLock
+from typing import TYPE_CHECKING, Any, Self, cast
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
+
+    from ..building.constrained import CrossingPolicy
+    from ..building.duplicates import DuplicatePolicy
+    from ..building.inputs import Recipe
+    from ..constraints.breaklines import BreaklineKind
+    from .session import Edit, Session
+    from .version import Version
+
+__all__ = ["Editable"]
+
+
+class Editable:
+    """What a TIN can have done to it.
+
+    Edits change the inputs; the TIN is the build of the inputs. After any edits it equals, to the
+    last bit, what :func:`tinsmith.triangulate` gives with the same options for the rows and lines
+    that are there then, in the order in which they came. Only ``vertex_of`` and the row numbers of
+    the report keep counting removed rows: their vertex is -1, the others are in order.
+
+    Parameters
+    ----------
+    version : Version
+    inputs : Recipe or None
+        What it was built from; None for one of existing triangles.
+    """
+
+    __slots__ = ("_inputs", "_lock", "_session", "_version")
+
+    def __init__(self, version: Version, inputs: Recipe | None) -> None:
+        self._version: Version | None = version
+        self._session: Session | None = None
+        self._inputs = inputs
+        self._lock = RLock()
+
+    @property
+    def _current(self) -> Version:
+        """The TIN between two edits."""
+        version = self._version
+        if version is not None:
+            return version
+        with self._lock:
+            if self._version is None:
+                self._version = cast("Session", self._session).version()
+            return self._version
+
+    @property
+    def edits(self) -> tuple[Edit, ...]:
+        """What was done to the TIN since it was built, in order."""
+        session = self._session
+        return () if session is None else tuple(session.edits)
+
+    # ------------------------------------------------------------------- copies
+
+    def __copy__(self) -> Self:
+        other = type(self).__new__(type(self))
+        other.__setstate__(self.__getstate__())
+        return other
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Self:
+        return self.__copy__()
+
+    def __getstate__(self) -> dict[str, Any]:
+        with self._lock:
+            session = None if self._session is None else self._session.copy()
+            return {
+                "_version": self._current,
+                "_session": session,
+                "_inputs": self._inputs,
+                **getattr(self, "__dict__", {}),  # of a subclass
+            }
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        for name, value in state.items():
+            setattr(self, name, value)
+        self._lock = RLock()
+
+    # -------------------------------------------------------------------- edits
+
+    def insert(
+        self, points: ArrayLike, *, duplicates: DuplicatePolicy = "last"
+    ) -> NDArray[np.int32]:
+        """Insert points, in place.
+
+        Parameters
+        ----------
+        points : (k, 3) array
+            They become further rows of input; a point on a line becomes a vertex of it.
+        duplicates : {"last", "first", "mean", "lowest", "highest", "error"}
+            Elevation of a vertex that stands at one of the places already: all rows, and the given
+            vertices of lines there, get it. Points that ``snap`` merges with others are treated as
+            in the build.
+
+        Returns
+        -------
+        (k,) int32 array
+            The vertex of each point, -1 outside a clipped surface or where points are erased.
+            Vertices of lines alone come behind those of points, and move up.
+
+        Raises
+        ------
+        PointsError, LinesError
+            As :func:`tinsmith.triangulate`; then nothing has changed.
+
+        Examples
+        --------
+        >>> from tinsmith import triangulate
+        >>> tin = triangulate([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8]])
+        >>> tin.insert([[2, 1, 9]])
+        array([4], dtype=int32)
+        >>> tin
+        <TIN: 5 vertices, 4 triangles, z 5 to 9, crs unknown>
+        >>> tin.undo()
+        >>> tin
+        <TIN: 4 vertices, 2 triangles, z 5 to 8, crs unknown>
+        """
+        made: NDArray[np.int32] = self._edit("insert", points=points, duplicates=duplicates)
+        return made
+
+    def remove(self, vertices: ArrayLike) -> None:
+        """Remove vertices, in place; those behind them move up, as in ``numpy.delete``.
+
+        The rows there go, and a line that names the vertex runs straight on between the
+        neighbours. Where lines cross at the place, a vertex is left for them.
+
+        Parameters
+        ----------
+        vertices : int or (k,) int array
+
+        Raises
+        ------
+        PointsError
+            If there is no such vertex, or no triangle would be left.
+        LinesError
+            If a line would vanish, or the vertex was made by the build (where lines cross, are laid
+            on the surface, or are split): it goes with its lines. Then nothing has changed.
+        """
+        self._edit("remove", vertices=vertices)
+
+    def move(self, vertex: int, point: ArrayLike) -> None:
+        """Move a vertex, in place: the rows there, and the lines that name it.
+
+        Parameters
+        ----------
+        vertex : int
+        point : (3,) array
+
+        Raises
+        ------
+        PointsError
+            If there is no such vertex, or another one stands at the place.
+        LinesError
+            If the vertex was made by the build, or a build refuses the lines as they are then.
+            Then nothing has changed.
+        """
+        self._edit("move", vertex=vertex, point=point)
+
+    def set_z(self, vertices: ArrayLike, z: ArrayLike) -> None:
+        """Give vertices other elevations, in place.
+
+        All rows, and the given vertices of lines there, get it; at a vertex that the build made
+        (where lines cross, say) it becomes that of a row inserted there.
+
+        Parameters
+        ----------
+        vertices : int or (k,) int array
+        z : float or (k,) array
+
+        Raises
+        ------
+        PointsError
+            If there is no such vertex, or an elevation is not finite.
+        LinesError
+            If something else decides there, such as the level of water. Then nothing has changed.
+        """
+        self._edit("set_z", vertices=vertices, z=z)
+
+    def flip(self, a: int, b: int) -> None:
+        """Swap the diagonal of the two triangles at an edge, in place.
+
+        The new edge is kept as a soft breakline named "flip", from the left of the old one to its
+        right; flipping it again lets it go.
+
+        Parameters
+        ----------
+        a, b : int
+            Ends of the edge.
+
+        Raises
+        ------
+        PointsError
+            If there is no such inner edge, or the triangles are no convex quadrilateral.
+        LinesError
+            If it is the edge of another line.
+        """
+        self._edit("flip", a=a, b=b)
+
+    def add_breakline(
+        self,
+        coords: ArrayLike,
+        *,
+        kind: BreaklineKind = "hard",
+        priority: int = 0,
+        name: str = "",
+        crossing: CrossingPolicy = "split",
+    ) -> None:
+        """Add a breakline, in place.
+
+        Parameters
+        ----------
+        coords : (k, 3) array, or (k, 2) to drape it
+        kind, priority, name
+            As in :class:`.Breakline`.
+        crossing : {"split", "error"}
+            Make a vertex where it crosses another line, with the height of the one of higher
+            priority or of the first, or refuse. ``edits[-1].notes`` tells both heights. A TIN that
+            was built with ``crossing="error"`` refuses in any case.
+
+        Raises
+        ------
+        LinesError
+            If the line is none, or crosses another and must not. Then nothing has changed.
+        """
+        self._edit(
+            "add_breakline",
+            coords=coords,
+            kind=kind,
+            priority=priority,
+            name=name,
+            crossing=crossing,
+        )
+
+    def remove_breakline(self, number: int) -> None:
+        """Remove a breakline, in place, with the vertices that only it had.
+
+        Lines and vertices behind them move up, as if it had never been given; ``vertex_of`` keeps
+        its rows.
+
+        Parameters
+        ----------
+        number : int
+            As in ``lines.sources``.
+
+        Raises
+        ------
+        LinesError
+            If there is no such breakline.
+        """
+        self._edit("remove_breakline", number=number)
+
+    def undo(self, count: int = 1) -> None:
+        """Take back the last edits.
+
+        Raises
+        ------
+        PointsError
+            If there are not so many.
+        """
+        with self._lock:
+            self._open_session().undo(count)
+            self._version = None
+
+    def _edit(self, operation: str, **arguments: Any) -> Any:
+        with self._lock:
+            result = self._open_session().do(operation, arguments)
+            self._version = None
+            return result
+
+    def _open_session(self) -> Session:
+        if self._session is None:
+            from .session import Session
+
+            self._session = Session(cast("Version", self._version), self._inputs)
+        return self._session

@@ -1,0 +1,163 @@
+"""Existing triangles as the build of inputs, so that they can be edited.
+
+The vertices are the rows. Lines, and flagged edges of no line as soft breaklines, are kept; where
+the rim is not convex, or a boundary, there is no surface beyond it.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...errors import PointsError, TinsmithError
+from .. import _kernel, topology
+from ..building.assembly import assemble
+from ..building.constrained import LineOptions
+from ..building.inputs import Recipe
+from ..constraints.clipping import Surface, edge_keys
+from ..constraints.constraint_set import BELOW_ALL, LineSet
+from ..triangulation import Triangulation
+from ..validation.points import as_points
+from ..validation.threads import thread_count
+from .state import State
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ..constraints.breaklines import LineKind
+    from .changes import Inputs
+    from .version import Version
+
+__all__ = ["recipe_of_triangles", "state_of_triangles"]
+
+
+def recipe_of_triangles(version: Version) -> Recipe:
+    """Return what existing triangles are built of.
+
+    Raises
+    ------
+    PointsError
+        If a vertex is not finite.
+    """
+    surface, lines = version.triangulation, version.lines
+    chains = [(kind, name, chain) for kind, name, chain in _named_chains(version)]
+    is_breakline = [kind in ("hard", "soft") for kind, _, _ in chains]
+    ordered = [chain for chain, is_first in zip(chains, is_breakline, strict=True) if is_first]
+    ordered += [("soft", "", edge) for edge in _edges_of_no_line(version)]
+    n_breaklines = len(ordered)
+    ordered += [chain for chain, first in zip(chains, is_breakline, strict=True) if not first]
+    has_rim = not _is_whole(surface) or "boundary" in lines.kinds
+    rim = [np.append(ring, ring[:1]) for ring in surface.rings] if has_rim else []
+    sources = np.concatenate(
+        [np.arange(n_breaklines), np.zeros(len(ordered) - n_breaklines), np.full(len(rim), -1)]
+    )
+    return Recipe(
+        points=as_points(surface.points),
+        is_masked=None,
+        lines=_line_set(
+            surface.points,
+            [chain for _, _, chain in ordered] + rim,
+            [kind for kind, _, _ in ordered] + ["boundary"] * len(rim),
+            [name for _, name, _ in ordered] + [""] * len(rim),
+            sources.astype(np.int32),
+        ),
+        boundary=[],
+        extent=[],
+        holes=[],
+        erase=[],
+        max_edge=np.inf,
+        trim="perimeter",
+        conforming=False,
+        options=LineOptions(threads=thread_count(None, len(surface.points))),
+        crs=None,
+        has_rim=has_rim,
+    )
+
+
+def _named_chains(version: Version) -> list[tuple[LineKind, str, NDArray[np.int32]]]:
+    lines = version.lines
+    return list(zip(lines.kinds, lines.names, lines.chains(), strict=True))
+
+
+def _line_set(
+    points: NDArray[np.float64],
+    chains: list[NDArray[np.int32]],
+    kinds: list[LineKind],
+    names: list[str],
+    sources: NDArray[np.int32],
+) -> LineSet:
+    vertices = np.concatenate([*chains, np.empty(0, np.int32)])
+    offsets = np.concatenate([[0], np.cumsum([len(chain) for chain in chains], dtype=np.int64)])
+    return LineSet(
+        np.ascontiguousarray(points[vertices, :2]),
+        points[vertices, 2],
+        offsets,
+        tuple(kinds),
+        sources,
+        np.where(sources < 0, BELOW_ALL, 0.0),
+        tuple(names),
+    )
+
+
+def _edges_of_no_line(version: Version) -> list[NDArray[np.int32]]:
+    """Return the flagged edges that no line takes; those of the rim count if there are no lines."""
+    surface, lines = version.triangulation, version.lines
+    flagged = surface.constrained
+    if len(lines):
+        flagged = flagged & (surface.neighbors > topology.NO_NEIGHBOR)
+    triangle, corner = np.nonzero(flagged)
+    start, end = topology.ends(surface.triangles, triangle, corner)
+    edges = np.unique(np.sort(np.stack([start, end], axis=1), axis=1), axis=0).astype(np.int32)
+    n = len(surface.points)
+    is_step = np.isin(edge_keys(edges, n), edge_keys(lines.steps(), n))
+    return list(edges[~is_step])
+
+
+def _is_whole(surface: Triangulation) -> bool:
+    """Tell whether the surface fills its convex hull."""
+    if len(surface.rings) != 1:
+        return False
+    ring = surface.points[surface.rings[0], :2]
+    a, b, c = (np.ascontiguousarray(np.roll(ring, -k, axis=0)) for k in range(3))
+    return bool((_kernel.orientation(a, b, c) >= 0).all())
+
+
+def state_of_triangles(version: Version, inputs: Inputs) -> State:
+    """Build existing triangles from their inputs.
+
+    Raises
+    ------
+    PointsError
+        If the build has other triangles.
+    """
+    given = version.triangulation
+    try:
+        built = assemble(inputs.recipe)
+    except TinsmithError:
+        raise _unfit() from None
+    if not _have_same_triangles(built.surface, given):
+        raise _unfit()
+    lines = built.lines
+    return State(
+        Triangulation(**built.surface._asdict()), built.vertex_of, lines, built.report, None
+    )
+
+
+def _have_same_triangles(found: Surface, given: Triangulation) -> bool:
+    if len(found.triangles) != len(given.triangles) or len(found.points) != len(given.points):
+        return False
+    return bool((_as_set(found.triangles) == _as_set(given.triangles)).all())
+
+
+def _unfit() -> PointsError:
+    return PointsError(
+        "The TIN cannot be edited: its triangles overlap, or are not the Delaunay triangulation of "
+        "its points and lines that edits must keep; triangulate its points first."
+    )
+
+
+def _as_set(triangles: NDArray[np.int32]) -> NDArray[np.int32]:
+    first = np.argmin(triangles, axis=1)
+    rolled = np.take_along_axis(triangles, (first[:, None] + np.arange(3)) % 3, axis=1)
+    return rolled[np.lexsort(rolled.T[::-1])]

@@ -1,0 +1,507 @@
+"""The editor behind a TIN whose edits reach no line: a mesh that is changed in place.
+
+The triangulation of points and lines is unique, so where lines are not touched it is the one that
+a fresh build gives. An edit that fails, or that comes near a line, leaves the mesh as it was.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left, bisect_right, insort
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ...errors import PointsError
+from .. import _kernel
+from ..building.duplicates import merge_rows
+from ..report import Report
+from ..triangulation import Triangulation
+from .changes import AddLine, Change
+from .flipping import are_uncut, flipped_edge, require_inner
+from .lazy_mesh import LiveMesh
+from .row_buffer import GrowingRows
+from .state import State
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from ..building.duplicates import DuplicatePolicy
+    from ..building.inputs import Recipe
+    from .changes import Inputs
+
+__all__ = ["Editor", "NotLocal", "is_local", "merged_elevation", "occupied"]
+
+_LARGE_BATCH = 10_000
+_LARGE_SHARE = 8
+"""A batch of more than an eighth of the vertices is triangulated together with them."""
+
+_ROUNDINGS = 1024.0
+"""Units in the last place of the largest coordinate: nearer to a line, all is built anew. A
+crossing is rounded by one unit, and each later one that depends on it by one more."""
+
+
+class NotLocal(Exception):
+    """The edit reaches a line, so that all must be built anew. Nothing has changed."""
+
+
+def is_local(recipe: Recipe) -> bool:
+    """Tell whether an edit away from the lines changes the triangulation there alone."""
+    lines, options = recipe.lines, recipe.options
+    has_all_rows = not recipe.erase and recipe.is_masked is None
+    is_simple = options.snap == 0.0 and has_all_rows and not recipe.conforming
+    has_own_heights = bool(np.isfinite(lines.priorities).all() and np.isfinite(lines.heights).all())
+    return is_simple and has_own_heights and not recipe.is_clipped
+
+
+class _Counts(NamedTuple):
+    """How many vertices are there, in the order of their numbers."""
+
+    rows: int
+    inserted: int
+    lines: int
+
+
+class Editor:
+    """Mesh and numbers of a TIN that is being edited.
+
+    Vertices are called by slots here, numbers that never change. Those of the state come first: of
+    its rows, then of its lines; those that are inserted follow. A TIN's own numbers put the
+    inserted ones between the two, and close the gaps that removed ones leave.
+
+    Parameters
+    ----------
+    state : State
+        Neither clipped nor with vertices that have been left out.
+    inputs : Inputs
+        Of the state.
+    """
+
+    def __init__(self, state: State, inputs: Inputs) -> None:
+        surface = state.triangulation
+        self._vertex_of_row, self._lines = state.vertex_of_row, state.lines
+        self._report = state.report
+        self._n_first_rows = inputs.n_rows
+        self._is_strict = inputs.recipe.options.duplicates == "error"
+        self._threads = inputs.recipe.options.threads
+        self._live = LiveMesh(
+            surface.points, surface.triangles, surface.neighbors, surface.constrained
+        )
+        self._points = GrowingRows(surface.points)
+        self._removed: list[int] = []
+        self._n_base = len(surface.points)
+        self._base_rows = _rows_by_vertex(state.vertex_of_row)
+        self._n_rows = self._base_rows.n_vertices
+        self._more_rows: dict[int, list[int]] = {}
+        self._new_slots = GrowingRows(np.empty(0, np.int32))
+        self._n_new = 0
+        self._least = _ROUNDINGS * float(np.spacing(np.abs(surface.points[:, :2]).max()))
+        self._has_lines = self._n_rows < self._n_base or len(state.lines) > 0
+        self._has_uncut_lines = are_uncut(state, inputs.recipe)
+
+    # ------------------------------------------------------------------ numbers
+
+    @property
+    def count(self) -> int:
+        """Number of vertices."""
+        return self._live.count
+
+    @property
+    def _mesh(self) -> _kernel.Mesh:
+        return self._live.mesh
+
+    def _counts(self) -> _Counts:
+        rows = self._n_rows - bisect_left(self._removed, self._n_base)
+        lines = self._n_base - self._n_rows
+        return _Counts(rows, self._live.count - rows - lines, lines)
+
+    def slots(self, vertices: NDArray[np.int64]) -> NDArray[np.int32]:
+        """Return the slots of vertices, which must exist."""
+        if self._n_rows < self._n_base:
+            rows, inserted, lines = self._counts()
+            back = np.where(vertices < rows + inserted, lines, -inserted)
+            vertices = vertices + np.where(vertices < rows, 0, back)
+        removed = self._removed
+        if len(vertices) == 1:
+            vertex = int(vertices[0])
+            before = bisect_right(range(len(removed)), vertex, key=lambda j: removed[j] - j)
+            return np.array([vertex + before], np.int32)
+        gone = np.array(removed, np.int64)
+        shift = np.searchsorted(gone - np.arange(len(gone)), vertices, side="right")
+        return (vertices + shift).astype(np.int32)
+
+    def numbers(self, slots: NDArray[np.int32]) -> NDArray[np.int32]:
+        """Return the vertices that slots hold."""
+        if len(slots) == 1:
+            found = slots - np.int32(bisect_left(self._removed, int(slots[0])))
+        else:
+            gone = np.array(self._removed, np.int64)
+            found = slots - np.searchsorted(gone, slots).astype(np.int32)
+        return self._reordered(found)
+
+    def _reordered(self, ranks: NDArray[np.int32]) -> NDArray[np.int32]:
+        """Return the numbers of vertices that are numbered by slot, without gaps."""
+        if self._n_rows == self._n_base:
+            return ranks
+        rows, inserted, lines = self._counts()
+        on = np.where(ranks < rows + lines, np.int32(inserted), np.int32(-lines))
+        return ranks + np.where(ranks < rows, np.int32(0), on)
+
+    def _rows_at(self, slot: int) -> list[int]:
+        more = self._more_rows.get(slot, [])
+        return self._base_rows.at(slot) + more if slot < self._n_rows else more
+
+    # -------------------------------------------------------------------- edits
+
+    def insert(
+        self, xyz: NDArray[np.float64], policy: DuplicatePolicy
+    ) -> tuple[NDArray[np.int32], Change]:
+        """Insert rows of points; return their slots.
+
+        Raises
+        ------
+        PointsError
+            If vertices are there, and the policy is "error".
+        """
+        before = self._live
+        first = before.slots
+        is_large = self._is_large(len(xyz))
+        slots = self._grown_with(xyz) if is_large else self._inserted(xyz)
+        is_new = slots == np.arange(first, first + len(xyz), dtype=np.int32)
+        try:
+            heights: dict[int, float] = {}
+            if not is_new.all():
+                self._require_in_order(slots, first)
+                old = np.flatnonzero(~is_new).tolist()
+                heights = self._merged_elevations(xyz, slots, old, policy)
+            if self._has_lines:
+                self._require_clear(slots)
+        except (PointsError, NotLocal):
+            if is_large:
+                self._live = before
+            else:
+                self._take_back(slots[is_new])
+                self._keep_empty(xyz, first)
+            raise
+        return slots, self._enter(xyz, slots, is_new, heights)
+
+    def _inserted(self, xyz: NDArray[np.float64]) -> NDArray[np.int32]:
+        return self._mesh.insert(np.ascontiguousarray(xyz[:, :2]))
+
+    def _require_in_order(self, slots: NDArray[np.int32], first: int) -> None:
+        """Leave rows at one place to a build if it refuses them, or if not the first is kept."""
+        is_late = slots > np.arange(first, first + len(slots))
+        if is_late.any() or self._is_strict:
+            raise NotLocal
+
+    def _merged_elevations(
+        self,
+        xyz: NDArray[np.float64],
+        slots: NDArray[np.int32],
+        old: list[int],
+        policy: DuplicatePolicy,
+    ) -> dict[int, float]:
+        """Return the elevations of vertices at which further rows come to stand."""
+        heights: dict[int, float] = {}
+        first = self._live.slots - len(xyz)
+        for row in old:
+            slot = int(slots[row])
+            here = self._points.at(slot)[2] if slot < first else xyz[slot - first, 2]
+            here = heights.get(slot, float(here))
+            heights[slot] = merged_elevation(here, float(xyz[row, 2]), policy)
+        return heights
+
+    def _require_clear(self, slots: NDArray[np.int32]) -> None:
+        for slot in set(slots.tolist()):
+            self._require_free(slot)
+
+    def _require_free(self, slot: int) -> None:
+        """Refuse a vertex on a line, or near one."""
+        if self._mesh.has_fixed_edge(slot) or not self._mesh.clearance(slot) > self._least:
+            raise NotLocal
+
+    def _take_back(self, slots: NDArray[np.int32]) -> None:
+        """Remove vertices that were inserted, also from fixed edges."""
+        for slot in slots.tolist():
+            ends = self._mesh.fixed_neighbors(slot)
+            pairs = np.stack([np.full_like(ends, slot), ends], axis=1)
+            self._mesh.release(pairs)
+            self._mesh.remove(np.array([slot], np.int32))
+            if len(ends):
+                self._mesh.force(np.ascontiguousarray(ends[None, :]))
+
+    def _keep_empty(self, xyz: NDArray[np.float64], first: int) -> None:
+        self._points.extend(xyz)
+        self._removed.extend(range(first, first + len(xyz)))
+
+    def _enter(
+        self,
+        xyz: NDArray[np.float64],
+        slots: NDArray[np.int32],
+        is_new: NDArray[np.bool_],
+        heights: dict[int, float],
+    ) -> Change:
+        first = len(self._points)
+        self._points.extend(xyz)
+        row = self._n_first_rows + self._n_new
+        moved = []
+        if heights:
+            self._removed.extend((first + np.flatnonzero(~is_new)).tolist())
+            moved = [self._put_elevation(slot, height) for slot, height in heights.items()]
+        for number, slot in enumerate(slots.tolist(), row):
+            self._more_rows.setdefault(slot, []).append(number)
+        self._new_slots.extend(slots)
+        self._n_new += len(xyz)
+        if not heights:
+            return Change(added=xyz)
+        added = xyz.copy()
+        for slot, height in heights.items():
+            added[slots == slot, 2] = height
+        return _joined(moved)._replace(added=added)
+
+    def _is_large(self, count: int) -> bool:
+        """Tell whether growing all points anew is quicker than inserting so many."""
+        is_worth_it = count > _LARGE_BATCH and count * _LARGE_SHARE > self._live.count
+        return is_worth_it and not self._removed and not self._has_lines
+
+    def _grown_with(self, xyz: NDArray[np.float64]) -> NDArray[np.int32]:
+        """Triangulate the points that are there and those that come; return slots of the latter.
+
+        A slot is made for every row, as if each had been inserted, and stays empty where a vertex
+        was there already.
+        """
+        first = self._live.slots
+        rows = np.concatenate([self._points.values(), xyz])
+        growth = _kernel.grow(rows, threads=self._threads)
+        own = np.arange(len(rows), dtype=np.int32)
+        slots = own if growth.kept_row is None else growth.kept_row
+        is_kept = slots == own
+        vertex = np.flatnonzero(is_kept).astype(np.int32)
+        self._live = LiveMesh(
+            rows,
+            growth.triangles if is_kept.all() else vertex[growth.triangles],
+            growth.neighbors,
+            np.zeros(growth.triangles.shape, np.bool_),
+            is_kept,
+        )
+        return slots[first:]
+
+    def remove(self, slots: NDArray[np.int32]) -> Change:
+        """Remove vertices and the rows there.
+
+        Raises
+        ------
+        PointsError
+            If no triangle would be left.
+        """
+        if self._has_lines:
+            self._require_clear(slots)
+        gone: list[int] = []
+        for slot in slots.tolist():
+            if not self._mesh.remove(np.array([slot], np.int32)):
+                self._put_back(gone)
+                raise PointsError(
+                    "No triangle would be left: three vertices not in line must stay."
+                )
+            gone.append(slot)
+        rows = [row for slot in gone for row in self._rows_at(slot)]
+        for slot in gone:
+            insort(self._removed, slot)
+        return Change(removed=np.array(rows, np.int64))
+
+    def _put_back(self, slots: Sequence[int]) -> None:
+        for slot in slots:
+            x, y = self._points.at(slot)[:2].tolist()
+            self._mesh.put(slot, x, y)
+
+    def move(self, slot: int, point: NDArray[np.float64]) -> Change:
+        """Move a vertex and the rows there.
+
+        Raises
+        ------
+        PointsError
+            If another vertex stands there, or no triangle would be left.
+        """
+        if self._has_lines and self._mesh.has_fixed_edge(slot):
+            raise NotLocal
+        if (self._points.at(slot)[:2] != point[:2]).any():
+            self._move_in_plane(slot, float(point[0]), float(point[1]))
+        self._points.put(slot, point)
+        return self._moved(slot, point)
+
+    def _move_in_plane(self, slot: int, x: float, y: float) -> None:
+        if self._has_lines:
+            self._require_free(slot)
+        if not self._mesh.remove(np.array([slot], np.int32)):
+            raise PointsError(
+                "The vertex cannot be moved while all others are in line: insert a point first."
+            )
+        found = self._mesh.put(slot, x, y)
+        if found != slot:
+            self._put_back([slot])
+            raise occupied(int(self.numbers(np.array([found], np.int32))[0]), x, y)
+        if self._has_lines:
+            try:
+                self._require_free(slot)
+            except NotLocal:
+                self._take_back(np.array([slot], np.int32))
+                self._put_back([slot])
+                raise
+
+    def set_z(self, slots: NDArray[np.int32], z: NDArray[np.float64]) -> Change:
+        """Give vertices, and the rows there, other elevations."""
+        if self._has_lines and any(map(self._mesh.has_fixed_edge, slots.tolist())):
+            raise NotLocal
+        heights = np.broadcast_to(z, len(slots)).tolist()
+        return _joined(
+            [
+                self._put_elevation(slot, height)
+                for slot, height in zip(slots.tolist(), heights, strict=True)
+            ]
+        )
+
+    def _put_elevation(self, slot: int, height: float) -> Change:
+        point = self._points.at(slot).copy()
+        point[2] = height
+        self._points.put(slot, point)
+        return self._moved(slot, point)
+
+    def _moved(self, slot: int, point: NDArray[np.float64]) -> Change:
+        rows = np.array(self._rows_at(slot), np.int64)
+        places = point[None] if len(rows) == 1 else np.tile(point, (len(rows), 1))
+        return Change(moved=rows, places=places)
+
+    def flip(self, a: int, b: int) -> Change:
+        """Put the other diagonal of the two triangles at an edge in its place, as a soft line.
+
+        Raises
+        ------
+        PointsError
+            If there is no such inner edge, or the triangles are no convex quadrilateral.
+        """
+        if not self._has_uncut_lines or b in self._mesh.fixed_neighbors(a).tolist():
+            raise NotLocal
+        beside = self._mesh.corners_beside(a, b).tolist()
+        require_inner(beside)
+        line = flipped_edge(self._points.take([a, b, *beside]))
+        self._mesh.force(np.array([beside], np.int32))
+        self._lines, self._has_lines = self._lines.with_breakline(beside, line), True
+        return Change(lines=(AddLine(line),))
+
+    # ------------------------------------------------------------------- result
+
+    def state(self, inputs: Inputs) -> State:
+        """Return what the edits led to; ``inputs`` are those of now."""
+        alive = self._live.alive()
+        number = self._reordered(np.cumsum(alive, dtype=np.int32) - np.int32(1))
+        number = np.where(alive, number, np.int32(-1))
+        surface = self._triangulation(alive)
+        slot_of_row = np.append(self._vertex_of_row, self._new_slots.values())
+        vertex_of_row = np.append(number, np.int32(-1))[slot_of_row]
+        lines, base = self._lines, self._report
+        if self._has_lines:
+            lines = lines.renumbered(number)
+        report = base.renumbered(
+            number, len(vertex_of_row), len(surface.points), len(surface.triangles)
+        )
+        report = report.with_removed(vertex_of_row).with_merges(
+            _merges(vertex_of_row, self._counts(), inputs)
+        )
+        report = report.with_lines(inputs.recipe.lines.labels())
+        return State(surface, vertex_of_row, lines, report, None)
+
+    def _triangulation(self, alive: NDArray[np.bool_]) -> Triangulation:
+        triangles, neighbors, constrained = self._live.arrays(self._threads)
+        points = self._points.values()[alive]
+        rows, inserted, lines = self._counts()
+        if lines and inserted:
+            between = rows + lines
+            points = np.concatenate([points[:rows], points[between:], points[rows:between]])
+            triangles = self._reordered(np.arange(len(points), dtype=np.int32))[triangles]
+        return Triangulation(
+            points=points, triangles=triangles, neighbors=neighbors, constrained=constrained
+        )
+
+
+class _RowsByVertex(NamedTuple):
+    """The rows of each vertex that has any; ``rows`` is None where row and vertex are the same."""
+
+    n_vertices: int
+    rows: NDArray[np.int64] | None
+    offsets: NDArray[np.int64] | None
+
+    def at(self, vertex: int) -> list[int]:
+        if self.rows is None or self.offsets is None:
+            return [vertex]
+        found: list[int] = self.rows[self.offsets[vertex] : self.offsets[vertex + 1]].tolist()
+        return found
+
+
+def _rows_by_vertex(vertex_of_row: NDArray[np.int32]) -> _RowsByVertex:
+    count = int(vertex_of_row.max()) + 1 if len(vertex_of_row) else 0
+    if count == len(vertex_of_row):
+        return _RowsByVertex(count, None, None)
+    order = np.argsort(vertex_of_row, kind="stable")
+    offsets = np.searchsorted(vertex_of_row[order], np.arange(count + 1))
+    return _RowsByVertex(count, order, offsets)
+
+
+def _merges(vertex_of_row: NDArray[np.int32], counts: _Counts, inputs: Inputs) -> Report | None:
+    """Return the account of rows that share a vertex, as a build gives it; None for none."""
+    rows = np.flatnonzero(vertex_of_row >= 0)
+    if len(rows) == counts.rows + counts.inserted:
+        return None
+    vertex = vertex_of_row[rows]
+    first = np.empty(counts.rows + counts.inserted, np.int32)
+    first[vertex[::-1]] = np.arange(len(rows), dtype=np.int32)[::-1]
+    recipe = inputs.recipe
+    account = merge_rows(recipe.points, first[vertex], recipe.options.duplicates).account
+    return Report(
+        n_rows=0,
+        n_vertices=0,
+        n_triangles=0,
+        **(account | {"merged_rows": rows[account["merged_rows"]].astype(np.int32)}),
+    )
+
+
+def _joined(changes: list[Change]) -> Change:
+    if len(changes) == 1:
+        return changes[0]
+    if not changes:
+        return Change()
+    return Change(
+        moved=np.concatenate([change.moved for change in changes]),
+        places=np.concatenate([change.places for change in changes]),
+    )
+
+
+def merged_elevation(old: float, new: float, policy: DuplicatePolicy) -> float:
+    """Return the elevation of a vertex at which a point is inserted.
+
+    Raises
+    ------
+    PointsError
+        If the policy is "error".
+    """
+    if policy == "error":
+        raise PointsError(
+            f"A vertex with elevation {old:g} stands where one with {new:g} is to be inserted: "
+            'duplicates="error" allows none.'
+        )
+    return {
+        "first": old,
+        "last": new,
+        "lowest": min(old, new),
+        "highest": max(old, new),
+        "mean": old / 2 + new / 2
+        if abs(old - new) == np.inf
+        else min(old, new) + abs(old - new) / 2,
+    }[policy]
+
+
+def occupied(vertex: int, x: float, y: float) -> PointsError:
+    """Return the error for a place at which a vertex stands already."""
+    return PointsError(
+        f"Vertex {vertex} stands at x {x:g}, y {y:g} already: two vertices need two places."
+    )

@@ -1,0 +1,37 @@
+"""Version: all that a TIN is between two edits."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from ..types import Frozen
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from ..constraints.breaklines import Lines
+    from ..report import Report
+    from ..triangulation import Triangulation
+
+__all__ = ["Version"]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Version(Frozen):
+    """An immutable state of a TIN.
+
+    Attributes
+    ----------
+    triangulation : Triangulation
+    vertex_of : (n_input,) int32 array
+        The vertex that stands for each input row, -1 for none.
+    lines : Lines
+    report : Report
+    """
+
+    triangulation: Triangulation
+    vertex_of: NDArray[np.int32]
+    lines: Lines
+    report: Report

@@ -1,0 +1,130 @@
+"""Faults of triangles in a heap: a point in the circle, an overlap, a small angle."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..predicates import columns, in_circle, orientation
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ..predicates import Columns
+
+__all__ = ["minimum_angles", "overlapping", "violating"]
+
+_ROWS = 1 << 20  # point-in-circle tests at a time
+_BLOCK = 256  # triangles at a time
+_CHUNK = 32  # neighbours of each looked at before asking whether an overlap is found
+
+
+def violating(points: NDArray[np.float64], triangles: NDArray[np.int32]) -> NDArray[np.bool_]:
+    """Tell which triangles have a point strictly inside their circle; exactly.
+
+    Parameters
+    ----------
+    points : (n, 3) float64 array
+    triangles : (m, 3) int32 array
+        Counter-clockwise.
+
+    Returns
+    -------
+    (m,) bool array
+    """
+    xy = columns(points)
+    everywhere = np.arange(len(points))
+    found = np.zeros(len(triangles), np.bool_)
+    at_once = max(_ROWS // len(points), 1)
+    for start in range(0, len(triangles), at_once):
+        block = triangles[start : start + at_once]
+        which = np.repeat(np.arange(len(block)), len(points))
+        points_ = np.tile(everywhere, len(block))
+        other = (block[which] != points_[:, None]).all(axis=1)
+        which, points_ = which[other], points_[other]
+        a, b, c = block[which].T
+        inside = in_circle(xy, a, b, c, points_) > 0
+        found[start + which[inside]] = True
+    return found
+
+
+def overlapping(points: NDArray[np.float64], triangles: NDArray[np.int32]) -> NDArray[np.bool_]:
+    """Tell which triangles share area with another one; exactly.
+
+    Parameters
+    ----------
+    points : (n, 3) float64 array
+    triangles : (m, 3) int32 array
+        Counter-clockwise.
+
+    Returns
+    -------
+    (m,) bool array
+    """
+    xy = columns(points)
+    found = np.zeros(len(triangles), np.bool_)
+    for start in range(0, len(triangles), _BLOCK):
+        block = np.arange(start, min(start + _BLOCK, len(triangles)))
+        block = block[~found[block]]
+        near = _boxes_meet(points[triangles, :2], block)
+        near[np.arange(len(block)), block] = False
+        _mark(xy, triangles, block, near, found)
+    return found
+
+
+def _boxes_meet(corners: NDArray[np.float64], block: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Tell for each triangle of a block which triangles have a bounding box that meets its own."""
+    low, high = corners.min(axis=1), corners.max(axis=1)
+    meet = np.ones((len(block), len(corners)), np.bool_)
+    for axis in range(2):
+        meet &= low[:, axis] < high[block, axis, None]
+        meet &= high[:, axis] > low[block, axis, None]
+    return meet
+
+
+def _mark(
+    xy: Columns,
+    triangles: NDArray[np.int32],
+    block: NDArray[np.int64],
+    near: NDArray[np.bool_],
+    found: NDArray[np.bool_],
+) -> None:
+    """Mark triangles of a block, and some of those that they overlap, if they overlap any."""
+    rank = np.cumsum(near, axis=1, dtype=np.int32)
+    seen, ahead = 0, _CHUNK
+    while len(block) and seen < rank.max():
+        row, other = np.nonzero(near & (rank > seen) & (rank <= ahead))
+        first, second = triangles[block[row]], triangles[other]
+        hit = ~(_is_apart(xy, first, second) | _is_apart(xy, second, first))
+        found[block[row[hit]]] = True
+        found[other[hit]] = True
+        is_left = ~found[block]
+        block, near, rank = block[is_left], near[is_left], rank[is_left]
+        seen, ahead = ahead, 2 * ahead
+
+
+def _is_apart(
+    xy: Columns, first: NDArray[np.int32], second: NDArray[np.int32]
+) -> NDArray[np.bool_]:
+    """Tell where an edge of the first triangle has the whole second one on its outer side."""
+    apart = np.zeros(len(first), np.bool_)
+    for k in range(3):
+        a, b = first[:, k], first[:, (k + 1) % 3]
+        outer = [orientation(xy, a, b, second[:, corner]) <= 0 for corner in range(3)]
+        apart |= np.logical_and.reduce(outer)
+    return apart
+
+
+def minimum_angles(
+    points: NDArray[np.float64], triangles: NDArray[np.int32]
+) -> NDArray[np.float64]:
+    """Return the smallest angle of every triangle, (m,) array in degrees."""
+    corners = points[triangles, :2]
+    angles = []
+    for k in range(3):
+        ahead = corners[:, (k + 1) % 3] - corners[:, k]
+        back = corners[:, (k + 2) % 3] - corners[:, k]
+        cross = ahead[:, 0] * back[:, 1] - ahead[:, 1] * back[:, 0]
+        angles.append(np.degrees(np.arctan2(np.abs(cross), (ahead * back).sum(axis=1))))
+    return np.asarray(np.min(angles, axis=0), np.float64)

@@ -1,0 +1,1 @@
+"""What callers give, checked at the door: options, tables of coordinates, points."""

@@ -1,0 +1,141 @@
+"""The door: callers' arrays become clean (n, 3) and (k, 2) float64 arrays, or a clear error."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..._sentences import counted
+from ...errors import PointsError
+from .. import _kernel
+from .tables import Table, as_table
+from .threads import thread_count
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["as_elevations", "as_masked_points", "as_points", "as_xy", "require_three"]
+
+SHOWN = 5
+
+
+def require_three(count: int) -> None:
+    """Refuse fewer points than a triangle has.
+
+    Raises
+    ------
+    PointsError
+        If there are fewer than three.
+    """
+    if count < 3:
+        raise PointsError(
+            f"{counted(count, 'point')} cannot make a TIN: at least three not collinear "
+            "ones are needed."
+        )
+
+
+def as_points(points: Any, *, threads: int | None = 1) -> NDArray[np.float64]:
+    """Return a fresh (n, 3) float64 array of finite coordinates in the exact range.
+
+    -0.0 becomes 0.0, so that equal coordinates are equal bytes.
+
+    Raises
+    ------
+    PointsError
+        For another shape, values that are no numbers or masked, NaN, infinity, or magnitudes
+        outside the range in which the predicates are exact.
+    """
+    xyz, is_masked = as_masked_points(points, threads=threads)
+    if is_masked is not None:
+        rows = np.flatnonzero(is_masked)
+        raise PointsError(
+            f"{len(rows)} of {len(xyz)} points are masked (first: row {rows[0]}): leave them out.",
+            rows=rows[:SHOWN],
+        )
+    return xyz
+
+
+def as_masked_points(points: Any, *, threads: int | None = 1) -> Table:
+    """Return points as :func:`as_points` does, and which of them are masked; these are 0, 0, 0."""
+    xyz, is_masked = as_table(points, "Points")
+    if xyz.ndim != 2 or xyz.shape[1] != 3:
+        raise PointsError(
+            f"Points have shape {xyz.shape}: (n, 3) is needed, "
+            "columns easting, northing, elevation."
+        )
+    if is_masked is not None:
+        xyz = np.where(is_masked[:, None], 0.0, xyz)
+    clean, is_sound = _kernel.clean(np.ascontiguousarray(xyz), thread_count(threads, len(xyz)))
+    if not is_sound:
+        _require_finite(clean)
+        _require_exact_range(clean[:, :2], "Points")
+    return Table(clean, is_masked)
+
+
+def as_xy(xy: Any) -> NDArray[np.float64]:
+    """Return a (k, 2) float64 array; NaN is allowed and lies nowhere, and so is what is masked.
+
+    Raises
+    ------
+    PointsError
+        For another shape, values that are no numbers, infinity, or magnitudes outside the range
+        in which the predicates are exact.
+    """
+    places, is_masked = as_table(xy, "Places", least=2, most=2)
+    if places.ndim != 2 or places.shape[1] != 2:
+        raise PointsError(f"Places have shape {places.shape}: (k, 2) is needed, columns x, y.")
+    if is_masked is not None:
+        places = np.where(is_masked[:, None], np.nan, places)
+    places = np.ascontiguousarray(places, np.float64)
+    _require_exact_range(places, "Places")
+    return places
+
+
+def as_elevations(values: Any) -> NDArray[np.float64]:
+    """Return one elevation or several as a float64 array of finite numbers.
+
+    Raises
+    ------
+    PointsError
+        Otherwise.
+    """
+    elevations, is_masked = as_table(values, "Elevations")
+    if elevations.ndim > 1:
+        raise PointsError(f"Elevations have shape {elevations.shape}: one, or a row, is needed.")
+    if is_masked is not None:
+        raise PointsError("An elevation is masked: numbers are needed.")
+    if not np.isfinite(elevations).all():
+        raise PointsError("An elevation is not finite: every coordinate must be a finite number.")
+    return elevations
+
+
+def _require_finite(xyz: NDArray[np.float64]) -> None:
+    rows = np.flatnonzero(~np.isfinite(xyz).all(axis=1))
+    if len(rows):
+        row = int(rows[0])
+        column = int(np.argmax(~np.isfinite(xyz[row])))
+        name = ("easting", "northing", "elevation")[column]
+        raise PointsError(
+            f"{len(rows)} of {len(xyz)} points are not finite (first: row {row}, "
+            f"{name} {xyz[row, column]}): every coordinate must be a finite number.",
+            rows=rows[:SHOWN],
+        )
+
+
+def _require_exact_range(xy: NDArray[np.float64], what: str) -> None:
+    if xy.size == 0:
+        return
+    smallest, largest = _kernel.EXACT_RANGE
+    size = np.abs(xy)
+    wrong = ((size > largest) | ((size < smallest) & (size > 0))).any(axis=1)
+    if wrong.any():
+        row, count = int(np.argmax(wrong)), int(wrong.sum())
+        x, y = xy[row].tolist()
+        raise PointsError(
+            f"{what} have {count} {'row' if count == 1 else 'rows'} outside the exact range "
+            f"(first: row {row}, "
+            f"x {x!r}, y {y!r}): magnitudes from {smallest:.0e} to "
+            f"{largest:.0e}, or 0, are allowed.",
+            rows=np.flatnonzero(wrong)[:SHOWN],
+        )

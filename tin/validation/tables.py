@@ -1,0 +1,235 @@
+"""Tables of coordinates as callers have them: arrays, masked arrays, named columns, geometries.
+
+Columns with names are taken by their names, in whatever order they stand; columns without names by
+their order. No library of tables or geometries is imported: what a value is can be told by its
+attributes.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ...errors import PointsError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["Table", "as_table", "is_masked_array"]
+
+COORDINATES = ("easting", "northing", "elevation")
+_NAMES = {
+    "easting": ("x", "e", "east", "easting", "eastings", "lon", "long", "lng", "longitude"),
+    "northing": ("y", "n", "north", "northing", "northings", "lat", "latitude"),
+    "elevation": ("z", "elevation", "elev", "height", "h", "altitude", "alt"),
+}
+_ROLE_OF = {name: role for role, names in _NAMES.items() for name in names}
+_SHOWN = 8
+
+
+class Table(NamedTuple):
+    """Numbers, and which rows are masked.
+
+    Attributes
+    ----------
+    values : float64 array
+        (n, 3) or (n, 2) if it was a table of columns or geometries; else of the shape given.
+        0 where masked.
+    is_masked : (n,) bool array or None
+        Rows with a masked value; None if there are none.
+    """
+
+    values: NDArray[np.float64]
+    is_masked: NDArray[np.bool_] | None = None
+
+
+def as_table(given: Any, what: str, *, least: int = 3, most: int = 3) -> Table:
+    """Return coordinates as numbers.
+
+    Parameters
+    ----------
+    given : array-like, masked array, structured array, data frame, mapping or points
+        Columns are found by their names if they have some: x, y, z; easting, northing, elevation;
+        lon, lat, height. Others are not looked at.
+    what : str
+        What the sentence of an error begins with, in the plural.
+    least, most : int
+        How many coordinates are needed, and how many are taken if they are there.
+
+    Raises
+    ------
+    PointsError
+        For values that are no numbers, and names of columns that do not tell the coordinates.
+    """
+    if type(given) is np.ndarray and given.dtype.names is None and given.dtype.kind != "O":
+        return Table(_as_numbers(given, what))
+    given = _without_wrapping(given)
+    geometry = _points_of(getattr(given, "geometry", given), what)
+    names = _names_of(given)
+    if geometry is not None:
+        return Table(_with_elevations(geometry, given, names or (), what, most))
+    if names is None:
+        return _unnamed(given, what)
+    columns = _columns_by_name(given, names, what, least, most)
+    return _stacked(columns, what)
+
+
+def is_masked_array(given: Any) -> bool:
+    """Whether values are a masked array, which nobody can have without its module loaded."""
+    masked = sys.modules.get("numpy.ma")
+    return masked is not None and isinstance(given, masked.MaskedArray)
+
+
+def _without_wrapping(given: Any) -> Any:
+    """Return masked rows in a list as one masked array."""
+    if isinstance(given, list | tuple) and any(map(is_masked_array, given)):
+        return np.ma.array(given)
+    return given
+
+
+def _unnamed(given: Any, what: str) -> Table:
+    if not is_masked_array(given):
+        return Table(_as_numbers(given, what))
+    mask = np.ma.getmaskarray(given)
+    values = _as_numbers(np.where(mask, 0, given.data), what)
+    rows = np.atleast_1d(mask)
+    is_masked = np.asarray(rows.any(axis=tuple(range(1, rows.ndim))), np.bool_)
+    return Table(values, is_masked if is_masked.any() else None)
+
+
+def _as_numbers(values: Any, what: str) -> NDArray[np.float64]:
+    try:
+        array = np.asarray(values)
+        if array.dtype.kind not in "biufO" or (array.dtype.kind == "O" and _has_text(array)):
+            raise TypeError
+        return np.asarray(array, np.float64)
+    except Exception:
+        raise PointsError(
+            f"{what} are no table of real numbers: rows of equal length are needed, "
+            "without text, complex numbers or dates."
+        ) from None
+
+
+def _has_text(array: NDArray[Any]) -> bool:
+    return any(isinstance(value, str | bytes) for value in array.flat)
+
+
+# ------------------------------------------------------------------------- names
+
+
+def _names_of(given: Any) -> Sequence[Any] | None:
+    """Return the names of columns, None if they have none but their numbers."""
+    dtype = getattr(given, "dtype", None)
+    if isinstance(dtype, np.dtype):
+        return dtype.names
+    if isinstance(given, Mapping):
+        return list(given)
+    names = getattr(given, "column_names", None)
+    if names is None and hasattr(given, "to_numpy"):
+        names = getattr(given, "columns", None)
+    if names is None or callable(names):
+        return None
+    names = list(names)
+    return None if names == list(range(len(names))) else names
+
+
+def _columns_by_name(
+    given: Any, names: Sequence[Any], what: str, least: int, most: int
+) -> list[Any]:
+    found = _roles(names, what)
+    for role in COORDINATES[:least]:
+        if role not in found:
+            raise PointsError(
+                f"{what} have columns {_listed(names)}, and none of them is called {role}: "
+                f"one of {', '.join(_NAMES[role])} is needed."
+            )
+    return [given[found[role]] for role in COORDINATES[:most] if role in found]
+
+
+def _roles(names: Sequence[Any], what: str) -> dict[str, Any]:
+    """Return the name of the column of each coordinate."""
+    found: dict[str, Any] = {}
+    for name in names:
+        role = _ROLE_OF.get(str(name).strip().casefold())
+        if role is None:
+            continue
+        if role in found:
+            raise PointsError(
+                f"{what} have two columns for the {role}, '{found[role]}' and '{name}': "
+                "one of them must go."
+            )
+        found[role] = name
+    return found
+
+
+def _listed(names: Sequence[Any]) -> str:
+    more = ", ..." if len(names) > _SHOWN else ""
+    return ", ".join(f"'{name}'" for name in names[:_SHOWN]) + more
+
+
+def _stacked(columns: list[Any], what: str) -> Table:
+    tables = [_unnamed(_without_missing(column), what) for column in columns]
+    lengths = {table.values.shape for table in tables}
+    if len(lengths) != 1 or tables[0].values.ndim != 1:
+        raise PointsError(f"{what} have columns of different lengths, or of more than numbers.")
+    masks = [table.is_masked for table in tables if table.is_masked is not None]
+    values = np.stack([table.values for table in tables], axis=1)
+    return Table(values, np.logical_or.reduce(masks) if masks else None)
+
+
+def _without_missing(column: Any) -> Any:
+    """Return a column of a data frame with NaN for what is missing."""
+    if not hasattr(column, "isna"):
+        return column
+    try:
+        return column.to_numpy(dtype=np.float64, na_value=np.nan)
+    except Exception:
+        return np.asarray(column)
+
+
+# --------------------------------------------------------------------- geometries
+
+
+def _points_of(given: Any, what: str) -> NDArray[np.float64] | None:
+    """Return the coordinates of shapely's points, (n, 3) with NaN for none; None of all else."""
+    shapely = sys.modules.get("shapely")
+    if shapely is None:  # then nobody has a geometry
+        return None
+    if isinstance(given, shapely.Geometry):
+        return np.asarray(shapely.get_coordinates(given, include_z=True), np.float64)
+    first = next(iter(given), None) if _is_row_of_objects(given) else None
+    if not isinstance(first, shapely.Geometry):
+        return None
+    geometries = np.asarray(given, object)
+    if not (shapely.get_type_id(geometries) == 0).all() or shapely.is_empty(geometries).any():
+        raise PointsError(f"{what} are geometries, but not all of them points with coordinates.")
+    return np.asarray(shapely.get_coordinates(geometries, include_z=True), np.float64)
+
+
+def _is_row_of_objects(given: Any) -> bool:
+    if isinstance(given, list | tuple):
+        return True
+    is_one_dimensional = getattr(given, "ndim", 0) == 1 and hasattr(given, "__len__")
+    return is_one_dimensional and getattr(given, "dtype", None) != np.float64
+
+
+def _with_elevations(
+    geometry: NDArray[np.float64], given: Any, names: Sequence[Any], what: str, most: int
+) -> NDArray[np.float64]:
+    """Return the columns asked for, elevations from a column if the geometries have none."""
+    if most == 2:
+        return geometry[:, :2]
+    column = _roles(names, what).get("elevation")
+    is_flat = bool(np.isnan(geometry[:, 2]).all())
+    if column is not None:
+        own = _stacked([given[column]], what).values[:, 0]
+        if not (is_flat or np.array_equal(own, geometry[:, 2])):
+            raise PointsError(
+                f"{what} have elevations in their geometries and others in column '{column}': "
+                "one of them must go."
+            )
+        return np.column_stack([geometry[:, :2], own])
+    return geometry[:, :2] if is_flat else geometry

@@ -1,0 +1,45 @@
+"""How many threads work on one triangulation."""
+
+from __future__ import annotations
+
+import os
+
+from ...errors import PointsError
+from .options import is_whole_number, shown
+
+__all__ = ["thread_count"]
+
+# Below, starting the threads and stitching their parts costs as much as they save.
+LEAST_POINTS_PER_THREAD = 10_000
+
+# More are never started: the result is the same, and each takes memory.
+MOST_THREADS = 1024
+
+
+def thread_count(threads: int | None, n_points: int) -> int:
+    """Return the number of threads for so many points.
+
+    Parameters
+    ----------
+    threads : int or None
+        As asked for; None takes every core that this process may use, where it pays.
+
+    Raises
+    ------
+    PointsError
+        If it is no whole number above 0.
+    """
+    if threads is None:
+        return max(1, min(available_cores(), n_points // LEAST_POINTS_PER_THREAD))
+    if not is_whole_number(threads) or threads < 1:
+        raise PointsError(
+            f"Invalid threads {shown(threads)}: a whole number >= 1, or None, is needed."
+        )
+    return min(int(threads), MOST_THREADS)
+
+
+def available_cores() -> int:
+    """Return how many cores this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1

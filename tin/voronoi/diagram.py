@@ -1,0 +1,284 @@
+"""Voronoi: the dual of the Delaunay triangulation, one cell for each vertex."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...errors import LinesError, PointsError
+from .. import _kernel
+from ..constraints.breaklines import as_ring
+from ..types import Bounds
+from ..validation.options import is_finite_number, shown
+from ..validation.threads import thread_count
+from .cells import Rings, cells_in_box, signed_areas
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from ..surface import TIN
+
+__all__ = ["Voronoi", "voronoi"]
+
+_PAD_SHARE = 0.1
+"""How far the default boundary lies beyond the vertices, of the longer side of their bounds."""
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class Voronoi:
+    """A Voronoi diagram within a boundary: for each vertex the places nearest to it.
+
+    Made by :meth:`tinsmith.TIN.voronoi`. All arrays are read-only. ``len`` is the number of cells.
+
+    Attributes
+    ----------
+    coords : (k, 2) float64 array, CRS units
+        Corners of all cells, counter-clockwise, the first not repeated; no two in a row are equal.
+    offsets : (n + 1,) int64 array
+        The cell of vertex i is ``coords[offsets[i]:offsets[i + 1]]``.
+    part_offsets : (p + 1,) int64 array
+        As ``offsets``, but for each part: a concave boundary can cut a cell into several. Else the
+        same as ``offsets``.
+    boundary : (b, 2) float64 array, CRS units
+        Corners of the ring that the cells are clipped to.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [4, 4, 7], [0, 4, 8], [2, 2, 9]])
+    >>> diagram = tin.voronoi(pad=0)
+    >>> diagram
+    <Voronoi: 5 cells, 16 corners, area 16>
+    >>> diagram.areas
+    array([2., 2., 2., 2., 8.])
+    """
+
+    coords: NDArray[np.float64]
+    offsets: NDArray[np.int64]
+    part_offsets: NDArray[np.int64]
+    boundary: NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        for array in (self.coords, self.offsets, self.part_offsets, self.boundary):
+            array.flags.writeable = False
+
+    def __len__(self) -> int:
+        return len(self.offsets) - 1
+
+    @cached_property
+    def areas(self) -> NDArray[np.float64]:
+        """Area of each cell, (n,) float64 array, CRS units squared; 0 outside the boundary."""
+        parts = signed_areas(Rings(self.coords, self.part_offsets))
+        areas: NDArray[np.float64] = np.zeros(len(self))
+        np.add.at(areas, self._cell_of_part, parts)
+        areas.flags.writeable = False
+        return areas
+
+    def to_shapely(self) -> NDArray[np.object_]:
+        """Return the cells as shapely geometries.
+
+        Returns
+        -------
+        (n,) object array
+            A ``Polygon`` for each vertex; empty where the cell is, a ``MultiPolygon`` where a
+            concave boundary cuts it.
+
+        Notes
+        -----
+        The polygons are valid, but for cells of points that lie on one circle up to rounding:
+        these can have sides as short as that rounding.
+        """
+        import shapely
+
+        parts = _polygons(Rings(self.coords, self.part_offsets))
+        whole = np.bincount(self._cell_of_part, minlength=len(self))
+        cells = np.full(len(self), shapely.Polygon(), object)
+        is_single = (whole == 1)[self._cell_of_part]
+        cells[self._cell_of_part[is_single]] = parts[is_single]
+        for cell in np.flatnonzero(whole > 1):
+            cells[cell] = shapely.multipolygons(parts[self._cell_of_part == cell])
+        return cells
+
+    @cached_property
+    def _cell_of_part(self) -> NDArray[np.int64]:
+        filled = np.flatnonzero(np.diff(self.offsets))
+        return filled[np.searchsorted(self.offsets[filled + 1], self.part_offsets[1:])]
+
+    def __repr__(self) -> str:
+        count = len(self)
+        return (
+            f"<Voronoi: {count} cell{'s' * (count != 1)}, {len(self.coords)} corners, "
+            f"area {self.areas.sum():g}>"
+        )
+
+
+def voronoi(
+    tin: TIN, *, boundary: Bounds | ArrayLike | None = None, pad: float | None = None
+) -> Voronoi:
+    """Build the Voronoi diagram of the vertices of a TIN; see :meth:`tinsmith.TIN.voronoi`."""
+    if boundary is not None and pad is not None:
+        raise PointsError(
+            f"Invalid pad {shown(pad)}: a boundary is given, and only bounds are padded."
+        )
+    extent = Bounds.of(tin.points)
+    if boundary is None:
+        box = _padded(extent, pad)
+        return _diagram(_cells(tin.points, box), _corners(box))
+    ring = _as_boundary(boundary)
+    box = _joined(extent, Bounds.of(ring))
+    cells = _cells(tin.points, box)
+    if isinstance(boundary, Bounds) and box == boundary:
+        return _diagram(cells, ring)
+    return _clipped(cells, ring)
+
+
+def _diagram(cells: Rings, boundary: NDArray[np.float64]) -> Voronoi:
+    """Return a diagram whose cells are all of one part, or empty."""
+    filled = np.append(True, np.diff(cells.offsets) > 0)
+    return Voronoi(
+        coords=cells.coords,
+        offsets=cells.offsets,
+        part_offsets=cells.offsets[filled],
+        boundary=boundary,
+    )
+
+
+def _cells(points: NDArray[np.float64], box: Bounds) -> Rings:
+    """Return a cell for each vertex; of several at one place the first has it."""
+    growth = _kernel.grow(points, threads=thread_count(None, len(points)))
+    xy = np.ascontiguousarray(points[:, :2])
+    if growth.kept_row is None:
+        return cells_in_box(xy, growth, box)
+    is_kept = growth.kept_row == np.arange(len(xy))
+    cells = cells_in_box(np.ascontiguousarray(xy[is_kept]), growth, box)
+    counts = np.zeros(len(xy), np.int64)
+    counts[is_kept] = np.diff(cells.offsets)
+    return Rings(cells.coords, np.append(0, np.cumsum(counts)))
+
+
+# ---------------------------------------------------------------- the boundary
+
+
+def _padded(extent: Bounds, pad: float | None) -> Bounds:
+    if pad is None:
+        pad = _PAD_SHARE * max(extent.width, extent.height)
+    elif not (is_finite_number(pad) and pad >= 0):
+        raise PointsError(f"Invalid pad {shown(pad)}: a distance >= 0 in CRS units is needed.")
+    return Bounds(extent.xmin - pad, extent.ymin - pad, extent.xmax + pad, extent.ymax + pad)
+
+
+def _joined(one: Bounds, other: Bounds) -> Bounds:
+    return Bounds(
+        min(one.xmin, other.xmin),
+        min(one.ymin, other.ymin),
+        max(one.xmax, other.xmax),
+        max(one.ymax, other.ymax),
+    )
+
+
+def _corners(box: Bounds) -> NDArray[np.float64]:
+    """Return the corners of a box, counter-clockwise."""
+    return np.array(
+        [
+            [box.xmin, box.ymin],
+            [box.xmax, box.ymin],
+            [box.xmax, box.ymax],
+            [box.xmin, box.ymax],
+        ]
+    )
+
+
+def _as_boundary(boundary: Bounds | ArrayLike) -> NDArray[np.float64]:
+    """Return the ring of a boundary, counter-clockwise."""
+    import shapely
+
+    given = _corners(boundary) if isinstance(boundary, Bounds) else boundary
+    ring = as_ring(given, "the boundary")[:, :2].copy()
+    region = shapely.Polygon(ring)
+    if not shapely.is_valid(region):
+        raise LinesError(
+            f"The boundary is no simple ring ({shapely.is_valid_reason(region)}): "
+            "it must have an area and must not touch or cross itself."
+        )
+    return ring if region.exterior.is_ccw else ring[::-1].copy()
+
+
+def _clipped(cells: Rings, ring: NDArray[np.float64]) -> Voronoi:
+    """Return the parts of cells inside a ring; cells that it does not cut stay as they are."""
+    import shapely
+
+    region = shapely.Polygon(ring)
+    shapely.prepare(region)
+    near = _near(cells, Bounds.of(ring))
+    shapes = _polygons(_only(cells, near))
+    inside = shapely.covers(region, shapes)
+    parts, of = _parts_inside(region, shapes[~inside])
+    shapes = np.concatenate([shapes[inside], parts])
+    owner = np.concatenate([near[inside], near[~inside][of]])
+    order = np.argsort(owner, kind="stable")
+    rings = _rings(shapes[order])
+    counts = np.bincount(owner, np.diff(rings.offsets)[np.argsort(order)], len(cells.offsets) - 1)
+    return Voronoi(
+        coords=rings.coords,
+        offsets=np.append(0, np.cumsum(counts.astype(np.int64))),
+        part_offsets=rings.offsets,
+        boundary=ring,
+    )
+
+
+def _near(cells: Rings, box: Bounds) -> NDArray[np.int64]:
+    """Return the cells whose bounds meet a box."""
+    filled = np.flatnonzero(np.diff(cells.offsets))
+    if len(filled) == 0:
+        return filled
+    low = np.minimum.reduceat(cells.coords, cells.offsets[filled])
+    high = np.maximum.reduceat(cells.coords, cells.offsets[filled])
+    meets = (low <= [box.xmax, box.ymax]) & (high >= [box.xmin, box.ymin])
+    return filled[meets.all(axis=1)]
+
+
+def _only(rings: Rings, which: NDArray[np.int64]) -> Rings:
+    """Return some of the rings; the others are empty."""
+    counts = np.diff(rings.offsets)
+    taken = np.bincount(which, minlength=len(counts)) * counts
+    return Rings(rings.coords[np.repeat(taken > 0, counts)], np.append(0, np.cumsum(taken)))
+
+
+def _parts_inside(region: Any, shapes: NDArray[Any]) -> tuple[NDArray[Any], NDArray[np.int64]]:
+    """Return the polygons in which shapes meet a region, and the shape that each is a part of."""
+    import shapely
+
+    # Corners rounded to coordinates can make a cell of rounding width cross itself.
+    broken = ~shapely.is_valid(shapes)
+    shapes[broken] = shapely.make_valid(shapes[broken])
+    parts, of = shapely.get_parts(shapely.intersection(shapes, region), return_index=True)
+    parts, deeper = shapely.get_parts(parts, return_index=True)
+    has_area = shapely.area(parts) > 0
+    return parts[has_area], of[deeper][has_area]
+
+
+def _polygons(rings: Rings) -> NDArray[Any]:
+    """Return the rings that are not empty as shapely polygons."""
+    import shapely
+
+    counts = np.diff(rings.offsets)
+    ring = np.repeat(np.arange(np.count_nonzero(counts)), counts[counts > 0])
+    polygons: NDArray[Any] = shapely.polygons(shapely.linearrings(rings.coords, indices=ring))
+    return polygons
+
+
+def _rings(polygons: NDArray[Any]) -> Rings:
+    """Return the outer rings of polygons, counter-clockwise, the first corner not repeated."""
+    import shapely
+
+    coords, ring = shapely.get_coordinates(polygons, return_index=True)
+    is_last = np.append(ring[1:] != ring[:-1], True)[: len(ring)]
+    coords, ring = coords[~is_last], ring[~is_last]
+    offsets = np.append(0, np.cumsum(np.bincount(ring, minlength=len(polygons))))
+    clockwise = (signed_areas(Rings(coords, offsets)) < 0)[ring]
+    number = np.arange(len(coords))
+    turned = np.where(clockwise, offsets[ring] + offsets[ring + 1] - 1 - number, number)
+    return Rings(coords[turned], offsets)
