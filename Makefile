@@ -36,7 +36,7 @@ check: $(READY) $(TREE) ## Lint, formatting, types, import contract
 	cd $(TREE) && ../../$(BIN)/mypy --config-file ../../pyproject.toml
 	cd $(TREE) && PYTHONPATH=. ../../$(BIN)/lint-imports --config ../../pyproject.toml
 
-# The rooms as the one package that they are once installed. Tools that look for modules on disk
+# The folders as the one package that they are once installed. Tools that look for modules on disk
 # must see this instead of the root, where io/ would pass for Python's own io.
 .PHONY: $(TREE)
 $(TREE):

@@ -7,12 +7,13 @@ import shlex
 import sys
 from pathlib import Path
 
-from . import edits, kernel, lines, locate, readers, ways, writers
-from .datasets import DATASETS
-from .line_datasets import LINE_DATASETS
-from .machine import describe
+from .datasets.lines import LINE_DATASETS
+from .datasets.points import DATASETS
 from .measure import Outcome
-from .report import write_report
+from .report.machine import describe
+from .report.page import write_report
+from .sections import edits, kernel, lines, locate, readers, writers
+from .sections import variants as ways
 
 SIMPLE = {module.SECTION: module for module in (ways, edits, readers, writers)}
 SECTIONS = (

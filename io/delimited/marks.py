@@ -153,7 +153,9 @@ def decimal_of(rows: Iterable[Sequence[str]], delimiter: str) -> DecimalMark | N
     Between semicolons, which are delimiters because commas are decimal marks, the comma is taken.
     """
     cells = [cell for row in rows for cell in row]
-    commas = [cell for cell in cells if "," in cell.strip(",") and is_number(cell, ",")]
+    # Between blanks a comma at the end of a number may be part of what separates it: "5, 6".
+    edge = "," if delimiter == BLANKS else ""
+    commas = [cell for cell in cells if "," in cell.strip(edge or None) and is_number(cell, ",")]
     points = [cell for cell in cells if "." in cell and is_number(cell, ".")]
     sure_commas = sum(not may_group_or_divide(cell) for cell in commas)
     sure_points = sum(not may_group_or_divide(cell.replace(".", ",")) for cell in points)

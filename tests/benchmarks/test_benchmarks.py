@@ -11,20 +11,20 @@ import pytest
 from support import oracles
 
 import tinsmith as ts
-from benchmarks import edits, kernel, lines, locate, readers, writers
 from benchmarks.__main__ import main
-from benchmarks.answers import EQUAL, Verdict, ranked, verdict
 from benchmarks.cgal import CgalMissingError, build, harness
-from benchmarks.datasets import DATASETS, UTM_CORNER, dataset
-from benchmarks.edit_tasks import BATCH, EDIT_TASKS, INSERT_ALL, WHAT, edit_task
-from benchmarks.edit_tools import ALL_EDIT_TOOLS, BUILD, EDIT_TOOLS, OPENED, WITH_ARRAYS
-from benchmarks.goals import judged as goals_of
-from benchmarks.line_datasets import LINE_DATASETS, line_dataset
-from benchmarks.line_tools import ALL_LINE_TOOLS, CGAL_INDICES, LINE_TOOLS
+from benchmarks.datasets.edits import BATCH, EDIT_TASKS, INSERT_ALL, WHAT, edit_task
+from benchmarks.datasets.lines import LINE_DATASETS, line_dataset
+from benchmarks.datasets.points import DATASETS, UTM_CORNER, dataset
+from benchmarks.datasets.tasks import read_task, write_task
 from benchmarks.measure import OURS, Outcome, Result, alternate, is_installed
-from benchmarks.tasks import read_task, write_task
-from benchmarks.tool_process import ToolFailedError, ToolProcess
-from benchmarks.triangulators import CGAL, KERNEL, TOOLS
+from benchmarks.peers.answers import EQUAL, Verdict, ranked, verdict
+from benchmarks.peers.edit_tools import ALL_EDIT_TOOLS, BUILD, EDIT_TOOLS, OPENED, WITH_ARRAYS
+from benchmarks.peers.line_tools import ALL_LINE_TOOLS, CGAL_INDICES, LINE_TOOLS
+from benchmarks.peers.tool_process import ToolFailedError, ToolProcess
+from benchmarks.peers.triangulators import CGAL, KERNEL, TOOLS
+from benchmarks.report.goals import judged as goals_of
+from benchmarks.sections import edits, kernel, lines, locate, readers, writers
 
 N = 2_000
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 import tinsmith as ts
-from benchmarks.datasets import DATASETS, dataset
+from benchmarks.datasets.points import DATASETS, dataset
 from tinsmith.tin import _kernel
 
 __all__ = [

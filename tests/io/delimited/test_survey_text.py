@@ -116,24 +116,23 @@ def text_of(layout, delimiter, decimal, rows, line_end, is_quoted):
     return buffer.getvalue()
 
 
-def has_thousands_alone(layout, rows):
-    """Tell if every decimal comma stands where one that separates thousands would, as in 1,000."""
+def has_unproved_commas(layout, delimiter, rows):
+    """Tell if no decimal comma is surely one: 1,000 may be a thousand, "5, 6" two columns."""
     cells = [c for row in rows for k, c in zip(layout, row, strict=True) if k not in "PD"]
-    with_comma = [cell for cell in cells if "." in cell.strip(".")]  # 1, and ,5 prove nothing
-    return bool(with_comma) and all(
-        re.fullmatch(r"[+-]?[1-9]\d{0,2}\.\d{3}", c) for c in with_comma
-    )
+    with_mark = [cell for cell in cells if "." in cell]
+    unproved = r"[+-]?[1-9]\d{0,2}\.\d{3}" + (r"|\.\d+|[^.]*\." if delimiter == "spaces" else "")
+    return bool(with_mark) and all(re.fullmatch(unproved, cell) for cell in with_mark)
 
 
 @settings(max_examples=250, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(table=tables())
 def test_every_table_reads_as_csv_and_float_say(survey, table):
-    layout, _, _, rows, *_ = table
+    layout, delimiter, decimal, rows, *_ = table
     content = text_of(*table)
     if "(" in content.split("\n")[0] and table[1] == "spaces" and not table[5]:
         content = content.replace("E (m)", "E_m").replace("N (m)", "N_m")
     options = {}
-    if table[1:3] != ("semicolon", ",") and table[2] == "," and has_thousands_alone(layout, rows):
+    if decimal == "," and delimiter != "semicolon" and has_unproved_commas(layout, delimiter, rows):
         fault(survey, content)
         options = {"decimal": ","}
     found = survey(content, **options)
@@ -1018,3 +1017,10 @@ def test_local_coordinates_with_a_projected_crs_are_told(tmp_path, rows, is_told
 )
 def test_sentences_about_one_row_are_in_the_singular(survey, content, words):
     assert words in str(fault(survey, content))
+
+
+@pytest.mark.parametrize("delimiter", ["|", "\t", ";"])
+def test_a_comma_before_the_first_digit_is_a_decimal_one(survey, delimiter):
+    rows = [["E", "N", "H"], ["0", "0", "0"], ["1", "0", "0"], ["0", "1", ",5"]]
+    found = survey("".join(delimiter.join(row) + "\n" for row in rows))
+    assert found.points[2].tolist() == [0.0, 1.0, 0.5]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 import shapely
@@ -9,6 +11,7 @@ import shapely
 import tinsmith as ts
 from tinsmith.tin.report import LEFT_OUT
 
+NONE = np.empty((0, 3))
 ARRAYS = ("points", "triangles", "neighbors", "constrained")
 
 
@@ -287,6 +290,55 @@ def test_breakline_meets_the_shore_at_the_height_of_the_water():
     tin = ts.triangulate(terrain(), water=[ts.Water(pond, 2.5)], breaklines=[line])
     np.testing.assert_array_equal(tin.interpolate([[40, 50], [60, 50]]), 2.5)
     assert [met["heights"] for met in tin.report.to_dict()["crossings"]] == [[90, 2.5], [90, 2.5]]
+
+
+def test_line_beside_water_within_a_rounding_is_kept():
+    """The rounded middle of the line lies in the water, which its ends and itself only pass."""
+    line = [[51145.338198906, 35801.8367392342, 1.0], [94041.46643103092, 65829.12650172165, 5.0]]
+    lakes = [
+        ts.Water(
+            [
+                [0, 0],
+                [92284.28620065398, 64599.10034045778],
+                [71730.88144296753, 50211.717010077264],
+            ],
+            0.0,
+        ),
+        ts.Water([[0, 0], [0, 112761], [0, 102198]], 2.0),
+    ]
+    tin = ts.triangulate(NONE, breaklines=[line], water=lakes)
+    assert tin.lines.kinds == ("hard", "water", "water")
+    assert tin.points[tin.lines.vertices[:2]].tolist() == line
+
+
+def test_line_from_shore_to_shore_of_narrow_water_stays_where_it_is_outside():
+    """Four corners on a slanted line but for roundings: their diagonal, in exact fractions."""
+    rng = np.random.default_rng(2)
+    far = [[-1e4, -1e4, 0], [1e4, -1e4, 0], [0, 1e4, 0]]
+    outside = []
+    while len(outside) < 100:
+        x = 1000 * rng.random(4)
+        ring = np.column_stack([x, x * 0.7 + 0.1 + rng.integers(-3, 4, 4) * np.spacing(700.0)])
+        a, b, c, d = ring
+        sides = {turn(a, c, b), turn(a, c, d)}
+        if 0 in sides or is_crossing(a, b, c, d) or is_crossing(b, c, d, a):
+            continue
+        line = [[*a, 5], [*c, 5]]
+        tin = ts.triangulate(far, breaklines=[line], water=[ts.Water(ring, 1)])
+        outside.append(len(sides) == 1)
+        assert ("hard" in tin.lines.kinds) == outside[-1]
+    assert 20 < sum(outside) < 80
+
+
+def turn(a, b, c):
+    """Return the sign of the turn from a over b to c."""
+    (ax, ay), (bx, by), (cx, cy) = ([Fraction(v) for v in place] for place in (a, b, c))
+    area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
+    return (area > 0) - (area < 0)
+
+
+def is_crossing(a, b, c, d):
+    return turn(a, b, c) * turn(a, b, d) <= 0 and turn(c, d, a) * turn(c, d, b) <= 0
 
 
 # ------------------------------------------------------------- long edges, conforming

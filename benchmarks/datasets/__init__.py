@@ -1,0 +1,1 @@
+"""Points, lines and edits to be timed, all made by seeded generators."""

@@ -1,0 +1,174 @@
+"""The tools that edit a triangulation; building it first is not timed, nor reading it after."""
+
+from __future__ import annotations
+
+import os
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..datasets.edits import INSERT_ALL, WHAT, EditTask
+from ..measure import OURS
+from .triangulators import CGAL, Tool
+
+__all__ = ["ALL_EDIT_TOOLS", "BUILD", "EDIT_TOOLS", "OPENED", "WITH_ARRAYS"]
+
+WITH_ARRAYS = "tinsmith, and its arrays"
+"""Edits, and the arrays of triangles and neighbours that they lead to."""
+OPENED = "tinsmith, opened"
+"""A first edit, which makes the TIN ready for further ones, is not timed."""
+BUILD = "tinsmith, building"
+"""For comparison: the points of the batch alone, triangulated."""
+MORTON_BITS = 16
+
+
+class _State(NamedTuple):
+    made: Any
+    calls: list[tuple[str, tuple[Any, ...]]]
+
+
+# ---------------------------------------------------------------------- tinsmith
+
+
+def _calls(task: EditTask) -> list[tuple[str, tuple[Any, ...]]]:
+    """Return the edits as names of methods and their arguments."""
+    is_batch = task.script[:, 0] == INSERT_ALL
+    calls: list[tuple[str, tuple[Any, ...]]] = [("insert", (task.script[is_batch, 3:],))]
+    if not is_batch.any():
+        calls.clear()
+    for what, _, vertex, *xyz in task.script[~is_batch].tolist():
+        arguments = {
+            "insert": ([xyz],),
+            "remove": (int(vertex),),
+            "move": (int(vertex), xyz),
+            "set_z": (int(vertex), xyz[2]),
+        }
+        name = WHAT[int(what)]
+        calls.append((name, arguments[name]))
+    return calls
+
+
+def _prepared(task: EditTask) -> tuple[EditTask, list[tuple[str, tuple[Any, ...]]]]:
+    if hasattr(os, "sched_setaffinity"):  # a batch would take every core
+        os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
+    return task, _calls(task)
+
+
+def _triangulated(given: Any) -> _State:
+    from tinsmith import triangulate
+
+    task, calls = given
+    return _State(triangulate(task.points, threads=1), calls)
+
+
+def _opened(given: Any) -> _State:
+    state = _triangulated(given)
+    state.made.set_z(0, state.made.points[0, 2])
+    return state
+
+
+def _edited(state: _State) -> Any:
+    for name, arguments in state.calls:
+        getattr(state.made, name)(*arguments)
+    return state.made
+
+
+def _edited_with_arrays(state: _State) -> Any:
+    tin = _edited(state)
+    assert len(tin.neighbors) == len(tin.triangles)
+    return tin
+
+
+def _built(given: Any) -> Any:
+    from tinsmith import triangulate
+
+    task, _ = given
+    return triangulate(task.script[:, 3:], threads=1)
+
+
+def _ours(run: Any, renew: Any = _triangulated) -> Tool:
+    return Tool(
+        module="tinsmith",
+        prepare=_prepared,
+        renew=renew,
+        run=run,
+        triangles=lambda tin: tin.points[tin.triangles],
+        is_exact=True,
+    )
+
+
+# --------------------------------------------------------------------- startinpy
+
+
+def _startinpy_input(task: EditTask) -> tuple[NDArray[np.float64], list[Any], Any]:
+    """Sort points along a curve: in random order startinpy takes half a minute a million."""
+    order = np.argsort(_morton(task.points[:, :2]))
+    ids = np.empty(len(order), np.int64)
+    ids[order] = np.arange(1, len(order) + 1)  # 0 is its vertex at infinity
+    is_batch = task.script[:, 0] == INSERT_ALL
+    batch = task.script[is_batch, 3:]
+    edits = [
+        (WHAT[int(what)], int(ids[int(number)]), xyz)
+        for what, number, _, *xyz in task.script[~is_batch].tolist()
+    ]
+    return task.points[order], edits, batch[np.argsort(_morton(batch[:, :2]))]
+
+
+def _morton(xy: NDArray[np.float64]) -> NDArray[np.uint64]:
+    """Place along a Z-shaped curve through a square about the places."""
+    if len(xy) == 0:
+        return np.empty(0, np.uint64)
+    span = np.ptp(xy, axis=0).max()
+    x, y = ((xy - xy.min(axis=0)) / span * (2**MORTON_BITS - 1)).astype(np.uint64).T
+    code = np.zeros(len(xy), np.uint64)
+    for bit in range(MORTON_BITS):
+        at = np.uint64(bit)
+        code |= ((x >> at & np.uint64(1)) << np.uint64(2 * bit)) | (
+            (y >> at & np.uint64(1)) << np.uint64(2 * bit + 1)
+        )
+    return code
+
+
+def _startinpy_new(given: Any) -> Any:
+    import startinpy
+
+    points, edits, batch = given
+    made = startinpy.DT()
+    made.snap_tolerance = 1e-12  # its default, a millimetre, merges points
+    made.insert(points)
+    made.jump_and_walk = True  # else every search starts where the last edit was
+    return made, edits, batch
+
+
+def _startinpy(state: Any) -> Any:
+    made, edits, batch = state
+    if len(batch):
+        made.jump_and_walk = False  # the batch is sorted
+        made.insert(batch)
+    for what, vertex, xyz in edits:
+        if what in ("remove", "move"):
+            made.remove(vertex)
+        if what in ("insert", "move"):
+            made.insert_one_pt(xyz)
+        elif what == "set_z":
+            made.update_vertex_z_value(vertex, xyz[2])
+    return made
+
+
+EDIT_TOOLS: dict[str, Tool] = {
+    OURS: _ours(_edited),
+    OPENED: _ours(_edited, _opened),
+    WITH_ARRAYS: _ours(_edited_with_arrays),
+    BUILD: _ours(_built, lambda given: given),
+    "startinpy": Tool(
+        module="startinpy",
+        prepare=_startinpy_input,
+        renew=_startinpy_new,
+        run=_startinpy,
+        triangles=lambda made: made.points[made.triangles.astype(np.int64)],
+    ),
+}
+"""The tools that Python can call, by name."""
+
+ALL_EDIT_TOOLS = (OURS, OPENED, WITH_ARRAYS, BUILD, CGAL, "startinpy")

@@ -1,0 +1,378 @@
+"""What was measured as one page of Markdown, one JSON file and one plot."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import asdict
+from pathlib import Path
+
+from ..measure import OURS, Outcome, Result, is_installed
+from ..peers.answers import AS_MANY, EQUAL
+from ..peers.line_tools import ALL_LINE_TOOLS
+from ..peers.triangulators import CGAL, KERNEL
+from ..sections import edits, kernel, lines, locate, readers, writers
+from ..sections import variants as ways
+from .goals import judged
+
+__all__ = ["write_report"]
+
+NAME = "benchmarks"
+PLOTS = {kernel.SECTION: f"{NAME}.png", lines.SECTION: f"{NAME}-lines.png"}
+LEAST_FOR_MEMORY = 50_000
+"""Below this many points memory is that of the libraries, not of the points."""
+
+INTRODUCTION = """\
+# Benchmarks
+
+tinsmith beside the libraries that do the same, run in turn (A B C A B C) in one command, on one
+core each where nothing else is said; seconds are medians. **Every answer that is timed is
+compared**: ours is proved by `ts.check`, an exact peer's must be the same triangulation or one that
+differs only in how ties between cocircular points are broken, and what the others lose is said
+below the table.
+"""
+HOW_TO_REPEAT = """\
+## How to repeat this
+
+`make bench` runs everything at 100,000 points in some minutes; this page was made by
+
+    {command}
+
+CGAL is a C++ library: with `g++` and its headers (Debian: `libcgal-dev`) the command compiles a
+small harness; without them, and without any other peer, it says so and goes on. Data sets are
+made by seeded generators in `benchmarks/`.
+"""
+KERNEL_NOTES = """\
+Seconds, and in brackets how many times the whole call `ts.triangulate(points)` that is: above 1
+tinsmith is faster. That call checks the input, merges duplicates and makes all arrays of the TIN;
+*kernel* is the compiled part alone, triangles and neighbours. Of the peers only the triangulation
+is timed: not the conversion of the points to their own types, and of CGAL (`insert(begin, end)`,
+exact predicates, compiled with `-O3 -march=native`) nothing of Python. Points come in the order
+of the data set; startinpy inserts them in that order, so random order costs it most. † wrong,
+incomplete or not ended in time, see below.
+"""
+
+
+def write_report(
+    outcome: Outcome, machine: dict[str, str], command: str, folder: Path
+) -> list[Path]:
+    """Write ``benchmarks.md``, ``.json`` and, where matplotlib is installed, ``.png``.
+
+    Returns
+    -------
+    list of Path
+        The files written.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    page, data = folder / f"{NAME}.md", folder / f"{NAME}.json"
+    plots = _plots(outcome)
+    page.write_text(_page(outcome, machine, command, plots), encoding="utf-8")
+    data.write_text(_as_json(outcome, machine, command), encoding="utf-8")
+    written = [page, data]
+    for section, name in plots.items():
+        from .plot import draw
+
+        written.append(draw(_of(outcome.results, section), folder / name))
+    return written
+
+
+def _plots(outcome: Outcome) -> dict[str, str]:
+    """Return the names of the plots to draw, by section."""
+    drawn = {section: name for section, name in PLOTS.items() if _of(outcome.results, section)}
+    if drawn and not is_installed("matplotlib"):
+        outcome.skip({"plot": "matplotlib is not installed"})
+        return {}
+    return drawn
+
+
+def _as_json(outcome: Outcome, machine: dict[str, str], command: str) -> str:
+    content = {
+        "command": command,
+        "machine": machine,
+        "results": [_without_nan(asdict(result)) for result in outcome.results],
+        "skipped": outcome.skipped,
+    }
+    return json.dumps(content, indent=1, allow_nan=False) + "\n"
+
+
+def _without_nan(values: dict[str, object]) -> dict[str, object]:
+    return {k: None if isinstance(v, float) and math.isnan(v) else v for k, v in values.items()}
+
+
+def _page(outcome: Outcome, machine: dict[str, str], command: str, plots: dict[str, str]) -> str:
+    versions = ", ".join(f"{k} {v}" for k, v in machine.items() if k != "machine")
+    parts = [INTRODUCTION, f"Machine: {machine['machine']}. {versions}.\n"]
+    for section, render in SECTIONS.items():
+        results = _of(outcome.results, section)
+        if results:
+            parts.append(render(results, plots.get(section, "")))
+    if outcome.skipped:
+        parts.append("\n".join(["## Left out", "", *(f"- {x}" for x in outcome.skipped), ""]))
+    parts.append(HOW_TO_REPEAT.format(command=command))
+    return "\n".join(parts)
+
+
+def _of(results: Iterable[Result], section: str) -> list[Result]:
+    return [result for result in results if result.section == section]
+
+
+TEXT_COLUMNS = ("data set, points", "task", "tool", "remark", "goal", "data set")
+
+
+def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Return a table, text to the left, numbers to the right."""
+    rule = ["---" if name in TEXT_COLUMNS else "---:" for name in head]
+    return "\n".join(f"| {' | '.join(row)} |" for row in (head, rule, *rows)) + "\n"
+
+
+def _seconds(seconds: float) -> str:
+    if math.isnan(seconds):
+        return "-"
+    if seconds < 0.0995:
+        return f"{seconds * 1000:.3g} ms"
+    return f"{seconds:.1f} s" if seconds >= 9.95 else f"{seconds:.2f} s"
+
+
+def _ratio(seconds: float, ours: float) -> str:
+    ratio = seconds / ours
+    return f"{ratio:.0f}" if ratio >= 9.95 else f"{ratio:.2f}"
+
+
+# ------------------------------------------------------------------------ kernel
+
+
+class _KernelRow:
+    """All results on one data set of one size, by tool."""
+
+    def __init__(self, results: list[Result]) -> None:
+        self.by_tool = {result.tool: result for result in results}
+        self.task, self.count = results[0].task, results[0].count
+
+    @property
+    def label(self) -> str:
+        return f"{self.task}, {self.count:,}"
+
+    def cell(self, tool: str) -> str:
+        result = self.by_tool.get(tool)
+        if result is None:
+            return ""
+        if math.isnan(result.seconds):
+            return "- †"
+        mark = " †" if _is_wrong(result) else ""
+        if tool == OURS or OURS not in self.by_tool:
+            return f"{_seconds(result.seconds)}{mark}"
+        return f"{_seconds(result.seconds)} ({self.ratio(tool, OURS)}){mark}"
+
+    def ratio(self, tool: str, to: str) -> str:
+        if tool not in self.by_tool or to not in self.by_tool:
+            return ""
+        return _ratio(self.by_tool[tool].seconds, self.by_tool[to].seconds)
+
+    def extra(self, tool: str, name: str, form: str = ",.0f") -> str:
+        result = self.by_tool.get(tool)
+        value = None if result is None else result.extra.get(name)
+        return "" if value is None else format(value, form)
+
+
+def _is_wrong(result: Result) -> bool:
+    return not result.extra["is_right"]
+
+
+def _kernel_rows(results: list[Result]) -> list[_KernelRow]:
+    groups: dict[tuple[str, int], list[Result]] = {}
+    for result in results:
+        groups.setdefault((result.task, result.count), []).append(result)
+    return [_KernelRow(group) for group in groups.values()]
+
+
+def _kernel(results: list[Result], plot: str) -> str:
+    rows = _kernel_rows(results)
+    tools = [tool for tool in kernel.ALL_TOOLS if any(tool in row.by_tool for row in rows)]
+    parts = ["## Triangulation\n", KERNEL_NOTES]
+    parts += _picture(plot)
+    parts.append(_times(rows, tools))
+    parts += goals_part(results)
+    parts += ["### What the others lose, and how ties fall\n", _remarks(rows)]
+    parts += ["### Memory\n", MEMORY_NOTES, _memory(rows, tools)]
+    parts += ["### Work\n", WORK_NOTES, _work(rows)]
+    return "\n".join(parts)
+
+
+def _picture(plot: str) -> list[str]:
+    return [f"![Time per point of every tool on every data set]({plot})\n"] if plot else []
+
+
+GOALS_NOTES = """\
+The project's own goals for one thread at 1,000,000 points unless said otherwise, judged by the
+figures of this page. Each ratio is the least favourable of its data sets.
+"""
+
+
+def goals_part(results: list[Result]) -> list[str]:
+    """Return the page's part about goals; nothing where no goal can be judged."""
+    lines = judged(results)
+    if not lines:
+        return []
+    head = ["goal", "data set", "required", "aim", "reached", ""]
+    return ["### Required and reached\n", GOALS_NOTES, _table(head, lines)]
+
+
+def _times(rows: list[_KernelRow], tools: list[str]) -> str:
+    is_beside = {KERNEL, CGAL} <= set(tools)
+    head = ["data set, points", *tools] + ["CGAL / kernel"] * is_beside
+    body = [
+        [row.label, *map(row.cell, tools)] + [row.ratio(CGAL, KERNEL)] * is_beside for row in rows
+    ]
+    return _table(head, body)
+
+
+def _remarks(rows: list[_KernelRow]) -> str:
+    """One line a tool and remark, for the answers that are not equal to ours."""
+    rows_of: dict[str, list[str]] = {}
+    for row in rows:
+        for tool, result in row.by_tool.items():
+            if tool != kernel.WORK and result.note not in (EQUAL, AS_MANY):
+                mark = " †" if _is_wrong(result) else ""
+                rows_of.setdefault(tool, []).append(f"{row.label}: {result.note}{mark}")
+    lines = [
+        f"- {tool}\n" + "\n".join(f"  - {x}" for x in texts) for tool, texts in rows_of.items()
+    ]
+    return "\n".join([*lines, ""]) if lines else "Every triangulation is equal to ours.\n"
+
+
+MEMORY_NOTES = """\
+Bytes per point: by how much the resident memory of a process that runs only this tool rises above
+what it held with the points loaded; the answer is part of it. *Beyond input and output*: less the
+arrays returned (of the whole call 82 bytes per point, of the kernel 48).
+"""
+
+
+def _memory(rows: list[_KernelRow], tools: list[str]) -> str:
+    ours = [tool for tool in kernel.OUR_TOOLS if tool in tools]
+    head = ["data set, points", *tools, *(f"{tool}, beyond input and output" for tool in ours)]
+    body = [
+        [
+            row.label,
+            *(row.extra(tool, "peak_bytes_per_point") for tool in tools),
+            *(row.extra(tool, "beyond_output_bytes_per_point") for tool in ours),
+        ]
+        for row in rows
+        if row.count >= LEAST_FOR_MEMORY
+    ]
+    return _table(head, body) if body else f"Too few points: {LEAST_FOR_MEMORY:,} are needed.\n"
+
+
+WORK_NOTES = """\
+Per triangle: searches for a third point (below 1 where the kernel hands the rest to insertion); of
+these, full searches that go beyond the gathered neighbourhood; candidates looked at, rows of cells
+that full searches enter, and decisions that needed exact arithmetic. These do not depend on the
+machine; `count_work` in `tin/_kernel.py` tells them of any points.
+"""
+WORK_COUNTS = ("searches", "full_searches", "candidates", "cell_rows", "exact_decisions")
+
+
+def _work(rows: list[_KernelRow]) -> str:
+    head = ["data set, points", *(name.replace("_", " ") for name in WORK_COUNTS)]
+    return _table(
+        head,
+        [[row.label, *(row.extra(kernel.WORK, c, ".3f") for c in WORK_COUNTS)] for row in rows],
+    )
+
+
+# ------------------------------------------------------------------------- lines
+
+LINES_NOTES = """\
+Seconds for the whole call `ts.triangulate(points, breaklines=lines)`, and of the peers in brackets
+how many times that. tinsmith finds out itself which vertices of lines are points, where lines cross
+and which points lie on them; the peers are given every place once and the lines as pairs of place
+numbers, made beforehand. CGAL: `insert` all points and `insert_constraint` by vertex handles, or
+`insert_constraints` by indices, exact predicates. Triangle: switches `pcQz`. Counted are points and
+vertices of lines together.
+
+- *short lines*: uniform points, lines of ten segments; *long lines*: from side to side
+- *nested rings*: contours of one hill, each within the next; *hills*: 70 on each of many hills
+- *raster lines*: between points of a 0.1 m raster, many over further points
+"""
+LINES_MEMORY_NOTES = """\
+As for triangulation without lines. Every tool is given what it needs before.
+"""
+
+
+def _lines(results: list[Result], plot: str) -> str:
+    rows = _kernel_rows(results)
+    tools = [tool for tool in ALL_LINE_TOOLS if any(tool in row.by_tool for row in rows)]
+    parts = ["## Triangulation with breaklines\n", LINES_NOTES, *_picture(plot)]
+    parts += [_times(rows, tools), *goals_part(results)]
+    parts += ["### Answers with lines that differ from ours\n", _remarks(rows)]
+    parts += ["### Memory with lines\n", LINES_MEMORY_NOTES, _memory(rows, tools)]
+    return "\n".join(parts)
+
+
+# ------------------------------------------------------------------ other sections
+
+
+def _others(title: str, unit: str, notes: str) -> Callable[[list[Result], bool], str]:
+    def render(results: list[Result], plot: str) -> str:
+        del plot
+        ours = {result.task: result for result in results if result.tool == OURS}
+        head = ["task", "tool", unit, "seconds", "times tinsmith", "remark"]
+        rows = [_other_row(result, ours[result.task]) for result in results]
+        return "\n".join([f"## {title}\n", notes, _table(head, rows), *goals_part(results)])
+
+    return render
+
+
+def _other_row(result: Result, ours: Result) -> list[str]:
+    remark = result.note
+    if "prepare_seconds" in result.extra:
+        remark = f"{_seconds(result.extra['prepare_seconds'])} to prepare"
+    rate, our_rate = result.seconds / result.count, ours.seconds / ours.count
+    return [
+        result.task,
+        result.tool,
+        f"{result.count:,}",
+        _seconds(result.seconds),
+        _ratio(rate, our_rate),
+        remark,
+    ]
+
+
+EDITS_NOTES = """\
+Random edits of a finished TIN of uniform points, one call each, and as many points again in one
+call; one core each. *tinsmith* is from the finished TIN, the first edit, which makes it ready for
+more, included; *opened* leaves a first one out, *and its arrays* includes looking at the triangles
+afterwards, *building* is the batch triangulated alone. CGAL (`Delaunay_triangulation_2`) and
+startinpy name vertices by handles that stay, and keep no history. CGAL has no heights; a move of
+startinpy is a removal and an insertion; its points are sorted along a curve first, not timed.
+"""
+
+SECTIONS: dict[str, Callable[[list[Result], str], str]] = {
+    kernel.SECTION: _kernel,
+    ways.SECTION: _others(
+        "The kernel's own ways",
+        "points",
+        "Vector instructions, the two methods between which the kernel chooses, and small inputs;\n"
+        "all in one process and in turn, each with the same arrays as the others.\n",
+    ),
+    lines.SECTION: _lines,
+    edits.SECTION: _others(
+        "Edits",
+        "edits",
+        EDITS_NOTES,
+    ),
+    locate.SECTION: _others(
+        "Queries",
+        "places",
+        "Random places on a TIN of uniform points, near the origin of coordinates so that SciPy\n"
+        "can take part; ratios are per place. To prepare is from points to the first answer.\n",
+    ),
+    readers.SECTION: _others(
+        "Readers",
+        "rows",
+        "One file of each kind, in the cache of the system; equal numbers read.\n",
+    ),
+    writers.SECTION: _others(
+        "Writers", "triangles", "From the TIN to the file; every file is read back and compared.\n"
+    ),
+}

@@ -1,0 +1,1 @@
+"""What is timed: one module for each section of the report."""

@@ -1,0 +1,129 @@
+"""Edits of a finished TIN beside CGAL and startinpy: one call each, and one large batch.
+
+Every tool in a process of its own, in turn, one core each. After the timing the answers are
+compared with the TIN of the points as they are then, built afresh.
+"""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import tinsmith as ts
+from tinsmith.tin import TIN
+
+from ..cgal import harness
+from ..datasets.edits import BATCH, EDIT_TASKS, EditTask, edit_task, labelled
+from ..datasets.tasks import write_task
+from ..measure import Outcome, Result, median
+from ..peers.answers import Verdict, numbered, ranked, verdict
+from ..peers.edit_tools import ALL_EDIT_TOOLS, BUILD, EDIT_TOOLS, OPENED
+from ..peers.tool_process import ToolProcess, worker_command
+from ..peers.triangulators import CGAL, is_cgal
+from .kernel import in_turn
+from .lines import available_tools
+
+__all__ = ["SECTION", "run"]
+
+SECTION = "edits"
+CGAL_COLUMNS = (0, 1, 3, 4)
+"""Of a script: what, number, x, y."""
+
+
+def run(
+    n: int, *, tools: Sequence[str] = ALL_EDIT_TOOLS, repeats: int = 5, limit: float = 60.0
+) -> Outcome:
+    """Measure edits of a TIN of ``n`` uniform points.
+
+    Parameters
+    ----------
+    n : int
+    tools : sequence of str
+    repeats : int
+        Rounds; in each every tool does all edits once, on a new TIN.
+    limit : float
+        Seconds that a tool may take for building and editing once.
+
+    Raises
+    ------
+    AssertionError
+        If the answer of an exact tool is wrong.
+    """
+    outcome = Outcome()
+    present = available_tools(tools, EDIT_TOOLS, "edits", outcome)
+    for name in (*EDIT_TASKS, BATCH):
+        print(f"edits: {name}, {n:,} points", file=sys.stderr, flush=True)
+        fitting = [tool for tool in present if _takes_part(tool, name)]
+        outcome.results += _measure(name, edit_task(name, n), fitting, repeats, limit)
+    return outcome
+
+
+def _takes_part(tool: str, name: str) -> bool:
+    if tool == CGAL and name == "new heights":  # it has none
+        return False
+    return tool != (OPENED if name == BATCH else BUILD)
+
+
+class EditProcess(ToolProcess):
+    """A tool that builds the same triangulation before every run, and edits it."""
+
+    least_timed_seconds = 0.0
+
+    def command(self, name: str, task: EditTask, folder: Path) -> list[str]:
+        """Write the task for the tool; return what runs it."""
+        if not is_cgal(name):
+            arrays = folder / "task.npz"
+            if not arrays.exists():
+                write_task(task, arrays)
+            return worker_command("edits", name, arrays)
+        plane, script = folder / "points.bin", folder / "script.bin"
+        task.points[:, :2].tofile(plane)
+        task.script[:, CGAL_COLUMNS].tofile(script)
+        return [str(harness("edits")), str(plane), str(script)]
+
+
+def _measure(
+    name: str, task: EditTask, tools: list[str], repeats: int, limit: float
+) -> Iterator[Result]:
+    tin = ts.triangulate(task.afterwards())
+    ts.check(tin, level=3).raise_if_failed()
+    with tempfile.TemporaryDirectory() as folder, ExitStack() as stack:
+        processes: dict[str, ToolProcess] = {
+            tool: stack.enter_context(EditProcess(tool, task, Path(folder), limit))
+            for tool in tools
+        }
+        failures = in_turn(processes, repeats)
+        verdicts = {
+            tool: Verdict(False, failures[tool])
+            if tool in failures
+            else _judged(tool, process, tin, task)
+            for tool, process in processes.items()
+        }
+    for tool, process in processes.items():
+        label = labelled(name, len(task.points))
+        yield _result(label, tool, len(task.script), process, verdicts[tool])
+
+
+def _judged(tool: str, process: ToolProcess, tin: TIN, task: EditTask) -> Verdict:
+    wanted = ts.triangulate(task.script[:, 3:]) if tool == BUILD else tin
+    answer = process.triangles()
+    numbers = numbered(np.ascontiguousarray(answer[:, :, :2]), wanted.points)
+    found = verdict(wanted, numbers, ranked(wanted.triangles))
+    if found.is_right and answer.shape[2] == 3:
+        wrong = np.count_nonzero(wanted.points[numbers, 2] != answer[:, :, 2])
+        found = Verdict(False, f"{wrong:,} heights of corners wrong") if wrong else found
+    is_exact = is_cgal(tool) or EDIT_TOOLS[tool].is_exact
+    assert found.is_right or not is_exact, f"{tool}: {found.text}"
+    return found
+
+
+def _result(task: str, tool: str, count: int, process: ToolProcess, found: Verdict) -> Result:
+    extra: dict[str, Any] = {"is_right": found.is_right}
+    runs = tuple(process.seconds)
+    return Result(SECTION, task, tool, count, median(process.seconds), runs, found.text, extra)

@@ -1,0 +1,157 @@
+"""Triangulation of points with breaklines beside CGAL and Triangle: seconds and memory.
+
+As in ``kernel``: every tool in a process of its own, in turn, and every answer compared. Ours is
+checked by ``ts.check``, and its lines against edges found in whole numbers.
+"""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+import tinsmith as ts
+from tinsmith.tin import TIN
+
+from ..cgal import CgalMissingError, harness
+from ..datasets.lines import LEAST_POINTS, LINE_DATASETS, LineTask, line_dataset
+from ..datasets.tasks import write_task
+from ..measure import Outcome, Result
+from ..peers.answers import Verdict, edge_codes, numbered, ranked, verdict
+from ..peers.line_tools import ALL_LINE_TOOLS, CGAL_INDICES, LINE_TOOLS
+from ..peers.tool_process import ToolFailedError, ToolProcess, worker_command
+from ..peers.triangulators import is_cgal
+from .kernel import in_turn, result_of
+
+__all__ = ["SECTION", "available_tools", "run"]
+
+SECTION = "lines"
+
+
+def run(
+    n: int,
+    *,
+    names: Iterable[str] = tuple(LINE_DATASETS),
+    tools: Sequence[str] = ALL_LINE_TOOLS,
+    repeats: int = 5,
+    limit: float = 60.0,
+) -> Outcome:
+    """Measure tools on points with lines.
+
+    Parameters
+    ----------
+    n : int
+        Number of points; at least ``LEAST_POINTS`` are taken.
+    names : iterable of str
+        Data sets.
+    tools : sequence of str
+    repeats : int
+        Rounds; in each every tool triangulates once.
+    limit : float
+        Seconds that a tool may take for one run.
+
+    Raises
+    ------
+    AssertionError
+        If our answer, or that of an exact peer, is wrong.
+    """
+    outcome = Outcome()
+    present = available_tools(tools, LINE_TOOLS, "constrained", outcome)
+    for name in names:
+        print(f"lines: {name}, {n:,} points", file=sys.stderr, flush=True)
+        task = line_dataset(name, max(n, LEAST_POINTS))
+        outcome.results += _measure(name, task, present, repeats, limit)
+    return outcome
+
+
+def available_tools(
+    tools: Sequence[str], modules: Mapping[str, Any], program: str, outcome: Outcome
+) -> list[str]:
+    """Return the tools that are here, CGAL by one of its programs; note the others."""
+    here = outcome.present({x: modules[x].module for x in tools if not is_cgal(x)})
+    if any(map(is_cgal, tools)):
+        try:
+            harness(program)
+            here += filter(is_cgal, tools)
+        except CgalMissingError as error:
+            outcome.skip({tool: str(error) for tool in filter(is_cgal, tools)})
+    return [tool for tool in tools if tool in here]
+
+
+class LineProcess(ToolProcess):
+    """A tool that holds points and lines."""
+
+    def command(self, name: str, task: LineTask, folder: Path) -> list[str]:
+        """Write the task for the tool; return what runs it."""
+        if not is_cgal(name):
+            arrays = folder / "task.npz"
+            if not arrays.exists():
+                write_task(task, arrays)
+            return worker_command("lines", name, arrays)
+        plane, segments = folder / "points.bin", folder / "segments.bin"
+        task.vertices.tofile(plane)
+        task.segments.tofile(segments)
+        way = "indices" if name == CGAL_INDICES else "handles"
+        return [str(harness("constrained")), str(plane), str(segments), way]
+
+
+def _measure(
+    name: str, task: LineTask, tools: list[str], repeats: int, limit: float
+) -> Iterator[Result]:
+    wanted = _wanted(task)
+    with tempfile.TemporaryDirectory() as folder, ExitStack() as stack:
+        processes = {
+            tool: stack.enter_context(LineProcess(tool, task, Path(folder), limit))
+            for tool in tools
+        }
+        failures = in_turn(processes, repeats)
+        verdicts = {
+            tool: Verdict(False, failures[tool])
+            if tool in failures
+            else _judged(tool, process, wanted)
+            for tool, process in processes.items()
+        }
+    for tool, process in processes.items():
+        yield result_of(SECTION, name, tool, len(task.vertices), process, verdicts[tool])
+
+
+# ------------------------------------------------------------------------ answers
+
+
+class _Wanted(NamedTuple):
+    tin: TIN
+    triangles: NDArray[np.int64]
+    steps: NDArray[np.int64]
+
+
+def _wanted(task: LineTask) -> _Wanted:
+    """Return our answer, proved, and the edges that lines must be, as its vertices."""
+    tin = ts.triangulate(task.points, breaklines=task.breaklines())
+    ts.check(tin, level=3, points=task.points).raise_if_failed()
+    assert len(tin.points) == len(task.vertices)
+    place = numbered(np.stack([task.vertices] * 3, axis=1), tin.points)[:, 0]
+    assert (np.sort(place) == np.arange(len(place))).all()
+    steps = place[task.steps]
+    codes = np.unique(edge_codes(steps))
+    assert np.array_equal(np.unique(edge_codes(tin.lines.steps())), codes)
+    triangle, corner = np.nonzero(tin.constrained)
+    ends = [tin.triangles[triangle, (corner + k) % 3] for k in (1, 2)]
+    assert np.array_equal(np.unique(edge_codes(np.stack(ends, axis=1))), codes)
+    return _Wanted(tin, ranked(tin.triangles), steps)
+
+
+def _judged(tool: str, process: ToolProcess, wanted: _Wanted) -> Verdict:
+    try:
+        answer = process.triangles()
+    except ToolFailedError as error:
+        return Verdict(False, str(error))
+    found = verdict(wanted.tin, answer, wanted.triangles, steps=wanted.steps)
+    is_exact = is_cgal(tool) or LINE_TOOLS[tool].is_exact
+    assert found.is_right or not is_exact, f"{tool}: {found.text}"
+    return found

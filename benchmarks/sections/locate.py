@@ -1,0 +1,141 @@
+"""Point location and linear interpolation beside the peers, on one and the same TIN.
+
+Preparing, which is from points to the first answer (of matplotlib from triangles, since it has no
+triangulation of its own), is timed apart from answering.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+import tinsmith as ts
+from tinsmith.tin import TIN
+
+from ..measure import OURS, Outcome, Result, alternate, median
+
+__all__ = ["SECTION", "run"]
+
+SECTION = "locate"
+
+SIZE = 1000.0
+"""Side of the square; small, because SciPy loses points at national coordinates."""
+
+MOST_SLOW_QUERIES = 20_000
+"""startinpy answers some thousand places a second: it gets no more than these."""
+
+Floats = NDArray[np.float64]
+Answer = Callable[[Floats], NDArray[Any]]
+
+
+class Tool(NamedTuple):
+    """What answers places: how it is prepared, and how many places it gets at most."""
+
+    name: str
+    prepare: Callable[[TIN], Answer]
+    most: int = sys.maxsize
+
+
+def run(n_points: int = 50_000, n_queries: int = 50_000, *, repeats: int = 3) -> Outcome:
+    """Measure every tool on ``n_points`` uniform points and ``n_queries`` uniform places.
+
+    Raises
+    ------
+    AssertionError
+        If a peer's answer differs from ours.
+    """
+    rng = np.random.default_rng(1)
+    tin = ts.triangulate(rng.random((n_points, 3)) * [SIZE, SIZE, 50.0])
+    xy = rng.random((n_queries, 2)) * SIZE
+    outcome = Outcome()
+    present = outcome.present(MODULES)
+    for task, tools in TASKS.items():
+        print(f"locate: {task}, {n_queries:,} places", file=sys.stderr, flush=True)
+        outcome.results += _measure(task, [t for t in tools if t.name in present], tin, xy, repeats)
+    return outcome
+
+
+def _measure(task: str, tools: list[Tool], tin: TIN, xy: Floats, repeats: int) -> list[Result]:
+    prepared = {tool.name: _prepared(tool, tin) for tool in tools}
+    asked = {tool.name: xy[: tool.most] for tool in tools}
+    calls = {name: _call(answer, asked[name]) for name, (answer, _) in prepared.items()}
+    answers, runs = alternate(calls, repeats)
+    results = []
+    for name, (_, prepare_seconds) in prepared.items():
+        count = len(asked[name])
+        np.testing.assert_allclose(answers[name], answers[OURS][:count], rtol=0, atol=1e-6)
+        extra = {"prepare_seconds": prepare_seconds}
+        seconds = median(runs[name])
+        results.append(Result(SECTION, task, name, count, seconds, tuple(runs[name]), "", extra))
+    return results
+
+
+def _prepared(tool: Tool, tin: TIN) -> tuple[Answer, float]:
+    """Return what answers, and the seconds until it has answered once."""
+    begin = time.perf_counter()
+    answer = tool.prepare(tin)
+    answer(np.array([[SIZE / 2, SIZE / 2]]))  # the first answer may fill a table
+    return answer, time.perf_counter() - begin
+
+
+def _call(answer: Answer, xy: Floats) -> Callable[[], NDArray[Any]]:
+    return lambda: answer(xy)
+
+
+def _tinsmith_locate(tin: TIN) -> Answer:
+    return ts.triangulate(tin.points).locate
+
+
+def _tinsmith_interpolate(tin: TIN) -> Answer:
+    return ts.triangulate(tin.points).interpolate
+
+
+def _scipy(tin: TIN) -> Answer:
+    from scipy.interpolate import LinearNDInterpolator
+    from scipy.spatial import Delaunay
+
+    answer: Answer = LinearNDInterpolator(Delaunay(tin.points[:, :2]), tin.points[:, 2])
+    return answer
+
+
+def _matplotlib(tin: TIN) -> Answer:
+    import matplotlib.tri
+
+    made = matplotlib.tri.Triangulation(tin.points[:, 0], tin.points[:, 1], tin.triangles)
+    finder = made.get_trifinder()
+    return lambda xy: finder(xy[:, 0], xy[:, 1])
+
+
+def _startinpy(tin: TIN) -> Answer:
+    import startinpy
+
+    surface = startinpy.DT()
+    surface.snap_tolerance = 1e-9
+    surface.insert(_in_strips(tin.points))
+    return lambda xy: np.asarray(surface.interpolate({"method": "TIN"}, xy))
+
+
+def _in_strips(points: Floats) -> Floats:
+    """To and fro in strips: inserted at random, a million points take half a minute."""
+    strip = (points[:, 1] / SIZE * np.sqrt(len(points) / 2)).astype(np.int64)
+    eastwards = np.where(strip % 2 == 0, points[:, 0], -points[:, 0])
+    return points[np.lexsort((eastwards, strip))]
+
+
+TASKS = {
+    "locate": [Tool(OURS, _tinsmith_locate), Tool("matplotlib", _matplotlib)],
+    "interpolate": [
+        Tool(OURS, _tinsmith_interpolate),
+        Tool("SciPy", _scipy),
+        Tool("startinpy", _startinpy, MOST_SLOW_QUERIES),
+    ],
+}
+"""Who answers what."""
+
+MODULES = {OURS: "tinsmith", "matplotlib": "matplotlib", "SciPy": "scipy", "startinpy": "startinpy"}
+"""What must be installed for each tool."""

@@ -1,0 +1,200 @@
+"""Reading files beside the peers: the same numbers, from the same file, in turn."""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+import tinsmith as ts
+from tinsmith.tin import TIN
+
+from ..datasets.points import dataset
+from ..measure import OURS, Outcome, Result, alternate, is_installed, median
+from ..peers.meshes import MESH_PEERS
+
+__all__ = ["SECTION", "run"]
+
+SECTION = "readers"
+CRS = "EPSG:32616"
+SURVEY, RASTER, MESH = "survey, PNEZD CSV", "raster, GeoTIFF float32", "surface, binary PLY"
+OUR_NOTES = {
+    SURVEY: "finds the layout, checks every row",
+    RASTER: "points at the cell centres, masks honoured",
+    MESH: "checks the triangles, finds their neighbours",
+}
+
+Floats = NDArray[np.float64]
+
+
+class Reader(NamedTuple):
+    """A peer: what must be installed, how it reads, what must be known about it."""
+
+    module: str
+    read: Callable[[Path], Any]
+    note: str = ""
+
+
+def run(n: int, *, repeats: int = 3) -> Outcome:
+    """Measure the reading of a survey, a raster and a mesh of ``n`` rows, cells and points.
+
+    Raises
+    ------
+    AssertionError
+        If a reader's numbers differ from ours.
+    """
+    outcome = Outcome()
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        for task in (_survey, _raster, _mesh):
+            print(f"readers: {task.__name__[1:]}, {n:,}", file=sys.stderr, flush=True)
+            task(folder, n, repeats, outcome)
+    return outcome
+
+
+def _measure(
+    task: str,
+    path: Path,
+    count: int,
+    peers: dict[str, Reader],
+    repeats: int,
+    outcome: Outcome,
+    require: Callable[[Any, Any, str], None],
+    **options: Any,
+) -> None:
+    """Time tinsmith and the peers on one file; ``require(ours, theirs, tool)`` compares.
+
+    ``options`` are those of ``ts.read``.
+    """
+    present = outcome.present({tool: peer.module for tool, peer in peers.items()})
+    calls: dict[str, Callable[[], Any]] = {OURS: lambda: ts.read(path, **options)}
+    calls |= {tool: _call(peers[tool], path) for tool in present}
+    for call in calls.values():
+        call()  # imports, file cache
+    answers, runs = alternate(calls, repeats)
+    for tool in calls:
+        if tool in present:
+            require(answers[OURS], answers[tool], tool)
+        note = peers[tool].note if tool in peers else OUR_NOTES[task]
+        seconds = median(runs[tool])
+        outcome.results.append(Result(SECTION, task, tool, count, seconds, tuple(runs[tool]), note))
+
+
+def _call(peer: Reader, path: Path) -> Callable[[], Any]:
+    return lambda: peer.read(path)
+
+
+# ------------------------------------------------------------------------ survey
+
+
+def _survey(folder: Path, n: int, repeats: int, outcome: Outcome) -> None:
+    points = np.round(dataset("uniform", n), 3)
+    path = folder / "survey.csv"
+    _write_pnezd(points, path)
+    peers = {
+        "pandas.read_csv": Reader("pandas", _by_pandas, "last digit may be off; all five columns"),
+        "numpy.loadtxt": Reader("numpy", _by_numpy, "the three coordinates only"),
+    }
+
+    def require(ours: Any, theirs: Any, tool: str) -> None:
+        np.testing.assert_array_equal(ours.points, points)
+        tolerance = 1e-15 if tool == "pandas.read_csv" else 0.0
+        np.testing.assert_allclose(_northing_first(ours.points), theirs, rtol=tolerance, atol=0)
+
+    _measure(SURVEY, path, n, peers, repeats, outcome, require, columns="PNEZD")
+
+
+def _write_pnezd(points: Floats, path: Path) -> None:
+    codes = ("GS", "EP", "TOE", "TOP", "CL")
+    with path.open("w", encoding="ascii") as file:
+        file.writelines(
+            f"{row},{northing:.3f},{easting:.3f},{elevation:.3f},{codes[row % 5]}\n"
+            for row, (easting, northing, elevation) in enumerate(points.tolist(), start=1)
+        )
+
+
+def _northing_first(points: Floats) -> Floats:
+    return points[:, [1, 0, 2]]
+
+
+def _by_pandas(path: Path) -> Floats:
+    import pandas as pd
+
+    return np.asarray(pd.read_csv(path, header=None).iloc[:, 1:4], np.float64)
+
+
+def _by_numpy(path: Path) -> Floats:
+    return np.loadtxt(path, delimiter=",", usecols=(1, 2, 3))
+
+
+# ------------------------------------------------------------------------ raster
+
+
+def _raster(folder: Path, n: int, repeats: int, outcome: Outcome) -> None:
+    if not is_installed("rasterio"):
+        outcome.skipped.append("GeoTIFF: skipped, rasterio is not installed.")
+        return
+    points = dataset("raster", n)
+    heights = points[:, 2].astype(np.float32)
+    path = folder / "heights.tif"
+    _write_geotiff(points, heights, path)
+    peers = {"rasterio": Reader("rasterio", _by_rasterio, "the band alone, no points, no mask")}
+
+    def require(ours: Any, theirs: Any, _: str) -> None:
+        np.testing.assert_array_equal(ours.points, np.column_stack([points[:, :2], heights]))
+        np.testing.assert_array_equal(ours.points[:, 2], theirs.ravel())
+
+    _measure(RASTER, path, len(points), peers, repeats, outcome, require)
+
+
+def _write_geotiff(points: Floats, heights: NDArray[np.float32], path: Path) -> None:
+    import rasterio
+
+    columns = int(np.count_nonzero(points[:, 1] == points[0, 1]))
+    west, north = points[0, :2] + [-15.0, 15.0]
+    with rasterio.open(
+        path,
+        "w",
+        driver="GTiff",
+        width=columns,
+        height=len(points) // columns,
+        count=1,
+        dtype="float32",
+        crs=CRS,
+        transform=rasterio.Affine(30.0, 0.0, west, 0.0, -30.0, north),
+        nodata=-9999.0,
+    ) as file:
+        file.write(heights.reshape(-1, columns), 1)
+
+
+def _by_rasterio(path: Path) -> NDArray[np.float32]:
+    import rasterio
+
+    with rasterio.open(path) as file:
+        return np.asarray(file.read(1))
+
+
+# -------------------------------------------------------------------------- mesh
+
+
+def _mesh(folder: Path, n: int, repeats: int, outcome: Outcome) -> None:
+    tin = ts.triangulate(dataset("uniform", n), crs=CRS)
+    path = ts.write(tin, folder / "surface.ply")
+    peers = {
+        tool: Reader(peer.module, peer.read, "coordinates become float32" * bool(peer.read_step))
+        for tool, peer in MESH_PEERS.items()
+    }
+
+    def require(ours: TIN, theirs: tuple[Floats, Any], tool: str) -> None:
+        np.testing.assert_array_equal(ours.points, tin.points)
+        np.testing.assert_array_equal(ours.neighbors, tin.neighbors)
+        step = MESH_PEERS[tool].read_step
+        np.testing.assert_allclose(theirs[0], ours.points, rtol=0, atol=step)
+        np.testing.assert_array_equal(theirs[1], ours.triangles)
+
+    _measure(MESH, path, n, peers, repeats, outcome, require)

@@ -1,0 +1,113 @@
+"""The kernel's own ways to one result: vector instructions, methods, small inputs."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import tinsmith as ts
+from tinsmith.tin import _kernel
+
+from ..datasets.points import DATASETS, dataset
+from ..measure import OURS, Outcome, Result, alternate, median
+
+__all__ = ["SECTION", "TWO_THREADS", "run"]
+
+SECTION = "ways"
+TWO_THREADS = "two threads"
+SMALL_SIZES = (100, 1_000)
+SMALL_CALLS = 200
+LARGEST_GROWN = 100_000
+"""Above this growth alone takes too long on the data that the kernel hands to insertion."""
+QUADRATIC = ("circle", "few circles", "rails")
+"""Data on which growth alone takes time with the square of the points."""
+
+
+def run(n: int, *, repeats: int = 5) -> Outcome:
+    """Measure vector paths, threads (at ``n`` points), methods (up to 100,000), small inputs."""
+    outcome = Outcome()
+    for name in ("uniform", "raster"):
+        outcome.results += _vector_paths(name, n, repeats)
+    outcome.results += _threads("uniform", n, repeats)
+    for name in DATASETS:
+        outcome.results += _methods(name, min(n, LARGEST_GROWN), repeats)
+    for size in SMALL_SIZES:
+        outcome.results += _small(size)
+    outcome.results += _import(repeats)
+    return outcome
+
+
+def _vector_paths(name: str, n: int, repeats: int) -> Iterator[Result]:
+    points = dataset(name, n)
+    *slower, used = _kernel.VECTOR_PATHS
+    ways = {OURS: partial(_kernel.grow, points)}
+    ways |= {f"path {path}": partial(_kernel.grow, points, path=path) for path in slower}
+    note = {OURS: f"path {used}, the one it takes here"}
+    return _results(f"{name}, vector instructions", len(points), ways, repeats, note)
+
+
+def _threads(name: str, n: int, repeats: int) -> Iterator[Result]:
+    points = dataset(name, n)
+    ways = {OURS: partial(_kernel.grow, points, threads=1)}
+    ways |= {TWO_THREADS: partial(_kernel.grow, points, threads=2)}
+    return _results(f"{name}, threads", len(points), ways, 3 * repeats, {OURS: "one thread"})
+
+
+def _methods(name: str, n: int, repeats: int) -> Iterator[Result]:
+    points = dataset(name, n)
+    methods = {"insertion": _kernel.Method.INSERTION, "growth": _kernel.Method.GROWTH}
+    if name in QUADRATIC:
+        del methods["growth"]
+    ways = {OURS: partial(_kernel.grow, points)}
+    ways |= {x: partial(_kernel.grow, points, method=method) for x, method in methods.items()}
+    return _results(f"{name}, methods", len(points), ways, repeats, {OURS: "as it chooses"})
+
+
+def _small(size: int) -> Iterator[Result]:
+    points = dataset("uniform", max(size, 200))[:size]
+    ways: dict[str, Callable[[], Any]] = {
+        OURS: partial(ts.triangulate, points),
+        "kernel": partial(_kernel.grow, points),
+    }
+    return _results(f"uniform, {size:,} points", size, ways, SMALL_CALLS, {OURS: "whole call"})
+
+
+def _results(
+    task: str,
+    count: int,
+    ways: dict[str, Callable[[], Any]],
+    repeats: int,
+    notes: dict[str, str],
+) -> Iterator[Result]:
+    answers, runs = alternate(ways, repeats)
+    for way, answer in answers.items():
+        _require_equal(answer, answers[OURS])
+        yield Result(
+            SECTION, task, way, count, median(runs[way]), tuple(runs[way]), notes.get(way, "")
+        )
+
+
+def _require_equal(found: Any, wanted: Any) -> None:
+    for name in ("triangles", "neighbors"):
+        array: NDArray[np.int32] = getattr(found, name)
+        assert np.array_equal(array, getattr(wanted, name)), name
+
+
+def _import(repeats: int) -> Iterator[Result]:
+    task = "import in a fresh process"
+    for way, statement in ((OURS, "import tinsmith"), ("Python and numpy alone", "import numpy")):
+        runs = [_process_seconds(statement) for _ in range(repeats)]
+        yield Result(SECTION, task, way, 1, median(runs), tuple(runs))
+
+
+def _process_seconds(statement: str) -> float:
+    begin = time.perf_counter()
+    subprocess.run([sys.executable, "-c", statement], check=True)
+    return time.perf_counter() - begin

@@ -1,0 +1,212 @@
+"""Writing files beside the peers: from one TIN to files of the same content, in turn.
+
+Everything between the TIN and the file is timed: reprojection, geometries, text.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+import tinsmith as ts
+from tinsmith.io import transform_points
+from tinsmith.terrain.slope import aspect, slope
+from tinsmith.tin import TIN
+
+from ..datasets.points import dataset
+from ..measure import OURS, Outcome, Result, alternate, median
+from ..peers.meshes import MESH_PEERS
+
+__all__ = ["SECTION", "run"]
+
+SECTION = "writers"
+CRS = "EPSG:32616"
+WGS84 = "EPSG:4326"
+DEGREE_STEP, METRE_STEP = 1.01e-9, 1.01e-6
+"""How far coordinates written with 9 and 6 decimals may differ."""
+
+DIGIT_STEP = 1.01e-8
+"""GDAL takes a last digit after a row of zeros for rounding noise and drops it."""
+
+Floats = NDArray[np.float64]
+
+
+class Writer(NamedTuple):
+    """A peer: what must be installed, how it writes, what to know, how far degrees may differ."""
+
+    module: str
+    write: Callable[[TIN, Path], Any]
+    note: str = ""
+    step: float = DEGREE_STEP
+
+
+def run(n_triangles: int, *, repeats: int = 3) -> Outcome:
+    """Measure the writing of a TIN of about ``n_triangles`` triangles as GeoJSON and as PLY.
+
+    Raises
+    ------
+    AssertionError
+        If a peer's file holds something else than ours.
+    """
+    outcome = Outcome()
+    points = dataset("uniform", n_triangles // 2)
+    tin = ts.triangulate(points, crs=CRS)
+    with tempfile.TemporaryDirectory() as name:
+        for task in (_geojson, _ply):
+            print(f"writers: {task.__name__[1:]}, {n_triangles:,}", file=sys.stderr, flush=True)
+            task(Path(name), tin, repeats, outcome)
+    return outcome
+
+
+def _measure(
+    task: str,
+    suffix: str,
+    folder: Path,
+    tin: TIN,
+    peers: dict[str, Writer],
+    repeats: int,
+    outcome: Outcome,
+) -> dict[str, Path]:
+    """Time tinsmith and the peers that are installed; return the files."""
+    present = outcome.present({tool: peer.module for tool, peer in peers.items()})
+    paths = {tool: folder / f"{tool.replace(' ', '_')}{suffix}" for tool in (OURS, *present)}
+    _warm_up(folder / f"small{suffix}", [peers[tool] for tool in present])
+    calls: dict[str, Callable[[], Any]] = {OURS: lambda: ts.write(tin, paths[OURS])}
+    calls |= {tool: _call(peers[tool], tin, paths[tool]) for tool in present}
+    _, runs = alternate(calls, repeats)
+    for tool in calls:
+        note = peers[tool].note if tool in peers else ""
+        count, seconds = len(tin.triangles), median(runs[tool])
+        size = {"bytes": paths[tool].stat().st_size}
+        outcome.results.append(
+            Result(SECTION, task, tool, count, seconds, tuple(runs[tool]), note, size)
+        )
+    return paths
+
+
+def _warm_up(path: Path, peers: list[Writer]) -> None:
+    """Let everybody import what they need."""
+    tin = ts.triangulate(dataset("uniform", 200), crs=CRS)
+    ts.write(tin, path)
+    for peer in peers:
+        peer.write(tin, path)
+
+
+def _call(peer: Writer, tin: TIN, path: Path) -> Callable[[], Any]:
+    return lambda: peer.write(tin, path)
+
+
+# ----------------------------------------------------------------------- GeoJSON
+
+
+class Feature(NamedTuple):
+    """What one triangle is written as."""
+
+    ring: list[list[float]]
+    properties: dict[str, float | int | None]
+
+
+def _geojson(folder: Path, tin: TIN, repeats: int, outcome: Outcome) -> None:
+    peers = {
+        "pyogrio (GDAL)": Writer(
+            "pyogrio", _by_pyogrio, "36.146000007 becomes 36.146", step=DIGIT_STEP
+        ),
+        "json.dump": Writer("json", _by_json),
+    }
+    task = "triangles, GeoJSON (RFC 7946)"
+    paths = _measure(task, ".geojson", folder, tin, peers, repeats, outcome)
+    ours = _parsed(paths.pop(OURS))
+    assert len(ours[0]) == len(tin.triangles)
+    for tool, path in paths.items():
+        _require_same(ours, _parsed(path), peers[tool].step)
+
+
+def _parsed(path: Path) -> tuple[Floats, Floats]:
+    """Return rings, (m, 4, 3), and properties, (m, 4), of a file, with its bytes dropped."""
+    with path.open("rb") as file:
+        features = json.load(file)["features"]
+    rings = np.array([feature["geometry"]["coordinates"][0] for feature in features])
+    names = ("id", "slope", "aspect", "area")
+    properties = [[feature["properties"][name] for name in names] for feature in features]
+    return rings, np.array(properties, np.float64)  # null becomes NaN
+
+
+def _require_same(ours: tuple[Floats, Floats], theirs: tuple[Floats, Floats], step: float) -> None:
+    assert ours[0].shape == theirs[0].shape
+    np.testing.assert_allclose(ours[0][..., :2], theirs[0][..., :2], rtol=0, atol=step)
+    np.testing.assert_allclose(ours[0][..., 2], theirs[0][..., 2], rtol=0, atol=METRE_STEP)
+    np.testing.assert_allclose(ours[1], theirs[1], rtol=1e-6, atol=1e-3)
+
+
+def _by_pyogrio(tin: TIN, path: Path) -> None:
+    import pyogrio.raw
+    import shapely
+
+    places = transform_points(tin.points, CRS, WGS84)
+    polygons = shapely.polygons(places[tin.triangles][:, [0, 1, 2, 0]])
+    properties = _properties(tin)
+    pyogrio.raw.write(
+        path,
+        shapely.to_wkb(polygons),
+        list(properties.values()),
+        list(properties),
+        geometry_type="Polygon Z",
+        crs=WGS84,
+        driver="GeoJSON",
+        layer_options={"RFC7946": "YES", "COORDINATE_PRECISION": "9"},
+    )
+
+
+def _properties(tin: TIN) -> dict[str, NDArray[Any]]:
+    return {
+        "id": np.arange(len(tin.triangles), dtype=np.int32),
+        "slope": slope(tin),
+        "aspect": aspect(tin),
+        "area": tin.triangle_areas,
+    }
+
+
+def _by_json(tin: TIN, path: Path) -> None:
+    with path.open("w", encoding="ascii") as file:
+        content = {"type": "FeatureCollection", "features": list(_features(tin))}
+        json.dump(content, file, allow_nan=False)
+
+
+def _features(tin: TIN) -> Iterator[dict[str, Any]]:
+    places = transform_points(tin.points, CRS, WGS84)
+    places = np.column_stack([places[:, :2].round(9), places[:, 2].round(6)])
+    rings = places[tin.triangles][:, [0, 1, 2, 0]].tolist()
+    properties = {name: values.tolist() for name, values in _properties(tin).items()}
+    for ring, *values in zip(rings, *properties.values(), strict=True):
+        yield {
+            "type": "Feature",
+            "properties": dict(zip(properties, values, strict=True)),
+            "geometry": {"type": "Polygon", "coordinates": [ring]},
+        }
+
+
+# --------------------------------------------------------------------------- PLY
+
+
+def _ply(folder: Path, tin: TIN, repeats: int, outcome: Outcome) -> None:
+    peers = {
+        tool: Writer(peer.module, peer.write, "coordinates become float32" * bool(peer.write_step))
+        for tool, peer in MESH_PEERS.items()
+    }
+    paths = _measure("surface, binary PLY", ".ply", folder, tin, peers, repeats, outcome)
+    written = ts.read(paths.pop(OURS))
+    np.testing.assert_array_equal(written.points, tin.points)
+    np.testing.assert_array_equal(written.triangles, tin.triangles)
+    assert written.crs == tin.crs
+    # Each is read by itself: with float32 coordinates triangles collapse, which is no TIN.
+    for tool, path in paths.items():
+        points, triangles = MESH_PEERS[tool].read(path)
+        np.testing.assert_allclose(points, tin.points, rtol=0, atol=MESH_PEERS[tool].write_step)
+        np.testing.assert_array_equal(triangles, tin.triangles)
