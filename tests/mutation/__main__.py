@@ -53,7 +53,7 @@ CORE_TESTS = (
 )  # fmt: skip
 NEAREST = {
     "location": ("kernel/test_locate",),
-    "lines": (
+    "constraints": (
         "constraints/test_noding", "constraints/test_breaklines", "kernel/test_point_in_polygon",
         "kernel/test_contacts",
     ),
