@@ -493,3 +493,58 @@ def test_corners_of_a_boundary_within_water_have_its_level():
     inside = ((xy >= 30) & (xy <= 70)).all(axis=1)
     assert (tin.points[inside, 2] == 2.5).all()
     assert ts.check(tin).ok
+
+
+@pytest.mark.parametrize(
+    ("line", "sentence"),
+    [
+        ([["a", "b"], ["c", "d"]], "A breakline is no table of real numbers."),
+        ([[1, 2], [3]], "A breakline is no table of real numbers."),
+        ({"a": [0, 1], "b": [2, 3]}, "columns 'a', 'b', and none of them is called easting"),
+    ],
+)
+def test_what_is_no_line_is_told_of_the_line(line, sentence):
+    with pytest.raises(ts.LinesError) as caught:
+        ts.Breakline(line)
+    assert sentence in str(caught.value)
+    assert "table" not in str(caught.value).replace(sentence, "")
+
+
+def test_equal_coordinates_are_equal_bytes():
+    line = ts.Breakline([[-0.0, 1.0, -0.0], [2.0, -0.0, 3.0]])
+    assert not np.signbit(line.coords).any()
+    assert not line.coords.flags.writeable
+    with pytest.raises(
+        ts.LinesError, match=r"has 2 vertices that are not finite .*vertex 1, \[nan"
+    ):
+        ts.Breakline([[0, 0, 0], [np.nan, 1, 2], [3, np.inf, 4]])
+
+
+def test_draped_lines_cross_alike_in_any_order():
+    """Their elevations at a crossing differ by roundings of the surface's; one of them counts."""
+    crossings = 0
+    for seed in range(12):
+        rng = np.random.default_rng(seed)
+        points = np.c_[rng.random((60, 2)) * 100, rng.random(60) * 50]
+        lines = [rng.random((2, 2)) * 80 + 10 for _ in range(4)]
+        tin = ts.triangulate(points, breaklines=lines)
+        other = ts.triangulate(points, breaklines=lines[::-1])
+        crossings += len(tin.report.crossings.vertices)
+        rows, same = (one.points[np.lexsort(one.points.T)] for one in (tin, other))
+        np.testing.assert_array_equal(rows, same)
+    assert crossings > 10
+
+
+@pytest.mark.parametrize("first", range(4))
+def test_a_crossing_that_rounds_to_a_given_vertex_is_that_vertex(first):
+    """Lines through (1/3, 1/3), which is no double: the nearest double is a point, on neither."""
+    third = 1.0 / 3.0
+    points = [[third, third, 7], [3, 0, 1], [3, 3, 2], [-3, -3, 3]]
+    points = np.roll(points, first, axis=0)
+    lines = [[[0, 1, 0], [1, -1, 0]], [[-1, 1, 5], [3, -1, 5]]]
+    tin = ts.triangulate(points, breaklines=lines)
+    assert ts.check(tin, points=ts.Survey(points=points, breaklines=lines)).ok
+    assert len(np.unique(tin.points[:, :2], axis=0)) == len(tin.points) == 8
+    (place,) = tin.report.crossings.xy
+    assert place.tolist() == [third, third]
+    assert tin.report.crossings.vertices.tolist() == [first]
