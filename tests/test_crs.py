@@ -248,3 +248,13 @@ def test_a_survey_may_gain_a_vertical_axis_but_not_change_its_crs():
     assert ts.triangulate(survey, crs="EPSG:2274+6360").elevation_unit == US_SURVEY_FOOT
     with pytest.raises(CrsError, match=r"EPSG:2274.*EPSG:32616"):
         ts.triangulate(survey, crs=32616)
+
+
+def test_a_crs_equals_whatever_names_it():
+    crs = CRS.of(32616)
+    assert crs == 32616
+    assert crs == "EPSG:32616"
+    assert crs == CRS.of("epsg:32616")
+    assert hash(crs) == hash(CRS.of("epsg:32616"))
+    for other in (None, 32617, "EPSG:32617", "nonsense", object(), CRS.of(32617)):
+        assert crs != other

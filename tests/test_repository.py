@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 import tinsmith
+import tinsmith.cli
 
 ROOT = Path(__file__).parents[1]
 
@@ -190,3 +191,16 @@ def test_readme_commands_run(tmp_path, can_draw):
     for line in lines:
         result = run(*line.split(), cwd=tmp_path, PATH=path)
         assert result.returncode == 0, result.stderr
+
+
+def test_records_are_frozen():
+    """All dataclasses but the two that collect while a file is read."""
+    thawed = {}
+    for folder in (tinsmith.tin, tinsmith.io, tinsmith.terrain, tinsmith.cli):
+        for found in pkgutil.walk_packages(folder.__path__, f"{folder.__name__}."):
+            module = importlib.import_module(found.name)
+            for name, value in vars(module).items():
+                how = getattr(value, "__dict__", {}).get("__dataclass_params__")
+                if how is not None and not how.frozen:
+                    thawed[name] = value
+    assert sorted(thawed) == ["_Run", "_Top"]

@@ -86,7 +86,7 @@ crossings = _core.crossings
 touches = _core.touches
 intersections = _core.intersections
 vertices_at = _core.vertices_at
-places_in_rings = _core.places_in_rings
+places_in_rings = _core.points_in_polygons
 Method = _core.Method
 
 

@@ -157,13 +157,15 @@ def node(
 def node_again(
     points: NDArray[np.float64], polylines: Polylines, priority: NDArray[Any], *, threads: int
 ) -> tuple[NDArray[np.float64], Polylines]:
-    """Node lines that were bent by a rounding; a vertex keeps its elevation.
+    """Node parts of lines that were bent by a rounding; a vertex keeps its elevation.
 
     Parameters
     ----------
     points : (n, 3) float64 array
         Distinct places.
     polylines : Polylines
+        Of several parts of one line, too, the lowest elevation counts, for their order is the
+        direction of the line.
     priority : (l,) int array
         Of each polyline, as for :func:`node`.
     threads : int
@@ -237,7 +239,8 @@ def _crossings(
     """Return the crossings, and whose height counts at each vertex, by vertex."""
     at = np.flatnonzero(is_crossing[work.polylines.vertices])
     vertex, line, height = _visits(work, at)
-    rank = np.where(np.isneginf(priority[line]), 0, line)  # parts of draped lines have no order
+    part_of = work.polylines.lines[line]
+    rank = np.where(np.isneginf(priority[line]), 0, part_of)  # draped lines have no order
     best = np.lexsort((line, height, rank, -priority[line], np.isnan(height), vertex))
     vertex, line, height = vertex[best], line[best], height[best]
     is_winner = np.ones(len(vertex), np.bool_)

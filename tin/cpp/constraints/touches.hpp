@@ -19,7 +19,8 @@
 #include <utility>
 #include <vector>
 
-#include "../index/spatial_order.hpp"
+#include "../index/box_tree.hpp"
+#include "../index/hilbert_order.hpp"
 #include "segment_raster.hpp"
 #include "segments.hpp"
 
@@ -53,7 +54,7 @@ inline bool touches_interior(Point a, Point b, Point p, double distance) {
 }
 
 // Pairs (segment, vertex), sorted; incomplete if the team was stopped. The vertices are those of
-// the places from `first_vertex` to `vertex_count` - 1 for which `is_asked(number)`.
+// the points from `first_vertex` to `vertex_count` - 1 for which `is_asked(number)`.
 class TouchSearch {
  public:
   TouchSearch(const Segments& segments, Reach reach) : segments_(segments), reach_(reach) {}
@@ -71,7 +72,7 @@ class TouchSearch {
 
  private:
   struct Vertex {
-    Point place;
+    Point point;
     std::int32_t number;
   };
 
@@ -86,7 +87,7 @@ class TouchSearch {
       if (!team.keeps_going(part)) return;
       for (std::int32_t i = range.begin; i < range.end; ++i) {
         const std::int32_t v = first_vertex + i;
-        if (is_asked(v) && raster.may_hold(segments_.places[v])) kept[part].push_back(v);
+        if (is_asked(v) && raster.may_hold(segments_.points[v])) kept[part].push_back(v);
       }
     });
     std::vector<std::int32_t> numbers = std::move(kept[0]);
@@ -94,29 +95,30 @@ class TouchSearch {
       numbers.insert(numbers.end(), kept[part].begin(), kept[part].end());
     }
     const auto count = static_cast<std::int32_t>(numbers.size());
-    const SpatialOrder order(count, [&](std::int32_t i) { return segments_.places[numbers[i]]; });
+    const HilbertOrder order(count, [&](std::int32_t i) { return segments_.points[numbers[i]]; });
     vertices_.resize(count);
     for (std::int32_t i = 0; i < count; ++i) {
       const std::int32_t v = numbers[order[i]];
-      vertices_[i] = {segments_.places[v], v};
+      vertices_[i] = {segments_.points[v], v};
     }
     tree_ = BoxTree(count, [&](std::int32_t i) {
-      const Point p = vertices_[i].place;
-      return Rectangle{p.x, p.y, p.x, p.y};
+      const Point p = vertices_[i].point;
+      return Box::of(p, p);
     });
   }
 
   void search(std::int32_t segment, std::vector<NumberPair>& found) const {
-    const Point a = segments_.place(segment, 0), b = segments_.place(segment, 1);
+    const Point a = segments_.point(segment, 0), b = segments_.point(segment, 1);
     const std::int32_t first = segments_.end(segment, 0), second = segments_.end(segment, 1);
     const double distance = reach_.of(a, b);
     const Band band(a, b, distance);
-    const auto wanted = [&](const Rectangle& box, std::int64_t) { return band.meets(box); };
+    const auto wanted = [&](const Box& box, std::int64_t) { return band.meets(box); };
     tree_.visit_leaves_if(wanted, [&](std::int32_t begin, std::int32_t end) {
       for (std::int32_t i = begin; i < end; ++i) {
         const Vertex& vertex = vertices_[i];
         if (vertex.number == first || vertex.number == second) continue;
-        if (touches_interior(a, b, vertex.place, distance)) found.push_back({segment, vertex.number});
+        if (!touches_interior(a, b, vertex.point, distance)) continue;
+        found.push_back({segment, vertex.number});
       }
       return false;
     });
@@ -128,24 +130,23 @@ class TouchSearch {
   BoxTree tree_;
 };
 
-// The vertex at each of the places, -1 where there is none.
+// The vertex at each of the points, -1 where there is none.
 inline std::vector<std::int32_t> vertices_at(const Point* vertices, std::int32_t vertex_count,
-                                             const Point* places, std::int32_t place_count) {
+                                             const Point* points, std::int32_t point_count) {
   constexpr std::int32_t kNone = -1;
-  std::vector<std::int32_t> order(place_count);
-  for (std::int32_t i = 0; i < place_count; ++i) order[i] = i;
+  std::vector<std::int32_t> order(point_count);
+  for (std::int32_t i = 0; i < point_count; ++i) order[i] = i;
   std::sort(order.begin(), order.end(), [&](std::int32_t i, std::int32_t j) {
-    return lexicographically_before(places[i], places[j]);
+    return lexicographically_before(points[i], points[j]);
   });
-  std::vector<std::int32_t> found(place_count, kNone);
-  const PlaceFilter filter(places, place_count);
+  std::vector<std::int32_t> found(point_count, kNone);
+  const PointFilter filter(points, point_count);
   for (std::int32_t v = 0; v < vertex_count; ++v) {
     if (!filter.may_hold(vertices[v])) continue;
-    auto at = std::lower_bound(order.begin(), order.end(), vertices[v],
-                               [&](std::int32_t i, Point p) {
-                                 return lexicographically_before(places[i], p);
-                               });
-    for (; at != order.end() && places[*at] == vertices[v]; ++at) {
+    auto at = std::lower_bound(
+        order.begin(), order.end(), vertices[v],
+        [&](std::int32_t i, Point p) { return lexicographically_before(points[i], p); });
+    for (; at != order.end() && points[*at] == vertices[v]; ++at) {
       if (found[*at] == kNone) found[*at] = v;
     }
   }

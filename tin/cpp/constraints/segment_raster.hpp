@@ -18,18 +18,18 @@ class SegmentRaster {
  public:
   SegmentRaster(const Segments& segments, Reach reach, std::int64_t vertex_count) {
     const auto reach_of = [&](std::int32_t i) {
-      return Band::kRoom * reach.of(segments.place(i, 0), segments.place(i, 1));
+      return Band::kRoom * reach.of(segments.point(i, 0), segments.point(i, 1));
     };
     for (std::int32_t i = 0; i < segments.count; ++i) {
       box_.include(segments.box_of(i).grown_by(reach_of(i)));
     }
     if (segments.count == 0) return;  // the empty box holds nothing
     choose_side(segments, vertex_count);
-    columns_per_unit_ = cells_per_unit(box_.xmax - box_.xmin);
-    rows_per_unit_ = cells_per_unit(box_.ymax - box_.ymin);
+    columns_per_unit_ = cells_per_unit(box_.width());
+    rows_per_unit_ = cells_per_unit(box_.height());
     bits_.resize(static_cast<std::size_t>(side_) * (side_ / kWord));
     for (std::int32_t i = 0; i < segments.count; ++i) {
-      mark(cell_of(segments.place(i, 0)), cell_of(segments.place(i, 1)), reach_of(i));
+      mark(cell_of(segments.point(i, 0)), cell_of(segments.point(i, 1)), reach_of(i));
     }
   }
 
@@ -44,7 +44,7 @@ class SegmentRaster {
  private:
   static constexpr std::uint32_t kWord = 64;
   static constexpr std::uint32_t kLeastSide = kWord;
-  static constexpr std::uint32_t kMostSide = 4096;     // the bits fit the second-level cache
+  static constexpr std::uint32_t kMostSide = 4096;      // the bits fit the second-level cache
   static constexpr std::int64_t kCellsPerSegment = 32;  // then few cells are near one
   static constexpr double kRounding = 0x1p-20;  // in cells; far more than the roundings make
 
@@ -52,9 +52,9 @@ class SegmentRaster {
   void choose_side(const Segments& segments, std::int64_t vertex_count) {
     double rise = 0.0;
     for (std::int32_t i = 0; i < segments.count; ++i) {
-      rise += std::fabs(segments.place(i, 1).y - segments.place(i, 0).y);
+      rise += std::fabs(segments.point(i, 1).y - segments.point(i, 0).y);
     }
-    const double height = box_.ymax - box_.ymin;
+    const double height = box_.height();
     const double heights = height > 0.0 ? rise / height : 0.0;
     const double most_rows = 2.0 * static_cast<double>(vertex_count + segments.count);
     while (side_ < kMostSide && std::int64_t{side_} * side_ < kCellsPerSegment * segments.count &&
@@ -64,12 +64,12 @@ class SegmentRaster {
   }
 
   double cells_per_unit(double extent) const {
-    constexpr double kBelowOne = 1.0 - 0x1p-30;  // the last place is in the last cell
+    constexpr double kBelowOne = 1.0 - 0x1p-30;  // the last point is in the last cell
     return extent > 0.0 ? kBelowOne * side_ / extent : 0.0;
   }
 
   Point cell_of(Point p) const {
-    return {(p.x - box_.xmin) * columns_per_unit_, (p.y - box_.ymin) * rows_per_unit_};
+    return {(p.x - box_.west) * columns_per_unit_, (p.y - box_.south) * rows_per_unit_};
   }
 
   std::uint32_t clamped(double cell) const {
@@ -104,18 +104,18 @@ class SegmentRaster {
     }
   }
 
-  Rectangle box_;
+  Box box_;
   std::uint32_t side_ = kLeastSide;
   double columns_per_unit_ = 0.0, rows_per_unit_ = 0.0;
   std::vector<std::uint64_t> bits_;
 };
 
-// Few places, by the bits of their eastings.
-class PlaceFilter {
+// Few points, by the bits of their eastings.
+class PointFilter {
  public:
-  PlaceFilter(const Point* places, std::int32_t count) : bits_(std::size_t{1} << (kBits - 6)) {
+  PointFilter(const Point* points, std::int32_t count) : bits_(std::size_t{1} << (kBits - 6)) {
     for (std::int32_t i = 0; i < count; ++i) {
-      const std::uint32_t key = key_of(places[i]);
+      const std::uint32_t key = key_of(points[i]);
       bits_[key >> 6] |= std::uint64_t{1} << (key & 63);
     }
   }

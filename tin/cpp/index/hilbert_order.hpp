@@ -1,18 +1,21 @@
-// Order places so that neighbours in the order are neighbours in the plane.
+// Order points so that neighbours in the order are neighbours in the plane.
 //
-// Places are sorted by square cells along Hilbert's curve. A cell that stays crowded is sorted the
-// same way within its own bounds, so clusters within clusters are ordered as well as even data.
+// Points are sorted by square cells along the curve of Hilbert, "Ueber die stetige Abbildung einer
+// Linie auf ein Flaechenstueck" (1891), digit by digit (radix sort). A cell that stays crowded is
+// sorted the same way within its own bounds, so clusters within clusters are ordered as well as
+// even data.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <utility>
 #include <vector>
 
 #include "../base/arrays.hpp"
-#include "../predicates/predicates.hpp"
+#include "../base/box.hpp"
+#include "../base/point.hpp"
+#include "../base/range.hpp"
 
 namespace tinsmith {
 
@@ -65,40 +68,30 @@ class HilbertCurve {
 
 inline constexpr HilbertCurve kHilbertCurve;
 
-class SpatialOrder {
+class HilbertOrder {
  public:
-  // Places that are not finite are allowed: they come somewhere.
-  SpatialOrder(const Point* places, std::int32_t count)
-      : SpatialOrder(count, [places](std::int32_t i) { return places[i]; }) {}
+  // Points that are not finite are allowed: they come somewhere.
+  HilbertOrder(const Point* points, std::int32_t count)
+      : HilbertOrder(count, [points](std::int32_t i) { return points[i]; }) {}
 
-  template <typename PlaceOf>
-  SpatialOrder(std::int32_t count, PlaceOf&& place_of)
+  template <typename PointOf>
+  HilbertOrder(std::int32_t count, PointOf&& point_of)
       : count_(count), entries_(scratch_array<Entry>(count)), spare_(scratch_array<Entry>(count)) {
     for (std::int32_t i = 0; i < count; ++i) entries_[i].item = i;
     crowded_.push_back({0, count});
     while (!crowded_.empty()) {
       const Range range = crowded_.back();
       crowded_.pop_back();
-      if (!assign_positions(range, place_of)) continue;
+      if (!assign_positions(range, point_of)) continue;
       sort(range);
       list_crowded(range);
     }
     spare_.reset();
   }
 
-  std::vector<std::int32_t> take() {
-    std::vector<std::int32_t> order(count_);
-    for (std::int32_t i = 0; i < count_; ++i) order[i] = entries_[i].item;
-    return order;
-  }
   std::int32_t operator[](std::int32_t i) const { return entries_[i].item; }
 
  private:
-  struct Range {
-    std::int32_t begin;
-    std::int32_t end;
-    std::int32_t size() const { return end - begin; }
-  };
   struct Entry {
     std::uint32_t position;  // along the curve
     std::int32_t item;
@@ -106,47 +99,40 @@ class SpatialOrder {
 
   static constexpr std::int32_t kCrowd = 16;
   static constexpr std::int32_t kShort = 256;  // ranges that are sorted by comparing
-  static constexpr int kDigitBits = 11;       // so many counters fit the first-level cache
-  static constexpr int kCellsPerPlace = 16;  // crowds along lines need many cells
+  static constexpr int kDigitBits = 11;        // so many counters fit the first-level cache
+  static constexpr int kCellsPerPoint = 16;    // crowds along lines need many cells
 
-  // False if all places are at one place.
-  template <typename PlaceOf>
-  bool assign_positions(Range range, PlaceOf&& place_of) {
-    double west = std::numeric_limits<double>::infinity(), south = west;
-    double east = -west, north = -west;
-    for (std::int32_t i = range.begin; i < range.end; ++i) {
-      const Point p = place_of(entries_[i].item);
-      west = p.x < west ? p.x : west;
-      east = p.x > east ? p.x : east;
-      south = p.y < south ? p.y : south;
-      north = p.y > north ? p.y : north;
-    }
-    const double side = std::max(east - west, north - south);
+  // False if all points are at one point.
+  template <typename PointOf>
+  bool assign_positions(Range range, PointOf&& point_of) {
+    Box box;
+    for (std::int32_t i = range.begin; i < range.end; ++i) box.include(point_of(entries_[i].item));
+    const double side = std::max(box.width(), box.height());
     if (!(side > 0.0)) return false;
     constexpr double kAcross = 1u << HilbertCurve::kBits;
     const double per_cell = kAcross / side;
     const int dropped = 2 * HilbertCurve::kBits - position_bits(range.size());
     for (std::int32_t i = range.begin; i < range.end; ++i) {
-      const Point p = place_of(entries_[i].item);
-      const std::uint32_t column = cell((p.x - west) * per_cell);
-      const std::uint32_t row = cell((p.y - south) * per_cell);
+      const Point p = point_of(entries_[i].item);
+      const std::uint32_t column = cell((p.x - box.west) * per_cell);
+      const std::uint32_t row = cell((p.y - box.south) * per_cell);
       entries_[i].position = kHilbertCurve.position(column, row) >> dropped;
     }
     return true;
   }
 
-  static std::uint32_t cell(double place) {
+  static std::uint32_t cell(double value) {
     constexpr std::uint32_t kLast = (1u << HilbertCurve::kBits) - 1;
-    if (!(place > 0.0)) return 0;
-    return place < kLast ? static_cast<std::uint32_t>(place) : kLast;
+    if (!(value > 0.0)) return 0;
+    return value < kLast ? static_cast<std::uint32_t>(value) : kLast;
   }
 
-  // At least kCellsPerPlace, and as many as fill the digits.
+  // At least kCellsPerPoint, and as many as fill the digits.
   static int position_bits(std::int32_t count) {
     if (count <= kShort) return 2 * HilbertCurve::kBits;
     int bits = kDigitBits;
     while (bits < 2 * HilbertCurve::kBits &&
-           (std::int64_t{1} << bits) < std::int64_t{kCellsPerPlace} * count) {
+           (std::int64_t{1} << bits) < std::int64_t{kCellsPerPoint} * count) {
       bits += kDigitBits;
     }
     return std::min(bits, 2 * HilbertCurve::kBits);
@@ -176,8 +162,7 @@ class SpatialOrder {
     if (range.size() == count_) {
       entries_.swap(spare_);
     } else {
-      std::copy(spare_.get() + range.begin, spare_.get() + range.end,
-                entries_.get() + range.begin);
+      std::copy(spare_.get() + range.begin, spare_.get() + range.end, entries_.get() + range.begin);
     }
   }
 

@@ -13,8 +13,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "../base/ids.hpp"
 #include "../base/arrays.hpp"
+#include "../base/ids.hpp"
 #include "../growth/triangle_store.hpp"
 #include "../index/grid.hpp"
 #include "../predicates/predicates.hpp"
@@ -48,16 +48,16 @@ class CanonicalOrder {
     write(out, [] { return true; });
   }
 
-  // After `write`: flags[3 * triangle + corner] = is_set(triangle of the mesh, place).
+  // After `write`: flags[3 * triangle + corner] = is_set(half-edge of the mesh).
   template <typename Flag, typename IsSet>
   void write_flags(Flag* flags, IsSet&& is_set) const {
     for (std::uint32_t t = 0; t < count_; ++t) {
       if (number_of_[t] == kNoNeighbor) continue;
-      const std::uint32_t place = first_place(triangles_[t]);
+      const std::uint32_t corner = first_corner(triangles_[t]);
       Flag* const flag = flags + std::int64_t{3} * number_of_[t];
-      flag[0] = is_set(t, place);
-      flag[1] = is_set(t, place_after(place));
-      flag[2] = is_set(t, place_before(place));
+      flag[0] = is_set(half_edge(Triangle{t}, corner));
+      flag[1] = is_set(half_edge(Triangle{t}, corner_after(corner)));
+      flag[2] = is_set(half_edge(Triangle{t}, corner_before(corner)));
     }
   }
 
@@ -82,18 +82,18 @@ class CanonicalOrder {
     return true;
   }
 
-  // Place of the first vertex of the sweep, or of the ghost.
-  static std::uint32_t first_place(const GhostTriangle& triangle) {
+  // Corner of the first vertex of the sweep, or of the ghost.
+  static std::uint32_t first_corner(const GhostTriangle& triangle) {
     const bool is_second = triangle.corner[1] < triangle.corner[0];
-    const std::int32_t first = triangle.corner[is_second];
+    const Vertex first = triangle.corner[is_second];
     return triangle.corner[2] < first ? 2 : is_second;
   }
 
-  // One place on from its owner, so that the ghost's are counted in front.
+  // One entry on from its owner, so that the ghost's are counted in front.
   void count_owned(std::int64_t begin, std::int64_t end) {
     for (std::int64_t t = begin; t < end; ++t) {
       const auto& corner = triangles_[t].corner;
-      ++end_of_[std::min({corner[0], corner[1], corner[2]}) + 1];
+      ++end_of_[number(std::min({corner[0], corner[1], corner[2]})) + 1];
     }
   }
 
@@ -111,17 +111,17 @@ class CanonicalOrder {
   void deal(std::int64_t begin, std::int64_t end) {
     for (std::int64_t t = begin; t < end; ++t) {
       const GhostTriangle& triangle = triangles_[t];
-      const std::uint32_t place = first_place(triangle);
-      const std::int32_t owner = triangle.corner[place];
+      const std::uint32_t first = first_corner(triangle);
+      const Vertex owner = triangle.corner[first];
       if (owner == kGhost) {
         number_of_[t] = kNoNeighbor;
         continue;
       }
-      const std::int32_t at = end_of_[owner + 1]++;
+      const std::int32_t at = end_of_[number(owner) + 1]++;
       std::int32_t* const corner = corners_ + std::int64_t{3} * at;
-      corner[0] = owner;
-      corner[1] = triangle.corner[place_after(place)];
-      corner[2] = triangle.corner[place_before(place)];
+      corner[0] = number(owner);
+      corner[1] = number(triangle.corner[corner_after(first)]);
+      corner[2] = number(triangle.corner[corner_before(first)]);
       neighbors_[at] = static_cast<std::int32_t>(t);  // for the time being
     }
   }
@@ -172,9 +172,8 @@ class CanonicalOrder {
       if (rays_[i].is_start) starts_.push_back(i);
     }
     if (starts_.empty()) starts_.push_back(nearest_ray(v));
-    std::sort(starts_.begin(), starts_.end(), [this](std::int32_t a, std::int32_t b) {
-      return rays_[a].from < rays_[b].from;
-    });
+    std::sort(starts_.begin(), starts_.end(),
+              [this](std::int32_t a, std::int32_t b) { return rays_[a].from < rays_[b].from; });
     for (const std::int32_t start : starts_) begin = number_sector(start, begin);
   }
 
@@ -235,11 +234,11 @@ class CanonicalOrder {
     for (std::int64_t t = begin; t < end; ++t) {
       if (number_of[t] == kNoNeighbor) continue;
       const GhostTriangle& triangle = triangles_[t];
-      const std::uint32_t place = first_place(triangle);
+      const std::uint32_t first = first_corner(triangle);
       std::int32_t* const neighbor = neighbors_ + std::int64_t{3} * number_of[t];
-      neighbor[0] = number_of[triangle_of(triangle.twin[place])];
-      neighbor[1] = number_of[triangle_of(triangle.twin[place_after(place)])];
-      neighbor[2] = number_of[triangle_of(triangle.twin[place_before(place)])];
+      neighbor[0] = number_of[number(triangle_of(triangle.twin[first]))];
+      neighbor[1] = number_of[number(triangle_of(triangle.twin[corner_after(first)]))];
+      neighbor[2] = number_of[number(triangle_of(triangle.twin[corner_before(first)]))];
     }
   }
 
@@ -247,7 +246,7 @@ class CanonicalOrder {
   const GhostTriangle* triangles_;
   std::uint32_t count_;
   ScratchArray<std::int32_t> number_of_;  // of each triangle of the mesh; ghosts have none
-  std::vector<std::int32_t> end_of_;    // of each owner's triangles, the ghost's in front
+  std::vector<std::int32_t> end_of_;      // of each owner's triangles, the ghost's in front
   std::int32_t* corners_ = nullptr;
   std::int32_t* neighbors_ = nullptr;
   std::vector<Ray> rays_;

@@ -1,4 +1,8 @@
 // Convex hull, exact, with the points that lie on its edges kept.
+//
+// The monotone chain of Andrew, "Another efficient algorithm for convex hulls in two dimensions"
+// (1979), of the points outside a polygon of extreme ones (Akl and Toussaint, "A fast convex hull
+// algorithm", 1978).
 #pragma once
 
 #include <algorithm>
@@ -74,9 +78,8 @@ class HullFinder {
 
   void collect_candidates() {
     std::vector<std::vector<Vertex>> found(team_.size());
-    team_.run([&](int part) {
-      found[part] = candidates_in(part_of(grid_.count(), part, team_.size()));
-    });
+    team_.run(
+        [&](int part) { found[part] = candidates_in(part_of(grid_.count(), part, team_.size())); });
     for (const auto& part : found) {
       candidates_.insert(candidates_.end(), part.begin(), part.end());
     }
@@ -113,9 +116,8 @@ class HullFinder {
   std::vector<Vertex> chain(const std::vector<Vertex>& sorted) const {
     std::vector<Vertex> kept;
     for (Vertex v : sorted) {
-      while (kept.size() >= 2 &&
-             orientation(grid_.point(kept[kept.size() - 2]), grid_.point(kept.back()),
-                         grid_.point(v)) < 0) {
+      while (kept.size() >= 2 && orientation(grid_.point(kept[kept.size() - 2]),
+                                             grid_.point(kept.back()), grid_.point(v)) < 0) {
         kept.pop_back();
       }
       kept.push_back(v);

@@ -1,5 +1,8 @@
 // The order in which points are inserted: rounds in random sample, each round along one curve.
 //
+// The biased randomized insertion order of Amenta, Choi and Rote, "Incremental constructions con
+// BRIO" (2003).
+//
 // Sorted along Hilbert's curve each point is found a few triangles from the one before. But a
 // triangulation grown from one side has long, thin triangles at its front, and in the worst case
 // all of them change again and again. So the points come in rounds, a sample of one point in
@@ -11,7 +14,7 @@
 //      round before           o                              o             ...
 //      earlier still                                  o                    ...
 //
-// A point's place on the curve is its number while inserting: neighbours in the plane are near
+// A point's position on the curve is its number while inserting: neighbours in the plane are near
 // in memory, whatever round they come in.
 #pragma once
 
@@ -26,7 +29,7 @@ class InsertionRounds {
     while (sizes_.back() > kFirstRound) sizes_.push_back(sizes_.back() / kBlock);
   }
 
-  // Visit every place on the curve once. Stops and returns false when `visit` does.
+  // Visit every position on the curve once. Stops and returns false when `visit` does.
   template <typename Visit>
   bool for_each(Visit&& visit) const {
     const int first = static_cast<int>(sizes_.size()) - 1;
@@ -35,7 +38,7 @@ class InsertionRounds {
       for (std::uint32_t i = 0; i < sizes_[round]; ++i) {
         const std::uint32_t block = i / kBlock;
         if (block < earlier && i == chosen(round, block)) continue;
-        if (!visit(place(round, i))) return false;
+        if (!visit(position(round, i))) return false;
       }
     }
     return true;
@@ -46,8 +49,8 @@ class InsertionRounds {
   static constexpr std::uint32_t kBlock = 1u << kBlockBits;
   static constexpr std::uint32_t kFirstRound = 64;
 
-  // Place on the curve of the i-th point of a round and all earlier ones.
-  static std::uint32_t place(int round, std::uint32_t i) {
+  // Position on the curve of the i-th point of a round and all earlier ones.
+  static std::uint32_t position(int round, std::uint32_t i) {
     while (round-- > 0) i = chosen(round, i);
     return i;
   }

@@ -1,49 +1,20 @@
-// Tree of boxes over a sequence of items: which items may hold a place?
+// Tree of boxes over a sequence of items: which items may hold a point?
+//
+// A packed R-tree (Kamel and Faloutsos, "On packing R-trees", 1993).
 //
 // Level 0 has one box around every kItemsPerLeaf items in the order given; each level above has
 // one box around every kFanOut boxes, up to a single one. The better the order keeps neighbours
-// together, the fewer boxes hold a place.
+// together, the fewer boxes hold a point.
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
-#include "../predicates/predicates.hpp"
+#include "../base/box.hpp"
+#include "../base/range.hpp"
 
 namespace tinsmith {
-
-struct Rectangle {
-  double xmin = std::numeric_limits<double>::infinity();
-  double ymin = std::numeric_limits<double>::infinity();
-  double xmax = -std::numeric_limits<double>::infinity();
-  double ymax = -std::numeric_limits<double>::infinity();
-
-  void include(Point p) { include(Rectangle{p.x, p.y, p.x, p.y}); }
-
-  void include(const Rectangle& other) {
-    xmin = std::min(xmin, other.xmin);
-    ymin = std::min(ymin, other.ymin);
-    xmax = std::max(xmax, other.xmax);
-    ymax = std::max(ymax, other.ymax);
-  }
-
-  bool holds(Point p) const {
-    return (p.x >= xmin) & (p.x <= xmax) & (p.y >= ymin) & (p.y <= ymax);
-  }
-
-  bool meets(const Rectangle& other) const {
-    return (other.xmin <= xmax) & (other.xmax >= xmin) & (other.ymin <= ymax) &
-           (other.ymax >= ymin);
-  }
-
-  Rectangle grown_by(double reach) const {
-    return {xmin - reach, ymin - reach, xmax + reach, ymax + reach};
-  }
-
-  Point center() const { return {xmin + 0.5 * (xmax - xmin), ymin + 0.5 * (ymax - ymin)}; }
-};
 
 class BoxTree {
  public:
@@ -57,7 +28,7 @@ class BoxTree {
   BoxTree(std::int32_t item_count, BoxOf&& box_of) : item_count_(item_count) {
     lay_out_levels();
     for (std::int32_t leaf = 0; leaf < level_[1]; ++leaf) {
-      Rectangle box;
+      Box box;
       for (std::int32_t i = first_item(leaf); i < first_item(leaf + 1); ++i) {
         box.include(box_of(i));
       }
@@ -74,7 +45,7 @@ class BoxTree {
   // Call visit(first, last) for runs of items whose box holds p, until it returns true.
   template <typename Visit>
   void visit_leaves(Point p, Visit&& visit) const {
-    visit_leaves_if([p](const Rectangle& box, std::int64_t) { return box.holds(p); }, visit);
+    visit_leaves_if([p](const Box& box, std::int64_t) { return box.holds(p); }, visit);
   }
 
   // The same for runs all boxes around which are wanted: wanted(box, end), where `end` comes after
@@ -107,11 +78,6 @@ class BoxTree {
  private:
   static constexpr std::int32_t kMostLevels = 17;  // 4^16 leaves and the root
 
-  struct Range {
-    std::int32_t begin;
-    std::int32_t end;
-  };
-
   std::int32_t first_item(std::int32_t leaf) const {
     return static_cast<std::int32_t>(
         std::min<std::int64_t>(std::int64_t{kItemsPerLeaf} * leaf, item_count_));
@@ -140,7 +106,7 @@ class BoxTree {
 
   std::int32_t item_count_ = 0;
   std::vector<std::int32_t> level_;  // where the boxes of each level begin, and the end
-  std::vector<Rectangle> boxes_;
+  std::vector<Box> boxes_;
 };
 
 }  // namespace tinsmith

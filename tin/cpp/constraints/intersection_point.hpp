@@ -8,7 +8,7 @@
 #include <cstring>
 #include <utility>
 
-#include "../location/box_tree.hpp"
+#include "../base/box.hpp"
 #include "../predicates/expansion.hpp"
 #include "../predicates/predicates.hpp"
 
@@ -51,8 +51,8 @@ inline double clamped_coordinate(double value, double low, double high) {
 }  // namespace detail
 
 // The meeting point of a-b and c-d, which cross: each coordinate is the true one rounded, so lines
-// through one place meet in one point. The same for any order of segments and ends.
-inline Point meeting_point(Point a, Point b, Point c, Point d) {
+// through one point meet in one point. The same for any order of segments and ends.
+inline Point intersection_point(Point a, Point b, Point c, Point d) {
   if (lexicographically_before(b, a)) std::swap(a, b);
   if (lexicographically_before(d, c)) std::swap(c, d);
   if (lexicographically_before(c, a) || (c == a && lexicographically_before(d, b))) {
@@ -65,13 +65,11 @@ inline Point meeting_point(Point a, Point b, Point c, Point d) {
   const auto whole = at_a - at_b;
   const double x = detail::rounded_quotient(at_a * b.x - at_b * a.x, whole);
   const double y = detail::rounded_quotient(at_a * b.y - at_b * a.y, whole);
-  Rectangle first, second;
-  for (const Point p : {a, b}) first.include(p);
-  for (const Point p : {c, d}) second.include(p);
-  return {detail::clamped_coordinate(x, std::max(first.xmin, second.xmin),
-                                     std::min(first.xmax, second.xmax)),
-          detail::clamped_coordinate(y, std::max(first.ymin, second.ymin),
-                                     std::min(first.ymax, second.ymax))};
+  const Box first = Box::of(a, b), second = Box::of(c, d);
+  return {detail::clamped_coordinate(x, std::max(first.west, second.west),
+                                     std::min(first.east, second.east)),
+          detail::clamped_coordinate(y, std::max(first.south, second.south),
+                                     std::min(first.north, second.north))};
 }
 
 }  // namespace tinsmith

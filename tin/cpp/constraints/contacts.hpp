@@ -1,6 +1,6 @@
 // Where do segments meet: which cross, and which vertices lie on them?
 //
-// Two segments cross where their open interiors have exactly one place in common and neither holds
+// Two segments cross where their open interiors have exactly one point in common and neither holds
 // an end of the other. Segments that share an end, touch or overlap along a line do not cross.
 //
 // Ends of segments are found to touch as pairs of near segments are looked at; only the other
@@ -8,10 +8,13 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <stdexcept>
 #include <vector>
 
-#include "segment_tree.hpp"
+#include "intersection_point.hpp"
+#include "segment_boxes.hpp"
 #include "segments.hpp"
 #include "touches.hpp"
 
@@ -29,14 +32,31 @@ inline NumberPair in_ascending_order(std::int32_t first, std::int32_t second) {
 // Pairs i < j with j >= first_new, sorted; incomplete if the team was stopped.
 inline std::vector<NumberPair> find_crossings(const Segments& segments, std::int32_t first_new,
                                               Team& team) {
-  using Item = SegmentTree::Item;
+  using Item = SegmentBoxes::Item;
   std::vector<std::vector<NumberPair>> found(team.size());
-  const SegmentTree tree(segments, 0.0);
+  const SegmentBoxes tree(segments, 0.0);
   tree.visit_pairs(first_new, team, [&](int part, const Item& s, const Item& t) {
     if (!do_cross(s.end[0], s.end[1], t.end[0], t.end[1])) return;
     found[part].push_back(in_ascending_order(s.segment, t.segment));
   });
   return sorted_together(found);
+}
+
+// Where the segments of each pair cross, two numbers a pair; incomplete if the team was stopped.
+inline std::vector<Point> find_intersections(const Segments& segments, const std::int32_t* pairs,
+                                             std::int32_t count, Team& team) {
+  std::vector<Point> found(count);
+  visit_in_blocks(count, team, [&](int, std::int32_t i) {
+    const std::int32_t* pair = pairs + 2 * static_cast<std::size_t>(i);
+    const Point a = segments.point(pair[0], 0), b = segments.point(pair[0], 1);
+    const Point c = segments.point(pair[1], 0), d = segments.point(pair[1], 1);
+    if (!do_cross(a, b, c, d)) {
+      throw std::invalid_argument("the segments of every pair must cross");
+    }
+    const Point met = intersection_point(a, b, c, d);
+    found[i] = {met.x + 0.0, met.y + 0.0};  // no -0.0
+  });
+  return found;
 }
 
 // Crossings, and touches within a distance, of all segments and vertices in one search.
@@ -46,10 +66,11 @@ class ContactSearch {
 
   ContactSearch(const Segments& segments, std::int32_t vertex_count, double distance, Team& team)
       : distance_(distance), found_(team.size()) {
-    const SegmentTree tree(segments, distance);
-    tree.visit_pairs(0, team, [&](int part, const SegmentTree::Item& s, const SegmentTree::Item& t) {
-      distance > 0.0 ? compare_near(s, t, found_[part]) : compare(s, t, found_[part]);
-    });
+    const SegmentBoxes tree(segments, distance);
+    tree.visit_pairs(
+        0, team, [&](int part, const SegmentBoxes::Item& s, const SegmentBoxes::Item& t) {
+          distance > 0.0 ? compare_near(s, t, found_[part]) : compare(s, t, found_[part]);
+        });
     if (team.is_stopped()) return;
     touches = touches_of_others(segments, vertex_count, team);
     for (Found& found : found_) {
@@ -64,7 +85,7 @@ class ContactSearch {
   }
 
  private:
-  using Item = SegmentTree::Item;
+  using Item = SegmentBoxes::Item;
   struct Found {
     std::vector<NumberPair> crossings, touches;
   };

@@ -1,13 +1,16 @@
-// Which places lie in rings, by the even-odd rule over all rings together?
+// Which points lie in polygons, by the even-odd rule over all rings together?
 //
-// The ray east from a place crosses the rings an odd number of times if the place is inside. Rings
-// are cut into chains of edges, halves of halves. For a group of places, a chain
+// The crossing test of Shimrat, "Algorithm 112: position of point relative to polygon" (1962), for
+// many points at once.
+//
+// The ray east from a point crosses the rings an odd number of times if the point is inside. Rings
+// are cut into chains of edges, halves of halves. For a group of points, a chain
 //   - above, below or west of the group's box counts nothing;
-//   - east of it counts for a place if its two ends lie on different sides of the place's northing,
-//     whatever its edges do in between, and for no place if it is a whole ring;
+//   - east of it counts for a point if its two ends lie on different sides of the point's northing,
+//     whatever its edges do in between, and for no point if it is a whole ring;
 //   - else it must be looked into: its halves are asked.
 // Groups are halved at the median, and every half keeps only the chains that are not settled for
-// all of it. So places far from every edge are settled by thousands.
+// all of it. So points far from every edge are settled by thousands.
 #pragma once
 
 #include <algorithm>
@@ -21,51 +24,51 @@
 
 namespace tinsmith {
 
-class RingPlaces {
+class PointInPolygon {
  public:
   // Ring i has the corners offsets[i] .. offsets[i + 1] - 1, the last one joined to the first.
-  RingPlaces(const Point* corners, const std::int32_t* offsets, std::int32_t ring_count) {
+  PointInPolygon(const Point* corners, const std::int32_t* offsets, std::int32_t ring_count) {
     for (std::int32_t ring = 0; ring < ring_count; ++ring) {
       add_ring(corners + offsets[ring], offsets[ring + 1] - offsets[ring]);
     }
   }
 
   // +1 inside, 0 on a ring, -1 outside; incomplete if the team was stopped.
-  void locate(const Point* places, std::int32_t count, std::int8_t* result, Team& team) const {
+  void locate(const Point* queries, std::int32_t count, std::int8_t* result, Team& team) const {
     auto items = scratch_array<Item>(count);
-    for (std::int32_t i = 0; i < count; ++i) items[i] = {places[i], i};
-    std::vector<Group> shares{{items.get(), items.get() + count, {roots_, false}}};
+    for (std::int32_t i = 0; i < count; ++i) items[i] = {queries[i], i};
+    std::vector<Group> groups{{items.get(), items.get() + count, {roots_, false}}};
     // Halves of the largest groups until every thread has some to fetch.
-    const std::size_t wanted = team.size() == 1 ? 1 : kSharesPerThread * team.size();
-    for (std::size_t i = 0; i < shares.size() && shares.size() < wanted; ++i) {
-      settle(shares[i]);
-      if (shares[i].size() <= kSmallGroup) continue;
-      shares.push_back(split_off_half(shares[i]));
-      shares.push_back(std::move(shares[i]));
-      shares[i] = {nullptr, nullptr, {{}, false}};
+    const std::size_t wanted = team.size() == 1 ? 1 : kGroupsPerThread * team.size();
+    for (std::size_t i = 0; i < groups.size() && groups.size() < wanted; ++i) {
+      settle(groups[i]);
+      if (groups[i].size() <= kSmallGroup) continue;
+      groups.push_back(split_off_half(groups[i]));
+      groups.push_back(std::move(groups[i]));
+      groups[i] = {nullptr, nullptr, {{}, false}};
     }
     std::atomic<std::size_t> next{0};
     team.run([&](int part) {
-      for (std::size_t i; (i = next.fetch_add(1)) < shares.size();) {
-        answer(std::move(shares[i]), result, team, part);
+      for (std::size_t i; (i = next.fetch_add(1)) < groups.size();) {
+        answer(std::move(groups[i]), result, team, part);
       }
     });
   }
 
  private:
   static constexpr std::int64_t kSmallGroup = 16;
-  static constexpr std::int64_t kBetweenQuestions = 4096;  // places
+  static constexpr std::int64_t kBetweenQuestions = 4096;  // points
   static constexpr std::int32_t kEdgesPerChain = 4;        // of the shortest chains
-  static constexpr std::size_t kSharesPerThread = 16;
+  static constexpr std::size_t kGroupsPerThread = 16;
 
   struct Item {
-    Point place;
+    Point point;
     std::int32_t row;
   };
 
   // Consecutive edges of a ring: corners[0] to corners[edge_count], or round the whole ring.
   struct Chain {
-    Rectangle box;
+    Box box;
     std::int32_t first_corner;
     std::int32_t edge_count;
     std::int32_t halves;  // the chain of the first half, the other one behind; 0 if it has none
@@ -116,37 +119,41 @@ class RingPlaces {
   }
 
   Chain chain_of(std::int32_t first_corner, std::int32_t edge_count) const {
-    return {Rectangle(), first_corner, edge_count, 0, corners_[first_corner].y,
+    return {Box(),
+            first_corner,
+            edge_count,
+            0,
+            corners_[first_corner].y,
             corners_[first_corner + edge_count].y};
   }
 
   // ------------------------------------------------------------------ groups
 
-  static Rectangle box_of(const Group& group) {
-    Rectangle box;
-    for (const Item* item = group.begin; item != group.end; ++item) box.include(item->place);
+  static Box box_of(const Group& group) {
+    Box box;
+    for (const Item* item = group.begin; item != group.end; ++item) box.include(item->point);
     return box;
   }
 
   // Then it is looked into at once: larger chains would stay open for many groups.
-  static bool is_larger(const Chain& chain, const Rectangle& box, std::int64_t place_count) {
-    return chain.edge_count >= place_count || chain.box.xmax - chain.box.xmin > box.xmax - box.xmin ||
-           chain.box.ymax - chain.box.ymin > box.ymax - box.ymin;
+  static bool is_larger(const Chain& chain, const Box& box, std::int64_t query_count) {
+    return chain.edge_count >= query_count || chain.box.width() > box.width() ||
+           chain.box.height() > box.height();
   }
 
   // Settle what can be for the whole group.
   void settle(Group& group) const {
-    const Rectangle box = box_of(group);
+    const Box box = box_of(group);
     std::vector<std::int32_t> chains = std::move(group.open.chains);
     group.open.chains.clear();
     while (!chains.empty()) {
       const std::int32_t number = chains.back();
       chains.pop_back();
       const Chain& chain = chains_[number];
-      if (chain.box.ymax < box.ymin || chain.box.ymin > box.ymax || chain.box.xmax < box.xmin) {
+      if (chain.box.north < box.south || chain.box.south > box.north || chain.box.east < box.west) {
         continue;
       }
-      if (chain.box.xmin > box.xmax) {
+      if (chain.box.west > box.east) {
         settle_eastern(chain, number, box, group.open);
       } else if (chain.halves != 0 && is_larger(chain, box, group.size())) {
         chains.push_back(chain.halves);
@@ -157,30 +164,29 @@ class RingPlaces {
     }
   }
 
-  // East of the box, the ends' northings count: the same for all places, or left open.
-  static void settle_eastern(const Chain& chain, std::int32_t number, const Rectangle& box,
-                             Open& open) {
+  // East of the box, the ends' northings count: the same for all points, or left open.
+  static void settle_eastern(const Chain& chain, std::int32_t number, const Box& box, Open& open) {
     if (chain.start_y == chain.end_y) return;
     const double low = std::min(chain.start_y, chain.end_y);
     const double high = std::max(chain.start_y, chain.end_y);
-    if (high <= box.ymin || low > box.ymax) return;
-    if (low <= box.ymin && high > box.ymax) {
+    if (high <= box.south || low > box.north) return;
+    if (low <= box.south && high > box.north) {
       open.is_odd = !open.is_odd;
     } else {
       open.chains.push_back(number);
     }
   }
 
-  // Takes the upper half of the places, by the box's longer side.
+  // Takes the upper half of the points, by the box's longer side.
   static Group split_off_half(Group& group) {
-    const Rectangle box = box_of(group);
+    const Box box = box_of(group);
     Item* const middle = group.begin + group.size() / 2;
-    if (box.xmax - box.xmin > box.ymax - box.ymin) {
+    if (box.width() > box.height()) {
       std::nth_element(group.begin, middle, group.end,
-                       [](const Item& a, const Item& b) { return a.place.x < b.place.x; });
+                       [](const Item& a, const Item& b) { return a.point.x < b.point.x; });
     } else {
       std::nth_element(group.begin, middle, group.end,
-                       [](const Item& a, const Item& b) { return a.place.y < b.place.y; });
+                       [](const Item& a, const Item& b) { return a.point.y < b.point.y; });
     }
     return {middle, std::exchange(group.end, middle), group.open};
   }
@@ -199,7 +205,7 @@ class RingPlaces {
         for (const Item* item = group.begin; item != group.end; ++item) result[item->row] = side;
       } else if (group.size() <= kSmallGroup) {
         for (const Item* item = group.begin; item != group.end; ++item) {
-          result[item->row] = side_of(item->place, group.open);
+          result[item->row] = side_of(item->point, group.open);
         }
       } else {
         waiting.push_back(split_off_half(group));
@@ -213,7 +219,7 @@ class RingPlaces {
     }
   }
 
-  // ------------------------------------------------------------------ one place
+  // ------------------------------------------------------------------ one point
 
   std::int8_t side_of(Point p, const Open& open) const {
     bool is_odd = open.is_odd;
@@ -230,8 +236,8 @@ class RingPlaces {
     waiting[count++] = whole;
     while (count > 0) {
       const Chain& chain = chains_[waiting[--count]];
-      if (chain.box.ymax < p.y || chain.box.ymin > p.y || chain.box.xmax < p.x) continue;
-      if (chain.box.xmin > p.x) {
+      if (chain.box.north < p.y || chain.box.south > p.y || chain.box.east < p.x) continue;
+      if (chain.box.west > p.x) {
         is_odd ^= (chain.start_y <= p.y) != (chain.end_y <= p.y);
       } else if (chain.halves != 0) {
         waiting[count++] = chain.halves;
@@ -248,12 +254,10 @@ class RingPlaces {
 
   // False if p lies on a-b.
   static bool count_crossing(Point p, Point a, Point b, bool& is_odd) {
-    Rectangle box;
-    box.include(a);
-    box.include(b);
-    if (box.ymax < p.y || box.ymin > p.y || box.xmax < p.x) return true;
+    const Box box = Box::of(a, b);
+    if (box.north < p.y || box.south > p.y || box.east < p.x) return true;
     const bool straddles = (a.y <= p.y) != (b.y <= p.y);
-    if (box.xmin > p.x) {
+    if (box.west > p.x) {
       is_odd ^= straddles;
       return true;
     }

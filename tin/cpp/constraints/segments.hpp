@@ -1,4 +1,4 @@
-// Segments between numbered places, and what lies near one.
+// Segments between numbered points, and what lies near one.
 #pragma once
 
 #include <algorithm>
@@ -8,27 +8,23 @@
 #include <utility>
 #include <vector>
 
+#include "../base/box.hpp"
 #include "../base/parallel.hpp"
-#include "../location/box_tree.hpp"
 #include "../predicates/predicates.hpp"
 
 namespace tinsmith {
 
-// As the caller holds them; the two ends may be one place.
+// As the caller holds them; the two ends may be one point.
 struct Segments {
-  const Point* places;
-  const std::int32_t* ends;  // two place numbers each
+  const Point* points;
+  const std::int32_t* ends;  // two point numbers each
   std::int32_t count;
 
   std::int32_t end(std::int32_t segment, int k) const {
     return ends[2 * static_cast<std::size_t>(segment) + k];
   }
-  Point place(std::int32_t segment, int k) const { return places[end(segment, k)]; }
-  Rectangle box_of(std::int32_t segment) const {
-    Rectangle box;
-    for (int k = 0; k < 2; ++k) box.include(place(segment, k));
-    return box;
-  }
+  Point point(std::int32_t segment, int k) const { return points[end(segment, k)]; }
+  Box box_of(std::int32_t segment) const { return Box::of(point(segment, 0), point(segment, 1)); }
 };
 
 // How far a segment reaches for vertices.
@@ -67,15 +63,15 @@ class Band {
     half_width_ = wide_reach * (std::fabs(dx_) + std::fabs(dy_));
   }
 
-  bool meets(const Rectangle& box) const { return box_.meets(box) && reaches(box); }
+  bool meets(const Box& box) const { return box_.meets(box) && reaches(box); }
 
  private:
   static constexpr double kErrorBound = 0x1p-48;  // a few roundings of each term
 
   // Whether the box has corners on both sides of the line, or one within reach of it.
-  bool reaches(const Rectangle& box) const {
-    const double west = box.xmin - a_.x, east = box.xmax - a_.x;
-    const double south = box.ymin - a_.y, north = box.ymax - a_.y;
+  bool reaches(const Box& box) const {
+    const double west = box.west - a_.x, east = box.east - a_.x;
+    const double south = box.south - a_.y, north = box.north - a_.y;
     const double x = 0.5 * (west + east), half_x = 0.5 * (east - west);
     const double y = 0.5 * (south + north), half_y = 0.5 * (north - south);
     const double across = std::fabs(dx_ * y - dy_ * x);
@@ -87,7 +83,7 @@ class Band {
   Point a_;
   double dx_, dy_;
   double half_width_;  // reach times the segment's length, or more
-  Rectangle box_;
+  Box box_;
 };
 
 // visit(item) for every item by the team's parts, in blocks that each part fetches.

@@ -1,4 +1,5 @@
-// Segments in spatial order under a tree of boxes: which pairs come near each other?
+// Segments in spatial order under a tree of boxes (index/box_tree.hpp): which pairs come near each
+// other?
 //
 // Groups of neighbours ask the tree together. The cost follows the number of pairs whose boxes
 // overlap: few for segments not much longer than they are apart, all for long slanting parallels.
@@ -9,12 +10,13 @@
 #include <vector>
 
 #include "../base/arrays.hpp"
-#include "../index/spatial_order.hpp"
+#include "../index/box_tree.hpp"
+#include "../index/hilbert_order.hpp"
 #include "segments.hpp"
 
 namespace tinsmith {
 
-class SegmentTree {
+class SegmentBoxes {
  public:
   struct Item {
     Point end[2];
@@ -22,15 +24,15 @@ class SegmentTree {
     std::int32_t segment;
   };
 
-  SegmentTree(const Segments& segments, double reach)
+  SegmentBoxes(const Segments& segments, double reach)
       : count_(segments.count),
         reach_(reach),
         items_(scratch_array<Item>(count_)),
-        boxes_(scratch_array<Rectangle>(count_)) {
-    const SpatialOrder order(count_, [&](std::int32_t i) { return segments.box_of(i).center(); });
+        boxes_(scratch_array<Box>(count_)) {
+    const HilbertOrder order(count_, [&](std::int32_t i) { return segments.box_of(i).center(); });
     for (std::int32_t i = 0; i < count_; ++i) {
       const std::int32_t segment = order[i];
-      items_[i] = {{segments.place(segment, 0), segments.place(segment, 1)},
+      items_[i] = {{segments.point(segment, 0), segments.point(segment, 1)},
                    {segments.end(segment, 0), segments.end(segment, 1)},
                    segment};
       boxes_[i] = segments.box_of(segment);
@@ -55,9 +57,9 @@ class SegmentTree {
   // The new segments of a group, their boxes grown by the reach.
   struct Askers {
     std::int32_t item[kGroup];
-    Rectangle box[kGroup];
+    Box box[kGroup];
     std::int32_t count = 0;
-    Rectangle around;
+    Box around;
   };
 
   Askers askers(Range group, std::int32_t first_new) const {
@@ -77,7 +79,7 @@ class SegmentTree {
     const Askers asking = askers(group, first_new);
     if (asking.count == 0) return;
     const std::int32_t from = first_new == 0 ? group.begin : 0;
-    const auto wanted = [&](const Rectangle& box, std::int64_t end) {
+    const auto wanted = [&](const Box& box, std::int64_t end) {
       return end > from && asking.around.meets(box);
     };
     tree_.visit_leaves_if(wanted, [&](std::int32_t begin, std::int32_t end) {
@@ -95,7 +97,7 @@ class SegmentTree {
   std::int32_t count_;
   double reach_;
   ScratchArray<Item> items_;
-  ScratchArray<Rectangle> boxes_;
+  ScratchArray<Box> boxes_;
   BoxTree tree_;
 };
 
