@@ -289,9 +289,9 @@ def _reasons(
     for outer in (inputs.extent, inputs.boundary):
         if outer and len(rows):
             why[in_rings(xy, outer) <= 0] = LEFT_OUT.index("outside the boundary")
-    drowned = np.zeros(len(is_erased), np.bool_)
-    drowned[np.flatnonzero(~is_erased)[made.vertex_of < 0]] = True
-    why[drowned[rows]] = LEFT_OUT.index("in water")
+    in_water = np.zeros(len(is_erased), np.bool_)
+    in_water[np.flatnonzero(~is_erased)[made.vertex_of < 0]] = True
+    why[in_water[rows]] = LEFT_OUT.index("in water")
     why[is_erased[rows]] = LEFT_OUT.index("erased")
     if inputs.is_masked is not None:
         why[inputs.is_masked[rows]] = LEFT_OUT.index("masked")

@@ -113,7 +113,7 @@ def triangulate_constrained(
             mesh.insert(np.ascontiguousarray(noded.new_points[:, :2]))
     points = np.concatenate([merged.points, noded.new_points])
     overruled = _passed_by(points, noded, merged.overruled)
-    polylines, wet, overruled = _flooded(points, noded.polylines, lines, overruled)
+    polylines, wet, overruled = _leave_out_water(points, noded.polylines, lines, overruled)
     if not is_forced:
         mesh.remove(np.flatnonzero(wet).astype(np.int32))
         force(mesh, polylines)
@@ -247,7 +247,7 @@ def _passed_by(points: NDArray[np.float64], noded: Noded, overruled: Overruled) 
 # ------------------------------------------------------------------------ water
 
 
-def _flooded(
+def _leave_out_water(
     points: NDArray[np.float64], polylines: Polylines, lines: LineSet, overruled: Overruled
 ) -> tuple[Polylines, NDArray[np.bool_], Overruled]:
     """Put shores at the height of their water, and leave out what is in it.
@@ -275,12 +275,12 @@ def _flooded(
         shore = given.vertices[given.offsets[line] : given.offsets[line + 1]]
         inside = _inside(points[:, :2], points[shore, :2])
         steps, line_of = polylines.segments(), polylines.segment_lines()
-        drowned = inside[steps].any(axis=1) | _are_chords_within(points[:, :2], steps, shore)
+        in_water = inside[steps].any(axis=1) | _are_chords_within(points[:, :2], steps, shore)
         stays = (line_of == line) | is_ring[line_of] | _runs_along(steps, shore, len(points))
-        held = np.unique(steps[drowned & is_ring[line_of]])
+        held = np.unique(steps[in_water & is_ring[line_of]])
         level = float(lines.heights[lines.offsets[line]])
         overruled = _set_level(points, np.union1d(shore, held), level, overruled)
-        polylines = polylines.keep(~drowned | stays)
+        polylines = polylines.keep(~in_water | stays)
         inside[held] = False
         wet |= inside
     is_dry = np.asarray(~wet[polylines.segments()].any(axis=1), np.bool_)
