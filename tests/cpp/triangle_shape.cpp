@@ -79,8 +79,7 @@ void examine_size(const Point (&corner)[3]) {
     longest = std::fmax(longest, distance(corner[k], corner[(k + 1) % 3]));
   }
   const Point a = corner[0], b = corner[1], c = corner[2];
-  const double area =
-      0.5 * std::fabs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
+  const double area = 0.5 * std::fabs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
   expect(!shape_of(20, 1.001 * area).is_large(t) && shape_of(20, 0.999 * area).is_large(t), "area");
   expect(!shape_of(20, INFINITY, 1.001 * longest).is_large(t), "edge allowed");
   expect(shape_of(20, INFINITY, 0.999 * longest).is_large(t), "edge too long");
