@@ -200,7 +200,7 @@ def compare(points: Survey | ArrayLike, *, limit: int = MOST_POINTS) -> Comparis
 
     See Also
     --------
-    tinsmith.tin.paper : the algorithms, and the choices where the paper is silent.
+    tinsmith.paper : the algorithms, and the choices where the paper is silent.
 
     Examples
     --------
