@@ -11,7 +11,6 @@ from .paper.comparison import Comparison, Outcome, compare
 from .report import Merge, Report
 from .surface import TIN
 from .survey import Survey
-from .triangulation import Triangulation
 from .types import Bounds, Grid
 from .voronoi.diagram import Voronoi
 
@@ -33,7 +32,6 @@ __all__ = [
     "Report",
     "Survey",
     "TinsmithError",
-    "Triangulation",
     "Voronoi",
     "Water",
     "check",

@@ -76,6 +76,15 @@ class TIN(Editable):
     between two edits; for several attributes that belong together take ``tin.triangulation``, or a
     copy first. Copies (``copy.copy``, ``copy.deepcopy``, pickles) share nothing that changes: each
     is edited on its own, and takes back the edits made before it was copied.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8]])
+    >>> tin
+    <TIN: 4 vertices, 2 triangles, z 5 to 8, crs unknown>
+    >>> tin.area, tin.bounds.width
+    (12.0, 4.0)
     """
 
     __slots__ = ("__weakref__", "_crs", "_elevation_unit")
@@ -345,6 +354,12 @@ class TIN(Editable):
         ------
         PointsError
             If ``xy`` has another shape, or a coordinate is infinite or too large. NaN is outside.
+
+        Examples
+        --------
+        >>> tin = TIN.from_triangles([[0, 0, 1], [4, 0, 2], [0, 4, 3]], [[0, 1, 2]])
+        >>> tin.locate([[1, 1], [3, 3]])
+        array([ 0, -1], dtype=int32)
         """
         return self._current.triangulation.locator.locate(as_xy(xy))
 
@@ -364,6 +379,12 @@ class TIN(Editable):
         ------
         PointsError
             As :meth:`locate`.
+
+        Examples
+        --------
+        >>> tin = TIN.from_triangles([[0, 0, 1], [4, 0, 2], [0, 4, 3]], [[0, 1, 2]])
+        >>> tin.interpolate([[4, 0], [2, 0], [3, 3]])
+        array([2. , 1.5, nan])
         """
         return self._current.triangulation.locator.interpolate(as_xy(xy))
 

@@ -88,6 +88,13 @@ class Voronoi:
         -----
         The polygons are valid, but for cells of points that lie on one circle up to rounding:
         these can have sides as short as that rounding.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [4, 4, 7], [0, 4, 8]])
+        >>> ts.voronoi(tin, pad=0).to_shapely()[0].area
+        4.0
         """
         import shapely
 
