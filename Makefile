@@ -36,7 +36,7 @@ check: $(READY) $(TREE) ## Lint, formatting, types, import contract
 	cd $(TREE) && ../../$(BIN)/mypy --config-file ../../pyproject.toml
 	cd $(TREE) && PYTHONPATH=. ../../$(BIN)/lint-imports --config ../../pyproject.toml
 
-# The rooms as the one package that they are once installed. Tools that look for modules on disk
+# The folders as the one package that they are once installed. Tools that look for modules on disk
 # must see this instead of the root, where io/ would pass for Python's own io.
 .PHONY: $(TREE)
 $(TREE):
@@ -78,6 +78,7 @@ KIND ?= python core
 .PHONY: mutants
 mutants: $(READY) ## Change the code at random and list what the tests miss: MUTANTS=, KIND=
 	$(BIN)/python -m pip install --quiet --group sanitize
+	@test -d build/mutants/map || PYTHONPATH=tests $(BIN)/python -m mutation map
 	@set -e; for kind in $(KIND); do \
 	  PATH="$(CURDIR)/$(BIN):$$PATH" PYTHONPATH=tests $(BIN)/python -m mutation $$kind --count $(MUTANTS) --seed $(SEED); \
 	done
@@ -85,6 +86,7 @@ mutants: $(READY) ## Change the code at random and list what the tests miss: MUT
 format: $(READY) ## Format the code
 	$(BIN)/ruff format .
 	$(BIN)/ruff check --fix .
+	$(BIN)/clang-format -i $$(git ls-files "tin/cpp/*.hpp" "tin/cpp/*.inc" "tin/cpp/*.cpp" "tests/cpp/*.cpp")
 
 clean: ## Remove what was built
 	rm -rf $(VENV) build demo

@@ -1,4 +1,4 @@
-"""The world room: readers, writers and the format registry."""
+"""Readers, writers and the registry of formats."""
 
 from typing import TYPE_CHECKING
 

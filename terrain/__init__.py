@@ -1,4 +1,4 @@
-"""The meaning room: what a terrain surface says. Knows no files."""
+"""What is derived from a TIN: slope, 3D models, previews, charts. Knows no files."""
 
 from ..errors import OptionError, RenderError
 from .charts.comparison import comparison_picture

@@ -48,7 +48,7 @@ def test_none_stays_none():
     assert Unit.of(None) is None
 
 
-DOORS = {
+ENTRY_POINTS = {
     "Survey": lambda crs, folder: ts.Survey(points=np.eye(3), crs=crs),
     "triangulate": lambda crs, folder: ts.triangulate([[0, 0, 0], [1, 0, 0], [0, 1, 0]], crs=crs),
     "from_triangles": lambda crs, folder: ts.TIN.from_triangles(
@@ -71,21 +71,21 @@ def folder(tmp_path):
 
 
 @pytest.mark.parametrize("way", WAYS_TO_SAY_UTM)
-@pytest.mark.parametrize("door", DOORS)
-def test_every_door_takes_every_way(door, way, folder):
-    if door == "read lines":
+@pytest.mark.parametrize("entry_point", ENTRY_POINTS)
+def test_every_entry_point_takes_every_way(entry_point, way, folder):
+    if entry_point == "read lines":
         pytest.importorskip("pyogrio")
-    found = DOORS[door](WAYS_TO_SAY_UTM[way], folder)
-    if door != "read lines":
+    found = ENTRY_POINTS[entry_point](WAYS_TO_SAY_UTM[way], folder)
+    if entry_point != "read lines":
         assert isinstance(found.crs, CRS)
         assert found.crs == "EPSG:32616"
 
 
 @pytest.mark.parametrize("wrong", ["EPSG:99999", "nonsense", 7, True, 2.5, [1], "EPSG:4978", 5703])
-@pytest.mark.parametrize("door", DOORS)
-def test_every_door_refuses_what_is_no_crs(door, wrong, folder):
+@pytest.mark.parametrize("entry_point", ENTRY_POINTS)
+def test_every_entry_point_refuses_what_is_no_crs(entry_point, wrong, folder):
     with pytest.raises(CrsError) as caught:
-        DOORS[door](wrong, folder)
+        ENTRY_POINTS[entry_point](wrong, folder)
     assert isinstance(caught.value, ts.TinsmithError)
     assert str(wrong) in str(caught.value)
     assert "is needed" in str(caught.value)
@@ -248,3 +248,13 @@ def test_a_survey_may_gain_a_vertical_axis_but_not_change_its_crs():
     assert ts.triangulate(survey, crs="EPSG:2274+6360").elevation_unit == US_SURVEY_FOOT
     with pytest.raises(CrsError, match=r"EPSG:2274.*EPSG:32616"):
         ts.triangulate(survey, crs=32616)
+
+
+def test_a_crs_equals_whatever_names_it():
+    crs = CRS.of(32616)
+    assert crs == 32616
+    assert crs == "EPSG:32616"
+    assert crs == CRS.of("epsg:32616")
+    assert hash(crs) == hash(CRS.of("epsg:32616"))
+    for other in (None, 32617, "EPSG:32617", "nonsense", object(), CRS.of(32617)):
+        assert crs != other

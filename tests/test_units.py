@@ -1,4 +1,4 @@
-"""Elevations and their unit: known, declared or unknown; one slope, the same from every door."""
+"""Elevations and their unit: known, declared or unknown; one slope everywhere."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ def angle_to_the_plane(points):
     return np.degrees(np.arccos(normal[2] / np.linalg.norm(normal)))
 
 
-DOORS = (
+ENTRY_POINTS = (
     slope_of_terrain,
     slope_of_geojson,
     slope_of_info,
@@ -111,11 +111,11 @@ def invoke(*arguments, code=0):
 
 
 @pytest.mark.parametrize("ground", GROUNDS)
-@pytest.mark.parametrize("door", DOORS)
+@pytest.mark.parametrize("entry_point", ENTRY_POINTS)
 @pytest.mark.parametrize("degrees", [45.0, 73.05])
-def test_slope_is_that_of_the_true_surface_from_every_door(door, ground, degrees, tmp_path):
+def test_every_slope_is_that_of_the_true_surface(entry_point, ground, degrees, tmp_path):
     tin = steep(ground, degrees=degrees)
-    assert door(tin, tmp_path) == pytest.approx(degrees, abs=1e-4)
+    assert entry_point(tin, tmp_path) == pytest.approx(degrees, abs=1e-4)
 
 
 @pytest.mark.parametrize("ground", GROUNDS)

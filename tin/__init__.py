@@ -1,4 +1,4 @@
-"""The shape room: points become triangles. Knows no files, no CRS, no pictures."""
+"""Points and lines become triangles: build, edit, query, check. Knows no files, no pictures."""
 
 from ..errors import CheckError, LinesError, MissingExtraError, PointsError, TinsmithError
 from . import paper

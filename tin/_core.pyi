@@ -114,8 +114,8 @@ def contacts(
 def intersections(
     xy: NDArray[np.float64], segments: NDArray[np.int32], pairs: NDArray[np.int32]
 ) -> NDArray[np.float64]: ...
-def vertices_at(xy: NDArray[np.float64], places: NDArray[np.float64]) -> NDArray[np.int32]: ...
-def places_in_rings(
+def vertices_at(xy: NDArray[np.float64], queries: NDArray[np.float64]) -> NDArray[np.int32]: ...
+def points_in_polygons(
     xy: NDArray[np.float64],
     ring_xy: NDArray[np.float64],
     offsets: NDArray[np.int32],

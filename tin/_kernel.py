@@ -1,4 +1,4 @@
-"""The only door to the compiled core: its arrays, its types, its faults as our errors."""
+"""The only module that imports the compiled core: its arrays, types and errors."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ crossings = _core.crossings
 touches = _core.touches
 intersections = _core.intersections
 vertices_at = _core.vertices_at
-places_in_rings = _core.places_in_rings
+places_in_rings = _core.points_in_polygons
 Method = _core.Method
 
 

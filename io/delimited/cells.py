@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import re
+from functools import lru_cache
 
 __all__ = [
     "BLANKS",
@@ -66,10 +67,17 @@ def is_missing(cell: str) -> bool:
 
 def is_number_like(cell: str, decimal: str) -> bool:
     """Whether a cell stands where a number should: one, nothing, or a word for "no number"."""
+    return len(cell) <= _LONGEST_NUMBER and _is_number_like(cell, decimal)
+
+
+@lru_cache(
+    maxsize=1 << 13
+)  # the same few hundred lines are looked at for one question after another
+def _is_number_like(cell: str, decimal: str) -> bool:
     return (
         is_number(cell, decimal)
         or is_missing(cell)
-        or _INFINITE.fullmatch(cell[:_LONGEST_NUMBER]) is not None
+        or _INFINITE.fullmatch(cell) is not None
         or is_grouped(cell, decimal)
     )
 

@@ -6,6 +6,7 @@ import re
 import unicodedata
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from ...errors import FormatError, ReadError
@@ -191,7 +192,12 @@ def role_of(name: str) -> str | None:
 
 def _rank(name: str) -> tuple[str, bool, int] | None:
     """Return role, whether in degrees, and how far down the list of synonyms a name stands."""
-    plain = _plain(name) if len(name) <= _LONGEST_NAME else ""
+    return _rank_of(name) if len(name) <= _LONGEST_NAME else None
+
+
+@lru_cache(maxsize=1024)  # the same cells are asked for every layout
+def _rank_of(name: str) -> tuple[str, bool, int] | None:
+    plain = _plain(name)
     for in_degrees, synonyms in ((False, _NAMES), (True, _DEGREES)):
         for role, known in synonyms.items():
             if plain in known:

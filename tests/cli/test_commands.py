@@ -13,6 +13,7 @@ from click.testing import CliRunner
 import tinsmith as ts
 from tinsmith.cli import group, main
 from tinsmith.cli.options import DUPLICATES, KINDS
+from tinsmith.cli.output.summaries import file_size
 
 SAMPLES = Path(__file__).parents[2] / "sample_data"
 SURVEY = str(SAMPLES / "site_survey.csv")
@@ -281,6 +282,35 @@ def test_convert_keeps_points_as_points(folder):
     np.testing.assert_array_equal(ts.io.read("out.xyz").points, ts.io.read(SURVEY).points)
 
 
+@pytest.mark.parametrize("as_json", [False, True])
+@pytest.mark.parametrize("writes", [False, True])
+def test_view_passes_on_what_is_asked_for(pyramid, tmp_path, monkeypatch, as_json, writes):
+    asked = []
+
+    def draw(tin, **options):
+        asked.append((len(tin.points), options))
+        if options["output"] is not None:
+            options["output"].write_bytes(b"7 bytes")
+
+    monkeypatch.setattr("tinsmith.terrain.preview", draw)
+    picture = tmp_path / "a.png"
+    output = ["-o", picture] if writes else []
+    result = run("view", pyramid, *output, *(["--json"] if as_json else []))
+    wanted = {"output": picture if writes else None, "view": "oblique", "title": "pyramid"}
+    wanted |= {"exaggeration": None, "edges": False, "lines": True}
+    assert asked == [(5, wanted)]
+    assert ("(7 bytes)" in result.stderr) is writes
+    if writes and as_json:
+        assert json.loads(result.stdout) == {"input": str(pyramid), "output": str(picture)}
+    else:
+        assert result.stdout == ""
+    asked.clear()
+    options = ["--top", "--no-lines", "--edges", "--title", "A hill", "--exaggeration", "3"]
+    run("view", pyramid, *output, *options)
+    wanted |= {"view": "top", "lines": False, "edges": True, "title": "A hill"}
+    assert asked == [(5, wanted | {"exaggeration": 3.0})]
+
+
 def test_view_writes_a_picture(pyramid, tmp_path, can_draw):
     pytest.importorskip("pyvista")
     picture = tmp_path / "out.png"
@@ -375,3 +405,25 @@ def test_every_row_that_was_left_out_is_in_report_and_json(tmp_path):
     assert json.loads(report.read_text())["skipped_lines"] == expected
     info = json.loads(run("info", path, "--skip-bad", "--json").stdout)
     assert info["skipped_lines"] == expected
+
+
+@pytest.mark.parametrize(
+    ("size", "words"),
+    [
+        (0, "0 bytes"),
+        (999, "999 bytes"),
+        (1_000, "1.0 kB"),
+        (99_900, "99.9 kB"),
+        (100_000, "100 kB"),
+        (999_000, "999 kB"),
+        (1_000_000, "1.0 MB"),
+        (123_000_000, "123 MB"),
+        (2_500_000_000, "2.5 GB"),
+        (3_000_000_000_000, "3000.0 GB"),
+    ],
+)
+def test_sizes_of_files_for_people(tmp_path, size, words):
+    path = tmp_path / "sparse"
+    with path.open("wb") as file:
+        file.truncate(size)
+    assert file_size(path) == words

@@ -11,12 +11,13 @@ import time
 from io import StringIO
 from pathlib import Path
 
+import click
 import numpy as np
 import pytest
 from click.testing import CliRunner
 
 import tinsmith as ts
-from tinsmith.cli import main
+from tinsmith.cli import group, main
 
 SQUARE = "x,y,z\n0,0,1\n4,0,2\n4,3,3\n0,3,4\n"
 PROGRAM = (sys.executable, "-m", "tinsmith")
@@ -260,6 +261,23 @@ def test_closed_pipe_is_quiet(folder):
     )
     os.close(writer)
     assert result.stderr == ""
+    assert result.returncode == 1
+
+
+@pytest.mark.parametrize(
+    ("raised", "code"),
+    [(BrokenPipeError(), 1), (KeyboardInterrupt(), 130), (click.Abort(), 130), (None, 0)],
+)
+def test_exit_codes_of_what_ends_a_command(monkeypatch, raised, code):
+    def end(*_, **__):
+        if raised is not None:
+            raise raised
+
+    monkeypatch.setattr(click.Group, "main", end)
+    monkeypatch.setattr(group, "silence", lambda stream: None)
+    with pytest.raises(SystemExit) as caught:
+        main.main(["formats"])
+    assert caught.value.code == code
 
 
 # ------------------------------------------------------------------ standard streams

@@ -45,9 +45,9 @@ void examine(std::mt19937_64& rng, double origin, double edge, double reach, Wor
   const double ex = bx - ax, ey = by - ay, edge_sum = std::fabs(ex) + std::fabs(ey);
   const bool is_on_thales = unit(rng) < 0.0;
   const double turn = 3.14159265358979 * unit(rng), radius = 0.5 * std::hypot(ex, ey);
-  const Offset best = is_on_thales ? Offset{0.5 * ex + radius * std::cos(turn),
-                                            0.5 * ey + radius * std::sin(turn)}
-                                   : Offset{reach * unit(rng), reach * unit(rng)};
+  const Offset best =
+      is_on_thales ? Offset{0.5 * ex + radius * std::cos(turn), 0.5 * ey + radius * std::sin(turn)}
+                   : Offset{reach * unit(rng), reach * unit(rng)};
   const double qx = ax + best.x, qy = ay + best.y;
   const double px = ax + reach * unit(rng), py = ay + reach * unit(rng);
   const double largest = std::fmax(std::fmax(std::fabs(px - ax), std::fabs(py - ay)),

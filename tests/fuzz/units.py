@@ -82,7 +82,7 @@ def declared_metres(word: str | None) -> float | None:
 
 
 def examine(case: dict[str, Any]) -> str:
-    """Check the source's TIN by every door, then what a reprojection makes of it."""
+    """Check the source's TIN by every entry point, then what a reprojection makes of it."""
     source, word = pyproj.CRS(case["source"]), case["unit"]
     vertical, declared = vertical_metres(source), declared_metres(word)
     points = ts.io.transform_points(

@@ -11,6 +11,7 @@ import pytest
 import tinsmith as ts
 from tinsmith.io import FormatError, ReadError, read, read_lines, read_rings
 from tinsmith.io.isolated import limits
+from tinsmith.io.raster import virtual as raster_virtual
 
 rasterio = pytest.importorskip("rasterio")
 pytest.importorskip("pyogrio")
@@ -187,11 +188,25 @@ def test_a_mosaic_of_anything_else_is_refused(tmp_path, server):
         "<OGRVRTDataSource/>": "no virtual raster",
         "1 2 3\n4 5 6\n7 8 9\n": "no virtual raster",
         sound.replace("</SimpleSource>", ""): "damaged",
+        sound.replace(PLACE, PLACE + '<Metadata><MDI key="OVERVIEW_FILE">a</MDI></Metadata>'): (
+            "names a file of overviews"
+        ),
+        sound.replace(PLACE, PLACE + "<Warp/>"): "has the element 'Warp'",
     }
     for text, words in texts.items():
         path.write_text(text)
         assert words in refused(read, path, ReadError)
     assert asked == []
+
+
+def test_a_mosaic_of_a_large_text_is_not_parsed(tmp_path, monkeypatch):
+    geotiff(tmp_path / "a.tif")
+    path = tmp_path / "a.vrt"
+    path.write_text(virtual("a.tif", relative=1))
+    monkeypatch.setattr(raster_virtual, "LARGEST_TEXT", path.stat().st_size)
+    read(path)
+    monkeypatch.setattr(raster_virtual, "LARGEST_TEXT", path.stat().st_size - 1)
+    assert "is larger than" in refused(read, path, ReadError)
 
 
 @pytest.mark.parametrize("size", [(100_000, 100_000), (2**31 - 1, 2**31 - 1), (1, 2**31 - 1)])

@@ -1,15 +1,18 @@
-"""Draw mutants of the package or its core, run the tests that name their module, list survivors.
+"""Draw mutants of the package or its core, run the tests that run their place, list survivors.
 
-A mutant is noticed if a test fails, hangs or crashes; tests that took least time run first, and the
-first that fails ends the run. Survivors are to be judged one by one: a test is missing, or the
-change changes nothing that can be relied on (an equivalent mutant). Those that were judged so stand
-in `judged.toml`, each with its reason, and are not run again.
+Which tests run a place of Python is in a map that `map` builds once (minutes); without it, the test
+files that name the module are run. A mutant is noticed if a test fails, hangs or crashes; tests
+that took least time run first, and the first that fails ends the run. Survivors are to be judged
+one by one: a test is missing, or the change changes nothing that can be relied on (an equivalent
+mutant). Those that were judged so stand in `judged.toml`, each with its reason, and are not run
+again.
 """
 
 from __future__ import annotations
 
 import argparse
 import ast
+import compileall
 import json
 import math
 import os
@@ -23,46 +26,59 @@ import time
 import tomllib
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from py_compile import PycInvalidationMode
 from queue import SimpleQueue
 from typing import NamedTuple
 
 from .changes import Change, cpp_changes, python_changes
+from .coverage_map import CoverageMap
 
 ROOT = Path(__file__).resolve().parents[2]
 TESTS = ROOT / "tests"
 BUILD = ROOT / "build" / "mutants"
-PLACES = {"tin": "tin", "io": "io", "terrain": "terrain", "src/tinsmith": ""}
+PLACES = {
+    "tin": Path("tin"), "io": Path("io"), "terrain": Path("terrain"), "src/tinsmith": Path(),
+}  # fmt: skip
 DURATIONS = BUILD / "durations.json"
+MAP = BUILD / "map"
 JUDGED = tomllib.loads((Path(__file__).parent / "judged.toml").read_text())["mutant"]
 NOT_RUN = ("does not compile", "judged", "unsure", "out of time", "not begun")
 MOST_FILES = 8
 CORE_TESTS = (
-    "predicates", "growth", "kernel_seams", "points", "locate", "rings", "mesh", "editing",
-    "noding", "lines", "refine", "threads", "kernel_work", "duplicates", "kernel_datasets",
+    "kernel/test_predicates", "kernel/test_growth", "kernel/test_seams", "validation/test_points",
+    "kernel/test_locate", "kernel/test_point_in_polygon", "kernel/test_mesh",
+    "editing/test_session", "constraints/test_noding", "constraints/test_breaklines",
+    "meshing/test_refinement", "test_threads", "kernel/test_work", "building/test_duplicates",
+    "kernel/test_datasets",
 )  # fmt: skip
 NEAREST = {
-    "location": ("locate",),
-    "lines": ("noding", "lines", "rings", "contacts"),
-    "mesh": ("mesh", "editing", "lines"),
-    "refinement": ("refine", "conforming"),
-    "predicates": ("predicates", "error_bounds"),
-    "points": ("points", "duplicates"),
-}
+    "location": ("kernel/test_locate",),
+    "constraints": (
+        "constraints/test_noding", "constraints/test_breaklines", "kernel/test_point_in_polygon",
+        "kernel/test_contacts",
+    ),
+    "mesh": ("kernel/test_mesh", "editing/test_session", "constraints/test_breaklines"),
+    "refinement": (
+        "kernel/test_error_bounds", "meshing/test_refinement", "constraints/test_conforming",
+    ),
+    "predicates": ("kernel/test_predicates", "kernel/test_error_bounds"),
+    "points": ("validation/test_points", "building/test_duplicates"),
+}  # fmt: skip
 """Test files that are likeliest to notice changes in a folder of the core; they run first."""
 
-BUILDERS = ("points", "growth", "kernel_seams")
+BUILDERS = ("validation/test_points", "kernel/test_growth", "kernel/test_seams")
 NO_TESTS = 5
 N_NEAREST = 3
-TEST_LIMIT = 100
-"""Seconds after which a test hangs, on a busy machine too."""
+SECONDS_OF_TESTS = 10.0
+"""Of the tests that run a place, the shortest that together take so long are run."""
 
 
 class Mutant(NamedTuple):
-    """A change of a file, and the test files that should notice it."""
+    """A change of a file, and the tests or test files that should notice it, in stages."""
 
     path: Path
     change: Change
-    tests: tuple[Path, ...]
+    tests: tuple[tuple[str, ...], ...] = ()
 
     def describe(self) -> str:
         line, column, words = self.place()
@@ -99,7 +115,11 @@ def tests_of(path: Path) -> tuple[Path, ...]:
     """Test files of a module, by what they name, then those of the modules that import it."""
     own = ranked_tests(path, {path.stem}, names_of(path))
     both = dict.fromkeys((*own, *ranked_tests(path, *importers_of(path))))
-    return tuple(both)[:MOST_FILES] or tuple(sorted(TESTS.glob(f"test_{path.parent.name}_*.py")))
+    return tuple(both)[:MOST_FILES] or tuple(sorted((TESTS / room_of(path)).rglob("test_*.py")))
+
+
+def room_of(path: Path) -> str:
+    return inside_package(path).parts[0]
 
 
 def names_of(path: Path) -> set[str]:
@@ -121,13 +141,13 @@ def ranked_tests(path: Path, modules: set[str], names: set[str]) -> tuple[Path, 
         return ()
     imported = rf"import .*\b(?:{any_of(modules)})\b|from .*\b(?:{any_of(modules)}) import"
     pattern = re.compile(rf"{imported}|\b(?:{any_of(names)})\b" if names else imported)
-    room = PLACES[next(p for p in PLACES if path.is_relative_to(ROOT / p))] or "cli"
+    mirrored = TESTS / inside_package(path).parent / f"test_{path.stem}.py"
     scores = {}
     for test in sorted(TESTS.rglob("test_*.py")):
         text = test.read_text().replace("from __future__ import annotations", "")
         score = len(pattern.findall(text))
-        score += 50 * any(f"test_{room}_{one.split('_')[0]}" in test.stem for one in modules)
-        score *= 3 if test.stem.startswith(f"test_{room}") else 1
+        score += 50 * (test == mirrored)
+        score *= 3 if test.is_relative_to(TESTS / room_of(path)) else 1
         scores[test] = score
     return tuple(sorted((t for t in scores if scores[t]), key=lambda t: -scores[t])[:MOST_FILES])
 
@@ -146,15 +166,51 @@ def draw(kind: str, count: int, seed: int, only: str) -> list[Mutant]:
     files = [path for path in files if name in str(path.relative_to(ROOT))]
     everything = [(path, change) for path in files for change in changes(path.read_text())]
     if line:
-        everything = [(p, c) for p, c in everything if Mutant(p, c, ()).place()[0] == int(line)]
+        everything = [(p, c) for p, c in everything if Mutant(p, c).place()[0] == int(line)]
     chosen = random.Random(seed).sample(everything, min(count, len(everything)))
-    tests = tests_of if kind == "python" else core_tests_of
-    return [Mutant(path, change, tests(path)) for path, change in chosen]
+    return [Mutant(path, change) for path, change in chosen]
+
+
+def staged(mutant: Mutant, kind: str, known: CoverageMap) -> Mutant:
+    """Return a mutant with its tests: the likeliest files first, as to collect all takes long."""
+    if kind == "core":
+        return mutant._replace(tests=file_stages(core_tests_of(mutant.path)))
+    files = [str(path.relative_to(ROOT)) for path in tests_of(mutant.path)]
+    inside = str(inside_package(mutant.path))
+    tests = known.tests_of(inside, mutant.path.read_text(), mutant.place()[0])
+    if not tests:
+        return mutant._replace(tests=file_stages(tests_of(mutant.path)))
+    held = {file: sum(test.startswith(f"{file}::") for test in tests) for file in files}
+    near = [file for file in files if held[file]][:N_NEAREST]
+    first = [test for test in tests if test.partition("::")[0] in near]
+    rest = [test for test in tests if test not in set(first)]
+    return mutant._replace(tests=(affordable(first, known), affordable(rest, known)))
+
+
+def affordable(tests: list[str], known: CoverageMap) -> tuple[str, ...]:
+    """Return the first tests, which are the shortest, as far as there is time; one at least."""
+    total, chosen = 0.0, []
+    for test in tests:
+        total += known.seconds.get(test, 0.05)
+        if chosen and total > SECONDS_OF_TESTS:
+            break
+        chosen.append(test)
+    return tuple(chosen)
+
+
+def file_stages(files: tuple[Path, ...]) -> tuple[tuple[str, ...], ...]:
+    names = tuple(str(path.relative_to(ROOT)) for path in files)
+    return names[:N_NEAREST], names[N_NEAREST:]
+
+
+def inside_package(path: Path) -> Path:
+    place = next(p for p in PLACES if path.is_relative_to(ROOT / p))
+    return PLACES[place] / path.relative_to(ROOT / place)
 
 
 def core_tests_of(path: Path) -> tuple[Path, ...]:
     names = dict.fromkeys((*NEAREST.get(path.parent.name, BUILDERS), *CORE_TESTS))
-    return tuple(path for n in names if (path := TESTS / f"test_tin_{n}.py").exists())
+    return tuple(TESTS / "tin" / f"{name}.py" for name in names)
 
 
 # ---------------------------------------------------------------------------- running
@@ -165,13 +221,16 @@ class Workshop:
 
     def __init__(self, number: int, kind: str) -> None:
         self.folder = BUILD / f"{kind}-{number}"
+        self.kind = kind
         self.noticed_by = ""
         shutil.rmtree(self.folder / "tree", ignore_errors=True)
         package = self.folder / "tree" / "tinsmith"
         ignored = shutil.ignore_patterns("cpp", "__pycache__")
         for place, inside in sorted(PLACES.items(), key=lambda item: item[1]):
             shutil.copytree(ROOT / place, package / inside, ignore=ignored, dirs_exist_ok=True)
-        shutil.copy(TESTS / "sanitizers" / "sitecustomize.py", self.folder / "tree")
+        shutil.copy(TESTS / "mutation" / "sitecustomize.py", self.folder / "tree")
+        how = PycInvalidationMode.CHECKED_HASH  # two mutants may be written in one second
+        compileall.compile_dir(package, quiet=2, invalidation_mode=how)
         self.core = package / "tin" / f"_core{sysconfig.get_config_var('EXT_SUFFIX')}"
         if kind == "python":
             shutil.copy(installed_core(), self.core)
@@ -180,7 +239,8 @@ class Workshop:
 
     def _copy_sources(self) -> None:
         source = self.folder / "source"
-        shutil.copytree(ROOT / "tin" / "cpp", source / "tin" / "cpp", dirs_exist_ok=True)
+        for folder in (Path("tin", "cpp"), Path("tests", "cpp")):
+            shutil.copytree(ROOT / folder, source / folder, dirs_exist_ok=True)
         shutil.copy(ROOT / "CMakeLists.txt", source)
         nanobind = subprocess.check_output([sys.executable, "-m", "nanobind", "--cmake_dir"])
         subprocess.run(
@@ -209,8 +269,7 @@ class Workshop:
     def _target(self, path: Path) -> Path:
         if path.suffix == ".hpp":
             return self.folder / "source" / path.relative_to(ROOT)
-        place = next(p for p in PLACES if path.is_relative_to(ROOT / p))
-        return self.folder / "tree" / "tinsmith" / PLACES[place] / path.relative_to(ROOT / place)
+        return self.folder / "tree" / "tinsmith" / inside_package(path)
 
     def _build(self) -> bool:
         done = subprocess.run(["cmake", "--build", self.folder / "cmake"], capture_output=True)
@@ -218,26 +277,21 @@ class Workshop:
             shutil.copy(next((self.folder / "cmake").glob("_core.*so")), self.core)
         return done.returncode == 0
 
-    def _test(self, tests: tuple[Path, ...], limit: float) -> str:
-        """Run the likeliest files first: to collect all takes longer than most tests."""
+    def _test(self, stages: tuple[tuple[str, ...], ...], limit: float) -> str:
         end = time.monotonic() + limit
-        for some in (tests[:N_NEAREST], tests[N_NEAREST:]):
-            verdict = self.run_tests(some, end - time.monotonic()) if some else "SURVIVED"
+        for tests in stages:
+            verdict = self.run_tests(tests, end - time.monotonic()) if tests else "SURVIVED"
             if verdict != "SURVIVED":
                 return verdict
         return "SURVIVED"
 
-    def run_tests(self, tests: tuple[Path, ...], limit: float) -> str:
+    def run_tests(self, tests: tuple[str, ...], limit: float) -> str:
+        chosen = self.folder / "chosen.json"
+        chosen.write_text(json.dumps(tests))
+        files = sorted({test.partition("::")[0] for test in tests})
         options = ["-q", "-x", "-p", "no:cacheprovider", "-p", "mutation.shortest_first"]
-        options += ["--hypothesis-seed=1", f"--timeout={TEST_LIMIT}"]
-        command = [sys.executable, "-m", "pytest", *options, *map(str, tests)]
-        environment = {
-            **os.environ,
-            "PYTHONPATH": f"{self.folder / 'tree'}:{TESTS}",
-            "HYPOTHESIS_STORAGE_DIRECTORY": str(self.folder / "hypothesis"),
-            "PYTHONDONTWRITEBYTECODE": "1",
-            "MUTATION_DURATIONS": str(DURATIONS),
-        }
+        command = [sys.executable, "-m", "pytest", *options, "--hypothesis-seed=1", *files]
+        environment = self.environment() | {"MUTATION_CHOSEN": str(chosen)}
         try:
             done = subprocess.run(
                 command, cwd=ROOT, env=environment, capture_output=True, text=True, timeout=limit
@@ -249,6 +303,28 @@ class Workshop:
         self.noticed_by = failed[1] if failed else "a crash or hang"
         return "SURVIVED" if done.returncode in (0, NO_TESTS) else "noticed"
 
+    def environment(self) -> dict[str, str]:
+        return {
+            **os.environ,
+            "PYTHONPATH": f"{self.folder / 'tree'}:{TESTS}",
+            "HYPOTHESIS_STORAGE_DIRECTORY": str(self.folder / "hypothesis"),
+            "MUTATION_DURATIONS": str(DURATIONS),
+            "TINSMITH_SOURCES": str(self.folder / "source" if self.kind == "core" else ROOT),
+        }
+
+    def map_coverage(self, only: str) -> int:
+        """Follow all tests, or add those of some files to the map; return the exit status."""
+        tests = [path for path in sorted(TESTS.rglob("test_*.py")) if only in str(path)]
+        if not only:
+            shutil.rmtree(MAP, ignore_errors=True)
+        package = str(self.folder / "tree" / "tinsmith")
+        options = ["-q", "-p", "no:cacheprovider", "-p", "mutation.shortest_first"]
+        return subprocess.run(
+            [sys.executable, "-m", "pytest", *options, "-p", "mutation.tracing", *map(str, tests)],
+            cwd=ROOT, check=False,
+            env={**self.environment(), "MUTATION_PACKAGE": package, "MUTATION_MAP": str(MAP)},
+        ).returncode  # fmt: skip
+
 
 def installed_core() -> str:
     import tinsmith.tin._core as core
@@ -258,10 +334,10 @@ def installed_core() -> str:
 
 def run(mutants: list[Mutant], given: argparse.Namespace) -> dict[str, list[str]]:
     """Judge all mutants, or those that there is time for; return their descriptions by verdict."""
-    BUILD.mkdir(parents=True, exist_ok=True)
     results = BUILD / f"{given.kind}-{given.seed}.json"
     deadline = time.monotonic() + 60 * given.minutes
     workshops: SimpleQueue[Workshop] = SimpleQueue()
+    known = CoverageMap(MAP, DURATIONS)
     for number in range(given.jobs):
         workshops.put(Workshop(number, given.kind))
     verdicts: dict[str, list[str]] = {}
@@ -271,7 +347,9 @@ def run(mutants: list[Mutant], given: argparse.Namespace) -> dict[str, list[str]
         workshop = workshops.get()
         try:
             began = time.monotonic()
-            verdict = workshop.judge(mutant, given.limit) if began < deadline else "not begun"
+            verdict = "not begun"
+            if began < deadline:
+                verdict = workshop.judge(staged(mutant, given.kind, known), given.limit)
             verdicts.setdefault(verdict, []).append(mutant.describe())
             seconds = time.monotonic() - began
             by = f"\n    by {workshop.noticed_by}" if verdict == "noticed" else ""
@@ -296,7 +374,7 @@ def unsure(workshop: Workshop, noticed: dict[str, list[str]], limit: float) -> l
     """Return the mutants that were noticed by a test that fails without a mutant, too."""
     failing = []
     for test, mutants in noticed.items():
-        if "::" in test and workshop.run_tests((TESTS.parent / test,), limit) != "SURVIVED":
+        if "::" in test and workshop.run_tests((test,), limit) != "SURVIVED":
             print(f"fails without a mutant, too: {test}")
             failing += mutants
     return failing
@@ -305,15 +383,23 @@ def unsure(workshop: Workshop, noticed: dict[str, list[str]], limit: float) -> l
 def main() -> int:
     parser = argparse.ArgumentParser("python -m mutation", description=__doc__)
     add = parser.add_argument
-    add("kind", choices=("python", "core"))
+    add("kind", choices=("python", "core", "map"))
     add("--count", type=int, default=150, help="how many mutants to draw [150]")
     add("--seed", type=int, default=1)
     add("--jobs", type=int, default=os.cpu_count() or 1)
     add("--limit", type=float, default=300.0, help="seconds for the tests of a mutant [300]")
     add("--skip", type=int, default=0, help="of the mutants drawn, leave out the first so many")
     add("--minutes", type=float, default=math.inf, help="begin no mutant after so many [all]")
-    add("--only", default="", metavar="TEXT", help="files whose path holds this, or PATH:LINE")
+    add(
+        "--only",
+        default="",
+        metavar="TEXT",
+        help="files whose path holds this (of tests for map), or PATH:LINE",
+    )
     given = parser.parse_args()
+    BUILD.mkdir(parents=True, exist_ok=True)
+    if given.kind == "map":
+        return Workshop(0, "python").map_coverage(given.only)
     mutants = draw(given.kind, given.count, given.seed, given.only)[given.skip :]
     verdicts = run(mutants, given)
     survivors = sorted(verdicts.get("SURVIVED", []))

@@ -43,6 +43,9 @@ ARITHMETIC = {
     ast.BitOr: ("|", "&"),
 }
 
+SYMMETRIC = {"max", "min", "maximum", "minimum", "hypot", "gcd"}
+"""Functions to which it is the same which argument comes first."""
+
 
 def python_changes(text: str) -> list[Change]:
     """Return all changes of a module; type hints, docstrings and `__all__` stay as they are."""
@@ -82,6 +85,8 @@ class _Python:
         if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "__all__":
             return
         yield node
+        if isinstance(node, ast.keyword) and node.arg == "slots":  # of a dataclass: memory only
+            return
         skipped = {"annotation", "returns", "type_comment"}
         for name, value in ast.iter_fields(node):
             if name in skipped:
@@ -114,7 +119,7 @@ class _Python:
             yield from self._swapped(node)
         elif isinstance(node, ast.Return) and node.value is not None:
             start, stop = self.span(node.value)
-            if self.text[start:stop] != "None":
+            if self.text[start:stop] not in ("None", "False"):  # as false as None
                 yield Change(start, stop, "None", "returns None")
 
     def _operator(self, left, right, table, operator) -> Iterator[Change]:  # type: ignore[no-untyped-def]
@@ -141,6 +146,8 @@ class _Python:
 
     def _swapped(self, node: ast.Call) -> Iterator[Change]:
         given = node.args[:2]
+        if ast.unparse(node.func).split(".")[-1] in SYMMETRIC:
+            return
         if len(given) < 2 or any(isinstance(one, ast.Starred) for one in given):
             return
         (a, b), (c, d) = self.span(given[0]), self.span(given[1])

@@ -277,8 +277,7 @@ def _flooded(
         shore = given.vertices[given.offsets[line] : given.offsets[line + 1]]
         inside = _inside(points[:, :2], points[shore, :2])
         steps, line_of = pieces.steps()
-        middle = points[steps[:, 0], :2] / 2 + points[steps[:, 1], :2] / 2
-        drowned = inside[steps].any(axis=1) | _inside(middle, points[shore, :2])
+        drowned = inside[steps].any(axis=1) | _are_chords_within(points[:, :2], steps, shore)
         stays = (line_of == line) | is_ring[line_of] | _runs_along(steps, shore, len(points))
         held = np.unique(steps[drowned & is_ring[line_of]])
         level = float(lines.heights[lines.offsets[line]])
@@ -303,6 +302,49 @@ def _set_level(
         np.append(overruled.heights, before),
         np.append(overruled.taken, np.full(len(wrong), level)),
     )
+
+
+def _are_chords_within(
+    xy: NDArray[np.float64], steps: NDArray[np.int32], shore: NDArray[np.int32]
+) -> NDArray[np.bool_]:
+    """Tell which steps go through water from shore to shore; noded, no others without ends in it.
+
+    Their middles, rounded, may lie on the wrong side of a shore that is near.
+    """
+    is_shore = np.zeros(len(xy), np.bool_)
+    is_shore[shore] = True
+    is_chord = is_shore[steps].all(axis=1) & ~_runs_along(steps, shore, len(xy))
+    ring = np.ascontiguousarray(xy[shore])
+    for step in np.flatnonzero(is_chord).tolist():
+        start, end = xy[steps[step]]
+        is_chord[step] = _is_ring_around(ring, start, end)
+    return is_chord
+
+
+def _is_ring_around(
+    ring: NDArray[np.float64], start: NDArray[np.float64], end: NDArray[np.float64]
+) -> bool:
+    """Tell if a segment that no edge of a closed ring crosses lies inside, exactly.
+
+    Inside, a ray from the segment over its end crosses an odd number of edges: to the left of the
+    line those with one end there and the segment's end not behind them::
+
+                     left
+        start ------- end -----|--->
+                               |
+    """
+    on_left = _orientation(start, end, ring) > 0
+    crosses = np.flatnonzero(on_left[:-1] != on_left[1:])
+    is_down = on_left[crosses]
+    left, right = (ring[crosses + np.where(is_down, k, 1 - k)] for k in (0, 1))
+    return bool(np.count_nonzero(_orientation(left, right, end) <= 0) % 2)
+
+
+def _orientation(
+    a: NDArray[np.float64], b: NDArray[np.float64], c: NDArray[np.float64]
+) -> NDArray[np.int8]:
+    a, b, c = (np.ascontiguousarray(places) for places in np.broadcast_arrays(a, b, c))
+    return _kernel.orientation(a, b, c)
 
 
 def _runs_along(

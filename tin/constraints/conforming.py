@@ -200,6 +200,8 @@ def _node_again(
     number_of = (np.cumsum(alive) - 1).astype(np.int32)
     points, pieces = points[alive], pieces.renumbered(number_of)
     chains = Chains(pieces.vertices, pieces.offsets, points[pieces.vertices, 2])
-    points, chains = node_again(points, chains, priorities[pieces.lines], threads=threads)
+    points, chains = node_again(
+        points, chains, priorities[pieces.lines], pieces.lines, threads=threads
+    )
     pieces = Pieces(chains.vertices, chains.offsets, pieces.lines)
     return mesh_of(points, pieces, threads=threads), points, pieces

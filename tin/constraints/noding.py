@@ -188,17 +188,18 @@ def node(
     work.split_everywhere(
         None if crossing == "split" else lambda pairs: _crossing_error(work, pairs, names)
     )
-    return _account(work, len(chains.offsets) - 1, np.asarray(priority))
+    return _account(work, np.arange(len(chains.offsets) - 1), np.asarray(priority))
 
 
 def node_again(
     points: NDArray[np.float64],
     chains: Chains,
     priority: NDArray[Any],
+    lines: NDArray[np.int32],
     *,
     threads: int,
 ) -> tuple[NDArray[np.float64], Chains]:
-    """Node lines that were bent by a rounding; a vertex keeps its height.
+    """Node parts of lines that were bent by a rounding; a vertex keeps its height.
 
     Parameters
     ----------
@@ -207,6 +208,9 @@ def node_again(
     chains : Chains
     priority : (l,) int array
         As for :func:`node`.
+    lines : (l,) int32 array
+        The line that each chain is a part of: of its parts, too, the lowest height counts, for
+        their order is the direction of the line.
     threads : int
 
     Returns
@@ -218,7 +222,7 @@ def node_again(
     walk = Walk.along(chains.vertices, chains.offsets, chains.heights)
     work = Splitting(np.ascontiguousarray(points[:, :2]), walk, 0.0, threads)
     work.split_everywhere()
-    noded = _account(work, len(chains.offsets) - 1, priority)
+    noded = _account(work, lines, priority)
     return np.concatenate([points, noded.new_points]), noded.chains
 
 
@@ -253,8 +257,8 @@ def _visits(walk: Walk, at: NDArray[np.int64]) -> _Visits:
     return _Visits(walk.vertices[at], walk.line[at], walk.heights[at])
 
 
-def _account(work: Splitting, n_lines: int, priority: NDArray[Any]) -> Noded:
-    """Return everything, the new points numbered by place."""
+def _account(work: Splitting, part_of: NDArray[Any], priority: NDArray[Any]) -> Noded:
+    """Return everything, the new points numbered by place; chain ``i`` is of ``part_of[i]``."""
     n_given = work.n_given
     made = work.xy[n_given:]
     order = np.lexsort((made[:, 1], made[:, 0]))
@@ -264,10 +268,10 @@ def _account(work: Splitting, n_lines: int, priority: NDArray[Any]) -> Noded:
     xy = np.concatenate([work.xy[:n_given], made[order]])
     is_crossing = np.zeros(len(xy), np.bool_)
     is_crossing[number[work.crossing_vertices]] = True
-    crossings, winners = _crossings(walk, xy, is_crossing, priority)
+    crossings, winners = _crossings(walk, xy, is_crossing, priority, part_of)
     is_new = winners.vertex >= n_given
     passed = ~walk.is_given & (walk.vertices < n_given)
-    offsets = np.searchsorted(walk.line, np.arange(n_lines + 1)).astype(np.int32)
+    offsets = np.searchsorted(walk.line, np.arange(len(part_of) + 1)).astype(np.int32)
     return Noded(
         np.column_stack([made[order], winners.height[is_new]]),
         Chains(walk.vertices, offsets, walk.heights),
@@ -277,11 +281,17 @@ def _account(work: Splitting, n_lines: int, priority: NDArray[Any]) -> Noded:
 
 
 def _crossings(
-    walk: Walk, xy: NDArray[np.float64], is_crossing: NDArray[np.bool_], priority: NDArray[Any]
+    walk: Walk,
+    xy: NDArray[np.float64],
+    is_crossing: NDArray[np.bool_],
+    priority: NDArray[Any],
+    part_of: NDArray[Any],
 ) -> tuple[Crossings, _Visits]:
     """Return the crossings, and whose height counts at each vertex, by vertex."""
     vertex, line, height = _visits(walk, np.flatnonzero(is_crossing[walk.vertices]))
-    rank = np.where(np.isneginf(priority[line]), 0, line)  # parts of draped lines have no order
+    rank = np.where(
+        np.isneginf(priority[line]), 0, part_of[line]
+    )  # parts of draped lines have no order
     best = np.lexsort((line, height, rank, -priority[line], np.isnan(height), vertex))
     vertex, line, height = vertex[best], line[best], height[best]
     is_winner = np.ones(len(vertex), np.bool_)

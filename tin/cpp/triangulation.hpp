@@ -8,15 +8,15 @@
 #include <utility>
 #include <vector>
 
-#include "base/ids.hpp"
 #include "base/arrays.hpp"
+#include "base/ids.hpp"
 #include "base/parallel.hpp"
 #include "growth/growth.hpp"
-#include "growth/shares.hpp"
 #include "growth/stitch.hpp"
-#include "hull/hull.hpp"
+#include "growth/work_stealing.hpp"
+#include "hull/convex_hull.hpp"
 #include "index/grid.hpp"
-#include "insertion/canonical.hpp"
+#include "insertion/canonical_order.hpp"
 #include "insertion/insertion.hpp"
 #include "search/vector_paths.hpp"
 
@@ -47,7 +47,8 @@ class Triangulator {
  public:
   // `keep_going` is asked now and then, on the calling thread, whether to go on.
   Triangulator(const PointRows& rows, const Options& options, std::function<bool()> keep_going)
-      : rows_(rows), options_(options),
+      : rows_(rows),
+        options_(options),
         team_(static_cast<int>(std::min<std::int64_t>(options.threads, rows.count)),
               std::move(keep_going)) {}
 
@@ -81,10 +82,8 @@ class Triangulator {
     const bool is_curve = static_cast<std::int32_t>(hull.size()) > grid.count() / kMostOnHull &&
                           grid.count() > kLeastToInsert;
     const bool is_worth_growing =
-        options_.method == Method::kGrowth ||
-        (options_.method == Method::kAutomatic && !is_curve);
-    const bool is_grown = is_worth_growing &&
-                          with_path(options_.path, [&](auto tag) {
+        options_.method == Method::kGrowth || (options_.method == Method::kAutomatic && !is_curve);
+    const bool is_grown = is_worth_growing && with_path(options_.path, [&](auto tag) {
                             return grow<typename decltype(tag)::Type>(grid, hull);
                           });
     if (is_grown || team_.is_stopped()) return;
@@ -92,12 +91,12 @@ class Triangulator {
     insert_all(grid);
   }
 
-  // What a thread made of a share.
+  // What a thread made of a task.
   struct alignas(kCacheLine) Grown {
     explicit Grown(TriangleStore made) : store(std::move(made)) {}
     TriangleStore store;
-    int share = 0;
-    std::int32_t last_shared = -1;
+    int task = 0;
+    Triangle last_shared = kNoTriangle;
     SearchCounts counts;
   };
 
@@ -105,22 +104,21 @@ class Triangulator {
   template <typename Near>
   bool grow(const PointGrid& grid, const std::vector<Vertex>& hull) {
     allocate();
-    Shares shares(grid.count(), team_.size());
+    WorkStealing work(grid.count(), team_.size());
     std::vector<std::vector<Grown>> grown(team_.size());
     std::atomic<bool> is_too_costly{false};
     team_.run([&](int part) {
-      for (int share = part; share != Shares::kNone; share = shares.split_largest()) {
-        const Range own = shares.range(share);
-        grown[part].emplace_back(share == 0 ? TriangleStore(result_.arrays())
-                                            : TriangleStore(expected_triangles(own)));
+      for (int task = part; task != WorkStealing::kNone; task = work.steal()) {
+        const Range own = work.range(task);
+        grown[part].emplace_back(task == 0 ? TriangleStore(result_.arrays())
+                                           : TriangleStore(expected_triangles(own)));
         Grown& made = grown[part].back();
         Growth<Near> growth(grid, hull, own, made.store);
-        const Outcome outcome =
-            growth.run([&] { return !is_too_costly && team_.keeps_going(part); },
-                       options_.method == Method::kAutomatic,
-                       [&] { return shares.next_block(share); });
+        const Outcome outcome = growth.run(
+            [&] { return !is_too_costly && team_.keeps_going(part); },
+            options_.method == Method::kAutomatic, [&] { return work.next_block(task); });
         if (outcome == Outcome::kTooCostly) is_too_costly = true;
-        made.share = share;
+        made.task = task;
         made.counts = growth.counts();
         made.last_shared = growth.last_shared();
         if (outcome != Outcome::kComplete) return;
@@ -134,25 +132,25 @@ class Triangulator {
       }
     }
     if (is_too_costly || team_.is_stopped()) return false;
-    stitch(grid, shares, all);
+    stitch(work, all);
     return true;
   }
 
-  // Two a vertex, with room for those that a neighbouring share finds too.
+  // Two a vertex, with room for those that a neighbouring task finds too.
   static std::int64_t expected_triangles(Range own) {
     return std::int64_t{2} * own.size() + own.size() / 8 + 1024;
   }
 
-  void stitch(const PointGrid& grid, Shares& shares, std::vector<Grown>& grown) {
+  void stitch(WorkStealing& work, std::vector<Grown>& grown) {
     if (grown.size() == 1) return number_by_rows();
     std::sort(grown.begin(), grown.end(), [&](const Grown& a, const Grown& b) {
-      return shares.range(a.share).begin < shares.range(b.share).begin;
+      return work.range(a.task).begin < work.range(b.task).begin;
     });
     const auto count = static_cast<int>(grown.size());
     std::vector<GrownPart> parts(grown.size());
     team_.run([&](int member) {
       for (int i = member; i < count; i += team_.size()) {
-        parts[i] = GrownPart(shares.range(grown[i].share), grown[i].store.arrays(),
+        parts[i] = GrownPart(work.range(grown[i].task), grown[i].store.arrays(),
                              grown[i].store.size(), grown[i].last_shared);
       }
     });

@@ -1,1 +1,1 @@
-"""What callers give, checked at the door: options, tables of coordinates, points."""
+"""What callers give, checked on entry: options, tables of coordinates, points."""

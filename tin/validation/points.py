@@ -1,4 +1,4 @@
-"""The door: callers' arrays become clean (n, 3) and (k, 2) float64 arrays, or a clear error."""
+"""Points on entry: callers' arrays become clean (n, 3) and (k, 2) float64 arrays, or errors."""
 
 from __future__ import annotations
 

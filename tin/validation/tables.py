@@ -64,7 +64,7 @@ def as_table(given: Any, what: str, *, least: int = 3, most: int = 3) -> Table:
     PointsError
         For values that are no numbers, and names of columns that do not tell the coordinates.
     """
-    if type(given) is np.ndarray and given.dtype.names is None and given.dtype.kind != "O":
+    if _is_plain(given):
         return Table(_as_numbers(given, what))
     given = _without_wrapping(given)
     geometry = _points_of(getattr(given, "geometry", given), what)
@@ -75,6 +75,15 @@ def as_table(given: Any, what: str, *, least: int = 3, most: int = 3) -> Table:
         return _unnamed(given, what)
     columns = _columns_by_name(given, names, what, least, most)
     return _stacked(columns, what)
+
+
+def _is_plain(given: Any) -> bool:
+    """Tell if a value is surely without names, masks and geometries; most are, and soon known."""
+    if type(given) is np.ndarray:
+        return given.dtype.names is None and given.dtype.kind != "O"
+    if type(given) is list:
+        return all(type(row) is list for row in given)
+    return type(given) in (float, int)
 
 
 def is_masked_array(given: Any) -> bool:

@@ -1,4 +1,4 @@
-"""Files in and out: what was asked for on the command line, handed to the io room."""
+"""Files in and out: what was asked for on the command line, handed to the package io."""
 
 from __future__ import annotations
 

@@ -1,7 +1,10 @@
 """Children that read: their answers, their limits, and what becomes of them."""
 
+import io
+import json
 import multiprocessing
 import os
+import struct
 import subprocess
 import sys
 import threading
@@ -13,6 +16,7 @@ import pytest
 
 from tinsmith.io import ReadError
 from tinsmith.io.isolated import Limits, limits_for, run_isolated, stream_isolated
+from tinsmith.io.isolated.answers import Answer, BrokenMessageError, receive, send
 
 FILE = Path("some file")
 QUICK = Limits(1.0, 1 << 28)
@@ -296,3 +300,78 @@ def test_a_library_does_not_fork():
     from tinsmith.io.isolated.forking import can_fork
 
     assert not can_fork()
+
+
+# ------------------------------------------------------------------ messages
+
+CONTENT = Answer(
+    {"a": [1, "ä", None]},
+    {"x": np.arange(6.0).reshape(2, 3), "none": np.empty((0, 3), "<i4"), "b": np.array([True])},
+)
+
+
+def message(value=None, arrays=None, body=b""):
+    head = json.dumps({"value": value, "arrays": arrays or {}}).encode()
+    return struct.pack("<Q", len(head)) + head + body
+
+
+def test_messages_arrive_as_they_were_sent():
+    stream = io.BytesIO()
+    send(stream, CONTENT)
+    send(stream, Answer("next", {}))
+    stream.seek(0)
+    found = receive(stream, most_bytes=1 << 20)
+    assert found.value == CONTENT.value
+    assert list(found.arrays) == list(CONTENT.arrays)
+    for name, array in CONTENT.arrays.items():
+        np.testing.assert_array_equal(found.arrays[name], array)
+        assert found.arrays[name].dtype == array.dtype
+    assert receive(stream, most_bytes=1 << 20) == Answer("next", {})
+
+
+def test_a_message_that_ends_early_is_none():
+    stream = io.BytesIO()
+    send(stream, CONTENT)
+    whole = stream.getvalue()
+    for length in range(len(whole)):
+        with pytest.raises(BrokenMessageError):
+            receive(io.BytesIO(whole[:length]), most_bytes=1 << 20)
+
+
+def test_a_message_has_at_most_so_many_bytes():
+    plain = message("x" * 40)
+    assert receive(io.BytesIO(plain), most_bytes=len(plain) - 8).value == "x" * 40
+    with pytest.raises(BrokenMessageError):
+        receive(io.BytesIO(plain), most_bytes=len(plain) - 9)
+    array = message(None, {"a": ["<f8", [500]], "b": ["<f8", [500]]}, bytes(8000))
+    assert len(receive(io.BytesIO(array), most_bytes=8000).arrays["b"]) == 500
+    with pytest.raises(BrokenMessageError):
+        receive(io.BytesIO(array), most_bytes=7999)
+
+
+@pytest.mark.parametrize(
+    "arrays",
+    [
+        {"a": ["|O", [1]]},
+        {"a": ["<f8", [-1]]},
+        {"a": ["<f8", [True]]},
+        {"a": ["<f8", [1.0]]},
+        {"a": ["<f8", [1] * 40]},
+        {"a": ["<f8", [1 << 62]]},
+        {"a": ["<f8", [1 << 50, 1 << 50]]},
+        {"a": ["<f8"]},
+        {"a": [8, [1]]},
+        {"a": ["no type", [1]]},
+        [1, 2],
+        "text",
+    ],
+)
+def test_arrays_that_cannot_be_are_no_message(arrays):
+    with pytest.raises(BrokenMessageError):
+        receive(io.BytesIO(message(None, arrays, bytes(64))), most_bytes=1 << 62)
+
+
+@pytest.mark.parametrize("head", [b"", b"{", b"[]", b"{}", b'{"arrays": {}}', b"\xff", b"[" * 9000])
+def test_what_is_no_message(head):
+    with pytest.raises(BrokenMessageError):
+        receive(io.BytesIO(struct.pack("<Q", len(head)) + head), most_bytes=1 << 20)

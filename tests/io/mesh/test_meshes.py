@@ -636,3 +636,10 @@ def test_the_command_line_shows_what_is_odd_in_a_mesh(tmp_path, command):
     done = CliRunner().invoke(main, arguments)
     assert done.exit_code == 0
     assert "Triangles overlap" in done.output
+
+
+def test_a_tin_too_large_for_float32_is_no_stl(tmp_path):
+    far = [[0, 0, 0], [1e39, 0, 0], [0, 1e39, 0]]
+    with pytest.raises(ts.WriteError, match="the TIN is too large for float32"):
+        ts.io.write(ts.triangulate(far), tmp_path / "a.stl")
+    assert not list(tmp_path.iterdir())

@@ -5,12 +5,15 @@ from __future__ import annotations
 import subprocess
 import sys
 import warnings
+from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import tinsmith as ts
 from tinsmith.io import CrsError, FormatError, ReadError, read
+from tinsmith.io.raster import dem as reading
 
 rasterio = pytest.importorskip("rasterio")
 pyproj = pytest.importorskip("pyproj")
@@ -202,6 +205,21 @@ def test_centres_on_the_bounds_of_a_window_are_within(raster, transform):
         assert len(survey.points) == (5 * 8 if k in (0, 2) else 6 * 7)
 
 
+@pytest.mark.parametrize("transform", [UPRIGHT, SOUTH_UP])
+@pytest.mark.parametrize("side", range(5))
+def test_window_beyond_a_side_of_the_raster_holds_what_there_is(raster, transform, side):
+    array = heights(20, 20)
+    everything = points_by_loop(array, transform)
+    low, high = np.quantile(everything[:, :2], [0.3, 0.7], axis=0)
+    limits = np.array([*low, *high])
+    wide = np.array([*(low - 1000), *(high + 1000)])
+    limits = np.where(np.arange(4) == side, wide, limits) if side < 4 else wide
+    survey = read(raster(array, transform=transform), window=ts.Bounds(*limits))
+    x, y = everything[:, :2].T
+    inside = (limits[0] <= x) & (x <= limits[2]) & (limits[1] <= y) & (y <= limits[3])
+    assert np.allclose(survey.points, everything[inside], rtol=0, atol=1e-9)
+
+
 @pytest.mark.parametrize(
     "window",
     [
@@ -221,6 +239,17 @@ def test_centres_on_the_bounds_of_a_window_are_within(raster, transform):
 )
 def test_window_that_the_raster_does_not_have(raster, window):
     assert "indow" in fault(raster(heights()), FormatError, window=window)
+
+
+@pytest.mark.parametrize("stride", [1, 3])
+def test_cells_are_no_more_than_an_int32_can_number(monkeypatch, stride):
+    monkeypatch.setattr(reading, "_free_memory", lambda: 1 << 60)
+    most = np.iinfo(np.int32).max
+    reading._require_room(SimpleNamespace(width=stride * most, height=1, stride=stride), Path("a"))
+    with pytest.raises(ReadError, match=f"{most + 1:,} cells .* {most:,} are the most that a TIN"):
+        reading._require_room(
+            SimpleNamespace(width=stride * most + 1, height=1, stride=stride), Path("a")
+        )
 
 
 @pytest.mark.parametrize("stride", [0, -2, 6, 100, 1.5, "2"])
@@ -373,3 +402,13 @@ def test_virtual_raster_and_one_whose_source_is_gone(raster, tmp_path):
 def test_raster_becomes_a_tin(raster):
     tin = ts.triangulate(read(raster(heights())))
     assert len(tin.triangles) == 2 * 5 * 8
+
+
+@pytest.mark.parametrize(
+    "transform",
+    [(2.0, 4.0, 0.0, 1.0, 2.0, 0.0), (np.inf, 0, 0, 0, -1, 0), (1.0, 0, np.nan, 0, -1.0, 0)],
+)
+def test_cells_without_a_size_are_refused(transform):
+    header = SimpleNamespace(transform=transform, bounds=(0.0, 0.0, 1.0, 1.0))
+    with pytest.raises(ReadError, match="in which a cell has no size, or none that is finite"):
+        reading._require_place(header, Path("a.tif"))

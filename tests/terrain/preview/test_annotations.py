@@ -18,6 +18,7 @@ from tinsmith.terrain.preview.annotations import (
     scale_bar_length,
 )
 from tinsmith.terrain.preview.camera import VIEWS, View, aim, ground_axes, pixels_per_unit
+from tinsmith.terrain.preview.overlay import Overlay
 from tinsmith.terrain.preview.scene import add_lights, scene_points
 from tinsmith.terrain.preview.tints import tints
 from tinsmith.terrain.units import METRE, ground_of
@@ -143,6 +144,10 @@ def test_needle_and_letter_lie_to_the_north(view):
     assert (dark, light) == (INK, PAPER)
     circle = max((p for p, _ in overlay.lines), key=len)
     center = (circle.max(axis=0) + circle.min(axis=0)) / 2
+    np.testing.assert_allclose(circle[0], circle[-1], atol=1e-9)  # once around
+    reach = np.hypot(*((circle - center) @ np.linalg.pinv(axes)).T)
+    np.testing.assert_allclose(reach, reach[0], rtol=1e-6)
+    assert np.abs(np.diff(circle, axis=0)).max() < 0.14 * np.abs(circle - center).max()
     tip = left[0]
     np.testing.assert_array_equal(tip, right[0])
     np.testing.assert_allclose(tip - center, 1.25 * 32.0 * axes[1], atol=1e-6)
@@ -152,6 +157,11 @@ def test_needle_and_letter_lie_to_the_north(view):
     assert letter[0] * axes[1][1] - letter[1] * axes[1][0] == pytest.approx(0.0, abs=1e-6)
     west = left[1] - center
     assert west @ np.linalg.pinv(axes)[:, 0] < 0 < (right[2] - center) @ np.linalg.pinv(axes)[:, 0]
+    (x, y), (other_x, other_y), notch = (
+        (place - center) @ np.linalg.pinv(axes) for place in (left[1], right[2], left[2])
+    )
+    assert (other_x, other_y) == pytest.approx((-x, y), abs=1e-6)  # both halves alike
+    assert y < notch[1] < 0
 
 
 def test_north_is_up_on_a_map():
@@ -265,3 +275,52 @@ def test_the_settings_of_vtk_come_back_after_drawing():
             assert words.GetDefaultBackend() == backend
     finally:
         words.SetDefaultBackend(before)
+
+
+@pytest.mark.parametrize("factor", [1.0, 2.0])
+def test_what_an_overlay_draws_is_where_it_was_asked_for(factor, can_draw):
+    """In design pixels from the lower left corner, times the factor."""
+    red, green, blue, black = (255, 0, 0), (0, 255, 0), (0, 0, 255), (0, 0, 0)
+    plotter = pv.Plotter(off_screen=True, window_size=[int(200 * factor), int(120 * factor)])
+    plotter.background_color = "white"
+    plotter.disable_anti_aliasing()
+    overlay = Overlay(plotter.renderer, factor=factor)
+    overlay.rectangle((20, 10), (60, 30), red)
+    overlay.polygon([(100, 10), (140, 10), (100, 50)], green)
+    overlay.line([(20, 80), (80, 80), (80, 110)], blue, width=3.0)
+    for align in ("left", "center", "right"):
+        overlay.text(
+            (150, {"left": 20, "center": 60, "right": 95}[align]),
+            "HHH",
+            black,
+            size=16,
+            align=align,
+        )
+    width = overlay.text_width("HHH", size=16)
+    shot = plotter.screenshot(return_img=True)[::-1].astype(int)
+
+    def box_of(color):
+        rows, columns = np.nonzero(np.abs(shot - color).sum(axis=2) < 120)
+        corners = columns.min(), rows.min(), columns.max() + 1, rows.max() + 1
+        return np.array(corners) / factor, len(rows) / factor**2
+
+    box, area = box_of(red)
+    assert box == pytest.approx([20, 10, 80, 40], abs=1.1)
+    assert area == pytest.approx(60 * 30, rel=0.06)
+    box, area = box_of(green)
+    assert box == pytest.approx([100, 10, 140, 50], abs=1.6)
+    assert area == pytest.approx(40 * 40 / 2, rel=0.08)
+    box, area = box_of(blue)
+    assert box == pytest.approx([20, 79, 81, 110], abs=2.1)
+    assert area == pytest.approx(3 * 90, rel=0.15)
+    dark = np.abs(shot - black).sum(axis=2) < 120
+    for align, low in (("left", 20), ("center", 60), ("right", 95)):
+        strip = dark[int((low - 4) * factor) : int((low + 20) * factor)]
+        columns = np.flatnonzero(strip.any(axis=0)) / factor
+        middle = 150 + {"left": width / 2, "center": 0, "right": -width / 2}[align]
+        assert (columns.min() + columns.max()) / 2 == pytest.approx(middle, abs=2.5)
+        assert 0.75 * width < np.ptp(columns) < width + 2
+    overlay.clear()
+    plotter.render()
+    assert (plotter.screenshot(return_img=True) == 255).all()
+    plotter.close()

@@ -6,11 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from shapely.geometry import LineString, Point
 from support import constrained_oracle as oracle
 from support import oracles
 
 import tinsmith as ts
 from tinsmith.tin import TIN, LinesError, check
+from tinsmith.tin.checking.chain_matching import _along, distance
 from tinsmith.tin.constraints.breaklines import Lines
 from tinsmith.tin.report import LEFT_OUT
 
@@ -465,3 +467,18 @@ def test_the_course_of_a_line_is_looked_at_in_order():
     (chain,) = tin.lines.chains()
     back = with_chains(tin, [chain[[0, 1, 2, 3, 2, 3, 4, 5]]])
     assert not check(back, points=points, breaklines=[line]).ok
+
+
+def test_measures_along_and_from_segments():
+    rng = np.random.default_rng(6)
+    p, a, b = rng.uniform(-10, 10, (3, 300, 2))
+    b[:20] = a[:20]  # no length
+    lines = [LineString([one, other]) for one, other in zip(a, b, strict=True)]
+    exact = [line.distance(Point(place)) for line, place in zip(lines, p, strict=True)]
+    np.testing.assert_allclose(distance(p, a, b), exact, rtol=1e-9, atol=1e-12)
+    on = a + rng.random((300, 1)) * (b - a)
+    assert distance(on, a, b).max() < 1e-12
+    along = _along(p[20:], a[20:], b[20:])
+    way = (b - a)[20:] / np.hypot(*(b - a)[20:].T)[:, None]
+    across = p[20:] - (a[20:] + along[:, None] * way)  # from its foot, at a right angle
+    np.testing.assert_allclose((across * way).sum(axis=1), 0, atol=1e-9)

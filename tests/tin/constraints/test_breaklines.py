@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 import shapely
@@ -9,6 +11,7 @@ import shapely
 import tinsmith as ts
 from tinsmith.tin.report import LEFT_OUT
 
+NONE = np.empty((0, 3))
 ARRAYS = ("points", "triangles", "neighbors", "constrained")
 
 
@@ -289,6 +292,55 @@ def test_breakline_meets_the_shore_at_the_height_of_the_water():
     assert [met["heights"] for met in tin.report.to_dict()["crossings"]] == [[90, 2.5], [90, 2.5]]
 
 
+def test_line_beside_water_within_a_rounding_is_kept():
+    """The rounded middle of the line lies in the water, which its ends and itself only pass."""
+    line = [[51145.338198906, 35801.8367392342, 1.0], [94041.46643103092, 65829.12650172165, 5.0]]
+    lakes = [
+        ts.Water(
+            [
+                [0, 0],
+                [92284.28620065398, 64599.10034045778],
+                [71730.88144296753, 50211.717010077264],
+            ],
+            0.0,
+        ),
+        ts.Water([[0, 0], [0, 112761], [0, 102198]], 2.0),
+    ]
+    tin = ts.triangulate(NONE, breaklines=[line], water=lakes)
+    assert tin.lines.kinds == ("hard", "water", "water")
+    assert tin.points[tin.lines.vertices[:2]].tolist() == line
+
+
+def test_line_from_shore_to_shore_of_narrow_water_stays_where_it_is_outside():
+    """Four corners on a slanted line but for roundings: their diagonal, in exact fractions."""
+    rng = np.random.default_rng(2)
+    far = [[-1e4, -1e4, 0], [1e4, -1e4, 0], [0, 1e4, 0]]
+    outside = []
+    while len(outside) < 100:
+        x = 1000 * rng.random(4)
+        ring = np.column_stack([x, x * 0.7 + 0.1 + rng.integers(-3, 4, 4) * np.spacing(700.0)])
+        a, b, c, d = ring
+        sides = {turn(a, c, b), turn(a, c, d)}
+        if 0 in sides or is_crossing(a, b, c, d) or is_crossing(b, c, d, a):
+            continue
+        line = [[*a, 5], [*c, 5]]
+        tin = ts.triangulate(far, breaklines=[line], water=[ts.Water(ring, 1)])
+        outside.append(len(sides) == 1)
+        assert ("hard" in tin.lines.kinds) == outside[-1]
+    assert 20 < sum(outside) < 80
+
+
+def turn(a, b, c):
+    """Return the sign of the turn from a over b to c."""
+    (ax, ay), (bx, by), (cx, cy) = ([Fraction(v) for v in place] for place in (a, b, c))
+    area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
+    return (area > 0) - (area < 0)
+
+
+def is_crossing(a, b, c, d):
+    return turn(a, b, c) * turn(a, b, d) <= 0 and turn(c, d, a) * turn(c, d, b) <= 0
+
+
 # ------------------------------------------------------------- long edges, conforming
 
 
@@ -441,3 +493,58 @@ def test_corners_of_a_boundary_within_water_have_its_level():
     inside = ((xy >= 30) & (xy <= 70)).all(axis=1)
     assert (tin.points[inside, 2] == 2.5).all()
     assert ts.check(tin).ok
+
+
+@pytest.mark.parametrize(
+    ("line", "sentence"),
+    [
+        ([["a", "b"], ["c", "d"]], "A breakline is no table of real numbers."),
+        ([[1, 2], [3]], "A breakline is no table of real numbers."),
+        ({"a": [0, 1], "b": [2, 3]}, "columns 'a', 'b', and none of them is called easting"),
+    ],
+)
+def test_what_is_no_line_is_told_of_the_line(line, sentence):
+    with pytest.raises(ts.LinesError) as caught:
+        ts.Breakline(line)
+    assert sentence in str(caught.value)
+    assert "table" not in str(caught.value).replace(sentence, "")
+
+
+def test_equal_coordinates_are_equal_bytes():
+    line = ts.Breakline([[-0.0, 1.0, -0.0], [2.0, -0.0, 3.0]])
+    assert not np.signbit(line.coords).any()
+    assert not line.coords.flags.writeable
+    with pytest.raises(
+        ts.LinesError, match=r"has 2 vertices that are not finite .*vertex 1, \[nan"
+    ):
+        ts.Breakline([[0, 0, 0], [np.nan, 1, 2], [3, np.inf, 4]])
+
+
+def test_draped_lines_cross_alike_in_any_order():
+    """Their elevations at a crossing differ by roundings of the surface's; one of them counts."""
+    crossings = 0
+    for seed in range(12):
+        rng = np.random.default_rng(seed)
+        points = np.c_[rng.random((60, 2)) * 100, rng.random(60) * 50]
+        lines = [rng.random((2, 2)) * 80 + 10 for _ in range(4)]
+        tin = ts.triangulate(points, breaklines=lines)
+        other = ts.triangulate(points, breaklines=lines[::-1])
+        crossings += len(tin.report.crossings.vertices)
+        rows, same = (one.points[np.lexsort(one.points.T)] for one in (tin, other))
+        np.testing.assert_array_equal(rows, same)
+    assert crossings > 10
+
+
+@pytest.mark.parametrize("first", range(4))
+def test_a_crossing_that_rounds_to_a_given_vertex_is_that_vertex(first):
+    """Lines through (1/3, 1/3), which is no double: the nearest double is a point, on neither."""
+    third = 1.0 / 3.0
+    points = [[third, third, 7], [3, 0, 1], [3, 3, 2], [-3, -3, 3]]
+    points = np.roll(points, first, axis=0)
+    lines = [[[0, 1, 0], [1, -1, 0]], [[-1, 1, 5], [3, -1, 5]]]
+    tin = ts.triangulate(points, breaklines=lines)
+    assert ts.check(tin, points=ts.Survey(points=points, breaklines=lines)).ok
+    assert len(np.unique(tin.points[:, :2], axis=0)) == len(tin.points) == 8
+    (place,) = tin.report.crossings.xy
+    assert place.tolist() == [third, third]
+    assert tin.report.crossings.vertices.tolist() == [first]

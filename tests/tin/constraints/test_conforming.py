@@ -143,6 +143,24 @@ def test_elevation_where_a_line_folds_back_on_itself_has_no_direction():
     assert faces(tins[0]) == faces(tins[1])
 
 
+def test_elevation_where_parts_of_one_line_cross_anew_has_no_direction():
+    """Water cuts the line, which folds back on itself, into parts that cross once split."""
+    there = [0.0049410027624890995, 100.00164700092083]
+    draped = [there, [0.8690177204266133, 100.28967257347554]]
+    line = [
+        [2.653223443325734, 100.88440781444191, 0.0],
+        [*there, 3.0],
+        [0.6555955232764222, 100.21853184109214, -4.0],
+        [*there, 4.0],
+    ]
+    lake = ts.Water([[0.8, 100.3], [0.6, 100.3], [0.7, 100.1]], 0.0)
+    tins = [
+        ts.triangulate(NONE, breaklines=[draped, way], water=[lake], conforming=True)
+        for way in (line, line[::-1])
+    ]
+    assert faces(tins[0]) == faces(tins[1])
+
+
 def test_vertices_made_in_water_and_lines_keep_their_numbers():
     """Points in water leave gaps in the numbers, which splitting closes."""
     rng = np.random.default_rng(1)

@@ -159,3 +159,14 @@ def test_a_hole_across_collinear_points_of_the_hull():
     tin = ts.triangulate(points, holes=[[[1, 1], [4, 0], [0, 3]]])
     assert tin.area == pytest.approx(4 - 0.6886087768440714, rel=1e-12)
     assert tin.report.to_dict()["left_out"] == {}
+
+
+def test_a_closed_line_of_shapely_is_a_ring_and_an_open_one_is_none():
+    square = [[2, 2], [6, 2], [6, 6], [2, 6]]
+    whole = ts.triangulate(GRID).area
+    for ring in (shapely.LinearRing(square), shapely.LineString([*square, square[0]])):
+        assert ts.triangulate(GRID, holes=[ring]).area == whole - 16
+    with pytest.raises(ts.LinesError, match="Invalid hole: a LineString is no polygon"):
+        ts.triangulate(GRID, holes=[shapely.LineString(square)])
+    with pytest.raises(ts.LinesError, match="Invalid hole: a polygon without a ring"):
+        ts.triangulate(GRID, holes=[np.empty((0, 3, 2))])

@@ -120,6 +120,28 @@ def square(**options):
     return ts.triangulate([[0, 0, 5], [4, 0, 6], [4, 4, 7], [0, 4, 8], [2, 1, 9]], **options)
 
 
+@pytest.mark.parametrize("count", [10_000, 10_001])
+@pytest.mark.parametrize("size", [5, 60])
+def test_many_points_at_once_give_what_a_fresh_build_gives(count, size):
+    """Beyond 10,000 all are triangulated anew; some of them stand where others do."""
+    rng = np.random.default_rng(count)
+    before = np.c_[rng.integers(0, 20 * size, (size, 2)) + 0.5, rng.integers(0, 50, size)]
+    corners = np.array([[0.0, 0, 1], [3000, 0, 2], [0, 3000, 3]])
+    tin = ts.triangulate(np.concatenate([corners, before]), duplicates="last")
+    new = np.c_[rng.integers(0, 150, (count, 2)), rng.integers(0, 50, count)].astype(float)
+    new[:3] = np.add(before[:3], [0, 0, 100])
+    tin.insert(new)
+    require_fresh(tin)
+    wanted = {(x, y): z for x, y, z in np.concatenate([corners, before, new]).tolist()}
+    assert {(x, y): z for x, y, z in tin.points.tolist()} == wanted
+    tin.insert([[7.25, 8.25, 9.0]])
+    tin.remove([3])
+    require_fresh(tin)
+    for _ in range(3):
+        tin.undo()
+    assert len(tin.points) == len(np.unique(np.concatenate([corners, before])[:, :2], axis=0))
+
+
 def test_vertices_behind_a_removed_one_move_up():
     tin = square()
     points = tin.points
@@ -495,6 +517,9 @@ def test_tin_that_is_not_delaunay_is_not_edited():
         ("remove", {"vertices": 5}, "no vertex 5"),
         ("remove", {"vertices": -1}, "no vertex -1"),
         ("remove", {"vertices": 1.5}, "whole numbers"),
+        ("remove", {"vertices": [[1], [2, 3]]}, r"Invalid vertices .*: whole numbers are needed"),
+        ("remove", {"vertices": np.ma.masked_less([0, 3], 1)}, "whole numbers are needed"),
+        ("remove", {"vertices": [3, 7, 9]}, "no vertex 7: numbers 0 to 4 are allowed"),
         ("remove", {"vertices": [1, 1]}, "twice"),
         ("remove", {"vertices": [0, 1, 2]}, "No triangle"),
         ("move", {"vertex": 0, "point": [2, 1, 0]}, "already"),
@@ -544,3 +569,55 @@ def test_the_last_line_cannot_go_when_no_points_are_left(options):
 def test_bad_scripts_name_the_edit(script, sentence):
     with pytest.raises(ts.PointsError, match=sentence):
         apply_edits(square(), script)
+
+
+def test_a_vertex_is_not_moved_while_all_others_are_in_line():
+    tin = ts.triangulate([[0, 0, 0], [1, 0, 0], [2, 0, 0], [1, 1, 0]])
+    before = state(tin)
+    with pytest.raises(ts.PointsError, match="while all others are in line: insert a point first"):
+        tin.move(3, [1, 2, 0])
+    require_state(tin, before)
+    tin.insert([[0, 5, 5]])
+    tin.move(3, [1, 2, 0])
+    require_fresh(tin)
+
+
+@pytest.mark.parametrize("gone", [0, 1, 2, 3])
+def test_a_ring_without_one_of_its_vertices_stays_closed(gone):
+    """Also without the vertex at which it closes, whose elevation is the ring's twice."""
+    ring = [[2, 2, 1], [6, 2, 2], [6, 6, 3], [2, 6, 4]]
+    ground = [[0, 0, 0], [9, 0, 0], [9, 9, 0], [0, 9, 0]]
+    tin = ts.triangulate(ground, breaklines=[[*ring, ring[0]]])
+    tin.remove(4 + gone)
+    (chain,) = [*tin.lines.chains()]
+    left = np.array(ring[gone + 1 :] + ring[:gone], float)
+    found = tin.points[chain]
+    np.testing.assert_array_equal(found[0], found[-1])
+    assert sorted(found[:-1].tolist()) == sorted(left.tolist())
+    fresh = ts.triangulate(ground, breaklines=[[*left, left[0]]])
+    assert tin.area == fresh.area
+    assert set(map(tuple, tin.points.tolist())) == set(map(tuple, fresh.points.tolist()))
+
+
+@pytest.mark.parametrize(("count", "steps"), [(3, 3), (10_001, 1)])
+def test_edits_after_one_that_failed_are_as_if_it_had_not_been(count, steps):
+    rng = np.random.default_rng(3)
+    points = np.c_[rng.integers(0, 40, (60, 2)) * 1.0, rng.integers(0, 9, 60)]
+    points = points[np.unique(points[:, :2], axis=0, return_index=True)[1]]
+    tin, same = (ts.triangulate(points) for _ in range(2))
+    new = np.c_[rng.random((count, 2)) * 40, np.zeros(count)]
+    new[count // 2] = points[5] + [0, 0, 1]
+
+    def edit(step):
+        for one in (tin, same):
+            one.insert([[0.5 + step, 0.25, 9.0], [1.5, 7.25 + step, 8.0]])
+            one.remove([7, len(one.points) - 2])
+            one.move(3, [0.125 + step, 3.0625, 2.0])
+
+    for step in range(steps):
+        edit(step)
+        with pytest.raises(ts.PointsError, match="allows none"):
+            tin.insert(new, duplicates="error")
+    edit(steps)
+    require_state(tin, state(same))
+    require_fresh(tin)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -313,3 +315,23 @@ def test_a_vertex_at_just_the_distance_from_an_end_is_the_ends_not_the_segments(
     xy = np.array([(0, 0), (100, 0), vertex], float)
     found = _kernel.touches(xy, as_pairs(ends), 5.0).tolist()
     assert found == ([[0, 2]] if is_touching else [])
+
+
+def test_diagonals_of_rectangles_meet_in_the_even_neighbor_of_their_middle():
+    """Sides of all digits: their areas are no doubles, and a quotient by these is no tie."""
+    rng = np.random.default_rng(11)
+    low, high = np.sort(rng.uniform(1.0, 2.0, (2, 500, 2)), axis=0)
+    corners = np.stack(
+        [low, np.c_[high[:, 0], low[:, 1]], high, np.c_[low[:, 0], high[:, 1]]], axis=1
+    )
+    first = np.arange(0, 2000, 4, dtype=np.int32)
+    segments = np.stack([first, first + 2, first + 1, first + 3], axis=1).reshape(-1, 2)
+    pairs = np.arange(1000, dtype=np.int32).reshape(-1, 2)
+    found = _kernel.intersections(corners.reshape(-1, 2), segments, pairs)
+    middle = [
+        [(Fraction(a) + Fraction(b)) / 2 for a, b in zip(one, other, strict=True)]
+        for one, other in zip(low.tolist(), high.tolist(), strict=True)
+    ]
+    np.testing.assert_array_equal(found, [[float(x), float(y)] for x, y in middle])  # half to even
+    ties = sum(Fraction(float(value)) != value for place in middle for value in place)
+    assert ties > 300

@@ -11,7 +11,7 @@ from shapely.geometry import LineString, Point, Polygon
 from support import oracles
 
 import tinsmith as ts
-from tinsmith.tin.meshing.refinement import refine
+from tinsmith.tin.meshing.refinement import _on_surface, refine
 from tinsmith.tin.report import UNMENDED_WHY
 
 UTM = np.array([500_000.0, 4_000_000.0, 300.0])
@@ -512,3 +512,32 @@ def test_any_small_survey_ends_sound(places, lines, min_angle):
 def test_bad_limits_are_told_in_a_sentence(options, words):
     with pytest.raises(ts.PointsError, match=words):
         refine(random_points(), **options)
+
+
+@pytest.mark.parametrize("make", [square, with_boundary_and_hole, touching_corners])
+def test_places_beside_the_rim_have_the_height_of_the_nearest_edge(make):
+    """A rounding outside, and at random places outside: against each edge of the rim in turn."""
+    tin = make()
+    rng = np.random.default_rng(4)
+    low, high = tin.points[:, :2].min(axis=0), tin.points[:, :2].max(axis=0)
+    places = rng.uniform(low - 20, high + 20, (60, 2))
+    rings = [tin.points[np.append(ring, ring[0])] for ring in tin.rings]
+    ends = [pair for ring in rings for pair in pairwise(ring)]
+    middles = np.array([0.3 * a[:2] + 0.7 * b[:2] for a, b in ends])
+    outward = np.array([[b[1] - a[1], a[0] - b[0]] for a, b in ends])
+    places = np.concatenate([places, middles + 1e-7 * outward])
+    found = _on_surface(tin, places)
+    within = tin.interpolate(places)
+    for place, z, inside in zip(places, found, within, strict=True):
+        if not np.isnan(inside):
+            assert z == inside
+            continue
+        distances = [LineString([a[:2], b[:2]]).distance(Point(place)) for a, b in ends]
+        nearest = np.flatnonzero(np.array(distances) <= min(distances) + 1e-9)
+        heights = []
+        for k in nearest:
+            a, b = ends[k]
+            line = LineString([a[:2], b[:2]])
+            share = line.project(Point(place)) / line.length
+            heights.append(a[2] + share * (b[2] - a[2]))
+        assert min(abs(z - height) for height in heights) < 1e-6

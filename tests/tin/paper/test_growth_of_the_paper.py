@@ -430,3 +430,13 @@ def test_unknown_reading_is_refused():
 def test_repr_is_one_line():
     network = paper.original(flat([(0, 0), (1, 0), (0, 1)]))
     assert repr(network) == "<Network: 3 points, 1 triangles, 0 edges not extended>"
+
+
+def test_cotangents_are_those_of_the_angles():
+    rng = np.random.default_rng(9)
+    xy = rng.uniform(-5, 5, (2, 80))
+    found = _cotangents(tuple(xy), 0, 1, np.arange(2, 80))
+    a, b = xy[:, [0]] - xy[:, 2:], xy[:, [1]] - xy[:, 2:]
+    turn = np.arctan2(a[1], a[0]) - np.arctan2(b[1], b[0])
+    angle = np.abs(np.remainder(turn + np.pi, 2 * np.pi) - np.pi)
+    np.testing.assert_allclose(found, 1 / np.tan(angle), rtol=1e-9, atol=1e-9)

@@ -211,7 +211,7 @@ def test_skipped_cells_reach_the_report():
     assert ts.triangulate(survey).report.skipped == {"nodata cells": 12}
 
 
-# ------------------------------------------------------------------ doors
+# ------------------------------------------------------------------ entry points
 
 
 def test_points_come_out_fresh_contiguous_and_without_negative_zero():

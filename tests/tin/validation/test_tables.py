@@ -143,6 +143,16 @@ def test_names_that_do_not_tell_the_coordinates_are_refused(names, sentence):
             ts.triangulate(table)
 
 
+@pytest.mark.parametrize(("count", "listed"), [(7, 7), (8, 8), (9, 8), (12, 8)])
+def test_eight_names_at_most_are_listed(count, listed):
+    names = [f"column{k}" for k in range(count)]
+    with pytest.raises(ts.PointsError) as caught:
+        ts.triangulate(pd.DataFrame({name: [0.0, 1.0, 2.0] for name in names}))
+    shown = ", ".join(f"'{name}'" for name in names[:listed])
+    assert f"{shown}{', ...' if count > listed else ', and none'}" in str(caught.value)
+    assert f"column{listed}'" not in str(caught.value)
+
+
 def test_line_of_two_named_columns_is_draped():
     line = ts.Breakline(pd.DataFrame({"y": [0.0, 3.0], "x": [0.0, 4.0]}))
     assert line.is_draped

@@ -1,4 +1,4 @@
-// Index types that cannot be mixed up.
+// Numbers of rows, vertices, triangles and edges: types that cannot be mixed up.
 #pragma once
 
 #include <cstddef>
@@ -9,33 +9,109 @@ namespace tinsmith {
 // A row of the caller's input.
 enum class Row : std::int32_t {};
 
-// A position in the sweep order: the order in which vertices are finished.
+// A vertex. Growth numbers them in the sweep order, the order in which they are finished;
+// insertion along its curve; a mesh that can be changed in the order in which they came.
 enum class Vertex : std::int32_t {};
 
-// An edge as seen from one triangle: 3 * triangle + corner opposite the edge.
+enum class Triangle : std::uint32_t {};
+
+// An edge as seen from one triangle: 4 * triangle + number of the corner opposite the edge. It is
+// directed with that triangle on its left.
 //
 //              corner 2
 //              .      .
 //      edge 1 .        . edge 0
 //            .          .
 //      corner 0 ..edge 2.. corner 1
-enum class HalfEdge : std::int32_t {};
+enum class HalfEdge : std::uint32_t {};
 
 constexpr Vertex kNoVertex{-1};
-constexpr HalfEdge kOutside{-1};    // beyond the hull
-constexpr HalfEdge kNoHalfEdge{-2};  // not known (yet)
+constexpr Triangle kNoTriangle{UINT32_MAX};
+constexpr HalfEdge kNoHalfEdge{UINT32_MAX};   // not known (yet)
+constexpr HalfEdge kOutside{UINT32_MAX - 1};  // beyond the hull
+
+// In arrays of neighbours, three a triangle.
 constexpr std::int32_t kNoNeighbor = -1;
 constexpr std::int32_t kUnknownNeighbor = -2;  // not known (yet)
 
-// 2n triangles, three half-edges each, must fit in 31 bits.
+// 2n triangles, three entries each, must fit in 31 bits; then their half-edges fit in 32.
 constexpr std::int64_t kMostPoints = INT32_MAX / 6;
+static_assert(4 * 2 * kMostPoints + 3 < UINT32_MAX - 1, "the last half-edge is no special one");
 
 constexpr std::int32_t number(Row row) { return static_cast<std::int32_t>(row); }
 constexpr std::int32_t number(Vertex v) { return static_cast<std::int32_t>(v); }
-constexpr std::int32_t number(HalfEdge e) { return static_cast<std::int32_t>(e); }
+constexpr std::uint32_t number(Triangle t) { return static_cast<std::uint32_t>(t); }
+constexpr std::uint32_t number(HalfEdge e) { return static_cast<std::uint32_t>(e); }
 
-constexpr HalfEdge half_edge(std::int32_t triangle, std::int32_t corner) {
-  return static_cast<HalfEdge>(3 * triangle + corner);
+constexpr HalfEdge half_edge(Triangle triangle, std::uint32_t corner) {
+  return HalfEdge{4 * number(triangle) + corner};
 }
+constexpr Triangle triangle_of(HalfEdge e) { return Triangle{number(e) >> 2}; }
+constexpr std::uint32_t corner_of(HalfEdge e) { return number(e) & 3; }
+
+// The corners 1, 2, 0 and 2, 0, 1 as digits of a number: a branch on the corner would be guessed
+// wrongly half of the time.
+constexpr std::uint32_t corner_after(std::uint32_t corner) { return (0x09u >> (2 * corner)) & 3; }
+constexpr std::uint32_t corner_before(std::uint32_t corner) { return (0x12u >> (2 * corner)) & 3; }
+
+// Where a half-edge stands in flat arrays of three entries a triangle.
+constexpr std::size_t entry_of(Triangle triangle, std::uint32_t corner) {
+  return std::size_t{3} * number(triangle) + corner;
+}
+constexpr std::size_t entry_of(HalfEdge e) { return entry_of(triangle_of(e), corner_of(e)); }
+
+// for (const HalfEdge e : half_edges(triangle))
+class HalfEdges {
+ public:
+  class Iterator {
+   public:
+    constexpr explicit Iterator(std::uint32_t edge) : edge_(edge) {}
+    constexpr HalfEdge operator*() const { return HalfEdge{edge_}; }
+    constexpr Iterator& operator++() {
+      ++edge_;
+      return *this;
+    }
+    constexpr bool operator!=(Iterator other) const { return edge_ != other.edge_; }
+
+   private:
+    std::uint32_t edge_;
+  };
+
+  constexpr explicit HalfEdges(Triangle triangle) : first_(4 * number(triangle)) {}
+  constexpr Iterator begin() const { return Iterator(first_); }
+  constexpr Iterator end() const { return Iterator(first_ + 3); }
+
+ private:
+  std::uint32_t first_;
+};
+constexpr HalfEdges half_edges(Triangle triangle) { return HalfEdges(triangle); }
+
+// for (const Id id : Ids<Id>(count)), from 0 on
+template <typename Id>
+class Ids {
+ public:
+  using Number = decltype(number(Id{}));
+
+  class Iterator {
+   public:
+    constexpr explicit Iterator(Number at) : at_(at) {}
+    constexpr Id operator*() const { return Id{at_}; }
+    constexpr Iterator& operator++() {
+      ++at_;
+      return *this;
+    }
+    constexpr bool operator!=(Iterator other) const { return at_ != other.at_; }
+
+   private:
+    Number at_;
+  };
+
+  constexpr explicit Ids(Number count) : count_(count) {}
+  constexpr Iterator begin() const { return Iterator(0); }
+  constexpr Iterator end() const { return Iterator(count_); }
+
+ private:
+  Number count_;
+};
 
 }  // namespace tinsmith

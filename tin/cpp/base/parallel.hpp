@@ -15,23 +15,12 @@
 #include <utility>
 #include <vector>
 
+#include "range.hpp"
+
 namespace tinsmith {
 
 // What one thread writes often must not lie on a line that another one uses.
 constexpr std::size_t kCacheLine = 64;
-
-// Half-open range of positions.
-struct Range {
-  std::int32_t begin, end;
-
-  std::int32_t size() const { return end - begin; }
-};
-
-// Part number `part` of `parts` nearly equal parts of 0 .. count - 1.
-inline Range part_of(std::int64_t count, int part, int parts) {
-  return {static_cast<std::int32_t>(count * part / parts),
-          static_cast<std::int32_t>(count * (part + 1) / parts)};
-}
 
 class Team {
  public:

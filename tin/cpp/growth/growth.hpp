@@ -1,5 +1,8 @@
 // Growth: the triangulation, vertex by vertex in the order of the sweep.
 //
+// Incremental construction (McLain, "Two dimensional interpolation from random data", 1976), among
+// the cells of a grid (Dwyer, "Higher-dimensional Voronoi diagrams in linear expected time", 1991).
+//
 // All triangles around a vertex are made before the next vertex is begun: finished vertices are a
 // prefix of the order, so removing them from the search costs nothing. Each triangle is found
 // once, when its first vertex is finished, from the open edges at that vertex:
@@ -44,8 +47,13 @@ class Growth {
  public:
   // `hull` counter-clockwise.
   Growth(const PointGrid& grid, const std::vector<Vertex>& hull, Range own, TriangleStore& out)
-      : level_(grid, own.begin), near_(grid, own), search_(grid, own), waiting_(own), out_(out),
-        own_(own), count_(grid.count()) {
+      : level_(grid, own.begin),
+        near_(grid, own),
+        search_(grid, own),
+        waiting_(own),
+        out_(out),
+        own_(own),
+        count_(grid.count()) {
     for (std::size_t i = 0; i < hull.size(); ++i) {
       waiting_.add(hull[i], hull[(i + 1) % hull.size()], kOutside);
     }
@@ -70,8 +78,9 @@ class Growth {
 
   const SearchCounts& counts() { return search_.counts(); }
 
-  // The last triangle with a corner before the range, which another thread found too; or -1.
-  std::int32_t last_shared() const { return last_shared_; }
+  // The last triangle with a corner before the range, which another thread found too; or
+  // kNoTriangle.
+  Triangle last_shared() const { return last_shared_; }
 
  private:
   // Even data need about 1 unit of work a point, rasters 5, clusters 18, contour lines 100; from
@@ -93,7 +102,7 @@ class Growth {
     search_.move_to(v, level.cell_size);
     if (waiting_.is_untouched(v)) {
       const Vertex w = search_.nearest();
-      const HalfEdge first = half_edge(out_.size(), 2);
+      const HalfEdge first = half_edge(out_.next(), 2);
       const HalfEdge last = grow_sector(v, w, w, kNoHalfEdge);
       out_.join(first, last);
       return;
@@ -114,7 +123,7 @@ class Growth {
     const Vertex first = w;
     while (true) {
       const Vertex c = third_point(w, is_full_turn && w == first ? kNoVertex : hint);
-      const std::int32_t triangle = out_.add(v, w, c);
+      const Triangle triangle = out_.add(v, w, c);
       if (std::min(number(w), number(c)) < own_.begin) last_shared_ = triangle;
       const HalfEdge across = waiting_.match_or_add(w, c, half_edge(triangle, 0));
       out_.join(half_edge(triangle, 0), across);
@@ -141,7 +150,8 @@ class Growth {
     ++counts.searches;
     const auto near = near_.third_point(number(b), counts);
     if (near.is_proven) return static_cast<Vertex>(near.point);
-    return search_.third_point(b, near.point == Near::kNone ? hint : static_cast<Vertex>(near.point));
+    return search_.third_point(b,
+                               near.point == Near::kNone ? hint : static_cast<Vertex>(near.point));
   }
 
   PointGrid::LevelCursor level_;
@@ -151,7 +161,7 @@ class Growth {
   TriangleStore& out_;
   Range own_;
   std::int64_t count_;  // of all points
-  std::int32_t last_shared_ = -1;
+  Triangle last_shared_ = kNoTriangle;
   std::vector<WaitingEdge> starts_, ends_;
 };
 

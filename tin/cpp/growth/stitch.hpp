@@ -20,9 +20,9 @@ namespace tinsmith {
 class alignas(kCacheLine) GrownPart {
  public:
   GrownPart() = default;
-  GrownPart(Range own, Triangles triangles, std::int32_t count, std::int32_t last_shared)
+  GrownPart(Range own, Triangles triangles, std::int32_t count, Triangle last_shared)
       : own_(own), triangles_(triangles), count_(count) {
-    number_seam(last_shared);
+    if (last_shared != kNoTriangle) number_seam(static_cast<std::int32_t>(number(last_shared)));
   }
 
   // Triangles whose first vertex is in the range.
@@ -46,7 +46,8 @@ class alignas(kCacheLine) GrownPart {
         out.neighbors[to + k] = neighbor;
         if (neighbor == kUnknownNeighbor) {
           open_.push_back({corners[(k + 1) % 3], corners[(k + 2) % 3],
-                           static_cast<std::int32_t>(to) + k});
+                           half_edge(Triangle{static_cast<std::uint32_t>(base + at)},
+                                     static_cast<std::uint32_t>(k))});
         }
       }
     }
@@ -54,7 +55,8 @@ class alignas(kCacheLine) GrownPart {
 
   // An edge to another part: from vertex to vertex, as the half-edge of a written triangle.
   struct OpenEdge {
-    std::int32_t from, to, half_edge;
+    std::int32_t from, to;
+    HalfEdge edge;
   };
   const std::vector<OpenEdge>& open() const { return open_; }
 
@@ -111,9 +113,8 @@ class alignas(kCacheLine) GrownPart {
       });
       if (!follows) starts.push_back(t);
     }
-    std::sort(starts.begin(), starts.end(), [this](std::int32_t a, std::int32_t b) {
-      return corner(a, 1) < corner(b, 1);
-    });
+    std::sort(starts.begin(), starts.end(),
+              [this](std::int32_t a, std::int32_t b) { return corner(a, 1) < corner(b, 1); });
     for (const std::int32_t start : starts) {
       auto at = std::find(kept.begin(), kept.end(), start);
       for (; at != kept.end(); at = starting_at(corner(sorted.back(), 2))) sorted.push_back(*at);
@@ -145,7 +146,9 @@ class alignas(kCacheLine) GrownPart {
 // Join the open edges of all parts; one without a counterpart is on the hull.
 inline void join_open_edges(const std::vector<GrownPart>& parts, Triangles out) {
   std::vector<GrownPart::OpenEdge> open;
-  for (const GrownPart& part : parts) open.insert(open.end(), part.open().begin(), part.open().end());
+  for (const GrownPart& part : parts) {
+    open.insert(open.end(), part.open().begin(), part.open().end());
+  }
   const auto ends = [](const GrownPart::OpenEdge& edge) {
     return std::pair(std::min(edge.from, edge.to), std::max(edge.from, edge.to));
   };
@@ -154,11 +157,12 @@ inline void join_open_edges(const std::vector<GrownPart>& parts, Triangles out) 
   for (std::size_t i = 0; i < open.size(); ++i) {
     const bool is_joined = i + 1 < open.size() && ends(open[i]) == ends(open[i + 1]);
     if (!is_joined) {
-      out.neighbors[open[i].half_edge] = kNoNeighbor;
+      out.neighbors[entry_of(open[i].edge)] = kNoNeighbor;
       continue;
     }
-    out.neighbors[open[i].half_edge] = open[i + 1].half_edge / 3;
-    out.neighbors[open[i + 1].half_edge] = open[i].half_edge / 3;
+    const HalfEdge e = open[i].edge, f = open[i + 1].edge;
+    out.neighbors[entry_of(e)] = static_cast<std::int32_t>(number(triangle_of(f)));
+    out.neighbors[entry_of(f)] = static_cast<std::int32_t>(number(triangle_of(e)));
     ++i;
   }
 }

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <utility>
 
-#include "../base/ids.hpp"
 #include "../base/arrays.hpp"
+#include "../base/ids.hpp"
 #include "../base/parallel.hpp"
 
 namespace tinsmith {
@@ -25,27 +25,33 @@ class alignas(kCacheLine) TriangleStore {
   explicit TriangleStore(std::int64_t expected) { enlarge(expected); }
 
   std::int32_t size() const { return size_; }
+  Triangle next() const { return Triangle{static_cast<std::uint32_t>(size_)}; }
   Triangles arrays() const { return arrays_; }
 
   // The new triangle's edges have no neighbours yet.
-  std::int32_t add(Vertex a, Vertex b, Vertex c) {
+  Triangle add(Vertex a, Vertex b, Vertex c) {
     if (size_ == capacity_) enlarge(std::int64_t{2} * capacity_);
     const std::size_t at = 3 * static_cast<std::size_t>(size_);
     arrays_.corners[at] = number(a);
     arrays_.corners[at + 1] = number(b);
     arrays_.corners[at + 2] = number(c);
     std::fill_n(arrays_.neighbors + at, 3, kUnknownNeighbor);
-    return size_++;
+    return Triangle{static_cast<std::uint32_t>(size_++)};
   }
 
   // Two half-edges are the sides of one edge; one of them may be the outside or unknown.
   void join(HalfEdge a, HalfEdge b) {
     if (a == kNoHalfEdge || b == kNoHalfEdge) return;
-    if (a != kOutside) arrays_.neighbors[number(a)] = b == kOutside ? kNoNeighbor : number(b) / 3;
-    if (b != kOutside) arrays_.neighbors[number(b)] = a == kOutside ? kNoNeighbor : number(a) / 3;
+    if (a != kOutside) arrays_.neighbors[entry_of(a)] = neighbor_at(b);
+    if (b != kOutside) arrays_.neighbors[entry_of(b)] = neighbor_at(a);
   }
 
  private:
+  static std::int32_t neighbor_at(HalfEdge beyond) {
+    return beyond == kOutside ? kNoNeighbor
+                              : static_cast<std::int32_t>(number(triangle_of(beyond)));
+  }
+
   void enlarge(std::int64_t capacity) {
     StreamedArray<std::int32_t> corners = streamed_array<std::int32_t>(3 * capacity);
     StreamedArray<std::int32_t> neighbors = streamed_array<std::int32_t>(3 * capacity);

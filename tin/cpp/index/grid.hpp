@@ -1,9 +1,12 @@
 // Index: points bucketed into square cells of about two, stored row of cells by row of cells.
 //
+// Cells after Bentley, Weide and Yao, "Optimal expected-time algorithms for closest point problems"
+// (1980); crowded ones are divided again.
+//
 // The storage order is the sweep order. A cell that is crowded holds a grid of its own, fitted to
 // its points, and so on: the index adapts to clusters, tracks and contour lines, and is a plain
 // grid where the points are even. Within a cell points are sorted by easting, then northing, so
-// the order is a function of the point set, and rows at one place stand together.
+// the order is a function of the point set, and rows at one point stand together.
 //
 //      +----+----+----+----+        a level: columns x rows of square cells
 //      | .  |. . |  . | .  |
@@ -19,36 +22,13 @@
 #include <cstdint>
 #include <vector>
 
-#include "../base/ids.hpp"
 #include "../base/arrays.hpp"
+#include "../base/box.hpp"
+#include "../base/ids.hpp"
 #include "../base/parallel.hpp"
-#include "../predicates/predicates.hpp"
+#include "../base/point.hpp"
 
 namespace tinsmith {
-
-// The caller's points: n rows of (x, y, ...), `stride` doubles apart.
-struct PointRows {
-  const double* data;
-  std::int64_t count;
-  std::int64_t stride;
-
-  Point operator[](std::int64_t row) const {
-    return {data[row * stride], data[row * stride + 1]};
-  }
-};
-
-struct Box {
-  double west, east, south, north;
-
-  bool within(const Box& outer) const {
-    return west >= outer.west && east <= outer.east && south >= outer.south &&
-           north <= outer.north;
-  }
-  bool meets(const Box& other) const {
-    return west <= other.east && other.west <= east && south <= other.north &&
-           other.south <= north;
-  }
-};
 
 // One grid of the index. The cell of a point is monotone in x and in y, so the cells of a box's
 // corners bound the cells of all points in it.
@@ -69,10 +49,10 @@ struct Level {
     level.box = box;
     level.begin = begin;
     level.end = end;
-    const double width = box.east - box.west, height = box.north - box.south;
+    const double width = box.width(), height = box.height();
     const double cells = std::max(1.0, (end - begin) / points_per_cell);
-    level.cell_size = std::max(
-        {std::sqrt(width / cells) * std::sqrt(height), width / cells, height / cells});
+    level.cell_size =
+        std::max({std::sqrt(width / cells) * std::sqrt(height), width / cells, height / cells});
     if (!(level.cell_size > 0.0)) level.cell_size = 1.0;
     level.per_cell = 1.0 / level.cell_size;
     level.columns = 1 + static_cast<std::int32_t>(width * level.per_cell);
@@ -113,7 +93,7 @@ class PointGrid {
     spans_ = {};
   }
 
-  // For each input row the first row at its place; empty if no two rows share a place.
+  // For each input row the first row at its point; empty if no two rows share one.
   const std::vector<std::int32_t>& kept_row() const { return kept_row_; }
 
   // Vector loads may begin at any position, one or two at once: so many doubles.
@@ -203,15 +183,14 @@ class PointGrid {
 
   template <typename Region, typename Visit>
   std::int64_t visit_row_with_children(const Level& level, std::int32_t row, std::int32_t first,
-                                       std::int32_t last, const Region& region,
-                                       Range those, Visit& visit) const {
+                                       std::int32_t last, const Region& region, Range those,
+                                       Visit& visit) const {
     std::int64_t looked_at = 0;
     std::int32_t begin = start(level, row, first);
     const Child* child = children_.data() + child_row_[level.first_child_row + row];
     const Child* end = children_.data() + child_row_[level.first_child_row + row + 1];
-    child = std::lower_bound(child, end, first, [](const Child& c, std::int32_t column) {
-      return c.column < column;
-    });
+    child = std::lower_bound(child, end, first,
+                             [](const Child& c, std::int32_t column) { return c.column < column; });
     for (; child != end && child->column <= last; ++child) {
       const Level& inner = levels_[child->level];
       visit_run(begin, inner.begin, those, visit);

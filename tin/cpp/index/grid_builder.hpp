@@ -43,7 +43,7 @@ class GridBuilder {
   static constexpr double kEven = 4.0;
   // Cells up to here are sorted by insertion.
   static constexpr std::int32_t kShort = 32;
-  // Each level divides its box by the number of its points; what is crowded still is at places
+  // Each level divides its box by the number of its points; what is crowded still is at points
   // closer together than any survey's, and is searched as one cell.
   static constexpr int kDeepest = 12;
   // Rows between two questions whether to go on.
@@ -78,15 +78,12 @@ class GridBuilder {
   Box box_of_rows() {
     team_.run([this](int part) {
       const Range range = part_of(rows_.count, part, team_.size());
-      Box box{rows_[0].x, rows_[0].x, rows_[0].y, rows_[0].y};
-      for (std::int32_t i = range.begin; i < range.end; ++i) extend(box, rows_[i]);
+      Box box;
+      for (std::int32_t i = range.begin; i < range.end; ++i) box.include(rows_[i]);
       parts_[part].box = box;
     });
-    Box box = parts_[0].box;
-    for (const Part& part : parts_) {
-      extend(box, {part.box.west, part.box.south});
-      extend(box, {part.box.east, part.box.north});
-    }
+    Box box;
+    for (const Part& part : parts_) box.include(part.box);
     return box;
   }
 
@@ -154,8 +151,8 @@ class GridBuilder {
 
   void sort_band(std::int32_t band, Range held, Part& part) {
     const std::int64_t first = static_cast<std::int64_t>(band) << band_shift_;
-    const std::int64_t last = std::min(first + (std::int64_t{1} << band_shift_),
-                                       grid_.levels_.front().cell_count());
+    const std::int64_t last =
+        std::min(first + (std::int64_t{1} << band_shift_), grid_.levels_.front().cell_count());
     std::int32_t* start = grid_.start_.data();
     for (std::int32_t i = held.begin; i < held.end; ++i) ++start[entries_[i].cell];
     std::int32_t total = held.begin;
@@ -176,13 +173,6 @@ class GridBuilder {
         sort_cell(begin, end);
       }
     }
-  }
-
-  static void extend(Box& box, Point p) {
-    box.west = std::min(box.west, p.x);
-    box.east = std::max(box.east, p.x);
-    box.south = std::min(box.south, p.y);
-    box.north = std::max(box.north, p.y);
   }
 
   void store(std::int32_t position, const Entry& entry) {
@@ -240,11 +230,11 @@ class GridBuilder {
     for (const auto& [cell, child] : inner) nest_all(child, depth + 1);
   }
 
-  // Put the points of a cell into a level of their own; false if they are all at one place.
+  // Put the points of a cell into a level of their own; false if they are all at one point.
   bool spread(std::int32_t begin, std::int32_t end) {
     const std::vector<Entry> entries = copy(begin, end);
-    Box box{entries[0].p.x, entries[0].p.x, entries[0].p.y, entries[0].p.y};
-    for (const Entry& e : entries) extend(box, e.p);
+    Box box;
+    for (const Entry& e : entries) box.include(e.p);
     if (box.west == box.east && box.south == box.north) return false;
     Level level = Level::fitted(box, begin, end, kPointsPerCell);
     auto& start = grid_.start_;
@@ -286,7 +276,7 @@ class GridBuilder {
     grid_.child_row_.push_back(static_cast<std::int64_t>(grid_.children_.size()));
   }
 
-  // Insertion sort for the usual cell; stable, so rows at one place stay in the caller's order.
+  // Insertion sort for the usual cell; stable, so rows at one point stay in the caller's order.
   void sort_cell(std::int32_t begin, std::int32_t end) {
     if (end - begin > kShort) return sort_long_cell(begin, end);
     for (std::int32_t i = begin + 1; i < end; ++i) {
@@ -320,7 +310,7 @@ class GridBuilder {
     }
   }
 
-  // ------------------------------------------------------------- rows at one place
+  // ------------------------------------------------------------- rows at one point
 
   bool repeats(std::int32_t i, std::int32_t earlier) const {
     return grid_.x_[i] == grid_.x_[earlier] && grid_.y_[i] == grid_.y_[earlier];
@@ -381,27 +371,27 @@ class GridBuilder {
   Team& team_;
   std::vector<Part> parts_;
   StreamedArray<Entry> entries_;  // by band
-  int band_shift_ = 0;  // cell >> band_shift_ is the band
+  int band_shift_ = 0;            // cell >> band_shift_ is the band
   std::int32_t bands_ = 1;
   std::int32_t crowded_ = kCrowdedIfEven;
   std::int32_t nested_ = 0;  // cells looked at
 };
 
-// Rows at the place of another must not show in the order of the sweep: where there are any, the
-// index is built of the distinct places alone.
+// Rows at the point of another must not show in the order of the sweep: where there are any, the
+// index is built of the distinct points alone.
 inline PointGrid::PointGrid(const PointRows& rows, Team& team) {
   GridBuilder(*this, rows, team).build();
   if (kept_row_.empty() || team.is_stopped()) return;
-  std::vector<Point> places(count_);
+  std::vector<Point> points(count_);
   for (std::int32_t i = 0; i < count_; ++i) {
-    places[number(rows_[i])] = point(static_cast<Vertex>(i));
+    points[number(rows_[i])] = point(static_cast<Vertex>(i));
   }
   std::vector<std::int32_t> kept_row = std::move(kept_row_);
   drop_cells();
   x_.reset();
   y_.reset();
   rows_.reset();
-  *this = PointGrid({&places[0].x, count_, 2}, team);
+  *this = PointGrid({&points[0].x, count_, 2}, team);
   kept_row_ = std::move(kept_row);
 }
 

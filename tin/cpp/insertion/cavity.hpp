@@ -1,11 +1,14 @@
 // The domain of influence of a new point: carve it out of the mesh and fill it with a fan.
 //
+// Bowyer, "Computing Dirichlet tessellations", and Watson, "Computing the n-dimensional Delaunay
+// tessellation with application to Voronoi polytopes" (both 1981).
+//
 // The triangles whose circle holds the point hang together and surround no vertex, so they form a
 // tree: crossing from one into the next through an edge never meets a triangle twice.
 //
 //        .-------.            edges yet to cross stand in a queue; each leads to a triangle that
 //       / \ ... / \           either goes, and adds its two other edges, or stays: then the edge
-//      /...\.p./...\          is on the rim. In the end each edge of the rim gets a triangle of
+//      /...\.p./...\          is on the boundary. In the end each edge there gets a triangle of
 //     .-----.-.-----.         the fan about p, in the places of those removed and two new ones.
 //      \ ..../.\... /
 //       `---'   `--'
@@ -40,8 +43,8 @@ class Cavity {
 
   // Insert a vertex whose domain of influence holds the triangle `first`. Returns a triangle of
   // the fan that is no ghost.
-  std::uint32_t insert(std::int32_t vertex, std::uint32_t first) {
-    begin(points_[vertex], first);
+  Triangle insert(Vertex vertex, Triangle first) {
+    begin(point(vertex), first);
     while (!spread()) reserve(2 * room_);
     return fill(vertex);
   }
@@ -57,7 +60,7 @@ class Cavity {
   struct Corner {  // of the cavity, as seen from p
     double x, y;
     double lift;  // squared distance
-    std::int32_t vertex;
+    Vertex vertex;
   };
   // Two corners by number, counter-clockwise about p; one value, so that it is moved as one.
   class Ends {
@@ -73,35 +76,38 @@ class Cavity {
   struct Edge {
     double cross;  // of its corners: twice the area of the triangle it makes with p
     Ends ends;
-    std::uint32_t outer;  // as seen from the triangle across
+    HalfEdge outer;  // as seen from the triangle across
   };
-  struct RimEdge {
+  struct BoundaryEdge {
     Ends ends;
-    std::uint32_t outer;
+    HalfEdge outer;
   };
   struct Spokes {  // the edges of the fan at a corner, before and after it
-    std::uint32_t before, after;
+    HalfEdge before, after;
   };
 
   void reserve(std::uint32_t room) {
     room_ = room;
     corners_.resize(room + 3);
     edges_.resize(2 * room + 5);
-    rim_.resize(room + 3);
+    boundary_.resize(room + 3);
     removed_.resize(room + 3);
     spokes_.resize(room + 3);
   }
 
-  Corner corner(std::int32_t vertex) const {
-    const double x = points_[vertex].x - p_.x, y = points_[vertex].y - p_.y;
+  Point point(Vertex v) const { return points_[number(v)]; }
+  GhostTriangle& at(Triangle t) const { return triangles_[number(t)]; }
+
+  Corner corner(Vertex vertex) const {
+    const double x = point(vertex).x - p_.x, y = point(vertex).y - p_.y;
     return {x, y, x * x + y * y, vertex};
   }
 
   static double cross(const Corner& a, const Corner& b) { return a.x * b.y - a.y * b.x; }
 
-  void begin(Point p, std::uint32_t first) {
+  void begin(Point p, Triangle first) {
     p_ = p;
-    const GhostTriangle& triangle = triangles_[first];
+    const GhostTriangle& triangle = at(first);
     for (int i = 0; i < 3; ++i) corners_[i] = corner(triangle.corner[i]);
     edges_[0] = {cross(corners_[0], corners_[1]), {0, 1}, triangle.twin[2]};
     edges_[1] = {cross(corners_[1], corners_[2]), {1, 2}, triangle.twin[0]};
@@ -110,24 +116,25 @@ class Cavity {
     next_edge_ = 0;
     edge_count_ = 3;
     removed_count_ = 1;
-    rim_count_ = 0;
+    boundary_count_ = 0;
   }
 
   // Cross the edges in the queue. False if there is no room for more.
   bool spread() {
     Corner* const corners = corners_.data();
     Edge* const edges = edges_.data();
-    RimEdge* const rim = rim_.data();
-    std::uint32_t* const removed = removed_.data();
+    BoundaryEdge* const boundary = boundary_.data();
+    Triangle* const removed = removed_.data();
     std::uint32_t edge_count = edge_count_, removed_count = removed_count_;
-    std::uint32_t rim_count = rim_count_, next = next_edge_;
+    std::uint32_t boundary_count = boundary_count_, next = next_edge_;
     for (; next < edge_count && removed_count < room_; ++next) {
-      const std::uint32_t outer = edges[next].outer, place = place_of(outer);
+      const HalfEdge outer = edges[next].outer;
+      const std::uint32_t opposite = corner_of(outer);
       const Ends ends = edges[next].ends;
       const Corner& a = corners[ends.from()];
       const Corner& b = corners[ends.to()];
-      const GhostTriangle& across = triangles_[triangle_of(outer)];
-      const Corner c = corner(across.corner[place]);
+      const GhostTriangle& across = at(triangle_of(outer));
+      const Corner c = corner(across.corner[opposite]);
       const double ac = cross(a, c), cb = cross(c, b);
       const double inside = (b.lift * ac + a.lift * cb) - c.lift * edges[next].cross;
       const double bound = kLiftBound * (a.lift * b.lift + c.lift * (a.lift + b.lift));
@@ -142,30 +149,30 @@ class Cavity {
       Edge* const added = edges + edge_count;
       added[0].cross = ac;
       added[0].ends = {ends.from(), new_corner};
-      added[0].outer = across.twin[place_after(place)];
+      added[0].outer = across.twin[corner_after(opposite)];
       added[1].cross = cb;
       added[1].ends = {new_corner, ends.to()};
-      added[1].outer = across.twin[place_before(place)];
+      added[1].outer = across.twin[corner_before(opposite)];
       removed[removed_count] = triangle_of(outer);
-      rim[rim_count].ends = ends;
-      rim[rim_count].outer = outer;
+      boundary[boundary_count].ends = ends;
+      boundary[boundary_count].outer = outer;
       edge_count += 2 * goes;
       removed_count += goes;
-      rim_count += 1 - goes;
+      boundary_count += 1 - goes;
     }
     edge_count_ = edge_count;
     removed_count_ = removed_count;
-    rim_count_ = rim_count;
+    boundary_count_ = boundary_count;
     next_edge_ = next;
     return next == edge_count;
   }
 
   TINSMITH_RARE bool is_in_conflict(const GhostTriangle& triangle) const {
-    const std::int32_t* c = triangle.corner;
-    if (c[0] == kGhost) return is_beyond(points_[c[1]], points_[c[2]]);
-    if (c[1] == kGhost) return is_beyond(points_[c[2]], points_[c[0]]);
-    if (c[2] == kGhost) return is_beyond(points_[c[0]], points_[c[1]]);
-    return is_in_circle(points_[c[0]], points_[c[1]], points_[c[2]], p_);
+    const Vertex* c = triangle.corner;
+    if (c[0] == kGhost) return is_beyond(point(c[1]), point(c[2]));
+    if (c[1] == kGhost) return is_beyond(point(c[2]), point(c[0]));
+    if (c[2] == kGhost) return is_beyond(point(c[0]), point(c[1]));
+    return is_in_circle(point(c[0]), point(c[1]), point(c[2]), p_);
   }
 
   // Left of the hull edge (seen from outside), or on it between its ends.
@@ -177,29 +184,29 @@ class Cavity {
            lexicographically_before(p_, is_forward ? to : from);
   }
 
-  std::uint32_t fill(std::int32_t vertex) {
-    removed_[removed_count_] = mesh_.count++;
-    removed_[removed_count_ + 1] = mesh_.count++;
-    const std::uint32_t* const places = removed_.data();
-    const RimEdge* const rim = rim_.data();
+  Triangle fill(Vertex vertex) {
+    removed_[removed_count_] = Triangle{mesh_.count++};
+    removed_[removed_count_ + 1] = Triangle{mesh_.count++};
+    const Triangle* const fan = removed_.data();
+    const BoundaryEdge* const boundary = boundary_.data();
     Spokes* const spokes = spokes_.data();
-    for (std::uint32_t i = 0; i < rim_count_; ++i) {
-      spokes[rim[i].ends.from()].after = mesh_edge(places[i], 2);
-      spokes[rim[i].ends.to()].before = mesh_edge(places[i], 1);
+    for (std::uint32_t i = 0; i < boundary_count_; ++i) {
+      spokes[boundary[i].ends.from()].after = half_edge(fan[i], 2);
+      spokes[boundary[i].ends.to()].before = half_edge(fan[i], 1);
     }
-    std::uint32_t some = 0;
-    for (std::uint32_t i = 0; i < rim_count_; ++i) {
-      const std::uint64_t from = rim[i].ends.from(), to = rim[i].ends.to();
-      GhostTriangle& made = triangles_[places[i]];
+    Triangle some{0};
+    for (std::uint32_t i = 0; i < boundary_count_; ++i) {
+      const std::uint64_t from = boundary[i].ends.from(), to = boundary[i].ends.to();
+      GhostTriangle& made = at(fan[i]);
       made.corner[0] = vertex;
       made.corner[1] = corners_[from].vertex;
       made.corner[2] = corners_[to].vertex;
-      made.twin[0] = rim[i].outer;
+      made.twin[0] = boundary[i].outer;
       made.twin[1] = spokes[to].after;
       made.twin[2] = spokes[from].before;
-      triangles_[triangle_of(rim[i].outer)].twin[place_of(rim[i].outer)] = mesh_edge(places[i], 0);
-      const bool is_ghost = (made.corner[1] | made.corner[2]) < 0;
-      some = is_ghost ? some : places[i];
+      at(triangle_of(boundary[i].outer)).twin[corner_of(boundary[i].outer)] = half_edge(fan[i], 0);
+      const bool is_ghost = (number(made.corner[1]) | number(made.corner[2])) < 0;
+      some = is_ghost ? some : fan[i];
     }
     return some;
   }
@@ -209,11 +216,11 @@ class Cavity {
   const Point* points_;
   Point p_{};
   std::uint32_t room_ = 0;
-  std::uint32_t next_edge_ = 0, edge_count_ = 0, removed_count_ = 0, rim_count_ = 0;
+  std::uint32_t next_edge_ = 0, edge_count_ = 0, removed_count_ = 0, boundary_count_ = 0;
   std::vector<Corner> corners_;  // the first triangle's, then one for each further triangle
   std::vector<Edge> edges_;
-  std::vector<RimEdge> rim_;
-  std::vector<std::uint32_t> removed_;
+  std::vector<BoundaryEdge> boundary_;
+  std::vector<Triangle> removed_;
   std::vector<Spokes> spokes_;  // by corner
 };
 

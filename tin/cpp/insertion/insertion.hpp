@@ -4,23 +4,24 @@
 // A new point alters only its domain of influence: the triangles whose circle holds it. They are
 // removed and the hole is filled with a fan about the point (cavity.hpp). Ties are decided by the
 // point set alone (is_in_circle), so the result is the growth's. The order of insertion
-// (insertion_order.hpp) only sets the speed.
+// (insertion_rounds.hpp) only sets the speed.
 #pragma once
 
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <stdexcept>
 #include <utility>
 
-#include "../base/ids.hpp"
 #include "../base/arrays.hpp"
+#include "../base/ids.hpp"
 #include "../index/grid.hpp"
-#include "../index/spatial_order.hpp"
+#include "../index/hilbert_order.hpp"
 #include "../predicates/predicates.hpp"
 #include "cavity.hpp"
 #include "ghost_mesh.hpp"
-#include "insertion_order.hpp"
+#include "insertion_rounds.hpp"
 #include "straight_walk.hpp"
 
 namespace tinsmith {
@@ -57,8 +58,8 @@ class Insertion {
   class WithGhost {
    public:
     explicit WithGhost(std::size_t count) : values_(scratch_array<T>(count)) {}
-    T& operator[](std::int32_t vertex) { return begin()[vertex]; }
-    const T& operator[](std::int32_t vertex) const { return begin()[vertex]; }
+    T& operator[](Vertex v) { return begin()[number(v)]; }
+    const T& operator[](Vertex v) const { return begin()[number(v)]; }
     T* begin() const { return values_.get() + 1; }
     void release() { values_.reset(); }
 
@@ -67,11 +68,11 @@ class Insertion {
   };
 
   void put_in_order() {
-    const auto place = [this](std::int32_t i) { return grid_.point(static_cast<Vertex>(i)); };
-    const SpatialOrder order(count_, place);
-    for (std::int32_t i = 0; i < count_; ++i) {
-      sweep_of_[i] = order[i];
-      points_[i] = place(order[i]);
+    const auto point = [this](std::int32_t i) { return grid_.point(Vertex{i}); };
+    const HilbertOrder order(count_, point);
+    for (const Vertex v : Ids<Vertex>(count_)) {
+      sweep_of_[v] = Vertex{order[number(v)]};
+      points_[v] = point(order[number(v)]);
     }
     constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
     points_[kGhost] = {kNotANumber, kNotANumber};
@@ -80,21 +81,28 @@ class Insertion {
 
   // The first triangle, of points that are not in line, and a ghost on each of its edges.
   void start() {
-    swap_points(1, count_ / 2);
-    std::int32_t third = 2;
-    while (orientation(points_[0], points_[1], points_[third]) == 0) ++third;
-    swap_points(2, third);
-    const bool is_left = orientation(points_[0], points_[1], points_[2]) > 0;
-    const std::int32_t a = 0, b = is_left ? 1 : 2, c = is_left ? 2 : 1;
+    constexpr Vertex first{0}, second{1}, third{2};
+    swap_points(second, Vertex{count_ / 2});
+    swap_points(third, not_in_line(first, second));
+    const bool is_left = orientation(points_[first], points_[second], points_[third]) > 0;
+    const Vertex a = first, b = is_left ? second : third, c = is_left ? third : second;
     mesh_.triangles = scratch_array<GhostTriangle>(2 * static_cast<std::size_t>(count_) - 2);
-    mesh_.triangles[0] = {{a, b, c}, {mesh_edge(1, 0), mesh_edge(2, 0), mesh_edge(3, 0)}};
-    mesh_.triangles[1] = {{kGhost, c, b}, {mesh_edge(0, 0), mesh_edge(3, 2), mesh_edge(2, 1)}};
-    mesh_.triangles[2] = {{kGhost, a, c}, {mesh_edge(0, 1), mesh_edge(1, 2), mesh_edge(3, 1)}};
-    mesh_.triangles[3] = {{kGhost, b, a}, {mesh_edge(0, 2), mesh_edge(2, 2), mesh_edge(1, 1)}};
+    constexpr Triangle t{0}, u{1}, v{2}, w{3};
+    mesh_[t] = {{a, b, c}, {half_edge(u, 0), half_edge(v, 0), half_edge(w, 0)}};
+    mesh_[u] = {{kGhost, c, b}, {half_edge(t, 0), half_edge(w, 2), half_edge(v, 1)}};
+    mesh_[v] = {{kGhost, a, c}, {half_edge(t, 1), half_edge(u, 2), half_edge(w, 1)}};
+    mesh_[w] = {{kGhost, b, a}, {half_edge(t, 2), half_edge(v, 2), half_edge(u, 1)}};
     mesh_.count = kStartTriangles;
   }
 
-  void swap_points(std::int32_t a, std::int32_t b) {
+  Vertex not_in_line(Vertex a, Vertex b) const {
+    for (const Vertex c : Ids<Vertex>(count_)) {
+      if (orientation(points_[a], points_[b], points_[c]) != 0) return c;
+    }
+    throw std::logic_error("insertion begins with a triangle: the points must not be in line");
+  }
+
+  void swap_points(Vertex a, Vertex b) {
     std::swap(points_[a], points_[b]);
     std::swap(sweep_of_[a], sweep_of_[b]);
   }
@@ -103,11 +111,11 @@ class Insertion {
   bool insert_all(KeepGoing&& keep_going) {
     constexpr std::uint32_t kPointsPerQuestion = 4096;
     Cavity cavity(mesh_, points_.begin());
-    std::uint32_t last = 0;
+    Triangle last{0};
     std::uint32_t until_question = kPointsPerQuestion;
-    return InsertionRounds(count_).for_each([&](std::uint32_t place) {
-      const auto vertex = static_cast<std::int32_t>(place);
-      if (vertex < kStartVertices) return true;
+    return InsertionRounds(count_).for_each([&](std::uint32_t position) {
+      const Vertex vertex{static_cast<std::int32_t>(position)};
+      if (vertex < kFirstInserted) return true;
       if (--until_question == 0) {
         if (!keep_going()) return false;
         until_question = kPointsPerQuestion;
@@ -118,27 +126,27 @@ class Insertion {
   }
 
   // Walk towards p across edges that separate it, to a triangle whose circle holds it.
-  std::uint32_t find_conflict(Point p, std::uint32_t triangle) {
+  Triangle find_conflict(Point p, Triangle triangle) {
     const GhostTriangle* const triangles = mesh_.triangles.get();
-    const GhostTriangle* here = &triangles[triangle];
+    const GhostTriangle* here = &triangles[number(triangle)];
     // p is not right of the edge from `right` to `left`, seen from the triangle to search.
     Sight left = sight(here->corner[2], p), right = sight(here->corner[1], p);
-    std::uint32_t edge = mesh_edge(triangle, 0);
+    HalfEdge edge = half_edge(triangle, 0);
     if (is_right_of(right, left, p)) {
       edge = here->twin[0];
       std::swap(left, right);
     }
     for (int steps = 1; steps < kMostSteps; ++steps) {
-      here = &triangles[triangle_of(edge)];
-      const std::uint32_t place = place_of(edge);
-      const std::int32_t vertex = here->corner[place];
+      here = &triangles[number(triangle_of(edge))];
+      const std::uint32_t corner = corner_of(edge);
+      const Vertex vertex = here->corner[corner];
       if (vertex == kGhost) return arrive(edge, steps);
       const Sight apex = sight(vertex, p);
       if (is_right_of(left, apex, p)) {
-        edge = here->twin[place_after(place)];
+        edge = here->twin[corner_after(corner)];
         right = apex;
       } else if (is_right_of(apex, right, p)) {
-        edge = here->twin[place_before(place)];
+        edge = here->twin[corner_before(corner)];
         left = apex;
       } else {
         return arrive(edge, steps);
@@ -147,27 +155,25 @@ class Insertion {
     return find_straight(p, triangle);
   }
 
-  std::uint32_t arrive(std::uint32_t edge, int steps) {
+  Triangle arrive(HalfEdge edge, int steps) {
     walk_steps_ += steps;
     return triangle_of(edge);
   }
 
-  TINSMITH_RARE std::uint32_t find_straight(Point p, std::uint32_t triangle) {
-    const auto triangle_at = [this](std::uint32_t t) -> const GhostTriangle& {
-      return mesh_.triangles[t];
-    };
-    const auto point_at = [this](std::int32_t vertex) { return points_[vertex]; };
-    StraightWalk walk(triangle_at, point_at);
-    const std::uint32_t found = walk.find(p, triangle);
+  TINSMITH_RARE Triangle find_straight(Point p, Triangle triangle) {
+    const auto triangle_at = [this](Triangle t) -> const GhostTriangle& { return mesh_[t]; };
+    const auto point_at = [this](Vertex v) { return points_[v]; };
+    StraightWalk walk(triangle_at, point_at, mesh_.count);
+    const Triangle found = walk.find(p, triangle);
     walk_steps_ += walk.steps();
     return found;
   }
 
   struct Sight {  // a vertex as seen from p
     double x, y;
-    std::int32_t vertex;
+    Vertex vertex;
   };
-  Sight sight(std::int32_t vertex, Point p) const {
+  Sight sight(Vertex vertex, Point p) const {
     return {points_[vertex].x - p.x, points_[vertex].y - p.y, vertex};
   }
 
@@ -183,20 +189,20 @@ class Insertion {
   void number_by_sweep() {
     points_.release();
     for (std::uint32_t t = 0; t < mesh_.count; ++t) {
-      for (std::int32_t& corner : mesh_.triangles[t].corner) corner = sweep_of_[corner];
+      for (Vertex& corner : mesh_.triangles[t].corner) corner = sweep_of_[corner];
     }
     sweep_of_.release();
   }
 
   // Most walks take three or four steps; one that takes so many has strayed among slivers.
   static constexpr int kMostSteps = 300;
-  static constexpr std::int32_t kStartVertices = 3;
+  static constexpr Vertex kFirstInserted{3};
   static constexpr std::uint32_t kStartTriangles = 4;
 
   const PointGrid& grid_;
   std::int32_t count_;
-  WithGhost<std::int32_t> sweep_of_;  // by place on the curve, which is the number of a vertex here
-  WithGhost<Point> points_;           // likewise
+  WithGhost<Vertex> sweep_of_;  // by position on the curve, which is the number of a vertex here
+  WithGhost<Point> points_;     // likewise
   GhostMesh mesh_;
   std::int64_t walk_steps_ = 0;
 };

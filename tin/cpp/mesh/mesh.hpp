@@ -1,57 +1,90 @@
 // Mesh: a triangulation that can be changed, with edges that must stay.
 //
 // Triangles as in insertion/ghost_mesh.hpp: the outside is covered by ghosts, triangles with the
-// ghost as a corner, so that every edge has two triangles. An edge is a number as seen from one
-// triangle, and is directed with that triangle on its left:
+// ghost as a corner, so that every edge has two triangles. Of a half-edge, which is directed with
+// its triangle on its left:
 //
-//               corner
+//                apex
 //               .    .             the edge runs from `from` to `to`; `after` is the next one
 //      before .        . after     counter-clockwise, `before` the one before
 //           .            .
 //        from --- edge --- to
 //
-// Topology takes no coordinates here; mesh_edit.hpp decides what to change.
+// Topology takes no coordinates here; mesh_editor.hpp decides what to change.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <stdexcept>
 #include <vector>
 
 #include "../base/arrays.hpp"
+#include "../base/ids.hpp"
 #include "../insertion/ghost_mesh.hpp"
 
 namespace tinsmith {
-
-using MeshEdge = std::uint32_t;
-constexpr MeshEdge kNoMeshEdge = UINT32_MAX;
 
 class Mesh {
  public:
   // ------------------------------------------------------------------ reading
 
-  std::int32_t corner(MeshEdge e) const { return triangle(e).corner[place_of(e)]; }
-  std::int32_t from(MeshEdge e) const { return triangle(e).corner[place_after(place_of(e))]; }
-  std::int32_t to(MeshEdge e) const { return triangle(e).corner[place_before(place_of(e))]; }
-  MeshEdge twin(MeshEdge e) const { return triangle(e).twin[place_of(e)]; }
-  static MeshEdge after(MeshEdge e) { return mesh_edge(triangle_of(e), place_after(place_of(e))); }
-  static MeshEdge before(MeshEdge e) {
-    return mesh_edge(triangle_of(e), place_before(place_of(e)));
+  Vertex apex(HalfEdge e) const { return triangle(e).corner[corner_of(e)]; }
+  Vertex from(HalfEdge e) const { return triangle(e).corner[corner_after(corner_of(e))]; }
+  Vertex to(HalfEdge e) const { return triangle(e).corner[corner_before(corner_of(e))]; }
+  HalfEdge twin(HalfEdge e) const { return triangle(e).twin[corner_of(e)]; }
+  static HalfEdge after(HalfEdge e) {
+    return half_edge(triangle_of(e), corner_after(corner_of(e)));
+  }
+  static HalfEdge before(HalfEdge e) {
+    return half_edge(triangle_of(e), corner_before(corner_of(e)));
   }
 
   // Edges that leave a vertex, counter-clockwise about it and back.
-  MeshEdge next_leaving(MeshEdge e) const { return twin(before(e)); }
-  MeshEdge previous_leaving(MeshEdge e) const { return after(twin(e)); }
-  MeshEdge leaving(std::int32_t vertex) const { return leaving_[vertex]; }
-  bool is_alive(std::int32_t vertex) const { return leaving_[vertex] != kNoMeshEdge; }
+  HalfEdge next_leaving(HalfEdge e) const { return twin(before(e)); }
+  HalfEdge previous_leaving(HalfEdge e) const { return after(twin(e)); }
+  HalfEdge leaving(Vertex v) const { return leaving_[number(v)]; }
+  bool is_alive(Vertex v) const { return leaving(v) != kNoHalfEdge; }
 
-  bool is_fixed(MeshEdge e) const { return fixed_[triangle_of(e)] >> place_of(e) & 1; }
-  bool is_ghost(std::uint32_t t) const {
-    const auto& c = triangles_[t].corner;
+  // The circulator: for (const HalfEdge e : mesh.around(v)) meets every edge that leaves a vertex
+  // once, counter-clockwise. The mesh must not be changed meanwhile.
+  class Around {
+   public:
+    class Iterator {
+     public:
+      Iterator(const Mesh& mesh, HalfEdge first, HalfEdge at)
+          : mesh_(mesh), first_(first), at_(at) {}
+      HalfEdge operator*() const { return at_; }
+      Iterator& operator++() {
+        at_ = mesh_.next_leaving(at_);
+        if (at_ == first_) at_ = kNoHalfEdge;
+        return *this;
+      }
+      bool operator!=(const Iterator& other) const { return at_ != other.at_; }
+
+     private:
+      const Mesh& mesh_;
+      HalfEdge first_, at_;
+    };
+
+    Around(const Mesh& mesh, HalfEdge first) : mesh_(mesh), first_(first) {}
+    Iterator begin() const { return {mesh_, first_, first_}; }
+    Iterator end() const { return {mesh_, first_, kNoHalfEdge}; }
+
+   private:
+    const Mesh& mesh_;
+    HalfEdge first_;
+  };
+  Around around(Vertex v) const { return {*this, leaving(v)}; }
+
+  bool is_fixed(HalfEdge e) const { return bits(triangle_of(e)) >> corner_of(e) & 1; }
+  bool is_ghost(Triangle t) const {
+    const auto& c = (*this)[t].corner;
     return c[0] == kGhost || c[1] == kGhost || c[2] == kGhost;
   }
-  bool is_free(std::uint32_t t) const { return triangles_[t].corner[0] == kFree; }
-  const GhostTriangle& operator[](std::uint32_t t) const { return triangles_[t]; }
+  bool is_free(Triangle t) const { return (*this)[t].corner[0] == kFree; }
+  const GhostTriangle& operator[](Triangle t) const { return triangles_[number(t)]; }
   std::uint32_t triangle_slots() const { return static_cast<std::uint32_t>(triangles_.size()); }
+  Ids<Triangle> triangles() const { return Ids<Triangle>(triangle_slots()); }  // free ones too
   std::uint32_t triangle_count() const {
     return static_cast<std::uint32_t>(triangles_.size() - free_.size());
   }
@@ -63,7 +96,7 @@ class Mesh {
     triangles_.reserve(triangles);
     fixed_.reserve(triangles);
   }
-  void add_vertices(std::size_t count) { leaving_.resize(leaving_.size() + count, kNoMeshEdge); }
+  void add_vertices(std::size_t count) { leaving_.resize(leaving_.size() + count, kNoHalfEdge); }
 
   // The first triangles, all at once: make(t, triangle) fills one in, neighbours and all, and
   // returns the bits of its fixed edges.
@@ -71,166 +104,169 @@ class Mesh {
   void add_all(std::uint32_t count, const Make& make) {
     triangles_.resize(count);
     fixed_.resize(count);
-    for (std::uint32_t t = 0; t < count; ++t) {
-      fixed_[t] = make(t, triangles_[t]);
+    for (const Triangle t : Ids<Triangle>(count)) {
+      bits(t) = make(t, at(t));
       keep_leaving(t);
     }
   }
 
   // A triangle without neighbours yet.
-  std::uint32_t add(std::int32_t a, std::int32_t b, std::int32_t c) {
-    const std::uint32_t t = allocate();
+  Triangle add(Vertex a, Vertex b, Vertex c) {
+    const Triangle t = allocate();
     set_corners(t, a, b, c);
-    fixed_[t] = 0;
+    bits(t) = 0;
     return t;
   }
   // The same for one that is no longer needed as it is.
-  void reuse(std::uint32_t t, std::int32_t a, std::int32_t b, std::int32_t c) {
+  void reuse(Triangle t, Vertex a, Vertex b, Vertex c) {
     set_corners(t, a, b, c);
-    fixed_[t] = 0;
+    bits(t) = 0;
   }
   // A mark stays until the triangle is made anew.
-  void mark(std::uint32_t t) { fixed_[t] |= kMark; }
-  bool is_marked(std::uint32_t t) const { return (fixed_[t] & kMark) != 0; }
+  void mark(Triangle t) { bits(t) |= kMark; }
+  bool is_marked(Triangle t) const { return (bits(t) & kMark) != 0; }
   // Likewise: every fixed edge of the triangle was found to be Delaunay.
-  void set_proven(std::uint32_t t) { fixed_[t] |= kProven; }
-  bool is_proven(std::uint32_t t) const { return (fixed_[t] & kProven) != 0; }
+  void set_proven(Triangle t) { bits(t) |= kProven; }
+  bool is_proven(Triangle t) const { return (bits(t) & kProven) != 0; }
 
-  void join(MeshEdge e, MeshEdge f) {
-    triangles_[triangle_of(e)].twin[place_of(e)] = f;
-    triangles_[triangle_of(f)].twin[place_of(f)] = e;
+  void join(HalfEdge e, HalfEdge f) {
+    at(triangle_of(e)).twin[corner_of(e)] = f;
+    at(triangle_of(f)).twin[corner_of(f)] = e;
   }
-  void fix(MeshEdge e, bool is_fixed) {
-    for (const MeshEdge side : {e, twin(e)}) {
-      std::uint8_t& bits = fixed_[triangle_of(side)];
-      const auto bit = static_cast<std::uint8_t>(1u << place_of(side));
-      bits = static_cast<std::uint8_t>(is_fixed ? bits | bit : bits & ~bit);
+  void fix(HalfEdge e, bool is_fixed) {
+    for (const HalfEdge side : {e, twin(e)}) {
+      std::uint8_t& held = bits(triangle_of(side));
+      const auto bit = static_cast<std::uint8_t>(1u << corner_of(side));
+      held = static_cast<std::uint8_t>(is_fixed ? held | bit : held & ~bit);
     }
   }
 
   // Swap the diagonal of the two triangles at an edge from b to c with corners a and d:
   // (a, b, c) and (d, c, b) become (a, b, d), which keeps its number, and (d, c, a).
-  void flip(MeshEdge e) {
-    const MeshEdge f = twin(e);
-    const std::uint32_t t = triangle_of(e), u = triangle_of(f);
-    const std::int32_t a = corner(e), b = from(e), c = to(e), d = corner(f);
+  void flip(HalfEdge e) {
+    const HalfEdge f = twin(e);
+    const Triangle t = triangle_of(e), u = triangle_of(f);
+    const Vertex a = apex(e), b = from(e), c = to(e), d = apex(f);
     const Side ca = side(after(e)), ab = side(before(e));
     const Side bd = side(after(f)), dc = side(before(f));
-    put(t, a, b, d, bd, {mesh_edge(u, 1), false}, ab);
-    put(u, d, c, a, ca, {mesh_edge(t, 1), false}, dc);
+    put(t, a, b, d, bd, {half_edge(u, 1), false}, ab);
+    put(u, d, c, a, ca, {half_edge(t, 1), false}, dc);
   }
 
   // (a, b, c) becomes (a, b, v), (b, c, v) and (c, a, v); returns the edges opposite v.
   struct ThreeEdges {
-    MeshEdge edge[3];
+    HalfEdge edge[3];
   };
-  ThreeEdges split_triangle(std::uint32_t t, std::int32_t v) {
-    const std::uint32_t s = allocate(), r = allocate();
-    const std::int32_t a = triangles_[t].corner[0], b = triangles_[t].corner[1];
-    const std::int32_t c = triangles_[t].corner[2];
-    const Side bc = side(mesh_edge(t, 0)), ca = side(mesh_edge(t, 1)), ab = side(mesh_edge(t, 2));
-    put(t, a, b, v, {mesh_edge(s, 1), false}, {mesh_edge(r, 0), false}, ab);
-    put(s, b, c, v, {mesh_edge(r, 1), false}, {mesh_edge(t, 0), false}, bc);
-    put(r, c, a, v, {mesh_edge(t, 1), false}, {mesh_edge(s, 0), false}, ca);
-    return {{mesh_edge(t, 2), mesh_edge(s, 2), mesh_edge(r, 2)}};
+  ThreeEdges split_triangle(Triangle t, Vertex v) {
+    const Triangle s = allocate(), r = allocate();
+    const Vertex a = at(t).corner[0], b = at(t).corner[1], c = at(t).corner[2];
+    const Side bc = side(half_edge(t, 0)), ca = side(half_edge(t, 1)), ab = side(half_edge(t, 2));
+    put(t, a, b, v, {half_edge(s, 1), false}, {half_edge(r, 0), false}, ab);
+    put(s, b, c, v, {half_edge(r, 1), false}, {half_edge(t, 0), false}, bc);
+    put(r, c, a, v, {half_edge(t, 1), false}, {half_edge(s, 0), false}, ca);
+    return {{half_edge(t, 2), half_edge(s, 2), half_edge(r, 2)}};
   }
 
   // v on the edge from b to c with corners a and d; both halves stay fixed if it was. Returns the
   // edges opposite v.
   struct FourEdges {
-    MeshEdge edge[4];
+    HalfEdge edge[4];
   };
-  FourEdges split_edge(MeshEdge e, std::int32_t v) {
-    const MeshEdge f = twin(e);
+  FourEdges split_edge(HalfEdge e, Vertex v) {
+    const HalfEdge f = twin(e);
     const bool is_held = is_fixed(e);
-    const std::uint32_t t = triangle_of(e), u = triangle_of(f);
-    const std::uint32_t s = allocate(), r = allocate();
-    const std::int32_t a = corner(e), b = from(e), c = to(e), d = corner(f);
+    const Triangle t = triangle_of(e), u = triangle_of(f);
+    const Triangle s = allocate(), r = allocate();
+    const Vertex a = apex(e), b = from(e), c = to(e), d = apex(f);
     const Side ca = side(after(e)), ab = side(before(e));
     const Side bd = side(after(f)), dc = side(before(f));
-    put(t, a, b, v, {mesh_edge(r, 0), is_held}, {mesh_edge(s, 2), false}, ab);
-    put(s, a, v, c, {mesh_edge(u, 0), is_held}, ca, {mesh_edge(t, 1), false});
-    put(u, d, c, v, {mesh_edge(s, 0), is_held}, {mesh_edge(r, 2), false}, dc);
-    put(r, d, v, b, {mesh_edge(t, 0), is_held}, bd, {mesh_edge(u, 1), false});
-    return {{mesh_edge(t, 2), mesh_edge(s, 1), mesh_edge(u, 2), mesh_edge(r, 1)}};
+    put(t, a, b, v, {half_edge(r, 0), is_held}, {half_edge(s, 2), false}, ab);
+    put(s, a, v, c, {half_edge(u, 0), is_held}, ca, {half_edge(t, 1), false});
+    put(u, d, c, v, {half_edge(s, 0), is_held}, {half_edge(r, 2), false}, dc);
+    put(r, d, v, b, {half_edge(t, 0), is_held}, bd, {half_edge(u, 1), false});
+    return {{half_edge(t, 2), half_edge(s, 1), half_edge(u, 2), half_edge(r, 1)}};
   }
 
   // A vertex in three triangles goes; they become one. Returns it.
-  std::uint32_t merge_three(std::int32_t v) {
-    const MeshEdge e = leaving(v), f = next_leaving(e), g = next_leaving(f);
-    const std::uint32_t t = triangle_of(e), s = triangle_of(f), r = triangle_of(g);
-    const std::int32_t x = to(e), y = to(f), z = to(g);
+  Triangle merge_three(Vertex v) {
+    const HalfEdge e = leaving(v), f = next_leaving(e), g = next_leaving(f);
+    const Triangle t = triangle_of(e), s = triangle_of(f), r = triangle_of(g);
+    const Vertex x = to(e), y = to(f), z = to(g);
     const Side xy = side(after(e)), yz = side(after(f)), zx = side(after(g));
     put(t, x, y, z, yz, zx, xy);
     free(s);
     free(r);
-    leaving_[v] = kNoMeshEdge;
+    leaving_[number(v)] = kNoHalfEdge;
     return t;
   }
 
   // A vertex in four triangles goes, on the line from `to(e)` to the vertex opposite; returns the
   // new edge between these.
-  MeshEdge merge_four(std::int32_t v, MeshEdge e) {
-    const MeshEdge f = next_leaving(e), g = next_leaving(f), h = next_leaving(g);
-    const std::uint32_t t = triangle_of(e), s = triangle_of(g);
-    const std::int32_t w = to(e), x = to(f), y = to(g), z = to(h);
+  HalfEdge merge_four(Vertex v, HalfEdge e) {
+    const HalfEdge f = next_leaving(e), g = next_leaving(f), h = next_leaving(g);
+    const Triangle t = triangle_of(e), s = triangle_of(g);
+    const Vertex w = to(e), x = to(f), y = to(g), z = to(h);
     const Side wx = side(after(e)), xy = side(after(f)), yz = side(after(g)), zw = side(after(h));
     free(triangle_of(f));
     free(triangle_of(h));
-    put(t, w, x, y, xy, {mesh_edge(s, 1), false}, wx);
-    put(s, y, z, w, zw, {mesh_edge(t, 1), false}, yz);
-    leaving_[v] = kNoMeshEdge;
-    return mesh_edge(t, 1);
+    put(t, w, x, y, xy, {half_edge(s, 1), false}, wx);
+    put(s, y, z, w, zw, {half_edge(t, 1), false}, yz);
+    leaving_[number(v)] = kNoHalfEdge;
+    return half_edge(t, 1);
   }
 
   // A vertex on the hull goes; its triangles become ghosts. `e` leaves it towards the ghost.
-  void merge_into_ghost(std::int32_t v, MeshEdge e) {
-    const std::uint32_t ghosts[2] = {triangle_of(e), triangle_of(twin(e))};
-    const MeshEdge pair[2][2] = {{side(after(e)).twin, side(before(e)).twin},
+  void merge_into_ghost(Vertex v, HalfEdge e) {
+    const Triangle ghosts[2] = {triangle_of(e), triangle_of(twin(e))};
+    const HalfEdge pair[2][2] = {{side(after(e)).twin, side(before(e)).twin},
                                  {side(after(twin(e))).twin, side(before(twin(e))).twin}};
-    for (MeshEdge f = next_leaving(e); f != previous_leaving(e); f = next_leaving(f)) {
-      triangles_[triangle_of(f)].corner[place_after(place_of(f))] = kGhost;
+    for (HalfEdge f = next_leaving(e); f != previous_leaving(e); f = next_leaving(f)) {
+      at(triangle_of(f)).corner[corner_after(corner_of(f))] = kGhost;
     }
     for (int i = 0; i < 2; ++i) {
       join(pair[i][0], pair[i][1]);
       free(ghosts[i]);
     }
     for (int i = 0; i < 2; ++i) {
-      for (const MeshEdge f : pair[i]) keep_leaving(triangle_of(f));
+      for (const HalfEdge f : pair[i]) keep_leaving(triangle_of(f));
     }
-    leaving_[v] = kNoMeshEdge;
+    leaving_[number(v)] = kNoHalfEdge;
   }
 
  private:
-  static constexpr std::int32_t kFree = -2;
+  static constexpr Vertex kFree{-2};
   static constexpr std::uint8_t kMark = 8, kProven = 16;  // beyond the bits of the three edges
 
   struct Side {  // what lies beyond an edge
-    MeshEdge twin;
+    HalfEdge twin;
     bool is_fixed;
   };
-  Side side(MeshEdge e) const { return {twin(e), is_fixed(e)}; }
+  Side side(HalfEdge e) const { return {twin(e), is_fixed(e)}; }
 
-  const GhostTriangle& triangle(MeshEdge e) const { return triangles_[triangle_of(e)]; }
+  const GhostTriangle& triangle(HalfEdge e) const { return (*this)[triangle_of(e)]; }
 
-  std::uint32_t allocate() {
+  GhostTriangle& at(Triangle t) { return triangles_[number(t)]; }
+  std::uint8_t& bits(Triangle t) { return fixed_[number(t)]; }
+  std::uint8_t bits(Triangle t) const { return fixed_[number(t)]; }
+
+  Triangle allocate() {
     if (!free_.empty()) {
-      const std::uint32_t t = free_.back();
+      const Triangle t = free_.back();
       free_.pop_back();
       return t;
     }
     triangles_.push_back({});
     fixed_.push_back(0);
-    return static_cast<std::uint32_t>(triangles_.size() - 1);
+    return Triangle{triangle_slots() - 1};
   }
 
-  void free(std::uint32_t t) {
-    triangles_[t].corner[0] = kFree;
+  void free(Triangle t) {
+    at(t).corner[0] = kFree;
     free_.push_back(t);
   }
 
-  void set_corners(std::uint32_t t, std::int32_t a, std::int32_t b, std::int32_t c) {
-    std::int32_t* const corner = triangles_[t].corner;
+  void set_corners(Triangle t, Vertex a, Vertex b, Vertex c) {
+    Vertex* const corner = at(t).corner;
     corner[0] = a;
     corner[1] = b;
     corner[2] = c;
@@ -238,27 +274,27 @@ class Mesh {
   }
 
   // Every corner has an edge that leaves it in a triangle that is alive.
-  void keep_leaving(std::uint32_t t) {
+  void keep_leaving(Triangle t) {
     for (std::uint32_t k = 0; k < 3; ++k) {
-      const std::int32_t vertex = triangles_[t].corner[k];
-      if (vertex != kGhost) leaving_[vertex] = mesh_edge(t, place_before(k));
+      const Vertex v = at(t).corner[k];
+      if (v != kGhost) leaving_[number(v)] = half_edge(t, corner_before(k));
     }
   }
 
-  void put(std::uint32_t t, std::int32_t a, std::int32_t b, std::int32_t c, Side opposite_a,
-           Side opposite_b, Side opposite_c) {
+  void put(Triangle t, Vertex a, Vertex b, Vertex c, Side opposite_a, Side opposite_b,
+           Side opposite_c) {
     set_corners(t, a, b, c);
-    join(mesh_edge(t, 0), opposite_a.twin);
-    join(mesh_edge(t, 1), opposite_b.twin);
-    join(mesh_edge(t, 2), opposite_c.twin);
-    fixed_[t] = static_cast<std::uint8_t>(opposite_a.is_fixed | opposite_b.is_fixed << 1 |
-                                          opposite_c.is_fixed << 2);
+    join(half_edge(t, 0), opposite_a.twin);
+    join(half_edge(t, 1), opposite_b.twin);
+    join(half_edge(t, 2), opposite_c.twin);
+    bits(t) = static_cast<std::uint8_t>(opposite_a.is_fixed | opposite_b.is_fixed << 1 |
+                                        opposite_c.is_fixed << 2);
   }
 
   ScratchVector<GhostTriangle> triangles_;
   ScratchVector<std::uint8_t> fixed_;  // bits by corner, both sides of an edge alike; mark
-  std::vector<std::uint32_t> free_;    // triangles to use again
-  ScratchVector<MeshEdge> leaving_;    // one edge that leaves each vertex
+  std::vector<Triangle> free_;         // triangles to use again
+  ScratchVector<HalfEdge> leaving_;    // one edge that leaves each vertex
 };
 
 }  // namespace tinsmith

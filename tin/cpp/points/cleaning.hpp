@@ -24,8 +24,8 @@ inline bool copy_clean(const double* from, std::int64_t count, double* to, Team&
     bool sound = true;
     for (std::int64_t i = 3 * begin; i < 3 * end; i += 3) {
       for (int k = 0; k < 3; ++k) to[i + k] = from[i + k] + 0.0;
-      sound &= is_in_exact_range(from[i]) & is_in_exact_range(from[i + 1]) &
-               std::isfinite(from[i + 2]);
+      sound &=
+          is_in_exact_range(from[i]) & is_in_exact_range(from[i + 1]) & std::isfinite(from[i + 2]);
     }
     if (!sound) is_sound = false;
   });

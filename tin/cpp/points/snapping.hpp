@@ -2,14 +2,14 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <deque>
 #include <set>
 #include <utility>
 #include <vector>
 
-#include "../index/grid.hpp"
-#include "../predicates/predicates.hpp"
+#include "../base/point.hpp"
 
 namespace tinsmith {
 
@@ -18,7 +18,7 @@ namespace tinsmith {
 // Points are taken in lexicographic order; one is kept if no point kept before lies within the
 // distance, else it goes to the nearest of those. So kept points are pairwise further apart than
 // the distance, no point moves by more, and the result does not depend on the order of the rows:
-// of rows at one place, the first stands for the others.
+// of rows at one point, the first stands for the others.
 inline std::vector<std::int32_t> snap_rows(const PointRows& rows, double distance) {
   std::vector<std::int32_t> order(rows.count);
   for (std::int64_t i = 0; i < rows.count; ++i) order[i] = static_cast<std::int32_t>(i);

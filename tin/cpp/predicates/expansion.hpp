@@ -77,8 +77,7 @@ Expansion<N + M> operator+(const Expansion<N>& a, const Expansion<M>& b) {
   const auto magnitude = [](double v) { return v < 0.0 ? -v : v; };
   double carry = 0.0;
   while (i < a.size || j < b.size) {
-    const bool take_a =
-        j == b.size || (i < a.size && magnitude(a.part[i]) <= magnitude(b.part[j]));
+    const bool take_a = j == b.size || (i < a.size && magnitude(a.part[i]) <= magnitude(b.part[j]));
     const double next = take_a ? a.part[i++] : b.part[j++];
     const TwoDoubles sum = exact_sum(carry, next);
     result.push_nonzero(sum.low);

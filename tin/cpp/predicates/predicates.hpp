@@ -1,5 +1,8 @@
 // Exact predicates on plane coordinates: which side of a line, inside which circle.
 //
+// Adaptive as those of Shewchuk, "Adaptive precision floating-point arithmetic and fast robust
+// geometric predicates" (1997).
+//
 // Each decides in stages and stops at the first that is certain: plain doubles with an error
 // bound; wide integers where the differences of the coordinates have a common unit that is not too
 // small (they have for neighbouring points of any survey or raster); expansions for all else.
@@ -15,6 +18,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "../base/point.hpp"
 #include "expansion.hpp"
 
 namespace tinsmith {
@@ -23,18 +27,6 @@ constexpr double kSmallestCoordinate = 0x1p-200;
 constexpr double kLargestCoordinate = 0x1p250;
 
 constexpr double kUnitRoundoff = 0x1p-53;
-
-struct Point {
-  double x;
-  double y;
-};
-
-inline bool operator==(Point a, Point b) { return a.x == b.x && a.y == b.y; }
-
-// Order by easting, then northing: the order that breaks ties between cocircular points.
-inline bool lexicographically_before(Point a, Point b) {
-  return a.x < b.x || (a.x == b.x && a.y < b.y);
-}
 
 namespace detail {
 
@@ -182,9 +174,9 @@ inline int in_circle_expanded(const TwoDoubles (&d)[6]) {
 }
 
 inline int in_circle_exact(Point a, Point b, Point c, Point d) {
-  const TwoDoubles difference[6] = {
-      exact_difference(a.x, d.x), exact_difference(a.y, d.y), exact_difference(b.x, d.x),
-      exact_difference(b.y, d.y), exact_difference(c.x, d.x), exact_difference(c.y, d.y)};
+  const TwoDoubles difference[6] = {exact_difference(a.x, d.x), exact_difference(a.y, d.y),
+                                    exact_difference(b.x, d.x), exact_difference(b.y, d.y),
+                                    exact_difference(c.x, d.x), exact_difference(c.y, d.y)};
 #ifdef __SIZEOF_INT128__
   IntegerInCircle integers;
   if (integers.load(difference)) return integers.sign();
@@ -243,8 +235,8 @@ inline int in_circle(Point a, Point b, Point c, Point d) {
   const double a_lift = adx * adx + ady * ady;
   const double b_lift = bdx * bdx + bdy * bdy;
   const double c_lift = cdx * cdx + cdy * cdy;
-  const double determinant = a_lift * (bdx_cdy - cdx_bdy) + b_lift * (cdx_ady - adx_cdy) +
-                             c_lift * (adx_bdy - bdx_ady);
+  const double determinant =
+      a_lift * (bdx_cdy - cdx_bdy) + b_lift * (cdx_ady - adx_cdy) + c_lift * (adx_bdy - bdx_ady);
   const double permanent = (std::fabs(bdx_cdy) + std::fabs(cdx_bdy)) * a_lift +
                            (std::fabs(cdx_ady) + std::fabs(adx_cdy)) * b_lift +
                            (std::fabs(adx_bdy) + std::fabs(bdx_ady)) * c_lift;
@@ -256,8 +248,10 @@ inline int in_circle(Point a, Point b, Point c, Point d) {
 // As in_circle, but never 0: of four cocircular points the lexicographically last decides.
 //
 // Each point's lifted height x^2 + y^2 is thought raised by an infinitesimal that grows with its
-// rank in lexicographic order, each beyond comparison with all before it. So the triangulation is
-// unique and a function of the point set alone. The signs are the cofactors of the heights in
+// rank in lexicographic order, each beyond comparison with all before it: the symbolic perturbation
+// of Edelsbrunner and Muecke, "Simulation of simplicity" (1990), as Devillers and Teillaud use it
+// ("Perturbations and vertex removal in a 3D Delaunay triangulation", 2003). So the triangulation
+// is unique and a function of the point set alone. The signs are the cofactors of the heights in
 // the in-circle determinant.
 inline bool is_in_circle(Point a, Point b, Point c, Point d) {
   const int side = in_circle(a, b, c, d);

@@ -1,18 +1,21 @@
 // Refiner: points are added to a constrained Delaunay mesh until its triangles are good.
 //
-// Delaunay refinement after Ruppert (1995) and Chew (1993), with the off-centres of Ungor (2004):
+// Delaunay refinement after Ruppert, "A Delaunay refinement algorithm for quality 2-dimensional
+// mesh generation" (1995) and Chew, "Guaranteed-quality mesh generation for curved surfaces"
+// (1993), with the off-centres of Uengoer, "Off-centers: a new type of Steiner points" (2004):
 //
-//   1. A segment (a fixed edge; every edge of the rim is one) that a corner beside it encroaches
+//   1. A segment (a fixed edge; every edge of the boundary is one) that a corner beside it
+//   encroaches
 //      upon, or that is too long, is split. Points put inside the surface before and now within
 //      the circle on the segment are taken out first.
 //   2. A bad triangle gets a point at its remedy. If a segment is in the way, or the point would
 //      encroach upon one, that segment is split instead.
 //
 // At an input vertex with a small angle, segments are split on circles around it whose radii are
-// powers of two, so that both sides are cut alike and do not cut each other on and on [Ruppert 1995].
-// A triangle whose shortest edge joins two such segments at one circle, across the mouth of an angle
-// below 60 degrees, is left [Miller, Pav, Walkington 2003], and so is one that only edges much
-// shorter than any of the input could mend: this is why it always ends.
+// powers of two, so that both sides are cut alike and do not cut each other on and on [Ruppert
+// 1995]. A triangle whose shortest edge joins two such segments at one circle, across the mouth of
+// an angle below 60 degrees, is left [Miller, Pav, Walkington 2003], and so is one that only edges
+// much shorter than any of the input could mend: this is why it always ends.
 #pragma once
 
 #include <algorithm>
@@ -21,6 +24,7 @@
 #include <cstdint>
 #include <limits>
 #include <set>
+#include <stdexcept>
 #include <unordered_set>
 #include <utility>
 #include <vector>
@@ -37,7 +41,7 @@ class Refiner {
 
   // A segment from `from` to `to` was split at `middle`.
   struct Split {
-    std::int32_t from, to, middle;
+    Vertex from, to, middle;
   };
 
   Refiner(MeshEditor& editor, const RefinementGoal& goal)
@@ -45,18 +49,18 @@ class Refiner {
         mesh_(editor.mesh()),
         shape_(goal),
         input_count_(editor.slots()),
-        step_of_(editor.slots(), kNoStep) {
+        input_segment_of_(editor.slots(), kNoSegment) {
     editor_.legalize_all();
     editor_.watch();
-    const double squared_size = std::min({squared_shortest_edge(), goal.largest_area,
-                                          goal.longest_edge * goal.longest_edge});
+    const double squared_size = std::min(
+        {squared_shortest_edge(), goal.largest_area, goal.longest_edge * goal.longest_edge});
     const double floor = std::max(kFloor * std::sqrt(squared_size), kRoom * rounding());
     squared_floor_ = floor * floor;
   }
 
   template <typename KeepGoing>
   Ended run(std::int32_t most_vertices, KeepGoing&& keep_going) {
-    for (std::uint32_t t = 0; t < mesh_.triangle_slots(); ++t) examine(t);
+    for (const Triangle t : mesh_.triangles()) examine(t);
     constexpr int kStepsPerQuestion = 4096;
     for (int until_question = kStepsPerQuestion; has_work(); --until_question) {
       if (until_question == 0) {
@@ -77,7 +81,7 @@ class Refiner {
   const std::vector<Split>& splits() const { return splits_; }
 
   // Never split the segment between two vertices.
-  void keep_whole(std::int32_t a, std::int32_t b) { stuck_.insert(key_of(a, b)); }
+  void keep_whole(Vertex a, Vertex b) { stuck_.insert(key_of(a, b)); }
 
   // Why a triangle stays that misses the goal.
   enum class Why : std::int32_t { kAngleBetweenSegments, kNoRoom, kSegmentInTheWay };
@@ -85,7 +89,7 @@ class Refiner {
   // Call `visit(t, why)` for every triangle of the surface that misses the goal.
   template <typename Visit>
   void visit_left(Visit&& visit) const {
-    for (std::uint32_t t = 0; t < mesh_.triangle_slots(); ++t) {
+    for (const Triangle t : mesh_.triangles()) {
       if (!is_surface(t)) continue;
       const TurnedTriangle turned = turned_of(t);
       if (shape_.is_large(turned) || shape_.has_small_angle(turned)) visit(t, why_left(t, turned));
@@ -93,7 +97,7 @@ class Refiner {
   }
 
  private:
-  static constexpr std::int32_t kNoStep = -1;
+  static constexpr std::int32_t kNoSegment = -1;
 
   // No edge is made shorter by more than this than the shortest one at the beginning, or than the
   // size asked for. Where the angles of the input are not small, a least angle of 20.7 degrees
@@ -105,28 +109,28 @@ class Refiner {
 
   double rounding() const {
     double largest = 0.0;
-    for (std::int32_t v = 0; v < input_count_; ++v) {
+    for (const Vertex v : Ids<Vertex>(input_count_)) {
       largest = std::max({largest, std::abs(point(v).x), std::abs(point(v).y)});
     }
     return largest * std::numeric_limits<double>::epsilon();
   }
 
+  std::int32_t input_segment_of(Vertex v) const { return input_segment_of_[number(v)]; }
   bool has_work() const { return !segments_.is_empty() || !triangles_.is_empty(); }
-  Point point(std::int32_t v) const { return editor_.point(v); }
+  Point point(Vertex v) const { return editor_.point(v); }
 
   double squared_shortest_edge() const {
     double least = INFINITY;
-    for (std::uint32_t t = 0; t < mesh_.triangle_slots(); ++t) {
+    for (const Triangle t : mesh_.triangles()) {
       if (!is_surface(t)) continue;
-      for (std::uint32_t k = 0; k < 3; ++k) {
-        const MeshEdge e = mesh_edge(t, k);
+      for (const HalfEdge e : half_edges(t)) {
         least = std::min(least, squared_distance(point(mesh_.from(e)), point(mesh_.to(e))));
       }
     }
     return least;
   }
 
-  bool is_surface(std::uint32_t t) const { return !mesh_.is_free(t) && !mesh_.is_ghost(t); }
+  bool is_surface(Triangle t) const { return !mesh_.is_free(t) && !mesh_.is_ghost(t); }
 
   // ------------------------------------------------------------------ finding
 
@@ -134,14 +138,13 @@ class Refiner {
     editor_.take_touched(touched_);
     std::sort(touched_.begin(), touched_.end());
     touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
-    for (const std::uint32_t t : touched_) examine(t);
+    for (const Triangle t : touched_) examine(t);
   }
 
-  void examine(std::uint32_t t) {
+  void examine(Triangle t) {
     if (!is_surface(t)) return;
     bool is_segment_split = false;
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      const MeshEdge e = mesh_edge(t, k);
+    for (const HalfEdge e : half_edges(t)) {
       if (mesh_.is_fixed(e) && !is_stuck(e) && must_split(e)) {
         put_off(e, false);
         is_segment_split = true;
@@ -152,17 +155,17 @@ class Refiner {
     if (is_bad(t, turned) && !is_given_up(t)) put_off(t, turned);
   }
 
-  bool is_given_up(std::uint32_t t) const {
+  bool is_given_up(Triangle t) const {
     if (given_up_.empty()) return false;
     const auto& c = mesh_[t].corner;
     return given_up_.count(key_of({t, {c[0], c[1], c[2]}})) > 0;
   }
 
-  bool must_split(MeshEdge e) const {
+  bool must_split(HalfEdge e) const {
     const Point a = point(mesh_.from(e)), b = point(mesh_.to(e));
     if (shape_.is_long(a, b)) return true;
-    for (const MeshEdge side : {e, mesh_.twin(e)}) {
-      const std::int32_t c = mesh_.corner(side);
+    for (const HalfEdge side : {e, mesh_.twin(e)}) {
+      const Vertex c = mesh_.apex(side);
       if (c != kGhost && encroaches(point(c), a, b)) return true;
     }
     return false;
@@ -173,27 +176,27 @@ class Refiner {
     return shape_.encroaches(c, a, b) && squared_height(c, a, b) >= squared_floor_;
   }
 
-  void put_off(MeshEdge e, bool is_ordered) {
-    const std::int32_t a = mesh_.from(e), b = mesh_.to(e);
+  void put_off(HalfEdge e, bool is_ordered) {
+    const Vertex a = mesh_.from(e), b = mesh_.to(e);
     segments_.push(rank_of_long(squared_distance(point(a), point(b))), {e, a, b, is_ordered});
   }
 
-  TurnedTriangle turned_of(std::uint32_t t) const {
+  TurnedTriangle turned_of(Triangle t) const {
     const auto& c = mesh_[t].corner;
     return TurnedTriangle::of({point(c[0]), point(c[1]), point(c[2])});
   }
 
-  void put_off(std::uint32_t t, const TurnedTriangle& turned) {
+  void put_off(Triangle t, const TurnedTriangle& turned) {
     const auto& c = mesh_[t].corner;
     triangles_.push(rank_of_short(squared_distance(turned.p, turned.q)), {t, {c[0], c[1], c[2]}});
   }
 
-  bool is_bad(std::uint32_t t, const TurnedTriangle& turned) const {
+  bool is_bad(Triangle t, const TurnedTriangle& turned) const {
     if (shape_.is_large(turned)) return true;
-    return shape_.has_small_angle(turned) && !is_angle_given(t, turned.place_of_apex);
+    return shape_.has_small_angle(turned) && !is_angle_given(t, turned.corner_of_apex);
   }
 
-  Why why_left(std::uint32_t t, const TurnedTriangle& turned) const {
+  Why why_left(Triangle t, const TurnedTriangle& turned) const {
     if (!is_bad(t, turned)) return Why::kAngleBetweenSegments;
     const Point p = shape_.remedy(turned);
     const double squared_radius = squared_distance(p, turned.p);
@@ -204,14 +207,14 @@ class Refiner {
 
   // Whether the small angle is one between segments that meet, seen from their own vertex or, on
   // one of the circles around it, from elsewhere.
-  bool is_angle_given(std::uint32_t t, int place_of_apex) const {
-    const auto place = static_cast<std::uint32_t>(place_of_apex);
-    const MeshEdge base = mesh_edge(t, place);
+  bool is_angle_given(Triangle t, int corner_of_apex) const {
+    const auto corner = static_cast<std::uint32_t>(corner_of_apex);
+    const HalfEdge base = half_edge(t, corner);
     if (mesh_.is_fixed(Mesh::after(base)) && mesh_.is_fixed(Mesh::before(base))) return true;
-    const std::int32_t s = step_of_[mesh_.from(base)], u = step_of_[mesh_.to(base)];
-    if (s == kNoStep || u == kNoStep || s == u) return false;
-    for (const std::int32_t common : steps_[s]) {
-      if (common != steps_[u][0] && common != steps_[u][1]) continue;
+    const std::int32_t s = input_segment_of(mesh_.from(base)), u = input_segment_of(mesh_.to(base));
+    if (s == kNoSegment || u == kNoSegment || s == u) return false;
+    for (const Vertex common : input_segments_[s]) {
+      if (common != input_segments_[u][0] && common != input_segments_[u][1]) continue;
       const double one = squared_distance(point(common), point(mesh_.from(base)));
       const double other = squared_distance(point(common), point(mesh_.to(base)));
       const double dot = dot_product(point(common), point(mesh_.from(base)), point(mesh_.to(base)));
@@ -230,30 +233,30 @@ class Refiner {
     if (work.is_ordered || must_split(work.edge)) {
       split(work.edge);
     } else {  // what was beside it is gone, and its triangles were left to it
-      for (const MeshEdge side : {work.edge, mesh_.twin(work.edge)}) examine(triangle_of(side));
+      for (const HalfEdge side : {work.edge, mesh_.twin(work.edge)}) examine(triangle_of(side));
     }
   }
 
-  bool is_segment(MeshEdge e, std::int32_t a, std::int32_t b) const {
+  bool is_segment(HalfEdge e, Vertex a, Vertex b) const {
     return !mesh_.is_free(triangle_of(e)) && mesh_.from(e) == a && mesh_.to(e) == b &&
            mesh_.is_fixed(e) && !is_stuck(e);
   }
 
   // False if there is no room for a point on the segment.
-  bool split(MeshEdge e) {
+  bool split(HalfEdge e) {
     e = without_free_points(e);
-    const std::int32_t a = mesh_.from(e), b = mesh_.to(e);
+    const Vertex a = mesh_.from(e), b = mesh_.to(e);
     const Point m = place_of_split(e);
     if (!has_room(e, m)) {
       stuck_.insert(key_of(a, b));
       examine_touched();
-      for (const MeshEdge side : {e, mesh_.twin(e)}) examine(triangle_of(side));
+      for (const HalfEdge side : {e, mesh_.twin(e)}) examine(triangle_of(side));
       return false;
     }
-    const std::int32_t step = step_along(a, b);
-    const std::int32_t slot = editor_.add_slot();
+    const std::int32_t segment = input_segment_along(a, b);
+    const Vertex slot = editor_.add_slot();
     editor_.insert_at({MeshLocation::Where::kOnEdge, e}, m, slot);
-    step_of_.push_back(step);
+    input_segment_of_.push_back(segment);
     is_free_.push_back(false);
     splits_.push_back({a, b, slot});
     examine_touched();
@@ -262,25 +265,27 @@ class Refiner {
 
   // Remove points put inside the surface that lie in the circle on the segment; returns the
   // segment's edge as it is then.
-  MeshEdge without_free_points(MeshEdge e) {
-    const std::int32_t a = mesh_.from(e), b = mesh_.to(e);
+  HalfEdge without_free_points(HalfEdge e) {
+    const Vertex a = mesh_.from(e), b = mesh_.to(e);
     for (int side = 0; side < 2; ++side, e = mesh_.twin(e)) {
-      while (is_free_within(mesh_.corner(e), a, b)) {
-        const MeshEdge other_side = mesh_.twin(e);  // which stays as it is
-        editor_.remove(mesh_.corner(e));
+      while (is_free_within(mesh_.apex(e), a, b)) {
+        const HalfEdge other_side = mesh_.twin(e);  // which stays as it is
+        editor_.remove(mesh_.apex(e));
         e = mesh_.twin(other_side);
       }
     }
     return e;
   }
 
-  bool is_free_within(std::int32_t c, std::int32_t a, std::int32_t b) const {
+  bool is_free_within(Vertex c, Vertex a, Vertex b) const {
     return c != kGhost && is_free(c) && dot_product(point(c), point(a), point(b)) < 0.0;
   }
-  bool is_free(std::int32_t v) const { return v >= input_count_ && is_free_[v - input_count_]; }
+  bool is_free(Vertex v) const {
+    return number(v) >= input_count_ && is_free_[number(v) - input_count_];
+  }
 
   // Halfway; from a vertex where another segment makes an angle, at a power of two.
-  Point place_of_split(MeshEdge e) const {
+  Point place_of_split(HalfEdge e) const {
     const Point a = point(mesh_.from(e)), b = point(mesh_.to(e));
     const bool is_angle_at_a = is_beside_segment(Mesh::before(e), Mesh::after(mesh_.twin(e)));
     const bool is_angle_at_b = is_beside_segment(Mesh::after(e), Mesh::before(mesh_.twin(e)));
@@ -288,10 +293,10 @@ class Refiner {
     return is_angle_at_a ? on_circle(a, b) : on_circle(b, a);
   }
 
-  bool is_beside_segment(MeshEdge left, MeshEdge right) const {
+  bool is_beside_segment(HalfEdge left, HalfEdge right) const {
     return is_segment_of_surface(left) || is_segment_of_surface(right);
   }
-  bool is_segment_of_surface(MeshEdge e) const {
+  bool is_segment_of_surface(HalfEdge e) const {
     return !mesh_.is_ghost(triangle_of(e)) && mesh_.is_fixed(e);
   }
 
@@ -304,40 +309,40 @@ class Refiner {
   }
 
   // Whether m, rounded, makes triangles on both sides that are turned the right way.
-  bool has_room(MeshEdge e, Point m) const {
+  bool has_room(HalfEdge e, Point m) const {
     const Point a = point(mesh_.from(e)), b = point(mesh_.to(e));
     if (squared_distance(a, m) < squared_floor_ || squared_distance(m, b) < squared_floor_) {
       return false;
     }
-    for (const MeshEdge side : {e, mesh_.twin(e)}) {
-      if (mesh_.corner(side) == kGhost) continue;
+    for (const HalfEdge side : {e, mesh_.twin(e)}) {
+      if (mesh_.apex(side) == kGhost) continue;
       const Point from = point(mesh_.from(side)), to = point(mesh_.to(side));
-      const Point c = point(mesh_.corner(side));
+      const Point c = point(mesh_.apex(side));
       if (orientation(from, m, c) <= 0 || orientation(m, to, c) <= 0) return false;
     }
     return true;
   }
 
   // The segment of the input that the one from a to b is a part of.
-  std::int32_t step_along(std::int32_t a, std::int32_t b) {
-    if (step_of_[a] != kNoStep) return step_of_[a];
-    if (step_of_[b] != kNoStep) return step_of_[b];
-    steps_.push_back({a, b});
-    return static_cast<std::int32_t>(steps_.size() - 1);
+  std::int32_t input_segment_along(Vertex a, Vertex b) {
+    if (input_segment_of(a) != kNoSegment) return input_segment_of(a);
+    if (input_segment_of(b) != kNoSegment) return input_segment_of(b);
+    input_segments_.push_back({a, b});
+    return static_cast<std::int32_t>(input_segments_.size() - 1);
   }
 
-  bool is_stuck(MeshEdge e) const {
+  bool is_stuck(HalfEdge e) const {
     return !stuck_.empty() && stuck_.count(key_of(mesh_.from(e), mesh_.to(e))) > 0;
   }
-  static std::uint64_t key_of(std::int32_t a, std::int32_t b) {
-    return static_cast<std::uint64_t>(std::min(a, b)) << 32 |
-           static_cast<std::uint32_t>(std::max(a, b));
+  static std::uint64_t key_of(Vertex a, Vertex b) {
+    return static_cast<std::uint64_t>(number(std::min(a, b))) << 32 |
+           static_cast<std::uint32_t>(number(std::max(a, b)));
   }
 
   // ---------------------------------------------------------------- triangles
 
   void serve(const TriangleWork& work) {
-    const std::uint32_t t = work.triangle;
+    const Triangle t = work.triangle;
     if (!is_triangle(work)) return;
     const TurnedTriangle turned = turned_of(t);
     const Point p = shape_.remedy(turned);
@@ -357,7 +362,7 @@ class Refiner {
            std::equal(work.vertex, work.vertex + 3, mesh_[work.triangle].corner);
   }
 
-  using TriangleKey = std::array<std::int32_t, 3>;
+  using TriangleKey = std::array<Vertex, 3>;
   static TriangleKey key_of(const TriangleWork& work) {
     TriangleKey key{work.vertex[0], work.vertex[1], work.vertex[2]};
     std::sort(key.begin(), key.end());
@@ -367,17 +372,17 @@ class Refiner {
   // Put a point in, unless it would encroach upon segments: then they are split instead. False if
   // neither can be; triangles around may have been made anew.
   bool insert(const MeshLocation& at, Point p) {
-    const std::int32_t slot = editor_.add_slot();
-    step_of_.push_back(kNoStep);
+    const Vertex slot = editor_.add_slot();
+    input_segment_of_.push_back(kNoSegment);
     is_free_.push_back(true);
     editor_.insert_at(at, p, slot);
-    const std::vector<MeshEdge> beyond = beyond_encroached(slot);
+    const std::vector<HalfEdge> beyond = beyond_encroached(slot);
     if (!beyond.empty()) {
       editor_.remove(slot);
-      for (const MeshEdge e : beyond) {
+      for (const HalfEdge e : beyond) {
         if (is_stuck(e)) return false;
       }
-      for (const MeshEdge e : beyond) put_off(mesh_.twin(e), true);
+      for (const HalfEdge e : beyond) put_off(mesh_.twin(e), true);
     }
     examine_touched();
     return true;
@@ -385,18 +390,15 @@ class Refiner {
 
   // Segments that a vertex sees under too large an angle, as seen from beyond them: so they are
   // still called when the vertex is gone.
-  std::vector<MeshEdge> beyond_encroached(std::int32_t v) const {
-    std::vector<MeshEdge> found;
-    const MeshEdge first = mesh_.leaving(v);
-    MeshEdge e = first;
-    do {
-      const MeshEdge opposite = Mesh::after(e);
+  std::vector<HalfEdge> beyond_encroached(Vertex v) const {
+    std::vector<HalfEdge> found;
+    for (const HalfEdge e : mesh_.around(v)) {
+      const HalfEdge opposite = Mesh::after(e);
       if (mesh_.is_fixed(opposite) &&
           encroaches(point(v), point(mesh_.from(opposite)), point(mesh_.to(opposite)))) {
         found.push_back(mesh_.twin(opposite));
       }
-      e = mesh_.next_leaving(e);
-    } while (e != first);
+    }
     return found;
   }
 
@@ -407,33 +409,33 @@ class Refiner {
 
   // From triangle to triangle towards p, across edges that are no segments. Every step goes to a
   // circle of smaller power about p, because such edges are Delaunay: the walk ends.
-  Found walk(std::uint32_t t, Point p) const {
-    while (true) {
-      MeshEdge blocking = kNoMeshEdge, on = kNoMeshEdge, across = kNoMeshEdge;
-      for (std::uint32_t k = 0; k < 3; ++k) {
-        const MeshEdge e = mesh_edge(t, k);
+  Found walk(Triangle t, Point p) const {
+    for (std::uint32_t most = mesh_.triangle_slots(); most > 0; --most) {
+      HalfEdge blocking = kNoHalfEdge, on = kNoHalfEdge, across = kNoHalfEdge;
+      for (const HalfEdge e : half_edges(t)) {
         const Point from = point(mesh_.from(e)), to = point(mesh_.to(e));
         if (p == from) return {{MeshLocation::Where::kAtVertex, e}, false};
         const int side = orientation(from, to, p);
         if (side == 0) on = e;
         if (side >= 0) continue;
-        MeshEdge& kind = mesh_.is_fixed(e) ? blocking : across;
-        if (kind == kNoMeshEdge || is_apex_before(e, kind)) kind = e;
+        HalfEdge& kind = mesh_.is_fixed(e) ? blocking : across;
+        if (kind == kNoHalfEdge || is_apex_before(e, kind)) kind = e;
       }
-      if (across != kNoMeshEdge) {
+      if (across != kNoHalfEdge) {
         t = triangle_of(mesh_.twin(across));
-      } else if (blocking != kNoMeshEdge) {
+      } else if (blocking != kNoHalfEdge) {
         return {{MeshLocation::Where::kOnEdge, blocking}, true};
-      } else if (on != kNoMeshEdge) {
+      } else if (on != kNoHalfEdge) {
         return {{MeshLocation::Where::kOnEdge, on}, mesh_.is_fixed(on)};
       } else {
-        return {{MeshLocation::Where::kInside, mesh_edge(t, 0)}, false};
+        return {{MeshLocation::Where::kInside, half_edge(t, 0)}, false};
       }
     }
+    throw std::logic_error("a walk to the remedy of a triangle did not arrive");
   }
 
-  bool is_apex_before(MeshEdge e, MeshEdge f) const {
-    return lexicographically_before(point(mesh_.corner(e)), point(mesh_.corner(f)));
+  bool is_apex_before(HalfEdge e, HalfEdge f) const {
+    return lexicographically_before(point(mesh_.apex(e)), point(mesh_.apex(f)));
   }
 
   MeshEditor& editor_;
@@ -441,13 +443,14 @@ class Refiner {
   ShapeTest shape_;
   std::int32_t input_count_;
   double squared_floor_ = 0.0;
-  std::vector<std::int32_t> step_of_;                // of vertices put on segments
-  std::vector<std::array<std::int32_t, 2>> steps_;   // ends of the input's segments that were split
-  std::vector<bool> is_free_;                        // of the vertices put in: inside the surface
+  std::vector<std::int32_t> input_segment_of_;  // of vertices put on segments
+  std::vector<std::array<Vertex, 2>>
+      input_segments_;         // ends of the input's segments that were split
+  std::vector<bool> is_free_;  // of the vertices put in: inside the surface
   std::vector<Split> splits_;
-  std::unordered_set<std::uint64_t> stuck_;          // segments that have no room for a point
-  std::vector<std::uint32_t> touched_;
-  std::set<TriangleKey> given_up_;                   // triangles that cannot be mended
+  std::unordered_set<std::uint64_t> stuck_;  // segments that have no room for a point
+  std::vector<Triangle> touched_;
+  std::set<TriangleKey> given_up_;  // triangles that cannot be mended
   WorkQueue<SegmentWork> segments_;
   WorkQueue<TriangleWork> triangles_;
 };

@@ -39,14 +39,13 @@ inline Point midpoint(Point a, Point b) {
 // short ones that with the first apex in lexicographic order, whatever the order of the corners.
 struct TurnedTriangle {
   Point p, q, apex;
-  int place_of_apex;  // among the corners as given
+  int corner_of_apex;  // among the corners as given
 
   static TurnedTriangle of(const Point (&corner)[3]) {
     int best = 0;
     for (int k = 1; k < 3; ++k) {
       const double size = opposite(corner, k), least = opposite(corner, best);
-      if (size < least ||
-          (size == least && lexicographically_before(corner[k], corner[best]))) {
+      if (size < least || (size == least && lexicographically_before(corner[k], corner[best]))) {
         best = k;
       }
     }
@@ -88,12 +87,12 @@ class ShapeTest {
   // but by splitting the segment: 180 degrees less twice the least angle [Chew 1993].
   bool encroaches(Point c, Point a, Point b) const {
     const double dot = dot_product(c, a, b);
-    return dot < 0.0 && dot * dot >= cosine_of_twice_ * cosine_of_twice_ *
-                                         squared_distance(c, a) * squared_distance(c, b);
+    return dot < 0.0 && dot * dot >= cosine_of_twice_ * cosine_of_twice_ * squared_distance(c, a) *
+                                         squared_distance(c, b);
   }
 
   // Where a point mends the triangle: the centre of its circle, or nearer to the shortest edge the
-  // place that sees it under just the least angle [Ungor 2004]. Not finite for a triangle so thin
+  // place that sees it under just the least angle [Uengoer 2004]. Not finite for a triangle so thin
   // that its area is rounded away, if there is no least angle.
   Point remedy(const TurnedTriangle& t) const {
     const double px = t.p.x - t.apex.x, py = t.p.y - t.apex.y;

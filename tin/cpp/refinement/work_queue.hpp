@@ -11,19 +11,19 @@
 #include <cstring>
 #include <vector>
 
-#include "../mesh/mesh.hpp"
+#include "../base/ids.hpp"
 
 namespace tinsmith {
 
 struct SegmentWork {
-  MeshEdge edge;
-  std::int32_t from, to;
+  HalfEdge edge;
+  Vertex from, to;
   bool is_ordered;  // to be split in any case
 };
 
 struct TriangleWork {
-  std::uint32_t triangle;
-  std::int32_t vertex[3];
+  Triangle triangle;
+  Vertex vertex[3];
 };
 
 template <typename Work>

@@ -13,7 +13,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../index/grid.hpp"
+#include "../base/box.hpp"
 #include "../predicates/predicates.hpp"
 
 namespace tinsmith {
@@ -21,7 +21,7 @@ namespace tinsmith {
 // Relative slack on boxes and radii; far above what a dozen roundings add up to.
 constexpr double kSlack = 1e-14;
 
-// Farther than the roundings of places in the box, and of the cells that hold them, add up to.
+// Farther than the roundings of points in the box, and of the cells that hold them, add up to.
 inline double coordinate_slack(const Box& box) {
   return kSlack * 4.0 *
          std::max({std::fabs(box.west), std::fabs(box.east), std::fabs(box.south),
@@ -31,8 +31,7 @@ inline double coordinate_slack(const Box& box) {
 // The box of the part of a circle through a and b = a + edge that is left of the edge, all
 // relative to a.
 inline Box box_of_cap(Point edge, Point center, double radius) {
-  Box box{std::min(0.0, edge.x), std::max(0.0, edge.x), std::min(0.0, edge.y),
-          std::max(0.0, edge.y)};
+  Box box = Box::of({0.0, 0.0}, edge);
   // The circle's extreme points count where they are left of the edge.
   const double side = edge.x * center.y - edge.y * center.x;
   if (!(side + edge.y * radius <= 0.0)) box.west = std::min(box.west, center.x - radius);

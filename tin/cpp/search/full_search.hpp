@@ -26,7 +26,11 @@ class ThirdPointSearch {
  public:
   // `own` are the positions whose vertices are finished in turn; all others come later.
   ThirdPointSearch(const PointGrid& grid, Range own)
-      : grid_(grid), x_(grid.x()), y_(grid.y()), own_(own), cell_(grid.top().cell_size),
+      : grid_(grid),
+        x_(grid.x()),
+        y_(grid.y()),
+        own_(own),
+        cell_(grid.top().cell_size),
         coordinate_slack_(coordinate_slack(grid.top().box)) {}
 
   // Searches are about `v` from now on: the vertex being finished, among cells of this size.
@@ -110,7 +114,10 @@ class ThirdPointSearch {
   class Cap {
    public:
     Cap(const Box& box, Point center, const Circle& circle, const ThirdPointSearch& search)
-        : box_(box), center_(center), circle_(circle), radius_(circle.radius),
+        : box_(box),
+          center_(center),
+          circle_(circle),
+          radius_(circle.radius),
           slack_(search.slack_of(radius_ < kUnbounded ? radius_ : 0.0)),
           search_(&search) {}
 
@@ -248,7 +255,8 @@ class ThirdPointSearch {
       if (reach > reach_) set_reach(reach);
       const double cross = ex_ * py - ey_ * px;
       const double dot = px * (px - ex_) + py * (py - ey_);
-      if (cross > errors_.cross() && (!has_best() || beats_best(dot, cross, 1.0))) offer(i, dot, cross);
+      if (!(cross > errors_.cross())) continue;
+      if (!has_best() || beats_best(dot, cross, 1.0)) offer(i, dot, cross);
     }
   }
 
@@ -289,7 +297,7 @@ class ThirdPointSearch {
 
   // ------------------------------------------------------------- boxes
 
-  // Farther than what a dozen roundings add up to, for places on a circle of this radius.
+  // Farther than what a dozen roundings add up to, for points on a circle of this radius.
   double slack_of(double radius) const { return coordinate_slack_ + kSlack * radius; }
 
   Cap cap_of(const Circle& circle) const {
@@ -298,7 +306,7 @@ class ThirdPointSearch {
     const Point center{0.5 * (ex_ - ey_ * circle.cotangent), 0.5 * (ey_ + ex_ * circle.cotangent)};
     const Box cap = box_of_cap({ex_, ey_}, center, radius);
     const double slack = slack_of(radius);
-    const Box box{ax_ + cap.west - slack, ax_ + cap.east + slack, ay_ + cap.south - slack,
+    const Box box{ax_ + cap.west - slack, ay_ + cap.south - slack, ax_ + cap.east + slack,
                   ay_ + cap.north + slack};
     return Cap(box, {ax_ + center.x, ay_ + center.y}, circle, *this);
   }
@@ -321,9 +329,9 @@ class ThirdPointSearch {
     if (ey_ == 0.0) return;
     const double slope = ex_ / ey_;
     const double at_south = ax_ + slope * (south - ay_), at_north = ax_ + slope * (north - ay_);
-    const double slack = coordinate_slack_ + kSlack * (std::fabs(slope) * (north - south) +
-                                                       std::fabs(at_south - ax_) +
-                                                       std::fabs(at_north - ax_));
+    const double slack =
+        coordinate_slack_ + kSlack * (std::fabs(slope) * (north - south) +
+                                      std::fabs(at_south - ax_) + std::fabs(at_north - ax_));
     if (ey_ > 0.0) {
       east = std::min(east, std::max(at_south, at_north) + slack);
     } else {
@@ -333,7 +341,7 @@ class ThirdPointSearch {
 
   Box box_around(double radius) const {
     const double reach = radius + slack_of(radius);
-    return {ax_ - reach, ax_ + reach, ay_ - reach, ay_ + reach};
+    return Box::of({ax_, ay_}, {ax_, ay_}).grown_by(reach);
   }
 
   // The box, and on a plain grid all of every cell that meets it (is_searched relies on it).
@@ -343,9 +351,9 @@ class ThirdPointSearch {
     const double east = std::min(box.east, all.east) - ax_;
     const double south = std::max(box.south, all.south) - ay_;
     const double north = std::min(box.north, all.north) - ay_;
-    const double reach = std::max({std::fabs(west), std::fabs(east), std::fabs(south),
-                                   std::fabs(north)}) +
-                         2.0 * cell_;
+    const double reach =
+        std::max({std::fabs(west), std::fabs(east), std::fabs(south), std::fabs(north)}) +
+        2.0 * cell_;
     if (reach > reach_) set_reach(reach);
   }
 
@@ -361,8 +369,7 @@ class ThirdPointSearch {
     std::int32_t found = -1;
     for_each_run(disc, [&](std::int32_t begin, std::int32_t end) {
       for (std::int32_t i = begin; i < end; ++i) {
-        const bool is_nearer =
-            found < 0 || compare_distances(here(a_), here(i), here(found)) < 0;
+        const bool is_nearer = found < 0 || compare_distances(here(a_), here(i), here(found)) < 0;
         if (is_nearer) found = i;
       }
     });

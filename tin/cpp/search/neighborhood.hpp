@@ -8,8 +8,8 @@
 //           v . .|  . | .  |        edge, does not leave the cells.
 //           +----+----+----+
 //
-// Without the proof the search goes on over the whole index (full_search.hpp). On even data 98 of 100
-// searches end here.
+// Without the proof the search goes on over the whole index (full_search.hpp). Of random points 96
+// searches in 100 end here, of rasters all.
 #pragma once
 
 #include <algorithm>
@@ -48,7 +48,10 @@ class Neighborhood {
 
   // `own` are the positions whose vertices are finished in turn; all others come later.
   Neighborhood(const PointGrid& grid, Range own)
-      : grid_(grid), x_(grid.x()), y_(grid.y()), own_(own),
+      : grid_(grid),
+        x_(grid.x()),
+        y_(grid.y()),
+        own_(own),
         slack_(coordinate_slack(grid.top().box)),
         seam_row_(own.begin > 0 ? grid.row_of(own.begin - 1) : kNoRow) {}
 
@@ -95,14 +98,13 @@ class Neighborhood {
   }
 
   // Points before `own` come later than v too: they matter to the first rows after the seam.
-  void list_runs_behind(const Level& level, std::int32_t row, std::int32_t first,
-                        std::int32_t last, bool is_top) {
+  void list_runs_behind(const Level& level, std::int32_t row, std::int32_t first, std::int32_t last,
+                        bool is_top) {
     south_ = is_top ? -HUGE_VAL : level.box.south - ay_ + slack_;
     if (!is_top || seam_row_ == kNoRow) return;
     const std::int32_t lowest = std::max(row - kRowsAhead, 0);
     for (std::int32_t r = lowest; r <= std::min(row, seam_row_); ++r) {
-      add_run(grid_.start(level, r, first),
-              std::min(grid_.start(level, r, last + 1), own_.begin));
+      add_run(grid_.start(level, r, first), std::min(grid_.start(level, r, last + 1), own_.begin));
     }
     const std::int32_t limit = std::min(lowest, seam_row_ + 1);
     if (limit > 0) south_ = level.box.south + limit * level.cell_size - ay_ + slack_;
@@ -116,8 +118,8 @@ class Neighborhood {
   }
 
   // The cells, as seen from v; the border cells of the top level have nothing beyond them.
-  void set_limits(const Level& level, std::int32_t first, std::int32_t last,
-                  std::int32_t top_row, bool is_top) {
+  void set_limits(const Level& level, std::int32_t first, std::int32_t last, std::int32_t top_row,
+                  bool is_top) {
     const Box& box = level.box;
     west_ = box.west + first * level.cell_size - ax_ + slack_;
     east_ = std::min(box.west + (last + 1) * level.cell_size, box.east) - ax_ - slack_;
@@ -159,8 +161,8 @@ class Neighborhood {
       const std::int32_t rival = lowest_bit(rivals);
       const std::int32_t i = point_in(rival);
       ++counts.exact_decisions;
-      const bool is_left = crosses_[rival] > errors.cross() ||
-                           orientation(here(a_), here(b_), here(i)) > 0;
+      const bool is_left =
+          crosses_[rival] > errors.cross() || orientation(here(a_), here(b_), here(i)) > 0;
       if (is_left && is_in_circle(here(a_), here(b_), here(point_in(lane)), here(i))) lane = rival;
     }
     return lane;
@@ -173,8 +175,8 @@ class Neighborhood {
     const double cotangent = rounded + kCotangentError * (1.0 + std::fabs(rounded));
     const double cx = 0.5 * (ex_ - ey_ * cotangent), cy = 0.5 * (ey_ + ex_ * cotangent);
     const double square = (cx * cx + cy * cy) * (1.0 + 4.0 * kSlack);
-    const double nearest = std::min(std::min(cx - west_, east_ - cx),
-                                    std::min(north_ - cy, cy - south_));
+    const double nearest =
+        std::min(std::min(cx - west_, east_ - cx), std::min(north_ - cy, cy - south_));
     if (nearest > 0.0 && nearest * nearest > square) return true;
     const double radius = std::sqrt(square), slack = kSlack * radius;
     const Box cap = box_of_cap({ex_, ey_}, {cx, cy}, radius);

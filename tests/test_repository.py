@@ -1,0 +1,206 @@
+"""The rules of the repository: lint, types, import contract, no circle, light imports."""
+
+import ast
+import doctest
+import importlib
+import os
+import pkgutil
+import re
+import subprocess
+import sys
+from graphlib import CycleError, TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+import tinsmith
+import tinsmith.cli
+
+ROOT = Path(__file__).parents[1]
+
+
+def run(*command, cwd=ROOT, **environment):
+    return subprocess.run(
+        command,
+        cwd=cwd,
+        env={**os.environ, **environment},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+def tool(name):
+    return str(Path(sys.executable).parent / name)
+
+
+@pytest.fixture
+def tree(tmp_path):
+    """Mount the folders as the one package that they are once installed."""
+    package = tmp_path / "tinsmith"
+    package.mkdir()
+    for source in (ROOT / "src" / "tinsmith").iterdir():
+        if source.name != "__pycache__":
+            (package / source.name).symlink_to(source)
+    for folder in ("tin", "io", "terrain"):
+        (package / folder).symlink_to(ROOT / folder)
+    return tmp_path
+
+
+def test_lint_and_formatting():
+    for command in (("check", "."), ("format", "--check", ".")):
+        result = run(tool("ruff"), *command)
+        assert result.returncode == 0, result.stdout + result.stderr
+
+
+def test_types(tree):
+    result = run(tool("mypy"), "--config-file", str(ROOT / "pyproject.toml"), cwd=tree)
+    assert result.returncode == 0, result.stdout + result.stderr
+
+
+def test_import_contract(tree):
+    result = run(
+        tool("lint-imports"),
+        "--config",
+        str(ROOT / "pyproject.toml"),
+        "--no-cache",
+        cwd=tree,
+        PYTHONPATH=str(tree),
+    )
+    assert result.returncode == 0, result.stdout + result.stderr
+
+
+def modules_of(tree):
+    """Return every module of the package with its file."""
+    found = {}
+    for folder, folders, files in os.walk(tree / "tinsmith", followlinks=True):
+        folders[:] = [name for name in folders if name not in ("cpp", "__pycache__")]
+        for file in files:
+            path = Path(folder) / file
+            if path.suffix == ".py":
+                parts = path.relative_to(tree).with_suffix("").parts
+                name = ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+                found[name] = path
+    return found
+
+
+def imports_of(name, path, modules):
+    """Return the modules that one imports when it runs, at its head or within functions."""
+    package = name if path.name == "__init__.py" else name.rpartition(".")[0]
+    tree = ast.parse(path.read_text())
+    typing_only = {
+        id(node)
+        for block in ast.walk(tree)
+        if isinstance(block, ast.If) and "TYPE_CHECKING" in ast.unparse(block.test)
+        for node in ast.walk(block)
+    }
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and node.level and id(node) not in typing_only:
+            base = package.split(".")[: len(package.split(".")) - node.level + 1]
+            source = ".".join([*base, *([node.module] if node.module else [])])
+            for alias in node.names:
+                module = f"{source}.{alias.name}"
+                if node.module or module in modules:  # the compiled core is no module of these
+                    yield module if module in modules else source
+
+
+def test_no_modules_import_in_a_circle(tree):
+    modules = modules_of(tree)
+    graph = {
+        name: {one for one in imports_of(name, path, modules) if one in modules and one != name}
+        for name, path in modules.items()
+    }
+    assert len(graph) > 150
+    assert sum(map(len, graph.values())) > 500
+    try:
+        tuple(TopologicalSorter(graph).static_order())
+    except CycleError as error:
+        pytest.fail(" -> ".join(error.args[1]))
+
+
+def test_only_the_kernel_module_imports_the_core():
+    users = [
+        path.relative_to(ROOT).as_posix()
+        for folder in ("tin", "io", "terrain", "src")
+        for path in (ROOT / folder).rglob("*.py")
+        if "import _core" in path.read_text()
+    ]
+    assert users == ["tin/_kernel.py"]
+
+
+def test_packages_are_never_imported_from_the_root():
+    code = (
+        "import sys, tinsmith as ts; ts.triangulate([[0, 0, 0], [1, 0, 0], [0, 1, 0]]);"
+        "from tinsmith import io, terrain;"
+        "assert not {'tin', 'terrain'} & set(sys.modules), 'a second copy of a package'"
+    )
+    result = run(sys.executable, "-c", code)
+    assert result.returncode == 0, result.stderr
+
+
+def test_import_loads_no_heavy_library():
+    heavy = "pandas pyarrow polars rasterio pyproj pyvista shapely rich click"
+    code = (
+        "import sys, tinsmith; tinsmith.triangulate;"
+        f"print(sorted(set({heavy!r}.split()) & set(sys.modules)))"
+    )
+    result = run(sys.executable, "-c", code)
+    assert result.stdout.strip() == "[]", result.stderr
+
+
+def test_every_public_name_is_there():
+    for name in tinsmith.__all__:
+        assert getattr(tinsmith, name) is not None
+
+
+def test_public_examples_run():
+    """Run the examples of every docstring in every package."""
+    names = ["tinsmith"]
+    for package in (tinsmith.tin, tinsmith.io, tinsmith.terrain):
+        names += [
+            module.name
+            for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}.")
+        ]
+    tried = 0
+    for name in names:
+        if name.endswith("._core"):
+            continue
+        result = doctest.testmod(importlib.import_module(name), optionflags=doctest.ELLIPSIS)
+        assert result.failed == 0, name
+        tried += result.attempted
+    assert tried > 0
+
+
+def test_readme_python_runs(tmp_path, monkeypatch, can_draw):
+    """Run the README's Python blocks, one after the other, in a folder with the samples."""
+    (tmp_path / "sample_data").symlink_to(ROOT / "sample_data")
+    monkeypatch.chdir(tmp_path)
+    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
+    assert len(blocks) >= 3
+    exec("\n".join(blocks), {})
+    assert (tmp_path / "surface.geojson").exists()
+    assert (tmp_path / "surface.png").exists()
+
+
+def test_readme_commands_run(tmp_path, can_draw):
+    (tmp_path / "sample_data").symlink_to(ROOT / "sample_data")
+    text = (ROOT / "README.md").read_text()
+    lines = re.findall(r"^(tinsmith .*-o .*)$", text, re.MULTILINE)
+    assert len(lines) == 3
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    for line in lines:
+        result = run(*line.split(), cwd=tmp_path, PATH=path)
+        assert result.returncode == 0, result.stderr
+
+
+def test_records_are_frozen():
+    """All dataclasses but the two that collect while a file is read."""
+    thawed = {}
+    for folder in (tinsmith.tin, tinsmith.io, tinsmith.terrain, tinsmith.cli):
+        for found in pkgutil.walk_packages(folder.__path__, f"{folder.__name__}."):
+            module = importlib.import_module(found.name)
+            for name, value in vars(module).items():
+                how = getattr(value, "__dict__", {}).get("__dataclass_params__")
+                if how is not None and not how.frozen:
+                    thawed[name] = value
+    assert sorted(thawed) == ["_Run", "_Top"]

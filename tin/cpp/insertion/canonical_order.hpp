@@ -1,0 +1,256 @@
+// Canonical order: triangles numbered as the growth would have made them.
+//
+// A triangle belongs to its first vertex in the sweep and begins with it. The triangles of a
+// vertex form sectors; sectors are ordered by the vertex they start at, triangles within one
+// counter-clockwise. A vertex that owns its whole star starts at its nearest neighbour.
+//
+// Triangles are dealt out to their owners by counting, in the order of the mesh, and put in order
+// within each owner, two or three at a time, where they lie. No walk about a vertex is needed.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "../base/arrays.hpp"
+#include "../base/ids.hpp"
+#include "../growth/triangle_store.hpp"
+#include "../index/grid.hpp"
+#include "../predicates/predicates.hpp"
+#include "ghost_mesh.hpp"
+
+namespace tinsmith {
+
+class CanonicalOrder {
+ public:
+  // Corners of the mesh are sweep numbers. Both must outlive the order.
+  CanonicalOrder(const PointGrid& grid, const GhostMesh& mesh)
+      : grid_(grid),
+        triangles_(mesh.triangles.get()),
+        count_(mesh.count),
+        number_of_(scratch_array<std::int32_t>(mesh.count)),
+        end_of_(grid.count() + std::size_t{1}) {}
+
+  // `out` has room for all triangles but the ghosts. Returns false if `keep_going` did.
+  template <typename KeepGoing>
+  bool write(Triangles out, KeepGoing&& keep_going) {
+    corners_ = out.corners;
+    neighbors_ = out.neighbors;
+    const auto triangles = static_cast<std::int64_t>(count_);
+    if (!in_blocks(triangles, keep_going, &CanonicalOrder::count_owned)) return false;
+    begins_from_counts();
+    return in_blocks(triangles, keep_going, &CanonicalOrder::deal) &&
+           in_blocks(grid_.count(), keep_going, &CanonicalOrder::order_stars) &&
+           in_blocks(triangles, keep_going, &CanonicalOrder::write_neighbors);
+  }
+  void write(Triangles out) {
+    write(out, [] { return true; });
+  }
+
+  // After `write`: flags[3 * triangle + corner] = is_set(half-edge of the mesh).
+  template <typename Flag, typename IsSet>
+  void write_flags(Flag* flags, IsSet&& is_set) const {
+    for (std::uint32_t t = 0; t < count_; ++t) {
+      if (number_of_[t] == kNoNeighbor) continue;
+      const std::uint32_t corner = first_corner(triangles_[t]);
+      Flag* const flag = flags + std::int64_t{3} * number_of_[t];
+      flag[0] = is_set(half_edge(Triangle{t}, corner));
+      flag[1] = is_set(half_edge(Triangle{t}, corner_after(corner)));
+      flag[2] = is_set(half_edge(Triangle{t}, corner_before(corner)));
+    }
+  }
+
+ private:
+  struct Ray {  // a triangle of the star in hand, without the vertex that owns it
+    std::int32_t from, to;
+    std::int32_t triangle;
+    std::int32_t next;  // the ray that starts at `to`
+    bool is_start;      // no ray ends at `from`
+  };
+  static constexpr std::int32_t kNoRay = -1;
+  static constexpr std::int32_t kFewRays = 12;  // so few are compared all with all
+
+  template <typename KeepGoing>
+  bool in_blocks(std::int64_t count, KeepGoing&& keep_going,
+                 void (CanonicalOrder::*work)(std::int64_t, std::int64_t)) {
+    constexpr std::int64_t kBlock = 65536;  // a few milliseconds
+    for (std::int64_t begin = 0; begin < count; begin += kBlock) {
+      if (!keep_going()) return false;
+      (this->*work)(begin, std::min(begin + kBlock, count));
+    }
+    return true;
+  }
+
+  // Corner of the first vertex of the sweep, or of the ghost.
+  static std::uint32_t first_corner(const GhostTriangle& triangle) {
+    const bool is_second = triangle.corner[1] < triangle.corner[0];
+    const Vertex first = triangle.corner[is_second];
+    return triangle.corner[2] < first ? 2 : is_second;
+  }
+
+  // One entry on from its owner, so that the ghost's are counted in front.
+  void count_owned(std::int64_t begin, std::int64_t end) {
+    for (std::int64_t t = begin; t < end; ++t) {
+      const auto& corner = triangles_[t].corner;
+      ++end_of_[number(std::min({corner[0], corner[1], corner[2]})) + 1];
+    }
+  }
+
+  // Dealing out turns the begins into ends.
+  void begins_from_counts() {
+    end_of_[0] = 0;
+    std::int32_t total = 0;
+    for (std::int32_t& end : end_of_) {
+      const std::int32_t size = end;
+      end = total;
+      total += size;
+    }
+  }
+
+  void deal(std::int64_t begin, std::int64_t end) {
+    for (std::int64_t t = begin; t < end; ++t) {
+      const GhostTriangle& triangle = triangles_[t];
+      const std::uint32_t first = first_corner(triangle);
+      const Vertex owner = triangle.corner[first];
+      if (owner == kGhost) {
+        number_of_[t] = kNoNeighbor;
+        continue;
+      }
+      const std::int32_t at = end_of_[number(owner) + 1]++;
+      std::int32_t* const corner = corners_ + std::int64_t{3} * at;
+      corner[0] = number(owner);
+      corner[1] = number(triangle.corner[corner_after(first)]);
+      corner[2] = number(triangle.corner[corner_before(first)]);
+      neighbors_[at] = static_cast<std::int32_t>(t);  // for the time being
+    }
+  }
+
+  void order_stars(std::int64_t first, std::int64_t end) {
+    std::int32_t begin = end_of_[first];  // the end of the vertex before
+    for (std::int64_t v = first; v < end; ++v) {
+      const std::int32_t after = end_of_[v + 1];
+      const std::int32_t owned = after - begin;
+      if (owned == 1) {
+        number_of_[neighbors_[begin]] = begin;
+      } else if (owned == 2) {
+        order_two(begin);
+      } else if (owned > 2) {
+        order_star(static_cast<Vertex>(v), begin, after);
+      }
+      begin = after;
+    }
+  }
+
+  // In one sector, or each in its own: two triangles are no whole star.
+  void order_two(std::int32_t begin) {
+    std::int32_t* const corner = corners_ + std::int64_t{3} * begin;
+    const std::int32_t from = corner[1], to = corner[2];
+    const std::int32_t other_from = corner[4], other_to = corner[5];
+    const bool is_swapped = other_to == from || (to != other_from && other_from < from);
+    corner[1] = is_swapped ? other_from : from;
+    corner[2] = is_swapped ? other_to : to;
+    corner[4] = is_swapped ? from : other_from;
+    corner[5] = is_swapped ? to : other_to;
+    number_of_[neighbors_[begin]] = begin + is_swapped;
+    number_of_[neighbors_[begin + 1]] = begin + !is_swapped;
+  }
+
+  void order_star(Vertex v, std::int32_t begin, std::int32_t end) {
+    rays_.clear();
+    for (std::int32_t i = begin; i < end; ++i) {
+      const std::int32_t* const corner = corners_ + std::int64_t{3} * i;
+      rays_.push_back({corner[1], corner[2], neighbors_[i], kNoRay, true});
+    }
+    if (end - begin <= kFewRays) {
+      link_few_rays();
+    } else {
+      link_many_rays();
+    }
+    starts_.clear();
+    for (std::int32_t i = 0; i < end - begin; ++i) {
+      if (rays_[i].is_start) starts_.push_back(i);
+    }
+    if (starts_.empty()) starts_.push_back(nearest_ray(v));
+    std::sort(starts_.begin(), starts_.end(),
+              [this](std::int32_t a, std::int32_t b) { return rays_[a].from < rays_[b].from; });
+    for (const std::int32_t start : starts_) begin = number_sector(start, begin);
+  }
+
+  void link(Ray& ray, std::int32_t next) {
+    ray.next = next;
+    if (next != kNoRay) rays_[next].is_start = false;
+  }
+
+  void link_few_rays() {
+    for (Ray& ray : rays_) {
+      std::int32_t next = kNoRay;
+      for (std::size_t i = 0; i < rays_.size(); ++i) {
+        next = rays_[i].from == ray.to ? static_cast<std::int32_t>(i) : next;
+      }
+      link(ray, next);
+    }
+  }
+
+  void link_many_rays() {
+    std::sort(rays_.begin(), rays_.end(),
+              [](const Ray& a, const Ray& b) { return a.from < b.from; });
+    for (Ray& ray : rays_) {
+      const auto found =
+          std::lower_bound(rays_.begin(), rays_.end(), ray.to,
+                           [](const Ray& other, std::int32_t to) { return other.from < to; });
+      const bool is_found = found != rays_.end() && found->from == ray.to;
+      link(ray, is_found ? static_cast<std::int32_t>(found - rays_.begin()) : kNoRay);
+    }
+  }
+
+  std::int32_t nearest_ray(Vertex v) const {
+    const Point center = grid_.point(v);
+    const auto is_nearer = [&](const Ray& a, const Ray& b) {
+      const int order = compare_distances(center, grid_.point(static_cast<Vertex>(a.from)),
+                                          grid_.point(static_cast<Vertex>(b.from)));
+      return order < 0 || (order == 0 && a.from < b.from);
+    };
+    const auto nearest = std::min_element(rays_.begin(), rays_.end(), is_nearer);
+    return static_cast<std::int32_t>(nearest - rays_.begin());
+  }
+
+  // Returns the number after the sector's last.
+  std::int32_t number_sector(std::int32_t start, std::int32_t number) {
+    std::int32_t i = start;
+    do {
+      const Ray& ray = rays_[i];
+      std::int32_t* const corner = corners_ + std::int64_t{3} * number;
+      corner[1] = ray.from;
+      corner[2] = ray.to;
+      number_of_[ray.triangle] = number++;
+      i = ray.next;
+    } while (i != kNoRay && i != start);
+    return number;
+  }
+
+  void write_neighbors(std::int64_t begin, std::int64_t end) {
+    const std::int32_t* const number_of = number_of_.get();
+    for (std::int64_t t = begin; t < end; ++t) {
+      if (number_of[t] == kNoNeighbor) continue;
+      const GhostTriangle& triangle = triangles_[t];
+      const std::uint32_t first = first_corner(triangle);
+      std::int32_t* const neighbor = neighbors_ + std::int64_t{3} * number_of[t];
+      neighbor[0] = number_of[number(triangle_of(triangle.twin[first]))];
+      neighbor[1] = number_of[number(triangle_of(triangle.twin[corner_after(first)]))];
+      neighbor[2] = number_of[number(triangle_of(triangle.twin[corner_before(first)]))];
+    }
+  }
+
+  const PointGrid& grid_;
+  const GhostTriangle* triangles_;
+  std::uint32_t count_;
+  ScratchArray<std::int32_t> number_of_;  // of each triangle of the mesh; ghosts have none
+  std::vector<std::int32_t> end_of_;      // of each owner's triangles, the ghost's in front
+  std::int32_t* corners_ = nullptr;
+  std::int32_t* neighbors_ = nullptr;
+  std::vector<Ray> rays_;
+  std::vector<std::int32_t> starts_;
+};
+
+}  // namespace tinsmith

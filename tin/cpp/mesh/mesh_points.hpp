@@ -1,0 +1,31 @@
+// Where the vertices of a mesh are.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "../base/arrays.hpp"
+#include "../base/ids.hpp"
+#include "../base/point.hpp"
+
+namespace tinsmith {
+
+// By slot: the number of a vertex that is there, was there, or will be. One without a vertex holds
+// anything.
+class MeshPoints {
+ public:
+  Point& operator[](Vertex v) { return points_[static_cast<std::size_t>(number(v))]; }
+  const Point& operator[](Vertex v) const { return points_[static_cast<std::size_t>(number(v))]; }
+  std::int32_t slots() const { return static_cast<std::int32_t>(points_.size()); }
+
+  void reserve(std::size_t slots) { points_.reserve(slots); }
+  Vertex add(Point p) {
+    points_.push_back(p);
+    return Vertex{slots() - 1};
+  }
+
+ private:
+  ScratchVector<Point> points_;
+};
+
+}  // namespace tinsmith

@@ -1,0 +1,174 @@
+// Bindings of a mesh that can be changed.
+#pragma once
+
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/tuple.h>
+
+#include <cstdint>
+#include <optional>
+#include <stdexcept>
+#include <tuple>
+#include <utility>
+
+#include "../mesh/checked_mesh.hpp"
+#include "../mesh/mesh_arrays.hpp"
+#include "../mesh/regions.hpp"
+#include "arrays.hpp"
+
+namespace tinsmith::python {
+
+inline MeshEditor editor_from(const GivenRows& points, const GivenTriples& triangles,
+                              const GivenTriples& neighbors,
+                              const std::optional<GivenFlags>& fixed) {
+  if (neighbors.shape(0) != triangles.shape(0) ||
+      (fixed && fixed->shape(0) != triangles.shape(0))) {
+    throw std::invalid_argument("triangles, neighbors and fixed must have as many rows");
+  }
+  if (points.shape(1) < 2) throw std::invalid_argument("points must have two columns at least");
+  const PointRows rows{points.data(), static_cast<std::int64_t>(points.shape(0)),
+                       static_cast<std::int64_t>(points.shape(1))};
+  const GivenTriangles given{triangles.data(), neighbors.data(), fixed ? fixed->data() : nullptr,
+                             static_cast<std::int32_t>(triangles.shape(0))};
+  nb::gil_scoped_release release;
+  return editor_of(rows, given);
+}
+
+inline VertexPairs pairs_of(const GivenPairs& pairs) { return {pairs.data(), pairs.shape(0)}; }
+
+class HeldMesh {
+ public:
+  HeldMesh(const GivenRows& points, const GivenTriples& triangles, const GivenTriples& neighbors,
+           const std::optional<GivenFlags>& fixed)
+      : mesh_(editor_from(points, triangles, neighbors, fixed)) {}
+
+  std::int32_t slots() const { return mesh_.editor().slots(); }
+  std::int32_t count() const { return mesh_.editor().count(); }
+  std::int64_t fixed_splits() const { return mesh_.editor().fixed_splits(); }
+
+  Flags alive() const {
+    const auto size = static_cast<std::size_t>(slots());
+    auto flags = streamed_array<bool>(size);
+    mesh_.write_alive(flags.get());
+    return hand_over<Flags>(std::move(flags), {size});
+  }
+
+  Numbers insert(const GivenXy& xy) {
+    const std::int32_t count = row_count(xy.shape(0));
+    auto result = streamed_array<std::int32_t>(count);
+    {
+      nb::gil_scoped_release release;
+      mesh_.insert(points_of(xy), count, result.get());
+    }
+    return hand_over<Numbers>(std::move(result), {xy.shape(0)});
+  }
+
+  std::int32_t put(std::int32_t slot, double x, double y) {
+    return number(mesh_.put(Vertex{slot}, {x, y}));
+  }
+
+  bool remove(const GivenNumbers& vertices) {
+    return mesh_.remove(vertices.data(), vertices.shape(0));
+  }
+
+  auto force(const GivenPairs& segments) {
+    const CheckedMesh::Forced forced = [&] {
+      nb::gil_scoped_release release;
+      return mesh_.force(pairs_of(segments), no_signal);
+    }();
+    if (!forced.is_complete) throw nb::python_error();
+    return std::make_tuple(hand_over(forced.passed), hand_over(forced.blocked));
+  }
+
+  Numbers crossed(const GivenPairs& segments, bool only_fixed) const {
+    return hand_over(mesh_.crossed(pairs_of(segments), only_fixed));
+  }
+  std::int32_t release(const GivenPairs& segments) { return mesh_.release(pairs_of(segments)); }
+
+  Numbers illegal_fixed_edges() {
+    const auto illegal = [&] {
+      nb::gil_scoped_release release;
+      return mesh_.illegal_fixed_edges();
+    }();
+    return hand_over(illegal);
+  }
+
+  bool has_fixed_edge(std::int32_t v) const { return mesh_.has_fixed_edge(Vertex{v}); }
+  double clearance(std::int32_t v) const { return mesh_.clearance(Vertex{v}); }
+  Numbers fixed_neighbors(std::int32_t v) const {
+    return hand_over(mesh_.fixed_neighbors(Vertex{v}));
+  }
+  Numbers corners_beside(std::int32_t a, std::int32_t b) const {
+    return hand_over(mesh_.apexes_beside(Vertex{a}, Vertex{b}));
+  }
+
+  auto arrays(int threads) const {
+    MeshArrays made = [&] {
+      nb::gil_scoped_release release;
+      Team team(threads, [] { return true; });
+      return MeshArrays(mesh_.editor(), team);
+    }();
+    const std::size_t size = made.triangle_count;
+    return std::make_tuple(hand_over<Triples>(std::move(made.corners), {size, 3}),
+                           hand_over<Triples>(std::move(made.neighbors), {size, 3}),
+                           hand_over<TripleFlags>(std::move(made.fixed), {size, 3}));
+  }
+
+ private:
+  CheckedMesh mesh_;
+};
+
+// Region of each triangle, and the largest triangle of each region.
+inline auto regions(const GivenXy& xy, const GivenTriples& triangles, const GivenTriples& neighbors,
+                    const GivenFlags& barrier) {
+  if (neighbors.shape(0) != triangles.shape(0) || barrier.shape(0) != triangles.shape(0)) {
+    throw std::invalid_argument("triangles, neighbors and barrier must have as many rows");
+  }
+  const Regions found = [&] {
+    nb::gil_scoped_release release;
+    return find_regions(points_of(xy), triangles.data(), neighbors.data(), barrier.data(),
+                        static_cast<std::int32_t>(triangles.shape(0)));
+  }();
+  return std::make_tuple(hand_over(found.region_of), hand_over(found.largest));
+}
+
+inline void bind_mesh(nb::module_& m) {
+  m.def("regions", &regions, "xy"_a.noconvert(), "triangles"_a.noconvert(),
+        "neighbors"_a.noconvert(), "barrier"_a.noconvert(),
+        "The region of each triangle between barrier edges, and each region's largest triangle.");
+  nb::class_<HeldMesh>(m, "Mesh", "A constrained Delaunay triangulation that can be changed.")
+      .def(nb::init<const GivenRows&, const GivenTriples&, const GivenTriples&,
+                    const std::optional<GivenFlags>&>(),
+           "points"_a.noconvert(), "triangles"_a.noconvert(), "neighbors"_a.noconvert(),
+           "fixed"_a.noconvert() = nb::none())
+      .def_prop_ro("slots", &HeldMesh::slots, "Vertices that are or were there.")
+      .def_prop_ro("count", &HeldMesh::count, "Vertices that are there.")
+      .def_prop_ro("fixed_splits", &HeldMesh::fixed_splits,
+                   "How often a vertex was put on a fixed edge.")
+      .def("alive", &HeldMesh::alive, "Which slots hold a vertex.")
+      .def("has_fixed_edge", &HeldMesh::has_fixed_edge, "vertex"_a)
+      .def("insert", &HeldMesh::insert, "xy"_a.noconvert(),
+           "The vertex at each point; one new slot a point.")
+      .def("put", &HeldMesh::put, "slot"_a, "x"_a, "y"_a,
+           "Put a removed vertex back at a point; returns the vertex there.")
+      .def("remove", &HeldMesh::remove, "vertices"_a.noconvert(),
+           "Remove vertices; False if one could not be, for no triangle would be left.")
+      .def("force", &HeldMesh::force, "segments"_a.noconvert(),
+           "Fix edges along segments; (segment, vertex) pairs passed, and segments blocked.")
+      .def("illegal_fixed_edges", &HeldMesh::illegal_fixed_edges,
+           "Fixed edges that are not Delaunay, flat pairs of vertices.")
+      .def("fixed_neighbors", &HeldMesh::fixed_neighbors, "vertex"_a,
+           "The other ends of the fixed edges at a vertex.")
+      .def("clearance", &HeldMesh::clearance, "vertex"_a,
+           "How far a vertex is, nearly, from the edges between its neighbours.")
+      .def("corners_beside", &HeldMesh::corners_beside, "a"_a, "b"_a,
+           "The corners left and right of the edge from a to b; none if it is no inner edge.")
+      .def("crossed", &HeldMesh::crossed, "segments"_a.noconvert(), "only_fixed"_a = false,
+           "Edges that segments cross, flat triples of segment, start and end.")
+      .def("release", &HeldMesh::release, "segments"_a.noconvert(),
+           "Let fixed edges go; how many there were.")
+      .def("arrays", &HeldMesh::arrays, "threads"_a = 1,
+           "Triangles, neighbours and fixed edges in canonical order.");
+}
+
+}  // namespace tinsmith::python

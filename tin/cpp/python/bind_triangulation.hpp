@@ -1,0 +1,81 @@
+// Bindings of the main path: points become triangles.
+#pragma once
+
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "../triangulation.hpp"
+#include "arrays.hpp"
+
+namespace tinsmith::python {
+
+inline Triangulation triangulate(const GivenXyz& points, Method method, int threads,
+                                 const std::string& path) {
+  const PointRows rows = rows_of(points);
+  if (threads < 1) throw std::invalid_argument("at least one thread is needed");
+  const Options options{method, threads, vector_path_named(path)};
+  Triangulation made = [&] {
+    nb::gil_scoped_release release;
+    return Triangulator(rows, options, no_signal).run();
+  }();
+  if (!made.is_complete) throw nb::python_error();
+  return made;
+}
+
+inline auto grow(const GivenXyz& points, Method method, int threads, const std::string& path) {
+  Triangulation made = triangulate(points, method, threads, path);
+  const auto size = static_cast<std::size_t>(made.triangle_count);
+  std::optional<Numbers> kept_row;
+  if (!made.kept_row.empty()) kept_row = hand_over(made.kept_row);
+  return std::make_tuple(hand_over<Triples>(std::move(made.corners), {size, 3}),
+                         hand_over<Triples>(std::move(made.neighbors), {size, 3}), kept_row,
+                         made.distinct_count);
+}
+
+inline nb::dict count_work(const GivenXyz& points, Method method, int threads,
+                           const std::string& path) {
+  const Triangulation made = triangulate(points, method, threads, path);
+  nb::dict counts;
+  counts["triangles"] = made.triangle_count;
+  counts["searches"] = made.counts.searches;
+  counts["full_searches"] = made.counts.full_searches;
+  counts["candidates"] = made.counts.candidates;
+  counts["cell_rows"] = made.counts.cell_rows;
+  counts["exact_decisions"] = made.counts.exact_decisions;
+  counts["walk_steps"] = made.counts.walk_steps;
+  return counts;
+}
+
+inline std::vector<std::string> names_of_vector_paths() {
+  std::vector<std::string> names;
+  for (const NamedPath& path : vector_paths()) names.push_back(path.name);
+  return names;
+}
+
+inline void bind_triangulation(nb::module_& m) {
+  m.attr("MOST_POINTS") = kMostPoints;
+  nb::enum_<Method>(m, "Method", "How to build; the result is the same.")
+      .value("AUTOMATIC", Method::kAutomatic)
+      .value("GROWTH", Method::kGrowth)
+      .value("INSERTION", Method::kInsertion);
+  const auto fastest = vector_paths().back().name;
+  m.def("grow", &grow, "points"_a.noconvert(), "method"_a = Method::kAutomatic, "threads"_a = 1,
+        "path"_a = fastest,
+        "Triangles, neighbours, kept row of each row (or None) and the number of distinct points.");
+  m.def("count_work", &count_work, "points"_a.noconvert(), "method"_a = Method::kAutomatic,
+        "threads"_a = 1, "path"_a = fastest, "Triangulate and return how much the searches did.");
+  m.def("vector_paths", &names_of_vector_paths,
+        "Names of the vector instructions that this processor has, slowest first.");
+}
+
+}  // namespace tinsmith::python

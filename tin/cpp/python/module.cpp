@@ -1,0 +1,19 @@
+// The compiled module. What is in this folder converts and names, nothing else.
+#include <nanobind/nanobind.h>
+
+#include "bind_constraints.hpp"
+#include "bind_location.hpp"
+#include "bind_mesh.hpp"
+#include "bind_points.hpp"
+#include "bind_refinement.hpp"
+#include "bind_triangulation.hpp"
+
+NB_MODULE(_core, m) {
+  m.doc() = "Compiled core of tinsmith.tin: exact predicates, growth, point location.";
+  tinsmith::python::bind_points(m);
+  tinsmith::python::bind_triangulation(m);
+  tinsmith::python::bind_location(m);
+  tinsmith::python::bind_constraints(m);
+  tinsmith::python::bind_mesh(m);
+  tinsmith::python::bind_refinement(m);
+}
