@@ -157,8 +157,8 @@ def test_vertex_neighbors_are_all_and_in_order(tin):
 
 @each
 def test_neighbors_of_a_vertex_inside_turn_counter_clockwise(tin):
-    rim = set(np.concatenate(tin.rings).tolist())
-    for vertex in sorted(set(tin.triangles.ravel().tolist()) - rim):
+    boundary = set(np.concatenate(tin.rings).tolist())
+    for vertex in sorted(set(tin.triangles.ravel().tolist()) - boundary):
         ring = tin.points[tin.vertex_neighbors(vertex), :2]
         angle = np.unwrap(np.arctan2(*(ring - tin.points[vertex, :2]).T[::-1]))
         assert (np.diff(angle) > 0).all()

@@ -52,7 +52,7 @@ class NearestVertex:
         start, end = np.concatenate([edges, edges[:, ::-1]]).T
         self._neighbors = end[np.argsort(start)]
         self._offsets = np.append(0, np.cumsum(np.bincount(start, minlength=len(kept))))
-        self._rim = np.unique(np.concatenate(_rim_ends(growth.triangles, growth.neighbors)))
+        self._hull = np.unique(np.concatenate(_hull_ends(growth.triangles, growth.neighbors)))
 
     def find(self, xy: NDArray[np.float64]) -> NDArray[np.int32]:
         """Return the nearest vertex of each place, the smallest number of several; -1 for NaN."""
@@ -69,22 +69,22 @@ class NearestVertex:
         triangle = self._locator.locate(xy)
         outside = np.flatnonzero(triangle < 0)
         if len(outside):
-            start[outside] = self._near_rim(xy[outside])
+            start[outside] = self._near_hull(xy[outside])
         inside = np.flatnonzero(triangle >= 0)
         corners = self._triangles[triangle[inside]]
         away = self._squared(xy[inside, None], corners)
         start[inside] = corners[np.arange(len(inside)), np.argmin(away, axis=1)]
         return start
 
-    def _near_rim(self, xy: NDArray[np.float64]) -> NDArray[np.int64]:
+    def _near_hull(self, xy: NDArray[np.float64]) -> NDArray[np.int64]:
         """Return a vertex of the hull near each place outside: by one of the two coordinates."""
-        rim = self._xy[self._rim]
+        hull = self._xy[self._hull]
         candidates = []
         for axis in (0, 1):
-            order = np.argsort(rim[:, axis], kind="stable")
-            place = np.searchsorted(rim[order, axis], xy[:, axis])
+            order = np.argsort(hull[:, axis], kind="stable")
+            place = np.searchsorted(hull[order, axis], xy[:, axis])
             candidates += [
-                self._rim[order[np.clip(place + k, 0, len(rim) - 1)]] for k in (-2, -1, 0, 1)
+                self._hull[order[np.clip(place + k, 0, len(hull) - 1)]] for k in (-2, -1, 0, 1)
             ]
         tried = np.stack(candidates, axis=1)
         best = np.argmin(self._squared(xy[:, None], tried), axis=1)
@@ -190,7 +190,7 @@ class NearestVertex:
         return _kernel.compare_distances(np.ascontiguousarray(xy), self._xy[one], self._xy[other])
 
 
-def _rim_ends(
+def _hull_ends(
     triangles: NDArray[np.int32], neighbors: NDArray[np.int32]
 ) -> list[NDArray[np.int64]]:
     """Return start and end of the edges of the hull."""
