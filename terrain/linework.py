@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from .. import _optional as extras
-from ..tin.constraints.clipping import edge_keys
+from ..tin.topology import edge_keys, edges_at
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -75,7 +75,7 @@ def line_edges(tin: TIN, *, guess: bool = True) -> LineEdges:
     """
     lines = tin.lines
     ranks = np.array([EDGE_KINDS.index(kind) for kind in lines.kinds], np.int8)
-    known = LineEdges(lines.steps(), np.repeat(ranks, np.diff(lines.offsets) - 1))
+    known = LineEdges(lines.steps(), ranks[lines.step_chains()])
     found = _constrained_edges(tin) if guess else LineEdges(known.pairs[:0], known.kinds[:0])
     pairs = np.concatenate([known.pairs, found.pairs])
     kinds = np.concatenate([known.kinds, found.kinds])
@@ -88,11 +88,8 @@ def line_edges(tin: TIN, *, guess: bool = True) -> LineEdges:
 
 
 def _constrained_edges(tin: TIN) -> LineEdges:
-    triangle, corner = np.nonzero(tin.constrained)
-    pairs = np.column_stack(
-        [tin.triangles[triangle, (corner + 1) % 3], tin.triangles[triangle, (corner + 2) % 3]]
-    )
-    on_rim = tin.neighbors[triangle, corner] < 0
+    pairs = edges_at(tin.triangles, tin.constrained)
+    on_rim = tin.neighbors[tin.constrained] < 0
     ranks = EDGE_KINDS.index("hard"), EDGE_KINDS.index("boundary")
     return LineEdges(pairs, np.where(on_rim, ranks[1], ranks[0]).astype(np.int8))
 

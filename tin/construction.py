@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from .building.assembly import assemble
 from .building.constrained import CrossingPolicy
 from .building.duplicates import DuplicatePolicy
-from .building.inputs import TrimPolicy, recipe_of
+from .building.inputs import TrimPolicy, gather_inputs
 from .surface import TIN
 
 if TYPE_CHECKING:
@@ -132,7 +132,7 @@ def triangulate(
     >>> triangulate(square, breaklines=[[[0, 0, 5], [4, 4, 7]]]).lines
     <Lines: 1 hard, 0 soft, 0 boundary, 0 hole, 0 water; 2 vertices>
     """
-    recipe = recipe_of(
+    inputs = gather_inputs(
         points,
         breaklines=breaklines,
         boundary=boundary,
@@ -149,13 +149,13 @@ def triangulate(
         crs=crs,
         z_unit=z_unit,
     )
-    built = assemble(recipe)
+    built = assemble(inputs)
     return TIN(
         **built.surface._asdict(),
         vertex_of=built.vertex_of,
         report=built.report,
         lines=built.lines,
-        crs=recipe.crs,
-        elevation_unit=recipe.elevation_unit,
-        inputs=recipe,
+        crs=inputs.crs,
+        elevation_unit=inputs.elevation_unit,
+        inputs=inputs,
     )

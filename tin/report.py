@@ -14,7 +14,7 @@ from .types import Frozen
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .editing.session import Edit
+    from .editing.history import Edit
 
 __all__ = ["LEFT_OUT", "UNMENDED_WHY", "Crossings", "Merge", "Overruled", "Report", "Unmended"]
 
@@ -90,6 +90,12 @@ class Crossings(NamedTuple):
     heights: NDArray[np.float64]
     taken: NDArray[np.float64]
 
+    @classmethod
+    def none(cls) -> Crossings:
+        """Return no crossings."""
+        none, empty = np.empty(0, np.int32), np.empty((0, 2))
+        return cls(none, empty, none.reshape(0, 2), empty, np.empty(0))
+
 
 class Overruled(NamedTuple):
     """Heights that gave way to another at the same vertex.
@@ -153,11 +159,6 @@ class Unmended(NamedTuple):
             }
             for code in np.unique(self.why).tolist()
         ]
-
-
-def _no_crossings() -> Crossings:
-    none = _no_rows()
-    return Crossings(none, np.empty((0, 2)), none.reshape(0, 2), np.empty((0, 2)), np.empty(0))
 
 
 def _none_overruled() -> Overruled:
@@ -237,7 +238,7 @@ class Report(Frozen):
     left_out_why: NDArray[np.int8] = field(default_factory=lambda: np.empty(0, np.int8))
     n_lines: int = 0
     line_labels: tuple[str, ...] = ()
-    crossings: Crossings = field(default_factory=_no_crossings)
+    crossings: Crossings = field(default_factory=Crossings.none)
     overruled: Overruled = field(default_factory=_none_overruled)
     skipped: Mapping[str, int] = field(default_factory=dict)
     notes: Sequence[str] = ()

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from ..crs import CrsLike, UnitLike
-    from .building.inputs import Recipe
+    from .building.inputs import BuildInputs
     from .types import Bounds
     from .voronoi.diagram import Voronoi
 
@@ -106,7 +106,7 @@ class TIN(Editable):
         lines: Lines | None = None,
         crs: CrsLike | None = None,
         elevation_unit: UnitLike | None = None,
-        inputs: Recipe | None = None,
+        inputs: BuildInputs | None = None,
     ) -> None:
         system = CRS.of(crs)
         unit = require_one_unit(system, Unit.of(elevation_unit))

@@ -12,7 +12,7 @@ Numbering, used everywhere::
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -25,7 +25,10 @@ __all__ = [
     "NO_NEIGHBOR",
     "HalfEdges",
     "boundary_rings",
+    "directed_edges",
+    "edge_keys",
     "edges",
+    "edges_at",
     "ends",
     "find_triangles",
     "gather",
@@ -55,6 +58,37 @@ def ends(
     )
 
 
+def edges_at(triangles: NDArray[np.int32], is_chosen: NDArray[np.bool_]) -> NDArray[np.int32]:
+    """Return the edges opposite the chosen corners, (k, 2) vertex pairs, triangle by triangle.
+
+    Parameters
+    ----------
+    triangles : (m, 3) int32 array
+    is_chosen : (m, 3) bool array
+    """
+    triangle, corner = np.nonzero(is_chosen)
+    return np.stack(
+        [triangles[triangle, (corner + 1) % 3], triangles[triangle, (corner + 2) % 3]], axis=1
+    )
+
+
+def edge_keys(pairs: NDArray[Any], n_vertices: int) -> NDArray[np.int64]:
+    """Return one number for each edge, whatever its direction: smaller end * n + larger end.
+
+    Parameters
+    ----------
+    pairs : (..., 2) int array
+        Vertices.
+    n_vertices : int
+    """
+    return _keys(pairs[..., 0].astype(np.int64), pairs[..., 1].astype(np.int64), n_vertices)
+
+
+def _keys(start: NDArray[np.int64], end: NDArray[np.int64], n_vertices: int) -> NDArray[np.int64]:
+    keys: NDArray[np.int64] = np.minimum(start, end) * n_vertices + np.maximum(start, end)
+    return keys
+
+
 def neighbors_of(triangles: NDArray[np.int32], n_vertices: int) -> NDArray[np.int32]:
     """Match the edges of counter-clockwise triangles.
 
@@ -74,7 +108,7 @@ def neighbors_of(triangles: NDArray[np.int32], n_vertices: int) -> NDArray[np.in
         If an edge is used by more than two triangles or twice in the same direction.
     """
     start, end = directed_edges(triangles)
-    keys = (np.minimum(start, end) * n_vertices + np.maximum(start, end)).ravel()
+    keys = _keys(start, end, n_vertices).ravel()
     forward = (start < end).ravel()
     order = np.argsort(keys, kind="stable")
     sorted_keys = keys[order]

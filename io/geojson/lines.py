@@ -10,7 +10,7 @@ import numpy as np
 
 from ...errors import FormatError
 from ...terrain.linework import EDGE_KINDS, line_edges
-from ...tin.constraints.clipping import edge_keys
+from ...tin.topology import edge_keys, edges_at
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -36,11 +36,7 @@ def edge_words(tin: TIN, flags: NDArray[np.bool_]) -> NDArray[np.object_]:
     """
     kinds = np.full(flags.shape, -1, np.int8)
     if len(tin.lines):
-        triangle, corner = np.nonzero(flags)
-        pairs = np.column_stack(
-            [tin.triangles[triangle, (corner + 1) % 3], tin.triangles[triangle, (corner + 2) % 3]]
-        )
-        kinds[triangle, corner] = _kinds_of(tin, pairs)
+        kinds[flags] = _kinds_of(tin, edges_at(tin.triangles, flags))
     texts = ['"constrained":false,"kind":null', '"constrained":true,"kind":null']
     texts += [f'"constrained":true,"kind":"{kind}"' for kind in EDGE_KINDS]
     words: NDArray[np.object_] = np.array(texts, object)[np.where(kinds >= 0, kinds + 2, flags)]

@@ -18,8 +18,7 @@ import numpy as np
 from ... import _optional as extras
 from ..._atomic import replacing_path
 from ...errors import MissingExtraError
-from ...tin.constraints.clipping import edge_keys
-from ...tin.topology import NO_NEIGHBOR, ends
+from ...tin.topology import NO_NEIGHBOR, directed_edges, edge_keys, ends
 from ..isolated import run_isolated
 from .common import choose_reference, file_content, require_tin, survey_of, tin_of
 
@@ -93,12 +92,8 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
 def _flags(
     triangles: NDArray[np.int32], lines: NDArray[np.int32], n_points: int
 ) -> NDArray[np.bool_]:
-    flags = np.zeros(triangles.shape, np.bool_)
-    given = edge_keys(lines, n_points)
-    for corner in range(3):
-        edge = np.stack([triangles[:, (corner + 1) % 3], triangles[:, (corner + 2) % 3]], axis=1)
-        flags[:, corner] = np.isin(edge_keys(edge, n_points), given)
-    return flags
+    edges = np.stack(directed_edges(triangles), axis=-1)
+    return np.isin(edge_keys(edges, n_points), edge_keys(lines, n_points))
 
 
 def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None = None) -> None:

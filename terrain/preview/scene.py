@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ... import _optional as extras
+from ...tin.topology import edges_at
 from ..lift import default_origin
 from .tints import tints
 
@@ -172,9 +173,7 @@ def _vertex_normals(
 
 def _block(pv: Any, tin: TIN, points: NDArray[np.float64]) -> Any:
     """Return the walls from the boundary down to a level base."""
-    triangle, corner = np.nonzero(tin.neighbors < 0)
-    start = tin.triangles[triangle, (corner + 1) % 3]
-    stop = tin.triangles[triangle, (corner + 2) % 3]
+    start, stop = edges_at(tin.triangles, tin.neighbors < 0).T
     extent = float(np.ptp(points[:, :2], axis=0).max())
     base = points[:, 2].min() - _BLOCK_SHARE * extent
     upper = np.concatenate([points[start], points[stop]])

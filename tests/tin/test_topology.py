@@ -8,7 +8,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import tinsmith as ts
-from tinsmith.tin.topology import NO_NEIGHBOR, boundary_rings, edges, ends, neighbors_of
+from tinsmith.tin.topology import (
+    NO_NEIGHBOR,
+    boundary_rings,
+    edge_keys,
+    edges,
+    edges_at,
+    ends,
+    neighbors_of,
+)
 
 RNG = np.random.default_rng(31)
 FAN = np.array([[4, 0, 1], [4, 1, 2], [4, 2, 3], [4, 3, 0]], np.int32)
@@ -169,3 +177,19 @@ def test_rings_use_every_boundary_edge_once(count, seed, random):
         for start, end in zip(ring, np.roll(ring, -1), strict=True)
     )
     assert walked == rim
+
+
+def test_edges_at_corners_lie_opposite_them():
+    triangles = np.array([[4, 7, 9], [7, 4, 2]], np.int32)
+    is_chosen = np.array([[True, False, True], [False, True, False]])
+    assert edges_at(triangles, is_chosen).tolist() == [[7, 9], [4, 7], [2, 7]]
+
+
+def test_keys_of_edges_are_the_same_both_ways_and_told_apart():
+    pairs = np.array([(a, b) for a in range(5) for b in range(5)], np.int32)
+    keys = edge_keys(pairs, 5)
+    assert keys.dtype == np.int64
+    assert keys.tolist() == edge_keys(pairs[:, ::-1], 5).tolist()
+    assert len(set(keys.tolist())) == 15
+    large = np.array([[2**31 - 1, 2**31 - 2]], np.int32)
+    assert edge_keys(large, 2**31).tolist() == [(2**31 - 2) * 2**31 + 2**31 - 1]

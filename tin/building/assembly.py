@@ -12,22 +12,23 @@ from ..constraints.breaklines import Lines
 from ..constraints.clipping import BOUNDARY, EXTENT, HOLES, Surface, in_rings
 from ..constraints.constraint_set import LineSet
 from ..constraints.draping import drape
-from ..constraints.pslg import Clip, LineInfo, Model, lines_in
+from ..constraints.polylines import offsets_of
+from ..constraints.pslg import Clip, Pslg, lines_in
 from ..report import LEFT_OUT, Crossings, Overruled, Report
 from ..validation.points import require_three
-from .constrained import Draft, draft
+from .constrained import ConstrainedTriangulation, triangulate_constrained
 from .duplicates import merge_rows
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .inputs import Recipe
+    from .inputs import BuildInputs
 
 __all__ = ["Built", "assemble"]
 
 
 class Built(NamedTuple):
-    """What a recipe gives.
+    """What a build gives.
 
     Attributes
     ----------
@@ -50,16 +51,16 @@ class Built(NamedTuple):
     line_vertices: NDArray[np.int32]
 
 
-def assemble(recipe: Recipe) -> Built:
-    """Build all that the TIN of a recipe holds."""
-    return _plain(recipe) if recipe.is_plain else _with_lines(recipe)
+def assemble(inputs: BuildInputs) -> Built:
+    """Build all that a TIN holds."""
+    return _plain(inputs) if inputs.is_plain else _with_lines(inputs)
 
 
 # ------------------------------------------------------------------ points alone
 
 
-def _plain(recipe: Recipe) -> Built:
-    xyz, options = recipe.points, recipe.options
+def _plain(inputs: BuildInputs) -> Built:
+    xyz, options = inputs.points, inputs.options
     require_three(len(xyz))  # edits may have removed the others
     kept_row = _kernel.snap(xyz, options.snap) if options.snap > 0 else None
     growth = _kernel.grow(
@@ -71,7 +72,7 @@ def _plain(recipe: Recipe) -> Built:
         Surface(merged.points, growth.triangles, growth.neighbors, fixed),
         merged.vertex_of,
         Lines(),
-        _report(recipe, len(merged.points), len(growth.triangles), merged.account),
+        _report(inputs, len(merged.points), len(growth.triangles), merged.account),
         np.empty((0, 2)),
         np.empty(0, np.int32),
     )
@@ -82,15 +83,17 @@ def _kept(xyz: NDArray[np.float64], kept_row: NDArray[np.int32]) -> NDArray[np.f
     return kept
 
 
-def _report(recipe: Recipe, n_vertices: int, n_triangles: int, account: dict[str, Any]) -> Report:
+def _report(
+    inputs: BuildInputs, n_vertices: int, n_triangles: int, account: dict[str, Any]
+) -> Report:
     return Report(
-        n_rows=len(recipe.points),
+        n_rows=len(inputs.points),
         n_vertices=n_vertices,
         n_triangles=n_triangles,
-        duplicates=recipe.options.duplicates,
-        snap=recipe.options.snap,
-        skipped=dict(recipe.skipped),
-        **{"notes": tuple(recipe.notes), **account},
+        duplicates=inputs.options.duplicates,
+        snap=inputs.options.snap,
+        skipped=dict(inputs.skipped),
+        **{"notes": tuple(inputs.notes), **account},
     )
 
 
@@ -109,78 +112,76 @@ class _Ground(NamedTuple):
         return self._replace(lines=self.lines.chosen(self.lines.sources >= 0), has_rim=False)
 
 
-def _with_lines(recipe: Recipe) -> Built:
-    is_erased = _erased(recipe)
+def _with_lines(inputs: BuildInputs) -> Built:
+    is_erased = _erased(inputs)
     rows = np.flatnonzero(~is_erased)
-    ground = _draped(rows, recipe)
-    made, model = _made(recipe, ground, rows)
-    has_rings = bool(recipe.boundary or recipe.extent or recipe.holes or recipe.has_rim)
-    if not has_rings and model.loses_vertices_at_rim(made.surface):
+    ground = _draped(rows, inputs)
+    made, pslg = _made(inputs, ground, rows)
+    has_rings = bool(inputs.boundary or inputs.extent or inputs.holes or inputs.has_rim)
+    if not has_rings and pslg.loses_vertices_at_rim(made.surface):
         ground = ground.without_rim()
-        made, model = _made(recipe, ground, rows)
-    surface, number_of = model.surface(made.surface)
-    vertex_of = _numbered(model.vertex_of, number_of)
-    account = _account(recipe, made, number_of, is_erased, vertex_of, ground)
+        made, pslg = _made(inputs, ground, rows)
+    surface, number_of = pslg.surface(made.surface)
+    vertex_of = _numbered(pslg.vertex_of, number_of)
+    account = _account(inputs, made, number_of, is_erased, vertex_of, ground)
     is_whole = surface is made.surface
     return Built(
         surface,
         vertex_of,
-        lines_in(model.pieces, model.infos, number_of, surface, is_whole=is_whole),
-        _report(recipe, len(surface.points), len(surface.triangles), account),
+        lines_in(pslg.polylines, pslg.constraints, number_of, surface, is_whole=is_whole),
+        _report(inputs, len(surface.points), len(surface.triangles), account),
         ground.lines.xy,
         _numbered(made.line_vertices, number_of),
     )
 
 
-def _made(recipe: Recipe, ground: _Ground, rows: NDArray[np.int64]) -> tuple[Draft, Model]:
-    made = draft(recipe.points, rows, ground.lines, recipe.options, conforming=recipe.conforming)
-    return made, _model(recipe, ground, made, rows)
+def _made(
+    inputs: BuildInputs, ground: _Ground, rows: NDArray[np.int64]
+) -> tuple[ConstrainedTriangulation, Pslg]:
+    made = triangulate_constrained(
+        inputs.points, rows, ground.lines, inputs.options, conforming=inputs.conforming
+    )
+    return made, _gather_pslg(inputs, ground, made, rows)
 
 
-def _model(recipe: Recipe, ground: _Ground, made: Draft, rows: NDArray[np.int64]) -> Model:
+def _gather_pslg(
+    inputs: BuildInputs, ground: _Ground, made: ConstrainedTriangulation, rows: NDArray[np.int64]
+) -> Pslg:
     lines = ground.lines
-    vertex_of = np.full(len(recipe.points), -1, np.int32)
+    vertex_of = np.full(len(inputs.points), -1, np.int32)
     vertex_of[rows] = made.vertex_of
-    return Model(
+    return Pslg(
         points=made.surface.points,
-        pieces=made.pieces,
-        infos=tuple(
-            LineInfo(*info)
-            for info in zip(
-                lines.kinds,
-                lines.sources.tolist(),
-                lines.names,
-                lines.priorities.tolist(),
-                _groups(recipe, lines),
-                strict=True,
-            )
-        ),
+        polylines=made.polylines,
+        constraints=lines.table,
+        groups=_groups(inputs, lines),
         clip=Clip(
-            boundary=recipe.boundary,
-            extent=recipe.extent,
-            holes=recipe.holes,
-            has_rim=ground.has_rim or recipe.has_rim,
-            max_edge=recipe.max_edge,
-            is_trimmed_everywhere=recipe.trim == "everywhere",
+            boundary=inputs.boundary,
+            extent=inputs.extent,
+            holes=inputs.holes,
+            has_rim=ground.has_rim or inputs.has_rim,
+            max_edge=inputs.max_edge,
+            is_trimmed_everywhere=inputs.trim == "everywhere",
         ),
         vertex_of=vertex_of,
     )
 
 
-def _groups(recipe: Recipe, lines: LineSet) -> list[int]:
+def _groups(inputs: BuildInputs, lines: LineSet) -> NDArray[np.int64]:
     """Return the group of each line among the rings; that of other lines says nothing."""
     of_ring = [
-        *([BOUNDARY] * len(recipe.boundary)),
-        *([EXTENT] * len(recipe.extent)),
+        *([BOUNDARY] * len(inputs.boundary)),
+        *([EXTENT] * len(inputs.extent)),
     ]
-    of_hole = [HOLES + number for number, rings in enumerate(recipe.holes) for _ in rings]
+    of_hole = [HOLES + number for number, rings in enumerate(inputs.holes) for _ in rings]
     groups: dict[str, list[int]] = {"boundary": of_ring, "hole": of_hole}
-    if recipe.has_rim:  # of existing triangles, whose rings are edges of the rim
+    if inputs.has_rim:  # of existing triangles, whose rings are edges of the rim
         groups = {}
-    return [
+    found = [
         groups[kind][source] if kind in groups and source >= 0 else BOUNDARY
         for kind, source in zip(lines.kinds, lines.sources.tolist(), strict=True)
     ]
+    return np.array(found, np.int64)
 
 
 def _numbered(vertices: NDArray[np.int32], number_of: NDArray[np.int32]) -> NDArray[np.int32]:
@@ -189,24 +190,24 @@ def _numbered(vertices: NDArray[np.int32], number_of: NDArray[np.int32]) -> NDAr
     return found
 
 
-def _erased(recipe: Recipe) -> NDArray[np.bool_]:
+def _erased(inputs: BuildInputs) -> NDArray[np.bool_]:
     """Tell which rows are left out before anything is built: masked or erased ones."""
-    is_erased = np.zeros(len(recipe.points), np.bool_)
-    if recipe.is_masked is not None:
-        is_erased |= recipe.is_masked
-    for rings in recipe.erase:
-        is_erased |= in_rings(recipe.points[:, :2], rings) > 0
+    is_erased = np.zeros(len(inputs.points), np.bool_)
+    if inputs.is_masked is not None:
+        is_erased |= inputs.is_masked
+    for rings in inputs.erase:
+        is_erased |= in_rings(inputs.points[:, :2], rings) > 0
     return is_erased
 
 
-def _draped(rows: NDArray[np.int64], recipe: Recipe) -> _Ground:
+def _draped(rows: NDArray[np.int64], inputs: BuildInputs) -> _Ground:
     """Give all lines heights: draped ones from the surface of everything else."""
-    lines = recipe.lines
+    lines = inputs.lines
     is_draped = lines.is_draped
     if not is_draped.any():
         return _Ground(lines, False, [])
-    base = draft(recipe.points, rows, lines.chosen(~is_draped), recipe.options)
-    laid = drape(base.surface, lines.chosen(is_draped), threads=recipe.options.threads)
+    base = triangulate_constrained(inputs.points, rows, lines.chosen(~is_draped), inputs.options)
+    laid = drape(base.surface, lines.chosen(is_draped), threads=inputs.options.threads)
     notes = []
     if laid.n_cut:
         notes.append(
@@ -221,8 +222,8 @@ def _draped(rows: NDArray[np.int64], recipe: Recipe) -> _Ground:
 
 
 def _account(
-    recipe: Recipe,
-    made: Draft,
+    inputs: BuildInputs,
+    made: ConstrainedTriangulation,
     number_of: NDArray[np.int32],
     is_erased: NDArray[np.bool_],
     vertex_of: NDArray[np.int32],
@@ -236,28 +237,25 @@ def _account(
     gave_way = made.overruled
     return account | {
         "left_out_rows": left_out,
-        "left_out_why": _reasons(recipe, left_out, is_erased, made),
-        "n_lines": len(recipe.lines.kinds) - len(recipe.extent),
+        "left_out_why": _reasons(inputs, left_out, is_erased, made),
+        "n_lines": len(inputs.lines.kinds) - len(inputs.extent),
         "line_labels": tuple(labels),
         "crossings": _crossings(made, final),
         "overruled": Overruled(
             _numbered(gave_way.vertices, final), gave_way.lines, gave_way.heights, gave_way.taken
         ),
-        "notes": (*recipe.notes, *ground.notes),
+        "notes": (*inputs.notes, *ground.notes),
     }
 
 
-def _crossings(made: Draft, final: NDArray[np.int32]) -> Crossings:
-    met = made.noded.crossings
-    lines = np.stack([met.line_a, met.line_b], axis=1).astype(np.int32)
-    heights = np.stack([met.height_a, met.height_b], axis=1)
-    order = np.argsort(lines, axis=1, kind="stable")
-    return Crossings(
-        _numbered(met.vertex, final),
-        met.xy,
-        np.take_along_axis(lines, order, axis=1),
-        np.take_along_axis(heights, order, axis=1),
-        met.height,
+def _crossings(made: ConstrainedTriangulation, final: NDArray[np.int32]) -> Crossings:
+    """Return the crossings by the numbers of the TIN, the earlier line in front."""
+    found = made.noded.crossings
+    order = np.argsort(found.lines, axis=1, kind="stable")
+    return found._replace(
+        vertices=_numbered(found.vertices, final),
+        lines=np.take_along_axis(found.lines, order, axis=1),
+        heights=np.take_along_axis(found.heights, order, axis=1),
     )
 
 
@@ -271,27 +269,30 @@ def _without_lost_merges(account: dict[str, Any], final: NDArray[np.int32]) -> d
     rows = np.repeat(keep, counts)
     return {
         "merged_vertices": vertices[keep],
-        "merged_offsets": np.append(0, np.cumsum(counts[keep])).astype(np.int32),
+        "merged_offsets": offsets_of(counts[keep]).astype(np.int32),
         "vertex_heights": account["vertex_heights"][keep],
         **{k: account[k][rows] for k in ("merged_rows", "merged_heights", "merged_shifts")},
     }
 
 
 def _reasons(
-    recipe: Recipe, rows: NDArray[np.int32], is_erased: NDArray[np.bool_], made: Draft
+    inputs: BuildInputs,
+    rows: NDArray[np.int32],
+    is_erased: NDArray[np.bool_],
+    made: ConstrainedTriangulation,
 ) -> NDArray[np.int8]:
     """Return why each row was left out, as places in ``LEFT_OUT``."""
-    xy = recipe.points[rows, :2]
+    xy = inputs.points[rows, :2]
     why = np.full(len(rows), LEFT_OUT.index("trimmed"), np.int8)
-    for rings in recipe.holes:
+    for rings in inputs.holes:
         why[in_rings(xy, rings) >= 0] = LEFT_OUT.index("in a hole")
-    for outer in (recipe.extent, recipe.boundary):
+    for outer in (inputs.extent, inputs.boundary):
         if outer and len(rows):
             why[in_rings(xy, outer) <= 0] = LEFT_OUT.index("outside the boundary")
-    drowned = np.zeros(len(is_erased), np.bool_)
-    drowned[np.flatnonzero(~is_erased)[made.vertex_of < 0]] = True
-    why[drowned[rows]] = LEFT_OUT.index("in water")
+    in_water = np.zeros(len(is_erased), np.bool_)
+    in_water[np.flatnonzero(~is_erased)[made.vertex_of < 0]] = True
+    why[in_water[rows]] = LEFT_OUT.index("in water")
     why[is_erased[rows]] = LEFT_OUT.index("erased")
-    if recipe.is_masked is not None:
-        why[recipe.is_masked[rows]] = LEFT_OUT.index("masked")
+    if inputs.is_masked is not None:
+        why[inputs.is_masked[rows]] = LEFT_OUT.index("masked")
     return why

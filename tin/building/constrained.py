@@ -11,20 +11,21 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import numpy as np
 
 from .. import _kernel
-from ..constraints.clipping import Surface, edge_keys, in_rings
+from ..constraints.clipping import Surface, in_rings
 from ..constraints.conforming import conform
 from ..constraints.constraint_set import ABOVE_ALL, BELOW_ALL, LineSet
-from ..constraints.noding import Chains, Noded, node, untouched
-from ..constraints.polylines import Pieces
+from ..constraints.noding import Noded, node, untouched
+from ..constraints.polylines import Polylines
 from ..constraints.pslg import force, mesh_of, mesh_of_growth
 from ..report import Overruled
+from ..topology import edge_keys
 from ..validation.points import require_three
 from .duplicates import DuplicatePolicy, merge_rows
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["CrossingPolicy", "Draft", "LineOptions", "draft"]
+__all__ = ["ConstrainedTriangulation", "CrossingPolicy", "LineOptions", "triangulate_constrained"]
 
 CrossingPolicy = Literal["split", "error"]
 
@@ -38,7 +39,7 @@ class LineOptions(NamedTuple):
     threads: int = 1
 
 
-class Draft(NamedTuple):
+class ConstrainedTriangulation(NamedTuple):
     """The triangulated hull with its lines.
 
     Attributes
@@ -48,7 +49,7 @@ class Draft(NamedTuple):
         The vertex of each row of points, -1 for rows in water.
     line_vertices : (k,) int32 array
         Likewise of each given vertex of the lines.
-    pieces : Pieces
+    polylines : Polylines
         What is left of the lines, water excluded.
     merges : dict
         Fields of the report about merged rows.
@@ -63,7 +64,7 @@ class Draft(NamedTuple):
     surface: Surface
     vertex_of: NDArray[np.int32]
     line_vertices: NDArray[np.int32]
-    pieces: Pieces
+    polylines: Polylines
     merges: dict[str, Any]
     noded: Noded
     overruled: Overruled
@@ -73,20 +74,20 @@ class Draft(NamedTuple):
 class _Merged(NamedTuple):
     points: NDArray[np.float64]
     vertex_of: NDArray[np.int32]
-    chains: Chains
+    polylines: Polylines
     growth: _kernel.Growth
     merges: dict[str, Any]
     overruled: Overruled
 
 
-def draft(
+def triangulate_constrained(
     points: NDArray[np.float64],
     rows: NDArray[np.int64],
     lines: LineSet,
     options: LineOptions,
     *,
     conforming: bool = False,
-) -> Draft:
+) -> ConstrainedTriangulation:
     """Triangulate rows of points, and lines; all lines have heights.
 
     Raises
@@ -98,9 +99,12 @@ def draft(
     """
     xyz = points[rows]
     merged = _merge(xyz, rows, lines, options)
-    mesh, noded = mesh_of_growth(merged.points, merged.growth), untouched(merged.chains)
+    mesh, noded = (
+        mesh_of_growth(merged.points, merged.growth),
+        untouched(merged.polylines, lines.heights),
+    )
     is_simple = options.snap == 0.0 and not (lines.priorities == ABOVE_ALL).any()
-    is_forced = is_simple and _is_forced(mesh, _as_pieces(noded.chains))
+    is_forced = is_simple and _is_forced(mesh, noded.polylines)
     if not is_forced:
         noded = _noded(merged, lines, options)
         if is_simple:  # edges were fixed in vain
@@ -108,26 +112,25 @@ def draft(
         if len(noded.new_points):
             mesh.insert(np.ascontiguousarray(noded.new_points[:, :2]))
     points = np.concatenate([merged.points, noded.new_points])
-    pieces = _as_pieces(noded.chains)
     overruled = _passed_by(points, noded, merged.overruled)
-    pieces, wet, overruled = _flooded(points, pieces, lines, overruled)
+    polylines, wet, overruled = _leave_out_water(points, noded.polylines, lines, overruled)
     if not is_forced:
         mesh.remove(np.flatnonzero(wet).astype(np.int32))
-        force(mesh, pieces)
+        force(mesh, polylines)
     number_of = np.where(wet, -1, np.cumsum(~wet) - 1).astype(np.int32)
-    points, pieces = points[~wet], pieces.renumbered(number_of)
+    points, polylines = points[~wet], polylines.renumber(number_of)
     if conforming:
         if wet.any():  # numbers without gaps
-            mesh = mesh_of(points, pieces, threads=options.threads)
-        mesh, points, pieces = conform(
-            mesh, points, pieces, lines.priorities, threads=options.threads
+            mesh = mesh_of(points, polylines, threads=options.threads)
+        mesh, points, polylines = conform(
+            mesh, points, polylines, lines.priorities, threads=options.threads
         )
     triangles, neighbors, constrained = mesh.arrays(options.threads)
-    return Draft(
+    return ConstrainedTriangulation(
         Surface(points, triangles, neighbors, constrained),
         number_of[merged.vertex_of[: len(xyz)]],
         number_of[merged.vertex_of[len(xyz) :]],
-        pieces,
+        polylines,
         merged.merges,
         noded,
         overruled,
@@ -135,28 +138,23 @@ def draft(
     )
 
 
-def _is_forced(mesh: _kernel.Mesh, pieces: Pieces) -> bool:
+def _is_forced(mesh: _kernel.Mesh, polylines: Polylines) -> bool:
     """Fix the steps of lines as they are given; tell whether nothing was in the way of any."""
-    steps, _ = pieces.steps()
-    passed, blocked = mesh.force(steps)
+    passed, blocked = mesh.force(polylines.segments())
     return not (len(passed) or len(blocked))
 
 
 def _noded(merged: _Merged, lines: LineSet, options: LineOptions) -> Noded:
     return node(
         np.ascontiguousarray(merged.points[:, :2]),
-        merged.chains,
+        merged.polylines,
+        lines.heights,
         lines.priorities,
         snap=options.snap,
         crossing=options.crossing,
         threads=options.threads,
         names=lines.labels(),
     )
-
-
-def _as_pieces(chains: Chains) -> Pieces:
-    lines = np.arange(len(chains.offsets) - 1, dtype=np.int32)
-    return Pieces(chains.vertices, chains.offsets, lines)
 
 
 # ------------------------------------------------------------------------- rows
@@ -179,8 +177,8 @@ def _merge(
     points = rows[is_kept]
     merges = _merge_points(xyz, rows_of, vertex_of[:n], points, options.duplicates)
     overruled = _line_heights(points, vertex_of, n, lines)
-    chains = Chains(vertex_of[n:], lines.offsets.astype(np.int32), lines.heights)
-    return _Merged(points, vertex_of, chains, growth, merges, overruled)
+    polylines = Polylines.whole(vertex_of[n:], lines.offsets)
+    return _Merged(points, vertex_of, polylines, growth, merges, overruled)
 
 
 def _merge_points(
@@ -249,9 +247,9 @@ def _passed_by(points: NDArray[np.float64], noded: Noded, overruled: Overruled) 
 # ------------------------------------------------------------------------ water
 
 
-def _flooded(
-    points: NDArray[np.float64], pieces: Pieces, lines: LineSet, overruled: Overruled
-) -> tuple[Pieces, NDArray[np.bool_], Overruled]:
+def _leave_out_water(
+    points: NDArray[np.float64], polylines: Polylines, lines: LineSet, overruled: Overruled
+) -> tuple[Polylines, NDArray[np.bool_], Overruled]:
     """Put shores at the height of their water, and leave out what is in it.
 
     Parameters
@@ -261,7 +259,7 @@ def _flooded(
 
     Returns
     -------
-    pieces : Pieces
+    polylines : Polylines
         Without the steps in water, but for those of boundaries and holes, which lie on it.
     wet : (n,) bool array
         Which vertices are in water, and go.
@@ -270,24 +268,23 @@ def _flooded(
     """
     wet = np.zeros(len(points), np.bool_)
     if not (lines.priorities == ABOVE_ALL).any():
-        return pieces, wet, overruled
-    is_ring = np.array([kind in ("boundary", "hole") for kind in lines.kinds], np.bool_)
-    given = pieces
+        return polylines, wet, overruled
+    is_ring = lines.table.is_kind("boundary", "hole")
+    given = polylines
     for line in np.flatnonzero(lines.priorities == ABOVE_ALL).tolist():
         shore = given.vertices[given.offsets[line] : given.offsets[line + 1]]
         inside = _inside(points[:, :2], points[shore, :2])
-        steps, line_of = pieces.steps()
-        drowned = inside[steps].any(axis=1) | _are_chords_within(points[:, :2], steps, shore)
+        steps, line_of = polylines.segments(), polylines.segment_lines()
+        in_water = inside[steps].any(axis=1) | _are_chords_within(points[:, :2], steps, shore)
         stays = (line_of == line) | is_ring[line_of] | _runs_along(steps, shore, len(points))
-        held = np.unique(steps[drowned & is_ring[line_of]])
+        held = np.unique(steps[in_water & is_ring[line_of]])
         level = float(lines.heights[lines.offsets[line]])
         overruled = _set_level(points, np.union1d(shore, held), level, overruled)
-        pieces = pieces.kept(~drowned | stays)
+        polylines = polylines.keep(~in_water | stays)
         inside[held] = False
         wet |= inside
-    steps, _ = pieces.steps()
-    is_dry = np.asarray(~wet[steps].any(axis=1), np.bool_)
-    return pieces.kept(is_dry), wet, overruled
+    is_dry = np.asarray(~wet[polylines.segments()].any(axis=1), np.bool_)
+    return polylines.keep(is_dry), wet, overruled
 
 
 def _set_level(

@@ -1,4 +1,4 @@
-"""Recipe: all that a TIN is a function of."""
+"""Inputs of a build: all that a TIN is a function of."""
 
 from __future__ import annotations
 
@@ -34,14 +34,14 @@ if TYPE_CHECKING:
     from ...crs import CrsLike, UnitLike
     from ..constraints.breaklines import Breakline, Water
 
-__all__ = ["Recipe", "TrimPolicy", "recipe_of"]
+__all__ = ["BuildInputs", "TrimPolicy", "gather_inputs"]
 
 TrimPolicy = Literal["perimeter", "everywhere"]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Recipe:
-    """Points, lines and options, checked: the same recipe gives the same TIN.
+class BuildInputs:
+    """Points, lines and options, checked: the same inputs give the same TIN.
 
     Attributes
     ----------
@@ -88,8 +88,8 @@ class Recipe:
         has_rings = bool(self.boundary or self.extent or self.holes or self.has_rim)
         return has_rings or bool(np.isfinite(self.max_edge))
 
-    def with_lines(self, lines: LineSet) -> Recipe:
-        """Return the recipe with other lines, rings among them.
+    def with_lines(self, lines: LineSet) -> BuildInputs:
+        """Return the same inputs with other lines, rings among them.
 
         Raises
         ------
@@ -120,7 +120,7 @@ def _rings_of(lines: LineSet, kind: str) -> list[NDArray[np.float64]]:
     ]
 
 
-def recipe_of(
+def gather_inputs(
     points: Survey | ArrayLike,
     *,
     breaklines: Sequence[Breakline | ArrayLike],
@@ -137,7 +137,7 @@ def recipe_of(
     threads: int | None,
     crs: CrsLike | None,
     z_unit: UnitLike | None,
-) -> Recipe:
+) -> BuildInputs:
     """Check everything; lines come on top of the survey's own.
 
     Raises
@@ -166,7 +166,7 @@ def recipe_of(
     rings = gather_rings(outer, "boundary")
     if own.extent:
         lines = LineSet.joined([lines, gather_extent(own.extent, len(rings))])
-    return Recipe(
+    return BuildInputs(
         points=xyz,
         is_masked=is_masked,
         lines=lines,

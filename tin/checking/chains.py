@@ -6,12 +6,10 @@ from typing import TYPE_CHECKING, get_args
 
 import numpy as np
 
-from .. import topology
 from ..constraints.breaklines import LineKind
+from ..topology import edge_keys, edges_at
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from ..surface import TIN
     from .findings import Findings
 
@@ -97,11 +95,9 @@ def _check_ranges(tin: TIN, found: Findings) -> None:
 def check_steps(tin: TIN, found: Findings) -> None:
     """Check that every step is a constrained edge, and every constrained inner edge a step."""
     triangle, corner = np.nonzero(tin.constrained)
-    start, end = topology.ends(tin.triangles, triangle, corner)
-    edges = _keys(start, end, len(tin.points))
-    taken = tin.lines.steps().astype(np.int64)
-    steps = _keys(taken[:, 0], taken[:, 1], len(tin.points))
-    chain = np.repeat(np.arange(len(tin.lines)), np.diff(tin.lines.offsets) - 1)
+    edges = edge_keys(edges_at(tin.triangles, tin.constrained), len(tin.points))
+    steps = edge_keys(tin.lines.steps(), len(tin.points))
+    chain = tin.lines.step_chains()
     found.report(
         "lines",
         np.unique(chain[~np.isin(steps, edges)]),
@@ -117,9 +113,3 @@ def check_steps(tin: TIN, found: Findings) -> None:
         "line "
         "that is known (first: [triangle|triangles] {first}).",
     )
-
-
-def _keys(a: NDArray[np.int64], b: NDArray[np.int64], n_vertices: int) -> NDArray[np.int64]:
-    """Return one number for each edge, whatever its direction."""
-    keys: NDArray[np.int64] = np.minimum(a, b) * n_vertices + np.maximum(a, b)
-    return keys

@@ -206,9 +206,8 @@ def _count_edges(tin: TIN, found: Findings) -> None:
     """Count edges; two pairs of triangles at one edge show as an edge that comes twice."""
     first = np.arange(len(tin.triangles))[:, None]
     is_rim = tin.neighbors == topology.NO_NEIGHBOR
-    triangle, corner = np.nonzero(is_rim | (tin.neighbors > first))
-    start, end = topology.ends(tin.triangles, triangle, corner)
-    keys = np.minimum(start, end) * len(tin.points) + np.maximum(start, end)
+    edges = topology.edges_at(tin.triangles, is_rim | (tin.neighbors > first))
+    keys = topology.edge_keys(edges, len(tin.points))
     keys.sort()
     found.counts["edges"] = len(keys)
     found.counts["boundary_edges"] = int(np.count_nonzero(is_rim))

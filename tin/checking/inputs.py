@@ -133,7 +133,7 @@ def _check_gaps(tin: TIN, given: LineSet, walk: Walk, slack: float, found: Findi
     """Check that what is left out of lines lies outside the surface or in water."""
     places = np.array(walk.gap_places, np.float64).reshape(-1, 2)
     is_wrong = _is_inside(tin, places, slack)
-    is_wrong[is_wrong] = ~_is_drowned(places[is_wrong], given, slack)
+    is_wrong[is_wrong] = ~_is_in_water(places[is_wrong], given, slack)
     found.report(
         "lines",
         np.unique(np.array(walk.gap_lines, np.int64)[is_wrong]),
@@ -150,7 +150,7 @@ def _check_ends(tin: TIN, given: LineSet, walk: Walk, slack: float, found: Findi
     loose = np.flatnonzero(~np.isin(vertices, np.append(rim_of(tin).start, shore)))
     places = tin.points[vertices[loose], :2]
     is_wrong = _is_inside(tin, places, slack)
-    is_wrong[is_wrong] = ~_is_drowned(places[is_wrong], given, slack)
+    is_wrong[is_wrong] = ~_is_in_water(places[is_wrong], given, slack)
     found.report(
         "lines",
         np.unique(np.array(walk.end_lines, np.int64)[loose[is_wrong]]),
@@ -172,15 +172,15 @@ def _is_inside(tin: TIN, places: NDArray[np.float64], slack: float) -> NDArray[n
     return is_inside
 
 
-def _is_drowned(places: NDArray[np.float64], given: LineSet, slack: float) -> NDArray[np.bool_]:
+def _is_in_water(places: NDArray[np.float64], given: LineSet, slack: float) -> NDArray[np.bool_]:
     """Tell which places lie in water, or within ``slack`` of its shore."""
     shores = [
         given.xy[given.offsets[line] : given.offsets[line + 1]]
         for line, kind in enumerate(given.kinds)
         if kind == "water"
     ]
-    drowned = [any(_is_in_ring(place, shore, slack) for shore in shores) for place in places]
-    return np.array(drowned, np.bool_)
+    in_water = [any(_is_in_ring(place, shore, slack) for shore in shores) for place in places]
+    return np.array(in_water, np.bool_)
 
 
 def _is_in_ring(place: NDArray[np.float64], ring: NDArray[np.float64], slack: float) -> bool:

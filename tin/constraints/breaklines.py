@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
-from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
@@ -13,6 +12,7 @@ from ...errors import LinesError, PointsError
 from ..types import Frozen
 from ..validation.options import is_finite_number, require_one_of, shown
 from ..validation.tables import as_table
+from .polylines import Polylines
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -165,15 +165,19 @@ class Lines(Frozen):
 
     def chains(self) -> Iterator[NDArray[np.int32]]:
         """Walk the chains, as vertex numbers."""
-        for start, end in pairwise(self.offsets.tolist()):
-            yield self.vertices[start:end]
+        return iter(self._polylines)
 
     def steps(self) -> NDArray[np.int32]:
         """Return the edges that the chains walk, (s, 2) vertex pairs in order."""
-        is_step = np.ones(len(self.vertices), np.bool_)
-        is_step[self.offsets[1:] - 1] = False
-        start = np.flatnonzero(is_step)
-        return np.stack([self.vertices[start], self.vertices[start + 1]], axis=1)
+        return self._polylines.segments()
+
+    def step_chains(self) -> NDArray[np.int64]:
+        """Return the chain of each of the steps."""
+        return self._polylines.segment_owners()
+
+    @property
+    def _polylines(self) -> Polylines:
+        return Polylines.whole(self.vertices, self.offsets)
 
     def has_breakline(self, source: int) -> bool:
         """Tell whether some of a breakline is there."""

@@ -9,6 +9,8 @@ import numpy as np
 
 from ...errors import LinesError
 from .. import _kernel, topology
+from ..topology import edge_keys
+from .polylines import offsets_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -21,7 +23,6 @@ __all__ = [
     "RingSteps",
     "Surface",
     "clipped",
-    "edge_keys",
     "in_rings",
     "is_inside",
     "trimmed",
@@ -39,16 +40,9 @@ class Surface(NamedTuple):
 
 def in_rings(xy: NDArray[np.float64], rings: Sequence[NDArray[np.float64]]) -> NDArray[np.int8]:
     """Tell where places lie: +1 inside an odd number of rings, 0 on one, -1 outside."""
-    offsets = np.concatenate([[0], np.cumsum([len(ring) for ring in rings])]).astype(np.int32)
+    offsets = offsets_of(map(len, rings)).astype(np.int32)
     corners = np.ascontiguousarray(np.concatenate([ring[:, :2] for ring in rings]))
     return _kernel.places_in_rings(np.ascontiguousarray(xy), corners, offsets)
-
-
-def edge_keys(pairs: NDArray[np.int32], n_vertices: int) -> NDArray[np.int64]:
-    """Return one number for each (k, 2) pair of vertices, whatever its direction."""
-    low = pairs.min(axis=1).astype(np.int64)
-    keys: NDArray[np.int64] = low * n_vertices + pairs.max(axis=1)
-    return keys
 
 
 RIM = -1
@@ -118,7 +112,7 @@ def _half_edges(surface: Surface, steps: RingSteps) -> _HalfEdges:
     n = len(surface.points)
     triangle, corner = np.nonzero(surface.constrained)
     start, end = topology.ends(surface.triangles, triangle, corner)
-    key = edge_keys(np.stack([start, end], axis=1).astype(np.int32), n)
+    key = edge_keys(np.stack([start, end], axis=1), n)
     is_ring = np.isin(key, edge_keys(steps.pairs, n))
     triangle, corner, key = triangle[is_ring], corner[is_ring], key[is_ring]
     rim = steps.pairs[steps.groups == RIM].astype(np.int64)

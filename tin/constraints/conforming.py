@@ -26,14 +26,15 @@ import numpy as np
 
 from ...errors import LinesError
 from .. import _kernel
-from .clipping import edge_keys
-from .noding import Chains, node_again
-from .polylines import Pieces
+from ..topology import edge_keys
+from .noding import node_again
 from .pslg import mesh_of
 from .splitting import interpolate_linearly, is_before
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from .polylines import Polylines
 
 __all__ = ["conform"]
 
@@ -45,22 +46,22 @@ _NEW_PER_VERTEX = 50  # the limit for many
 def conform(
     mesh: _kernel.Mesh,
     points: NDArray[np.float64],
-    pieces: Pieces,
+    polylines: Polylines,
     priorities: NDArray[Any],
     *,
     threads: int,
-) -> tuple[_kernel.Mesh, NDArray[np.float64], Pieces]:
+) -> tuple[_kernel.Mesh, NDArray[np.float64], Polylines]:
     """Split segments that are not Delaunay.
 
     Parameters
     ----------
     mesh : Mesh
-        Of the points, with the segments of all pieces fixed. Not to be used any more.
+        Of the points, with the segments of all lines fixed. Not to be used any more.
     points : (n, 3) float64 array
-    pieces : Pieces
+    polylines : Polylines
         Noded.
     priorities : (l,) array
-        Of the lines that the pieces belong to: whose elevation counts where two meet anew.
+        Of the lines: whose elevation counts where two meet anew.
     threads : int
 
     Returns
@@ -68,7 +69,7 @@ def conform(
     mesh : Mesh
     points : (n + s, 3) float64 array
         With the new vertices, elevations linear along the segments.
-    pieces : Pieces
+    polylines : Polylines
 
     Raises
     ------
@@ -79,12 +80,12 @@ def conform(
     for _ in range(_MOST_ROUNDS):
         bad = _segments_to_split(mesh, points)
         if not len(bad):
-            return mesh, points, pieces
+            return mesh, points, polylines
         if len(points) + len(bad) - n_given > most:
             raise _hopeless(f"{most} new vertices", points, bad)
-        points, pieces, is_noded = _split(mesh, points, pieces, bad, n_given)
+        points, polylines, is_noded = _split(mesh, points, polylines, bad, n_given)
         if not is_noded:
-            mesh, points, pieces = _node_again(mesh, points, pieces, priorities, threads)
+            mesh, points, polylines = _node_again(mesh, points, polylines, priorities, threads)
     raise _hopeless(f"{_MOST_ROUNDS} rounds of splitting", points, bad)
 
 
@@ -110,14 +111,14 @@ def _segments_to_split(mesh: _kernel.Mesh, points: NDArray[np.float64]) -> NDArr
 def _split(
     mesh: _kernel.Mesh,
     points: NDArray[np.float64],
-    pieces: Pieces,
+    polylines: Polylines,
     bad: NDArray[np.int32],
     n_given: int,
-) -> tuple[NDArray[np.float64], Pieces, bool]:
+) -> tuple[NDArray[np.float64], Polylines, bool]:
     """Split segments in the mesh too; tell whether the lines are still noded.
 
     If not, a split point fell on a vertex or another segment, or something is in the way of the
-    halves: only the new points and pieces are right then, not the mesh.
+    halves: only the new points and polylines are right then, not the mesh.
     """
     middle = _split_points(points, bad, n_given)
     splits_before = mesh.fixed_splits
@@ -125,11 +126,11 @@ def _split(
     vertex = mesh.insert(np.ascontiguousarray(middle[:, :2]))
     is_noded = bool((vertex == len(points) + np.arange(len(middle))).all())
     points = np.concatenate([points, middle])
-    pieces = _with_middles(pieces, bad, vertex, len(points))
+    polylines = _with_middles(polylines, bad, vertex, len(points))
     halves = np.concatenate([np.stack([bad[:, 0], vertex], 1), np.stack([vertex, bad[:, 1]], 1)])
     passed, blocked = mesh.force(np.ascontiguousarray(halves))
     is_noded &= mesh.fixed_splits == splits_before and not (len(passed) or len(blocked))
-    return points, pieces, is_noded
+    return points, polylines, is_noded
 
 
 def _split_points(
@@ -167,41 +168,28 @@ def _require_between(
 
 
 def _with_middles(
-    pieces: Pieces, split: NDArray[np.int32], vertex: NDArray[np.int32], n: int
-) -> Pieces:
-    """Put a vertex between the ends of some segments, wherever a piece takes them."""
+    polylines: Polylines, split: NDArray[np.int32], vertex: NDArray[np.int32], n: int
+) -> Polylines:
+    """Put a vertex between the ends of some segments, wherever a line takes them."""
     keys = edge_keys(split, n)
     order = np.argsort(keys)
-    steps, _ = pieces.steps()
-    own = edge_keys(steps, n)
+    own = edge_keys(polylines.segments(), n)
     slot = np.minimum(np.searchsorted(keys, own, sorter=order), len(keys) - 1)
     hit = np.flatnonzero(keys[order[slot]] == own)
-    is_start = np.ones(len(pieces.vertices), np.bool_)
-    is_start[pieces.offsets[1:] - 1] = False
-    after = np.flatnonzero(is_start)[hit] + 1
-    added = np.searchsorted(after, pieces.offsets, side="left")
-    added[-1] = len(after)
-    return Pieces(
-        np.insert(pieces.vertices, after, vertex[order[slot[hit]]]).astype(np.int32),
-        (pieces.offsets + added).astype(np.int32),
-        pieces.lines,
-    )
+    return polylines.insert(polylines.starts()[hit], vertex[order[slot[hit]]])
 
 
 def _node_again(
     mesh: _kernel.Mesh,
     points: NDArray[np.float64],
-    pieces: Pieces,
+    polylines: Polylines,
     priorities: NDArray[Any],
     threads: int,
-) -> tuple[_kernel.Mesh, NDArray[np.float64], Pieces]:
-    """Node the pieces exactly, and triangulate the vertices anew, numbered without gaps."""
+) -> tuple[_kernel.Mesh, NDArray[np.float64], Polylines]:
+    """Node the lines exactly, and triangulate the vertices anew, numbered without gaps."""
     alive = mesh.alive()
     number_of = (np.cumsum(alive) - 1).astype(np.int32)
-    points, pieces = points[alive], pieces.renumbered(number_of)
-    chains = Chains(pieces.vertices, pieces.offsets, points[pieces.vertices, 2])
-    points, chains = node_again(
-        points, chains, priorities[pieces.lines], pieces.lines, threads=threads
-    )
-    pieces = Pieces(chains.vertices, chains.offsets, pieces.lines)
-    return mesh_of(points, pieces, threads=threads), points, pieces
+    points, polylines = points[alive], polylines.renumber(number_of)
+    priority = priorities[polylines.lines]
+    points, polylines = node_again(points, polylines, priority, threads=threads)
+    return mesh_of(points, polylines, threads=threads), points, polylines

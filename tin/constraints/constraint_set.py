@@ -11,7 +11,9 @@ from ...errors import LinesError
 from .. import _kernel
 from ..validation.options import shown
 from .breaklines import Breakline, LineKind, Water, as_ring
+from .constraint_table import ConstraintTable
 from .polygons import rings_of
+from .polylines import offsets_of, owners_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -37,7 +39,7 @@ BELOW_ALL = -np.inf
 
 
 class LineSet(NamedTuple):
-    """Lines as ragged arrays; line ``i`` has the rows ``offsets[i]:offsets[i + 1]``.
+    """Lines as ragged arrays of places; line ``i`` has the rows ``offsets[i]:offsets[i + 1]``.
 
     Attributes
     ----------
@@ -45,20 +47,34 @@ class LineSet(NamedTuple):
     heights : (k,) float64 array
         NaN for draped lines.
     offsets : (l + 1,) int64 array
-    kinds : tuple of LineKind
-    sources : (l,) int32 array
-        The caller's number within breaklines, boundary, holes or water.
-    priorities : (l,) float64 array
-    names : tuple of str
+    table : ConstraintTable
+        What the lines are.
     """
 
     xy: NDArray[np.float64]
     heights: NDArray[np.float64]
     offsets: NDArray[np.int64]
-    kinds: tuple[LineKind, ...]
-    sources: NDArray[np.int32]
-    priorities: NDArray[np.float64]
-    names: tuple[str, ...]
+    table: ConstraintTable
+
+    @property
+    def kinds(self) -> tuple[LineKind, ...]:
+        """The kind of each line."""
+        return self.table.kinds
+
+    @property
+    def sources(self) -> NDArray[np.int32]:
+        """The caller's number of each line."""
+        return self.table.sources
+
+    @property
+    def priorities(self) -> NDArray[np.float64]:
+        """The priority of each line."""
+        return self.table.priorities
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The name of each line."""
+        return self.table.names
 
     @property
     def is_draped(self) -> NDArray[np.bool_]:
@@ -68,14 +84,11 @@ class LineSet(NamedTuple):
     @property
     def line_of(self) -> NDArray[np.int64]:
         """The line of each row."""
-        return np.repeat(np.arange(len(self.kinds)), np.diff(self.offsets))
+        return owners_of(self.offsets)
 
     def label(self, line: int) -> str:
         """Return what a line is called in sentences."""
-        kind = self.kinds[line]
-        noun = "breakline" if kind in ("hard", "soft") else kind
-        name = f" '{self.names[line]}'" if self.names[line] else ""
-        return f"{noun} {int(self.sources[line])}{name}"
+        return self.table.label(line)
 
     def labels(self) -> list[str]:
         """Return what the lines are called."""
@@ -89,30 +102,21 @@ class LineSet(NamedTuple):
     @classmethod
     def joined(cls, sets: Sequence[LineSet]) -> LineSet:
         """Return the lines of several sets as one."""
-        counts = np.concatenate([np.diff(part.offsets) for part in sets])
         return cls(
             np.concatenate([part.xy for part in sets]),
             np.concatenate([part.heights for part in sets]),
-            np.concatenate([[0], np.cumsum(counts)]),
-            tuple(kind for part in sets for kind in part.kinds),
-            np.concatenate([part.sources for part in sets]),
-            np.concatenate([part.priorities for part in sets]),
-            tuple(name for part in sets for name in part.names),
+            offsets_of(np.concatenate([np.diff(part.offsets) for part in sets])),
+            ConstraintTable.joined([part.table for part in sets]),
         )
 
     def chosen(self, is_chosen: NDArray[np.bool_]) -> LineSet:
         """Return some of the lines."""
-        rows = np.repeat(is_chosen, np.diff(self.offsets))
-        counts = np.diff(self.offsets)[is_chosen]
-        numbers = np.flatnonzero(is_chosen)
+        rows = is_chosen[self.line_of]
         return LineSet(
             self.xy[rows],
             self.heights[rows],
-            np.concatenate([[0], np.cumsum(counts)]),
-            tuple(self.kinds[i] for i in numbers),
-            self.sources[is_chosen],
-            self.priorities[is_chosen],
-            tuple(self.names[i] for i in numbers),
+            offsets_of(np.diff(self.offsets)[is_chosen]),
+            self.table.take(np.flatnonzero(is_chosen)),
         )
 
 
@@ -120,10 +124,7 @@ _NONE = LineSet(
     np.empty((0, 2)),
     np.empty(0),
     np.zeros(1, np.int64),
-    (),
-    np.empty(0, np.int32),
-    np.empty(0),
-    (),
+    ConstraintTable((), np.empty(0, np.int32), np.empty(0), ()),
 )
 
 
@@ -160,15 +161,11 @@ def _arrays_alone(breaklines: Sequence[Any]) -> LineSet | None:
         return None
     coords += 0.0  # no -0.0: equal coordinates are equal bytes
     n = len(breaklines)
-    kind: LineKind = "hard"
     return LineSet(
         np.ascontiguousarray(coords[:, :2]),
         coords[:, 2],
-        offsets=np.concatenate([[0], np.cumsum([len(c) for c in breaklines], dtype=np.int64)]),
-        kinds=(kind,) * n,
-        sources=np.arange(n, dtype=np.int32),
-        priorities=np.zeros(n),
-        names=("",) * n,
+        offsets_of(map(len, breaklines)),
+        ConstraintTable.of_kind("hard", np.arange(n, dtype=np.int32), np.zeros(n)),
     )
 
 
@@ -200,9 +197,7 @@ def _gathered(
     kinds: list[LineKind] = [line.kind for line in lines]
     kinds += [kind for kind, _ in rings]
     kinds += ["water" for _ in ponds]
-    return LineSet(
-        *_stacked(coords),
-        offsets=np.concatenate([[0], np.cumsum([len(c) for c in coords], dtype=np.int64)]),
+    table = ConstraintTable(
         kinds=tuple(kinds),
         sources=_sources(kinds),
         priorities=np.array(
@@ -215,6 +210,7 @@ def _gathered(
         ),
         names=(*(line.name for line in lines), *("" for _ in rings), *(p.name for p in ponds)),
     )
+    return LineSet(*_stacked(coords), offsets_of(map(len, coords)), table)
 
 
 def gather_extent(extent: Sequence[ArrayLike], n_boundary: int) -> LineSet:
@@ -223,15 +219,12 @@ def gather_extent(extent: Sequence[ArrayLike], n_boundary: int) -> LineSet:
     n = len(rings)
     if n == 0:
         return _NONE
-    kind: LineKind = "boundary"
-    return LineSet(
-        *_stacked(rings),
-        offsets=np.concatenate([[0], np.cumsum([len(ring) for ring in rings], dtype=np.int64)]),
-        kinds=(kind,) * n,
-        sources=np.arange(n_boundary, n_boundary + n, dtype=np.int32),
-        priorities=np.where([ring.shape[1] == 2 for ring in rings], BELOW_ALL, 0.0),
-        names=("",) * n,
+    table = ConstraintTable.of_kind(
+        "boundary",
+        np.arange(n_boundary, n_boundary + n, dtype=np.int32),
+        np.where([ring.shape[1] == 2 for ring in rings], BELOW_ALL, 0.0),
     )
+    return LineSet(*_stacked(rings), offsets_of(map(len, rings)), table)
 
 
 def gather_rings(rings: Sequence[Any], what: str) -> list[NDArray[np.float64]]:

@@ -9,8 +9,9 @@ import numpy as np
 from .. import _kernel, topology
 from .clipping import Surface, in_rings
 from .constraint_set import BELOW_ALL, LineSet
-from .noding import Chains, node
-from .polylines import Pieces
+from .constraint_table import ConstraintTable
+from .noding import node
+from .polylines import Polylines, offsets_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -45,8 +46,8 @@ def drape(surface: Surface, lines: LineSet, *, threads: int) -> Draped:
     hull = topology.boundary_rings(surface.triangles, surface.neighbors)[0]
     ring = np.ascontiguousarray(surface.points[hull, :2])
     if (in_rings(lines.xy, [ring]) >= 0).all():
-        xy, pieces = _vertices_once(lines)
-        whole = _with_heights(surface, xy, np.full(len(xy), np.nan), pieces, lines)
+        xy, polylines = _vertices_once(lines)
+        whole = _with_heights(surface, xy, np.full(len(xy), np.nan), polylines, lines)
         return Draped(whole, _no_lines(lines), 0)
     return _cut_at_rim(surface, hull, lines, threads=threads)
 
@@ -55,15 +56,10 @@ def _no_lines(lines: LineSet) -> LineSet:
     return lines.chosen(np.zeros(len(lines.kinds), np.bool_))
 
 
-def _vertices_once(lines: LineSet) -> tuple[NDArray[np.float64], Pieces]:
-    """Return the places of the lines' vertices, and the lines as chains of these."""
+def _vertices_once(lines: LineSet) -> tuple[NDArray[np.float64], Polylines]:
+    """Return the places of the lines' vertices, and the lines through these."""
     xy, vertex_of = np.unique(lines.xy, axis=0, return_inverse=True)
-    pieces = Pieces(
-        vertex_of.reshape(-1).astype(np.int32),
-        lines.offsets.astype(np.int32),
-        np.arange(len(lines.kinds), dtype=np.int32),
-    )
-    return xy, pieces
+    return xy, Polylines.whole(vertex_of.reshape(-1).astype(np.int32), lines.offsets)
 
 
 def _cut_at_rim(
@@ -73,31 +69,27 @@ def _cut_at_rim(
     both = np.concatenate([lines.xy, rim[:, :2]])
     xy, inverse = np.unique(both, axis=0, return_inverse=True)
     vertex_of: NDArray[np.int32] = inverse.reshape(-1).astype(np.int32)
-    chains = Chains(
-        vertex_of,
-        np.append(lines.offsets, len(both)).astype(np.int32),
+    noded = node(
+        xy,
+        Polylines.whole(vertex_of, np.append(lines.offsets, len(both))),
         np.concatenate([lines.heights, rim[:, 2]]),
+        np.append(lines.priorities, 0.0),
+        threads=threads,
     )
-    noded = node(xy, chains, np.append(lines.priorities, 0.0), threads=threads)
-    offsets = noded.chains.offsets
-    rim_chain = noded.chains.vertices[offsets[-2] :]
-    rim_heights = noded.chains.heights[offsets[-2] :]
+    vertices, offsets = noded.polylines.vertices, noded.polylines.offsets
+    rim_chain = vertices[offsets[-2] :]
+    rim_heights = noded.elevations[offsets[-2] :]
     places = np.concatenate([xy, noded.new_points[:, :2]])
     side = in_rings(places, [rim[:-1, :2]])
     side[rim_chain] = 0
-    pieces = Pieces(
-        noded.chains.vertices[: offsets[-2]],
-        offsets[:-1],
-        np.arange(len(lines.kinds), dtype=np.int32),
-    )
-    steps, line_of = pieces.steps()
-    is_inside = np.asarray((side[steps] >= 0).all(axis=1), np.bool_)
+    cut = Polylines.whole(vertices[: offsets[-2]], offsets[:-1])
+    is_inside = np.asarray((side[cut.segments()] >= 0).all(axis=1), np.bool_)
     heights = np.full(len(places), np.nan)
     heights[rim_chain] = rim_heights
     return Draped(
-        _with_heights(surface, places, heights, pieces.kept(is_inside), lines),
+        _with_heights(surface, places, heights, cut.keep(is_inside), lines),
         _split_rim(places, rim_chain, rim_heights, vertex_of[len(lines.xy) :]),
-        len(np.unique(line_of[~is_inside])),
+        len(np.unique(cut.segment_lines()[~is_inside])),
     )
 
 
@@ -120,18 +112,11 @@ def _split_rim(
     is_split |= _hidden_edges(places[chain], corner, is_split)
     begins, ends = corner[:-1][is_split], corner[1:][is_split] + 1
     counts = ends - begins
-    total = int(counts.sum())
-    offsets = np.concatenate([[0], np.cumsum(counts)])
-    rows = np.arange(total) + np.repeat(begins - offsets[:-1], counts)
-    return LineSet(
-        places[chain[rows]],
-        heights[rows],
-        offsets,
-        tuple("boundary" for _ in counts),
-        np.full(len(counts), -1, np.int32),
-        np.full(len(counts), BELOW_ALL),
-        ("",) * len(counts),
-    )
+    offsets = offsets_of(counts)
+    rows = np.arange(offsets[-1]) + np.repeat(begins - offsets[:-1], counts)
+    sources = np.full(len(counts), -1, np.int32)
+    table = ConstraintTable.of_kind("boundary", sources, np.full(len(counts), BELOW_ALL))
+    return LineSet(places[chain[rows]], heights[rows], offsets, table)
 
 
 def _hidden_edges(
@@ -162,26 +147,20 @@ def _with_heights(
     surface: Surface,
     places: NDArray[np.float64],
     heights: NDArray[np.float64],
-    pieces: Pieces,
+    polylines: Polylines,
     lines: LineSet,
 ) -> LineSet:
-    """Give pieces a vertex at every edge of the surface, and every vertex its height."""
-    xy, owner = _along_surface(surface, places, pieces)
+    """Give polylines a vertex at every edge of the surface, and every vertex its height."""
+    xy, owner = _along_surface(surface, places, polylines)
     z = _kernel.Locator(surface.points, surface.triangles, surface.neighbors).interpolate(xy)
     known = _heights_at(xy, places, heights)
     z = np.where(np.isnan(known), z, known)
     keep = ~np.isnan(z)
     xy, z, owner = xy[keep], z[keep], owner[keep]
-    counts = np.bincount(owner, minlength=len(pieces.lines))
-    return LineSet(
-        xy,
-        z,
-        np.concatenate([[0], np.cumsum(counts)]),
-        tuple(lines.kinds[i] for i in pieces.lines),
-        lines.sources[pieces.lines],
-        np.full(len(pieces.lines), BELOW_ALL),
-        tuple(lines.names[i] for i in pieces.lines),
-    )
+    counts = np.bincount(owner, minlength=len(polylines))
+    table = lines.table.take(polylines.lines)
+    table = table._replace(priorities=np.full(len(polylines), BELOW_ALL))
+    return LineSet(xy, z, offsets_of(counts), table)
 
 
 def _heights_at(
@@ -201,9 +180,9 @@ def _heights_at(
 
 
 def _along_surface(
-    surface: Surface, places: NDArray[np.float64], pieces: Pieces
+    surface: Surface, places: NDArray[np.float64], polylines: Polylines
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Return the places along every piece, with those where it crosses edges, and the piece."""
+    """Return the places along every polyline, with those where it crosses edges, and its number."""
     mesh = _kernel.Mesh(
         surface.points,
         surface.triangles,
@@ -211,9 +190,9 @@ def _along_surface(
         np.ones(surface.triangles.shape, np.bool_),  # so that every edge is there to be crossed
     )
     slots = np.full(len(places), -1, np.int32)
-    used = np.unique(pieces.vertices)
+    used = np.unique(polylines.vertices)
     slots[used] = mesh.insert(np.ascontiguousarray(places[used]))
-    steps, _ = pieces.steps()
+    steps = polylines.segments()
     n_own = len(surface.points)
     crossed = mesh.crossed(np.ascontiguousarray(slots[steps]), True).reshape(-1, 3)
     xy = np.concatenate([surface.points[:, :2], np.empty((mesh.slots - n_own, 2))])
@@ -223,11 +202,9 @@ def _along_surface(
     meets = _kernel.intersections(
         np.ascontiguousarray(xy), np.ascontiguousarray(segments), pairs.astype(np.int32)
     )
-    piece_of = np.repeat(np.arange(len(pieces.lines)), np.diff(pieces.offsets))
-    start_row = np.flatnonzero(~np.isin(np.arange(len(pieces.vertices)), pieces.offsets[1:] - 1))
-    after = start_row[crossed[:, 0]] + 1
-    along = np.insert(places[pieces.vertices], after, meets, axis=0)
-    owner = np.insert(piece_of, after, piece_of[start_row[crossed[:, 0]]])
+    at = polylines.starts()[crossed[:, 0]]
+    along = np.insert(places[polylines.vertices], at + 1, meets, axis=0)
+    owner = np.insert(polylines.owners, at + 1, polylines.owners[at])
     is_new = np.ones(len(along), np.bool_)
     is_new[1:] = (np.diff(along, axis=0) != 0).any(axis=1) | (np.diff(owner) != 0)
     return along[is_new], owner[is_new]

@@ -27,52 +27,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ...errors import LinesError
-from .splitting import Splitting, Walk
+from ..report import Crossings
+from .polylines import Polylines
+from .splitting import Splitting, drop_repeats
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Chains", "Crossings", "Noded", "Touches", "node", "node_again", "untouched"]
-
-
-class Chains(NamedTuple):
-    """Lines as chains of vertices: line ``i`` is ``offsets[i]:offsets[i + 1]``.
-
-    Attributes
-    ----------
-    vertices : (k,) int32 array
-    offsets : (l + 1,) int32 array
-    heights : (k,) float64 array
-        The line's own height at each of its vertices; NaN if it has none.
-    """
-
-    vertices: NDArray[np.int32]
-    offsets: NDArray[np.int32]
-    heights: NDArray[np.float64]
-
-
-class Crossings(NamedTuple):
-    """Where lines cross: a row for the line whose height counts and each other line there.
-
-    Attributes
-    ----------
-    vertex : (c,) int32 array
-    xy : (c, 2) float64 array
-    line_a, line_b : (c,) int32 arrays
-        The line whose height counts, and another one; the same if it crosses itself.
-    height_a, height_b : (c,) float64 arrays
-        The height of each line itself; NaN if it has none.
-    height : (c,) float64 array
-        The one taken: that of ``line_a``.
-    """
-
-    vertex: NDArray[np.int32]
-    xy: NDArray[np.float64]
-    line_a: NDArray[np.int32]
-    line_b: NDArray[np.int32]
-    height_a: NDArray[np.float64]
-    height_b: NDArray[np.float64]
-    height: NDArray[np.float64]
+__all__ = ["Noded", "Touches", "node", "node_again", "untouched"]
 
 
 class Touches(NamedTuple):
@@ -98,34 +60,37 @@ class Noded(NamedTuple):
     ----------
     new_points : (s, 3) float64 array
         Vertices made where lines cross, by x, then y; numbered behind the given ones.
-    chains : Chains
+    polylines : Polylines
+    elevations : (k,) float64 array
+        The line's own elevation at each of its vertices; NaN if it has none.
     crossings : Crossings
+        A row for the line whose elevation counts, which is named first, and each other line
+        there; the same line twice if it crosses itself.
     touches : Touches
     """
 
     new_points: NDArray[np.float64]
-    chains: Chains
+    polylines: Polylines
+    elevations: NDArray[np.float64]
     crossings: Crossings
     touches: Touches
 
 
-def untouched(chains: Chains) -> Noded:
+def untouched(polylines: Polylines, elevations: NDArray[np.float64]) -> Noded:
     """Return lines that meet nowhere, as :func:`node` would; repeated vertices are dropped."""
-    walk = Walk.along(chains.vertices, chains.offsets, chains.heights)
-    offsets = np.searchsorted(walk.line, np.arange(len(chains.offsets))).astype(np.int32)
     none = np.empty(0, np.int32)
-    nothing = np.empty(0)
     return Noded(
         np.empty((0, 3)),
-        Chains(walk.vertices, offsets, walk.heights),
-        Crossings(none, np.empty((0, 2)), none, none, nothing, nothing, nothing),
-        Touches(none, none, nothing),
+        *drop_repeats(polylines, elevations),
+        Crossings.none(),
+        Touches(none, none, np.empty(0)),
     )
 
 
 def node(
     xy: NDArray[np.float64],
-    chains: Chains,
+    polylines: Polylines,
+    elevations: NDArray[np.float64],
     priority: NDArray[Any],
     *,
     snap: float = 0.0,
@@ -139,8 +104,10 @@ def node(
     ----------
     xy : (n, 2) float64 array, CRS units
         Distinct places, those of the lines and all others that they may pass.
-    chains : Chains
+    polylines : Polylines
         Repeated vertices in a row count once.
+    elevations : (k,) float64 array
+        The line's own elevation at each of its vertices; NaN if it has none.
     priority : (l,) int array
         At a vertex made by crossing lines, the height of the line with the highest priority is
         taken, among equals of the first line, and of one line its lowest; of a line without
@@ -171,59 +138,49 @@ def node(
     Examples
     --------
     >>> xy = np.array([[0.0, 0.0], [4.0, 4.0], [0.0, 4.0], [4.0, 0.0]])
-    >>> chains = Chains(
-    ...     np.array([0, 1, 2, 3], np.int32),
-    ...     np.array([0, 2, 4], np.int32),
-    ...     np.array([5.0, 7.0, 8.0, 8.0]),
-    ... )
-    >>> noded = node(xy, chains, np.zeros(2))
-    >>> noded.new_points.tolist(), noded.chains.vertices.tolist()
+    >>> polylines = Polylines.of_chains([[0, 1], [2, 3]])
+    >>> noded = node(xy, polylines, np.array([5.0, 7.0, 8.0, 8.0]), np.zeros(2))
+    >>> noded.new_points.tolist(), noded.polylines.vertices.tolist()
     ([[2.0, 2.0, 6.0]], [0, 4, 1, 2, 4, 3])
     """
     if crossing not in ("split", "error"):
         raise LinesError(f"Invalid crossing '{crossing}': one of split, error.")
-    heights = np.asarray(chains.heights, np.float64)
-    walk = Walk.along(np.asarray(chains.vertices, np.int32), chains.offsets, heights)
-    work = Splitting(np.ascontiguousarray(xy, np.float64), walk, float(snap), threads)
+    work = Splitting(
+        np.ascontiguousarray(xy, np.float64), polylines, elevations, float(snap), threads
+    )
     work.split_everywhere(
         None if crossing == "split" else lambda pairs: _crossing_error(work, pairs, names)
     )
-    return _account(work, np.arange(len(chains.offsets) - 1), np.asarray(priority))
+    return _account(work, np.asarray(priority))
 
 
 def node_again(
-    points: NDArray[np.float64],
-    chains: Chains,
-    priority: NDArray[Any],
-    lines: NDArray[np.int32],
-    *,
-    threads: int,
-) -> tuple[NDArray[np.float64], Chains]:
-    """Node parts of lines that were bent by a rounding; a vertex keeps its height.
+    points: NDArray[np.float64], polylines: Polylines, priority: NDArray[Any], *, threads: int
+) -> tuple[NDArray[np.float64], Polylines]:
+    """Node parts of lines that were bent by a rounding; a vertex keeps its elevation.
 
     Parameters
     ----------
     points : (n, 3) float64 array
         Distinct places.
-    chains : Chains
+    polylines : Polylines
+        Of several parts of one line, too, the lowest elevation counts, for their order is the
+        direction of the line.
     priority : (l,) int array
-        As for :func:`node`.
-    lines : (l,) int32 array
-        The line that each chain is a part of: of its parts, too, the lowest height counts, for
-        their order is the direction of the line.
+        Of each polyline, as for :func:`node`.
     threads : int
 
     Returns
     -------
     points : (n + s, 3) float64 array
         With the vertices made where lines cross.
-    chains : Chains
+    polylines : Polylines
     """
-    walk = Walk.along(chains.vertices, chains.offsets, chains.heights)
-    work = Splitting(np.ascontiguousarray(points[:, :2]), walk, 0.0, threads)
+    xy = np.ascontiguousarray(points[:, :2])
+    work = Splitting(xy, polylines, points[polylines.vertices, 2], 0.0, threads)
     work.split_everywhere()
-    noded = _account(work, lines, priority)
-    return np.concatenate([points, noded.new_points]), noded.chains
+    noded = _account(work, priority)
+    return np.concatenate([points, noded.new_points]), noded.polylines
 
 
 # -------------------------------------------------------------------- account
@@ -237,72 +194,63 @@ class _Visits(NamedTuple):
     height: NDArray[np.float64]
 
 
-def _visits(walk: Walk, at: NDArray[np.int64]) -> _Visits:
+def _visits(work: Splitting, at: NDArray[np.int64]) -> _Visits:
     """Gather what passes the positions ``at``, in order of vertex, line and position."""
-    same_before = np.append(False, walk.line[1:] == walk.line[:-1])
-    before = np.where(same_before[at], walk.vertices[at - 1], -1)
+    vertices, line = work.polylines.vertices, work.polylines.owners.astype(np.int32)
+    same_before = np.append(False, line[1:] == line[:-1])
+    before = np.where(same_before[at], vertices[at - 1], -1)
     same_after = np.append(same_before[1:], False)
-    after = np.where(same_after[at], walk.vertices[(at + 1) % len(walk.vertices)], -1)
-    keys = (
-        np.maximum(before, after),
-        np.minimum(before, after),
-        walk.line[at],
-        walk.vertices[at],
-    )
-    order = np.lexsort((walk.heights[at], *keys))  # of the same steps the lowest way counts
+    after = np.where(same_after[at], vertices[(at + 1) % len(vertices)], -1)
+    keys = (np.maximum(before, after), np.minimum(before, after), line[at], vertices[at])
+    order = np.lexsort((work.elevations[at], *keys))  # of the same steps the lowest way counts
     is_first = np.ones(len(at), np.bool_)
     is_first[1:] = np.any([np.diff(key[order]) != 0 for key in keys], axis=0)
     at = np.sort(at[order[is_first]])
-    at = at[np.lexsort((walk.line[at], walk.vertices[at]))]
-    return _Visits(walk.vertices[at], walk.line[at], walk.heights[at])
+    at = at[np.lexsort((line[at], vertices[at]))]
+    return _Visits(vertices[at], line[at], work.elevations[at])
 
 
-def _account(work: Splitting, part_of: NDArray[Any], priority: NDArray[Any]) -> Noded:
-    """Return everything, the new points numbered by place; chain ``i`` is of ``part_of[i]``."""
+def _account(work: Splitting, priority: NDArray[Any]) -> Noded:
+    """Return everything, the new points numbered by place."""
     n_given = work.n_given
     made = work.xy[n_given:]
     order = np.lexsort((made[:, 1], made[:, 0]))
     number = np.arange(len(work.xy), dtype=np.int32)
     number[n_given + order] = np.arange(n_given, len(work.xy), dtype=np.int32)
-    walk = work.walk._replace(vertices=number[work.walk.vertices])
-    xy = np.concatenate([work.xy[:n_given], made[order]])
-    is_crossing = np.zeros(len(xy), np.bool_)
+    work.polylines = work.polylines.renumber(number)
+    work.xy = np.concatenate([work.xy[:n_given], made[order]])
+    is_crossing = np.zeros(len(work.xy), np.bool_)
     is_crossing[number[work.crossing_vertices]] = True
-    crossings, winners = _crossings(walk, xy, is_crossing, priority, part_of)
+    crossings, winners = _crossings(work, is_crossing, priority)
     is_new = winners.vertex >= n_given
-    passed = ~walk.is_given & (walk.vertices < n_given)
-    offsets = np.searchsorted(walk.line, np.arange(len(part_of) + 1)).astype(np.int32)
+    passed = ~work.is_given & (work.polylines.vertices < n_given)
     return Noded(
         np.column_stack([made[order], winners.height[is_new]]),
-        Chains(walk.vertices, offsets, walk.heights),
+        work.polylines,
+        work.elevations,
         crossings,
-        Touches(*_visits(walk, np.flatnonzero(passed))),
+        Touches(*_visits(work, np.flatnonzero(passed))),
     )
 
 
 def _crossings(
-    walk: Walk,
-    xy: NDArray[np.float64],
-    is_crossing: NDArray[np.bool_],
-    priority: NDArray[Any],
-    part_of: NDArray[Any],
+    work: Splitting, is_crossing: NDArray[np.bool_], priority: NDArray[Any]
 ) -> tuple[Crossings, _Visits]:
     """Return the crossings, and whose height counts at each vertex, by vertex."""
-    vertex, line, height = _visits(walk, np.flatnonzero(is_crossing[walk.vertices]))
-    rank = np.where(
-        np.isneginf(priority[line]), 0, part_of[line]
-    )  # parts of draped lines have no order
+    at = np.flatnonzero(is_crossing[work.polylines.vertices])
+    vertex, line, height = _visits(work, at)
+    part_of = work.polylines.lines[line]
+    rank = np.where(np.isneginf(priority[line]), 0, part_of)  # draped lines have no order
     best = np.lexsort((line, height, rank, -priority[line], np.isnan(height), vertex))
     vertex, line, height = vertex[best], line[best], height[best]
     is_winner = np.ones(len(vertex), np.bool_)
     is_winner[1:] = np.diff(vertex) != 0
     winner = np.flatnonzero(is_winner)[np.cumsum(is_winner) - 1]
     other = np.flatnonzero(~is_winner)
-    of = winner[other]
+    pair = np.stack([winner[other], other], axis=1)
     crossings = Crossings(
-        vertex[other], xy[vertex[other]], line[of], line[other], height[of], height[other],
-        height[of],
-    )  # fmt: skip
+        vertex[other], work.xy[vertex[other]], line[pair], height[pair], height[winner[other]]
+    )
     return crossings, _Visits(vertex[is_winner], line[is_winner], height[is_winner])
 
 
@@ -312,11 +260,11 @@ def _crossing_error(
     """Name the first crossing: by lines, then by place."""
     places = work.places_of(pairs)
     step = np.sort(work.steps.first_step[pairs], axis=1)
-    lines = work.walk.line[work.steps.start[step]]
+    lines = work.polylines.owners[work.steps.start[step]]
     first = np.lexsort((places[:, 1], places[:, 0], lines[:, 1], lines[:, 0]))[0]
     a, b = lines[first].tolist()
     x, y = places[first].tolist()
-    heights = work.heights_at(step[first], places[[first, first]]).tolist()
+    heights = work.elevations_at(step[first], places[[first, first]]).tolist()
     label_a, label_b = (f"line {i}" if names is None else names[i] for i in (a, b))
     whom = "itself" if a == b else label_b
     return LinesError(

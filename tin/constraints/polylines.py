@@ -1,71 +1,144 @@
-"""Pieces: the parts of lines that are left, as chains of vertices."""
+"""Polylines: many chains of vertices in one ragged array."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
     from numpy.typing import NDArray
 
-__all__ = ["Pieces"]
+__all__ = ["Polylines", "offsets_of", "owners_of"]
 
 
-class Pieces(NamedTuple):
-    """Parts of lines: chains of vertices, and the line that each comes from."""
+def offsets_of(lengths: Iterable[int] | NDArray[Any]) -> NDArray[np.int64]:
+    """Return where each part of a ragged array begins, and the last one ends."""
+    lengths = lengths if isinstance(lengths, np.ndarray) else list(lengths)
+    return np.concatenate([[0], np.cumsum(lengths, dtype=np.int64)])
+
+
+def owners_of(offsets: NDArray[Any]) -> NDArray[np.int64]:
+    """Return for each row of a ragged array the part that it belongs to."""
+    return np.repeat(np.arange(len(offsets) - 1), np.diff(offsets))
+
+
+@dataclass(frozen=True, eq=False)
+class Polylines:
+    """Chains of vertices; polyline ``i`` is ``vertices[offsets[i]:offsets[i + 1]]``.
+
+    Positions count the entries of ``vertices``. A segment goes from one position to the next one::
+
+        offsets    0           3        5
+        vertices   4   7   2   9   4
+        segments   4-7 7-2     9-4
+
+    Attributes
+    ----------
+    vertices : (k,) int32 array
+    offsets : (l + 1,) int32 array
+    lines : (l,) int32 array
+        The line that each polyline is, or is a part of: its place in a table of constraints.
+    """
 
     vertices: NDArray[np.int32]
     offsets: NDArray[np.int32]
     lines: NDArray[np.int32]
 
     @classmethod
-    def none(cls) -> Pieces:
-        """Return no pieces."""
-        empty = np.empty(0, np.int32)
-        return cls(empty, np.zeros(1, np.int32), empty)
+    def whole(cls, vertices: NDArray[np.int32], offsets: NDArray[Any]) -> Polylines:
+        """Return one polyline for each line."""
+        lines = np.arange(len(offsets) - 1, dtype=np.int32)
+        return cls(vertices, offsets.astype(np.int32), lines)
 
     @classmethod
-    def of_chains(cls, chains: Sequence[Sequence[int]], lines: Sequence[int]) -> Pieces:
-        """Return chains of vertices, each of the line named."""
-        counts = [len(chain) for chain in chains]
-        return cls(
-            np.array([v for chain in chains for v in chain], np.int32),
-            np.concatenate([[0], np.cumsum(counts)]).astype(np.int32),
-            np.array(lines, np.int32),
-        )
+    def of_chains(cls, chains: Sequence[Sequence[int]]) -> Polylines:
+        """Return one polyline for each chain of vertices."""
+        vertices = np.array([v for chain in chains for v in chain], np.int32)
+        return cls.whole(vertices, offsets_of(map(len, chains)))
 
-    def steps(self) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
-        """Return every step, as (s, 2) vertex pairs, and the line of each."""
+    def __len__(self) -> int:
+        return len(self.lines)
+
+    def __iter__(self) -> Iterator[NDArray[np.int32]]:
+        return (self.vertices[start:end] for start, end in pairwise(self.offsets.tolist()))
+
+    # ---------------------------------------------------------------- questions
+
+    @property
+    def lengths(self) -> NDArray[np.int32]:
+        """Number of vertices of each polyline."""
+        return np.diff(self.offsets)
+
+    @property
+    def owners(self) -> NDArray[np.int64]:
+        """The polyline of each position."""
+        return owners_of(self.offsets)
+
+    def starts(self) -> NDArray[np.int64]:
+        """Return the position from which each segment goes."""
         is_start = np.ones(len(self.vertices), np.bool_)
         is_start[self.offsets[1:] - 1] = False
-        start = np.flatnonzero(is_start)
-        piece = np.repeat(np.arange(len(self.lines)), np.diff(self.offsets))
-        return (
-            np.stack([self.vertices[start], self.vertices[start + 1]], axis=1),
-            self.lines[piece[start]],
-        )
+        return np.flatnonzero(is_start)
 
-    def kept(self, keep: NDArray[np.bool_]) -> Pieces:
-        """Return the pieces that are left when only some steps are kept."""
-        if keep.all() and (np.diff(self.offsets) > 1).all():
+    def segments(self) -> NDArray[np.int32]:
+        """Return the ends of every segment, (s, 2) vertex pairs in order."""
+        start = self.starts()
+        return np.stack([self.vertices[start], self.vertices[start + 1]], axis=1)
+
+    def segment_owners(self) -> NDArray[np.int64]:
+        """Return the polyline of each segment."""
+        return np.repeat(np.arange(len(self)), np.maximum(self.lengths - 1, 0))
+
+    def segment_lines(self) -> NDArray[np.int32]:
+        """Return the line of each segment."""
+        return self.lines[self.segment_owners()]
+
+    # ------------------------------------------------------------------ changes
+
+    def keep(self, is_kept: NDArray[np.bool_]) -> Polylines:
+        """Return what is left when only some segments are kept: parts of lines.
+
+        ::
+
+            vertices   a---b---c   d---e      the segment b-c goes
+            goes_on    1   0   -   1   -      a segment is kept behind the position
+            comes      -   1   0   -   1      ... and in front of it
+        """
+        if is_kept.all() and (self.lengths > 1).all():
             return self
-        is_start = np.ones(len(self.vertices), np.bool_)
-        is_start[self.offsets[1:] - 1] = False
         goes_on = np.zeros(len(self.vertices), np.bool_)
-        goes_on[np.flatnonzero(is_start)[keep]] = True
+        goes_on[self.starts()[is_kept]] = True
         comes = np.concatenate([[False], goes_on[:-1]])
         is_used = goes_on | comes
-        piece = np.repeat(np.arange(len(self.lines)), np.diff(self.offsets))
         begins = np.flatnonzero((goes_on & ~comes)[is_used])
-        return Pieces(
+        return Polylines(
             self.vertices[is_used],
             np.append(begins, is_used.sum()).astype(np.int32),
-            self.lines[piece[is_used]][begins],
+            self.lines[self.owners[is_used]][begins],
         )
 
-    def renumbered(self, number: NDArray[np.int32]) -> Pieces:
-        """Return the same pieces with vertex ``v`` called ``number[v]``."""
-        return self._replace(vertices=number[self.vertices])
+    def renumber(self, number_of: NDArray[np.int32]) -> Polylines:
+        """Return the same polylines with vertex ``v`` called ``number_of[v]``."""
+        return replace(self, vertices=number_of[self.vertices])
+
+    def insert(self, at: NDArray[np.int64], vertices: NDArray[np.int32]) -> Polylines:
+        """Put vertices behind the positions ``at``, from which segments go, ascending."""
+        added = np.searchsorted(at, self.offsets)
+        return replace(
+            self,
+            vertices=np.insert(self.vertices, at + 1, vertices),
+            offsets=(self.offsets + added).astype(np.int32),
+        )
+
+    def choose_positions(self, is_chosen: NDArray[np.bool_]) -> Polylines:
+        """Return the polylines through some of their positions only."""
+        return replace(
+            self,
+            vertices=self.vertices[is_chosen],
+            offsets=offsets_of(is_chosen)[self.offsets].astype(np.int32),
+        )

@@ -1,39 +1,29 @@
-"""Model: vertices, the steps of lines, and what of the hull is the surface.
+"""Planar straight-line graph (PSLG): vertices, segments of lines, what of the hull is the surface.
 
-A model is what a TIN is a function of once rows are merged and lines cut where they meet. The
+It is what a TIN is a function of once rows are merged and lines cut where they meet. The
 triangulation of its vertices with its steps is unique, so any way to it gives the same TIN.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...errors import LinesError
-from .. import _kernel, topology
-from .breaklines import LineKind, Lines
-from .clipping import BOUNDARY, RIM, RingSteps, Surface, clipped, edge_keys, is_inside, trimmed
-from .polylines import Pieces
+from .. import _kernel
+from ..topology import edge_keys, edges_at
+from .breaklines import Lines
+from .clipping import BOUNDARY, RIM, RingSteps, Surface, clipped, is_inside, trimmed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Clip", "LineInfo", "Model", "force", "lines_in", "mesh_of", "mesh_of_growth"]
+    from .constraint_table import ConstraintTable
+    from .polylines import Polylines
 
-
-class LineInfo(NamedTuple):
-    """What a line is; source -1 is an edge of the rim that was cut.
-
-    Of a ring, ``group`` tells whose side it changes, as in :mod:`.clipping`.
-    """
-
-    kind: LineKind
-    source: int = -1
-    name: str = ""
-    priority: float = 0.0
-    group: int = BOUNDARY
+__all__ = ["Clip", "Pslg", "force", "lines_in", "mesh_of", "mesh_of_growth"]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -94,24 +84,27 @@ def _require_triangles(keep: NDArray[np.bool_], sentence: str) -> None:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Model:
-    """Vertices and lines of the whole hull.
+class Pslg:
+    """Planar straight-line graph: vertices and segments of lines of the whole hull.
 
     Attributes
     ----------
     points : (v, 3) float64 array
         Distinct places.
-    pieces : Pieces
-        Chains of vertices; ``pieces.lines`` are places in ``infos``.
-    infos : tuple of LineInfo
+    polylines : Polylines
+    constraints : ConstraintTable
+        What their lines are; source -1 is an edge of the rim that was cut.
+    groups : (l,) int64 array
+        Of each line whose side it changes, if it is a ring, as in :mod:`.clipping`.
     clip : Clip
     vertex_of : (n,) int32 array
         The vertex of each row of the caller's points, -1 for none.
     """
 
     points: NDArray[np.float64]
-    pieces: Pieces
-    infos: tuple[LineInfo, ...]
+    polylines: Polylines
+    constraints: ConstraintTable
+    groups: NDArray[np.int64]
     clip: Clip
     vertex_of: NDArray[np.int32]
 
@@ -119,13 +112,19 @@ class Model:
         """Cut the triangulated hull; return the surface and the new number of each vertex."""
         if self.clip.is_none:
             return hull, np.arange(len(hull.points), dtype=np.int32)
-        steps, line_of = self.pieces.steps()
-        group = np.array([_group_of(info) for info in self.infos], np.int64)[line_of]
+        group = self._ring_groups()[self.polylines.segment_lines()]
         is_ring = group >= (RIM if self.clip.has_rim else BOUNDARY)
-        keep = self.clip.keeps(hull, RingSteps(steps[is_ring], group[is_ring]))
+        rings = RingSteps(self.polylines.segments()[is_ring], group[is_ring])
+        keep = self.clip.keeps(hull, rings)
         if keep.all():
             return hull, np.arange(len(hull.points), dtype=np.int32)
         return clipped(hull, keep)
+
+    def _ring_groups(self) -> NDArray[np.int64]:
+        """Return the group of each line, that of the rim too; below all if it is no ring."""
+        table = self.constraints
+        groups = np.where(table.sources < 0, RIM, self.groups)
+        return np.where(table.is_kind("boundary", "hole"), groups, RIM - 1)
 
     def loses_vertices_at_rim(self, hull: Surface) -> bool:
         """Tell whether vertices lie beyond the rim, which is so only if a rounding bent it.
@@ -142,16 +141,10 @@ class Model:
         return bool(((within < 0) & (everywhere >= 0)).any())
 
 
-def _group_of(info: LineInfo) -> int:
-    if info.kind not in ("boundary", "hole"):
-        return RIM - 1
-    return RIM if info.source < 0 else info.group
-
-
-def mesh_of(points: NDArray[np.float64], pieces: Pieces, *, threads: int) -> _kernel.Mesh:
+def mesh_of(points: NDArray[np.float64], polylines: Polylines, *, threads: int) -> _kernel.Mesh:
     """Triangulate distinct points, and fix the steps of lines that are cut where they meet."""
     mesh = mesh_of_growth(points, _kernel.grow(points, threads=threads))
-    force(mesh, pieces)
+    force(mesh, polylines)
     return mesh
 
 
@@ -160,42 +153,39 @@ def mesh_of_growth(points: NDArray[np.float64], growth: _kernel.Growth) -> _kern
     return _kernel.Mesh(points, growth.triangles, growth.neighbors)
 
 
-def force(mesh: _kernel.Mesh, pieces: Pieces) -> None:
-    """Fix all steps."""
-    steps, _ = pieces.steps()
-    passed, blocked = mesh.force(steps)
+def force(mesh: _kernel.Mesh, polylines: Polylines) -> None:
+    """Fix all segments."""
+    passed, blocked = mesh.force(polylines.segments())
     if len(passed) or len(blocked):
         raise AssertionError("lines were not cut at all places where they meet")
 
 
 def lines_in(
-    pieces: Pieces,
-    infos: tuple[LineInfo, ...],
+    polylines: Polylines,
+    constraints: ConstraintTable,
     number_of: NDArray[np.int32],
     surface: Surface,
     *,
     is_whole: bool,
 ) -> Lines:
     """Return the lines as far as they are edges of the surface, by its numbers of vertices."""
-    is_given = np.array([info.source >= 0 for info in infos], np.bool_)
-    steps, line_of = pieces.steps()
-    is_edge = is_given[line_of]
+    is_edge = (constraints.sources >= 0)[polylines.segment_lines()]
     if not is_whole:
-        is_edge &= _are_edges(number_of[steps], surface)
-    left = pieces.kept(is_edge)
+        is_edge &= _are_edges(number_of[polylines.segments()], surface)
+    left = polylines.keep(is_edge).renumber(number_of)
+    table = constraints.take(left.lines)
     return Lines(
-        vertices=number_of[left.vertices],
+        vertices=left.vertices,
         offsets=left.offsets,
-        kinds=tuple(infos[i].kind for i in left.lines),
-        sources=np.array([infos[i].source for i in left.lines], np.int32),
-        names=tuple(infos[i].name for i in left.lines),
+        kinds=table.kinds,
+        sources=table.sources,
+        names=table.names,
     )
 
 
 def _are_edges(steps: NDArray[np.int32], surface: Surface) -> NDArray[np.bool_]:
     n = len(surface.points)
-    triangle, corner = np.nonzero(surface.constrained)
-    edges = np.stack(topology.ends(surface.triangles, triangle, corner), axis=1)
+    edges = edges_at(surface.triangles, surface.constrained)
     is_edge = np.asarray((steps >= 0).all(axis=1), np.bool_)
-    is_edge[is_edge] = np.isin(edge_keys(steps[is_edge], n), edge_keys(edges.astype(np.int32), n))
+    is_edge[is_edge] = np.isin(edge_keys(steps[is_edge], n), edge_keys(edges, n))
     return is_edge

@@ -9,17 +9,18 @@ import numpy as np
 
 from ...errors import LinesError
 from .. import _kernel
+from .polylines import Polylines
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Splitting", "Steps", "Walk", "interpolate_linearly", "is_before"]
+__all__ = ["Splitting", "Steps", "drop_repeats", "interpolate_linearly", "is_before"]
 
 MOST_ROUNDS = 1000  # cascades of roundings end after a few
 
 
 class Steps(NamedTuple):
-    """Steps of all chains, and the distinct segments that they walk.
+    """Steps of all polylines, and the distinct segments that they walk.
 
     Attributes
     ----------
@@ -45,10 +46,10 @@ class Steps(NamedTuple):
     first_step: NDArray[np.int64]
 
     @classmethod
-    def along(cls, walk: Walk, xy: NDArray[np.float64]) -> Steps:
-        """Take the chains apart."""
-        start = np.flatnonzero(walk.line[:-1] == walk.line[1:])
-        a, b = (walk.vertices[at].astype(np.int64) for at in (start, start + 1))
+    def along(cls, polylines: Polylines, xy: NDArray[np.float64]) -> Steps:
+        """Take the polylines apart."""
+        start = polylines.starts()
+        a, b = (polylines.vertices[at].astype(np.int64) for at in (start, start + 1))
         keys, first_step, segment = np.unique(
             _key_of(np.minimum(a, b), np.maximum(a, b)), return_index=True, return_inverse=True
         )
@@ -58,70 +59,34 @@ class Steps(NamedTuple):
         return cls(start, segment, ends[segment, 0] != a, keys, ends, first_step)
 
 
-class Walk(NamedTuple):
-    """All chains one after the other.
+def drop_repeats(
+    polylines: Polylines, elevations: NDArray[np.float64]
+) -> tuple[Polylines, NDArray[np.float64]]:
+    """Count repeated vertices in a row once, by their lowest elevation.
 
-    Attributes
-    ----------
-    vertices : (k,) int32 array
-    heights : (k,) float64 array
-        The line's own.
-    line : (k,) int32 array
-    is_given : (k,) bool array
-        Whether the line names the vertex itself.
+    Where a polyline closes, too: snapping may have merged the first vertex with the next ones.
     """
-
-    vertices: NDArray[np.int32]
-    heights: NDArray[np.float64]
-    line: NDArray[np.int32]
-    is_given: NDArray[np.bool_]
-
-    @classmethod
-    def along(
-        cls,
-        vertices: NDArray[np.int32],
-        offsets: NDArray[np.int32],
-        heights: NDArray[np.float64],
-    ) -> Walk:
-        """Join the chains; repeated vertices in a row count once, by their lowest height.
-
-        Where a chain closes, too: snapping may have merged the first vertex with the next ones.
-        """
-        line = np.repeat(np.arange(len(offsets) - 1, dtype=np.int32), np.diff(offsets))
-        moves = np.ones(len(line), np.bool_)
-        moves[1:] = (np.diff(vertices) != 0) | (np.diff(line) != 0)
-        given = np.ones(int(moves.sum()), np.bool_)
-        starts = np.flatnonzero(moves)
-        lowest = np.minimum.reduceat(heights, starts) if len(starts) else heights
-        ends = _closing_ends(vertices, offsets, heights)
-        run = np.searchsorted(starts, ends, side="right") - 1
-        lowest[run] = lowest[run].min(axis=0)
-        return cls(vertices[moves], lowest, line[moves], given)
-
-    def with_vertices(
-        self, at: NDArray[np.int64], vertices: NDArray[np.int32], heights: NDArray[np.float64]
-    ) -> Walk:
-        """Insert vertices behind the positions ``at``, which ascend."""
-        behind = at + 1
-        return Walk(
-            np.insert(self.vertices, behind, vertices),
-            np.insert(self.heights, behind, heights),
-            np.insert(self.line, behind, self.line[at]),
-            np.insert(self.is_given, behind, values=False),
-        )
+    moves = np.ones(len(polylines.vertices), np.bool_)
+    moves[1:] = np.diff(polylines.vertices) != 0
+    first = polylines.offsets[:-1][polylines.lengths > 0]
+    moves[first] = True
+    starts = np.flatnonzero(moves)
+    lowest = np.minimum.reduceat(elevations, starts) if len(starts) else elevations
+    ends = _closing_ends(polylines, elevations)
+    run = np.searchsorted(starts, ends, side="right") - 1
+    lowest[run] = lowest[run].min(axis=0)
+    return polylines.choose_positions(moves), lowest
 
 
-def _closing_ends(
-    vertices: NDArray[np.int32], offsets: NDArray[np.int32], heights: NDArray[np.float64]
-) -> NDArray[np.int64]:
-    """Return where chains begin and end that close with one height, (2, c).
+def _closing_ends(polylines: Polylines, elevations: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Return where polylines begin and end that close with one elevation, (2, c).
 
-    Others keep both of their heights: a ramp may end above its begin.
+    Others keep both of their elevations: a ramp may end above its begin.
     """
-    has_vertices = np.diff(offsets) > 0
-    ends = np.stack([offsets[:-1], offsets[1:] - 1])[:, has_vertices].astype(np.int64)
-    closes = (vertices[ends[0]] == vertices[ends[1]]) & (heights[ends[0]] == heights[ends[1]])
-    return ends[:, closes]
+    offsets = polylines.offsets.astype(np.int64)
+    ends = np.stack([offsets[:-1], offsets[1:] - 1])[:, polylines.lengths > 0]
+    (a, b), (z_a, z_b) = polylines.vertices[ends], elevations[ends]
+    return ends[:, (a == b) & (z_a == z_b)]
 
 
 def _key_of(first: NDArray[Any], second: NDArray[Any]) -> NDArray[np.int64]:
@@ -144,13 +109,34 @@ def _is_in(keys: NDArray[np.int64], known: NDArray[np.int64]) -> NDArray[np.bool
 
 
 class Splitting:
-    """Lines in the making, and what is known about them."""
+    """Polylines that are being split, and what is known about them.
 
-    def __init__(self, xy: NDArray[np.float64], walk: Walk, snap: float, threads: int) -> None:
+    Attributes
+    ----------
+    xy : (n, 2) float64 array
+        Places of the vertices: of the given ones, then of those made where lines cross.
+    polylines : Polylines
+    elevations : (k,) float64 array
+        The line's own at each position; NaN if it has none.
+    is_given : (k,) bool array
+        Whether the line names the vertex itself.
+    steps : Steps
+    crossing_vertices : (c,) int32 array
+    """
+
+    def __init__(
+        self,
+        xy: NDArray[np.float64],
+        polylines: Polylines,
+        elevations: NDArray[np.float64],
+        snap: float,
+        threads: int,
+    ) -> None:
         self.xy = xy
         self.n_given = len(self.xy)
-        self.walk = walk
-        self.steps = Steps.along(walk, self.xy)
+        self.polylines, self.elevations = drop_repeats(polylines, elevations)
+        self.is_given = np.ones(len(self.elevations), np.bool_)
+        self.steps = Steps.along(self.polylines, self.xy)
         self.crossing_vertices = np.empty(0, np.int32)
         self._snap = snap
         self._threads = threads
@@ -311,8 +297,11 @@ class Splitting:
         on = steps.segment[step]
         row = first[on] + np.where(steps.is_backward[step], count[on] - 1 - nth, nth)
         at, vertex = steps.start[step], vertex[row]
-        self.walk = self.walk.with_vertices(at, vertex, self.heights_at(step, self.xy[vertex]))
-        self.steps = Steps.along(self.walk, self.xy)
+        elevations = self.elevations_at(step, self.xy[vertex])
+        self.elevations = np.insert(self.elevations, at + 1, elevations)
+        self.is_given = np.insert(self.is_given, at + 1, values=False)
+        self.polylines = self.polylines.insert(at, vertex)
+        self.steps = Steps.along(self.polylines, self.xy)
 
     def _in_order(
         self, segment: NDArray[np.int64], vertex: NDArray[np.int32], *, bends: bool
@@ -335,15 +324,15 @@ class Splitting:
         first, second = self.steps.ends[segment].T
         return self.xy[first], self.xy[second], self.xy[vertex]
 
-    def heights_at(
+    def elevations_at(
         self, step: NDArray[np.int64], places: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """Interpolate the heights of steps at places on them; the same both ways."""
+        """Interpolate the elevations of steps at places on them; the same both ways."""
         start, backward = self.steps.start[step], self.steps.is_backward[step]
         first, second = self.steps.ends[self.steps.segment[step]].T
         a, b = self.xy[first], self.xy[second]
-        z_a = self.walk.heights[start + backward]
-        z_b = self.walk.heights[start + ~backward]
+        z_a = self.elevations[start + backward]
+        z_b = self.elevations[start + ~backward]
         return interpolate_linearly(z_a, z_b, _projection(a, b, places) / _square(a, b))
 
 

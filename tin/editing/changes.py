@@ -1,4 +1,4 @@
-"""Inputs: what an edited TIN is the build of, and how an edit changes it.
+"""Numbered inputs: what an edited TIN is the build of, and how an edit changes it.
 
 Rows have numbers that never change: those given come first, those inserted follow, and a removed
 one leaves a gap. Lines are called by their place in the set.
@@ -15,12 +15,13 @@ import numpy as np
 from ...errors import LinesError
 from ..constraints.breaklines import Breakline
 from ..constraints.constraint_set import ABOVE_ALL, LineSet, gather_lines
+from ..constraints.polylines import offsets_of
 from ..types import Frozen
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from ..building.inputs import Recipe
+    from ..building.inputs import BuildInputs
 
 __all__ = [
     "NO_ROWS",
@@ -29,8 +30,8 @@ __all__ = [
     "Change",
     "DropLines",
     "DropVertices",
-    "Inputs",
     "LineChange",
+    "NumberedInputs",
     "PutVertices",
     "SetElevations",
     "count_breaklines",
@@ -72,12 +73,12 @@ class Change(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Inputs(Frozen):
-    """The recipe of an edited TIN.
+class NumberedInputs(Frozen):
+    """The inputs of an edited TIN, whose rows keep their numbers.
 
     Attributes
     ----------
-    recipe : Recipe
+    build_inputs : BuildInputs
         Of the rows and lines that are there.
     rows : (n,) int64 array
         The lasting number of each of its rows, ascending.
@@ -85,17 +86,17 @@ class Inputs(Frozen):
         Rows that are or were there.
     """
 
-    recipe: Recipe
+    build_inputs: BuildInputs
     rows: NDArray[np.int64]
     n_rows: int
 
     @classmethod
-    def of(cls, recipe: Recipe) -> Inputs:
+    def of(cls, build_inputs: BuildInputs) -> NumberedInputs:
         """Return the inputs of a TIN before its first edit."""
-        count = len(recipe.points)
-        return cls(recipe=recipe, rows=np.arange(count), n_rows=count)
+        count = len(build_inputs.points)
+        return cls(build_inputs=build_inputs, rows=np.arange(count), n_rows=count)
 
-    def after(self, changes: Sequence[Change]) -> Inputs:
+    def after(self, changes: Sequence[Change]) -> NumberedInputs:
         """Return the inputs after some changes.
 
         Raises
@@ -107,11 +108,11 @@ class Inputs(Frozen):
             return self
         n_rows = self.n_rows + sum(len(change.added) for change in changes)
         points, is_there = np.empty((n_rows, 3)), np.zeros(n_rows, np.bool_)
-        points[self.rows], is_there[self.rows] = self.recipe.points, True
+        points[self.rows], is_there[self.rows] = self.build_inputs.points, True
         is_masked = np.zeros(n_rows, np.bool_)
-        if self.recipe.is_masked is not None:
-            is_masked[self.rows] = self.recipe.is_masked
-        end, lines = self.n_rows, self.recipe.lines
+        if self.build_inputs.is_masked is not None:
+            is_masked[self.rows] = self.build_inputs.is_masked
+        end, lines = self.n_rows, self.build_inputs.lines
         for change in changes:
             points[end : end + len(change.added)] = change.added
             is_there[end : end + len(change.added)] = True
@@ -121,10 +122,12 @@ class Inputs(Frozen):
             for line_change in change.lines:
                 lines = line_change.apply(lines)
         masked = is_masked[is_there] if is_masked[is_there].any() else None
-        recipe = replace(self.recipe, points=points[is_there], is_masked=masked)
-        if lines is not self.recipe.lines:
-            recipe = recipe.with_lines(lines)
-        return Inputs(recipe=recipe, rows=np.flatnonzero(is_there), n_rows=n_rows)
+        build_inputs = replace(self.build_inputs, points=points[is_there], is_masked=masked)
+        if lines is not self.build_inputs.lines:
+            build_inputs = build_inputs.with_lines(lines)
+        return NumberedInputs(
+            build_inputs=build_inputs, rows=np.flatnonzero(is_there), n_rows=n_rows
+        )
 
 
 # ------------------------------------------------------------------------- lines
@@ -222,7 +225,7 @@ class DropVertices(NamedTuple):
         return lines._replace(
             xy=lines.xy[rows],
             heights=lines.heights[rows],
-            offsets=np.concatenate([[0], np.cumsum(counts)]),
+            offsets=offsets_of(counts),
         )
 
 
@@ -232,4 +235,4 @@ def _numbered(breaklines: Iterable[LineSet], others: LineSet) -> LineSet:
     sources = together.sources.copy()
     count = len(together.kinds) - len(others.kinds)
     sources[:count] = np.arange(count, dtype=np.int32)
-    return together._replace(sources=sources)
+    return together._replace(table=together.table._replace(sources=sources))

@@ -17,9 +17,10 @@ if TYPE_CHECKING:
 
     from ..building.constrained import CrossingPolicy
     from ..building.duplicates import DuplicatePolicy
-    from ..building.inputs import Recipe
+    from ..building.inputs import BuildInputs
     from ..constraints.breaklines import BreaklineKind
-    from .session import Edit, Session
+    from .history import Edit
+    from .session import Session
     from .version import Version
 
 __all__ = ["Editable"]
@@ -36,13 +37,13 @@ class Editable:
     Parameters
     ----------
     version : Version
-    inputs : Recipe or None
+    inputs : BuildInputs or None
         What it was built from; None for one of existing triangles.
     """
 
     __slots__ = ("_inputs", "_lock", "_session", "_version")
 
-    def __init__(self, version: Version, inputs: Recipe | None) -> None:
+    def __init__(self, version: Version, inputs: BuildInputs | None) -> None:
         self._version: Version | None = version
         self._session: Session | None = None
         self._inputs = inputs
@@ -170,7 +171,7 @@ class Editable:
         """
         self._edit("move", vertex=vertex, point=point)
 
-    def set_z(self, vertices: ArrayLike, z: ArrayLike) -> None:
+    def set_elevation(self, vertices: ArrayLike, z: ArrayLike) -> None:
         """Give vertices other elevations, in place.
 
         All rows, and the given vertices of lines there, get it; at a vertex that the build made
@@ -189,6 +190,8 @@ class Editable:
             If something else decides there, such as the level of water. Then nothing has changed.
         """
         self._edit("set_z", vertices=vertices, z=z)
+
+    set_z = set_elevation
 
     def flip(self, a: int, b: int) -> None:
         """Swap the diagonal of the two triangles at an edge, in place.

@@ -14,9 +14,11 @@ from ...errors import PointsError, TinsmithError
 from .. import _kernel, topology
 from ..building.assembly import assemble
 from ..building.constrained import LineOptions
-from ..building.inputs import Recipe
-from ..constraints.clipping import Surface, edge_keys
+from ..building.inputs import BuildInputs
+from ..constraints.clipping import Surface
 from ..constraints.constraint_set import BELOW_ALL, LineSet
+from ..constraints.constraint_table import ConstraintTable
+from ..constraints.polylines import offsets_of
 from ..triangulation import Triangulation
 from ..validation.points import as_points
 from ..validation.threads import thread_count
@@ -26,13 +28,13 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ..constraints.breaklines import LineKind
-    from .changes import Inputs
+    from .changes import NumberedInputs
     from .version import Version
 
-__all__ = ["recipe_of_triangles", "state_of_triangles"]
+__all__ = ["inputs_of_triangles", "state_of_triangles"]
 
 
-def recipe_of_triangles(version: Version) -> Recipe:
+def inputs_of_triangles(version: Version) -> BuildInputs:
     """Return what existing triangles are built of.
 
     Raises
@@ -52,7 +54,7 @@ def recipe_of_triangles(version: Version) -> Recipe:
     sources = np.concatenate(
         [np.arange(n_breaklines), np.zeros(len(ordered) - n_breaklines), np.full(len(rim), -1)]
     )
-    return Recipe(
+    return BuildInputs(
         points=as_points(surface.points),
         is_masked=None,
         lines=_line_set(
@@ -88,15 +90,12 @@ def _line_set(
     sources: NDArray[np.int32],
 ) -> LineSet:
     vertices = np.concatenate([*chains, np.empty(0, np.int32)])
-    offsets = np.concatenate([[0], np.cumsum([len(chain) for chain in chains], dtype=np.int64)])
+    priorities = np.where(sources < 0, BELOW_ALL, 0.0)
     return LineSet(
         np.ascontiguousarray(points[vertices, :2]),
         points[vertices, 2],
-        offsets,
-        tuple(kinds),
-        sources,
-        np.where(sources < 0, BELOW_ALL, 0.0),
-        tuple(names),
+        offsets_of(map(len, chains)),
+        ConstraintTable(tuple(kinds), sources, priorities, tuple(names)),
     )
 
 
@@ -106,11 +105,9 @@ def _edges_of_no_line(version: Version) -> list[NDArray[np.int32]]:
     flagged = surface.constrained
     if len(lines):
         flagged = flagged & (surface.neighbors > topology.NO_NEIGHBOR)
-    triangle, corner = np.nonzero(flagged)
-    start, end = topology.ends(surface.triangles, triangle, corner)
-    edges = np.unique(np.sort(np.stack([start, end], axis=1), axis=1), axis=0).astype(np.int32)
+    edges = np.unique(np.sort(topology.edges_at(surface.triangles, flagged), axis=1), axis=0)
     n = len(surface.points)
-    is_step = np.isin(edge_keys(edges, n), edge_keys(lines.steps(), n))
+    is_step = np.isin(topology.edge_keys(edges, n), topology.edge_keys(lines.steps(), n))
     return list(edges[~is_step])
 
 
@@ -123,7 +120,7 @@ def _is_whole(surface: Triangulation) -> bool:
     return bool((_kernel.orientation(a, b, c) >= 0).all())
 
 
-def state_of_triangles(version: Version, inputs: Inputs) -> State:
+def state_of_triangles(version: Version, inputs: NumberedInputs) -> State:
     """Build existing triangles from their inputs.
 
     Raises
@@ -133,7 +130,7 @@ def state_of_triangles(version: Version, inputs: Inputs) -> State:
     """
     given = version.triangulation
     try:
-        built = assemble(inputs.recipe)
+        built = assemble(inputs.build_inputs)
     except TinsmithError:
         raise _unfit() from None
     if not _have_same_triangles(built.surface, given):

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from ..building.inputs import Recipe
+    from ..building.inputs import BuildInputs
     from .state import State
 
 __all__ = ["FLIP", "are_uncut", "flipped_edge", "require_inner"]
@@ -57,12 +57,12 @@ def flipped_edge(points: NDArray[np.float64]) -> Breakline:
     return Breakline(points[2:], kind="soft", name=FLIP)
 
 
-def are_uncut(state: State, recipe: Recipe) -> bool:
+def are_uncut(state: State, build_inputs: BuildInputs) -> bool:
     """Tell whether all lines are breaklines, and run through their given vertices and no others.
 
     Then a build fixes them as they are given, and a further one that meets none changes nothing.
     """
-    given, lines = recipe.lines, state.lines
+    given, lines = build_inputs.lines, state.lines
     if not all(kind in ("hard", "soft") for kind in given.kinds):
         return False
     if not np.array_equal(given.offsets, lines.offsets):

@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ..building.duplicates import DuplicatePolicy
-    from ..building.inputs import Recipe
-    from .changes import Inputs
+    from ..building.inputs import BuildInputs
+    from .changes import NumberedInputs
 
 __all__ = ["Editor", "NotLocal", "is_local", "merged_elevation", "occupied"]
 
@@ -46,13 +46,13 @@ class NotLocal(Exception):
     """The edit reaches a line, so that all must be built anew. Nothing has changed."""
 
 
-def is_local(recipe: Recipe) -> bool:
+def is_local(build_inputs: BuildInputs) -> bool:
     """Tell whether an edit away from the lines changes the triangulation there alone."""
-    lines, options = recipe.lines, recipe.options
-    has_all_rows = not recipe.erase and recipe.is_masked is None
-    is_simple = options.snap == 0.0 and has_all_rows and not recipe.conforming
+    lines, options = build_inputs.lines, build_inputs.options
+    has_all_rows = not build_inputs.erase and build_inputs.is_masked is None
+    is_simple = options.snap == 0.0 and has_all_rows and not build_inputs.conforming
     has_own_heights = bool(np.isfinite(lines.priorities).all() and np.isfinite(lines.heights).all())
-    return is_simple and has_own_heights and not recipe.is_clipped
+    return is_simple and has_own_heights and not build_inputs.is_clipped
 
 
 class _Counts(NamedTuple):
@@ -74,17 +74,17 @@ class Editor:
     ----------
     state : State
         Neither clipped nor with vertices that have been left out.
-    inputs : Inputs
+    inputs : NumberedInputs
         Of the state.
     """
 
-    def __init__(self, state: State, inputs: Inputs) -> None:
+    def __init__(self, state: State, inputs: NumberedInputs) -> None:
         surface = state.triangulation
         self._vertex_of_row, self._lines = state.vertex_of_row, state.lines
         self._report = state.report
         self._n_first_rows = inputs.n_rows
-        self._is_strict = inputs.recipe.options.duplicates == "error"
-        self._threads = inputs.recipe.options.threads
+        self._is_strict = inputs.build_inputs.options.duplicates == "error"
+        self._threads = inputs.build_inputs.options.threads
         self._live = LiveMesh(
             surface.points, surface.triangles, surface.neighbors, surface.constrained
         )
@@ -98,7 +98,7 @@ class Editor:
         self._n_new = 0
         self._least = _ROUNDINGS * float(np.spacing(np.abs(surface.points[:, :2]).max()))
         self._has_lines = self._n_rows < self._n_base or len(state.lines) > 0
-        self._has_uncut_lines = are_uncut(state, inputs.recipe)
+        self._has_uncut_lines = are_uncut(state, inputs.build_inputs)
 
     # ------------------------------------------------------------------ numbers
 
@@ -391,7 +391,7 @@ class Editor:
 
     # ------------------------------------------------------------------- result
 
-    def state(self, inputs: Inputs) -> State:
+    def state(self, inputs: NumberedInputs) -> State:
         """Return what the edits led to; ``inputs`` are those of now."""
         alive = self._live.alive()
         number = self._reordered(np.cumsum(alive, dtype=np.int32) - np.int32(1))
@@ -408,7 +408,7 @@ class Editor:
         report = report.with_removed(vertex_of_row).with_merges(
             _merges(vertex_of_row, self._counts(), inputs)
         )
-        report = report.with_lines(inputs.recipe.lines.labels())
+        report = report.with_lines(inputs.build_inputs.lines.labels())
         return State(surface, vertex_of_row, lines, report, None)
 
     def _triangulation(self, alive: NDArray[np.bool_]) -> Triangulation:
@@ -447,7 +447,9 @@ def _rows_by_vertex(vertex_of_row: NDArray[np.int32]) -> _RowsByVertex:
     return _RowsByVertex(count, order, offsets)
 
 
-def _merges(vertex_of_row: NDArray[np.int32], counts: _Counts, inputs: Inputs) -> Report | None:
+def _merges(
+    vertex_of_row: NDArray[np.int32], counts: _Counts, inputs: NumberedInputs
+) -> Report | None:
     """Return the account of rows that share a vertex, as a build gives it; None for none."""
     rows = np.flatnonzero(vertex_of_row >= 0)
     if len(rows) == counts.rows + counts.inserted:
@@ -455,8 +457,10 @@ def _merges(vertex_of_row: NDArray[np.int32], counts: _Counts, inputs: Inputs) -
     vertex = vertex_of_row[rows]
     first = np.empty(counts.rows + counts.inserted, np.int32)
     first[vertex[::-1]] = np.arange(len(rows), dtype=np.int32)[::-1]
-    recipe = inputs.recipe
-    account = merge_rows(recipe.points, first[vertex], recipe.options.duplicates).account
+    build_inputs = inputs.build_inputs
+    account = merge_rows(
+        build_inputs.points, first[vertex], build_inputs.options.duplicates
+    ).account
     return Report(
         n_rows=0,
         n_vertices=0,

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from ..constraints.breaklines import Lines
     from ..report import Report
-    from .changes import Inputs
+    from .changes import NumberedInputs
 
 __all__ = ["LineVertices", "State", "build_state"]
 
@@ -53,10 +53,10 @@ class State(NamedTuple):
         own = np.ascontiguousarray(self.triangulation.points[:, :2])
         return _kernel.vertices_at(own, np.ascontiguousarray(xy))
 
-    def line_vertices(self, inputs: Inputs) -> NDArray[np.int32]:
+    def line_vertices(self, inputs: NumberedInputs) -> NDArray[np.int32]:
         """Return the vertex of each given vertex of the lines, -1 for none."""
-        given = inputs.recipe.lines.xy
-        if not len(given) or inputs.recipe.options.snap == 0.0:
+        given = inputs.build_inputs.lines.xy
+        if not len(given) or inputs.build_inputs.options.snap == 0.0:
             return self.vertices_at(given) if len(given) else np.empty(0, np.int32)
         snapped = self.snapped or build_state(inputs).snapped
         if snapped is None or not len(snapped.xy):
@@ -66,7 +66,7 @@ class State(NamedTuple):
         return np.where(found < 0, np.int32(-1), snapped.vertices[first[found]])
 
 
-def build_state(inputs: Inputs) -> State:
+def build_state(inputs: NumberedInputs) -> State:
     """Build the TIN of some inputs.
 
     Raises
@@ -74,13 +74,13 @@ def build_state(inputs: Inputs) -> State:
     PointsError, LinesError
         As :func:`tinsmith.triangulate`.
     """
-    return _state_of(assemble(inputs.recipe), inputs)
+    return _state_of(assemble(inputs.build_inputs), inputs)
 
 
-def _state_of(built: Built, inputs: Inputs) -> State:
+def _state_of(built: Built, inputs: NumberedInputs) -> State:
     vertex_of_row = np.full(inputs.n_rows, -1, np.int32)
     vertex_of_row[inputs.rows] = built.vertex_of
-    is_snapped = inputs.recipe.options.snap > 0
+    is_snapped = inputs.build_inputs.options.snap > 0
     return State(
         Triangulation(**built.surface._asdict()),
         vertex_of_row,

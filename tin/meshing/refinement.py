@@ -15,9 +15,10 @@ import numpy as np
 from ..._sentences import counted
 from ...errors import PointsError
 from .. import _kernel, topology
-from ..constraints.clipping import Surface, edge_keys
-from ..constraints.polylines import Pieces
-from ..constraints.pslg import Clip, LineInfo, Model, lines_in, mesh_of_growth
+from ..constraints.clipping import BOUNDARY, Surface
+from ..constraints.constraint_table import ConstraintTable
+from ..constraints.polylines import Polylines
+from ..constraints.pslg import Clip, Pslg, lines_in, mesh_of_growth
 from ..surface import TIN
 from ..validation.options import is_finite_number, is_whole_number, require_tin, shown
 from ..validation.threads import thread_count
@@ -26,6 +27,7 @@ from .unmended import find_unmended
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from ..constraints.breaklines import LineKind
     from ..report import Report
 
 __all__ = ["LARGEST_MIN_ANGLE", "refine"]
@@ -322,23 +324,23 @@ def _build(tin: TIN, found: _Found, threads: int) -> TIN | set[tuple[int, int]]:
     that are in the way of each other when they are split.
     """
     points = np.concatenate([tin.points, _lifted(tin, found.xy, found.splits)])
-    model = _model(tin, points, found.splits)
+    pslg = _gather_pslg(tin, points, found.splits)
     growth = _kernel.grow(points, threads=threads)
     if growth.kept_row is not None:
         return found.splits.segments_of(np.flatnonzero(growth.kept_row != np.arange(len(points))))
     mesh = mesh_of_growth(points, growth)
-    in_the_way = _force(mesh, model, found.splits)
+    in_the_way = _force(mesh, pslg, found.splits)
     if in_the_way is not None:
         return in_the_way
-    surface, number_of = model.surface(Surface(points, *mesh.arrays(threads)))
+    surface, number_of = pslg.surface(Surface(points, *mesh.arrays(threads)))
     if len(surface.points) != len(points) or len(surface.triangles) != found.n_triangles:
         return set()
-    return _refined(tin, model, surface, number_of, found)
+    return _refined(tin, pslg, surface, number_of, found)
 
 
-def _force(mesh: _kernel.Mesh, model: Model, splits: _Splits) -> set[tuple[int, int]] | None:
+def _force(mesh: _kernel.Mesh, pslg: Pslg, splits: _Splits) -> set[tuple[int, int]] | None:
     """Fix all steps of lines; return the segments in the way of that, None if there are none."""
-    steps, _ = model.pieces.steps()
+    steps = pslg.polylines.segments()
     passed, blocked = mesh.force(steps)
     if not (len(passed) or len(blocked)):
         return None
@@ -359,7 +361,7 @@ def _more_kept_whole(
 
 
 def _refined(
-    tin: TIN, model: Model, surface: Surface, number_of: NDArray[np.int32], found: _Found
+    tin: TIN, pslg: Pslg, surface: Surface, number_of: NDArray[np.int32], found: _Found
 ) -> TIN:
     return TIN(
         points=surface.points,
@@ -368,7 +370,7 @@ def _refined(
         constrained=surface.constrained,
         vertex_of=tin.vertex_of,
         report=_report(tin, surface, found),
-        lines=lines_in(model.pieces, model.infos, number_of, surface, is_whole=False),
+        lines=lines_in(pslg.polylines, pslg.constraints, number_of, surface, is_whole=False),
         crs=tin.crs,
         elevation_unit=tin.elevation_unit,
     )
@@ -393,38 +395,51 @@ def _note(n_new: int, n_on_segments: int) -> str:
     )
 
 
-def _model(tin: TIN, points: NDArray[np.float64], splits: _Splits) -> Model:
+def _gather_pslg(tin: TIN, points: NDArray[np.float64], splits: _Splits) -> Pslg:
     rings = [[*ring.tolist(), int(ring[0])] for ring in tin.rings]
     chains = [chain.tolist() for chain in tin.lines.chains()]
-    infos = [
-        LineInfo(*info)
-        for info in zip(tin.lines.kinds, tin.lines.sources.tolist(), tin.lines.names, strict=True)
-    ]
     nameless = _without_line(tin)
-    n_breaklines = sum(info.kind in ("hard", "soft") for info in infos)
     chains += nameless
-    infos += [LineInfo("soft", n_breaklines + number) for number in range(len(nameless))]
     if "boundary" not in tin.lines.kinds:
         chains += rings
-        infos += [LineInfo("boundary", number) for number in range(len(rings))]
     chains += rings
-    infos += [LineInfo("boundary") for _ in rings]
-    split = [splits.along(chain) for chain in chains]
-    return Model(
+    return Pslg(
         points=points,
-        pieces=Pieces.of_chains(split, range(len(split))),
-        infos=tuple(infos),
+        polylines=Polylines.of_chains([splits.along(chain) for chain in chains]),
+        constraints=_constraints(tin, len(nameless), len(rings)),
+        groups=np.full(len(chains), BOUNDARY),
         clip=Clip(has_rim=True),
         vertex_of=tin.vertex_of,
     )
 
 
+def _constraints(tin: TIN, n_nameless: int, n_rings: int) -> ConstraintTable:
+    """Return what the lines are: the TIN's own, edges of no line, and rings twice, as the rim."""
+    lines = tin.lines
+    n_breaklines = sum(kind in ("hard", "soft") for kind in lines.kinds)
+    outer = np.arange(0 if "boundary" in lines.kinds else n_rings)
+    nameless = n_breaklines + np.arange(n_nameless)
+    return ConstraintTable.joined(
+        [
+            ConstraintTable(
+                lines.kinds, lines.sources.astype(np.int32), np.zeros(len(lines)), lines.names
+            ),
+            _nameless("soft", nameless),
+            _nameless("boundary", outer),
+            _nameless("boundary", np.full(n_rings, -1)),
+        ]
+    )
+
+
+def _nameless(kind: LineKind, sources: NDArray[np.int64]) -> ConstraintTable:
+    return ConstraintTable.of_kind(kind, sources.astype(np.int32), np.zeros(len(sources)))
+
+
 def _without_line(tin: TIN) -> list[list[int]]:
     """Return the constrained edges inside the surface that are no step of a line."""
-    triangle, corner = np.nonzero(tin.constrained & (tin.neighbors > topology.NO_NEIGHBOR))
-    start, end = topology.ends(tin.triangles, triangle, corner)
-    edges = np.unique(np.sort(np.stack([start, end], axis=1), axis=1), axis=0).astype(np.int32)
+    is_inner = tin.constrained & (tin.neighbors > topology.NO_NEIGHBOR)
+    edges = np.unique(np.sort(topology.edges_at(tin.triangles, is_inner), axis=1), axis=0)
     n = len(tin.points)
-    is_step = np.isin(edge_keys(edges, n), edge_keys(tin.lines.steps(), n))
+    is_step = np.isin(topology.edge_keys(edges, n), topology.edge_keys(tin.lines.steps(), n))
     found: list[list[int]] = edges[~is_step].tolist()
     return found

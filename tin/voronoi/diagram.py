@@ -11,6 +11,7 @@ import numpy as np
 from ...errors import LinesError, PointsError
 from .. import _kernel
 from ..constraints.breaklines import as_ring
+from ..constraints.polylines import offsets_of
 from ..types import Bounds
 from ..validation.options import is_finite_number, shown
 from ..validation.threads import thread_count
@@ -164,7 +165,7 @@ def _cells(points: NDArray[np.float64], box: Bounds) -> Rings:
     cells = cells_in_box(np.ascontiguousarray(xy[is_kept]), growth, box)
     counts = np.zeros(len(xy), np.int64)
     counts[is_kept] = np.diff(cells.offsets)
-    return Rings(cells.coords, np.append(0, np.cumsum(counts)))
+    return Rings(cells.coords, offsets_of(counts))
 
 
 # ---------------------------------------------------------------- the boundary
@@ -231,7 +232,7 @@ def _clipped(cells: Rings, ring: NDArray[np.float64]) -> Voronoi:
     counts = np.bincount(owner, np.diff(rings.offsets)[np.argsort(order)], len(cells.offsets) - 1)
     return Voronoi(
         coords=rings.coords,
-        offsets=np.append(0, np.cumsum(counts.astype(np.int64))),
+        offsets=offsets_of(counts.astype(np.int64)),
         part_offsets=rings.offsets,
         boundary=ring,
     )
@@ -252,7 +253,7 @@ def _only(rings: Rings, which: NDArray[np.int64]) -> Rings:
     """Return some of the rings; the others are empty."""
     counts = np.diff(rings.offsets)
     taken = np.bincount(which, minlength=len(counts)) * counts
-    return Rings(rings.coords[np.repeat(taken > 0, counts)], np.append(0, np.cumsum(taken)))
+    return Rings(rings.coords[np.repeat(taken > 0, counts)], offsets_of(taken))
 
 
 def _parts_inside(region: Any, shapes: NDArray[Any]) -> tuple[NDArray[Any], NDArray[np.int64]]:
@@ -285,7 +286,7 @@ def _rings(polygons: NDArray[Any]) -> Rings:
     coords, ring = shapely.get_coordinates(polygons, return_index=True)
     is_last = np.append(ring[1:] != ring[:-1], True)[: len(ring)]
     coords, ring = coords[~is_last], ring[~is_last]
-    offsets = np.append(0, np.cumsum(np.bincount(ring, minlength=len(polygons))))
+    offsets = offsets_of(np.bincount(ring, minlength=len(polygons)))
     clockwise = (signed_areas(Rings(coords, offsets)) < 0)[ring]
     number = np.arange(len(coords))
     turned = np.where(clockwise, offsets[ring] + offsets[ring + 1] - 1 - number, number)

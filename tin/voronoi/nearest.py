@@ -52,7 +52,9 @@ class NearestVertex:
         start, end = np.concatenate([edges, edges[:, ::-1]]).T
         self._neighbors = end[np.argsort(start)]
         self._offsets = np.append(0, np.cumsum(np.bincount(start, minlength=len(kept))))
-        self._hull = np.unique(np.concatenate(_hull_ends(growth.triangles, growth.neighbors)))
+        self._hull = np.unique(
+            topology.edges_at(growth.triangles, growth.neighbors == topology.NO_NEIGHBOR)
+        )
 
     def find(self, xy: NDArray[np.float64]) -> NDArray[np.int32]:
         """Return the nearest vertex of each place, the smallest number of several; -1 for NaN."""
@@ -188,14 +190,6 @@ class NearestVertex:
         self, xy: NDArray[np.float64], one: NDArray[np.int64], other: NDArray[np.int64]
     ) -> NDArray[np.int8]:
         return _kernel.compare_distances(np.ascontiguousarray(xy), self._xy[one], self._xy[other])
-
-
-def _hull_ends(
-    triangles: NDArray[np.int32], neighbors: NDArray[np.int32]
-) -> list[NDArray[np.int64]]:
-    """Return start and end of the edges of the hull."""
-    triangle, corner = np.nonzero(neighbors == topology.NO_NEIGHBOR)
-    return list(topology.ends(triangles, triangle, corner))
 
 
 def _joined(

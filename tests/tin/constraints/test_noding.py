@@ -13,30 +13,24 @@ import tinsmith as ts
 from tinsmith.errors import LinesError
 from tinsmith.tin import _kernel
 from tinsmith.tin.constraints import splitting
-from tinsmith.tin.constraints.noding import Chains, node
+from tinsmith.tin.constraints.noding import node
+from tinsmith.tin.constraints.polylines import Polylines
 
 UTM = np.array([500_000.0, 4_000_000.0])
 NAN = float("nan")
 
 
-def chains_of(lines, heights=None):
-    """Lines as vertex numbers, with a height for each; 0 unless given."""
-    if heights is None:
-        heights = [np.zeros(len(line)) for line in lines]
-    return Chains(
-        np.array([v for line in lines for v in line], np.int32),
-        np.cumsum([0, *map(len, lines)], dtype=np.int32),
-        np.array([z for line in heights for z in line], float),
-    )
-
-
-def lines_of(chains):
-    return [part.tolist() for part in np.split(chains.vertices, chains.offsets[1:-1])]
+def lines_of(polylines):
+    return [part.tolist() for part in np.split(polylines.vertices, polylines.offsets[1:-1])]
 
 
 def noded(xy, lines, heights=None, *, priority=None, **options):
     priority = np.zeros(len(lines)) if priority is None else np.array(priority)
-    return node(np.array(xy, float), chains_of(lines, heights), priority, **options)
+    if heights is None:
+        heights = [np.zeros(len(line)) for line in lines]
+    elevations = np.array([z for line in heights for z in line], float)
+    polylines = Polylines.of_chains(lines)
+    return node(np.array(xy, float), polylines, elevations, priority, **options)
 
 
 def all_xy(xy, result):
@@ -46,7 +40,7 @@ def all_xy(xy, result):
 def placed_steps(xy, result):
     """Undirected steps as pairs of places."""
     every = all_xy(xy, result)
-    steps = steps_of(result.chains.vertices, result.chains.offsets)
+    steps = steps_of(result.polylines.vertices, result.polylines.offsets)
     return {frozenset(map(tuple, every[list(step)].tolist())) for step in steps}
 
 
@@ -54,14 +48,14 @@ def require_sound(xy, lines, result, *, snap=0.0):
     """Nothing crosses or touches, nothing is doubled, every line still goes from end to end."""
     every = all_xy(xy, result)
     assert len(np.unique(every, axis=0)) == len(every)
-    segments = sorted(steps_of(result.chains.vertices, result.chains.offsets))
+    segments = sorted(steps_of(result.polylines.vertices, result.polylines.offsets))
     places = places_of(every)
     assert line_oracle.crossings(places, segments) == []
     assert line_oracle.touches(places, segments) == []
     if snap > 0:
         pairs = np.array(segments, np.int32).reshape(-1, 2)
         assert len(_kernel.touches(every, pairs, snap)) == 0
-    for line, chain in zip(lines, lines_of(result.chains), strict=True):
+    for line, chain in zip(lines, lines_of(result.polylines), strict=True):
         require_subsequence([v for v, w in zip(line, [None, *line], strict=False) if v != w], chain)
     new = result.new_points[:, :2].tolist()
     assert new == sorted(new)
@@ -92,16 +86,16 @@ TWO = [[0, 1], [2, 3]]
 def crossing_rows(result):
     found = result.crossings
     return [
-        (v, *xy, a, b, za, zb, z)
-        for v, xy, a, b, za, zb, z in zip(*(column.tolist() for column in found), strict=True)
+        (v, *xy, *pair, *heights, z)
+        for v, xy, pair, heights, z in zip(*(column.tolist() for column in found), strict=True)
     ]
 
 
 def test_two_lines_cross_in_a_new_vertex():
     result = noded(CROSS, TWO, [[0, 8], [10, 20]])
     assert result.new_points.tolist() == [[2, 2, 4]]
-    assert lines_of(result.chains) == [[0, 4, 1], [2, 4, 3]]
-    assert result.chains.heights.tolist() == [0, 4, 8, 10, 15, 20]
+    assert lines_of(result.polylines) == [[0, 4, 1], [2, 4, 3]]
+    assert result.elevations.tolist() == [0, 4, 8, 10, 15, 20]
     assert crossing_rows(result) == [(4, 2, 2, 0, 1, 4, 15, 4)]
     assert len(result.touches.vertex) == 0
 
@@ -123,7 +117,7 @@ def test_line_without_heights_never_gives_one():
 def test_two_lines_without_heights_leave_it_open():
     result = noded(CROSS, TWO, [[NAN] * 2] * 2)
     assert np.isnan(result.new_points[0, 2])
-    assert np.isnan(result.crossings.height).tolist() == [True]
+    assert np.isnan(result.crossings.taken).tolist() == [True]
 
 
 def test_three_lines_through_one_place_share_a_vertex():
@@ -139,7 +133,7 @@ def test_place_of_three_lines_that_is_no_double():
     ends = [[0, 0], [1, 1], [0, 1], [1, -1], [-1, 1], [3, -1], [0, 2], [1, -3]]
     result = noded(ends, [[0, 1], [2, 3], [4, 5], [6, 7]])
     assert result.new_points[:, :2].tolist() == [[1 / 3, 1 / 3]]
-    assert len(result.crossings.vertex) == 3
+    assert len(result.crossings.vertices) == 3
 
 
 def test_crossing_at_a_vertex_of_neither_line_takes_it():
@@ -147,7 +141,7 @@ def test_crossing_at_a_vertex_of_neither_line_takes_it():
     ends = np.array([[0, 0], [1, 1], [0, 1], [1, -1], [1 / 3, 1 / 3], [2, 2]])
     result = noded(ends, TWO, [[3, 3], [5, 5]])
     assert len(result.new_points) == 0
-    assert lines_of(result.chains) == [[0, 4, 1], [2, 4, 3]]
+    assert lines_of(result.polylines) == [[0, 4, 1], [2, 4, 3]]
     assert crossing_rows(result) == [(4, 1 / 3, 1 / 3, 0, 1, 3, 5, 3)]
     touched = zip(*(column.tolist() for column in result.touches), strict=True)
     assert list(touched) == [(4, 0, 3), (4, 1, 5)]
@@ -156,13 +150,13 @@ def test_crossing_at_a_vertex_of_neither_line_takes_it():
 def test_line_that_crosses_itself_takes_its_first_height():
     xy = [[0, 0], [4, 4], [4, 0], [0, 4]]
     result = noded(xy, [[0, 1, 2, 3]], [[0, 8, 10, 20]])
-    assert lines_of(result.chains) == [[0, 4, 1, 2, 4, 3]]
+    assert lines_of(result.polylines) == [[0, 4, 1, 2, 4, 3]]
     assert crossing_rows(result) == [(4, 2, 2, 0, 0, 4, 15, 4)]
 
 
 def test_line_there_and_back_does_not_cross_itself():
     result = noded(CROSS, [[0, 1, 0], [2, 3]], [[1, 1, 1], [2, 2]])
-    assert lines_of(result.chains) == [[0, 4, 1, 4, 0], [2, 4, 3]]
+    assert lines_of(result.polylines) == [[0, 4, 1, 4, 0], [2, 4, 3]]
     assert crossing_rows(result) == [(4, 2, 2, 0, 1, 1, 2, 1)]
 
 
@@ -172,7 +166,7 @@ def test_heights_stay_within_the_steps_own():
     heights = [[0.1, 0.1], *([z, z] for z in rng.random(19))]
     result = noded(ends, np.arange(40).reshape(-1, 2).tolist(), heights)
     for part, (z, _) in zip(
-        np.split(result.chains.heights, result.chains.offsets[1:-1]), heights, strict=True
+        np.split(result.elevations, result.polylines.offsets[1:-1]), heights, strict=True
     ):
         assert set(part.tolist()) == {z}
 
@@ -188,14 +182,12 @@ def test_heights_are_linear_and_the_rule_chooses_one(seed):
     result = noded(xy, lines.tolist(), heights.tolist(), priority=priority)
     every = all_xy(xy, result)
     through = {v: [] for v in range(16, len(every))}
-    for line, chain in enumerate(lines_of(result.chains)):
+    for line, chain in enumerate(lines_of(result.polylines)):
         span = every[chain] - every[chain[0]]
         share = np.hypot(*span.T) / np.hypot(*span[-1])
         own = heights[line, 0] + share * (heights[line, 1] - heights[line, 0])
-        first = result.chains.offsets[line]
-        np.testing.assert_allclose(
-            result.chains.heights[first : first + len(chain)], own, atol=1e-6
-        )
+        first = result.polylines.offsets[line]
+        np.testing.assert_allclose(result.elevations[first : first + len(chain)], own, atol=1e-6)
         for v, z in zip(chain[1:-1], own[1:-1], strict=True):
             through[v].append((-priority[line], line, z))
     rows = {(row[0], row[3], row[4]): row for row in crossing_rows(result)}
@@ -214,15 +206,15 @@ def test_heights_are_linear_and_the_rule_chooses_one(seed):
 
 def test_vertex_on_a_line_becomes_its_vertex():
     result = noded([[0, 0], [4, 2], [2, 1], [9, 9]], [[0, 1]], [[1, 3]])
-    assert lines_of(result.chains) == [[0, 2, 1]]
+    assert lines_of(result.polylines) == [[0, 2, 1]]
     assert [column.tolist() for column in result.touches] == [[2], [0], [2]]
 
 
 def test_line_ends_on_another():
     result = noded([[0, 0], [4, 0], [2, 0], [2, 3]], TWO, [[1, 3], [7, 9]])
-    assert lines_of(result.chains) == [[0, 2, 1], [2, 3]]
+    assert lines_of(result.polylines) == [[0, 2, 1], [2, 3]]
     assert [column.tolist() for column in result.touches] == [[2], [0], [2]]
-    assert len(result.crossings.vertex) == 0
+    assert len(result.crossings.vertices) == 0
 
 
 def test_segment_through_a_thousand_collinear_vertices_both_ways():
@@ -233,40 +225,40 @@ def test_segment_through_a_thousand_collinear_vertices_both_ways():
     shuffled[middle] = xy[1:1001]
     result = noded(shuffled, [[0, 1001], [1001, 0]], [[0, 1001], [1001, 0]])
     forth = [0, *middle.tolist(), 1001]
-    assert lines_of(result.chains) == [forth, forth[::-1]]
-    np.testing.assert_allclose(result.chains.heights[:1002], np.arange(1002), atol=1e-6)
+    assert lines_of(result.polylines) == [forth, forth[::-1]]
+    np.testing.assert_allclose(result.elevations[:1002], np.arange(1002), atol=1e-6)
     assert len(result.touches.vertex) == 1000 * 2
 
 
 def test_overlapping_lines_share_steps():
     xy = [[i, 2 * i] for i in range(6)]
     result = noded(xy, [[0, 3], [5, 1], [2, 4]])
-    assert lines_of(result.chains) == [[0, 1, 2, 3], [5, 4, 3, 2, 1], [2, 3, 4]]
+    assert lines_of(result.polylines) == [[0, 1, 2, 3], [5, 4, 3, 2, 1], [2, 3, 4]]
 
 
 def test_duplicate_and_reversed_lines():
     result = noded(CROSS, [[0, 1], [1, 0], [2, 3], [0, 1]])
-    assert lines_of(result.chains) == [[0, 4, 1], [1, 4, 0], [2, 4, 3], [0, 4, 1]]
+    assert lines_of(result.polylines) == [[0, 4, 1], [1, 4, 0], [2, 4, 3], [0, 4, 1]]
     assert len(result.new_points) == 1
 
 
 def test_repeated_vertices_count_once():
     result = noded([[0, 0], [1, 0], [2, 0]], [[0, 0, 1, 1, 1, 2, 2], [1, 1]])
-    assert lines_of(result.chains) == [[0, 1, 2], [1]]
+    assert lines_of(result.polylines) == [[0, 1, 2], [1]]
 
 
 def test_closed_line_ends_where_it_begins():
     xy = [[0, 0], [4, 0], [4, 4], [0, 4], [2, -1], [2, 5]]
     result = noded(xy, [[0, 1, 2, 3, 0], [4, 5]])
-    assert lines_of(result.chains) == [[0, 6, 1, 2, 7, 3, 0], [4, 6, 7, 5]]
+    assert lines_of(result.polylines) == [[0, 6, 1, 2, 7, 3, 0], [4, 6, 7, 5]]
 
 
 def test_no_lines_and_lines_without_steps():
     nothing = noded([[0, 0], [1, 1]], [])
-    assert nothing.chains.offsets.tolist() == [0]
+    assert nothing.polylines.offsets.tolist() == [0]
     assert nothing.new_points.shape == (0, 3)
     alone = noded([[0, 0], [1, 1]], [[1], [0]])
-    assert lines_of(alone.chains) == [[1], [0]]
+    assert lines_of(alone.polylines) == [[1], [0]]
 
 
 # -------------------------------------------------------------------- sets of lines
@@ -315,10 +307,10 @@ def test_noding_twice_changes_nothing():
     rng = np.random.default_rng(2)
     xy = rng.random((60, 2)) * 100 + UTM
     first = noded(xy, np.arange(60).reshape(-1, 2).tolist())
-    again = node(all_xy(xy, first), first.chains, np.zeros(30))
+    again = node(all_xy(xy, first), first.polylines, first.elevations, np.zeros(30))
     assert len(first.new_points) > 50
     assert len(again.new_points) == 0
-    np.testing.assert_array_equal(again.chains.vertices, first.chains.vertices)
+    np.testing.assert_array_equal(again.polylines.vertices, first.polylines.vertices)
 
 
 @pytest.mark.parametrize("unit", [2.0**-33, 2.0**-30, 2.0**-26])
@@ -347,10 +339,12 @@ def test_many_short_lines_that_cross_are_sound_by_the_search():
     result = noded(xy, lines, threads=2)
     assert len(result.new_points) > 1000
     every = all_xy(xy, result)
-    steps = np.array(sorted(steps_of(result.chains.vertices, result.chains.offsets)), np.int32)
+    steps = np.array(
+        sorted(steps_of(result.polylines.vertices, result.polylines.offsets)), np.int32
+    )
     crossings, touches = _kernel.contacts(every, steps)
     assert (len(crossings), len(touches)) == (0, 0)
-    np.testing.assert_array_equal(noded(xy, lines).chains.vertices, result.chains.vertices)
+    np.testing.assert_array_equal(noded(xy, lines).polylines.vertices, result.polylines.vertices)
 
 
 # -------------------------------------------------------------------- within a distance
@@ -359,26 +353,26 @@ def test_many_short_lines_that_cross_are_sound_by_the_search():
 def test_line_bends_onto_a_vertex_near_it():
     xy = [[0, 0], [10, 0], [5, 0.4], [7, -0.6]]
     result = noded(xy, [[0, 1]], [[0, 10]], snap=0.5)
-    assert lines_of(result.chains) == [[0, 2, 1]]
+    assert lines_of(result.polylines) == [[0, 2, 1]]
     assert [column.tolist() for column in result.touches] == [[2], [0], [5]]
 
 
 def test_bent_parts_are_looked_at_again():
     """The second vertex is near the bent line only."""
     xy = [[0, 0], [10, 0], [5, 0.5], [6, 0.8]]
-    assert lines_of(noded(xy, [[0, 1]], snap=0.5).chains) == [[0, 2, 3, 1]]
+    assert lines_of(noded(xy, [[0, 1]], snap=0.5).polylines) == [[0, 2, 3, 1]]
 
 
 def test_line_does_not_bend_onto_what_is_near_its_end():
     xy = [[0, 0], [10, 0], [0.2, 0.3]]
-    assert lines_of(noded(xy, [[0, 1]], snap=0.5).chains) == [[0, 1]]
+    assert lines_of(noded(xy, [[0, 1]], snap=0.5).polylines) == [[0, 1]]
 
 
 def test_vertices_on_both_sides_of_a_short_segment():
     """Taking both at once would make a longer part: the nearer one comes first."""
     xy = [[0, 0], [1, 0], [0.45, 0.7], [0.55, -0.69]]
     result = noded(xy, [[0, 1]], snap=0.71)
-    assert lines_of(result.chains)[0][1] == 3
+    assert lines_of(result.polylines)[0][1] == 3
     require_sound(xy, [[0, 1]], result, snap=0.71)
 
 
@@ -390,13 +384,13 @@ def test_all_vertices_near_a_segment_are_taken_at_once(monkeypatch):
     ends = np.array([[0.0, 0], [40, 0], [0, 900], [40, 900]])
     xy = np.concatenate([ends, beside, beside + np.array([0.0, 900])])
     result = noded(xy, [[0, 1], [2, 3]], snap=0.5)
-    assert lines_of(result.chains) == [[0, *range(4, 43), 1], [2, *range(43, 82), 3]]
+    assert lines_of(result.polylines) == [[0, *range(4, 43), 1], [2, *range(43, 82), 3]]
 
 
 def test_lines_that_cross_beside_a_vertex_meet_in_it():
     xy = [*CROSS, [2.1, 2]]
     result = noded(xy, TWO, snap=0.2)
-    assert lines_of(result.chains) == [[0, 4, 1], [2, 4, 3]]
+    assert lines_of(result.polylines) == [[0, 4, 1], [2, 4, 3]]
     assert len(result.new_points) == 0
 
 
@@ -430,7 +424,7 @@ def test_line_that_crosses_itself_is_named():
 def test_touching_and_overlapping_lines_do_not_cross():
     xy = [[0, 0], [4, 0], [2, 0], [2, 3], [6, 0]]
     result = noded(xy, [[0, 1], [2, 3], [2, 4]], crossing="error")
-    assert lines_of(result.chains) == [[0, 2, 1], [2, 3], [2, 1, 4]]
+    assert lines_of(result.polylines) == [[0, 2, 1], [2, 3], [2, 1, 4]]
 
 
 def test_unknown_crossing_is_refused():

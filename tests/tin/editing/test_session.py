@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import tinsmith as ts
-from tinsmith.tin.editing.session import OPERATIONS, apply_edits
+from tinsmith.tin.editing.history import apply_edits
+from tinsmith.tin.editing.operations import OPERATIONS
 
 
 def small_integers(rng, n):
@@ -79,7 +80,7 @@ def test_any_edits_leave_what_a_fresh_build_gives(kind, seed):
     rng = np.random.default_rng([seed, KINDS.index(kind)])
     tin = start(rng, kind)
     for _ in range(20):
-        operation = str(rng.choice(OPERATIONS))
+        operation = str(rng.choice(list(OPERATIONS)))
         arguments = arguments_for(operation, rng, kind, tin)
         before = state(tin)
         try:
@@ -97,7 +98,7 @@ def test_edits_are_listed_taken_back_and_done_again(kind):
     tin = start(rng, kind)
     begin, states = state(tin), []
     for _ in range(12):
-        operation = str(rng.choice(OPERATIONS))
+        operation = str(rng.choice(list(OPERATIONS)))
         states.append(state(tin))
         try:
             getattr(tin, operation)(**arguments_for(operation, rng, kind, tin))
@@ -569,6 +570,20 @@ def test_the_last_line_cannot_go_when_no_points_are_left(options):
 def test_bad_scripts_name_the_edit(script, sentence):
     with pytest.raises(ts.PointsError, match=sentence):
         apply_edits(square(), script)
+
+
+def test_an_operation_and_its_edit_are_written_the_same():
+    tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8]])
+    tin.set_elevation([1, 2], np.array([3.0, 4.0]))
+    (edit,) = tin.edits
+    operation = OPERATIONS[edit.operation](**edit.arguments)
+    assert operation.to_dict() == edit.to_dict() == {"op": "set_z", "vertices": [1, 2], "z": [3, 4]}
+    assert tin.points[[1, 2], 2].tolist() == [3, 4]
+
+
+def test_every_operation_is_a_method_of_a_tin():
+    assert all(callable(getattr(ts.TIN, name)) for name in OPERATIONS)
+    assert [kind.operation for kind in OPERATIONS.values()] == list(OPERATIONS)
 
 
 def test_a_vertex_is_not_moved_while_all_others_are_in_line():

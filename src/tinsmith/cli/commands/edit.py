@@ -74,7 +74,7 @@ def edit(
        {"op": "set_z", "vertices": [4, 5], "z": [320.0, 320.5]},
        {"op": "add_breakline", "coords": [[752650, 4024200, 321], [752700, 4024300, 323]]}]
     """  # noqa: D301 - click reads the control character
-    from ...tin.editing.session import apply_edits
+    from ...tin.editing.history import apply_edits
     from ..files import inputs_of, plan_outputs, read_tin, write_outputs, write_text, written_text
     from ..output.line_summaries import mesh_counts
 

@@ -1,0 +1,72 @@
+"""What the lines of a surface are: kind, source, priority and name of each."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from .breaklines import LineKind
+
+__all__ = ["ConstraintTable"]
+
+
+class ConstraintTable(NamedTuple):
+    """A row for each line, in columns.
+
+    Attributes
+    ----------
+    kinds : tuple of LineKind
+    sources : (l,) int32 array
+        The caller's number within breaklines, boundary, holes or water; -1 for none.
+    priorities : (l,) float64 array
+    names : tuple of str
+    """
+
+    kinds: tuple[LineKind, ...]
+    sources: NDArray[np.int32]
+    priorities: NDArray[np.float64]
+    names: tuple[str, ...]
+
+    @classmethod
+    def of_kind(
+        cls, kind: LineKind, sources: NDArray[np.int32], priorities: NDArray[np.float64]
+    ) -> ConstraintTable:
+        """Return nameless lines that are all of one kind."""
+        return cls((kind,) * len(sources), sources, priorities, ("",) * len(sources))
+
+    @classmethod
+    def joined(cls, tables: Sequence[ConstraintTable]) -> ConstraintTable:
+        """Return the rows of several tables as one."""
+        return cls(
+            tuple(kind for table in tables for kind in table.kinds),
+            np.concatenate([table.sources for table in tables]),
+            np.concatenate([table.priorities for table in tables]),
+            tuple(name for table in tables for name in table.names),
+        )
+
+    def take(self, rows: NDArray[Any]) -> ConstraintTable:
+        """Return some rows, by their numbers."""
+        numbers = rows.tolist()
+        return ConstraintTable(
+            tuple(self.kinds[i] for i in numbers),
+            self.sources[rows],
+            self.priorities[rows],
+            tuple(self.names[i] for i in numbers),
+        )
+
+    def is_kind(self, *kinds: LineKind) -> NDArray[np.bool_]:
+        """Tell which lines are of one of some kinds."""
+        return np.array([kind in kinds for kind in self.kinds], np.bool_)
+
+    def label(self, line: int) -> str:
+        """Return what a line is called in sentences."""
+        kind = self.kinds[line]
+        noun = "breakline" if kind in ("hard", "soft") else kind
+        name = f" '{self.names[line]}'" if self.names[line] else ""
+        return f"{noun} {int(self.sources[line])}{name}"

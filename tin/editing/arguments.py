@@ -1,0 +1,123 @@
+"""Arguments of edits: what a caller gave, checked."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, cast, get_args
+
+import numpy as np
+
+from ...errors import PointsError
+from ..building.duplicates import DuplicatePolicy
+from ..validation.options import require_one_of, shown
+from ..validation.points import as_elevations, as_points
+from ..validation.tables import as_table, is_masked_array
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+__all__ = [
+    "as_ends",
+    "as_heights",
+    "as_plain_dict",
+    "as_point",
+    "as_policy",
+    "as_vertices",
+    "copied",
+    "require_distinct",
+]
+
+
+def copied(value: Any) -> Any:
+    """Return an argument so that the caller's further use of it changes nothing."""
+    if isinstance(value, list):
+        return [copied(one) if isinstance(one, list) else one for one in value]
+    return value.copy() if isinstance(value, np.ndarray) else value
+
+
+def as_plain_dict(operation: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
+    """Return an operation with its arguments as plain Python values, ready for JSON."""
+    return {"op": operation, **{name: _as_plain(value) for name, value in arguments.items()}}
+
+
+def _as_plain(value: Any) -> Any:
+    if isinstance(value, np.ndarray | np.generic):
+        return value.tolist()
+    return value
+
+
+def as_vertices(vertices: ArrayLike, count: int) -> NDArray[np.int64]:
+    """Return vertex numbers below ``count``.
+
+    Raises
+    ------
+    PointsError
+        If there is no such vertex.
+    """
+    only = vertices[0] if isinstance(vertices, list) and len(vertices) == 1 else vertices
+    if type(only) is int and 0 <= only < count:  # most edits: no arrays for one number
+        return np.array([only], np.int64)
+    try:
+        numbers = np.atleast_1d(np.asarray(vertices))
+    except Exception:
+        numbers = np.empty(0, np.float64)
+    if is_masked_array(vertices) or numbers.ndim != 1 or numbers.dtype.kind not in "iu":
+        raise PointsError(f"Invalid vertices {shown(vertices)}: whole numbers are needed.")
+    wrong = (numbers < 0) | (numbers >= count)
+    if wrong.any():
+        raise PointsError(
+            f"There is no vertex {int(numbers[np.argmax(wrong)])}: numbers 0 to {count - 1} "
+            "are allowed."
+        )
+    return numbers.astype(np.int64)
+
+
+def as_ends(a: int, b: int, count: int) -> NDArray[np.int64]:
+    """Return the two ends of an edge.
+
+    Raises
+    ------
+    PointsError
+        If there is no such vertex, or both are the same.
+    """
+    ends = as_vertices([a, b], count)
+    if ends[0] == ends[1]:
+        raise PointsError("An edge has two different ends.")
+    return ends
+
+
+def as_policy(policy: str) -> DuplicatePolicy:
+    """Return a policy for points at one place, if it is one."""
+    require_one_of("duplicates", policy, get_args(DuplicatePolicy))
+    return cast("DuplicatePolicy", policy)
+
+
+def require_distinct(vertices: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Refuse vertices that are named twice; return them."""
+    if len(vertices) > 1 and len(np.unique(vertices)) < len(vertices):
+        raise PointsError("A vertex is named twice: it can be removed once.")
+    return vertices
+
+
+def as_point(point: Any) -> NDArray[np.float64]:
+    """Return a point given alone, or as a table of one row."""
+    values, is_masked = as_table(point, "Points")
+    if is_masked is not None:
+        raise PointsError("The point is masked: one, easting, northing, elevation, is needed.")
+    rows = as_points(np.atleast_2d(values))
+    if len(rows) != 1:
+        raise PointsError(
+            f"There are {len(rows)} points: one, easting, northing, elevation, is needed."
+        )
+    place: NDArray[np.float64] = rows[0]
+    return place
+
+
+def as_heights(z: ArrayLike, count: int) -> NDArray[np.float64]:
+    """Return one elevation for all of so many vertices, or one for each."""
+    heights = as_elevations(z) + 0.0  # no -0.0
+    if heights.ndim == 1 and len(heights) != count:
+        raise PointsError(
+            f"{heights.size} heights for {count} vertices: one each, or one for all, is needed."
+        )
+    return heights

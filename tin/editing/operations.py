@@ -1,0 +1,416 @@
+"""Edit operations: what each does to the inputs of a TIN, or to its mesh where no line is near."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol, get_args
+
+import numpy as np
+
+from ...errors import LinesError
+from ..building.constrained import CrossingPolicy
+from ..constraints.breaklines import Breakline
+from ..validation.options import is_whole_number, require_one_of, shown
+from ..validation.points import as_points
+from .arguments import (
+    as_ends,
+    as_heights,
+    as_plain_dict,
+    as_point,
+    as_policy,
+    as_vertices,
+    copied,
+    require_distinct,
+)
+from .changes import (
+    AddLine,
+    Change,
+    DropLines,
+    DropVertices,
+    LineChange,
+    NumberedInputs,
+    PutVertices,
+    SetElevations,
+    count_breaklines,
+    has_own_heights,
+)
+from .flipping import FLIP, flipped_edge, require_inner
+from .mesh_editor import Editor, merged_elevation, occupied
+from .state import State
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from ..building.duplicates import DuplicatePolicy
+    from ..constraints.breaklines import BreaklineKind, Lines
+
+__all__ = [
+    "OPERATIONS",
+    "AddBreakline",
+    "Done",
+    "Edited",
+    "Flip",
+    "Insert",
+    "MeshOperation",
+    "Move",
+    "Operation",
+    "Remove",
+    "RemoveBreakline",
+    "SetElevation",
+]
+
+
+class Edited(Protocol):
+    """A TIN that is being edited, as operations see it."""
+
+    @property
+    def count(self) -> int:
+        """Number of vertices."""
+        ...
+
+    def now(self) -> State:
+        """Return the TIN as it is."""
+        ...
+
+    def inputs(self) -> NumberedInputs:
+        """Return what it is the build of."""
+        ...
+
+    def build(self, inputs: NumberedInputs) -> State:
+        """Build the TIN of other inputs; nothing is changed yet."""
+        ...
+
+
+class Done(NamedTuple):
+    """What an edit did to the inputs, and where that led; None if the mesh tells."""
+
+    change: Change
+    state: State | None = None
+    result: Any = None
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(eq=False)
+class Operation:
+    """One edit with its arguments, not yet done."""
+
+    operation: ClassVar[str]
+
+    def apply(self, tin: Edited) -> Done:
+        """Build the TIN of the changed inputs.
+
+        Raises
+        ------
+        PointsError, LinesError
+            As the methods of :class:`.TIN`.
+        """
+        raise NotImplementedError
+
+    def arguments(self) -> dict[str, Any]:
+        """Return copies of the arguments by name."""
+        return {name: copied(value) for name, value in vars(self).items()}
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain Python values, ready for JSON."""
+        return as_plain_dict(self.operation, self.arguments())
+
+
+class MeshOperation(Operation):
+    """An operation that is done in a mesh where it reaches no line."""
+
+    def apply_to_mesh(self, editor: Editor) -> Done:
+        """Change the mesh.
+
+        Raises
+        ------
+        NotLocal
+            If it reaches a line; nothing has changed then.
+        PointsError, LinesError
+            As the methods of :class:`.TIN`.
+        """
+        raise NotImplementedError
+
+
+@dataclass(eq=False)
+class Insert(MeshOperation):
+    """Further points."""
+
+    operation: ClassVar[str] = "insert"
+
+    points: ArrayLike
+    duplicates: DuplicatePolicy = "last"
+
+    def apply(self, tin: Edited) -> Done:
+        """Build the TIN of the changed inputs."""
+        xyz = as_points(self.points)
+        state, inputs = tin.now(), tin.inputs()
+        there = state.vertices_at(xyz[:, :2])
+        own = np.where(there < 0, np.nan, state.triangulation.points[there, 2])
+        z = _merged_elevations(xyz, own, as_policy(self.duplicates))
+        at_vertex = there >= 0
+        change = _with_elevations(state, inputs, there[at_vertex], z[at_vertex])
+        change = change._replace(added=np.column_stack([xyz[:, :2], z]))
+        found = tin.build(inputs.after([change]))
+        return Done(change, found, found.vertex_of_row[len(found.vertex_of_row) - len(xyz) :])
+
+    def apply_to_mesh(self, editor: Editor) -> Done:
+        """Change the mesh, if no line is near."""
+        slots, change = editor.insert(as_points(self.points), as_policy(self.duplicates))
+        return Done(change, result=editor.numbers(slots))
+
+
+@dataclass(eq=False)
+class Remove(MeshOperation):
+    """Vertices that go."""
+
+    operation: ClassVar[str] = "remove"
+
+    vertices: ArrayLike
+
+    def apply(self, tin: Edited) -> Done:
+        """Build the TIN of the changed inputs."""
+        numbers = require_distinct(as_vertices(self.vertices, tin.count))
+        state, inputs = tin.now(), tin.inputs()
+        rows = np.flatnonzero(np.isin(state.vertex_of_row, numbers))
+        of_lines = state.line_vertices(inputs)
+        on_lines = np.flatnonzero(np.isin(of_lines, numbers))
+        _require_given(numbers, state.vertex_of_row[rows], of_lines[on_lines], "removed")
+        lines = (DropVertices(on_lines),) if len(on_lines) else ()
+        change = Change(removed=rows, lines=lines)
+        return Done(change, tin.build(inputs.after([change])))
+
+    def apply_to_mesh(self, editor: Editor) -> Done:
+        """Change the mesh, if no line is near."""
+        numbers = require_distinct(as_vertices(self.vertices, editor.count))
+        return Done(editor.remove(editor.slots(numbers)))
+
+
+@dataclass(eq=False)
+class Move(MeshOperation):
+    """A vertex at another place."""
+
+    operation: ClassVar[str] = "move"
+
+    vertex: int
+    point: ArrayLike
+
+    def apply(self, tin: Edited) -> Done:
+        """Build the TIN of the changed inputs."""
+        numbers, place = as_vertices([self.vertex], tin.count), as_point(self.point)
+        state, inputs = tin.now(), tin.inputs()
+        (there,) = state.vertices_at(place[None, :2]).tolist()
+        if there >= 0 and there != numbers[0]:
+            raise occupied(there, *place[:2].tolist())
+        rows = np.flatnonzero(np.isin(state.vertex_of_row, numbers))
+        of_lines = state.line_vertices(inputs)
+        on_lines = np.flatnonzero(of_lines == numbers[0])
+        _require_given(numbers, state.vertex_of_row[rows], of_lines[on_lines], "moved")
+        change = Change(
+            moved=rows,
+            places=np.tile(place, (len(rows), 1)),
+            lines=(PutVertices(on_lines, place),) if len(on_lines) else (),
+        )
+        found = tin.build(inputs.after([change]))
+        _require_elevations(found, place[None])
+        return Done(change, found)
+
+    def apply_to_mesh(self, editor: Editor) -> Done:
+        """Change the mesh, if no line is near."""
+        (slot,) = editor.slots(as_vertices([self.vertex], editor.count)).tolist()
+        return Done(editor.move(slot, as_point(self.point)))
+
+
+@dataclass(eq=False)
+class SetElevation(MeshOperation):
+    """Vertices at other elevations."""
+
+    operation: ClassVar[str] = "set_z"
+
+    vertices: ArrayLike
+    z: ArrayLike
+
+    def apply(self, tin: Edited) -> Done:
+        """Build the TIN of the changed inputs."""
+        numbers = as_vertices(self.vertices, tin.count)
+        heights = np.broadcast_to(as_heights(self.z, len(numbers)), len(numbers))
+        state, inputs = tin.now(), tin.inputs()
+        change = _with_elevations(state, inputs, numbers, heights)
+        made = numbers[~_has_own_elevation(state, inputs, numbers)]
+        wanted = state.triangulation.points.copy()
+        wanted[numbers, 2] = heights
+        change = change._replace(added=wanted[np.unique(made)])
+        found = tin.build(inputs.after([change]))
+        _require_elevations(found, wanted[np.unique(numbers)])
+        return Done(change, found)
+
+    def apply_to_mesh(self, editor: Editor) -> Done:
+        """Change the mesh, if no line is near."""
+        numbers = as_vertices(self.vertices, editor.count)
+        return Done(editor.set_z(editor.slots(numbers), as_heights(self.z, len(numbers))))
+
+
+@dataclass(eq=False)
+class Flip(MeshOperation):
+    """The other diagonal of the two triangles at an edge."""
+
+    operation: ClassVar[str] = "flip"
+
+    a: int
+    b: int
+
+    def apply(self, tin: Edited) -> Done:
+        """Build the TIN of the changed inputs."""
+        first, second = as_ends(self.a, self.b, tin.count).tolist()
+        state = tin.now()
+        change = Change(lines=(_flipped(state, first, second),))
+        return Done(change, tin.build(tin.inputs().after([change])))
+
+    def apply_to_mesh(self, editor: Editor) -> Done:
+        """Change the mesh, if no line is near."""
+        first, second = editor.slots(as_ends(self.a, self.b, editor.count)).tolist()
+        return Done(editor.flip(first, second))
+
+
+@dataclass(eq=False)
+class AddBreakline(Operation):
+    """A further breakline."""
+
+    operation: ClassVar[str] = "add_breakline"
+
+    coords: ArrayLike
+    kind: BreaklineKind = "hard"
+    priority: int = 0
+    name: str = ""
+    crossing: CrossingPolicy = "split"
+
+    def apply(self, tin: Edited) -> Done:
+        """Build the TIN of the changed inputs."""
+        line = Breakline(self.coords, kind=self.kind, priority=self.priority, name=self.name)
+        require_one_of("crossing", self.crossing, get_args(CrossingPolicy), LinesError)
+        change = Change(lines=(AddLine(line),))
+        inputs = tin.inputs().after([change])
+        found = tin.build(inputs)
+        number = count_breaklines(inputs.build_inputs.lines) - 1
+        met = found.report.met_by(inputs.build_inputs.lines.label(number))
+        if met and self.crossing == "error":
+            raise LinesError(f'{met[0][:-1]}: crossing="error" allows none.')
+        if line.is_draped and not found.lines.has_breakline(number):
+            raise LinesError("The draped line lies outside the surface.")
+        return Done(change, found, notes=tuple(met))
+
+
+@dataclass(eq=False)
+class RemoveBreakline(Operation):
+    """A breakline that goes."""
+
+    operation: ClassVar[str] = "remove_breakline"
+
+    number: int
+
+    def apply(self, tin: Edited) -> Done:
+        """Build the TIN of the changed inputs."""
+        if not is_whole_number(self.number):
+            raise LinesError(f"Invalid breakline {shown(self.number)}: a whole number is needed.")
+        if not 0 <= self.number < count_breaklines(tin.inputs().build_inputs.lines):
+            raise LinesError(f"There is no breakline {self.number}.")
+        change = Change(lines=(DropLines((int(self.number),)),))
+        return Done(change, tin.build(tin.inputs().after([change])))
+
+
+OPERATIONS: dict[str, type[Operation]] = {
+    kind.operation: kind
+    for kind in (Insert, Remove, Move, SetElevation, Flip, AddBreakline, RemoveBreakline)
+}
+"""The operations by the names of the methods of a TIN that do them."""
+
+
+def _flipped(state: State, a: int, b: int) -> LineChange:
+    """Return the line to be added, or those to be dropped."""
+    surface = state.triangulation
+    holds = (surface.triangles == a).any(axis=1) & (surface.triangles == b).any(axis=1)
+    beside = np.flatnonzero(holds)
+    require_inner(beside.tolist())
+    own = _lines_along(state.lines, a, b)
+    if own:
+        if not all(state.lines.names[line] == FLIP for line in own):
+            raise LinesError("The edge is one of a line, which must stay.")
+        return DropLines(tuple(sorted({int(state.lines.sources[line]) for line in own})))
+    corners = surface.triangles[beside]
+    runs = ((corners == a) & (np.roll(corners, -1, axis=1) == b)).any(axis=1)  # its left side
+    corners = corners[np.argsort(~runs)]
+    left, right = corners[(corners != a) & (corners != b)].tolist()
+    return AddLine(flipped_edge(surface.points[[a, b, left, right]]))
+
+
+def _merged_elevations(
+    xyz: NDArray[np.float64], own: NDArray[np.float64], policy: DuplicatePolicy
+) -> NDArray[np.float64]:
+    """Return the elevation that each new row has in the end, given those of vertices there."""
+    z = xyz[:, 2].copy()
+    _, place = np.unique(xyz[:, :2], axis=0, return_inverse=True)
+    place = place.reshape(-1)
+    is_alone = (np.bincount(place)[place] == 1) & np.isnan(own)
+    heights: dict[int, float] = {}
+    for row in np.flatnonzero(~is_alone).tolist():
+        here = heights.get(int(place[row]), float(own[row]))
+        heights[int(place[row])] = (
+            float(z[row]) if np.isnan(here) else merged_elevation(here, float(z[row]), policy)
+        )
+    for row in np.flatnonzero(~is_alone).tolist():
+        z[row] = heights[int(place[row])]
+    return z
+
+
+def _with_elevations(
+    state: State, inputs: NumberedInputs, vertices: NDArray[Any], heights: NDArray[np.float64]
+) -> Change:
+    """Give the rows and the lines at vertices other elevations."""
+    height_of = np.full(len(state.triangulation.points) + 1, np.nan)  # the last is of no vertex
+    height_of[vertices] = heights
+    wanted = height_of[state.vertex_of_row]
+    rows = np.flatnonzero(~np.isnan(wanted))
+    places = inputs.build_inputs.points[np.searchsorted(inputs.rows, rows)]
+    places[:, 2] = wanted[rows]
+    of_lines = height_of[state.line_vertices(inputs)]
+    on_lines = np.flatnonzero(~np.isnan(of_lines) & has_own_heights(inputs.build_inputs.lines))
+    lines = (SetElevations(on_lines, of_lines[on_lines]),) if len(on_lines) else ()
+    return Change(moved=rows, places=places, lines=lines)
+
+
+def _has_own_elevation(
+    state: State, inputs: NumberedInputs, vertices: NDArray[np.int64]
+) -> NDArray[np.bool_]:
+    """Tell which vertices stand for rows or for vertices of lines with elevations."""
+    of_lines = state.line_vertices(inputs)[~np.isnan(inputs.build_inputs.lines.heights)]
+    return np.isin(vertices, np.append(state.vertex_of_row, of_lines))
+
+
+def _require_given(
+    vertices: NDArray[np.int64], rows: NDArray[np.int32], lines: NDArray[np.int32], what: str
+) -> None:
+    made = vertices[~np.isin(vertices, np.append(rows, lines))]
+    if len(made):
+        raise LinesError(
+            f"Vertex {int(made[0])} cannot be {what} on its own: it was made where lines cross, "
+            "are laid on the surface or are split, and goes with them."
+        )
+
+
+def _require_elevations(found: State, wanted: NDArray[np.float64]) -> None:
+    """Refuse an elevation that a water body or a line of higher priority overrules."""
+    there = found.vertices_at(wanted[:, :2])
+    points = found.triangulation.points[there]
+    wrong = np.flatnonzero((there >= 0) & (points[:, 2] != wanted[:, 2]))
+    if len(wrong):
+        x, y, z = points[wrong[0]].tolist()
+        raise LinesError(
+            f"The vertex at x {x:g}, y {y:g} stays at elevation {z:g}: what counts more there, "
+            "such as water, has it."
+        )
+
+
+def _lines_along(lines: Lines, a: int, b: int) -> list[int]:
+    """Return the chains that take an edge."""
+    steps = np.sort(lines.steps(), axis=1)
+    found: list[int] = lines.step_chains()[(steps == sorted((a, b))).all(axis=1)].tolist()
+    return found
