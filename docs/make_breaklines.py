@@ -34,7 +34,7 @@ EVERY = 4
 
 def main(folder: Path = HERE) -> None:
     """Make the pictures and print the figures."""
-    lined = thinned(ts.io.lines_from_codes(ts.read(SAMPLES / "site_survey.csv", crs="EPSG:32616")))
+    lined = thinned(ts.lines_from_codes(ts.read(SAMPLES / "site_survey.csv", crs="EPSG:32616")))
     for name, source in (("without", replace(lined, breaklines=())), ("with", lined)):
         draw(source, folder / f"breaklines-{name}.png", f"Ditch and road, {name} breaklines")
         tell(name, ts.triangulate(source))
@@ -60,7 +60,7 @@ def draw(survey: ts.Survey, path: Path, title: str) -> None:
     """Draw the part of the site with the edges of its triangles."""
     corner = np.array([SITE["EASTING"], SITE["NORTHING"]])
     tin = ts.triangulate(survey, boundary=[corner + PART])
-    ts.terrain.preview(
+    ts.preview(
         tin, output=path, title=title, edges=True, exaggeration=EXAGGERATION, size=(1200, 900)
     )
 

@@ -44,7 +44,7 @@ def main(folder: Path = HERE) -> None:
 
 def surveyed() -> ts.TIN:
     """Return the TIN of the sample survey with the lines of its codes."""
-    return ts.triangulate(ts.io.lines_from_codes(ts.read(SURVEY, crs="EPSG:32616")))
+    return ts.triangulate(ts.lines_from_codes(ts.read(SURVEY, crs="EPSG:32616")))
 
 
 def others() -> list[tuple[str, ts.TIN]]:
@@ -103,7 +103,7 @@ def row(name: str, tin: ts.TIN, angle: float) -> str:
     begin = time.perf_counter()
     made = triangle.triangulate(graph, f"pq{angle:g}Q")
     theirs = time.perf_counter() - begin
-    other = ts.tin.TIN.from_triangles(
+    other = ts.TIN.from_triangles(
         np.column_stack([made["vertices"], np.zeros(len(made["vertices"]))]), made["triangles"]
     )
     return (

@@ -45,12 +45,12 @@ SETS = 40
 def main(folder: Path = HERE) -> None:
     """Make the pictures and print the figures."""
     draw_counterexamples(folder / "paper-counterexamples.png")
-    found = {name: ts.tin.compare(points) for name, points in data().items()}
+    found = {name: ts.compare(points) for name, points in data().items()}
     for name, comparison in found.items():
         tell(name, comparison)
     draw(found["75 random"], folder / "paper-75.png", "75 random points")
     draw(found["site survey"], folder / "paper-site.png", "Site survey, 2,121 points")
-    bad = ts.tin.compare(random_points(75, 2))
+    bad = ts.compare(random_points(75, 2))
     tell("75 random, seed 2", bad)
     draw(bad, folder / "paper-75-overlap.png", "Another 75 random points")
     tell_removal()
@@ -119,7 +119,7 @@ def tell_odds(n: int) -> None:
     """Print how the improved algorithm fares on many sets of random points."""
     whole = violating = due = 0
     for seed in range(SETS):
-        comparison = ts.tin.compare(random_points(n, seed))
+        comparison = ts.compare(random_points(n, seed))
         improved = comparison.outcomes[1]
         if improved.overlap == improved.gap == 0:
             whole += 1
@@ -134,7 +134,7 @@ def tell_odds(n: int) -> None:
 def tell_ties(n: int) -> None:
     """Print how the reading in which distance breaks ties fares beside the original."""
     for name, make in (("random points", random_points), ("points of a lattice", lattice_points)):
-        found = [ts.tin.compare(make(n, seed)).outcomes for seed in range(SETS)]
+        found = [ts.compare(make(n, seed)).outcomes for seed in range(SETS)]
         for k in (0, 3):
             exact = sum(same_triangles(one[k], one[4]) for one in found)
             due = sum(len(one[k].triangles) == len(one[4].triangles) for one in found)
@@ -170,7 +170,7 @@ def tell_breeding(n: int) -> None:
 
 def draw(comparison: Comparison, path: Path, title: str) -> None:
     """Draw all algorithms side by side: the paper's Figure 5."""
-    save(ts.terrain.comparison_picture(comparison, title=title), path, dpi=90)
+    save(ts.comparison_picture(comparison, title=title), path, dpi=90)
 
 
 def save(figure: Figure, path: Path, *, dpi: int) -> None:
@@ -213,7 +213,7 @@ def draw_closest(panels: Any) -> None:
 def draw_tied(panels: Any, places: list[tuple[int, int]], name: str, rule: str) -> None:
     """Draw how triangles cross each other if ties are broken for each edge alone."""
     points = flat(places)
-    found = {one.name: one for one in ts.tin.compare(points).outcomes}
+    found = {one.name: one for one in ts.compare(points).outcomes}
     tied, exact = found[name], found["exact"].triangles
     draw_network(panels[0], points, tied.triangles, tied.triangles[tied.overlapping].tolist())
     draw_network(panels[1], points, exact, [])

@@ -46,7 +46,7 @@ def scattered() -> ts.TIN:
 def draw_dual(path: Path) -> None:
     """Draw one cell and its neighbours, the diagram, and its dual: the paper's Figure 2."""
     tin = scattered()
-    diagram = tin.voronoi(boundary=FRAME)
+    diagram = ts.voronoi(tin, boundary=FRAME)
     figure = Figure(figsize=(12.0, 4.2), layout="constrained")
     titles = ("(a) The cell of p", "(b) The Voronoi diagram", "(c) Its dual: the triangles")
     panels = (draw_cell, draw_diagram, draw_triangles)
@@ -105,9 +105,9 @@ def draw_triangles(axes: Any, tin: ts.TIN, diagram: Any) -> None:
 
 def draw_quality(path: Path) -> None:
     """Draw the histograms of the site survey's triangles."""
-    survey = ts.io.lines_from_codes(ts.read(SURVEY, crs="EPSG:32616"))
-    shapes = ts.tin.quality(ts.triangulate(survey))
-    figure = ts.terrain.histogram(shapes, title="Triangle quality: site survey", unit="m")
+    survey = ts.lines_from_codes(ts.read(SURVEY, crs="EPSG:32616"))
+    shapes = ts.quality(ts.triangulate(survey))
+    figure = ts.histogram(shapes, title="Triangle quality: site survey", unit="m")
     figure.savefig(path, dpi=110, metadata=NO_VERSION)
 
 
@@ -116,7 +116,7 @@ def tell(count: int) -> None:
     random = np.random.default_rng(1).uniform(0, 10_000, (count, 3))
     tin = ts.triangulate(random + np.array([742_000.0, 4_030_000.0, 0.0]))
     begin = time.perf_counter()
-    diagram = tin.voronoi()
+    diagram = ts.voronoi(tin)
     ours = time.perf_counter() - begin
     box = shapely.Polygon(diagram.boundary).area
     print(f"{count:,} points: {ours:.1f} s; areas add up to {diagram.areas.sum() / box - 1:+.1e}")

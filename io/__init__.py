@@ -2,8 +2,6 @@
 
 from typing import TYPE_CHECKING
 
-from .._lazy import lazy_names
-
 if TYPE_CHECKING:
     from ..errors import CrsError, FormatError, ReadError, WriteError
     from .field_codes import lines_from_codes
@@ -13,21 +11,23 @@ if TYPE_CHECKING:
     from .vector.reading import read_lines, read_polygons, read_rings, read_water
     from .vector.survey_lines import with_lines
     from .writing import write
+else:  # a type checker takes every name for one that such a __getattr__ has
+    from .._lazy import lazy_names
 
-# The processes that read files for native libraries start without what they do not use.
-__getattr__, __dir__ = lazy_names(
-    __name__,
-    {
-        ".field_codes": ("lines_from_codes",),
-        ".reprojection.transformation": ("LengthUnit", "length_unit", "transform_points"),
-        "..errors": ("CrsError", "FormatError", "ReadError", "WriteError"),
-        ".reading": ("read",),
-        ".registry": ("Format", "find_format", "known_formats"),
-        ".vector.reading": ("read_lines", "read_polygons", "read_rings", "read_water"),
-        ".vector.survey_lines": ("with_lines",),
-        ".writing": ("write",),
-    },
-)
+    # The processes that read files for native libraries start without what they do not use.
+    __getattr__, __dir__ = lazy_names(
+        __name__,
+        {
+            ".field_codes": ("lines_from_codes",),
+            ".reprojection.transformation": ("LengthUnit", "length_unit", "transform_points"),
+            "..errors": ("CrsError", "FormatError", "ReadError", "WriteError"),
+            ".reading": ("read",),
+            ".registry": ("Format", "find_format", "known_formats"),
+            ".vector.reading": ("read_lines", "read_polygons", "read_rings", "read_water"),
+            ".vector.survey_lines": ("with_lines",),
+            ".writing": ("write",),
+        },
+    )
 
 __all__ = [
     "CrsError",

@@ -43,7 +43,7 @@ def read(
     crs: CrsLike | None = None,
     z_unit: UnitLike | None = None,
     **options: Any,
-) -> Survey | TIN:
+) -> Any:
     """Read elevation points or a TIN; the reader is chosen by content and suffix.
 
     Parameters
@@ -57,14 +57,14 @@ def read(
     z_unit : Unit or str, optional
         Unit of the file's elevations ("m", "ft", "US survey foot"), where the file itself does not
         say. After a reprojection they have the unit of ``crs``: see
-        :func:`tinsmith.io.transform_points`.
+        :func:`tinsmith.transform_points`.
     **options
         Options of the reader, see :meth:`Format.options`.
 
     Returns
     -------
     Survey or TIN
-        A TIN from a mesh format.
+        A TIN from a mesh format. Type checkers take it for either, as the file decides.
 
     Raises
     ------
@@ -78,6 +78,17 @@ def read(
         If the unit is unknown, or another than the one that the file gives.
     MissingExtraError
         If the library that reads the format is not installed.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [0, 3, 8]], crs="EPSG:32616")
+    >>> with TemporaryDirectory() as folder:
+    ...     path = ts.write(tin, Path(folder, "surface.ply"))
+    ...     ts.read(Path(folder, "surface.ply"))
+    <TIN: 3 vertices, 1 triangle, z 5 to 8, crs EPSG:32616>
     """
     require_local(path)
     file = Path(path)

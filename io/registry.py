@@ -55,6 +55,12 @@ class Format:
         The extra of this package that brings the library it needs.
     sniff : callable, optional
         Whether the first bytes of a file are certainly of this format.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> ts.find_format("ply").suffixes
+    ('.ply',)
     """
 
     name: str
@@ -66,7 +72,14 @@ class Format:
     sniff: Callable[[bytes], bool] | None = None
 
     def options(self, action: str) -> tuple[str, ...]:
-        """Return the names of the options of its reader or writer (``"read"``, ``"write"``)."""
+        """Return the names of the options of its reader or writer (``"read"``, ``"write"``).
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> ts.find_format("geojson").options("write")
+        ('kind', 'projected')
+        """
         target = getattr(self, action)
         return () if target is None else _options(load_function(target))
 
@@ -152,6 +165,11 @@ def known_formats() -> tuple[Format, ...]:
     ------
     FormatError
         If a plug-in cannot be loaded, is no Format, or takes a name that is in use.
+
+    Examples
+    --------
+    >>> "ply" in [form.name for form in known_formats()]
+    True
     """
     formats = list(_BUILT_IN)
     for entry in sorted(entry_points(group=_ENTRY_POINTS), key=lambda entry: entry.name):

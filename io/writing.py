@@ -52,6 +52,17 @@ def write(
         If no format fits, or the format has no such option.
     MissingExtraError
         If the library that writes the format is not installed.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [0, 3, 8]], crs="EPSG:32616")
+    >>> with TemporaryDirectory() as folder:
+    ...     path = ts.write(tin, Path(folder, "surface.ply"))
+    ...     ts.read(Path(folder, "surface.ply"))
+    <TIN: 3 vertices, 1 triangle, z 5 to 8, crs EPSG:32616>
     """
     file = Path(path)
     chosen = format_of_suffix(file, "write") if format is None else find_format(format)

@@ -52,6 +52,13 @@ class Merge(NamedTuple):
         How far each was moved in the plane, CRS units; 0 for an exact duplicate.
     height : float
         Elevation that the vertex received.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [0, 3, 8], [0, 0, 7]])
+    >>> next(tin.report.merges())
+    Merge(vertex=0, rows=(0, 3), heights=(5.0, 7.0), shifts=(0.0, 0.0), height=6.0)
     """
 
     vertex: int
@@ -207,6 +214,13 @@ class Report(Frozen):
         What was done to the TIN since.
     unmended : Unmended
         Triangles that refinement had to leave. None after an edit, which numbers triangles anew.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [0, 3, 8], [0, 0, 7]])
+    >>> tin.report.n_rows, tin.report.n_vertices, tin.report.n_triangles
+    (4, 3, 1)
     """
 
     n_rows: int
@@ -314,7 +328,15 @@ class Report(Frozen):
         )
 
     def merges(self) -> Iterator[Merge]:
-        """Walk the merges, one vertex at a time."""
+        """Walk the merges, one vertex at a time.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [0, 3, 8], [0, 0, 7]])
+        >>> [merge.rows for merge in tin.report.merges()]
+        [(0, 3)]
+        """
         for i, vertex in enumerate(self.merged_vertices):
             span = slice(self.merged_offsets[i], self.merged_offsets[i + 1])
             yield Merge(
@@ -326,7 +348,15 @@ class Report(Frozen):
             )
 
     def to_dict(self) -> dict[str, Any]:
-        """Return everything as plain Python values, ready for JSON."""
+        """Return everything as plain Python values, ready for JSON.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [0, 3, 8], [0, 0, 7]])
+        >>> tin.report.to_dict()["rows"]
+        4
+        """
         return {
             "rows": self.n_rows,
             "vertices": self.n_vertices,

@@ -8,14 +8,16 @@ from typing import TYPE_CHECKING, Any, ClassVar, Never
 import numpy as np
 
 from ..crs import CRS, Unit, require_one_unit, scale_elevations, shorten_crs
-from ..errors import PointsError
-from . import _kernel, topology
+from . import topology
 from .constraints.breaklines import Lines
 from .editing.editable import Editable
 from .editing.version import Version
 from .report import Report
 from .triangulation import Triangulation
+from .types import seal
 from .validation.points import as_points, as_xy
+from .validation.triangles import as_flags, as_triangles, turn_counter_clockwise
+from .validation.vertices import as_vertex, as_vertex_pairs
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -74,6 +76,15 @@ class TIN(Editable):
     between two edits; for several attributes that belong together take ``tin.triangulation``, or a
     copy first. Copies (``copy.copy``, ``copy.deepcopy``, pickles) share nothing that changes: each
     is edited on its own, and takes back the edits made before it was copied.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8]])
+    >>> tin
+    <TIN: 4 vertices, 2 triangles, z 5 to 8, crs unknown>
+    >>> tin.area, tin.bounds.width
+    (12.0, 4.0)
     """
 
     __slots__ = ("__weakref__", "_crs", "_elevation_unit")
@@ -154,9 +165,9 @@ class TIN(Editable):
         system = CRS.of(crs)
         unit = require_one_unit(system, Unit.of(z_unit))
         xyz = as_points(points)
-        corners = _as_triangles(triangles, len(xyz))
-        flags = _as_flags(constrained, len(corners))
-        corners, flags = _turned_counter_clockwise(xyz, corners, flags)
+        corners = as_triangles(triangles, len(xyz))
+        flags = as_flags(constrained, len(corners))
+        corners, flags = turn_counter_clockwise(xyz, corners, flags)
         return cls(
             points=xyz,
             triangles=corners,
@@ -292,6 +303,38 @@ class TIN(Editable):
         """Area in space, CRS units squared, elevations converted to them."""
         return float(self.triangle_surface_areas.sum())
 
+    @property
+    def triangle_normals(self) -> NDArray[np.float64]:
+        """Upward unit normal of each triangle, (m, 3) array; elevations in CRS units.
+
+        Raises CrsError where coordinates are longitude and latitude.
+
+        Examples
+        --------
+        >>> tin = TIN.from_triangles([[0, 0, 0], [4, 0, 3], [0, 4, 0]], [[0, 1, 2]])
+        >>> tin.triangle_normals
+        array([[-0.6,  0. ,  0.8]])
+        """
+        scale = scale_elevations(self.crs, self.elevation_unit)
+        return seal(_with_length_one(self._current.triangulation.normals(scale)))
+
+    @property
+    def vertex_normals(self) -> NDArray[np.float64]:
+        """Upward unit normal at each vertex, (n, 3) array; elevations in CRS units.
+
+        It is the mean of the normals of its triangles, weighted by their areas in space; NaN at a
+        vertex that no triangle has. Raises CrsError where coordinates are longitude and latitude.
+
+        Examples
+        --------
+        >>> roof = [[0, 0, 0], [4, 0, 3], [4, 4, 3], [8, 0, 0]]
+        >>> tin = TIN.from_triangles(roof, [[0, 1, 2], [1, 3, 2]])
+        >>> tin.vertex_normals[1]
+        array([0., 0., 1.])
+        """
+        scale = scale_elevations(self.crs, self.elevation_unit)
+        return seal(_with_length_one(self._current.triangulation.vertex_normals(scale)))
+
     # ---------------------------------------------------------------- queries
 
     def locate(self, xy: ArrayLike) -> NDArray[np.int32]:
@@ -311,6 +354,12 @@ class TIN(Editable):
         ------
         PointsError
             If ``xy`` has another shape, or a coordinate is infinite or too large. NaN is outside.
+
+        Examples
+        --------
+        >>> tin = TIN.from_triangles([[0, 0, 1], [4, 0, 2], [0, 4, 3]], [[0, 1, 2]])
+        >>> tin.locate([[1, 1], [3, 3]])
+        array([ 0, -1], dtype=int32)
         """
         return self._current.triangulation.locator.locate(as_xy(xy))
 
@@ -330,54 +379,174 @@ class TIN(Editable):
         ------
         PointsError
             As :meth:`locate`.
+
+        Examples
+        --------
+        >>> tin = TIN.from_triangles([[0, 0, 1], [4, 0, 2], [0, 4, 3]], [[0, 1, 2]])
+        >>> tin.interpolate([[4, 0], [2, 0], [3, 3]])
+        array([2. , 1.5, nan])
         """
         return self._current.triangulation.locator.interpolate(as_xy(xy))
+
+    def closest_vertex(self, xy: ArrayLike) -> NDArray[np.int32]:
+        """Find the vertex nearest to each place, in the plane.
+
+        Parameters
+        ----------
+        xy : (k, 2) array, CRS units
+
+        Returns
+        -------
+        (k,) int32 array
+            Vertex number; of several at the same distance the smallest. Decided by exact
+            predicates, also outside the surface and in its holes. -1 where ``xy`` is NaN.
+
+        Raises
+        ------
+        PointsError
+            As :meth:`locate`.
+
+        Notes
+        -----
+        The vertices' own Delaunay triangulation is built once for each version of the TIN, in
+        memory and time as :func:`tinsmith.triangulate`; a place then takes as long as looking at
+        the neighbours of a few vertices.
+
+        Examples
+        --------
+        >>> tin = TIN.from_triangles([[0, 0, 1], [4, 0, 2], [0, 4, 3]], [[0, 1, 2]])
+        >>> tin.closest_vertex([[3, 1], [2, 2], [-9, 9]])
+        array([1, 0, 2], dtype=int32)
+        """
+        return self._current.triangulation.nearest.find(as_xy(xy))
+
+    # ---------------------------------------------------------------- connections
+
+    def vertex_triangles(self, vertex: int) -> NDArray[np.int32]:
+        """Return the triangles around a vertex, counter-clockwise.
+
+        Parameters
+        ----------
+        vertex : int
+
+        Returns
+        -------
+        (k,) int32 array
+            From the boundary to the boundary, or else from the smallest number; empty for a vertex
+            that no triangle has. Where parts of the surface touch in the vertex, part after part.
+
+        Raises
+        ------
+        PointsError
+            If there is no such vertex.
+
+        See Also
+        --------
+        TIN.neighbors : the triangles beside each triangle.
+
+        Examples
+        --------
+        >>> square = [[0, 0, 1], [4, 0, 2], [4, 4, 3], [0, 4, 4]]
+        >>> tin = TIN.from_triangles(square, [[0, 1, 2], [0, 2, 3]])
+        >>> tin.vertex_triangles(0)
+        array([0, 1], dtype=int32)
+        """
+        surface = self._current.triangulation
+        return surface.turn_about(as_vertex(vertex, len(surface.points)))[0]
+
+    def vertex_neighbors(self, vertex: int) -> NDArray[np.int32]:
+        """Return the vertices that edges join to a vertex, counter-clockwise.
+
+        Parameters
+        ----------
+        vertex : int
+
+        Returns
+        -------
+        (k,) int32 array
+            In the order of :meth:`vertex_triangles`, each once.
+
+        Raises
+        ------
+        PointsError
+            If there is no such vertex.
+
+        Examples
+        --------
+        >>> square = [[0, 0, 1], [4, 0, 2], [4, 4, 3], [0, 4, 4]]
+        >>> tin = TIN.from_triangles(square, [[0, 1, 2], [0, 2, 3]])
+        >>> tin.vertex_neighbors(0)
+        array([1, 2, 3], dtype=int32)
+        """
+        surface = self._current.triangulation
+        return surface.turn_about(as_vertex(vertex, len(surface.points)))[1]
+
+    def edge_triangles(self, a: ArrayLike, b: ArrayLike) -> NDArray[np.int32]:
+        """Return the triangles on the two sides of edges.
+
+        Parameters
+        ----------
+        a, b : int or int arrays
+            Ends of each edge; shapes are broadcast.
+
+        Returns
+        -------
+        (..., 2) int32 array
+            The triangle on the left of the way from ``a`` to ``b``, and the one on its right; -1
+            where there is none: outside, or on both sides if it is no edge.
+
+        Raises
+        ------
+        PointsError
+            If there is no such vertex, or the shapes do not fit.
+
+        Examples
+        --------
+        >>> square = [[0, 0, 1], [4, 0, 2], [4, 4, 3], [0, 4, 4]]
+        >>> tin = TIN.from_triangles(square, [[0, 1, 2], [0, 2, 3]])
+        >>> tin.edge_triangles([0, 0, 1], [2, 1, 3])
+        array([[ 1,  0],
+               [ 0, -1],
+               [-1, -1]], dtype=int32)
+        """
+        surface = self._current.triangulation
+        return surface.find_edges(*as_vertex_pairs(a, b, len(surface.points)))
+
+    def is_edge(self, a: ArrayLike, b: ArrayLike) -> NDArray[np.bool_]:
+        """Tell which pairs of vertices are joined by an edge.
+
+        Parameters
+        ----------
+        a, b : int or int arrays
+            Shapes are broadcast.
+
+        Returns
+        -------
+        bool array
+            Of the shape of ``a`` and ``b``.
+
+        Raises
+        ------
+        PointsError
+            As :meth:`edge_triangles`.
+
+        Examples
+        --------
+        >>> square = [[0, 0, 1], [4, 0, 2], [4, 4, 3], [0, 4, 4]]
+        >>> tin = TIN.from_triangles(square, [[0, 1, 2], [0, 2, 3]])
+        >>> tin.is_edge(0, [1, 2, 3])
+        array([ True,  True,  True])
+        >>> bool(tin.is_edge(1, 3))
+        False
+        """
+        return seal(np.asarray((self.edge_triangles(a, b) != topology.NO_NEIGHBOR).any(axis=-1)))
 
     # ---------------------------------------------------------------- dual
 
     def voronoi(
         self, *, boundary: Bounds | ArrayLike | None = None, pad: float | None = None
     ) -> Voronoi:
-        """Build the Voronoi diagram of the vertices: for each the places nearest to it.
-
-        Two vertices are joined by an edge of the Delaunay triangulation where their cells share
-        a side [1]_.
-
-        Parameters
-        ----------
-        boundary : Bounds or (k, 2) array, optional
-            What the cells are clipped to: a rectangle, or the corners of a ring, convex or not,
-            CRS units.
-        pad : float, optional
-            Without a boundary, the bounds of the vertices are taken, this far outwards on every
-            side, CRS units. Default: a tenth of their longer side.
-
-        Returns
-        -------
-        Voronoi
-            One cell for each vertex, in their order; of vertices at one place the first has it.
-
-        Raises
-        ------
-        PointsError
-            If ``pad`` is no distance, or given together with a boundary.
-        LinesError
-            If the boundary has fewer than three corners, coordinates that are not finite, no
-            area, or touches itself.
-
-        Notes
-        -----
-        The diagram is that of the vertices alone, the dual of their Delaunay triangulation, which
-        is built anew: constraints, clipping and other triangles of the TIN have no part in it.
-        Where more than three cells meet (as in every raster), exact predicates tell, and the
-        corner is the same in all of them; there are no sides of length zero. Corners are rounded
-        to coordinates, circumcentres far outside the boundary never enter. Time and memory grow
-        as n log n; a ring, other than bounds that hold all vertices, takes shapely.
-
-        References
-        ----------
-        .. [1] R. Sibson, "Locally equiangular triangulations", The Computer Journal 21 (1978),
-           243-245. https://doi.org/10.1093/comjnl/21.3.243
+        """Build the Voronoi diagram of the vertices: :func:`tinsmith.voronoi` of this TIN.
 
         Examples
         --------
@@ -385,9 +554,9 @@ class TIN(Editable):
         >>> tin.voronoi(pad=0).areas
         array([4., 6., 6.])
         """
-        from .voronoi.diagram import voronoi
+        from .voronoi.diagram import divide_plane
 
-        return voronoi(self, boundary=boundary, pad=pad)
+        return divide_plane(self.points, boundary=boundary, pad=pad)
 
     def __repr__(self) -> str:
         surface = self._current.triangulation
@@ -399,59 +568,9 @@ class TIN(Editable):
         )
 
 
-def _as_triangles(triangles: ArrayLike, n_vertices: int) -> NDArray[np.int32]:
-    try:
-        given = np.asarray(triangles)
-    except ValueError:
-        raise PointsError("Triangles have rows of unequal length: three integers a row.") from None
-    if given.ndim != 2 or given.shape[1] != 3 or len(given) == 0:
-        raise PointsError(
-            f"Triangles have shape {given.shape}: they must be (m, 3) vertex numbers, m >= 1."
-        )
-    if given.dtype.kind not in "iu":
-        raise PointsError(f"Triangles are {given.dtype}: vertex numbers must be integers.")
-    wrong = ((given < 0) | (given >= n_vertices)).any(axis=1)
-    if wrong.any():
-        row = int(np.argmax(wrong))
-        raise PointsError(
-            f"Triangle {row} has the vertices {given[row].tolist()}: "
-            f"numbers 0 to {n_vertices - 1} are allowed.",
-            rows=np.flatnonzero(wrong)[:5],
-        )
-    return np.ascontiguousarray(given, np.int32)
-
-
-def _as_flags(constrained: ArrayLike | None, n_triangles: int) -> NDArray[np.bool_]:
-    if constrained is None:
-        return np.zeros((n_triangles, 3), np.bool_)
-    try:
-        flags = np.array(constrained, np.bool_)
-    except ValueError:
-        raise PointsError("Edge flags have rows of unequal length: three flags a row.") from None
-    if flags.shape != (n_triangles, 3):
-        raise PointsError(
-            f"Edge flags have shape {flags.shape}: one row of three a triangle is needed, "
-            f"({n_triangles}, 3)."
-        )
-    return flags
-
-
-def _turned_counter_clockwise(
-    points: NDArray[np.float64], triangles: NDArray[np.int32], flags: NDArray[np.bool_]
-) -> tuple[NDArray[np.int32], NDArray[np.bool_]]:
-    xy = points[:, :2]
-    turn = _kernel.orientation(*(np.ascontiguousarray(xy[triangles[:, k]]) for k in range(3)))
-    flat = turn == 0
-    if flat.any():
-        row, count = int(np.argmax(flat)), int(flat.sum())
-        what = "triangle has" if count == 1 else "triangles have"
-        raise PointsError(
-            f"{count} {what} no area in the plane (first: triangle {row}, "
-            f"vertices {triangles[row].tolist()}): a TIN needs triangles seen from above.",
-            rows=np.flatnonzero(flat)[:5],
-        )
-    clockwise = turn < 0
-    triangles, flags = triangles.copy(), flags.copy()
-    triangles[clockwise] = triangles[clockwise][:, [0, 2, 1]]
-    flags[clockwise] = flags[clockwise][:, [0, 2, 1]]
-    return triangles, flags
+def _with_length_one(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return vectors scaled to length 1; NaN for those without a direction."""
+    longest = np.abs(vectors).max(axis=1, keepdims=True)
+    scaled = np.divide(vectors, longest, out=np.full_like(vectors, np.nan), where=longest > 0)
+    unit: NDArray[np.float64] = scaled / np.linalg.norm(scaled, axis=1, keepdims=True)
+    return unit

@@ -63,6 +63,11 @@ class Survey:
         If the CRS is unknown.
     OptionError
         If the unit is unknown, or another than that of the CRS's vertical axis.
+
+    Examples
+    --------
+    >>> Survey(points=[[0, 0, 5], [4, 0, 6], [0, 3, 8]], crs="EPSG:32616")
+    <Survey: 3 points, crs EPSG:32616>
     """
 
     points: NDArray[np.float64]

@@ -12,7 +12,7 @@ Numbering, used everywhere::
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -23,13 +23,18 @@ if TYPE_CHECKING:
 
 __all__ = [
     "NO_NEIGHBOR",
+    "HalfEdges",
     "boundary_rings",
     "directed_edges",
     "edge_keys",
     "edges",
     "edges_at",
     "ends",
+    "find_triangles",
+    "gather",
     "neighbors_of",
+    "sort_half_edges",
+    "turn_about",
 ]
 
 NO_NEIGHBOR = -1
@@ -189,3 +194,90 @@ def _next_on_rim(triangles: NDArray[np.int32], neighbors: NDArray[np.int32]) -> 
         here = np.argmax(triangles[across] == pivot[turning, None], axis=1)
         triangle[turning], edge[turning] = across, (here + 2) % 3
     return 3 * triangle + edge
+
+
+# ---------------------------------------------------------------- by vertex
+
+
+class HalfEdges(NamedTuple):
+    """The edges of triangles, each as its triangle walks it, by start and then by end.
+
+    Those that start at vertex ``v`` are ``offsets[v]`` to ``offsets[v + 1]``; their triangles are
+    the triangles of ``v``.
+
+    Attributes
+    ----------
+    keys : (3 m,) int64 array
+        Start times the number of vertices, plus end; ascending.
+    triangles : (3 m,) int32 array
+        The triangle on the left of each.
+    offsets : (n + 1,) int64 array
+    """
+
+    keys: NDArray[np.int64]
+    triangles: NDArray[np.int32]
+    offsets: NDArray[np.int64]
+
+
+def sort_half_edges(triangles: NDArray[np.int32], n_vertices: int) -> HalfEdges:
+    """Sort the edges of counter-clockwise triangles by their start and their end."""
+    start, end = directed_edges(triangles)
+    keys = (start * n_vertices + end).ravel()
+    order = np.argsort(keys)
+    counts = np.bincount(start.ravel(), minlength=n_vertices)
+    return HalfEdges(
+        keys=keys[order],
+        triangles=(order // 3).astype(np.int32),
+        offsets=np.append(0, np.cumsum(counts)),
+    )
+
+
+def find_triangles(
+    edges: HalfEdges, start: NDArray[np.int64], end: NDArray[np.int64]
+) -> NDArray[np.int32]:
+    """Return the triangle on the left of each edge, ``NO_NEIGHBOR`` if there is none."""
+    wanted = start * (len(edges.offsets) - 1) + end
+    place = np.minimum(np.searchsorted(edges.keys, wanted), len(edges.keys) - 1)
+    found = edges.keys[place] == wanted
+    return np.where(found, edges.triangles[place], np.int32(NO_NEIGHBOR))
+
+
+def turn_about(
+    triangles: NDArray[np.int32], edges: HalfEdges, vertex: int
+) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    r"""Return the triangles around a vertex, and its neighbours, both counter-clockwise.
+
+    Each part of the surface that meets in the vertex is turned through from boundary to boundary,
+    or, if it goes all the way round, from its smallest triangle; parts by their first triangles::
+
+            c --- b         start -> end of the triangles:   a -> b, b -> c
+             \   / \         neighbours:                      a, b, c
+               v --- a
+    """
+    begin, stop = edges.offsets[vertex : vertex + 2].tolist()
+    own = np.sort(edges.triangles[begin:stop])
+    corner = np.argmax(triangles[own] == vertex, axis=1)
+    following, last = (triangles[own, (corner + k) % 3].tolist() for k in (1, 2))
+    ahead = dict(zip(following, zip(own.tolist(), last, strict=True), strict=True))
+    inner = set(last)
+    around: list[int] = []
+    neighbors: list[int] = []
+    for first in [*(end for end in following if end not in inner), *following]:
+        end = first
+        while end in ahead:
+            neighbors.append(end)
+            triangle, end = ahead.pop(end)
+            around.append(triangle)
+        if end != first:
+            neighbors.append(end)
+    return np.array(around, np.int32), np.array(neighbors, np.int32)
+
+
+def gather(
+    offsets: NDArray[np.int64], rows: NDArray[np.int64]
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return where the items of some rows of a ragged array stand, and the place of each's row."""
+    counts = offsets[rows + 1] - offsets[rows]
+    owner = np.repeat(np.arange(len(rows)), counts)
+    before = np.cumsum(counts) - counts
+    return np.arange(len(owner)) + (offsets[rows] - before)[owner], owner

@@ -10,6 +10,7 @@ import numpy as np
 
 from . import _kernel, topology
 from .types import Bounds, Frozen, seal
+from .voronoi.nearest import NearestVertex
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -71,6 +72,52 @@ class Triangulation(Frozen):
     def locator(self) -> _kernel.Locator:
         """The index of point location; any number of threads may ask it at a time."""
         return _kernel.Locator(self.points, self.triangles, self.neighbors)
+
+    def normals(self, elevation_scale: float = 1.0) -> NDArray[np.float64]:
+        """Return an upward normal of each triangle, (m, 3) array; elevations times a factor.
+
+        Their lengths are in proportion to the triangles' areas in space. Coordinates are scaled
+        first, so that no product overflows.
+        """
+        first, second = self._edge_vectors()
+        run = np.abs([first[:, :2], second[:, :2]]).max()
+        first[:, :2] /= run
+        second[:, :2] /= run
+        rise = max(float(np.abs([first[:, 2], second[:, 2]]).max()), np.finfo(float).tiny)
+        upward: NDArray[np.float64] = np.cross(first / [1, 1, rise], second / [1, 1, rise])
+        with np.errstate(over="ignore"):  # infinitely steep: the normal is level
+            steepness = np.float64(rise) * elevation_scale / run
+        upward[:, :2] *= min(steepness, 1.0)
+        upward[:, 2] = np.maximum(upward[:, 2], 0.0) / max(steepness, 1.0)
+        return upward
+
+    def vertex_normals(self, elevation_scale: float = 1.0) -> NDArray[np.float64]:
+        """Sum the normals of the triangles at each vertex, (n, 3) array."""
+        corners = self.triangles.ravel()
+        upward = np.repeat(self.normals(elevation_scale), 3, axis=0)
+        n_vertices = len(self.points)
+        return np.stack([np.bincount(corners, axis, n_vertices) for axis in upward.T], axis=1)
+
+    @cached_property
+    def half_edges(self) -> topology.HalfEdges:
+        """The edges of the triangles by the vertex where they start."""
+        edges = topology.sort_half_edges(self.triangles, len(self.points))
+        return topology.HalfEdges(seal(edges.keys), seal(edges.triangles), seal(edges.offsets))
+
+    def turn_about(self, vertex: int) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+        """Return the triangles around a vertex and its neighbours, counter-clockwise."""
+        around, neighbors = topology.turn_about(self.triangles, self.half_edges, vertex)
+        return seal(around), seal(neighbors)
+
+    def find_edges(self, a: NDArray[np.int64], b: NDArray[np.int64]) -> NDArray[np.int32]:
+        """Return the triangles left and right of the edges from a to b, (..., 2) array."""
+        sides = [topology.find_triangles(self.half_edges, *ends) for ends in ((a, b), (b, a))]
+        return seal(np.stack(sides, axis=-1))
+
+    @cached_property
+    def nearest(self) -> NearestVertex:
+        """The index of nearest vertices; any number of threads may ask it at a time."""
+        return NearestVertex(self.points)
 
     def _edge_vectors(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         origin = self.points[self.triangles[:, 0]]

@@ -37,7 +37,13 @@ class Bounds:
 
     @classmethod
     def of(cls, points: NDArray[np.float64]) -> Bounds:
-        """Return the bounds of ``points``, an (n, 2) or (n, 3) array with n >= 1."""
+        """Return the bounds of ``points``, an (n, 2) or (n, 3) array with n >= 1.
+
+        Examples
+        --------
+        >>> Bounds.of(np.array([[0.0, 1.0], [3.0, 5.0]]))
+        Bounds(xmin=0.0, ymin=1.0, xmax=3.0, ymax=5.0)
+        """
         xmin, ymin = points[:, :2].min(axis=0)
         xmax, ymax = points[:, :2].max(axis=0)
         return cls(float(xmin), float(ymin), float(xmax), float(ymax))
@@ -75,6 +81,11 @@ class Grid:
         (rows, columns).
     spacing : float
         Side of one square cell, CRS units.
+
+    Examples
+    --------
+    >>> Grid(Bounds(0.0, 0.0, 3.0, 4.0), shape=(8, 6), spacing=0.5).shape
+    (8, 6)
     """
 
     bounds: Bounds

@@ -87,7 +87,7 @@ def write(
     in that of the eastings (metres above degrees), and the member ``elevations`` says so where that
     is not the metre. With ``projected`` elevations stay as they are, and the member
     ``elevation_unit`` names their unit if it is known. Slope is that of the true surface, as
-    :func:`tinsmith.terrain.slope` gives it. Areas are in CRS units squared where the CRS is not
+    :func:`tinsmith.slope` gives it. Areas are in CRS units squared where the CRS is not
     known.
 
     The file is written in batches; beside the surface itself memory holds about 100 bytes for

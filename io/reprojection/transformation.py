@@ -97,6 +97,11 @@ def transform_points(
         If a CRS is unknown, no transformation exists, or a point lies outside its domain.
     OptionError
         If the unit is unknown.
+
+    Examples
+    --------
+    >>> transform_points([[-84.2, 36.4, 300.0]], "EPSG:4326", "EPSG:32616").round(1).tolist()
+    [[751106.6, 4031958.5, 300.0]]
     """
     return reproject(points, CRS.of(source), CRS.of(target), unit=Unit.of(z_unit)).points
 

@@ -55,6 +55,12 @@ class Unit:
         As it stands behind a number, for example "US ft".
     metres : float or None
         Its length; None if it is unknown, or an angle.
+
+    Examples
+    --------
+    >>> unit = Unit.of("US survey foot")
+    >>> unit.symbol, round(unit.metres, 9)
+    ('US ft', 0.30480061)
     """
 
     name: str
@@ -193,6 +199,11 @@ class CRS:
         ------
         CrsError
             As the class.
+
+        Examples
+        --------
+        >>> CRS.of(32616), CRS.of(None)
+        (CRS('EPSG:32616'), None)
         """
         return value if value is None or isinstance(value, CRS) else cls(value)
 
@@ -261,27 +272,57 @@ class CRS:
     # ------------------------------------------------------------------ other forms
 
     def to_pyproj(self) -> pyproj.CRS:
-        """Return the CRS of pyproj."""
+        """Return the CRS of pyproj.
+
+        Examples
+        --------
+        >>> CRS("EPSG:32616").to_pyproj().name
+        'WGS 84 / UTM zone 16N'
+        """
         return _parsed(self._text)
 
     def to_wkt(self, version: str = "WKT2_2019") -> str:
-        """Return the CRS as WKT, in a version that pyproj knows."""
+        """Return the CRS as WKT, in a version that pyproj knows.
+
+        Examples
+        --------
+        >>> CRS("EPSG:32616").to_wkt()[:30]
+        'PROJCRS["WGS 84 / UTM zone 16N'
+        """
         return str(_parsed(self._text).to_wkt(version))
 
     def to_epsg(self) -> int | None:
-        """Return the EPSG number; None if there is none that means exactly this."""
+        """Return the EPSG number; None if there is none that means exactly this.
+
+        Examples
+        --------
+        >>> CRS("EPSG:32616").to_epsg()
+        32616
+        """
         authority = self.to_authority()
         return int(authority[1]) if authority and authority[0] == "EPSG" else None
 
     def to_authority(self) -> tuple[str, str] | None:
-        """Return authority and code; None if there are none that mean exactly this."""
+        """Return authority and code; None if there are none that mean exactly this.
+
+        Examples
+        --------
+        >>> CRS(4326).to_authority()
+        ('EPSG', '4326')
+        """
         if self._text == self.to_wkt():  # a code would have been found when it was made
             return None
         found = _parsed(self._text).to_authority(min_confidence=100)
         return None if found is None else (str(found[0]), str(found[1]))
 
     def is_same(self, other: CrsLike) -> bool:
-        """Whether coordinates are the same in both, the order of the axes aside."""
+        """Whether coordinates are the same in both, the order of the axes aside.
+
+        Examples
+        --------
+        >>> CRS(4326).is_same("OGC:CRS84")  # longitude first
+        True
+        """
         wanted = CRS.of(other)
         if self._text == wanted._text:
             return True

@@ -94,7 +94,7 @@ class CheckError(TinsmithError, ValueError):
     Attributes
     ----------
     problems : tuple of Problem
-        As in :class:`tinsmith.tin.CheckResult`.
+        As in :class:`tinsmith.CheckResult`.
     """
 
     def __init__(self, message: str, *, problems: Sequence[Any] = ()) -> None:

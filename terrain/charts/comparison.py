@@ -42,7 +42,7 @@ def comparison_picture(comparison: Comparison, *, title: str | None = None) -> A
     Parameters
     ----------
     comparison : Comparison
-        Of :func:`tinsmith.tin.compare`.
+        Of :func:`tinsmith.compare`.
     title : str, optional
         Default the number of points.
 

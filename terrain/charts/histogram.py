@@ -51,7 +51,7 @@ def histogram(quality: Quality, *, title: str | None = None, unit: str = "") -> 
     Parameters
     ----------
     quality : Quality
-        Of :func:`tinsmith.tin.quality`.
+        Of :func:`tinsmith.quality`.
     title : str, optional
         Default "Triangle quality".
     unit : str, optional

@@ -72,6 +72,13 @@ class CheckResult:
         entered because of problems.
     counts : dict of str to int
         Vertices, triangles, edges, rings and so on, as far as they were counted.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> result = ts.check(ts.triangulate([[0, 0, 5], [4, 0, 6], [0, 3, 8]]))
+    >>> result.ok, result.problems
+    (True, ())
     """
 
     level: int
@@ -91,6 +98,12 @@ class CheckResult:
         ------
         CheckError
             If there are problems; its text is their sentences.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> result = ts.check(ts.triangulate([[0, 0, 5], [4, 0, 6], [0, 3, 8]]))
+        >>> result.raise_if_failed()
         """
         if self.problems:
             raise CheckError(
@@ -98,7 +111,15 @@ class CheckResult:
             )
 
     def to_dict(self) -> dict[str, Any]:
-        """Return everything as plain Python values, ready for JSON."""
+        """Return everything as plain Python values, ready for JSON.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> result = ts.check(ts.triangulate([[0, 0, 5], [4, 0, 6], [0, 3, 8]]))
+        >>> result.to_dict()["ok"]
+        True
+        """
         return {
             "ok": self.ok,
             "level": self.level,

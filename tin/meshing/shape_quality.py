@@ -44,6 +44,13 @@ class Quality:
         Circumradius over shortest edge, 0.577 or more; equals 1 / (2 sin(min_angle)).
     space : bool
         Whether measured in space; otherwise in the plane.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> shapes = ts.quality(ts.triangulate([[0, 0, 5], [3, 0, 6], [0, 4, 8]]))
+    >>> shapes.edge_lengths, shapes.circumradius
+    (array([[5., 4., 3.]]), array([2.5]))
     """
 
     min_angle: NDArray[np.float64]
@@ -73,6 +80,13 @@ class Quality:
             to 1 of the triangles whose smallest angle is below 1, 10, 20 or 30 degrees
             (``"min_angle_below"``), or whose largest is above 90, 120 or 150
             (``"max_angle_above"``).
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> shapes = ts.quality(ts.triangulate([[0, 0, 5], [3, 0, 6], [0, 4, 8]]))
+        >>> round(shapes.summary()["min_angle"]["min"], 2)
+        36.87
         """
         measures = {name: _quantiles(values) for name, values in self._columns().items()}
         below = {f"{limit:g}": float(np.mean(self.min_angle < limit)) for limit in _SMALL_ANGLES}
@@ -81,7 +95,15 @@ class Quality:
         return {"triangles": len(self), "space": self.space, **measures, "shares": shares}
 
     def to_dict(self) -> dict[str, Any]:
-        """Return every measure of every triangle as lists of plain values."""
+        """Return every measure of every triangle as lists of plain values.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> shapes = ts.quality(ts.triangulate([[0, 0, 5], [3, 0, 6], [0, 4, 8]]))
+        >>> shapes.to_dict()["circumradius"]
+        [2.5]
+        """
         return {name: values.tolist() for name, values in self._columns().items()}
 
     def _columns(self) -> dict[str, NDArray[np.float64]]:

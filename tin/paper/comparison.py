@@ -82,6 +82,13 @@ class Outcome:
         squared.
     angles : (m,) float64 array
         Smallest angle of each triangle, degrees.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> found = ts.compare([[0, 0, 5], [4, 0, 6], [0, 3, 8], [1, 1, 7]])
+    >>> found.outcomes[0].triangles.shape, found.outcomes[0].angle_counts.tolist()
+    ((3, 3), [0, 2, 1, 0, 0, 0])
     """
 
     name: str
@@ -106,7 +113,15 @@ class Outcome:
         return np.histogram(np.minimum(self.angles, ANGLE_BINS[-1]), ANGLE_BINS)[0]
 
     def to_dict(self) -> dict[str, Any]:
-        """Return everything but the triangles as plain values."""
+        """Return everything but the triangles as plain values.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> found = ts.compare([[0, 0, 5], [4, 0, 6], [0, 3, 8], [1, 1, 7]])
+        >>> found.outcomes[0].to_dict()["triangles"]
+        3
+        """
         count = len(self.triangles)
         without = self.candidates_without_removal
         return {
@@ -146,6 +161,13 @@ class Comparison:
         Area of the hull, CRS units squared.
     outcomes : tuple of Outcome
         Original, improved in three readings, exact.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> found = ts.compare([[0, 0, 5], [4, 0, 6], [0, 3, 8], [1, 1, 7]])
+    >>> found.expected, found.outcomes[0].name
+    (3, 'original')
     """
 
     points: NDArray[np.float64]
@@ -159,7 +181,15 @@ class Comparison:
         return 2 * len(self.points) - 2 - len(self.hull)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return everything but points and triangles as plain values."""
+        """Return everything but points and triangles as plain values.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> found = ts.compare([[0, 0, 5], [4, 0, 6], [0, 3, 8], [1, 1, 7]])
+        >>> found.to_dict()["points"]
+        4
+        """
         return {
             "points": len(self.points),
             "hull_points": len(self.hull),
@@ -200,7 +230,7 @@ def compare(points: Survey | ArrayLike, *, limit: int = MOST_POINTS) -> Comparis
 
     See Also
     --------
-    tinsmith.tin.paper : the algorithms, and the choices where the paper is silent.
+    tinsmith.paper : the algorithms, and the choices where the paper is silent.
 
     Examples
     --------

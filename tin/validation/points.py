@@ -83,6 +83,8 @@ def as_xy(xy: Any) -> NDArray[np.float64]:
         in which the predicates are exact.
     """
     places, is_masked = as_table(xy, "Places", least=2, most=2)
+    if places.shape == (0,):  # an empty list is no places
+        places = places.reshape(0, 2)
     if places.ndim != 2 or places.shape[1] != 2:
         raise PointsError(f"Places have shape {places.shape}: (k, 2) is needed, columns x, y.")
     if is_masked is not None:

@@ -20,9 +20,7 @@ from .cells import Rings, cells_in_box, signed_areas
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from ..surface import TIN
-
-__all__ = ["Voronoi", "voronoi"]
+__all__ = ["Voronoi", "divide_plane"]
 
 _PAD_SHARE = 0.1
 """How far the default boundary lies beyond the vertices, of the longer side of their bounds."""
@@ -32,7 +30,7 @@ _PAD_SHARE = 0.1
 class Voronoi:
     """A Voronoi diagram within a boundary: for each vertex the places nearest to it.
 
-    Made by :meth:`tinsmith.TIN.voronoi`. All arrays are read-only. ``len`` is the number of cells.
+    Made by :func:`tinsmith.voronoi`. All arrays are read-only. ``len`` is the number of cells.
 
     Attributes
     ----------
@@ -50,7 +48,7 @@ class Voronoi:
     --------
     >>> import tinsmith as ts
     >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [4, 4, 7], [0, 4, 8], [2, 2, 9]])
-    >>> diagram = tin.voronoi(pad=0)
+    >>> diagram = ts.voronoi(tin, pad=0)
     >>> diagram
     <Voronoi: 5 cells, 16 corners, area 16>
     >>> diagram.areas
@@ -91,6 +89,13 @@ class Voronoi:
         -----
         The polygons are valid, but for cells of points that lie on one circle up to rounding:
         these can have sides as short as that rounding.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [4, 4, 7], [0, 4, 8]])
+        >>> ts.voronoi(tin, pad=0).to_shapely()[0].area
+        4.0
         """
         import shapely
 
@@ -116,21 +121,24 @@ class Voronoi:
         )
 
 
-def voronoi(
-    tin: TIN, *, boundary: Bounds | ArrayLike | None = None, pad: float | None = None
+def divide_plane(
+    points: NDArray[np.float64],
+    *,
+    boundary: Bounds | ArrayLike | None = None,
+    pad: float | None = None,
 ) -> Voronoi:
-    """Build the Voronoi diagram of the vertices of a TIN; see :meth:`tinsmith.TIN.voronoi`."""
+    """Build the Voronoi diagram of the vertices of a TIN; see :func:`tinsmith.voronoi`."""
     if boundary is not None and pad is not None:
         raise PointsError(
             f"Invalid pad {shown(pad)}: a boundary is given, and only bounds are padded."
         )
-    extent = Bounds.of(tin.points)
+    extent = Bounds.of(points)
     if boundary is None:
         box = _padded(extent, pad)
-        return _diagram(_cells(tin.points, box), _corners(box))
+        return _diagram(_cells(points, box), _corners(box))
     ring = _as_boundary(boundary)
     box = _joined(extent, Bounds.of(ring))
-    cells = _cells(tin.points, box)
+    cells = _cells(points, box)
     if isinstance(boundary, Bounds) and box == boundary:
         return _diagram(cells, ring)
     return _clipped(cells, ring)

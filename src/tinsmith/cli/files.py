@@ -66,7 +66,8 @@ def read_input(path: Path, reading: Reading, console: Console) -> Survey | TIN:
     with console.steps() as steps, steps.step(f"Reading {name_of(Path(path.name))}"):
         if path == STANDARD:
             return read_stream(standard_input(), name_of(path), **options)
-        return read(path, **options)
+        found: Survey | TIN = read(path, **options)
+        return found
 
 
 def standard_input() -> IO[bytes]:

@@ -1,0 +1,204 @@
+"""The public names: a snapshot of them, their examples, and what type checkers make of them."""
+
+import inspect
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from support.api import describe_api, public_members, public_objects
+
+import tinsmith as ts
+
+ROOT = Path(__file__).parents[1]
+SNAPSHOT = ROOT / "tests" / "api.txt"
+RENEW = "if that is meant, renew it: PYTHONPATH=tests python -m support.api > tests/api.txt"
+
+WITHOUT_EXAMPLE = {
+    "opens a window or draws": {"preview"},
+    "needs a file of lines and the library that reads it": {
+        "read_lines",
+        "read_polygons",
+        "read_rings",
+        "read_water",
+    },
+    "shown by the example of TIN.insert, and the page on editing": {
+        "TIN.add_breakline",
+        "TIN.flip",
+        "TIN.move",
+        "TIN.remove",
+        "TIN.remove_breakline",
+        "TIN.set_elevation",
+        "TIN.set_z",
+        "TIN.undo",
+    },
+    "is made by triangulate, for reading; its methods serve edits": {
+        "Lines",
+        "Lines.chains",
+        "Lines.has_breakline",
+        "Lines.renumbered",
+        "Lines.step_chains",
+        "Lines.steps",
+        "Lines.with_breakline",
+        "Report.after_edits",
+        "Report.met_by",
+        "Report.renumbered",
+        "Report.with_lines",
+        "Report.with_merges",
+        "Report.with_removed",
+        "Report.with_rows",
+        "Water",
+    },
+}
+
+
+def test_public_names_are_those_of_the_snapshot():
+    expected, found = SNAPSHOT.read_text().splitlines(), describe_api()
+    gone = [f"- {line}" for line in expected if line not in found]
+    new = [f"+ {line}" for line in found if line not in expected]
+    assert found == expected, "\n".join(["The public API has changed;", RENEW, *gone, *new])
+
+
+def test_every_public_name_has_an_example():
+    excused = set().union(*WITHOUT_EXAMPLE.values())
+    called = {
+        name: member
+        for owner, thing in public_objects()
+        for name, member in [(owner, thing), *public_members(owner, thing)]
+        if inspect.isfunction(member) or (inspect.isclass(member) and not is_error(member))
+    }
+    without = {name for name, thing in called.items() if ">>>" not in (thing.__doc__ or "")}
+    assert without - excused == set(), "public names whose docstring has no example"
+    assert excused <= set(called), "excused, but not public"
+
+
+def is_error(thing):
+    return issubclass(thing, BaseException)
+
+
+def test_packages_and_flat_names_are_the_same_things():
+    for package in (ts.tin, ts.io, ts.terrain):
+        for name in package.__all__:
+            if name != "LengthUnit":  # what Unit was called
+                assert getattr(ts, name) is getattr(package, name), name
+    assert ts.voronoi is ts.tin.voronoi.voronoi
+
+
+def test_lazy_names_are_those_that_checkers_see():
+    """The names are written three times: for checkers, for use, and in ``__all__``."""
+    text = (ROOT / "src/tinsmith/__init__.py").read_text()
+    seen, used = text.split("\nelse:")
+    imported = set(re.findall(r"\b\w+\b", " ".join(re.findall(r" import ([^(\n]+)$", seen, re.M))))
+    imported |= set(re.findall(r"^        (\w+),$", seen, re.M))
+    imported -= {"TYPE_CHECKING", "import", "tinsmith", "as", "ts"}
+    table = used.split("__all__")[0]
+    assert set(ts.__all__) == imported | {"__version__"}
+    assert set(re.findall(r'"(\w+)"', table)) == imported - {"io", "terrain", "tin"}
+    assert set(dir(ts)) >= imported
+
+
+@pytest.mark.parametrize("name", [name for name in ts.__all__ if name != "__version__"])
+def test_every_name_can_be_the_first(name):
+    """No circle of imports shows up, whichever name a program begins with; nothing heavy comes."""
+    heavy = "pandas pyarrow rasterio pyogrio pyproj pyvista vtk shapely matplotlib meshio rich"
+    code = (
+        f"import sys, tinsmith; tinsmith.{name};"
+        f"print(sorted(set({heavy!r}.split()) & set(sys.modules)))"
+    )
+    result = run(sys.executable, "-c", code)
+    assert result.stdout.strip() == "[]", result.stderr
+
+
+def test_import_alone_loads_not_even_numpy():
+    code = "import sys, tinsmith; print('numpy' in sys.modules, 'tinsmith.tin' in sys.modules)"
+    assert run(sys.executable, "-c", code).stdout.split() == ["False", "False"]
+
+
+def run(*command, cwd=None, **environment):
+    return subprocess.run(
+        command,
+        cwd=cwd,
+        env={**os.environ, **environment},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+# -------------------------------------------------------------------- type checkers
+
+CONFIG = """
+[mypy]
+strict = True
+[mypy-shapely.*,rasterio.*,pyogrio.*,pyvista.*,vtk.*,vtkmodules.*,matplotlib.*,meshio.*]
+ignore_missing_imports = True
+"""
+TYPOS = """
+import tinsmith as ts
+
+tin = ts.triangulate([[0, 0, 0], [1, 0, 0], [0, 1, 0]])
+tin.trianglse
+ts.trianglate(tin)
+ts.io.raed("a.csv")
+tin.triangles = tin.triangles
+ts.slope(tin).mx()
+ts.voronoi(tin, bounday=None)
+ts.TIN.closest_vertex(tin)
+reveal_type(ts.slope)
+reveal_type(tin.closest_vertex([[0, 0]]))
+"""
+FLAT = """
+import tinsmith as ts
+
+tin = ts.triangulate([[0, 0, 0], [1, 0, 0], [0, 1, 0]])
+print(ts.terrain.slope(tin), ts.tin.refine(tin), ts.io.read("a.ply"), tin.voronoi(pad=1).areas)
+print(ts.quality(tin).min_angle, ts.check(tin).ok, ts.lift(tin), ts.read("a.ply").triangles)
+print(tin.is_edge(0, 1), tin.vertex_triangles(0), tin.triangle_normals.sum(), ts.paper)
+crs: ts.CRS = ts.CRS("EPSG:32616")
+line: ts.Breakline = ts.Breakline([[0, 0, 1], [1, 1, 1]])
+"""
+
+
+@pytest.fixture(scope="module")
+def judge(tmp_path_factory):
+    """Return a function that has mypy judge a user's file, strictly, against the packages."""
+    folder = tmp_path_factory.mktemp("users")
+    package = folder / "installed" / "tinsmith"
+    package.mkdir(parents=True)
+    for source in (ROOT / "src" / "tinsmith").iterdir():
+        if source.name != "__pycache__":
+            (package / source.name).symlink_to(source)
+    for name in ("tin", "io", "terrain"):
+        (package / name).symlink_to(ROOT / name)
+    (folder / "mypy.ini").write_text(CONFIG)
+
+    def judge(text):
+        (folder / "program.py").write_text(text)
+        mypy = str(Path(sys.executable).parent / "mypy")
+        options = ["--config-file", str(folder / "mypy.ini"), "--cache-dir", str(folder / "cache")]
+        command = [mypy, *options, str(folder / "program.py")]
+        # In the repository's root mypy would take its folder "io" for Python's own.
+        return run(*command, cwd=folder, MYPYPATH=str(package.parent)).stdout
+
+    return judge
+
+
+def test_the_readme_passes_mypy(judge):
+    text = (ROOT / "README.md").read_text()
+    found = judge("\n".join(re.findall(r"```python\n(.*?)```", text, re.DOTALL)))
+    assert found.startswith("Success"), found
+
+
+def test_flat_names_and_those_of_packages_pass_mypy(judge):
+    found = judge(FLAT)
+    assert found.startswith("Success"), found
+
+
+def test_mypy_refuses_names_that_are_not_there(judge):
+    found = judge(TYPOS)
+    lines = [int(number) for number in re.findall(r"program.py:(\d+): error", found)]
+    assert sorted(set(lines)) == [5, 6, 7, 8, 9, 10, 11], found
+    assert 'Revealed type is "def (tin: tinsmith.tin.surface.TIN)' in found
+    assert "int" in found.split("Revealed type")[-1]

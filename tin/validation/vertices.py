@@ -1,0 +1,76 @@
+"""Vertex numbers as callers give them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...errors import PointsError
+from .options import is_whole_number, shown
+from .tables import is_masked_array
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["as_vertex", "as_vertex_pairs"]
+
+
+def as_vertex(vertex: Any, n_vertices: int) -> int:
+    """Return a vertex number.
+
+    Raises
+    ------
+    PointsError
+        If it is none.
+    """
+    if not is_whole_number(vertex):
+        raise PointsError(f"Invalid vertex {shown(vertex)}: a whole number is needed.")
+    if not 0 <= vertex < n_vertices:
+        raise PointsError(
+            f"There is no vertex {shown(vertex)}: numbers 0 to {n_vertices - 1} are allowed."
+        )
+    return int(vertex)
+
+
+def _as_vertices(vertices: Any, n_vertices: int) -> NDArray[np.int64]:
+    """Return vertex numbers as an array of the shape given; an empty list is no vertices.
+
+    Raises
+    ------
+    PointsError
+        If they are not whole numbers, or one of them is no vertex.
+    """
+    try:
+        numbers = np.asarray(vertices)
+    except Exception:
+        numbers = np.empty(1, np.float64)
+    numbers = numbers.astype(np.int64) if numbers.size == 0 else numbers
+    if is_masked_array(vertices) or numbers.dtype.kind not in "iu":
+        raise PointsError(f"Invalid vertices {shown(vertices)}: whole numbers are needed.")
+    wrong = (numbers < 0) | (numbers >= n_vertices)
+    if wrong.any():
+        raise PointsError(
+            f"There is no vertex {int(numbers[wrong][0])}: numbers 0 to {n_vertices - 1} are "
+            "allowed."
+        )
+    return numbers.astype(np.int64)
+
+
+def as_vertex_pairs(a: Any, b: Any, n_vertices: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return the vertex numbers of pairs, of one shape.
+
+    Raises
+    ------
+    PointsError
+        If one of them is no vertex, or the shapes do not fit.
+    """
+    first, second = _as_vertices(a, n_vertices), _as_vertices(b, n_vertices)
+    try:
+        first_of, second_of = np.broadcast_arrays(first, second)
+    except ValueError:
+        raise PointsError(
+            f"Vertices a have shape {first.shape} and b {second.shape}: as many are needed, or "
+            "one of them single."
+        ) from None
+    return first_of, second_of

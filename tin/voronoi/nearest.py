@@ -1,0 +1,199 @@
+"""The vertex nearest to a place: the Voronoi cell that holds it, found without building cells.
+
+A place's nearest vertex is reached from any vertex by going on to a nearer Delaunay neighbour as
+long as there is one: only the owner of the cell that holds the place has none [1]_.
+
+.. [1] P. Bose and P. Morin, "Online routing in triangulations", SIAM Journal on Computing 33
+   (2004), 937-951. https://doi.org/10.1137/S0097539700369387
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .. import _kernel, topology
+from ..validation.threads import thread_count
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["NearestVertex"]
+
+_ROUNDING = 1.0 + 64 * np.finfo(np.float64).eps
+"""Two squared distances whose ratio is further from 1 than this are told apart by doubles: each is
+rounded by less than 8 eps, coordinates of the exact range never underflow."""
+
+_MOST_PAIRS = 4_000_000
+"""Pairs of a place and a neighbour that are looked at in one go, about: a bound on memory."""
+
+
+class NearestVertex:
+    """An index of points; it is never changed.
+
+    Parameters
+    ----------
+    points : (n, 3) float64 array
+        Of several at one place the first is found. At least three places, not collinear.
+    """
+
+    def __init__(self, points: NDArray[np.float64]) -> None:
+        growth = _kernel.grow(points, threads=thread_count(None, len(points)))
+        kept = np.arange(len(points), dtype=np.int32)
+        if growth.kept_row is not None:
+            kept = np.flatnonzero(growth.kept_row == kept).astype(np.int32)
+        places = np.ascontiguousarray(points[kept])
+        self._number = kept
+        self._xy = np.ascontiguousarray(places[:, :2])
+        self._triangles = growth.triangles
+        self._locator = _kernel.Locator(places, growth.triangles, growth.neighbors)
+        edges = topology.edges(growth.triangles, growth.neighbors).astype(np.int64)
+        start, end = np.concatenate([edges, edges[:, ::-1]]).T
+        self._neighbors = end[np.argsort(start)]
+        self._offsets = np.append(0, np.cumsum(np.bincount(start, minlength=len(kept))))
+        self._hull = np.unique(
+            topology.edges_at(growth.triangles, growth.neighbors == topology.NO_NEIGHBOR)
+        )
+
+    def find(self, xy: NDArray[np.float64]) -> NDArray[np.int32]:
+        """Return the nearest vertex of each place, the smallest number of several; -1 for NaN."""
+        found = np.full(len(xy), -1, np.int32)
+        is_place = ~np.isnan(xy).any(axis=1)
+        xy = np.ascontiguousarray(xy[is_place])
+        nearest = self._descend(xy, self._start(xy))
+        found[is_place] = self._number[self._smallest_of_tied(xy, nearest)]
+        return found
+
+    def _start(self, xy: NDArray[np.float64]) -> NDArray[np.int64]:
+        """Return a vertex near each place: a corner of its triangle, or of one near by."""
+        start = np.zeros(len(xy), np.int64)
+        triangle = self._locator.locate(xy)
+        outside = np.flatnonzero(triangle < 0)
+        if len(outside):
+            start[outside] = self._near_hull(xy[outside])
+        inside = np.flatnonzero(triangle >= 0)
+        corners = self._triangles[triangle[inside]]
+        away = self._squared(xy[inside, None], corners)
+        start[inside] = corners[np.arange(len(inside)), np.argmin(away, axis=1)]
+        return start
+
+    def _near_hull(self, xy: NDArray[np.float64]) -> NDArray[np.int64]:
+        """Return a vertex of the hull near each place outside: by one of the two coordinates."""
+        hull = self._xy[self._hull]
+        candidates = []
+        for axis in (0, 1):
+            order = np.argsort(hull[:, axis], kind="stable")
+            place = np.searchsorted(hull[order, axis], xy[:, axis])
+            candidates += [
+                self._hull[order[np.clip(place + k, 0, len(hull) - 1)]] for k in (-2, -1, 0, 1)
+            ]
+        tried = np.stack(candidates, axis=1)
+        best = np.argmin(self._squared(xy[:, None], tried), axis=1)
+        return np.asarray(tried[np.arange(len(xy)), best], np.int64)
+
+    def _descend(self, xy: NDArray[np.float64], at: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Go from vertex to nearer vertex until none of the neighbours is nearer."""
+        at = at.copy()
+        active = np.arange(len(xy))
+        while len(active):
+            moved = [self._step(xy, at, part) for part in self._portions(at, active)]
+            active = np.concatenate(moved)
+        return at
+
+    def _step(
+        self, xy: NDArray[np.float64], at: NDArray[np.int64], rows: NDArray[np.int64]
+    ) -> NDArray[np.int64]:
+        """Move some places' vertices to a nearer neighbour; return those that have moved."""
+        item, owner = topology.gather(self._offsets, at[rows])
+        neighbor, of = self._neighbors[item], rows[owner]
+        away = self._squared(xy[of], neighbor)
+        here = self._squared(xy[rows], at[rows])
+        first = np.append(0, np.cumsum(np.bincount(owner, minlength=len(rows)))[:-1])
+        least = np.minimum.reduceat(away, first)
+        is_least = np.flatnonzero(away == least[owner])
+        best = neighbor[is_least[np.searchsorted(owner[is_least], np.arange(len(rows)))]]
+        is_nearer = least * _ROUNDING < here
+        # What doubles leave open is decided among all the neighbours that may be nearer.
+        is_open = (away <= here[owner] * _ROUNDING) & ~is_nearer[owner]
+        nearer = np.flatnonzero(is_open)
+        nearer = nearer[self._compare(xy[of[nearer]], neighbor[nearer], at[of[nearer]]) < 0]
+        best[owner[nearer]] = neighbor[nearer]
+        is_nearer[owner[nearer]] = True
+        at[rows[is_nearer]] = best[is_nearer]
+        return rows[is_nearer]
+
+    def _smallest_of_tied(
+        self, xy: NDArray[np.float64], nearest: NDArray[np.int64]
+    ) -> NDArray[np.int64]:
+        """Return the smallest of the vertices that are as near; they are joined by edges.
+
+        Places are taken once each: all the vertices tied at places of the plane are no more than
+        the corners of all triangles.
+        """
+        rows, _ = self._tied(xy, nearest, np.arange(len(xy)), nearest)
+        if len(rows) == 0:
+            return nearest
+        rows = np.unique(rows)
+        pairs = xy[rows].view(np.complex128).ravel()
+        _, first, which = np.unique(pairs, return_index=True, return_inverse=True)
+        tied = rows[first]
+        smallest = nearest.copy()
+        smallest[rows] = self._spread(xy[tied], nearest[tied])[which]
+        return smallest
+
+    def _spread(self, xy: NDArray[np.float64], begin: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Return the smallest vertex that is reached from one through vertices as near."""
+        smallest = begin.copy()
+        count = len(self._xy)
+        rows, reached = np.arange(len(xy)), begin
+        known = rows * count + reached
+        while len(rows):
+            rows, reached = self._tied(xy, begin, rows, reached)
+            fresh = np.setdiff1d(rows * count + reached, known)
+            known = np.union1d(known, fresh)
+            rows, reached = fresh // count, fresh % count
+            np.minimum.at(smallest, rows, reached)
+        return smallest
+
+    def _tied(
+        self,
+        xy: NDArray[np.float64],
+        nearest: NDArray[np.int64],
+        rows: NDArray[np.int64],
+        at: NDArray[np.int64],
+    ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Return the neighbours of vertices that are as near to a place as its nearest vertex."""
+        found = []
+        for part in self._portions(at, np.arange(len(rows))):
+            item, owner = topology.gather(self._offsets, at[part])
+            neighbor, of = self._neighbors[item], rows[part][owner]
+            away, least = self._squared(xy[of], neighbor), self._squared(xy[of], nearest[of])
+            near = np.flatnonzero(away <= least * _ROUNDING)
+            near = near[self._compare(xy[of[near]], neighbor[near], nearest[of[near]]) == 0]
+            found.append((of[near], neighbor[near]))
+        return _joined(found)
+
+    def _portions(self, at: NDArray[np.int64], rows: NDArray[np.int64]) -> list[NDArray[np.int64]]:
+        """Cut rows into portions whose vertices have not too many neighbours together."""
+        degrees = np.diff(self._offsets)[at[rows]]
+        portion = np.cumsum(degrees) // _MOST_PAIRS
+        return np.split(rows, np.flatnonzero(np.diff(portion)) + 1)
+
+    def _squared(
+        self, xy: NDArray[np.float64], vertex: NDArray[np.int64] | NDArray[np.int32]
+    ) -> NDArray[np.float64]:
+        east, north = np.moveaxis(self._xy[vertex] - xy, -1, 0)
+        return np.asarray(east * east + north * north, np.float64)
+
+    def _compare(
+        self, xy: NDArray[np.float64], one: NDArray[np.int64], other: NDArray[np.int64]
+    ) -> NDArray[np.int8]:
+        return _kernel.compare_distances(np.ascontiguousarray(xy), self._xy[one], self._xy[other])
+
+
+def _joined(
+    pairs: list[tuple[NDArray[np.int64], NDArray[np.int64]]],
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    first, second = zip(*pairs, strict=True)
+    return np.concatenate(first), np.concatenate(second)
