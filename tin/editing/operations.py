@@ -90,7 +90,7 @@ class Done(NamedTuple):
     notes: tuple[str, ...] = ()
 
 
-@dataclass(eq=False)
+@dataclass(frozen=True, eq=False)
 class Operation:
     """One edit with its arguments, not yet done."""
 
@@ -131,7 +131,7 @@ class MeshOperation(Operation):
         raise NotImplementedError
 
 
-@dataclass(eq=False)
+@dataclass(frozen=True, eq=False)
 class Insert(MeshOperation):
     """Further points."""
 
@@ -159,7 +159,7 @@ class Insert(MeshOperation):
         return Done(change, result=editor.numbers(slots))
 
 
-@dataclass(eq=False)
+@dataclass(frozen=True, eq=False)
 class Remove(MeshOperation):
     """Vertices that go."""
 
@@ -185,7 +185,7 @@ class Remove(MeshOperation):
         return Done(editor.remove(editor.slots(numbers)))
 
 
-@dataclass(eq=False)
+@dataclass(frozen=True, eq=False)
 class Move(MeshOperation):
     """A vertex at another place."""
 
@@ -220,7 +220,7 @@ class Move(MeshOperation):
         return Done(editor.move(slot, as_point(self.point)))
 
 
-@dataclass(eq=False)
+@dataclass(frozen=True, eq=False)
 class SetElevation(MeshOperation):
     """Vertices at other elevations."""
 
@@ -249,7 +249,7 @@ class SetElevation(MeshOperation):
         return Done(editor.set_z(editor.slots(numbers), as_heights(self.z, len(numbers))))
 
 
-@dataclass(eq=False)
+@dataclass(frozen=True, eq=False)
 class Flip(MeshOperation):
     """The other diagonal of the two triangles at an edge."""
 
@@ -271,7 +271,7 @@ class Flip(MeshOperation):
         return Done(editor.flip(first, second))
 
 
-@dataclass(eq=False)
+@dataclass(frozen=True, eq=False)
 class AddBreakline(Operation):
     """A further breakline."""
 
@@ -299,7 +299,7 @@ class AddBreakline(Operation):
         return Done(change, found, notes=tuple(met))
 
 
-@dataclass(eq=False)
+@dataclass(frozen=True, eq=False)
 class RemoveBreakline(Operation):
     """A breakline that goes."""
 
