@@ -319,6 +319,7 @@ class Workshop:
             shutil.rmtree(MAP, ignore_errors=True)
         package = str(self.folder / "tree" / "tinsmith")
         options = ["-q", "-p", "no:cacheprovider", "-p", "mutation.shortest_first"]
+        options += ["--timeout", "0"]  # followed line by line a test takes many times as long
         return subprocess.run(
             [sys.executable, "-m", "pytest", *options, "-p", "mutation.tracing", *map(str, tests)],
             cwd=ROOT, check=False,
