@@ -314,7 +314,13 @@ class Workshop:
 
     def map_coverage(self, only: str) -> int:
         """Follow all tests, or add those of some files to the map; return the exit status."""
+        slow = (
+            "test_fuzz.py",
+            "test_repository.py",
+            "test_benchmarks.py",
+        )  # say little of one line
         tests = [path for path in sorted(TESTS.rglob("test_*.py")) if only in str(path)]
+        tests = [path for path in tests if only or path.name not in slow]
         if not only:
             shutil.rmtree(MAP, ignore_errors=True)
         package = str(self.folder / "tree" / "tinsmith")
