@@ -418,6 +418,7 @@ class Report(Frozen):
     def __repr__(self) -> str:
         merged = len(self.merged_rows) - len(self.merged_vertices)
         return (
-            f"<Report: {self.n_rows} rows, {self.n_vertices} vertices, "
-            f"{self.n_triangles} triangles, {merged} row{'s' * (merged != 1)} merged away>"
+            f"<Report: {counted(self.n_rows, 'row')}, "
+            f"{counted(self.n_vertices, 'vertex', 'vertices')}, "
+            f"{counted(self.n_triangles, 'triangle')}, {counted(merged, 'row')} merged away>"
         )

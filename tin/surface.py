@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Never
 
 import numpy as np
 
+from .._sentences import counted
 from ..crs import CRS, Unit, require_one_unit, scale_elevations, shorten_crs
 from . import topology
 from .constraints.breaklines import Lines
@@ -563,7 +564,7 @@ class TIN(Editable):
         count = len(surface.triangles)
         z = surface.points[:, 2]
         return (
-            f"<TIN: {len(surface.points)} vertices, {count} triangle{'s' * (count != 1)}, "
+            f"<TIN: {len(surface.points):,} vertices, {counted(count, 'triangle')}, "
             f"z {z.min():g} to {z.max():g}, crs {shorten_crs(self.crs)}>"
         )
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .._sentences import counted
 from ..crs import CRS, Unit, require_one_unit, shorten_crs
 from .constraints.breaklines import Breakline, Water
 from .types import Bounds
@@ -122,7 +123,9 @@ class Survey:
     def __repr__(self) -> str:
         origin = f" from {self.source}" if self.source else ""
         names = f", attributes {', '.join(self.attributes)}" if self.attributes else ""
-        return f"<Survey: {len(self)} points{origin}{names}, crs {shorten_crs(self.crs)}>"
+        return (
+            f"<Survey: {counted(len(self), 'point')}{origin}{names}, crs {shorten_crs(self.crs)}>"
+        )
 
 
 def _is_plain(points: Any) -> bool:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._sentences import counted
 from ...errors import LinesError, PointsError
 from .. import _kernel
 from ..constraints.breaklines import as_ring
@@ -116,7 +117,7 @@ class Voronoi:
     def __repr__(self) -> str:
         count = len(self)
         return (
-            f"<Voronoi: {count} cell{'s' * (count != 1)}, {len(self.coords)} corners, "
+            f"<Voronoi: {counted(count, 'cell')}, {len(self.coords):,} corners, "
             f"area {self.areas.sum():g}>"
         )
 
