@@ -337,7 +337,7 @@ class TestInput:
         assert getattr(tin, query)(np.empty((0, 2))).shape == (0,)
 
     @pytest.mark.parametrize("query", ["locate", "interpolate"])
-    @pytest.mark.parametrize("xy", [(0.0, 0.0), [[0, 0, 0]], [[[0, 0]]], 3.0, []])
+    @pytest.mark.parametrize("xy", [(0.0, 0.0), [[0, 0, 0]], [[[0, 0]]], 3.0])
     def test_wrong_shape(self, query, xy):
         tin = ts.triangulate(uniform_points(10))
         with pytest.raises(PointsError, match=r"\(k, 2\) is needed"):
