@@ -47,6 +47,13 @@ def heron(points, triangle):
 # ------------------------------------------------------------------ areas
 
 
+@pytest.mark.parametrize("nothing", [[], np.empty((0, 2))])
+def test_no_points_have_no_answers(nothing):
+    tin = ts.triangulate([[0, 0, 1], [4, 0, 2], [0, 3, 3]])
+    for query in (tin.locate, tin.interpolate, tin.closest_vertex):
+        assert query(nothing).shape == (0,)
+
+
 def test_areas_equal_rational_arithmetic(tin):
     wanted = [exact_area(tin.points, triangle) for triangle in tin.triangles]
     np.testing.assert_allclose(tin.triangle_areas, [float(area) for area in wanted], rtol=1e-11)

@@ -493,6 +493,16 @@ def test_a_lifted_tin_that_was_saved_comes_back(tmp_path):
     assert again.crs == tin.crs
 
 
+@pytest.mark.parametrize("name", ["exaggeration", "elevation_scale"])
+@pytest.mark.parametrize("factor", [0.0, -1.0])
+def test_a_factor_that_is_no_scale_leaves_elevations_as_they_are(tmp_path, name, factor):
+    pyvista = pytest.importorskip("pyvista")
+    mesh = pyvista.PolyData(SQUARE, faces=[3, 0, 1, 2, 3, 0, 2, 3])
+    mesh.field_data[name] = [factor]
+    mesh.save(tmp_path / "a.vtp")
+    assert np.array_equal(vtk.read(tmp_path / "a.vtp").points, SQUARE)
+
+
 def test_vtk_points_without_faces_are_a_survey(tmp_path):
     pyvista = pytest.importorskip("pyvista")
     cloud = pyvista.PolyData(SQUARE)

@@ -176,6 +176,15 @@ def test_height_of_a_vertex_that_is_there_already(policy, height):
     assert tin.points[4, 2] == height
 
 
+@pytest.mark.parametrize(
+    ("policy", "height"), [("last", 1), ("first", 9), ("lowest", 1), ("highest", 9), ("mean", 5)]
+)
+def test_height_of_a_vertex_that_two_new_rows_make(policy, height):
+    tin = square()
+    assert tin.insert([[3, 1.5, 9], [3, 1.5, 1]], duplicates=policy).tolist() == [5, 5]
+    assert tin.points[5].tolist() == [3, 1.5, height]
+
+
 def test_flipping_twice_is_nothing():
     tin = ts.triangulate([[0, 0, 1], [4, 0, 2], [5, 4, 3], [0, 3, 4]])
     before = state(tin)
