@@ -108,10 +108,11 @@ class NumberedInputs(Frozen):
             return self
         n_rows = self.n_rows + sum(len(change.added) for change in changes)
         points, is_there = np.empty((n_rows, 3)), np.zeros(n_rows, np.bool_)
-        points[self.rows], is_there[self.rows] = self.build_inputs.points, True
+        own = self.rows if len(self.rows) < self.n_rows else slice(self.n_rows)
+        points[own], is_there[own] = self.build_inputs.points, True
         is_masked = np.zeros(n_rows, np.bool_)
         if self.build_inputs.is_masked is not None:
-            is_masked[self.rows] = self.build_inputs.is_masked
+            is_masked[own] = self.build_inputs.is_masked
         end, lines = self.n_rows, self.build_inputs.lines
         for change in changes:
             points[end : end + len(change.added)] = change.added
@@ -121,8 +122,10 @@ class NumberedInputs(Frozen):
             is_there[change.removed] = False
             for line_change in change.lines:
                 lines = line_change.apply(lines)
-        masked = is_masked[is_there] if is_masked[is_there].any() else None
-        build_inputs = replace(self.build_inputs, points=points[is_there], is_masked=masked)
+        if not is_there.all():
+            points, is_masked = points[is_there], is_masked[is_there]
+        masked = is_masked if is_masked.any() else None
+        build_inputs = replace(self.build_inputs, points=points, is_masked=masked)
         if lines is not self.build_inputs.lines:
             build_inputs = build_inputs.with_lines(lines)
         return NumberedInputs(

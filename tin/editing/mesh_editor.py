@@ -455,12 +455,15 @@ def _merges(
     if len(rows) == counts.rows + counts.inserted:
         return None
     vertex = vertex_of_row[rows]
-    first = np.empty(counts.rows + counts.inserted, np.int32)
-    first[vertex[::-1]] = np.arange(len(rows), dtype=np.int32)[::-1]
+    shares = np.flatnonzero(np.bincount(vertex)[vertex] > 1)  # the others are no matter
+    rows, vertex = rows[shares], vertex[shares]
+    vertices, first, group = np.unique(vertex, return_index=True, return_inverse=True)
     build_inputs = inputs.build_inputs
+    kept_row = first[group.reshape(-1)].astype(np.int32)
     account = merge_rows(
-        build_inputs.points, first[vertex], build_inputs.options.duplicates
+        build_inputs.points[shares], kept_row, build_inputs.options.duplicates
     ).account
+    account["merged_vertices"] = vertices[account["merged_vertices"]]
     return Report(
         n_rows=0,
         n_vertices=0,
