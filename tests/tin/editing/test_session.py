@@ -645,3 +645,54 @@ def test_edits_after_one_that_failed_are_as_if_it_had_not_been(count, steps):
     edit(steps)
     require_state(tin, state(same))
     require_fresh(tin)
+
+
+def test_lines_come_and_go_in_existing_triangles_of_a_part_of_the_hull():
+    """Beyond their rim there is no surface, before and after an edit of lines."""
+    rng = np.random.default_rng(8)
+    points = np.c_[rng.random((60, 2)) * 8, rng.random(60)]
+    bay = [[0.5, 0.5], [7.5, 0.5], [7.5, 7.5], [4, 2], [0.5, 7.5]]
+    made = ts.triangulate(points, boundary=[bay])
+    tin = ts.TIN.from_triangles(made.points, made.triangles, constrained=made.constrained)
+    rim = {frozenset(made.points[ring, 0].tolist()) for ring in made.rings}
+    n_given = int(tin.lines.sources.max(initial=-1)) + 1
+    tin.add_breakline([[1, 1.2, 5], [6.5, 1.1, 6]], name="kerb")
+    ts.check(tin).raise_if_failed()
+    assert tin.area == pytest.approx(made.area, rel=1e-12)
+    assert {frozenset(tin.points[ring, 0].tolist()) for ring in tin.rings} == rim
+    assert "kerb" in tin.lines.names
+    number = int(tin.lines.sources[tin.lines.names.index("kerb")])
+    assert number >= n_given
+    tin.remove_breakline(number)
+    assert "kerb" not in tin.lines.names
+    assert np.array_equal(tin.points, made.points)
+    assert set(map(frozenset, tin.triangles.tolist())) == set(
+        map(frozenset, made.triangles.tolist())
+    )
+
+
+def test_rings_keep_their_numbers_when_a_breakline_comes():
+    inner = [[[1, 1, 0], [2, 1, 0], [2, 2, 0]], [[5, 5, 0], [6, 5, 0], [6, 6, 0]]]
+    corners = [[0, 0, 0], [9, 0, 0], [9, 9, 0], [0, 9, 0]]
+    line, other = [[3, 3, 1], [4, 3.5, 1]], [[7, 1, 1], [8, 2, 1]]
+    tin = ts.triangulate(corners, breaklines=[line], holes=inner)
+    tin.add_breakline(other)
+    fresh = ts.triangulate(corners, breaklines=[line, other], holes=inner)
+    require_same_tin(tin, fresh)
+    assert tin.lines.sources.tolist() == fresh.lines.sources.tolist() == [0, 1, 0, 1]
+
+
+def test_a_corner_of_the_boundary_that_moves_takes_the_boundary_along():
+    points = [[2, 3, 1], [7, 5, 2], [4, 8, 3], [10.5, 10.4, 9], [13, 1, 4], [1, 13, 4]]
+    ring = [[0, 0, 0], [10, 0, 0], [10, 10, 0], [0, 10, 0]]
+    tin = ts.triangulate(points, boundary=[ring])
+    assert tin.vertex_of[3] == -1
+    corner = int(np.flatnonzero((tin.points[:, :2] == [10, 10]).all(axis=1))[0])
+    tin.move(corner, [12, 12, 0])
+    ring[2] = [12, 12, 0]
+    fresh = ts.triangulate(points, boundary=[ring])
+    require_same_tin(tin, fresh)
+    assert tin.vertex_of.tolist() == fresh.vertex_of.tolist()
+    assert tin.vertex_of[3] >= 0
+    assert tin.report.left_out_rows.tolist() == fresh.report.left_out_rows.tolist()
+    assert tin.report.left_out_why.tolist() == fresh.report.left_out_why.tolist()
