@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .. import _optional as extras
+from .. import _optional
 from ..crs import scale_elevations
 from ..errors import OptionError
 from .slope import aspect, slope
@@ -67,7 +67,7 @@ def lift(
     >>> mesh.field_data["origin"].tolist()
     [500000.0, 4000000.0, 80.0]
     """
-    pv = extras.pyvista("Lifting a TIN into 3D")
+    pv = _optional.load("pyvista", "Lifting a TIN into 3D")
     shift = default_origin(tin) if origin is None else _as_origin(origin)
     factor = as_exaggeration(exaggeration)
     scale = scale_elevations(tin.crs, tin.elevation_unit)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from .. import _optional as extras
+from .. import _optional
 from ..tin.topology import edge_keys, edges_at
 
 if TYPE_CHECKING:
@@ -165,7 +165,7 @@ def dashes(
 
 
 def _drawn(plotter: Any, ends: NDArray[np.float64], pen: _Pen, factor: float) -> Any:
-    pv = extras.pyvista(_PURPOSE)
+    pv = _optional.load("pyvista", _PURPOSE)
 
     count = len(ends)
     cells = np.column_stack([np.full(count, 2), np.arange(2 * count).reshape(count, 2)])

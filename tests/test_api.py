@@ -1,14 +1,13 @@
 """The public names: a snapshot of them, their examples, and what type checkers make of them."""
 
 import inspect
-import os
 import re
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 from support.api import describe_api, public_members, public_objects
+from support.processes import run
 
 import tinsmith as ts
 
@@ -114,17 +113,6 @@ def test_every_name_can_be_the_first(name):
 def test_import_alone_loads_not_even_numpy():
     code = "import sys, tinsmith; print('numpy' in sys.modules, 'tinsmith.tin' in sys.modules)"
     assert run(sys.executable, "-c", code).stdout.split() == ["False", "False"]
-
-
-def run(*command, cwd=None, **environment):
-    return subprocess.run(
-        command,
-        cwd=cwd,
-        env={**os.environ, **environment},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
 
 
 # -------------------------------------------------------------------- type checkers

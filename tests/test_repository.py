@@ -6,12 +6,12 @@ import importlib
 import os
 import pkgutil
 import re
-import subprocess
 import sys
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
+from support import processes
 
 import tinsmith
 import tinsmith.cli
@@ -20,14 +20,7 @@ ROOT = Path(__file__).parents[1]
 
 
 def run(*command, cwd=ROOT, **environment):
-    return subprocess.run(
-        command,
-        cwd=cwd,
-        env={**os.environ, **environment},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    return processes.run(*command, cwd=cwd, **environment)
 
 
 def tool(name):

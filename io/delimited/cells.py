@@ -70,9 +70,8 @@ def is_number_like(cell: str, decimal: str) -> bool:
     return len(cell) <= _LONGEST_NUMBER and _is_number_like(cell, decimal)
 
 
-@lru_cache(
-    maxsize=1 << 13
-)  # the same few hundred lines are looked at for one question after another
+# The same few hundred lines are looked at for one question after another.
+@lru_cache(maxsize=1 << 13)
 def _is_number_like(cell: str, decimal: str) -> bool:
     return (
         is_number(cell, decimal)

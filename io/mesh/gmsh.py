@@ -10,14 +10,12 @@ from __future__ import annotations
 
 import os
 import re
-from importlib.util import find_spec
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ... import _optional as extras
+from ... import _optional
 from ..._atomic import replacing_path
-from ...errors import MissingExtraError
 from ...tin.topology import NO_NEIGHBOR, directed_edges, edge_keys, ends
 from ..isolated import run_isolated
 from .common import choose_reference, file_content, require_tin, survey_of, tin_of
@@ -75,8 +73,7 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     OptionError
         If the unit is unknown, or the file names another.
     """
-    if find_spec("meshio") is None:
-        raise MissingExtraError("meshio", extra="mesh", purpose="Reading Gmsh files")
+    _optional.require("meshio", "Reading Gmsh files")
     if not path.is_file():
         file_content(path)  # says why it cannot be read
     where = {"path": os.path.abspath(path), "shown": str(path)}  # noqa: PTH100 - links stay
@@ -116,7 +113,7 @@ def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None 
         If the file cannot be written.
     """
     tin = require_tin(surface, path, format_name="Gmsh")
-    meshio = extras.meshio("Writing Gmsh files")
+    meshio = _optional.load("meshio", "Writing Gmsh files")
     edges = _edges(tin)
     number_of = {name: i for i, name in enumerate(dict.fromkeys([SURFACE, *edges.names]), start=1)}
     numbers = [np.array([number_of[name] for name in edges.names], np.int32),

@@ -10,14 +10,13 @@ from __future__ import annotations
 
 import os
 import re
-from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ... import _optional as extras
+from ... import _optional
 from ..._atomic import replacing_path
-from ...errors import MissingExtraError, ReadError, WriteError
+from ...errors import ReadError, WriteError
 from ...terrain.slope import aspect, slope
 from ..isolated import run_isolated
 from .common import (
@@ -109,8 +108,7 @@ def _true_points(arrays: Mapping[str, NDArray[Any]]) -> NDArray[np.float64]:
 
 def _found(path: Path) -> Answer:
     """Let a child read the file, once its beginning and end are those of a whole one."""
-    if find_spec("pyvista") is None:
-        raise MissingExtraError("pyvista", extra="view", purpose="Reading VTK files")
+    _optional.require("pyvista", "Reading VTK files")
     content = file_content(path)
     if b"</VTKFile>" not in content[-200:]:
         raise ReadError(f"'{path}' is no whole VTK XML file: '</VTKFile>' is missing.", path=path)
@@ -161,7 +159,7 @@ def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None 
         If the file cannot be written.
     """
     tin = require_tin(surface, path, format_name="VTK")
-    pv = extras.pyvista("Writing VTK files")
+    pv = _optional.load("pyvista", "Writing VTK files")
     mesh, class_name = _poly_data(tin, pv), "vtkXMLPolyDataWriter"
     if path.suffix.lower() == ".vtu":
         mesh, class_name = mesh.cast_to_unstructured_grid(), "vtkXMLUnstructuredGridWriter"

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, replace
-from importlib.util import find_spec
 from numbers import Integral, Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ... import _optional
 from ..._sentences import counted
 from ...crs import CRS, Unit
-from ...errors import FormatError, MissingExtraError, OptionError, ReadError
+from ...errors import FormatError, OptionError, ReadError
 from ...tin import Bounds, Survey
 from ..isolated import Limits, limits_for, run_isolated, stream_isolated
 from ..nodata import as_nodata, describe_suspects, find_suspect_elevations
@@ -249,8 +249,7 @@ class _Header:
 
 def _header(path: Path) -> _Header:
     """Let a child open a raster, and return what it says of itself."""
-    if find_spec("rasterio") is None:
-        raise MissingExtraError("rasterio", extra="raster", purpose="Reading a raster")
+    _optional.require("rasterio", "Reading a raster")
     limits = limits_for(_bytes_of(path))
     found = run_isolated(f"{_reader(path)}:header", _where(path), path=path, limits=limits).value
     transform = _Affine(*found.pop("transform"))

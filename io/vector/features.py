@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import os
 import struct
-from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ... import _optional
 from ..._sentences import counted
 from ...crs import CRS
-from ...errors import CrsError, MissingExtraError, ReadError
+from ...errors import CrsError, ReadError
 from ..isolated import limits_for, run_isolated
 from ..isolated.local_files import require_local
 from ..isolated.spooling import as_sentence, ordinary_file
@@ -87,8 +87,7 @@ def read_features(path: Path, *, layer: str | None = None, where: str | None = N
 
 
 def _read_layer(path: Path, layer: str | None, where: str | None) -> Features:
-    if find_spec("pyogrio") is None:
-        raise MissingExtraError("pyogrio", extra="vector", purpose="Reading vector files")
+    _optional.require("pyogrio", "Reading vector files")
     _require_whole_file(path)
     where_it_is = {"path": os.path.abspath(path), "shown": str(path)}  # noqa: PTH100 - links stay
     value, arrays = run_isolated(

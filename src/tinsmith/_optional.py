@@ -1,68 +1,57 @@
-"""Optional libraries, loaded when first needed."""
+"""Optional libraries: whether they are there, and loaded when first needed."""
 
 from __future__ import annotations
 
 from importlib import import_module
+from importlib.util import find_spec
 from typing import Any
 
 from .errors import MissingExtraError
 
-__all__ = ["matplotlib", "meshio", "pyvista"]
+__all__ = ["load", "require"]
+
+_EXTRA_OF = {
+    "matplotlib": "plot",
+    "meshio": "mesh",
+    "pyogrio": "vector",
+    "pyvista": "view",
+    "rasterio": "raster",
+}
 
 
-def matplotlib(purpose: str) -> Any:
-    """Return matplotlib's module of figures, or name the extra that brings it.
-
-    Figures of this module are drawn without a screen and leave no state behind.
+def load(module: str, purpose: str) -> Any:
+    """Return a module of an optional library, or name the extra that brings it.
 
     Parameters
     ----------
+    module : str
+        Such as ``"pyvista"`` or ``"matplotlib.figure"``, whose figures are drawn without a screen
+        and leave no state behind.
     purpose : str
         Subject of the sentence: what needs the library.
 
     Raises
     ------
     MissingExtraError
-        If matplotlib is not installed.
+        If it is not installed.
     """
-    return _module("matplotlib.figure", "plot", purpose)
-
-
-def meshio(purpose: str) -> Any:
-    """Return the meshio module, or name the extra that brings it.
-
-    Parameters
-    ----------
-    purpose : str
-        Subject of the sentence: what needs the library.
-
-    Raises
-    ------
-    MissingExtraError
-        If meshio is not installed.
-    """
-    return _module("meshio", "mesh", purpose)
-
-
-def pyvista(purpose: str) -> Any:
-    """Return the pyvista module, or name the extra that brings it.
-
-    Parameters
-    ----------
-    purpose : str
-        Subject of the sentence: what needs the library.
-
-    Raises
-    ------
-    MissingExtraError
-        If pyvista is not installed.
-    """
-    return _module("pyvista", "view", purpose)
-
-
-def _module(name: str, extra: str, purpose: str) -> Any:
     try:
-        return import_module(name)
+        return import_module(module)
     except ImportError as error:
-        library = name.partition(".")[0]
-        raise MissingExtraError(library, extra=extra, purpose=purpose) from error
+        raise _missing(module.partition(".")[0], purpose) from error
+
+
+def require(library: str, purpose: str) -> None:
+    """Name the extra that brings a library if it is not installed; do not load it.
+
+    Raises
+    ------
+    MissingExtraError
+        If it is not installed.
+    """
+    if find_spec(library) is None:
+        raise _missing(library, purpose)
+
+
+def _missing(library: str, purpose: str) -> MissingExtraError:
+    return MissingExtraError(library, extra=_EXTRA_OF[library], purpose=purpose)

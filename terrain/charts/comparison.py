@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ... import _optional as extras
+from ... import _optional
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -67,7 +67,9 @@ def comparison_picture(comparison: Comparison, *, title: str | None = None) -> A
     width, height = xy.max(axis=0)
     panel = _WIDTH / _COLUMNS * min(max(height / width, 0.3), 1.5)
     size = (_WIDTH, 2 * panel + 2.0)
-    figure = extras.matplotlib(_PURPOSE).Figure(figsize=size, layout="constrained")
+    figure = _optional.load("matplotlib.figure", _PURPOSE).Figure(
+        figsize=size, layout="constrained"
+    )
     figure.get_layout_engine().set(h_pad=_PADDING)
     heading = " ".join((title or f"{len(xy):,} points").split())
     figure.suptitle(heading, fontsize=15, color=_INK, parse_math=False)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ... import _optional as extras
+from ... import _optional
 from ..rounding import ticks
 
 if TYPE_CHECKING:
@@ -81,7 +81,9 @@ def histogram(quality: Quality, *, title: str | None = None, unit: str = "") -> 
     >>> len(histogram(quality(tin), unit="m").axes)
     4
     """
-    figure = extras.matplotlib(_PURPOSE).Figure(figsize=_SIZE, layout="constrained")
+    figure = _optional.load("matplotlib.figure", _PURPOSE).Figure(
+        figsize=_SIZE, layout="constrained"
+    )
     heading = " ".join((title or "Triangle quality").split())
     figure.suptitle(heading, fontsize=15, color=_INK, parse_math=False)
     where = "in space" if quality.space else "in the plane"

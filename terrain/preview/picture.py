@@ -9,7 +9,7 @@ from numbers import Integral
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ... import _optional as extras
+from ... import _optional
 from ...errors import OptionError, RenderError
 from ...tin import Bounds
 from ..lift import as_exaggeration
@@ -105,7 +105,7 @@ def preview(
     path = None if output is None else _as_picture_path(output)
     _check_options(size, view)
     factor = None if exaggeration is None else as_exaggeration(exaggeration)
-    extras.pyvista(_PURPOSE)
+    _optional.load("pyvista", _PURPOSE)
     (opengl.require_window if path is None else opengl.require_opengl)()
     ground = ground_of(tin)
     factor = choose_exaggeration(tin, ground) if factor is None else factor
@@ -145,7 +145,7 @@ class _Show:
     """
 
     def __init__(self, stage: _Stage, window: tuple[int, int], *, off_screen: bool) -> None:
-        pv = extras.pyvista(_PURPOSE)
+        pv = _optional.load("pyvista", _PURPOSE)
         self.stage = stage
         self.plotter: Any = pv.Plotter(
             off_screen=off_screen, window_size=list(window), lighting="none"

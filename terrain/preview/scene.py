@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ... import _optional as extras
+from ... import _optional
 from ...tin.topology import edges_at
 from ..lift import default_origin
 from .tints import tints
@@ -93,7 +93,7 @@ def add_terrain(
     seen : (k, 3) float64 array
         All points that must be in the picture.
     """
-    pv = extras.pyvista(_PURPOSE)
+    pv = _optional.load("pyvista", _PURPOSE)
 
     surface = pv.PolyData.from_regular_faces(points, np.array(tin.triangles))
     surface.point_data["elevation"] = tin.points[:, 2].copy()
@@ -128,7 +128,7 @@ def fade_edges(actor: Any, tin: TIN, ground: Ground, pixels: float) -> None:
 
 def add_lights(plotter: Any) -> None:
     """Light the scene from northwest, 45 degrees high, wherever the camera stands."""
-    pv = extras.pyvista(_PURPOSE)
+    pv = _optional.load("pyvista", _PURPOSE)
 
     plotter.remove_all_lights()
     for azimuth, height, strength in _LIGHTS:

@@ -11,7 +11,8 @@ from ...errors import PointsError
 from ..building.duplicates import DuplicatePolicy
 from ..validation.options import require_one_of, shown
 from ..validation.points import as_elevations, as_points
-from ..validation.tables import as_table, is_masked_array
+from ..validation.tables import as_table
+from ..validation.vertices import require_vertices
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -61,15 +62,9 @@ def as_vertices(vertices: ArrayLike, count: int) -> NDArray[np.int64]:
         numbers = np.atleast_1d(np.asarray(vertices))
     except Exception:
         numbers = np.empty(0, np.float64)
-    if is_masked_array(vertices) or numbers.ndim != 1 or numbers.dtype.kind not in "iu":
+    if numbers.ndim != 1:
         raise PointsError(f"Invalid vertices {shown(vertices)}: whole numbers are needed.")
-    wrong = (numbers < 0) | (numbers >= count)
-    if wrong.any():
-        raise PointsError(
-            f"There is no vertex {int(numbers[np.argmax(wrong)])}: numbers 0 to {count - 1} "
-            "are allowed."
-        )
-    return numbers.astype(np.int64)
+    return require_vertices(numbers, vertices, count)
 
 
 def as_ends(a: int, b: int, count: int) -> NDArray[np.int64]:

@@ -13,7 +13,7 @@ from .tables import is_masked_array
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["as_vertex", "as_vertex_pairs"]
+__all__ = ["as_vertex", "as_vertex_pairs", "require_vertices"]
 
 
 def as_vertex(vertex: Any, n_vertices: int) -> int:
@@ -46,8 +46,19 @@ def _as_vertices(vertices: Any, n_vertices: int) -> NDArray[np.int64]:
     except Exception:
         numbers = np.empty(1, np.float64)
     numbers = numbers.astype(np.int64) if numbers.size == 0 else numbers
-    if is_masked_array(vertices) or numbers.dtype.kind not in "iu":
-        raise PointsError(f"Invalid vertices {shown(vertices)}: whole numbers are needed.")
+    return require_vertices(numbers, vertices, n_vertices)
+
+
+def require_vertices(numbers: NDArray[Any], given: Any, n_vertices: int) -> NDArray[np.int64]:
+    """Return an array of vertex numbers, which was made of what a caller gave.
+
+    Raises
+    ------
+    PointsError
+        If they are not whole numbers, or one of them is no vertex.
+    """
+    if is_masked_array(given) or numbers.dtype.kind not in "iu":
+        raise PointsError(f"Invalid vertices {shown(given)}: whole numbers are needed.")
     wrong = (numbers < 0) | (numbers >= n_vertices)
     if wrong.any():
         raise PointsError(
