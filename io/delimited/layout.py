@@ -27,9 +27,9 @@ from .marks import (
     DecimalMark,
     as_decimal,
     as_delimiter,
-    decimal_between_digits,
     decimal_of,
     delimiter_of,
+    require_one_kind_of_comma,
 )
 
 if TYPE_CHECKING:
@@ -189,8 +189,11 @@ def find_layout(
             path=path,
         )
     data, skipped = _without_fillers(lines, data, skipped, found, wishes)
-    cells = [split_line(text, found) for text in lines.texts(_sampled(data))]
+    rows = lines.texts(_sampled(data))
+    cells = [split_line(text, found) for text in rows]
     try:
+        if found == "," and wishes.delimiter is None:
+            require_one_kind_of_comma(rows)
         mark = _decimal_mark(lines, data, cells, found, wishes)
         return _table_layout(lines, data, skipped, cells, (found, mark), wishes, path)
     except ReadError as error:
@@ -209,7 +212,8 @@ def _decimal_mark(
         return DecimalMark(wishes.decimal)
     found = decimal_of(cells, delimiter)
     if found is None and delimiter != ",":
-        found = DecimalMark(decimal_between_digits(lines.joined(data)))
+        decimals = lines.texts(_sampled(lines.with_decimals(data)))
+        found = decimal_of([split_line(text, delimiter) for text in decimals], delimiter)
     return found or DecimalMark(".")
 
 

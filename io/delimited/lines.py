@@ -108,6 +108,14 @@ class TextLines:
             fits[fits] = codes[at[fits]] == code
         return fits
 
+    def with_decimals(self, lines: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Return those of the chosen lines in which a comma or a point stands between digits."""
+        codes = self.codes
+        is_digit = (codes >= ord("0")) & (codes <= ord("9"))
+        is_mark = (codes[1:-1] == ord(",")) | (codes[1:-1] == ord("."))
+        places = np.flatnonzero(is_mark & is_digit[:-2] & is_digit[2:]) + 1
+        return np.intersect1d(np.searchsorted(self.starts, places, side="right") - 1, lines)
+
     def joined(self, lines: NDArray[np.int64]) -> bytes:
         """Return the chosen lines (ascending numbers) as one text."""
         if len(lines) == 0:

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from statistics import median_high
 from typing import TYPE_CHECKING, NamedTuple
-
-import numpy as np
 
 from ...errors import FormatError, ReadError
 from .cells import BLANKS, is_grouped, is_number, is_number_like, may_group_or_divide, split_line
@@ -20,15 +19,16 @@ __all__ = [
     "DecimalMark",
     "as_decimal",
     "as_delimiter",
-    "decimal_between_digits",
     "decimal_of",
     "delimiter_of",
     "looks_like_table",
+    "require_one_kind_of_comma",
 ]
 
 _TOP_LINES = 100
 _DELIMITERS = ("\t", ";", "|", ",", BLANKS)
 _VISIBLE = (",", ";", "|")
+_COMMA_WITH_BLANK = re.compile(r"[ \t]+,[ \t]*|,[ \t]+")
 _SPOKEN = {
     "comma": ",",
     "semicolon": ";",
@@ -113,6 +113,29 @@ def delimiter_of(sample: Sequence[str]) -> str | None:
     return best if scores[best] > (0, 0.0, 0) else None
 
 
+def require_one_kind_of_comma(sample: Sequence[str]) -> None:
+    """Raise if commas with blanks beside them separate columns, and others may group digits.
+
+    Raises
+    ------
+    ReadError
+        "1, 2, 3,456" may be three columns, with thousands in the last, or four.
+    """
+    rows = [_COMMA_WITH_BLANK.split(line.strip(" \t,")) for line in sample]
+    count = Counter(map(len, rows)).most_common(1)[0][0]
+    cells = [cell for row in rows if len(row) == count >= 3 for cell in row]
+    grouped = next((cell for cell in cells if _is_grouped_by_commas(cell)), None)
+    if grouped is not None:
+        raise ReadError(
+            f"its commas may separate columns or thousands ('{grouped}', without the blank that "
+            "the other commas have beside them): delimiter=',' takes each as a delimiter."
+        )
+
+
+def _is_grouped_by_commas(cell: str) -> bool:
+    return "," in cell and is_grouped(cell, ".")
+
+
 def _delimiter_score(sample: Sequence[str], delimiter: str) -> tuple[int, float, int]:
     """Return how many numbers a line has, the share of lines that are even, and their cells."""
     rows = [split_line(line, delimiter) for line in sample]
@@ -144,20 +167,21 @@ def decimal_of(rows: Iterable[Sequence[str]], delimiter: str) -> DecimalMark | N
     Raises
     ------
     ReadError
-        If every comma may be a decimal mark or separate thousands.
+        If every comma may be a decimal mark, separate thousands or belong to the delimiter.
 
     Notes
     -----
     A cell such as 4000,12 proves the decimal comma, one such as 4000.12 the point; 752,700 proves
-    nothing. Where both are proved the mark of more cells is taken, and the others are bad cells.
+    nothing, nor does a comma that may belong to the delimiter: "5,<tab>1,234" may be "5" and
+    "1,234". Where both are proved the mark of more cells is taken, and the others are bad cells.
     Between semicolons, which are delimiters because commas are decimal marks, the comma is taken.
     """
+    rows = list(rows)
     cells = [cell for row in rows for cell in row]
-    # Between blanks a comma at the end of a number may be part of what separates it: "5, 6".
-    edge = "," if delimiter == BLANKS else ""
-    commas = [cell for cell in cells if "," in cell.strip(edge or None) and is_number(cell, ",")]
+    commas = [cell for cell in cells if _has_comma(cell, delimiter) and is_number(cell, ",")]
     points = [cell for cell in cells if "." in cell and is_number(cell, ".")]
-    sure_commas = sum(not may_group_or_divide(cell) for cell in commas)
+    may_delimit = delimiter == BLANKS or any(cell.endswith(",") for cell in cells)
+    sure_commas = sum(_proves_comma(c, row, may_delimit=may_delimit) for row in rows for c in row)
     sure_points = sum(not may_group_or_divide(cell.replace(".", ",")) for cell in points)
     if sure_commas or sure_points:
         return DecimalMark("," if sure_commas > sure_points else ".")
@@ -165,29 +189,28 @@ def decimal_of(rows: Iterable[Sequence[str]], delimiter: str) -> DecimalMark | N
         return DecimalMark(".") if points else None
     if any(is_grouped(cell, ".") and cell.count(",") > 1 for cell in cells):
         return DecimalMark(".")
-    return _assumed_comma(commas, delimiter) if commas else None
-
-
-def _assumed_comma(commas: Sequence[str], delimiter: str) -> DecimalMark:
-    if delimiter != ";":
-        raise ReadError(
-            f"its commas may be decimal marks or separate thousands ('{commas[0]}'): decimal=',' "
-            "or decimal='.' settles it."
+    if not commas:
+        return None
+    if delimiter == ";" and not any(map(_clings, cells)):
+        return DecimalMark(
+            ",",
+            "The commas in its numbers are taken as decimal marks, as is usual between semicolons "
+            f"('{commas[0]}').",
         )
-    return DecimalMark(
-        ",",
-        "The commas in its numbers are taken as decimal marks, as is usual between semicolons "
-        f"('{commas[0]}').",
+    raise ReadError(
+        f"its commas may be decimal marks or separate thousands ('{commas[0]}'): decimal=',' "
+        "or decimal='.' settles it."
     )
 
 
-def decimal_between_digits(text: bytes) -> str:
-    """Choose the decimal mark by what stands between digits anywhere: "," where no point does."""
-    codes = np.frombuffer(text, np.uint8)
-    is_digit = (codes >= ord("0")) & (codes <= ord("9"))
+def _has_comma(cell: str, delimiter: str) -> bool:
+    """Whether a cell has a comma that its delimiter, such as ", ", does not account for."""
+    return "," in (cell.strip(",") if delimiter == BLANKS else cell.rstrip(","))
 
-    def is_there(mark: str) -> bool:
-        places = np.flatnonzero(codes[1:-1] == ord(mark)) + 1
-        return bool((is_digit[places - 1] & is_digit[places + 1]).any())
 
-    return "," if is_there(",") and not is_there(".") else "."
+def _proves_comma(cell: str, row: Sequence[str], *, may_delimit: bool) -> bool:
+    """Whether a cell of a row is a number whose comma neither groups digits nor delimits cells."""
+    if not is_number(cell, ",") or may_group_or_divide(cell):
+        return False
+    may_delimit = may_delimit or all(other.startswith(",") for other in row[1:])
+    return "," in (cell.strip(",") if may_delimit else cell)

@@ -12,10 +12,10 @@ from tinsmith.io.delimited.cells import BLANKS
 from tinsmith.io.delimited.marks import (
     as_decimal,
     as_delimiter,
-    decimal_between_digits,
     decimal_of,
     delimiter_of,
     looks_like_table,
+    require_one_kind_of_comma,
 )
 
 
@@ -100,8 +100,12 @@ def test_decimal_marks_by_name():
         (["1,024,240", "752,700"], " ", ".", False),
         (["1.5", "2"], ",", ".", False),
         (["text, with comma", "1"], ";", None, False),
-        (["5,", "6"], ";", ",", False),
+        (["5,", "6"], ";", None, False),
         (["5,", "6"], " ", None, False),
+        ([",5", "6"], " ", None, False),
+        ([",5", "6"], "|", ",", False),
+        (["-,5", "6"], "\t", ",", False),
+        ([",5", "7,25"], "\t", ",", False),
         (["5", "6"], ";", None, False),
         (["5", "6"], ",", None, False),
     ],
@@ -119,16 +123,39 @@ def test_a_comma_that_may_separate_thousands_is_refused():
         decimal_of([["752,700", "4"]], BLANKS)
 
 
+@pytest.mark.parametrize("cell", ["5,", ",5", "1,234", "-1,234"])
+@pytest.mark.parametrize("delimiter", [";", "\t", "|"])
+def test_a_comma_at_the_edge_of_a_cell_proves_no_decimal_comma(cell, delimiter):
+    with pytest.raises(ReadError, match="may be decimal marks or separate thousands"):
+        decimal_of([["752,", "4024,", "1,234"], ["753", ",4025", cell]], delimiter)
+
+
 @pytest.mark.parametrize(
-    ("text", "mark"),
+    ("lines", "grouped"),
     [
-        (b"1,5 2,5", ","), (b"1.5 2.5", "."), (b"1.5 2,5", "."), (b"1, 2, 3", "."),
-        (b"a,b 1 ,5 5, ", "."), (b"", "."), (b",", "."), (b"0,9", ","), (b"9,0", ","),
-        (b"9.0,", "."),
+        (["1, 2, 3,456", "1, 2, 3"], "3,456"),
+        (["x, y, z", "1 ,2 ,3", "1,234.5 ,2 ,3", "1 ,2 ,3 ,4 ,5"], "1,234.5"),
+        (["Survey of 3 May", "1, 2, 3", "1,\t2,\t-3,456,789,"], "-3,456,789"),
     ],
-)  # fmt: skip
-def test_the_mark_between_digits(text, mark):
-    assert decimal_between_digits(text) == mark
+)
+def test_commas_that_may_separate_columns_or_thousands_are_refused(lines, grouped):
+    with pytest.raises(ReadError, match=rf"separate columns or thousands \('{grouped}'"):
+        require_one_kind_of_comma(lines)
+
+
+@pytest.mark.parametrize(
+    "lines",
+    [
+        ["1,2,3,456"],
+        ["1, 2, 3, 456", "1, 2, 3,456"],
+        ["1, 2, 3,45", "1, 2, 3,46"],
+        ["1, 2, 0,456", "1, 2, 1234,456"],
+        ["1, 2, 3, 1,234 kg"],
+        ["1, 2,345"],
+    ],
+)
+def test_commas_that_can_only_separate_columns_are_not(lines):
+    require_one_kind_of_comma(lines)
 
 
 # ------------------------------------------------------------------ cells

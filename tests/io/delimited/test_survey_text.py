@@ -118,10 +118,13 @@ def text_of(layout, delimiter, decimal, rows, line_end, is_quoted):
 
 def has_unproved_commas(layout, delimiter, rows):
     """Tell if no decimal comma is surely one: 1,000 may be a thousand, "5, 6" two columns."""
-    cells = [c for row in rows for k, c in zip(layout, row, strict=True) if k not in "PD"]
-    with_mark = [cell for cell in cells if "." in cell]
-    unproved = r"[+-]?[1-9]\d{0,2}\.\d{3}" + (r"|\.\d+|[^.]*\." if delimiter == "spaces" else "")
-    return bool(with_mark) and all(re.fullmatch(unproved, cell) for cell in with_mark)
+    table = [[c for k, c in zip(layout, row, strict=True) if k != "D"] for row in rows]
+    cells = [cell for row in table for cell in row]
+    may_delimit = delimiter == "spaces" or any(cell.endswith(".") for cell in cells)
+    inner = [cell.strip(".") if may_delimit else cell for cell in cells]
+    unproved = [cell for cell in inner if re.fullmatch(r"[+-]?[1-9]\d{0,2}\.\d{3}|[^.]*", cell)]
+    marked = [cell for cell in cells if "." in cell.rstrip(".")]
+    return unproved == inner and bool(marked)
 
 
 @settings(max_examples=250, suppress_health_check=[HealthCheck.function_scoped_fixture])
@@ -1024,3 +1027,40 @@ def test_a_comma_before_the_first_digit_is_a_decimal_one(survey, delimiter):
     rows = [["E", "N", "H"], ["0", "0", "0"], ["1", "0", "0"], ["0", "1", ",5"]]
     found = survey("".join(delimiter.join(row) + "\n" for row in rows))
     assert found.points[2].tolist() == [0.0, 1.0, 0.5]
+
+
+THOUSANDS = [
+    [["752,700", "4,024", "1,234"], ["753,100", "4,025", "5"], ["754,200", "4,027", "1,236"]],
+    [["752", "4024", "1,234"], ["753", "4025", "1,235"], ["755", "4027", "1,236"]],
+    [["752", "4024", "5"], ["753", "4025", "7"], ["755", "4027", "6"]],
+    [["1,752", "4024", "5"], ["753", "4025", "7"], ["755", "1,027", "6"]],
+]
+
+
+@pytest.mark.parametrize("rows", THOUSANDS)
+@pytest.mark.parametrize("separator", [",\t", "\t,", ",;", ";,", ",|", "|,", ", ", " ,", "\t , "])
+@pytest.mark.parametrize("has_header", [True, False])
+@pytest.mark.parametrize("line_end", ["\n", ",\n"])
+def test_thousands_beside_two_letters_that_separate_columns_are_no_decimals(
+    survey, rows, separator, has_header, line_end
+):
+    """Whatever such a table is taken for, 1,234 never becomes 1.234 or 1."""
+    content = separator.join("xyz") + "\n" if has_header else ""
+    content += "".join(separator.join(row) + line_end for row in rows)
+    try:
+        found = survey(content, columns=None if has_header else "x,y,z")
+    except ReadError:
+        return
+    assert found.points.tolist() == [[float(c.replace(",", "")) for c in row] for row in rows]
+
+
+@pytest.mark.parametrize("delimiter", ["\t", " ", "|"])
+def test_one_comma_far_down_the_file_is_no_decimal_mark_by_itself(survey, delimiter):
+    rows = [["x", "y", "z"], *([str(i), str(i % 7), "5"] for i in range(5000))]
+    rows[2346][2] = "1,234"
+    content = "".join(delimiter.join(row) + "\n" for row in rows)
+    assert "separate thousands ('1,234')" in str(fault(survey, content))
+    assert survey(content, decimal=",").points[2345].tolist() == [2345.0, 0.0, 1.234]
+    rows[3000][2] = "0,5"
+    content = "".join(delimiter.join(row) + "\n" for row in rows)
+    assert survey(content).points[2345].tolist() == [2345.0, 0.0, 1.234]
