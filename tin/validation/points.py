@@ -15,7 +15,14 @@ from .threads import thread_count
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["as_elevations", "as_masked_points", "as_points", "as_xy", "require_three"]
+__all__ = [
+    "as_elevations",
+    "as_masked_points",
+    "as_places",
+    "as_points",
+    "as_xy",
+    "require_three",
+]
 
 SHOWN = 5
 
@@ -92,6 +99,16 @@ def as_xy(xy: Any) -> NDArray[np.float64]:
     places = np.ascontiguousarray(places, np.float64)
     _require_exact_range(places, "Places")
     return places
+
+
+def as_places(xy: Any) -> tuple[NDArray[np.float64], bool]:
+    """Return one place, or several, as :func:`as_xy` does, and whether it is one."""
+    shape = getattr(xy, "shape", None)
+    if shape is None:
+        is_one = isinstance(xy, list | tuple) and len(xy) == 2 and not np.ndim(xy[0])
+    else:
+        is_one = tuple(shape) == (2,)
+    return as_xy([xy] if is_one else xy), is_one
 
 
 def as_elevations(values: Any) -> NDArray[np.float64]:
