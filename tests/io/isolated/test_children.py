@@ -91,9 +91,7 @@ GREEDY = (
     "'some file' cannot be read, it may be damaged: it asks for more than 1.5 GiB of memory, the "
     "limit for a file of this size."
 )
-CRASHED = (
-    "'some file' cannot be read, it is damaged: the library that reads this format crashed."
-)
+CRASHED = "'some file' cannot be read, it is damaged: the library that reads this format crashed."
 
 
 @pytest.mark.parametrize(

@@ -64,7 +64,12 @@ def test_shares_count_what_lies_beyond_the_limit_and_not_on_it():
         space=False,
     )
     said = [axes.get_title(loc="right") for axes in histogram(shapes).axes]
-    assert said == ["5 to 60°, 40.0 % below 20°", "60 to 120°, 20.0 % above 120°", "1 to 1", "1 to 1"]
+    assert said == [
+        "5 to 60°, 40.0 % below 20°",
+        "60 to 120°, 20.0 % above 120°",
+        "1 to 1",
+        "1 to 1",
+    ]
 
 
 @pytest.mark.parametrize(
