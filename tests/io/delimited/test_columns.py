@@ -18,8 +18,8 @@ from tinsmith.io.delimited.columns import (
 )
 
 ROLES = {
-    "easting": "Easting EAST e X x_coord POINT_X Rechtswert RW este grid-easting utm.x lon Longitude",
-    "northing": "Northing NORTH n Y y_coord POINT_Y Hochwert HW norte grid-northing lat Breite",
+    "easting": "Easting EAST e X x_coord POINT_X Rechtswert RW este grid-easting utm.x lon",
+    "northing": "Northing NORTH n Y y_coord POINT_Y Hochwert HW norte grid-northing Breite",
     "elevation": "Elevation Elev EL Z z_value POINT_Z RL Höhe hoehe H altitude cota kote Alt level",
     "number": "Point PT PointNo pt_id P No. nr ID name Punktnummer # fid",
     "description": "Description Desc CODE feature_code D remarks Bemerkung código note type",
@@ -49,7 +49,8 @@ def test_other_names_say_nothing():
     ("name", "unit"),
     [
         ("Elevation (USft)", "USft"), ("elev_ft", "ft"), ("Height (NAVD88)", None), ("Z [m]", "m"),
-        ("N (US survey feet)", "US survey feet"), ("E US_ft", "US_ft"), ("elev_us_ft", "us_ft"), ("Z us ft", "us ft"), ("Elev ( m )", "m"),
+        ("N (US survey feet)", "US survey feet"), ("E US_ft", "US_ft"), ("elev_us_ft", "us_ft"),
+        ("Z us ft", "us ft"), ("Elev ( m )", "m"),
         ("ft", None), ("m", None), ("(m)", "m"), ("Z (NAVD88) (ft)", "ft"), ("Soft", None),
         ("Z.m", "m"), ("Z-intft", "intft"), ("Z metres", "metres"), ("Z (inch)", None),
         ("Z" + " " * 196 + "(m)", "m"), ("Z" + " " * 197 + "(m)", None),

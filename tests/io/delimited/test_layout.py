@@ -233,10 +233,8 @@ def test_the_layout_of_a_table(name):
     assert layout.count == count
     assert layout.rows.tolist() == rows
     for what, value in {**USUAL, **unusual}.items():
-        if what == "word":
-            found = layout.columns and layout.columns.word
-        else:
-            found = getattr(layout, what)
+        told = layout if what != "word" else layout.columns
+        found = told and getattr(told, what)
         assert (sorted(found) if isinstance(found, frozenset) else found) == value, what
 
 

@@ -150,7 +150,7 @@ def test_lengths_that_are_all_alike_still_have_an_axis():
 
 
 def test_few_far_values_are_off_the_axis_and_told():
-    """Of 1,500 lengths an end lies where less than 0.2 % are beyond it, so two below, three above."""
+    """Of 1,500 lengths fewer than 0.2 % lie beyond the lower end, that many beyond the upper."""
     points, triangles = [], []
     for k in range(500):
         side = {0: 1e-3, 1: 1e5}.get(k, 1.0)
