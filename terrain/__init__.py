@@ -3,6 +3,7 @@
 from ..errors import OptionError, RenderError
 from .charts.comparison import comparison_picture
 from .charts.histogram import histogram
+from .gridding import height_above, rasterize
 from .lift import lift
 from .preview.picture import preview
 from .results import Features, Raster, Table
@@ -16,8 +17,10 @@ __all__ = [
     "Table",
     "aspect",
     "comparison_picture",
+    "height_above",
     "histogram",
     "lift",
     "preview",
+    "rasterize",
     "slope",
 ]

@@ -5,6 +5,12 @@ from __future__ import annotations
 from .._interrupts import hold_interrupts
 
 with hold_interrupts():
-    from . import _core  # noqa: F401
+    from . import _core
 
-__all__: list[str] = []
+__all__ = [
+    "means_of_cells",
+    "values_at_centers",
+]
+
+means_of_cells = _core.means_of_cells
+values_at_centers = _core.values_at_centers

@@ -9,11 +9,12 @@ import numpy as np
 
 from .._sentences import counted
 from ..crs import CRS, Unit, require_one_unit, scale_elevations, shorten_crs
+from ..errors import choice
+from ..policies import Extrapolation, InterpolationMethod
 from . import topology
 from .constraints.breaklines import Lines
 from .editing.editable import Editable
 from .editing.version import Version
-from .interpolation.methods import EXTRAPOLATIONS, METHODS, require_choice
 from .report import Report
 from .triangulation import Triangulation
 from .types import seal
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
 
     from ..crs import CrsLike, UnitLike
     from .building.inputs import BuildInputs
-    from .interpolation.methods import Extrapolation, Method
     from .types import Bounds
     from .voronoi.diagram import Voronoi
 
@@ -369,7 +369,7 @@ class TIN(Editable):
     def interpolate(
         self,
         xy: ArrayLike,
-        method: Method = "linear",
+        method: InterpolationMethod = "linear",
         *,
         extrapolate: Extrapolation | None = None,
         threads: int | None = None,
@@ -448,9 +448,9 @@ class TIN(Editable):
         >>> float(tin.interpolate([1, 1]))
         1.75
         """
-        require_choice("method", method, METHODS)
+        choice("method", method, InterpolationMethod)
         if extrapolate is not None:
-            require_choice("extrapolate", extrapolate, EXTRAPOLATIONS)
+            choice("extrapolate", extrapolate, Extrapolation)
         places, is_one = as_places(xy)
         elevations = self._current.interpolator.interpolate(
             places, method, extrapolate=extrapolate is not None, threads=threads

@@ -40,6 +40,7 @@ if TYPE_CHECKING:
         write,
     )
     from .terrain import comparison_picture, histogram
+    from .terrain.gridding import height_above, rasterize
     from .terrain.lift import lift
     from .terrain.preview.picture import preview
     from .terrain.results import Features, Raster, Table
@@ -113,6 +114,7 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "preview",
                 "slope",
             ),
+            ".terrain.gridding": ("height_above", "rasterize"),
             ".terrain.results": ("Features", "Raster", "Table"),
             ".tin": (
                 "TIN",
@@ -180,6 +182,7 @@ __all__ = [
     "compare",
     "comparison_picture",
     "find_format",
+    "height_above",
     "histogram",
     "io",
     "known_formats",
@@ -189,6 +192,7 @@ __all__ = [
     "paper",
     "preview",
     "quality",
+    "rasterize",
     "read",
     "read_lines",
     "read_polygons",

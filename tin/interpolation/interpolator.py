@@ -14,9 +14,9 @@ from .barriers import find_barriers
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from ...policies import InterpolationMethod
     from ..constraints.breaklines import Lines
     from ..triangulation import Triangulation
-    from .methods import Method
 
 __all__ = ["Interpolator"]
 
@@ -45,7 +45,12 @@ class Interpolator:
         self._lines = lines
 
     def interpolate(
-        self, xy: NDArray[np.float64], method: Method, *, extrapolate: bool, threads: int | None
+        self,
+        xy: NDArray[np.float64],
+        method: InterpolationMethod,
+        *,
+        extrapolate: bool,
+        threads: int | None,
     ) -> NDArray[np.float64]:
         """Return the elevation at each place of a (k, 2) array, NaN outside or, if wished, nearest.
 
@@ -53,7 +58,7 @@ class Interpolator:
         ----------
         xy : (k, 2) float64 array
             NaN is allowed and has no elevation.
-        method : Method
+        method : InterpolationMethod
         extrapolate : bool
             Take the nearest place of the surface for one outside.
         threads : int or None
@@ -66,7 +71,9 @@ class Interpolator:
                 elevations[outside] = self._outside(xy[outside], method)
         return elevations
 
-    def _inside(self, xy: NDArray[np.float64], method: Method, threads: int) -> NDArray[np.float64]:
+    def _inside(
+        self, xy: NDArray[np.float64], method: InterpolationMethod, threads: int
+    ) -> NDArray[np.float64]:
         if method == "linear":
             return self._surface.locator.interpolate(xy, threads)
         if method == "nearest":
@@ -78,7 +85,7 @@ class Interpolator:
             return self._patches.interpolate(xy, threads)
         return self._neighbors.interpolate(xy, _WEIGHTS[method], threads)
 
-    def _outside(self, xy: NDArray[np.float64], method: Method) -> NDArray[np.float64]:
+    def _outside(self, xy: NDArray[np.float64], method: InterpolationMethod) -> NDArray[np.float64]:
         if method == "nearest":
             return self._nearest(xy)
         edges, shares = self._boundary.find(xy)

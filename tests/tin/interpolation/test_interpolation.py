@@ -236,7 +236,7 @@ def test_wrong_words_are_refused():
         tin.interpolate([[1, 1]], ["linear"])
     with pytest.raises(OptionError, match="Invalid extrapolate 'linear'"):
         tin.interpolate([[1, 1]], extrapolate="linear")
-    with pytest.raises(PointsError, match="Invalid threads 0"):
+    with pytest.raises(OptionError, match="Invalid threads 0"):
         tin.interpolate([[1, 1]], threads=0)
     with pytest.raises(PointsError, match="shape"):
         tin.interpolate([1, 2, 3])
