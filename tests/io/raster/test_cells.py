@@ -240,8 +240,8 @@ def test_elevations_that_scale_makes_infinite_are_counted():
             {"count": 0, "subdatasets": [*"abcdef"]},
             None,
             ReadError,
-            "'ground.tif' holds no band of its own but several rasters (a, b, c, d, e): extract one "
-            "of them first.",
+            "'ground.tif' holds no band of its own but several rasters (a, b, c, d, e): extract "
+            "one of them first.",
         ),
         ({}, 3, FormatError, "Invalid band 3: bands 1 to 2 are in 'ground.tif'."),
         ({}, 0, FormatError, "Invalid band 0: bands 1 to 2 are in 'ground.tif'."),
