@@ -89,58 +89,62 @@ def test_what_may_cross_is_split_or_error():
 # ----------------------------------------------------- the mesh and its vertex numbers
 
 
+def edit_both(tin, rows, rng):
+    """Edit a TIN and the table of its rows, each in its own way."""
+    kind = rng.choice(["insert", "insert", "onto", "remove", "move", "set_z"])
+    own = [r for r in range(4, len(rows)) if rows[r] is not None]
+    row = int(rng.choice(own))
+    vertex = int(tin.vertex_of[row])
+    sharing = [r for r in own if tin.vertex_of[r] == vertex]
+    place, changed = [*rng.uniform(0, 9, 2), 7.0], rows[row]
+    if kind == "insert":
+        new = [place, [*rng.uniform(0, 9, 2), 6.0]]
+        assert tin.points[tin.insert(new)].tolist() == new
+        rows += new
+    elif kind == "onto":
+        new = [[*rows[row][:2], 40.0], [*rows[row][:2], 20.0]]
+        assert tin.insert(new, duplicates="highest").tolist() == [vertex, vertex]
+        sharing += [len(rows), len(rows) + 1]
+        rows += new
+        changed = [*rows[row][:2], max(40.0, rows[row][2])]
+    elif kind == "remove" and len(own) > 8:
+        tin.remove([vertex])
+        changed = None
+    elif kind == "move":
+        tin.move(vertex, place)
+        changed = place
+    else:
+        tin.set_z([vertex], 3.5)
+        changed = [*rows[row][:2], 3.5]
+    for r in sharing:
+        rows[r] = changed
+
+
+def require_build_of(tin, rows, lines):
+    """Arrays, vertices of rows and merges are those of the rows that are there."""
+    there = [r for r, one in enumerate(rows) if one is not None]
+    fresh = ts.triangulate([rows[r] for r in there], breaklines=lines)
+    for name in ARRAYS:
+        np.testing.assert_array_equal(getattr(tin, name), getattr(fresh, name), err_msg=name)
+    expected = np.full(len(rows), -1)
+    expected[there] = fresh.vertex_of
+    np.testing.assert_array_equal(tin.vertex_of, expected)
+    merges = [m._replace(rows=tuple(there[r] for r in m.rows)) for m in fresh.report.merges()]
+    assert list(tin.report.merges()) == merges
+    assert len(tin.points) == tin.report.n_vertices == fresh.report.n_vertices
+    gone = [r for r, one in enumerate(rows) if one is None]
+    assert tin.report.to_dict()["left_out"].get("removed by an edit", []) == gone
+
+
 @pytest.mark.parametrize("has_line", [False, True])
 @pytest.mark.parametrize("seed", range(6))
 def test_rows_and_vertices_of_many_edits_are_those_of_a_fresh_build(seed, has_line):
-    """Numbers, rows that share a vertex, elevations: kept beside the TIN as a plain table."""
     rng = np.random.default_rng(seed)
     corners = [[-9.0, -9, 0], [30, -9, 0], [30, 30, 0], [-9, 30, 0]]
-    table = [*corners, *np.c_[rng.permutation(100)[:30] // 10, rng.permutation(30), rng.random(30)]]
-    table = [list(map(float, row)) for row in table]
+    inner = np.c_[rng.permutation(30) % 10, rng.permutation(30), rng.random(30)]
+    table = np.vstack([corners, inner])
     lines = [[[-5, -8, 1], [25, -8, 2]]] if has_line else []
-    tin = ts.triangulate(table, breaklines=lines)
-    rows: list[list[float] | None] = [list(row) for row in table]
+    tin, rows = ts.triangulate(table, breaklines=lines), table.tolist()
     for _ in range(25):
-        vertex_of = tin.vertex_of
-        kind = rng.choice(["insert", "insert", "onto", "remove", "move", "set_z"])
-        own = [r for r in range(4, len(rows)) if rows[r] is not None]
-        row = int(rng.choice(own))
-        vertex = int(vertex_of[row])
-        sharing = [r for r in own if vertex_of[r] == vertex]
-        if kind == "insert":
-            new = [[*rng.uniform(0, 9, 2), 5.0], [*rng.uniform(0, 9, 2), 6.0]]
-            found = tin.insert(new)
-            rows += new
-            assert tin.points[found].tolist() == new
-        elif kind == "onto":
-            new = [[*rows[row][:2], 40.0], [*rows[row][:2], 20.0]]
-            assert tin.insert(new, duplicates="highest").tolist() == [vertex, vertex]
-            rows += new
-            top = max(40.0, rows[row][2])
-            for r in [*sharing, len(rows) - 1, len(rows) - 2]:
-                rows[r] = [*rows[r][:2], top]
-        elif kind == "remove" and len(own) > 8:
-            tin.remove([vertex])
-            for r in sharing:
-                rows[r] = None
-        elif kind == "move":
-            place = [*rng.uniform(0, 9, 2), 7.0]
-            tin.move(vertex, place)
-            for r in sharing:
-                rows[r] = list(place)
-        else:
-            tin.set_z([vertex], 3.5)
-            for r in sharing:
-                rows[r][2] = 3.5
-        there = [r for r, one in enumerate(rows) if one is not None]
-        fresh = ts.triangulate([rows[r] for r in there], breaklines=lines)
-        for name in ARRAYS:
-            np.testing.assert_array_equal(getattr(tin, name), getattr(fresh, name), err_msg=name)
-        expected = np.full(len(rows), -1)
-        expected[there] = fresh.vertex_of
-        np.testing.assert_array_equal(tin.vertex_of, expected)
-        merges = [m._replace(rows=tuple(there[r] for r in m.rows)) for m in fresh.report.merges()]
-        assert list(tin.report.merges()) == merges
-        assert len(tin.points) == tin.report.n_vertices == fresh.report.n_vertices
-        gone = [r for r, one in enumerate(rows) if one is None]
-        assert tin.report.to_dict()["left_out"].get("removed by an edit", []) == gone
+        edit_both(tin, rows, rng)
+        require_build_of(tin, rows, lines)
