@@ -99,7 +99,8 @@ def edit_both(tin, rows, rng):
     place, changed = [*rng.uniform(0, 9, 2), 7.0], rows[row]
     if kind == "insert":
         new = [place, [*rng.uniform(0, 9, 2), 6.0]]
-        assert tin.points[tin.insert(new)].tolist() == new
+        found = tin.insert(new)
+        assert tin.points[found].tolist() == new
         rows += new
     elif kind == "onto":
         new = [[*rows[row][:2], 40.0], [*rows[row][:2], 20.0]]
