@@ -65,6 +65,22 @@ def test_a_part_of_a_hull_stays_one_after_any_edit(operation):
         assert tin.lines.kinds[tin.lines.names.index("wall")] == "hard"
 
 
+@pytest.mark.parametrize("is_whole", [True, False])
+def test_only_a_whole_hull_grows_with_points_outside(is_whole):
+    """Collinear vertices along the sides make no hull less whole."""
+    axis = np.arange(4.0)
+    x, y = (part.ravel() for part in np.meshgrid(axis, axis))
+    made = ts.triangulate(np.column_stack([x, y, x * y]))
+    middle = made.points[made.triangles, :2].mean(axis=1)
+    inner = np.abs(middle - 1.5).sum(axis=1).argmin()
+    chosen = made.triangles if is_whole else np.delete(made.triangles, inner, axis=0)
+    tin = ts.TIN.from_triangles(made.points, chosen)
+    area = tin.area
+    tin.insert([[5.0, 1.5, 2.0]])
+    assert tin.area == area + (3.0 if is_whole else 0.0)
+    assert ts.check(tin).ok
+
+
 def test_an_edit_of_no_vertex_changes_nothing():
     for tin in (ts.triangulate(CORNERS), with_a_flagged_edge()):
         before = {name: getattr(tin, name).copy() for name in ARRAYS}
