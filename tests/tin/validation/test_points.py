@@ -245,3 +245,25 @@ def test_the_ends_of_the_exact_range_are_allowed_and_nothing_beyond(axis, sign):
         with pytest.raises(PointsError, match="1 row outside the exact range") as caught:
             ts.triangulate(points)
         assert list(caught.value.rows) == [1]
+
+
+def test_errors_keep_the_first_five_rows_of_many():
+    points = np.random.default_rng(1).random((9, 3))
+    for bad, kind in ((np.nan, "are not finite"), (1e300, "outside the exact range")):
+        rows = points.copy()
+        rows[2:, 0] = bad
+        with pytest.raises(PointsError, match=kind) as caught:
+            ts.triangulate(rows)
+        assert list(caught.value.rows) == [2, 3, 4, 5, 6]
+        assert "(first: row 2" in str(caught.value)
+    triangles = np.full((8, 3), [0, 1, 99])
+    triangles[0] = [0, 1, 2]
+    with pytest.raises(PointsError) as caught:
+        ts.TIN.from_triangles(points, triangles)
+    assert list(caught.value.rows) == [1, 2, 3, 4, 5]
+    assert str(caught.value) == (
+        "Triangle 1 has the vertices [0, 1, 99]: numbers 0 to 8 are allowed."
+    )
+    with pytest.raises(PointsError, match="Triangle 0 has the vertices"):
+        ts.TIN.from_triangles(points, [[0, 1, -1]])
+    assert len(ts.TIN.from_triangles(points, [[0, 1, 8]]).triangles) == 1
