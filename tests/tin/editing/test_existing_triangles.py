@@ -55,7 +55,13 @@ def test_a_part_of_a_hull_stays_one_after_any_edit(operation):
         "set_z": {"vertices": [at], "z": 7.0},
         "add_breakline": {"coords": [[0.5, 0.5, 1], [5.5, 1.5, 2]], "name": "wall"},
     }
+    before = tin.points[tin.vertex_of]
     getattr(tin, operation)(**arguments[operation])
+    own = tin.vertex_of[: len(before)]
+    stays = np.delete(np.arange(len(before)), at)
+    np.testing.assert_array_equal(tin.points[own[stays], :2], before[stays, :2])
+    assert own[at] == -1 if operation == "remove" else own[at] >= 0
+    assert len(tin.vertex_of) == len(before) + (operation == "insert")
     assert tin.area == pytest.approx(20.0, rel=1e-14)
     assert len(tin.rings) == 1
     assert ts.check(tin).ok
