@@ -75,6 +75,8 @@ HEIGHTS = "The header's 'Z' is taken as the elevation, not {}."
         ("E N Z", "ENZ", []),
         ("X Y Z E N", "--ZEN", [TWO_PAIRS.format("'E' and 'N'", "'X' and 'Y'")]),
         ("East North x y H", "EN--Z", [TWO_PAIRS.format("'East' and 'North'", "'x' and 'y'")]),
+        ("E N Northing Z", "EPNZ", []),
+        ("Easting E N Z", "E-NZ", []),
         ("Y X Z", "NEZ", [TURNED]),
         ("N E Z", "NEZ", []),
         ("N X Y Z", "PENZ", []),
