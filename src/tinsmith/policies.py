@@ -20,6 +20,9 @@ __all__ = [
     "LineRole",
     "RasterSample",
     "RasterValue",
+    "OverviewMethod",
+    "SlopeUnit",
+    "SurfacePart",
     "TrimPolicy",
 ]
 
@@ -61,3 +64,11 @@ RasterValue: TypeAlias = Literal["elevation", "slope", "aspect", "hillshade"]
 
 RasterSample: TypeAlias = Literal["center", "mean"]
 """Whether a cell holds the value at its centre, or the mean over it."""
+SlopeUnit: TypeAlias = Literal["degrees", "percent", "ratio"]
+"""How a slope is given: as an angle, or as rise over a run of 100 or of 1."""
+
+SurfacePart: TypeAlias = Literal["triangle", "vertex"]
+"""Of what a measure of the surface is given."""
+
+OverviewMethod: TypeAlias = Literal["average", "nearest", "none"]
+"""How the cells of a raster's smaller copies are found."""
