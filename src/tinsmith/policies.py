@@ -18,9 +18,9 @@ __all__ = [
     "InterpolationMethod",
     "LineKind",
     "LineRole",
+    "OverviewMethod",
     "RasterSample",
     "RasterValue",
-    "OverviewMethod",
     "SlopeUnit",
     "SurfacePart",
     "TrimPolicy",
@@ -64,6 +64,7 @@ RasterValue: TypeAlias = Literal["elevation", "slope", "aspect", "hillshade"]
 
 RasterSample: TypeAlias = Literal["center", "mean"]
 """Whether a cell holds the value at its centre, or the mean over it."""
+
 SlopeUnit: TypeAlias = Literal["degrees", "percent", "ratio"]
 """How a slope is given: as an angle, or as rise over a run of 100 or of 1."""
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -80,11 +80,15 @@ class SurfaceBand:
     def _scanned(self, rows: slice, columns: slice) -> NDArray[np.float64]:
         surface, (x, y) = self._tin.triangulation, centers(self._grid, rows, columns)
         threads = thread_count(self._threads, len(x) * len(y))
-        arrays: tuple[Any, ...] = (surface.points, surface.triangles, x, y, self._grid.spacing)
-        if self._is_mean:
-            sides = edges(self._grid, rows, columns)
-            return _kernel.means_of_cells(*arrays, *sides, self._values, threads)
-        return _kernel.values_at_centers(*arrays, self._values, threads)
+        spacing, values = self._grid.spacing, self._values
+        if not self._is_mean:
+            return _kernel.values_at_centers(
+                surface.points, surface.triangles, x, y, spacing, values, threads
+            )
+        x_edges, y_edges = edges(self._grid, rows, columns)
+        return _kernel.means_of_cells(
+            surface.points, surface.triangles, x, y, spacing, x_edges, y_edges, values, threads
+        )
 
     def _asked(self, rows: slice, columns: slice) -> NDArray[np.float64]:
         x, y = centers(self._grid, rows, columns)

@@ -155,8 +155,8 @@ def edges(
     grid: Grid, rows: slice, columns: slice
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return eastings of the sides of columns, and northings of the sides of rows."""
-    x = grid.bounds.xmin + np.arange(columns.start, columns.stop + 1) * grid.spacing
-    y = grid.bounds.ymax - np.arange(rows.start, rows.stop + 1) * grid.spacing
+    x = grid.bounds.xmin + np.arange(columns.start, columns.stop + 1, dtype=float) * grid.spacing
+    y = grid.bounds.ymax - np.arange(rows.start, rows.stop + 1, dtype=float) * grid.spacing
     return x, y
 
 

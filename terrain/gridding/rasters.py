@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ...errors import OptionError, choice
 from ...policies import InterpolationMethod, RasterSample, RasterValue
@@ -109,7 +109,7 @@ def rasterize(
     cells = as_grid(tin, spacing=spacing, like=like, grid=grid, in_memory=not is_lazy)
     values = triangle_values(tin, value, azimuth=azimuth, altitude=altitude)
     band = SurfaceBand(tin, cells, values, method=method, is_mean=at == "mean", threads=threads)
-    held = band if is_lazy else band[:, :]
+    held: Any = band if is_lazy else band[:, :]
     return Raster({value: held}, cells, crs=tin.crs, units=_units(tin, value), name=value)
 
 
