@@ -155,13 +155,16 @@ def edges(
     grid: Grid, rows: slice, columns: slice
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return eastings of the sides of columns, and northings of the sides of rows."""
-    x = grid.bounds.xmin + np.arange(columns.start, columns.stop + 1, dtype=float) * grid.spacing
-    y = grid.bounds.ymax - np.arange(rows.start, rows.stop + 1, dtype=float) * grid.spacing
+    x = (
+        grid.bounds.xmin
+        + np.arange(columns.start, columns.stop + 1, dtype=np.float64) * grid.spacing
+    )
+    y = grid.bounds.ymax - np.arange(rows.start, rows.stop + 1, dtype=np.float64) * grid.spacing
     return x, y
 
 
-def _numbers(part: slice) -> NDArray[np.int64]:
-    return np.arange(part.start, part.stop)
+def _numbers(part: slice) -> NDArray[np.float64]:
+    return np.arange(part.start, part.stop, dtype=np.float64)
 
 
 def as_parts(key: Any, shape: Sequence[int]) -> tuple[slice, slice]:

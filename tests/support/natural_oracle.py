@@ -26,7 +26,7 @@ def laplace_weights(sites: Sequence[Place], p: Place) -> list[Fraction]:
 
 
 def _cell(p: Place, sites: Sequence[Place]) -> Polygon:
-    far = 10**15 * (1 + max(abs(c) for site in sites for c in site))
+    far = 10**400  # beyond every corner of a cell, of whatever sites that doubles can hold
     return _nearer([(-far, -far), (far, -far), (far, far), (-far, far)], p, sites)
 
 

@@ -51,16 +51,4 @@ inline DoubleDouble operator/(DoubleDouble a, DoubleDouble b) {
   return quick_sum(first, second) + DoubleDouble(rest.high / b.high);
 }
 
-// The difference of two coordinates, as exact as the type can hold it.
-template <typename Real>
-Real difference(double a, double b);
-template <>
-inline double difference<double>(double a, double b) {
-  return a - b;
-}
-template <>
-inline DoubleDouble difference<DoubleDouble>(double a, double b) {
-  return DoubleDouble(exact_difference(a, b));
-}
-
 }  // namespace tinsmith

@@ -10,7 +10,8 @@
 // of its own, in which only the vertices on this side count. Its areas are taken by the same sums.
 //
 // Which vertices are neighbours is decided exactly. Areas are computed from the corners of the
-// cells, relative to the point: in doubles, or, where too much would cancel, in twice their digits.
+// cells, relative to the point: in doubles, or, where too much would cancel, in twice or six times
+// their digits.
 #pragma once
 
 #include <algorithm>
@@ -21,9 +22,28 @@
 #include <vector>
 
 #include "double_double.hpp"
+#include "long_number.hpp"
 #include "neighbor_ring.hpp"
 
 namespace tinsmith {
+
+// The difference of two coordinates; exact but in doubles.
+template <typename Real>
+Real difference(double a, double b) {
+  return Real(exact_difference(a, b));
+}
+template <>
+inline double difference<double>(double a, double b) {
+  return a - b;
+}
+
+// Digits that sums and products of a type keep, with room for some roundings.
+template <typename Real>
+constexpr int kKeptDigits = 53;
+template <>
+inline constexpr int kKeptDigits<DoubleDouble> = 104;
+template <>
+inline constexpr int kKeptDigits<LongNumber> = 300;
 
 enum class NaturalWeights { kSibson, kLaplace };
 
@@ -40,7 +60,8 @@ class NaturalNeighbors {
     if (is_settled(weights, t) || !cavity_.collect(surface_, barriers_, p, t)) {
       return elevation_at(surface_, p, t);
     }
-    const bool is_weighed = weigh(doubles_, p) || weigh(double_doubles_, p);
+    const bool is_weighed =
+        weigh(doubles_, p) || weigh(double_doubles_, p) || weigh(long_numbers_, p);
     // So near a barrier or the boundary that no digits are left: there the limit is linear.
     return is_weighed ? weighted_mean() : elevation_at(surface_, p, t);
   }
@@ -62,8 +83,8 @@ class NaturalNeighbors {
     double extent = 0.0;     // squared, of corners and centres
   };
 
-  // Relative errors of weights stay below some 2^14 roundings.
-  static constexpr double kMostCancelled = 0x1p14;
+  // Relative errors of weights stay below 2^-39 or so.
+  static constexpr int kWantedDigits = 39;
 
   // At a corner, and on an edge that is not looked across, the elevation is that of the line.
   bool is_settled(const CornerWeights& weights, Triangle t) const {
@@ -190,10 +211,9 @@ class NaturalNeighbors {
   // Not where something overflowed or is no number.
   template <typename Real>
   static bool is_precise(double cancelled, double total) {
-    constexpr bool is_double = sizeof(Real) == sizeof(double);
-    constexpr double kMost = is_double ? kMostCancelled : 0x1p52 * kMostCancelled;
+    const double most = std::ldexp(1.0, kKeptDigits<Real> - kWantedDigits);
     return total > 0.0 && total < std::numeric_limits<double>::infinity() &&
-           cancelled <= kMost * total;
+           cancelled <= most * total;
   }
 
   template <typename Real>
@@ -238,6 +258,7 @@ class NaturalNeighbors {
   NeighborRing cavity_;
   Scratch<double> doubles_;
   Scratch<DoubleDouble> double_doubles_;
+  Scratch<LongNumber> long_numbers_;
   std::vector<double> weights_;
 };
 
