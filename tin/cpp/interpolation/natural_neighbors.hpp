@@ -79,7 +79,7 @@ class NaturalNeighbors {
     std::vector<Vector<Real>> corners;    // of the point's cell, one for each edge of the ring
     std::vector<Vector<Real>> centers;    // of the cavity's circles
     std::vector<Real> weights;
-    double cancelled = 0.0;  // the largest ratio of terms to their difference
+    double cancelled = 0.0;  // the largest ratio of terms to the area that is their difference
     double extent = 0.0;     // squared, of corners and centres
   };
 
@@ -147,7 +147,7 @@ class NaturalNeighbors {
       const Vector<Real> a = neighbors[i], b = neighbors[after];
       const Vector<Real> along = minus(b, a);
       const Real area = cross(a, b);
-      note_cancelled(scratch, a, b, area);
+      note_cancelled(scratch, std::max(square_of(a), square_of(b)), area);
       const Real at_b = (b.x * along.x + b.y * along.y) / area;
       const Real at_a = -(a.x * along.x + a.y * along.y) / area;
       scratch.weights[i] = scratch.weights[i] + at_b;
@@ -156,7 +156,7 @@ class NaturalNeighbors {
       largest = std::max({largest, std::fabs(first), std::fabs(second)});
       total += first + second;
     }
-    return is_precise<Real>(scratch.cancelled * largest, total);
+    return is_precise<Real>(scratch.cancelled * std::max(largest, 1.0), total);
   }
 
   template <typename Real>
@@ -186,26 +186,27 @@ class NaturalNeighbors {
   static Vector<Real> circumcenter(Scratch<Real>& scratch, Vector<Real> a, Vector<Real> b) {
     const Real a_square = a.x * a.x + a.y * a.y, b_square = b.x * b.x + b.y * b.y;
     const Real area = cross(a, b);
-    note_cancelled(scratch, a, b, area);
+    note_cancelled(scratch, std::sqrt(square_of(a)) * std::sqrt(square_of(b)), area);
     const Real half = Real(0.5) / area;
     return {(b.y * a_square - a.y * b_square) * half, (a.x * b_square - b.x * a_square) * half};
   }
 
+  // Rounding of the squares and products is divided by the area too.
   template <typename Real>
-  static void note_cancelled(Scratch<Real>& scratch, const Vector<Real>& a, const Vector<Real>& b,
-                             const Real& area) {
-    const double terms = std::fabs(static_cast<double>(a.x) * static_cast<double>(b.y)) +
-                         std::fabs(static_cast<double>(a.y) * static_cast<double>(b.x));
-    scratch.cancelled = std::max(scratch.cancelled, terms / static_cast<double>(area));
+  static void note_cancelled(Scratch<Real>& scratch, double terms, const Real& area) {
     // A negative area is the work of rounding, and nothing can be built on it.
-    if (!(static_cast<double>(area) > 0.0)) {
-      scratch.cancelled = std::numeric_limits<double>::infinity();
-    }
+    const double divisor = static_cast<double>(area);
+    scratch.cancelled = divisor > 0.0 ? std::max(scratch.cancelled, terms / divisor)
+                                      : std::numeric_limits<double>::infinity();
   }
   template <typename Real>
   static void note_extent(Scratch<Real>& scratch, const Vector<Real>& corner) {
-    const double x = static_cast<double>(corner.x), y = static_cast<double>(corner.y);
-    scratch.extent = std::max(scratch.extent, x * x + y * y);
+    scratch.extent = std::max(scratch.extent, square_of(corner));
+  }
+  template <typename Real>
+  static double square_of(const Vector<Real>& vector) {
+    const double x = static_cast<double>(vector.x), y = static_cast<double>(vector.y);
+    return x * x + y * y;
   }
 
   // Not where something overflowed or is no number.
