@@ -3,6 +3,7 @@
 from ..errors import OptionError, RenderError
 from .charts.comparison import comparison_picture
 from .charts.histogram import histogram
+from .isolines import contour_bands, contours
 from .lift import lift
 from .preview.picture import preview
 from .results import Features, Raster, Table
@@ -16,6 +17,8 @@ __all__ = [
     "Table",
     "aspect",
     "comparison_picture",
+    "contour_bands",
+    "contours",
     "histogram",
     "lift",
     "preview",

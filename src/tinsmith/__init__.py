@@ -40,6 +40,7 @@ if TYPE_CHECKING:
         write,
     )
     from .terrain import comparison_picture, histogram
+    from .terrain.isolines import contour_bands, contours
     from .terrain.lift import lift
     from .terrain.preview.picture import preview
     from .terrain.results import Features, Raster, Table
@@ -108,6 +109,8 @@ else:  # a type checker takes every name for one that such a __getattr__ has
             ".terrain": (
                 "aspect",
                 "comparison_picture",
+                "contour_bands",
+                "contours",
                 "histogram",
                 "lift",
                 "preview",
@@ -179,6 +182,8 @@ __all__ = [
     "check",
     "compare",
     "comparison_picture",
+    "contour_bands",
+    "contours",
     "find_format",
     "histogram",
     "io",

@@ -60,6 +60,16 @@ class BandPieces {
           band == last && surface_.rank(low) < last && surface_.is_at(high, band - 1);
       if (!is_point) join(piece_of(t, band), piece_of(across, band));
     }
+    if (surface_.rank(low) == last) join_over_ridge(t, corner, last - 1);
+  }
+
+  // An edge at a level from which both triangles fall separates nothing.
+  void join_over_ridge(Triangle t, std::uint32_t corner, std::int32_t level) {
+    if (level < 0 || surface_.is_above(surface_.corner(t, corner), level)) return;
+    const Triangle across = surface_.neighbor(t, corner);
+    if (surface_.beyond_ridge(t, surface_.corners_above(t, level), level) == across) {
+      join(piece_of(t, level), piece_of(across, level));
+    }
   }
 
   std::int32_t find(std::int32_t piece) {
