@@ -8,8 +8,9 @@ from ...tin.types import seal
 from ...tin.validation.options import require_tin
 from .. import _kernel
 from ..results import Features
-from .levels import LevelOptions
+from .levels import LevelOptions, Levels
 from .measures import measure_lengths, plane_units
+from .smoothing import TracedLines, require_tolerance, smooth_lines
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -26,6 +27,8 @@ def contours(
     levels: ArrayLike | None = None,
     base: float = 0.0,
     index: int | None = 5,
+    smooth: float | None = None,
+    simplify: float | None = None,
 ) -> Features:
     """Trace the contour lines of a TIN.
 
@@ -41,6 +44,11 @@ def contours(
     index : int or None, optional
         Every so many contours one is an index contour: levels that are multiples of ``index``
         intervals from ``base``; of explicit levels the first and every ``index``-th after it.
+    smooth : float, optional
+        Round the corners, as far as the surface along the lines stays within this much of the
+        level, in the unit of elevations.
+    simplify : float, optional
+        Drop points, likewise; after smoothing, if both are given.
 
     Returns
     -------
@@ -62,6 +70,9 @@ def contours(
     lines of one level share a segment. A summit or a ridge that only just reaches a level has no
     line. Time and memory are in proportion to the triangles and the points of the lines.
 
+    Smoothed and simplified lines never touch or cross one another, but where exact lines meet in a
+    vertex at their level, and never leave the tolerance: :func:`tinsmith.check_contours` proves it.
+
     Levels are computed as decimal numbers: three steps of 0.1 are 0.3, as a vertex has it.
 
     Examples
@@ -75,9 +86,22 @@ def contours(
     require_tin(tin)
     options = LevelOptions(interval, levels, base, index)
     chosen = options.for_lines(tin)
-    xyz, offsets, level, is_closed = _kernel.trace_contours(
-        tin.points, tin.triangles, tin.neighbors, chosen.values
+    tolerances = [
+        require_tolerance(name, value)
+        for name, value in (("smooth", smooth), ("simplify", simplify))
+    ]
+    lines = TracedLines(
+        *_kernel.trace_contours(tin.points, tin.triangles, tin.neighbors, chosen.values)
     )
+    if any(tolerances) and len(lines.level):
+        lines = smooth_lines(
+            tin, lines, chosen.values, smooth=tolerances[0], simplify=tolerances[1]
+        )
+    return _as_features(tin, lines, chosen)
+
+
+def _as_features(tin: TIN, lines: TracedLines, chosen: Levels) -> Features:
+    xyz, offsets, level, is_closed = lines
     columns: dict[str, Any] = {
         "elevation": chosen.values[level],
         "is_index": chosen.is_index[level],

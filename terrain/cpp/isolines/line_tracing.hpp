@@ -28,6 +28,24 @@ struct TracedLines {
   std::vector<Line> lines;
 };
 
+// Turn a closed line, the last of all, to its first point by easting, then northing; where it passes
+// there twice, to the way whose next point is first.
+inline void turn_to_first(ScratchVector<Point>& points, std::size_t begin) {
+  const auto start = points.begin() + std::ptrdiff_t(begin);
+  const std::size_t count = points.size() - begin;
+  const auto after = [&](std::size_t i) { return start[std::ptrdiff_t((i + 1) % count)]; };
+  std::size_t first = 0;
+  for (std::size_t i = 1; i < count; ++i) {
+    const Point point = start[std::ptrdiff_t(i)];
+    const Point least = start[std::ptrdiff_t(first)];
+    if (lexicographically_before(point, least) ||
+        (point == least && lexicographically_before(after(i), after(first)))) {
+      first = i;
+    }
+  }
+  std::rotate(start, start + std::ptrdiff_t(first), points.end());
+}
+
 // Every crossed triangle has one exit for each level, and what follows an exit is given by the
 // triangle beyond: lines are the cycles of that map and its ways from boundary to boundary.
 class LineTracer {
@@ -87,7 +105,7 @@ class LineTracer {
     follow(next, level, begin);
     auto& points = found_.points;
     while (points.size() > begin + 1 && points.back() == points[begin]) points.pop_back();
-    turn_to_first(begin);
+    turn_to_first(points, begin);
     keep(begin, level, true);
   }
 
@@ -120,24 +138,6 @@ class LineTracer {
       return;
     }
     found_.lines.push_back({begin, points.size(), level, is_closed});
-  }
-
-  // A closed line starts at its first point by easting, then northing; where it passes there
-  // twice, with the way whose next point is first.
-  void turn_to_first(std::size_t begin) {
-    const auto start = found_.points.begin() + std::ptrdiff_t(begin);
-    const std::size_t count = found_.points.size() - begin;
-    const auto after = [&](std::size_t i) { return start[std::ptrdiff_t((i + 1) % count)]; };
-    std::size_t first = 0;
-    for (std::size_t i = 1; i < count; ++i) {
-      const Point point = start[std::ptrdiff_t(i)];
-      const Point least = start[std::ptrdiff_t(first)];
-      if (lexicographically_before(point, least) ||
-          (point == least && lexicographically_before(after(i), after(first)))) {
-        first = i;
-      }
-    }
-    std::rotate(start, start + std::ptrdiff_t(first), found_.points.end());
   }
 
   const LevelSurface& surface_;
