@@ -3,19 +3,21 @@
 from ..errors import OptionError, RenderError
 from .charts.comparison import comparison_picture
 from .charts.histogram import histogram
-from .isolines import contour_bands, contours
+from .isolines import ContourCheck, check_contours, contour_bands, contours
 from .lift import lift
 from .preview.picture import preview
 from .results import Features, Raster, Table
 from .slope import aspect, slope
 
 __all__ = [
+    "ContourCheck",
     "Features",
     "OptionError",
     "Raster",
     "RenderError",
     "Table",
     "aspect",
+    "check_contours",
     "comparison_picture",
     "contour_bands",
     "contours",

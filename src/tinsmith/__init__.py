@@ -40,7 +40,7 @@ if TYPE_CHECKING:
         write,
     )
     from .terrain import comparison_picture, histogram
-    from .terrain.isolines import contour_bands, contours
+    from .terrain.isolines import ContourCheck, check_contours, contour_bands, contours
     from .terrain.lift import lift
     from .terrain.preview.picture import preview
     from .terrain.results import Features, Raster, Table
@@ -107,7 +107,9 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "write",
             ),
             ".terrain": (
+                "ContourCheck",
                 "aspect",
+                "check_contours",
                 "comparison_picture",
                 "contour_bands",
                 "contours",
@@ -153,6 +155,7 @@ __all__ = [
     "CheckError",
     "CheckResult",
     "Comparison",
+    "ContourCheck",
     "CrsError",
     "Features",
     "Format",
@@ -180,6 +183,7 @@ __all__ = [
     "__version__",
     "aspect",
     "check",
+    "check_contours",
     "compare",
     "comparison_picture",
     "contour_bands",

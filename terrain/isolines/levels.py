@@ -177,7 +177,7 @@ def _require_positive(option: str, value: Any) -> None:
         raise OptionError(option, as_shown(value), allowed="a finite number above 0")
 
 
-class as_shown:  # noqa: N801 - it is used as a function
+class as_shown:
     """A value whose repr is short enough for a sentence."""
 
     def __init__(self, value: object) -> None:
