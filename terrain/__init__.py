@@ -3,7 +3,7 @@
 from ..errors import OptionError, RenderError
 from .charts.comparison import comparison_picture
 from .charts.histogram import histogram
-from .isolines import ContourCheck, check_contours, contour_bands, contours
+from .isolines import ContourCheck, check_contours, contour_bands, contour_labels, contours
 from .lift import lift
 from .preview.picture import preview
 from .results import Features, Raster, Table
@@ -20,6 +20,7 @@ __all__ = [
     "check_contours",
     "comparison_picture",
     "contour_bands",
+    "contour_labels",
     "contours",
     "histogram",
     "lift",

@@ -41,7 +41,13 @@ if TYPE_CHECKING:
         write,
     )
     from .terrain import comparison_picture, histogram
-    from .terrain.isolines import ContourCheck, check_contours, contour_bands, contours
+    from .terrain.isolines import (
+        ContourCheck,
+        check_contours,
+        contour_bands,
+        contour_labels,
+        contours,
+    )
     from .terrain.lift import lift
     from .terrain.preview.picture import preview
     from .terrain.results import Features, Raster, Table
@@ -114,6 +120,7 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "check_contours",
                 "comparison_picture",
                 "contour_bands",
+                "contour_labels",
                 "contours",
                 "histogram",
                 "lift",
@@ -190,6 +197,7 @@ __all__ = [
     "compare",
     "comparison_picture",
     "contour_bands",
+    "contour_labels",
     "contours",
     "find_format",
     "histogram",

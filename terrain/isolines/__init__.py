@@ -2,6 +2,7 @@
 
 from .bands import contour_bands
 from .checking import ContourCheck, check_contours
+from .labels import contour_labels
 from .lines import contours
 
-__all__ = ["ContourCheck", "check_contours", "contour_bands", "contours"]
+__all__ = ["ContourCheck", "check_contours", "contour_bands", "contour_labels", "contours"]

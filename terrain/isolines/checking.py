@@ -10,7 +10,7 @@ import shapely
 
 from ...errors import OptionError
 from ...tin.predicates import orientation
-from ...tin.validation.options import require_tin, shown
+from ...tin.validation.options import require_tin
 from ..results import Features
 
 if TYPE_CHECKING:
@@ -94,7 +94,7 @@ def check_contours(tin: TIN, lines: Features) -> ContourCheck:
     """
     require_tin(tin)
     if not (isinstance(lines, Features) and lines.kind == "lines" and lines.has_elevations):
-        raise OptionError("lines", shown(lines), allowed="contours, as lines with elevations")
+        raise OptionError("lines", lines, allowed="contours, as lines with elevations")
     segments = _segments_of(lines)
     contacts, shared, pairs = _find_contacts(tin, segments)
     return ContourCheck(contacts, pairs, shared, _largest_deviation(tin, segments))
@@ -150,8 +150,8 @@ def _are_joined(
     columns = np.ascontiguousarray(corners[:, 0]), np.ascontiguousarray(corners[:, 1])
     turns = orientation(columns, rows, rows + len(one), rows + 2 * len(one))
     is_back = (turns == 0) & (((joint - before) * (after - joint))[:, :2].sum(axis=1) <= 0)
-    same: NDArray[np.bool_] = line[one] == line[other]
-    return same & (follows | leads) & ~is_back
+    is_joint: NDArray[np.bool_] = (line[one] == line[other]) & (follows | leads) & ~is_back
+    return is_joint
 
 
 def _meet_in_vertex(segments: _Segments, a: int, b: int, vertices: set[tuple[float, ...]]) -> bool:

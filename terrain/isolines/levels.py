@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._sentences import counted
+from ..._sentences import counted, shown
 from ...errors import OptionError
 from ...tin.types import seal
-from ...tin.validation.options import is_finite_number, is_whole_number, shown
+from ...tin.validation.options import is_finite_number, is_whole_number
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -62,10 +62,10 @@ class LevelOptions:
         if self.interval is not None:
             _require_positive("interval", self.interval)
         if not is_finite_number(self.base):
-            raise OptionError("base", as_shown(self.base), allowed="a finite number")
+            raise OptionError("base", self.base, allowed="a finite number")
         if self.index is not None and not (is_whole_number(self.index) and self.index > 0):
             allowed = "a whole number from 1 on, or None for no index contours"
-            raise OptionError("index", as_shown(self.index), allowed=allowed)
+            raise OptionError("index", self.index, allowed=allowed)
 
     def for_lines(self, tin: TIN) -> Levels:
         """Return the levels between the lowest and the highest elevation of a TIN."""
@@ -103,12 +103,12 @@ class LevelOptions:
                 f"so large that there are at most {MOST_LEVELS:,} levels, "
                 f"and here there would be {last - first + 1:,}"
             )
-            raise OptionError("interval", as_shown(self.interval), allowed=allowed)
+            raise OptionError("interval", self.interval, allowed=allowed)
         numbers = np.arange(-2, last - first + 3, dtype=object) + first
         values = np.array([_rounded(base + k * step) for k in numbers], np.float64)
         if (np.diff(values) <= 0).any():
             allowed = "so large that elevations here can differ by it"
-            raise OptionError("interval", as_shown(self.interval), allowed=allowed)
+            raise OptionError("interval", self.interval, allowed=allowed)
         return numbers, values
 
     def _explicit(self, lowest: float, highest: float) -> Levels:
@@ -160,9 +160,9 @@ def as_levels(given: Any) -> NDArray[np.float64]:
     try:
         values = np.asarray(given, np.float64)
     except (TypeError, ValueError):
-        raise OptionError("levels", as_shown(given), allowed="numbers") from None
+        raise OptionError("levels", given, allowed="numbers") from None
     if values.ndim > 1 or values.size == 0:
-        raise OptionError("levels", as_shown(given), allowed="a list of one or more numbers")
+        raise OptionError("levels", given, allowed="a list of one or more numbers")
     values = np.unique(values)
     if not np.isfinite(values).all():
         bad = float(values[~np.isfinite(values)][0])
@@ -174,14 +174,4 @@ def as_levels(given: Any) -> NDArray[np.float64]:
 
 def _require_positive(option: str, value: Any) -> None:
     if not (is_finite_number(value) and value > 0):
-        raise OptionError(option, as_shown(value), allowed="a finite number above 0")
-
-
-class as_shown:
-    """A value whose repr is short enough for a sentence."""
-
-    def __init__(self, value: object) -> None:
-        self._text = shown(value)
-
-    def __repr__(self) -> str:
-        return self._text
+        raise OptionError(option, value, allowed="a finite number above 0")

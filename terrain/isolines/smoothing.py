@@ -9,7 +9,6 @@ import numpy as np
 from ...errors import OptionError
 from ...tin.validation.options import is_finite_number
 from .. import _kernel
-from .levels import as_shown
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -53,7 +52,7 @@ def require_tolerance(option: str, value: Any) -> float:
         return 0.0
     if not (is_finite_number(value) and value > 0):
         allowed = "a finite number above 0 in the unit of elevations, or None"
-        raise OptionError(option, as_shown(value), allowed=allowed)
+        raise OptionError(option, value, allowed=allowed)
     return float(value)
 
 
