@@ -2,6 +2,7 @@
 
 from ..errors import OptionError, RenderError
 from .charts.comparison import comparison_picture
+from .charts.contour_map import contour_map
 from .charts.histogram import histogram
 from .isolines import ContourCheck, check_contours, contour_bands, contour_labels, contours
 from .lift import lift
@@ -21,6 +22,7 @@ __all__ = [
     "comparison_picture",
     "contour_bands",
     "contour_labels",
+    "contour_map",
     "contours",
     "histogram",
     "lift",

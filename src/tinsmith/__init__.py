@@ -40,7 +40,7 @@ if TYPE_CHECKING:
         with_lines,
         write,
     )
-    from .terrain import comparison_picture, histogram
+    from .terrain import comparison_picture, contour_map, histogram
     from .terrain.isolines import (
         ContourCheck,
         check_contours,
@@ -121,6 +121,7 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "comparison_picture",
                 "contour_bands",
                 "contour_labels",
+                "contour_map",
                 "contours",
                 "histogram",
                 "lift",
@@ -198,6 +199,7 @@ __all__ = [
     "comparison_picture",
     "contour_bands",
     "contour_labels",
+    "contour_map",
     "contours",
     "find_format",
     "histogram",

@@ -68,12 +68,12 @@ class LevelOptions:
             raise OptionError("index", self.index, allowed=allowed)
 
     def for_lines(self, tin: TIN) -> Levels:
-        """Return the levels between the lowest and the highest elevation of a TIN."""
+        """Return the levels above the lowest and up to the highest elevation of a TIN."""
         lowest, highest = elevation_range(tin)
         if self.interval is None:
             return self._explicit(lowest, highest)
         numbers, values = self._at_interval(lowest, highest)
-        is_within = (values >= lowest) & (values <= highest)
+        is_within = (values > lowest) & (values <= highest)
         notes = () if is_within.any() else (self._none_within(lowest, highest),)
         return Levels(seal(values[is_within]), self._index(numbers[is_within]), notes)
 
@@ -130,7 +130,8 @@ class LevelOptions:
     def _none_within(self, lowest: float, highest: float) -> str:
         return (
             f"No level at the interval {shown(self.interval)} from base {shown(self.base)} lies "
-            f"within the elevations of the surface, {lowest:g} to {highest:g}: there is no line."
+            f"within the elevations of the surface, above {lowest:g} up to {highest:g}: "
+            "there is no line."
         )
 
 
