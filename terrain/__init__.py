@@ -2,20 +2,28 @@
 
 from ..errors import OptionError, RenderError
 from .charts.comparison import comparison_picture
+from .charts.contour_map import contour_map
 from .charts.histogram import histogram
+from .isolines import ContourCheck, check_contours, contour_bands, contour_labels, contours
 from .lift import lift
 from .preview.picture import preview
 from .results import Features, Raster, Table
 from .slope import aspect, slope
 
 __all__ = [
+    "ContourCheck",
     "Features",
     "OptionError",
     "Raster",
     "RenderError",
     "Table",
     "aspect",
+    "check_contours",
     "comparison_picture",
+    "contour_bands",
+    "contour_labels",
+    "contour_map",
+    "contours",
     "histogram",
     "lift",
     "preview",

@@ -5,6 +5,10 @@ from __future__ import annotations
 from .._interrupts import hold_interrupts
 
 with hold_interrupts():
-    from . import _core  # noqa: F401
+    from . import _core
 
-__all__: list[str] = []
+__all__ = ["fill_bands", "smooth_contours", "trace_contours"]
+
+trace_contours = _core.trace_contours
+smooth_contours = _core.smooth_contours
+fill_bands = _core.fill_bands

@@ -40,7 +40,14 @@ if TYPE_CHECKING:
         with_lines,
         write,
     )
-    from .terrain import comparison_picture, histogram
+    from .terrain import comparison_picture, contour_map, histogram
+    from .terrain.isolines import (
+        ContourCheck,
+        check_contours,
+        contour_bands,
+        contour_labels,
+        contours,
+    )
     from .terrain.lift import lift
     from .terrain.preview.picture import preview
     from .terrain.results import Features, Raster, Table
@@ -108,8 +115,14 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "write",
             ),
             ".terrain": (
+                "ContourCheck",
                 "aspect",
+                "check_contours",
                 "comparison_picture",
+                "contour_bands",
+                "contour_labels",
+                "contour_map",
+                "contours",
                 "histogram",
                 "lift",
                 "preview",
@@ -152,6 +165,7 @@ __all__ = [
     "CheckError",
     "CheckResult",
     "Comparison",
+    "ContourCheck",
     "CrsError",
     "Features",
     "Format",
@@ -180,8 +194,13 @@ __all__ = [
     "__version__",
     "aspect",
     "check",
+    "check_contours",
     "compare",
     "comparison_picture",
+    "contour_bands",
+    "contour_labels",
+    "contour_map",
+    "contours",
     "find_format",
     "histogram",
     "io",
