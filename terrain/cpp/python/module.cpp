@@ -1,4 +1,9 @@
 // The compiled module of terrain. What is in this folder converts and names, nothing else.
 #include <nanobind/nanobind.h>
 
-NB_MODULE(_core, m) { m.doc() = "Compiled core of tinsmith.terrain: what is derived from a TIN."; }
+#include "bind_earthwork.hpp"
+
+NB_MODULE(_core, m) {
+  m.doc() = "Compiled core of tinsmith.terrain: what is derived from a TIN.";
+  tinsmith::python::bind_earthwork(m);
+}
