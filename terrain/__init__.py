@@ -3,12 +3,14 @@
 from ..errors import OptionError, RenderError
 from .charts.comparison import comparison_picture
 from .charts.histogram import histogram
+from .earthwork import Difference, difference, stage_storage, volume
 from .lift import lift
 from .preview.picture import preview
 from .results import Features, Raster, Table
 from .slope import aspect, slope
 
 __all__ = [
+    "Difference",
     "Features",
     "OptionError",
     "Raster",
@@ -16,8 +18,11 @@ __all__ = [
     "Table",
     "aspect",
     "comparison_picture",
+    "difference",
     "histogram",
     "lift",
     "preview",
     "slope",
+    "stage_storage",
+    "volume",
 ]

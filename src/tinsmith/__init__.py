@@ -40,6 +40,7 @@ if TYPE_CHECKING:
         write,
     )
     from .terrain import comparison_picture, histogram
+    from .terrain.earthwork import Difference, difference, stage_storage, volume
     from .terrain.lift import lift
     from .terrain.preview.picture import preview
     from .terrain.results import Features, Raster, Table
@@ -106,12 +107,16 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "write",
             ),
             ".terrain": (
+                "Difference",
                 "aspect",
                 "comparison_picture",
+                "difference",
                 "histogram",
                 "lift",
                 "preview",
                 "slope",
+                "stage_storage",
+                "volume",
             ),
             ".terrain.results": ("Features", "Raster", "Table"),
             ".tin": (
@@ -151,6 +156,7 @@ __all__ = [
     "CheckResult",
     "Comparison",
     "CrsError",
+    "Difference",
     "Features",
     "Format",
     "FormatError",
@@ -179,6 +185,7 @@ __all__ = [
     "check",
     "compare",
     "comparison_picture",
+    "difference",
     "find_format",
     "histogram",
     "io",
@@ -196,10 +203,12 @@ __all__ = [
     "read_water",
     "refine",
     "slope",
+    "stage_storage",
     "terrain",
     "tin",
     "transform_points",
     "triangulate",
+    "volume",
     "voronoi",
     "with_lines",
     "write",
