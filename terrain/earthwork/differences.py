@@ -9,22 +9,26 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...errors import PointsError
-from ...tin import TIN, topology
-from ...tin.report import Report
+from ...tin.validation.threads import thread_count
 from .. import _kernel
 from ..results import Features, Table
 from . import zones as parts
 from .cells import fan_out
-from .meshes import cut_at_zero, mend
+from .meshes import as_mesh, cut_at_zero, mend, rebuild
 from .reference import Reference, Surface, reference_of, require_finite, surfaces_of
 from .statistics import percentiles
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
+    from ...tin import TIN
+
 __all__ = ["Difference", "difference"]
+
+_SHARE_OF_ROUNDING = 1e-7
+"""Of the area times the largest difference: so much of a volume vertices' roundings may change."""
 
 _SHARES = {"p05": 5.0, "p25": 25.0, "median": 50.0, "p75": 75.0, "p95": 95.0}
 
@@ -45,6 +49,7 @@ class Difference:
     tin: TIN
     notes: tuple[str, ...]
     _reference: Reference
+    _sums: dict[str, float]
 
     @cached_property
     def zero_line(self) -> Features:
@@ -71,12 +76,7 @@ class Difference:
         ``mean``, ``rms``, ``standard_deviation``, ``mean_absolute``, ``lowest``, ``highest``,
         percentiles ``p05``, ``p25``, ``median``, ``p75``, ``p95``, and the ``area``.
         """
-        mesh = self.tin.triangulation
-        groups = np.zeros(len(mesh.triangles), np.int32)
-        heights = np.ascontiguousarray(mesh.points[:, 2])
-        sums = _kernel.sum_heights(mesh.points, mesh.triangles, heights, groups, 1, 1.0)
-        require_finite(sums)
-        columns = _moments(dict(zip(_kernel.SUMS, sums[0].tolist(), strict=True)))
+        columns = _moments(self._sums)
         columns |= dict(zip(_SHARES, self.percentiles(list(_SHARES.values())), strict=True))
         units: dict[str, Any] = dict.fromkeys(columns, self._reference.elevation_unit)
         units["area"] = self._reference.power(2)
@@ -154,14 +154,14 @@ def difference(tin: TIN, other: TIN) -> Difference:
     CrsError
         As :func:`tinsmith.volume`.
     PointsError
-        If the surfaces do not overlap, or their overlay has cells that rounded coordinates cannot
-        hold.
+        If the surfaces do not overlap, or only in what is thinner than coordinates can tell.
 
     Notes
     -----
     Vertices are those of both TINs and the places where their edges cross, rounded once: a cell
     that is thinner than the rounding is merged with the next. Two TINs of n vertices each have an
-    overlay of some 8 n vertices; memory goes with it, about 2 kB for each of the n.
+    overlay of some 8 n vertices; memory goes with it, about 2 kB for each of the n. Statistics are
+    those of the surfaces as they are; the TIN is refused if its volumes differ from theirs.
 
     Examples
     --------
@@ -169,8 +169,8 @@ def difference(tin: TIN, other: TIN) -> Difference:
     >>> flat = ts.triangulate([[0, 0, 1], [4, 0, 1], [4, 4, 1], [0, 4, 1]])
     >>> ramp = ts.triangulate([[0, 0, 0], [4, 0, 2], [4, 4, 2], [0, 4, 0]])
     >>> found = ts.difference(flat, ramp)
-    >>> found.statistics["highest"], found.zones
-    (array([1.]), <Features cut and fill: 2 polygons, columns kind, area, volume, lowest, highest, crs unknown>)
+    >>> found.statistics["highest"], found.zones.columns["kind"]
+    (array([1.]), array(['cut', 'fill'], dtype=object))
     """
     reference = reference_of(tin, "Differences")
     reference_of(other, "Differences")
@@ -183,24 +183,59 @@ def difference(tin: TIN, other: TIN) -> Difference:
         )
     require_finite(made.vertices)
     triangles, _ = fan_out(made.offsets, made.corners)
-    points, triangles = mend(*cut_at_zero(*mend(made.vertices, triangles)))
-    surface = _as_tin(points, triangles, tin)
+    given = cut_at_zero(made.vertices, triangles)
+    points, triangles = mend(*given) or _rebuild(*given, _holder(tin, other))
+    surface = as_mesh(points, triangles, crs=tin.crs, elevation_unit=tin.elevation_unit)
     every = tuple(dict.fromkeys([*reference.notes, *notes]))
-    return Difference(surface, every, reference)
+    sums = _sums_between(first, second)
+    _require_agreement(surface, sums)
+    return Difference(surface, every, reference, sums)
 
 
-def _as_tin(points: NDArray[np.float64], triangles: NDArray[np.int32], tin: TIN) -> TIN:
-    """Return a TIN whose edges are all constrained: none of them may be flipped."""
-    return TIN(
-        points=points,
-        triangles=triangles,
-        neighbors=topology.neighbors_of(triangles, len(points)),
-        constrained=np.ones((len(triangles), 3), bool),
-        vertex_of=np.arange(len(points), dtype=np.int32),
-        report=Report(n_rows=len(points), n_vertices=len(points), n_triangles=len(triangles)),
-        crs=tin.crs,
-        elevation_unit=tin.elevation_unit,
+def _sums_between(first: Surface, second: Surface) -> dict[str, float]:
+    groups = np.zeros(len(first.triangles), np.int32)
+    workers = thread_count(None, len(first.points) + len(second.points))
+    sums = _kernel.sum_between(
+        first.points, first.triangles, groups, 1, second.points, second.triangles, 1.0, workers
     )
+    require_finite(sums)
+    return dict(zip(_kernel.SUMS, sums[0].tolist(), strict=True))
+
+
+def _require_agreement(surface: TIN, sums: dict[str, float]) -> None:
+    """Refuse a TIN whose volumes are not those of the surfaces: rounding has moved a wall."""
+    found = _sums_of(surface)
+    most = max(sums["highest"], -sums["lowest"])
+    apart = max(abs(found[name] - sums[name]) for name in ("cut", "fill"))
+    if apart > _SHARE_OF_ROUNDING * sums["area"] * most:
+        raise PointsError(
+            "The surfaces have walls that are thinner than coordinates can tell: the volume of "
+            f"their difference as a TIN would be off by {apart:.3g}. Round the points of both to "
+            "a unit that they are surveyed in, such as a millimetre."
+        )
+
+
+def _sums_of(surface: TIN) -> dict[str, float]:
+    """Return cut and fill in the triangles that count as cut and as filled."""
+    mesh = surface.triangulation
+    heights = np.ascontiguousarray(mesh.points[:, 2])
+    groups = parts.classes_of(mesh).astype(np.int32) + np.int32(1)
+    sums = _kernel.sum_heights(mesh.points, mesh.triangles, heights, groups, 3, 1.0)
+    column = _kernel.SUMS.index
+    return {"cut": float(sums[0, column("cut")]), "fill": float(sums[2, column("fill")])}
+
+
+def _rebuild(
+    points: NDArray[np.float64], triangles: NDArray[np.int32], holds: Callable[[Any], Any]
+) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    """Triangulate the overlay anew; where a new vertex moved the zero line, cut once more."""
+    found = rebuild(points, triangles, holds)
+    return mend(*cut_at_zero(*found)) or found
+
+
+def _holder(tin: TIN, other: TIN) -> Callable[[Any], Any]:
+    """Return a function that tells whether both surfaces hold places."""
+    return lambda xy: (tin.locate(xy) >= 0) & (other.locate(xy) >= 0)
 
 
 def _extent(surface: Surface) -> str:

@@ -2,52 +2,116 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...errors import PointsError
-from ...tin import topology
+from ...errors import LinesError, PointsError
+from ...tin import TIN, check, topology, triangulate
+from ...tin.report import Report
 from .cells import turns
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
-__all__ = ["cut_at_zero", "mend"]
+__all__ = ["as_mesh", "cut_at_zero", "mend", "rebuild"]
 
-_MOST_ROUNDS = 64
-"""Flat triangles lie side by side in a chain at most; each round takes one off its end."""
+_MOST_ROUNDS = 16
+"""Flat triangles lie side by side in short chains; each round takes one off an end."""
+
+
+_ROUNDINGS = 64
+"""Of the largest coordinate: lines closer than this may be brought together."""
 
 
 def mend(
     points: NDArray[np.float64], triangles: NDArray[np.int32]
-) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    """Remove triangles that rounding has made flat or turned over.
+) -> tuple[NDArray[np.float64], NDArray[np.int32]] | None:
+    """Remove triangles that rounding has made flat or turned over; None if that is not enough.
 
     Vertices that were rounded to one place become one. The longest edge of a flat triangle is
     flipped, as its third vertex lies on it but for rounding; one on the boundary is dropped. What
     moves is as thin as coordinates can tell.
+    """
+    try:
+        return _mended(points, triangles)
+    except PointsError:  # edges with more than two triangles: lines run through each other
+        return None
+
+
+def _mended(
+    points: NDArray[np.float64], triangles: NDArray[np.int32]
+) -> tuple[NDArray[np.float64], NDArray[np.int32]] | None:
+    merged = _merge_places(points, triangles)
+    for _ in range(_MOST_ROUNDS):
+        flat = np.flatnonzero(turns(points, merged) <= 0)
+        if not len(flat):
+            found = _drop_unused(points, merged)
+            return found if _is_sound(*found) else None
+        merged = _flip_longest(points, merged, flat)
+    return None
+
+
+def _is_sound(points: NDArray[np.float64], triangles: NDArray[np.int32]) -> bool:
+    """Whether triangles, all of them counter-clockwise, do not lie over each other."""
+    if not len(triangles):
+        return False
+    return bool(check(as_mesh(points, triangles), level=2).ok)
+
+
+def as_mesh(points: NDArray[np.float64], triangles: NDArray[np.int32], **reference: Any) -> TIN:
+    """Return a TIN whose edges are all constrained: none of them may be flipped."""
+    return TIN(
+        points=points,
+        triangles=triangles,
+        neighbors=topology.neighbors_of(triangles, len(points)),
+        constrained=np.ones((len(triangles), 3), bool),
+        vertex_of=np.arange(len(points), dtype=np.int32),
+        report=Report(n_rows=len(points), n_vertices=len(points), n_triangles=len(triangles)),
+        **reference,
+    )
+
+
+def rebuild(
+    points: NDArray[np.float64], triangles: NDArray[np.int32], holds: Callable[[Any], Any]
+) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    """Triangulate anew with all edges as lines, which are split where rounding lets them cross.
+
+    Parameters
+    ----------
+    points, triangles
+        As they are made, before rounding is looked at.
+    holds : function
+        Whether places, (k, 2), are inside: what is not is cut away.
 
     Raises
     ------
     PointsError
-        If some remain.
+        If nothing that coordinates can tell is left.
     """
-    triangles = _merge_places(points, triangles)
-    for _ in range(_MOST_ROUNDS):
-        flat = np.flatnonzero(turns(points, triangles) <= 0)
-        if not len(flat):
-            return _drop_unused(points, triangles)
-        triangles = _flip_longest(points, triangles, flat)
+    start, end = topology.directed_edges(triangles)
+    once = np.unique(topology.edge_keys(np.stack([start, end], axis=-1), len(points)))
+    pairs = np.stack([once // len(points), once % len(points)], axis=1)
+    pairs = pairs[(points[pairs[:, 0], :2] != points[pairs[:, 1], :2]).any(axis=1)]
+    lines = list(points[pairs])
+    for snap in (0.0, _ROUNDINGS * float(np.spacing(np.abs(points[:, :2]).max()))):
+        try:
+            tin = triangulate(points, breaklines=lines, duplicates="first", snap=snap)
+        except (LinesError, PointsError):  # lines meet anew wherever they are split
+            continue
+        centers = tin.points[tin.triangles, :2].mean(axis=1)
+        found = _drop_unused(tin.points, tin.triangles[holds(centers)])
+        if _is_sound(*found):
+            return found
     raise PointsError(
-        f"{len(flat):,} cells between the surfaces are thinner than coordinates can tell: "
-        "round the points of both to a unit that they are surveyed in, such as a millimetre."
+        "What both surfaces cover is thinner than coordinates can tell: round the points of both "
+        "to a unit that they are surveyed in, such as a millimetre."
     )
 
 
-def _merge_places(
-    points: NDArray[np.float64], triangles: NDArray[np.int32]
-) -> NDArray[np.int32]:
+def _merge_places(points: NDArray[np.float64], triangles: NDArray[np.int32]) -> NDArray[np.int32]:
     order = np.lexsort((points[:, 1], points[:, 0]))
     is_new = np.ones(len(points), bool)
     is_new[1:] = (np.diff(points[order, :2], axis=0) != 0).any(axis=1)
@@ -102,13 +166,15 @@ def _drop_unused(
 def cut_at_zero(
     points: NDArray[np.float64], triangles: NDArray[np.int32]
 ) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    r"""Cut triangles along the line where the elevation is 0, which becomes edges::
+    r"""Cut triangles along the line where the elevation is 0, which becomes edges.
 
-             +  alone                  +
-            / \                       / \
+    It leaves a corner at 0 where there is one, else it cuts two sides::
+
+        +  alone                  +
+       / \                       / \
            x---x   both ends    or   0   \      from a vertex at 0
-          /    _\  of the line        \-__x
-         -____/  -                     \__ \
+     /    _\  of the line        \-__x
+    -____/  -                     \__ \
                                           `--
     """
     signs = np.sign(points[triangles, 2]).astype(np.int8)
@@ -130,7 +196,7 @@ def cut_at_zero(
 def _alone_first(
     corners: NDArray[np.int32], signs: NDArray[np.int8]
 ) -> tuple[NDArray[np.int32], NDArray[np.int8]]:
-    """Turn triangles until corner 0 alone has its sign, and a zero, if there is one, is corner 1."""
+    """Turn triangles until corner 0 alone has its sign; one at 0, if there is one, is corner 1."""
     first = np.argmax(signs * np.sign(-_main_sign(signs))[:, None], axis=1)
     zero = np.argmin(np.abs(signs), axis=1)
     first = np.where((signs == 0).any(axis=1), (zero + 2) % 3, first)

@@ -111,7 +111,6 @@ def surfaces_of(tin: TIN, other: TIN) -> tuple[Surface, Surface, list[str]]:
     if ours != theirs:
         if tin.elevation_unit is None or other.elevation_unit is None:
             raise CrsError(_unlike_units(tin, other), crs=tin.crs)
-        assert ours is not None and theirs is not None  # both are known
         factor = _quotient(theirs, ours)
         points = np.column_stack([points[:, :2], points[:, 2] * factor])
         notes.append(f"Elevations of the other surface were converted from {theirs} to {ours}.")
@@ -123,9 +122,9 @@ def surfaces_of(tin: TIN, other: TIN) -> tuple[Surface, Surface, list[str]]:
     )
 
 
-def _quotient(unit: Unit, other: Unit) -> float:
-    assert unit.metres is not None and other.metres is not None  # units of elevations are lengths
-    return unit.metres / other.metres
+def _quotient(unit: Unit | None, other: Unit | None) -> float:
+    metres = [one.metres for one in (unit, other) if one is not None and one.metres is not None]
+    return metres[0] / metres[1]  # both are known, and units of elevations are lengths
 
 
 def _unlike_units(tin: TIN, other: TIN) -> str:

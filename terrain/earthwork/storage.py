@@ -90,9 +90,7 @@ def stage_storage(
     wanted = _as_levels(levels, interval, lowest, highest)
     order = np.argsort(wanted, kind="stable")
     sums = np.empty((len(wanted), 3))
-    sums[order] = _kernel.stage_sums(
-        surface.points, surface.triangles, wanted[order], reference.up
-    )
+    sums[order] = _kernel.stage_sums(surface.points, surface.triangles, wanted[order], reference.up)
     require_finite(sums)
     columns = {
         "level": wanted,
@@ -122,9 +120,7 @@ def _spill_level(surface: Surface) -> float:
     return float(surface.points[boundary.ravel(), 2].min())
 
 
-def _as_levels(
-    levels: Any, interval: Any, lowest: float, highest: float
-) -> NDArray[np.float64]:
+def _as_levels(levels: Any, interval: Any, lowest: float, highest: float) -> NDArray[np.float64]:
     if levels is not None:
         if interval is not None:
             raise OptionError("interval", interval, allowed="None where levels are given")

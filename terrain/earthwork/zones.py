@@ -23,8 +23,8 @@ NAMES = {-1: "cut", 0: "unchanged", 1: "fill"}
 
 def classes_of(mesh: Triangulation) -> NDArray[np.int8]:
     """Return +1 where triangles are filled, -1 where cut, 0 where nothing changes."""
-    signs = np.sign(mesh.points[mesh.triangles, 2])
-    return np.sign(signs.sum(axis=1)).astype(np.int8)
+    # No triangle has both signs, but for roundings, which the mean does not mind.
+    return np.sign(mesh.points[mesh.triangles, 2].sum(axis=1)).astype(np.int8)
 
 
 def zero_line(mesh: Triangulation, reference: Reference) -> Features:
@@ -118,7 +118,7 @@ def zones(mesh: Triangulation, reference: Reference) -> Features:
 
 
 def _number_parts(mesh: Triangulation, barrier: NDArray[np.bool_]) -> NDArray[np.int32]:
-    """Number the parts that edges without a barrier join, by their first triangles."""
+    """Give the triangles of each part that no barrier divides one number."""
     part = np.arange(len(mesh.triangles))
     triangle, corner = np.nonzero(~barrier)
     other = mesh.neighbors[triangle, corner].astype(np.int64)
