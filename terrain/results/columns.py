@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any, Generic, TypeAlias, TypeVar
 
 import numpy as np
 
+from ..._sentences import shown
 from ...crs import Unit
 from ...errors import OptionError
 from ...tin.types import seal
-from ...tin.validation.options import shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
