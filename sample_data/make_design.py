@@ -29,9 +29,9 @@ HERE = Path(__file__).parent
 HEADER = ("Point", "Northing", "Easting", "Elevation", "Description")
 EASTING, NORTHING = 752_640.0, 4_024_180.0
 """South-west corner of the site, EPSG:32616."""
-CENTER, SIZE, BEARING = np.array([150.0, 118.0]), np.array([56.0, 30.0]), 6.0
+CENTER, SIZE, BEARING = np.array([158.0, 118.0]), np.array([54.0, 28.0]), 6.0
 """Of the pad: local metres, and degrees clockwise from north of its short sides."""
-LEVEL, FALL = 325.75, 0.01
+LEVEL, FALL = 325.77, 0.01
 """Elevation at the centre, and how much it falls for each metre to the south."""
 CUT_RUN, FILL_RUN = 2.0, 2.5
 """Metres outwards for a metre up in cut, or down in fill."""

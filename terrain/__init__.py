@@ -2,6 +2,7 @@
 
 from ..errors import OptionError, RenderError
 from .charts.comparison import comparison_picture
+from .charts.earthwork import earthwork_map
 from .charts.histogram import histogram
 from .earthwork import Difference, difference, stage_storage, volume
 from .lift import lift
@@ -19,6 +20,7 @@ __all__ = [
     "aspect",
     "comparison_picture",
     "difference",
+    "earthwork_map",
     "histogram",
     "lift",
     "preview",

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
         with_lines,
         write,
     )
-    from .terrain import comparison_picture, histogram
+    from .terrain import comparison_picture, earthwork_map, histogram
     from .terrain.earthwork import Difference, difference, stage_storage, volume
     from .terrain.lift import lift
     from .terrain.preview.picture import preview
@@ -113,6 +113,7 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "aspect",
                 "comparison_picture",
                 "difference",
+                "earthwork_map",
                 "histogram",
                 "lift",
                 "preview",
@@ -189,6 +190,7 @@ __all__ = [
     "compare",
     "comparison_picture",
     "difference",
+    "earthwork_map",
     "find_format",
     "histogram",
     "io",

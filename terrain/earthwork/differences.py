@@ -51,6 +51,16 @@ class Difference:
     _reference: Reference
     _sums: dict[str, float]
 
+    @property
+    def cut(self) -> float:
+        """Volume between the surfaces where the other one is below, CRS units cubed."""
+        return self._sums["cut"] * self._reference.up
+
+    @property
+    def fill(self) -> float:
+        """Volume between the surfaces where the other one is above, CRS units cubed."""
+        return self._sums["fill"] * self._reference.up
+
     @cached_property
     def zero_line(self) -> Features:
         """The lines between parts that are cut, filled and unchanged, what is higher on the left.
