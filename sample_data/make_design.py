@@ -46,7 +46,10 @@ LEAST = 0.02
 def turned(right: Floats, up: Floats) -> Floats:
     """Turn directions from along the pad to east and north."""
     angle = np.radians(BEARING)
-    east, north = np.array([np.cos(angle), -np.sin(angle)]), np.array([np.sin(angle), np.cos(angle)])
+    east, north = (
+        np.array([np.cos(angle), -np.sin(angle)]),
+        np.array([np.sin(angle), np.cos(angle)]),
+    )
     return np.asarray(right)[..., None] * east + np.asarray(up)[..., None] * north
 
 

@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...errors import OptionError
+from ...tin import TIN
 from ...tin.validation.options import shown
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Plane", "as_plane"]
+__all__ = ["Plane", "as_plane", "level_surface"]
 
 _ALLOWED = "a level, or three points (easting, northing, elevation) of a plane"
 
@@ -85,3 +86,32 @@ class _Shown:
 
     def __repr__(self) -> str:
         return self._text
+
+
+def level_surface(tin: TIN, base: Any) -> TIN:
+    """Return a level or a plane as a TIN of two triangles that covers another one.
+
+    Parameters
+    ----------
+    tin : TIN
+    base : float or (3, 3) array
+        As for :func:`tinsmith.volume`.
+
+    Raises
+    ------
+    OptionError
+        If the base is none.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8]])
+    >>> level_surface(tin, 6.5).points[:, 2]
+    array([6.5, 6.5, 6.5, 6.5])
+    """
+    box = tin.bounds
+    east, north = [box.xmin, box.xmax, box.xmax, box.xmin], [box.ymin, box.ymin, box.ymax, box.ymax]
+    corners = np.column_stack([east, north])
+    flat = np.column_stack([corners, np.zeros(4)])
+    flat[:, 2] = as_plane(base).heights_above(flat)
+    return TIN.from_triangles(flat, [[0, 1, 2], [0, 2, 3]], crs=tin.crs, z_unit=tin.elevation_unit)
