@@ -3,7 +3,9 @@
 from ..errors import OptionError, RenderError
 from .charts.comparison import comparison_picture
 from .charts.contour_map import contour_map
+from .charts.earthwork import earthwork_map
 from .charts.histogram import histogram
+from .earthwork import Difference, difference, level_surface, stage_storage, volume
 from .isolines import ContourCheck, check_contours, contour_bands, contour_labels, contours
 from .lift import lift
 from .preview.picture import preview
@@ -12,6 +14,7 @@ from .slope import aspect, slope
 
 __all__ = [
     "ContourCheck",
+    "Difference",
     "Features",
     "OptionError",
     "Raster",
@@ -24,8 +27,13 @@ __all__ = [
     "contour_labels",
     "contour_map",
     "contours",
+    "difference",
+    "earthwork_map",
     "histogram",
+    "level_surface",
     "lift",
     "preview",
     "slope",
+    "stage_storage",
+    "volume",
 ]

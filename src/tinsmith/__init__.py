@@ -40,7 +40,8 @@ if TYPE_CHECKING:
         with_lines,
         write,
     )
-    from .terrain import comparison_picture, contour_map, histogram
+    from .terrain import comparison_picture, contour_map, earthwork_map, histogram
+    from .terrain.earthwork import Difference, difference, stage_storage, volume
     from .terrain.isolines import (
         ContourCheck,
         check_contours,
@@ -116,6 +117,7 @@ else:  # a type checker takes every name for one that such a __getattr__ has
             ),
             ".terrain": (
                 "ContourCheck",
+                "Difference",
                 "aspect",
                 "check_contours",
                 "comparison_picture",
@@ -123,10 +125,14 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "contour_labels",
                 "contour_map",
                 "contours",
+                "difference",
+                "earthwork_map",
                 "histogram",
                 "lift",
                 "preview",
                 "slope",
+                "stage_storage",
+                "volume",
             ),
             ".terrain.results": ("Features", "Raster", "Table"),
             ".tin": (
@@ -167,6 +173,7 @@ __all__ = [
     "Comparison",
     "ContourCheck",
     "CrsError",
+    "Difference",
     "Features",
     "Format",
     "FormatError",
@@ -201,6 +208,8 @@ __all__ = [
     "contour_labels",
     "contour_map",
     "contours",
+    "difference",
+    "earthwork_map",
     "find_format",
     "histogram",
     "io",
@@ -218,10 +227,12 @@ __all__ = [
     "read_water",
     "refine",
     "slope",
+    "stage_storage",
     "terrain",
     "tin",
     "transform_points",
     "triangulate",
+    "volume",
     "voronoi",
     "with_lines",
     "write",

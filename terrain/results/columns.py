@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any, Generic, TypeAlias, TypeVar
 
 import numpy as np
 
-from ..._sentences import shown
 from ...crs import Unit
 from ...errors import OptionError
 from ...tin.types import seal
