@@ -6,6 +6,7 @@ from .charts.histogram import histogram
 from .lift import lift
 from .preview.picture import preview
 from .results import Features, Raster, Table
+from .sections import cross_sections, drape, profile, section_lines
 from .slope import aspect, slope
 
 __all__ = [
@@ -16,8 +17,12 @@ __all__ = [
     "Table",
     "aspect",
     "comparison_picture",
+    "cross_sections",
+    "drape",
     "histogram",
     "lift",
     "preview",
+    "profile",
+    "section_lines",
     "slope",
 ]

@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from .terrain.lift import lift
     from .terrain.preview.picture import preview
     from .terrain.results import Features, Raster, Table
+    from .terrain.sections import cross_sections, drape, profile, section_lines
     from .terrain.slope import aspect, slope
     from .tin import (
         TIN,
@@ -113,6 +114,7 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "preview",
                 "slope",
             ),
+            ".terrain.sections": ("cross_sections", "drape", "profile", "section_lines"),
             ".terrain.results": ("Features", "Raster", "Table"),
             ".tin": (
                 "TIN",
@@ -179,6 +181,8 @@ __all__ = [
     "check",
     "compare",
     "comparison_picture",
+    "cross_sections",
+    "drape",
     "find_format",
     "histogram",
     "io",
@@ -188,6 +192,7 @@ __all__ = [
     "lines_from_codes",
     "paper",
     "preview",
+    "profile",
     "quality",
     "read",
     "read_lines",
@@ -195,6 +200,7 @@ __all__ = [
     "read_rings",
     "read_water",
     "refine",
+    "section_lines",
     "slope",
     "terrain",
     "tin",
