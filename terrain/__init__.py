@@ -3,6 +3,7 @@
 from ..errors import OptionError, RenderError
 from .charts.comparison import comparison_picture
 from .charts.histogram import histogram
+from .charts.profiles import profile_picture
 from .lift import lift
 from .preview.picture import preview
 from .results import Features, Raster, Table
@@ -23,6 +24,7 @@ __all__ = [
     "lift",
     "preview",
     "profile",
+    "profile_picture",
     "section_lines",
     "slope",
 ]

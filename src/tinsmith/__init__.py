@@ -39,7 +39,7 @@ if TYPE_CHECKING:
         with_lines,
         write,
     )
-    from .terrain import comparison_picture, histogram
+    from .terrain import comparison_picture, histogram, profile_picture
     from .terrain.lift import lift
     from .terrain.preview.picture import preview
     from .terrain.results import Features, Raster, Table
@@ -112,6 +112,7 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "histogram",
                 "lift",
                 "preview",
+                "profile_picture",
                 "slope",
             ),
             ".terrain.sections": ("cross_sections", "drape", "profile", "section_lines"),
@@ -193,6 +194,7 @@ __all__ = [
     "paper",
     "preview",
     "profile",
+    "profile_picture",
     "quality",
     "read",
     "read_lines",
