@@ -210,7 +210,7 @@ def _cut(
     features = as_features(centreline, "centreline")
     if features.kind != "lines":
         raise LinesError(f"A centreline is a line, and there are {features.kind}.")
-    notes = surfaces.notes + require_same_crs(features, surfaces.crs, "centreline")
+    notes = surfaces.notes + require_same_crs(features, surfaces.crs, centreline, "lines")
     xy = np.ascontiguousarray(features.coordinates[:, :2]) + 0.0
     start = require_number("start", start)
     segments = segments_of(xy, features.offsets[0], start=start, what="centreline")

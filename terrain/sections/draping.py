@@ -83,7 +83,7 @@ def drape(tin: TIN, features: Any, *, outside: Outside = "error") -> Features:
     given = as_features(features, "feature")
     if given.kind == "polygons" and outside == "cut":
         raise OptionError("outside", outside, allowed="error or nan for polygons")
-    notes = require_same_crs(given, surfaces.crs, "features")
+    notes = require_same_crs(given, surfaces.crs, features, "features")
     given = replace(
         given,
         crs=surfaces.crs if surfaces.crs is not None else given.crs,

@@ -75,8 +75,20 @@ def as_features(given: Any, what: str = "line") -> Features:
     return features
 
 
-def require_same_crs(features: Features, crs: CRS | None, what: str = "lines") -> tuple[str, ...]:
+def require_same_crs(
+    features: Features, crs: CRS | None, given: Any, what: str = "lines"
+) -> tuple[str, ...]:
     """Refuse features of another CRS than that of the surface, and tell what was assumed.
+
+    Parameters
+    ----------
+    features : Features
+    crs : CRS or None
+        Of the surface.
+    given : object
+        What the features were made of: plain coordinates are in the CRS of the surface.
+    what : str
+        What the features are called in sentences.
 
     Raises
     ------
@@ -84,11 +96,11 @@ def require_same_crs(features: Features, crs: CRS | None, what: str = "lines") -
         If both are known and differ in the plane.
     """
     theirs = features.crs
-    if theirs is None or crs is None:
-        known = crs if theirs is None else theirs
-        whose = what if theirs is None else "surface"
-        verb = "name" if theirs is None and what[-1] == "s" else "names"
-        return () if known is None else (f"The {whose} {verb} no CRS: taken as {known.label}.",)
+    if crs is None:
+        return () if theirs is None else (f"The surface names no CRS: taken as {theirs.label}.",)
+    if theirs is None:
+        name = f"The {what} given as features name no CRS: taken as {crs.label}."
+        return (name,) if isinstance(given, Features) else ()
     if not theirs.horizontal.is_same(crs.horizontal):
         raise CrsError(
             f"The {what} are in {theirs.label} and the surface in {crs.label}: reproject one of "

@@ -112,7 +112,7 @@ def profile(
     surfaces = as_surfaces(tin)
     scale_elevations(surfaces.crs, surfaces.elevation_unit)  # refuses angles
     features = as_features(line)
-    notes = surfaces.notes + require_same_crs(features, surfaces.crs)
+    notes = surfaces.notes + require_same_crs(features, surfaces.crs, line)
     segments = _segments(features, require_number("start", start))
     extra = None if interval is None else _at_interval(segments, as_positive("interval", interval))
     rows = cut_rows(surfaces, segments, extra)

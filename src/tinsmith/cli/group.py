@@ -31,7 +31,19 @@ if TYPE_CHECKING:
 
 __all__ = ["main"]
 
-_BUILT_IN = ("build", "info", "check", "view", "compare", "refine", "edit", "convert", "formats")
+_BUILT_IN = (
+    "build",
+    "info",
+    "check",
+    "view",
+    "compare",
+    "refine",
+    "edit",
+    "profile",
+    "drape",
+    "convert",
+    "formats",
+)
 _ENTRY_POINTS = "tinsmith.commands"
 
 
