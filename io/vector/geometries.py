@@ -51,8 +51,8 @@ def read_geometries(
     Returns
     -------
     Features
-        With the file's columns, by their names in lower case; ``notes`` tell what was left out
-        or assumed.
+        With the file's columns, by their names in lower case; points of one feature are several.
+        ``notes`` tell what was left out or assumed.
 
     Raises
     ------
@@ -69,13 +69,17 @@ def read_geometries(
     wanted = Wanted(CRS.of(crs))
     shapes = shapely.orient_polygons(shapely.force_2d(read.geometries))
     kind = _kind_of(shapes, read)
+    columns = read.columns
+    if kind == "points":
+        shapes, rows = shapely.get_parts(shapes, return_index=True)
+        columns = {name: column[rows] for name, column in columns.items()}
     _, coordinates, levels = shapely.to_ragged_array(shapes)
     _require_finite(coordinates, read)
     return Features(
         kind=kind,
         coordinates=move_to_crs(coordinates, read, wanted.crs),
         offsets=tuple(levels),
-        columns=read.columns,
+        columns=columns,
         crs=read.crs if wanted.crs is None else wanted.crs,
         notes=(*read.notes, *crs_notes(read, wanted)),
     )

@@ -7,15 +7,22 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ...crs import scale_elevations
-from ...errors import LinesError, OptionError, PointsError
+from ...errors import OptionError, PointsError
 from ...tin.validation.options import shown
 from ...tin.validation.points import as_elevations
 from ..results import Features, Table
 from .geometries import as_features, require_same_crs
-from .profiles import as_positive, measure_rows, require_few, require_number, require_surface
+from .profiles import (
+    as_positive,
+    lines_to_segments,
+    measure_rows,
+    require_few,
+    require_number,
+    require_surface,
+)
 from .rows import cut_rows
 from .runs import runs_of
-from .segments import Segments, segments_of
+from .segments import Segments
 from .surfaces import as_surfaces
 
 if TYPE_CHECKING:
@@ -208,12 +215,8 @@ def _cut(
     surfaces = as_surfaces(tin)
     scale_elevations(surfaces.crs, surfaces.elevation_unit)  # refuses angles
     features = as_features(centreline, "centreline")
-    if features.kind != "lines":
-        raise LinesError(f"A centreline is a line, and there are {features.kind}.")
     notes = surfaces.notes + require_same_crs(features, surfaces.crs, centreline, "lines")
-    xy = np.ascontiguousarray(features.coordinates[:, :2]) + 0.0
-    start = require_number("start", start)
-    segments = segments_of(xy, features.offsets[0], start=start, what="centreline")
+    segments = lines_to_segments(features, start, "centreline")
     at = _stations(segments, interval, stations)
     axes = _axes(segments, *at, *_reaches(*widths))
     rows = cut_rows(surfaces, axes.segments)
@@ -269,8 +272,8 @@ def _stations(
 
 def _multiples(ends: NDArray[np.float64], interval: float) -> NDArray[np.float64]:
     """Return line and station of every multiple of an interval, and of both ends of each line."""
+    require_few("interval", interval, ends[:, 1] - ends[:, 0])
     first, last = np.ceil(ends[:, 0] / interval), np.floor(ends[:, 1] / interval)
-    require_few("interval", interval, float(np.maximum(last - first + 1, 0).sum()))
     found = [
         np.concatenate([np.arange(low, high + 1) * interval, pair])
         for low, high, pair in zip(first.tolist(), last.tolist(), ends, strict=True)

@@ -115,8 +115,7 @@ def _drape_points(tin: TIN, given: Features, outside: Outside) -> Features:
     xyz = np.column_stack([xy, elevations])
     if outside != "cut":
         return replace(given, coordinates=xyz)
-    owner = owners_of(given.offsets[0]) if given.offsets else np.arange(len(xyz))
-    return _chosen(given, xyz[~is_outside], (), owner[~is_outside])
+    return _chosen(given, xyz[~is_outside], (), np.flatnonzero(~is_outside))
 
 
 def _tell(

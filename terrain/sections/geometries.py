@@ -206,6 +206,8 @@ def _gather(items: list[_Item], crs: CRS | None, what: str) -> Features:
         raise LinesError(f"There are {' and '.join(kinds)} together: give one kind at a time.")
     if not items:
         raise LinesError(f"There is no {what}: at least one is needed.")
+    if kinds == ["points"]:
+        items = [item._replace(parts=[part]) for item in items for part in item.parts]
     pieces = [piece for item in items for part in item.parts for piece in part]
     width = min(piece.shape[1] for piece in pieces)
     coordinates = np.concatenate([piece[:, :width] for piece in pieces])
@@ -232,7 +234,7 @@ def _as_column(values: list[Any]) -> NDArray[Any]:
     """Return values as truth values, whole numbers, numbers, or else as texts."""
     plain = [value.item() if isinstance(value, np.generic) else value for value in values]
     kinds = {type(value) for value in plain}
-    if kinds == {bool} or kinds == {int}:
+    if kinds == {bool} or (kinds == {int} and max(map(abs, plain)) < 2**63):
         return np.array(plain)
     if kinds <= {int, float, type(None)} and kinds != {type(None)}:
         return np.array([np.nan if value is None else value for value in plain], float)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -32,6 +31,7 @@ if TYPE_CHECKING:
 __all__ = [
     "MOST_STATIONS",
     "as_positive",
+    "lines_to_segments",
     "measure_rows",
     "profile",
     "require_few",
@@ -41,6 +41,9 @@ __all__ = [
 
 MOST_STATIONS = 1_000_000
 """So many stations at an interval are made; more are a slip of the interval."""
+
+_FINEST = 1e-6
+"""Share of a line's length to which stations must be told apart."""
 
 
 def profile(
@@ -113,7 +116,7 @@ def profile(
     scale_elevations(surfaces.crs, surfaces.elevation_unit)  # refuses angles
     features = as_features(line)
     notes = surfaces.notes + require_same_crs(features, surfaces.crs, line)
-    segments = _segments(features, require_number("start", start))
+    segments = lines_to_segments(features, start, "profile")
     extra = None if interval is None else _at_interval(segments, as_positive("interval", interval))
     rows = cut_rows(surfaces, segments, extra)
     require_surface(surfaces, segments, rows)
@@ -124,11 +127,22 @@ def profile(
     return measure_rows(surfaces, segments, rows, columns, name="profile", notes=notes)
 
 
-def _segments(features: Features, start: float) -> Segments:
+def lines_to_segments(features: Features, start: Any, what: str) -> Segments:
+    """Return the segments of features that are lines, their stations counted from ``start``.
+
+    Raises
+    ------
+    LinesError
+        If they are no lines, or one has no length.
+    OptionError
+        If ``start`` is no number, or too large.
+    """
     if features.kind != "lines":
-        raise LinesError(f"A profile runs along lines, and there are {features.kind}.")
+        raise LinesError(f"A {what} runs along lines, and there are {features.kind}.")
     xy = np.ascontiguousarray(features.coordinates[:, :2]) + 0.0
-    return segments_of(xy, features.offsets[0], start=start)
+    segments = segments_of(xy, features.offsets[0])
+    begin = as_start(start, segments)
+    return segments if begin == 0.0 else segments_of(xy, features.offsets[0], start=begin)
 
 
 def measure_rows(
@@ -217,6 +231,22 @@ def as_positive(option: str, value: Any) -> float:
     return float(value)
 
 
+def as_start(value: Any, segments: Segments) -> float:
+    """Return the station where lines begin, small enough for their stations to differ.
+
+    Raises
+    ------
+    OptionError
+    """
+    start = require_number("start", value)
+    lengths = segments.end_stations - segments.start_stations
+    shortest = float(np.bincount(segments.lines, lengths).min())
+    if not np.spacing(abs(start)) <= _FINEST * shortest:
+        allowed = f"of a size at which stations along {shortest:.6g} can be told apart"
+        raise OptionError("start", start, allowed=allowed)
+    return start
+
+
 def require_number(option: str, value: Any) -> float:
     """Return a finite number.
 
@@ -235,31 +265,27 @@ def _plain(value: Any) -> Any:
 
 def _at_interval(segments: Segments, interval: float) -> Places:
     """Return the places within segments whose stations are multiples of an interval."""
+    lengths = segments.end_stations - segments.start_stations
+    require_few("interval", interval, lengths)
     first = np.floor(segments.start_stations / interval) + 1
     last = np.ceil(segments.end_stations / interval) - 1
-    counts = np.maximum(last - first + 1, 0)
-    require_few("interval", interval, float(counts.sum()))
-    numbers = counts.astype(np.int64)
-    segment = np.repeat(np.arange(len(numbers)), numbers)
-    turn = np.arange(len(segment)) - np.repeat(np.cumsum(numbers) - numbers, numbers)
+    counts = np.maximum(last - first + 1, 0).astype(np.int64)
+    segment = np.repeat(np.arange(len(counts)), counts)
+    turn = np.arange(len(segment)) - np.repeat(np.cumsum(counts) - counts, counts)
     return places_at(segments, segment, (first[segment] + turn) * interval)
 
 
-def require_few(option: str, value: float, count: float) -> None:
+def require_few(option: str, interval: float, lengths: NDArray[np.float64]) -> None:
     """Refuse an interval that makes more stations than anybody can use.
 
     Raises
     ------
     OptionError
     """
-    if not count <= MOST_STATIONS:
-        least = value * (count / MOST_STATIONS) if math.isfinite(count) else math.inf
-        raise OptionError(
-            option,
-            value,
-            allowed=f"{least:.3g} or more here: {count:,.0f} stations are asked for, and at most "
-            f"{MOST_STATIONS:,} are made",
-        )
+    least = float(lengths.sum()) / MOST_STATIONS
+    if not interval >= least:
+        allowed = f"{least:.3g} or more here, where at most {MOST_STATIONS:,} stations are made"
+        raise OptionError(option, interval, allowed=allowed)
 
 
 def places_at(

@@ -23,7 +23,7 @@ from ..paths import INPUT, LINES, Named, title_of
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ...terrain import Table
+    from ...terrain import Features, Table
     from ...tin import TIN
     from ..files import Output
     from ..options import Reading, Triangulating, Writing
@@ -131,9 +131,9 @@ def profile(
     surfaces = _read_surfaces(files, chosen, reading, how, console)
     notes: list[str] = []
     lines = _lines(line, next(iter(surfaces.values())), notes)
-    with console.steps() as steps, steps.step("Cutting"):
-        table = _cut(surfaces, lines, planned, console, asked)
-    _draw(table, planned.pictures, surfaces, files, console, asked)
+    table, sections = _cut(surfaces, lines, bool(planned.lines), console, asked)
+    figure = _draw(table, surfaces, files, asked) if planned.pictures else None
+    _write(table, sections, figure, planned, console)
     notes += table.notes
     console.summarise(
         [
@@ -240,44 +240,43 @@ def _lines(line: _Line, tin: TIN, notes: list[str]) -> Any:
 
 
 def _cut(
-    surfaces: dict[str, TIN], lines: Any, planned: _Outputs, console: Console, asked: dict[str, Any]
-) -> Table:
-    """Cut, and write tables and lines."""
+    surfaces: dict[str, TIN], lines: Any, in_space: bool, console: Console, asked: dict[str, Any]
+) -> tuple[Table, Features | None]:
+    """Return the rows, and the sections as lines in space if they are wanted."""
     from ...terrain import cross_sections, section_lines
     from ...terrain import profile as cut_profile
-    from ..files import write_outputs
 
     given: Any = surfaces if len(surfaces) > 1 else next(iter(surfaces.values()))
-    if asked["sections"] is None:
-        table = cut_profile(given, lines, interval=asked["interval"], start=asked["start"])
-    else:
+    with console.steps() as steps, steps.step("Cutting"):
+        if asked["sections"] is None:
+            rows = cut_profile(given, lines, interval=asked["interval"], start=asked["start"])
+            return rows, None
         interval, width = asked["sections"]
         how = {"interval": interval, "width": width, "start": asked["start"]}
         table = cross_sections(given, lines, **how)
-        if planned.lines:
-            write_outputs(section_lines(given, lines, **how), planned.lines, console)
-    write_outputs(table, planned.tables, console)
-    return table
+        return table, section_lines(given, lines, **how) if in_space else None
 
 
 def _draw(
-    table: Table,
-    pictures: Sequence[Path],
-    surfaces: dict[str, TIN],
-    files: Sequence[Path],
-    console: Console,
-    asked: dict[str, Any],
-) -> None:
+    table: Table, surfaces: dict[str, TIN], files: Sequence[Path], asked: dict[str, Any]
+) -> Any:
     from ...terrain import profile_picture
-    from ..files import write_figure
 
     crs = next((tin.crs for tin in surfaces.values() if tin.crs is not None), None)
     title = asked["title"] or f"Profile: {title_of(files[0])}"
-    for path in pictures:
+    return profile_picture(table, exaggeration=asked["exaggeration"], title=title, crs=crs)
+
+
+def _write(
+    table: Table, sections: Features | None, figure: Any, planned: _Outputs, console: Console
+) -> None:
+    from ..files import write_figure, write_outputs
+
+    write_outputs(table, planned.tables, console)
+    if sections is not None:
+        write_outputs(sections, planned.lines, console)
+    for path in planned.pictures:
         with console.steps() as steps, steps.step("Drawing"):
-            figure = profile_picture(
-                table, exaggeration=asked["exaggeration"], title=title, crs=crs
-            )
             write_figure(figure, path, dpi=150)
 
 
