@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._sentences import shown
 from ...errors import OptionError
 from ...tin import TIN
-from ...tin.validation.options import shown
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ..._sentences import shown
 from ...crs import scale_elevations
 from ...errors import OptionError, PointsError
-from ...tin.validation.options import shown
 from ...tin.validation.points import as_elevations
 from ..results import Features, Table
 from .geometries import as_features, require_same_crs

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from ..._sentences import counted
-from ...errors import LinesError, OptionError
+from ...errors import LinesError, OptionError, choice
 from ...tin.constraints.polylines import offsets_of, owners_of
-from ...tin.validation.options import is_one_of, shown
 from ..results import Features
 from .geometries import as_features, require_same_crs
 from .rows import cut_rows
@@ -77,8 +76,7 @@ def drape(tin: TIN, features: Any, *, outside: Outside = "error") -> Features:
            [2., 2., 4.],
            [3., 2., 5.]])
     """
-    if not is_one_of(outside, get_args(Outside)):
-        raise OptionError("outside", _plain(outside), allowed="error, nan or cut")
+    choice("outside", outside, Outside)
     surfaces = as_surfaces([tin])
     given = as_features(features, "feature")
     if given.kind == "polygons" and outside == "cut":
@@ -100,10 +98,6 @@ def drape(tin: TIN, features: Any, *, outside: Outside = "error") -> Features:
     is_outside[lines[np.isnan(rows.elevations[:, 0])]] = True
     given = _tell(given, is_outside, outside, rows, lines)
     return _cut_runs(given, rows, lines) if outside == "cut" else _whole(given, rows, lines)
-
-
-def _plain(value: Any) -> Any:
-    return value if isinstance(value, str) else shown(value)
 
 
 def _drape_points(tin: TIN, given: Features, outside: Outside) -> Features:
