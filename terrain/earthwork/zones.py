@@ -142,8 +142,8 @@ def _polygons(
     cut = np.where(barrier, np.int32(topology.NO_NEIGHBOR), mesh.neighbors)
     rings = topology.boundary_rings(mesh.triangles, cut)
     owner = _owners(mesh, barrier, part, rings)
-    is_hole = [_doubled_area(mesh.points[ring, :2]) < 0 for ring in rings]
-    order = np.lexsort((np.array(is_hole, np.bool_), owner))
+    is_hole = np.array([_doubled_area(mesh.points[ring, :2]) < 0 for ring in rings])
+    order = np.lexsort((is_hole, owner))
     closed = [np.append(rings[i], rings[i][0]).astype(np.int64) for i in order]
     return (
         np.concatenate(closed),
