@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -236,7 +237,7 @@ def _band_paths(bands: Features) -> list[Any]:
     path = _optional.load("matplotlib.path", _PURPOSE).Path
     rings, polygons, features = bands.offsets
     made = []
-    for first, last in zip(features[:-1], features[1:], strict=True):
+    for first, last in pairwise(features):
         begin, end = rings[polygons[first]], rings[polygons[last]]
         codes = np.full(end - begin, path.LINETO, path.code_type)
         starts = rings[polygons[first] : polygons[last] + 1] - begin
