@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..._sentences import counted
 from ...errors import LinesError, OptionError, choice
+from ...policies import OutsidePolicy
 from ...tin.constraints.polylines import offsets_of, owners_of
 from ..results import Features
 from .geometries import as_features, require_same_crs
@@ -23,12 +24,10 @@ if TYPE_CHECKING:
     from ...tin import TIN
     from .rows import Rows
 
-__all__ = ["Outside", "drape"]
-
-Outside = Literal["error", "nan", "cut"]
+__all__ = ["drape"]
 
 
-def drape(tin: TIN, features: Any, *, outside: Outside = "error") -> Features:
+def drape(tin: TIN, features: Any, *, outside: OutsidePolicy = "error") -> Features:
     """Lay points, lines or polygons on a surface.
 
     Parameters
@@ -76,7 +75,7 @@ def drape(tin: TIN, features: Any, *, outside: Outside = "error") -> Features:
            [2., 2., 4.],
            [3., 2., 5.]])
     """
-    choice("outside", outside, Outside)
+    choice("outside", outside, OutsidePolicy)
     surfaces = as_surfaces([tin])
     given = as_features(features, "feature")
     if given.kind == "polygons" and outside == "cut":
@@ -100,7 +99,7 @@ def drape(tin: TIN, features: Any, *, outside: Outside = "error") -> Features:
     return _cut_runs(given, rows, lines) if outside == "cut" else _whole(given, rows, lines)
 
 
-def _drape_points(tin: TIN, given: Features, outside: Outside) -> Features:
+def _drape_points(tin: TIN, given: Features, outside: OutsidePolicy) -> Features:
     xy = np.ascontiguousarray(given.coordinates[:, :2]) + 0.0
     elevations = tin.interpolate(xy)
     is_outside = np.isnan(elevations)
@@ -115,7 +114,7 @@ def _drape_points(tin: TIN, given: Features, outside: Outside) -> Features:
 def _tell(
     given: Features,
     is_outside: NDArray[np.bool_],
-    outside: Outside,
+    outside: OutsidePolicy,
     rows: Rows,
     lines: NDArray[Any],
 ) -> Features:
@@ -128,7 +127,7 @@ def _tell(
 
 
 def _noted(
-    given: Features, is_outside: NDArray[np.bool_], outside: Outside, place: Any, what: str
+    given: Features, is_outside: NDArray[np.bool_], outside: OutsidePolicy, place: Any, what: str
 ) -> Features:
     count, first = int(is_outside.sum()), int(np.argmax(is_outside))
     all_of = counted(len(is_outside), what)

@@ -176,7 +176,7 @@ def measure_rows(
     return Table(columns, units=units, name=name, notes=notes)
 
 
-def _name_stations(crossed: NDArray[np.object_]) -> NDArray[np.object_]:
+def _name_stations(crossed: NDArray[np.str_]) -> NDArray[np.str_]:
     """Say of rows where no surface has a break that they were asked for."""
     named = crossed.copy()
     named[(crossed == "").all(axis=1)] = "station"
