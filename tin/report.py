@@ -14,9 +14,16 @@ from .types import Frozen
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .editing.history import Edit
-
-__all__ = ["LEFT_OUT", "UNMENDED_WHY", "Crossings", "Merge", "Overruled", "Report", "Unmended"]
+__all__ = [
+    "LEFT_OUT",
+    "UNMENDED_WHY",
+    "Crossings",
+    "Edit",
+    "Merge",
+    "Overruled",
+    "Report",
+    "Unmended",
+]
 
 LEFT_OUT = (
     "erased",
@@ -66,6 +73,34 @@ class Merge(NamedTuple):
     heights: tuple[float, ...]
     shifts: tuple[float, ...]
     height: float
+
+
+class Edit(NamedTuple):
+    """One edit, as it can be written to a file and done again.
+
+    Attributes
+    ----------
+    operation : str
+        The name of a method of a TIN.
+    arguments : dict
+        Its arguments by name.
+    notes : tuple of str
+        What it met: lines that were crossed, with both heights.
+    """
+
+    operation: str
+    arguments: dict[str, Any]
+    notes: tuple[str, ...] = ()
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain Python values, ready for JSON; :func:`.apply_edits` takes them back."""
+        arguments = {name: _as_plain(value) for name, value in self.arguments.items()}
+        notes = {"notes": list(self.notes)} if self.notes else {}
+        return {"op": self.operation, **arguments, **notes}
+
+
+def _as_plain(value: Any) -> Any:
+    return value.tolist() if isinstance(value, np.ndarray | np.generic) else value
 
 
 class Crossings(NamedTuple):

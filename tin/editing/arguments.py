@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,7 +18,6 @@ if TYPE_CHECKING:
 __all__ = [
     "as_ends",
     "as_heights",
-    "as_plain_dict",
     "as_point",
     "as_vertices",
     "copied",
@@ -32,17 +30,6 @@ def copied(value: Any) -> Any:
     if isinstance(value, list):
         return [copied(one) if isinstance(one, list) else one for one in value]
     return value.copy() if isinstance(value, np.ndarray) else value
-
-
-def as_plain_dict(operation: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
-    """Return an operation with its arguments as plain Python values, ready for JSON."""
-    return {"op": operation, **{name: _as_plain(value) for name, value in arguments.items()}}
-
-
-def _as_plain(value: Any) -> Any:
-    if isinstance(value, np.ndarray | np.generic):
-        return value.tolist()
-    return value
 
 
 def as_vertices(vertices: ArrayLike, count: int) -> NDArray[np.int64]:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from ...policies import BreaklineKind, CrossingPolicy, DuplicatePolicy
     from ..building.inputs import BuildInputs
-    from .history import Edit
+    from ..report import Edit
     from .session import Session
     from .version import Version
 

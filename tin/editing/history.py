@@ -4,43 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from copy import copy
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from ..._sentences import shown
 from ...errors import PointsError, TinsmithError
-from .arguments import as_plain_dict
+from ..report import Edit
 from .operations import OPERATIONS
 
 if TYPE_CHECKING:
-    from ..surface import TIN
+    from .editable import Editable
 
 __all__ = ["Edit", "apply_edits"]
 
 
-class Edit(NamedTuple):
-    """One edit, as it can be written to a file and done again.
-
-    Attributes
-    ----------
-    operation : str
-        The name of a method of a TIN: one of ``OPERATIONS``.
-    arguments : dict
-        Its arguments by name.
-    notes : tuple of str
-        What it met: lines that were crossed, with both heights.
-    """
-
-    operation: str
-    arguments: dict[str, Any]
-    notes: tuple[str, ...] = ()
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return plain Python values, ready for JSON; :func:`apply_edits` takes them back."""
-        plain = as_plain_dict(self.operation, self.arguments)
-        return plain | ({"notes": list(self.notes)} if self.notes else {})
-
-
-def apply_edits(tin: TIN, edits: Iterable[Edit | Mapping[str, Any]]) -> None:
+def apply_edits(tin: Editable, edits: Iterable[Edit | Mapping[str, Any]]) -> None:
     """Do edits on a TIN, in their order.
 
     Parameters

@@ -16,7 +16,6 @@ from ..validation.points import as_points
 from .arguments import (
     as_ends,
     as_heights,
-    as_plain_dict,
     as_point,
     as_vertices,
     copied,
@@ -109,10 +108,6 @@ class Operation:
     def arguments(self) -> dict[str, Any]:
         """Return copies of the arguments by name."""
         return {name: copied(value) for name, value in vars(self).items()}
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return plain Python values, ready for JSON."""
-        return as_plain_dict(self.operation, self.arguments())
 
 
 class MeshOperation(Operation):

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from ...errors import PointsError, TinsmithError
+from ..report import Edit
 from ..validation.options import require_count
 from .changes import Change, NumberedInputs
 from .existing_triangles import inputs_of_triangles, state_of_triangles
-from .history import Edit
 from .mesh_editor import Editor, NotLocal, is_local
 from .operations import OPERATIONS, Done, MeshOperation, Operation
 from .state import State, build_state

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from . import _kernel, topology
-from .types import Bounds, Frozen, seal
-from .voronoi.nearest import NearestVertex
+from .. import _kernel, topology
+from ..types import Bounds, Frozen, seal
+from .nearest import NearestVertex
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
