@@ -38,6 +38,8 @@ WITHOUT_EXAMPLE = {
         "Lines.chains",
         "Lines.has_breakline",
         "Lines.renumbered",
+        "Lines.segment_chains",
+        "Lines.segments",
         "Lines.step_chains",
         "Lines.steps",
         "Lines.with_breakline",

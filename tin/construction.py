@@ -77,8 +77,8 @@ def triangulate(
         higher priority, or of the first; of a line that crosses itself the lower one; or refuse.
         Both heights are in the report.
     conforming : bool
-        Split the steps of lines until every edge is Delaunay, constrained or not. Refused if that
-        takes more than 50 new vertices for each vertex, and 20,000 in all.
+        Split the segments of lines until every edge is Delaunay, constrained or not. Refused if
+        that takes more than 50 new vertices for each vertex, and 20,000 in all.
     duplicates : {"mean", "first", "last", "lowest", "highest", "error"}
         Elevation of the vertex that stands for several rows at one place. A line with heights of
         its own counts more than the points.

@@ -1,7 +1,7 @@
 """Points and lines become the constrained Delaunay triangulation of their convex hull.
 
 The main path: rows at one place become one vertex, lines are cut where they meet, the points are
-triangulated, and the steps of the lines are forced into the triangulation.
+triangulated, and the segments of the lines are forced into the triangulation.
 """
 
 from __future__ import annotations
@@ -138,7 +138,7 @@ def triangulate_constrained(
 
 
 def _is_forced(mesh: _kernel.Mesh, polylines: Polylines) -> bool:
-    """Fix the steps of lines as they are given; tell whether nothing was in the way of any."""
+    """Fix the segments of lines as they are given; tell whether nothing was in the way of any."""
     passed, blocked = mesh.force(polylines.segments())
     return not (len(passed) or len(blocked))
 
@@ -259,7 +259,7 @@ def _leave_out_water(
     Returns
     -------
     polylines : Polylines
-        Without the steps in water, but for those of boundaries and holes, which lie on it.
+        Without the segments in water, but for those of boundaries and holes, which lie on it.
     wet : (n,) bool array
         Which vertices are in water, and go.
     overruled : Overruled
@@ -273,10 +273,10 @@ def _leave_out_water(
     for line in np.flatnonzero(lines.priorities == ABOVE_ALL).tolist():
         shore = given.vertices[given.offsets[line] : given.offsets[line + 1]]
         inside = _inside(points[:, :2], points[shore, :2])
-        steps, line_of = polylines.segments(), polylines.segment_lines()
-        in_water = inside[steps].any(axis=1) | _are_chords_within(points[:, :2], steps, shore)
-        stays = (line_of == line) | is_ring[line_of] | _runs_along(steps, shore, len(points))
-        held = np.unique(steps[in_water & is_ring[line_of]])
+        segments, line_of = polylines.segments(), polylines.segment_lines()
+        in_water = inside[segments].any(axis=1) | _are_chords_within(points[:, :2], segments, shore)
+        stays = (line_of == line) | is_ring[line_of] | _runs_along(segments, shore, len(points))
+        held = np.unique(segments[in_water & is_ring[line_of]])
         level = float(lines.heights[lines.offsets[line]])
         overruled = _set_level(points, np.union1d(shore, held), level, overruled)
         polylines = polylines.keep(~in_water | stays)
@@ -301,19 +301,19 @@ def _set_level(
 
 
 def _are_chords_within(
-    xy: NDArray[np.float64], steps: NDArray[np.int32], shore: NDArray[np.int32]
+    xy: NDArray[np.float64], segments: NDArray[np.int32], shore: NDArray[np.int32]
 ) -> NDArray[np.bool_]:
-    """Tell which steps go through water from shore to shore; noded, no others without ends in it.
+    """Tell which segments go through water from shore to shore; noded, all others end in it.
 
     Their middles, rounded, may lie on the wrong side of a shore that is near.
     """
     is_shore = np.zeros(len(xy), np.bool_)
     is_shore[shore] = True
-    is_chord = is_shore[steps].all(axis=1) & ~_runs_along(steps, shore, len(xy))
+    is_chord = is_shore[segments].all(axis=1) & ~_runs_along(segments, shore, len(xy))
     ring = np.ascontiguousarray(xy[shore])
-    for step in np.flatnonzero(is_chord).tolist():
-        start, end = xy[steps[step]]
-        is_chord[step] = _is_ring_around(ring, start, end)
+    for segment in np.flatnonzero(is_chord).tolist():
+        start, end = xy[segments[segment]]
+        is_chord[segment] = _is_ring_around(ring, start, end)
     return is_chord
 
 
@@ -344,10 +344,10 @@ def _orientation(
 
 
 def _runs_along(
-    steps: NDArray[np.int32], chain: NDArray[np.int32], n_vertices: int
+    segments: NDArray[np.int32], chain: NDArray[np.int32], n_vertices: int
 ) -> NDArray[np.bool_]:
     own = np.stack([chain[:-1], chain[1:]], axis=1)
-    return np.isin(edge_keys(steps, n_vertices), edge_keys(own, n_vertices))
+    return np.isin(edge_keys(segments, n_vertices), edge_keys(own, n_vertices))
 
 
 def _inside(xy: NDArray[np.float64], ring: NDArray[np.float64]) -> NDArray[np.bool_]:

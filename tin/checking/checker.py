@@ -34,7 +34,7 @@ from ..constraints.constraint_set import as_sequence, gather_lines
 from ..survey import Survey
 from ..validation.options import as_flag, is_whole_number, require_tin
 from ..validation.points import as_masked_points
-from .chains import check_chains, check_steps, has_sound_chains
+from .chains import check_chains, check_segments, has_sound_chains
 from .connections import check_arrays, check_connections
 from .delaunay import check_delaunay
 from .findings import Findings, Problem
@@ -157,8 +157,8 @@ def check(
         also, triangles are counter-clockwise, the Euler count fits, the boundary is one convex
         ring (collinear points allowed; a constrained boundary may have any shape), no part of the
         surface lies over another. 3: also, every edge that is not constrained is Delaunay, every
-        step of a line is a constrained edge and every constrained edge inside a step, and what is
-        given as ``points`` and ``breaklines`` is present.
+        segment of a line is a constrained edge and every constrained edge inside a segment, and
+        what is given as ``points`` and ``breaklines`` is present.
     points : Survey or (n, 3) array, optional
         The rows that the TIN was made of, to be found again at level 3 within the TIN's own
         ``report.snap``, and a survey's lines: as chains with the same vertices in the same order,
@@ -234,7 +234,7 @@ def _check_given(
 ) -> None:
     """Check lines and rows, as far as the surface is fit to be asked about them."""
     if has_sound_chains(found):
-        check_steps(tin, found)
+        check_segments(tin, found)
         if lines.kinds and has_sound_rim(found):
             check_given_lines(tin, lines, found)
     if rows is not None:

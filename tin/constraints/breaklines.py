@@ -131,7 +131,7 @@ def _no_numbers() -> NDArray[np.int32]:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Lines(Frozen):
-    """The lines in a TIN: chains of vertices, every step of which is an edge of the TIN.
+    """The lines in a TIN: chains of vertices, every segment of which is an edge of the TIN.
 
     Chain ``i`` is ``vertices[offsets[i]:offsets[i + 1]]``, in the direction of the line that it
     comes from; a closed one ends where it begins. A line of which parts are left out, outside the
@@ -163,13 +163,15 @@ class Lines(Frozen):
         """Walk the chains, as vertex numbers."""
         return iter(self._polylines)
 
-    def steps(self) -> NDArray[np.int32]:
-        """Return the edges that the chains walk, (s, 2) vertex pairs in order."""
+    def segments(self) -> NDArray[np.int32]:
+        """Return the edges along which the chains run, (s, 2) vertex pairs in order."""
         return self._polylines.segments()
 
-    def step_chains(self) -> NDArray[np.int64]:
-        """Return the chain of each of the steps."""
+    def segment_chains(self) -> NDArray[np.int64]:
+        """Return the chain of each of the segments."""
         return self._polylines.segment_owners()
+
+    steps, step_chains = segments, segment_chains  # their names at first
 
     @property
     def _polylines(self) -> Polylines:

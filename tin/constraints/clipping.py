@@ -20,7 +20,7 @@ __all__ = [
     "EXTENT",
     "HOLES",
     "RIM",
-    "RingSteps",
+    "RingSegments",
     "Surface",
     "clipped",
     "in_rings",
@@ -46,19 +46,19 @@ def in_rings(xy: NDArray[np.float64], rings: Sequence[NDArray[np.float64]]) -> N
 
 
 RIM = -1
-"""Group of the steps of a rim: the surface is on their left, and nothing on their right."""
+"""Group of the segments of a rim: the surface is on their left, and nothing on their right."""
 
 BOUNDARY = 0
-"""Group of the steps of all boundary rings together."""
+"""Group of the segments of all boundary rings together."""
 
 EXTENT = 1
-"""Group of the steps of all rings together within which there is data."""
+"""Group of the segments of all rings together within which there is data."""
 
 HOLES = 2
-"""Group of the steps of the first hole, its islands included; hole ``k`` has ``HOLES + k``."""
+"""Group of the segments of the first hole, its islands included; hole ``k`` has ``HOLES + k``."""
 
 
-class RingSteps(NamedTuple):
+class RingSegments(NamedTuple):
     """Edges along rings, (k, 2) vertex pairs, and the group of each."""
 
     pairs: NDArray[np.int32]
@@ -67,7 +67,7 @@ class RingSteps(NamedTuple):
 
 def is_inside(
     surface: Surface,
-    steps: RingSteps,
+    segments: RingSegments,
     boundary: Sequence[NDArray[np.float64]],
     extent: Sequence[NDArray[np.float64]],
     holes: Sequence[Sequence[NDArray[np.float64]]],
@@ -85,11 +85,11 @@ def is_inside(
     LinesError
         If a hole cuts nothing away.
     """
-    half = _half_edges(surface, steps)
+    half = _half_edges(surface, segments)
     region, largest = _regions(surface, half)
     is_out = np.zeros(len(largest), np.bool_)
     is_out[region[half.triangle[half.is_behind_rim]]] = True
-    toggles = _toggles(steps, len(surface.points))
+    toggles = _toggles(segments, len(surface.points))
     place = _center(surface, largest)
     side = _Sides(boundary, extent, holes)
     bits = _spread(surface, region, half, toggles, is_out, largest, place, side)
@@ -108,14 +108,14 @@ class _HalfEdges(NamedTuple):
     is_behind_rim: NDArray[np.bool_]
 
 
-def _half_edges(surface: Surface, steps: RingSteps) -> _HalfEdges:
+def _half_edges(surface: Surface, segments: RingSegments) -> _HalfEdges:
     n = len(surface.points)
     triangle, corner = np.nonzero(surface.constrained)
     start, end = topology.ends(surface.triangles, triangle, corner)
     key = edge_keys(np.stack([start, end], axis=1), n)
-    is_ring = np.isin(key, edge_keys(steps.pairs, n))
+    is_ring = np.isin(key, edge_keys(segments.pairs, n))
     triangle, corner, key = triangle[is_ring], corner[is_ring], key[is_ring]
-    rim = steps.pairs[steps.groups == RIM].astype(np.int64)
+    rim = segments.pairs[segments.groups == RIM].astype(np.int64)
     backwards = rim[:, 1] * n + rim[:, 0]
     is_behind = np.isin(start[is_ring] * n + end[is_ring], backwards)
     return _HalfEdges(triangle, corner, key, is_behind)
@@ -128,11 +128,11 @@ def _regions(surface: Surface, half: _HalfEdges) -> tuple[NDArray[np.int32], NDA
     return _kernel.regions(xy, surface.triangles, surface.neighbors, barrier)
 
 
-def _toggles(steps: RingSteps, n_vertices: int) -> dict[int, int]:
+def _toggles(segments: RingSegments, n_vertices: int) -> dict[int, int]:
     """Return for each edge along rings the groups that lie on other sides of it, as bits."""
     toggles: dict[int, int] = {}
-    keys = edge_keys(steps.pairs, n_vertices).tolist()
-    for key, group in zip(keys, steps.groups.tolist(), strict=True):
+    keys = edge_keys(segments.pairs, n_vertices).tolist()
+    for key, group in zip(keys, segments.groups.tolist(), strict=True):
         toggles[key] = toggles.get(key, 0) ^ (0 if group == RIM else 1 << group)
     return toggles
 

@@ -192,13 +192,13 @@ def _along_surface(
     slots = np.full(len(places), -1, np.int32)
     used = np.unique(polylines.vertices)
     slots[used] = mesh.insert(np.ascontiguousarray(places[used]))
-    steps = polylines.segments()
+    own = polylines.segments()
     n_own = len(surface.points)
-    crossed = mesh.crossed(np.ascontiguousarray(slots[steps]), True).reshape(-1, 3)
+    crossed = mesh.crossed(np.ascontiguousarray(slots[own]), True).reshape(-1, 3)
     xy = np.concatenate([surface.points[:, :2], np.empty((mesh.slots - n_own, 2))])
     xy[slots[used]] = places[used]
-    pairs = np.stack([crossed[:, 0], len(steps) + np.arange(len(crossed))], axis=1)
-    segments = np.concatenate([slots[steps], crossed[:, 1:]]).astype(np.int32)
+    pairs = np.stack([crossed[:, 0], len(own) + np.arange(len(crossed))], axis=1)
+    segments = np.concatenate([slots[own], crossed[:, 1:]]).astype(np.int32)
     meets = _kernel.intersections(
         np.ascontiguousarray(xy), np.ascontiguousarray(segments), pairs.astype(np.int32)
     )

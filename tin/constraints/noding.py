@@ -7,7 +7,7 @@ Rounds, each a function of the set of segments, never of their order or directio
    its parts are looked at again. Parts only ever get shorter, so this comes to an end.
 2. Where segments cross, one vertex is made at each distinct place, its coordinates rounded once,
    or the vertex taken that is there already; both segments are split. Rounding bends them by a
-   unit in the last place, so step 1 follows, from now on for all vertices within such a unit
+   unit in the last place, so round 1 follows, from now on for all vertices within such a unit
    [1]_: else nearly parallel lines would cross again and again, between ever more vertices.
    Both are repeated until nothing crosses.
 
@@ -55,7 +55,7 @@ class Touches(NamedTuple):
 
 
 class Noded(NamedTuple):
-    """Lines whose steps hold no vertex but their ends and cross no other step.
+    """Lines whose segments hold no vertex but their ends and cross no other segment.
 
     Attributes
     ----------
@@ -125,7 +125,7 @@ def node(
     Returns
     -------
     Noded
-        New points and steps are the same for any order and direction of the lines.
+        New points and segments are the same for any order and direction of the lines.
 
     Raises
     ------
@@ -189,7 +189,7 @@ def node_again(
 
 
 class _Visits(NamedTuple):
-    """Lines that come through vertices; twice along the same steps counts once."""
+    """Lines that come through vertices; twice along the same segments counts once."""
 
     vertex: NDArray[np.int32]
     line: NDArray[np.int32]
@@ -204,7 +204,7 @@ def _visits(work: Splitting, at: NDArray[np.int64]) -> _Visits:
     same_after = np.append(same_before[1:], False)
     after = np.where(same_after[at], vertices[(at + 1) % len(vertices)], -1)
     keys = (np.maximum(before, after), np.minimum(before, after), line[at], vertices[at])
-    order = np.lexsort((work.elevations[at], *keys))  # of the same steps the lowest way counts
+    order = np.lexsort((work.elevations[at], *keys))  # the lowest counts
     is_first = np.ones(len(at), np.bool_)
     is_first[1:] = np.any([np.diff(key[order]) != 0 for key in keys], axis=0)
     at = np.sort(at[order[is_first]])
@@ -261,12 +261,12 @@ def _crossing_error(
 ) -> LinesError:
     """Name the first crossing: by lines, then by place."""
     places = work.places_of(pairs)
-    step = np.sort(work.steps.first_step[pairs], axis=1)
-    lines = work.polylines.owners[work.steps.start[step]]
+    segment = np.sort(work.segments.first_segment[pairs], axis=1)
+    lines = work.polylines.owners[work.segments.start[segment]]
     first = np.lexsort((places[:, 1], places[:, 0], lines[:, 1], lines[:, 0]))[0]
     a, b = lines[first].tolist()
     x, y = places[first].tolist()
-    heights = work.elevations_at(step[first], places[[first, first]]).tolist()
+    heights = work.elevations_at(segment[first], places[[first, first]]).tolist()
     label_a, label_b = (f"line {i}" if names is None else names[i] for i in (a, b))
     whom = "itself" if a == b else label_b
     return LinesError(

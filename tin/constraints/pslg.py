@@ -1,7 +1,7 @@
 """Planar straight-line graph (PSLG): vertices, segments of lines, what of the hull is the surface.
 
 It is what a TIN is a function of once rows are merged and lines cut where they meet. The
-triangulation of its vertices with its steps is unique, so any way to it gives the same TIN.
+triangulation of its vertices with its segments is unique, so any way to it gives the same TIN.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from ...errors import LinesError
 from .. import _kernel
 from ..topology import edge_keys, edges_at
 from .breaklines import Lines
-from .clipping import BOUNDARY, RIM, RingSteps, Surface, clipped, is_inside, trimmed
+from .clipping import BOUNDARY, RIM, RingSegments, Surface, clipped, is_inside, trimmed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -59,7 +59,7 @@ class Clip:
     def _has_rings(self) -> bool:
         return bool(self.boundary or self.extent or self.holes or self.has_rim)
 
-    def keeps(self, surface: Surface, ring_steps: RingSteps) -> NDArray[np.bool_]:
+    def keeps(self, surface: Surface, ring_segments: RingSegments) -> NDArray[np.bool_]:
         """Tell which triangles are kept.
 
         Raises
@@ -69,7 +69,7 @@ class Clip:
         """
         keep = np.ones(len(surface.triangles), np.bool_)
         if self._has_rings:
-            keep = is_inside(surface, ring_steps, self.boundary, self.extent, self.holes)
+            keep = is_inside(surface, ring_segments, self.boundary, self.extent, self.holes)
             _require_triangles(keep, "The boundary and the holes leave no triangle of the surface")
         if np.isfinite(self.max_edge):
             everywhere = self.is_trimmed_everywhere
@@ -114,7 +114,7 @@ class Pslg:
             return hull, np.arange(len(hull.points), dtype=np.int32)
         group = self._ring_groups()[self.polylines.segment_lines()]
         is_ring = group >= (RIM if self.clip.has_rim else BOUNDARY)
-        rings = RingSteps(self.polylines.segments()[is_ring], group[is_ring])
+        rings = RingSegments(self.polylines.segments()[is_ring], group[is_ring])
         keep = self.clip.keeps(hull, rings)
         if keep.all():
             return hull, np.arange(len(hull.points), dtype=np.int32)
@@ -142,7 +142,7 @@ class Pslg:
 
 
 def mesh_of(points: NDArray[np.float64], polylines: Polylines, *, threads: int) -> _kernel.Mesh:
-    """Triangulate distinct points, and fix the steps of lines that are cut where they meet."""
+    """Triangulate distinct points, and fix the segments of lines that are cut where they meet."""
     mesh = mesh_of_growth(points, _kernel.grow(points, threads=threads))
     force(mesh, polylines)
     return mesh
@@ -183,9 +183,9 @@ def lines_in(
     )
 
 
-def _are_edges(steps: NDArray[np.int32], surface: Surface) -> NDArray[np.bool_]:
+def _are_edges(segments: NDArray[np.int32], surface: Surface) -> NDArray[np.bool_]:
     n = len(surface.points)
     edges = edges_at(surface.triangles, surface.constrained)
-    is_edge = np.asarray((steps >= 0).all(axis=1), np.bool_)
-    is_edge[is_edge] = np.isin(edge_keys(steps[is_edge], n), edge_keys(edges, n))
+    is_edge = np.asarray((segments >= 0).all(axis=1), np.bool_)
+    is_edge[is_edge] = np.isin(edge_keys(segments[is_edge], n), edge_keys(edges, n))
     return is_edge

@@ -1,4 +1,4 @@
-"""Splitting: cut the steps of lines where they touch and cross, and keep what is known of them."""
+"""Splitting: cut the segments of lines where they touch and cross, and keep what is known."""
 
 from __future__ import annotations
 
@@ -14,49 +14,49 @@ from .polylines import Polylines
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Splitting", "Steps", "drop_repeats", "interpolate_linearly", "is_before"]
+__all__ = ["Segments", "Splitting", "drop_repeats", "interpolate_linearly", "is_before"]
 
 MOST_ROUNDS = 1000  # cascades of roundings end after a few
 
 
-class Steps(NamedTuple):
-    """Steps of all polylines, and the distinct segments that they walk.
+class Segments(NamedTuple):
+    """Segments of all polylines, and the distinct edges along which they run.
 
     Attributes
     ----------
     start : (s,) int64 array
-        Position of the vertex from which each step goes.
-    segment : (s,) int64 array
-        The segment of each step.
+        Position from which each segment goes.
+    edge : (s,) int64 array
+        The edge of each segment, to which others may belong.
     is_backward : (s,) bool array
-        Whether it goes from the segment's second end to the first.
+        Whether it goes from the edge's second end to the first.
     keys : (m,) int64 array
-        Of the segments, ascending: both vertex numbers in one.
+        Of the edges, ascending: both vertex numbers in one.
     ends : (m, 2) int32 array
-        Vertices of each segment, the first by x, then y, in front.
-    first_step : (m,) int64 array
-        The first step along each segment.
+        Vertices of each edge, the first by x, then y, in front.
+    first_segment : (m,) int64 array
+        The first segment along each edge.
     """
 
     start: NDArray[np.int64]
-    segment: NDArray[np.int64]
+    edge: NDArray[np.int64]
     is_backward: NDArray[np.bool_]
     keys: NDArray[np.int64]
     ends: NDArray[np.int32]
-    first_step: NDArray[np.int64]
+    first_segment: NDArray[np.int64]
 
     @classmethod
-    def along(cls, polylines: Polylines, xy: NDArray[np.float64]) -> Steps:
+    def along(cls, polylines: Polylines, xy: NDArray[np.float64]) -> Segments:
         """Take the polylines apart."""
         start = polylines.starts()
         a, b = (polylines.vertices[at].astype(np.int64) for at in (start, start + 1))
-        keys, first_step, segment = np.unique(
+        keys, first_segment, edge = np.unique(
             _key_of(np.minimum(a, b), np.maximum(a, b)), return_index=True, return_inverse=True
         )
         ends = np.stack(_numbers_of(keys), axis=1).astype(np.int32)
         swapped = is_before(xy[ends[:, 1]], xy[ends[:, 0]])
         ends[swapped] = ends[swapped, ::-1]
-        return cls(start, segment, ends[segment, 0] != a, keys, ends, first_step)
+        return cls(start, edge, ends[edge, 0] != a, keys, ends, first_segment)
 
 
 def drop_repeats(
@@ -120,7 +120,7 @@ class Splitting:
         The line's own at each position; NaN if it has none.
     is_given : (k,) bool array
         Whether the line names the vertex itself.
-    steps : Steps
+    segments : Segments
     crossing_vertices : (c,) int32 array
     """
 
@@ -136,24 +136,24 @@ class Splitting:
         self.n_given = len(self.xy)
         self.polylines, self.elevations = drop_repeats(polylines, elevations)
         self.is_given = np.ones(len(self.elevations), np.bool_)
-        self.steps = Steps.along(self.polylines, self.xy)
+        self.segments = Segments.along(self.polylines, self.xy)
         self.crossing_vertices = np.empty(0, np.int32)
         self._snap = snap
         self._threads = threads
-        self._is_rounded = False  # whether vertices within a rounding of a segment are on it
-        self._untouched = np.empty(0, np.int64)  # segments that the first vertices do not touch
+        self._is_rounded = False  # whether vertices within a rounding of an edge are on it
+        self._untouched = np.empty(0, np.int64)  # edges that the first vertices do not touch
         self._n_touched = 0  # the number of those vertices
-        self._uncrossed = np.empty(0, np.int64)  # segments that do not cross one another
+        self._uncrossed = np.empty(0, np.int64)  # edges that do not cross one another
 
     def split_everywhere(
         self, refuse: Callable[[NDArray[np.int64]], LinesError] | None = None
     ) -> None:
-        """Split steps where they touch and cross until nothing does.
+        """Split segments where they touch and cross until nothing does.
 
         Parameters
         ----------
         refuse : callable, optional
-            Makes the error of pairs of segments that cross, if they must not.
+            Makes the error of pairs of edges that cross, if they must not.
         """
         self.split_at_touches()
         for _ in range(MOST_ROUNDS):
@@ -169,29 +169,29 @@ class Splitting:
     # ---------------------------------------------------------------- touches
 
     def split_at_touches(self) -> None:
-        """Split steps at the vertices on them until there is none."""
+        """Split segments at the vertices on them until there is none."""
         for _ in range(MOST_ROUNDS):
-            segment, vertex = self._find_touches()
+            edge, vertex = self._find_touches()
             bends = self._snap > 0 or self._is_rounded
-            if len(segment) and bends:
-                segment, vertex = self._shortening(segment, vertex)
-            if len(segment):
-                self._split(segment, vertex, bends=bends)
-            if len(segment) == 0 or not bends:  # exact splits leave no touches
-                self._untouched = self.steps.keys
+            if len(edge) and bends:
+                edge, vertex = self._shortening(edge, vertex)
+            if len(edge):
+                self._split(edge, vertex, bends=bends)
+            if len(edge) == 0 or not bends:  # exact splits leave no touches
+                self._untouched = self.segments.keys
                 self._n_touched = len(self.xy)
                 return
         raise endless()
 
     def _find_touches(self) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
-        """Ask new segments about all vertices, known ones about new vertices."""
+        """Ask new edges about all vertices, known ones about new vertices."""
         if self._n_touched == 0:
             return self._find_contacts()
-        is_known = _is_in(self.steps.keys, self._untouched)
+        is_known = _is_in(self.segments.keys, self._untouched)
         found = []
         for asked, first in ((~is_known, 0), (is_known, self._n_touched)):
             numbers = np.flatnonzero(asked)
-            ends = self.steps.ends[numbers]
+            ends = self.segments.ends[numbers]
             if len(numbers) and first < len(self.xy):
                 pairs = _kernel.touches(
                     self.xy, ends, self._snap, first, self._is_rounded, self._threads
@@ -199,70 +199,70 @@ class Splitting:
                 found.append((numbers[pairs[:, 0]], pairs[:, 1]))
         if not found:
             return np.empty(0, np.int64), np.empty(0, np.int32)
-        segment, vertex = (np.concatenate(column) for column in zip(*found, strict=True))
-        return segment, vertex
+        edge, vertex = (np.concatenate(column) for column in zip(*found, strict=True))
+        return edge, vertex
 
     def _find_contacts(self) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
-        """Ask all segments about all, and note those that cross none."""
-        ends = self.steps.ends
+        """Ask all edges about all, and note those that cross none."""
+        ends = self.segments.ends
         crossings, touches = _kernel.contacts(self.xy, ends, self._snap, self._threads)
         crossed = np.zeros(len(ends), np.bool_)
         crossed[crossings.ravel()] = True
         touched = np.zeros(len(ends), np.bool_)
         touched[touches[:, 0]] = True
-        self._uncrossed = self.steps.keys[~crossed]
-        self._untouched = self.steps.keys[~touched]
+        self._uncrossed = self.segments.keys[~crossed]
+        self._untouched = self.segments.keys[~touched]
         self._n_touched = len(self.xy)
         return touches[:, 0].astype(np.int64), touches[:, 1]
 
     def _shortening(
-        self, segment: NDArray[np.int64], vertex: NDArray[np.int32]
+        self, edge: NDArray[np.int64], vertex: NDArray[np.int32]
     ) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
-        """Keep all touches of a segment if that leaves shorter parts, else only the nearest."""
-        segment, vertex = self._in_order(segment, vertex, bends=True)
-        a, b, p = self._ends_and_places(segment, vertex)
-        is_first = np.append(True, np.diff(segment) != 0)
+        """Keep all touches of an edge if that leaves shorter parts, else only the nearest."""
+        edge, vertex = self._in_order(edge, vertex, bends=True)
+        a, b, p = self._ends_and_places(edge, vertex)
+        is_first = np.append(True, np.diff(edge) != 0)
         before = np.where(is_first[:, None], a, np.roll(p, 1, axis=0))
         after = np.where(np.roll(is_first, -1)[:, None], b, np.roll(p, -1, axis=0))
         whole = _square(a, b)
         grows = (_square(before, p) >= whole) | (_square(p, after) >= whole)
-        keep = ~np.isin(segment, segment[grows])
-        nearest = np.lexsort((p[:, 1], p[:, 0], np.abs(_cross(a, b, p)), segment))
-        keep[nearest[is_first]] = True  # both orders are by segment first
-        return segment[keep], vertex[keep]
+        keep = ~np.isin(edge, edge[grows])
+        nearest = np.lexsort((p[:, 1], p[:, 0], np.abs(_cross(a, b, p)), edge))
+        keep[nearest[is_first]] = True  # both orders are by edge first
+        return edge[keep], vertex[keep]
 
     # ---------------------------------------------------------------- crossings
 
     def find_crossings(self) -> NDArray[np.int64]:
-        """Return the pairs of distinct segments that cross, (c, 2)."""
-        is_known = _is_in(self.steps.keys, self._uncrossed)
+        """Return the pairs of distinct edges that cross, (c, 2)."""
+        is_known = _is_in(self.segments.keys, self._uncrossed)
         if is_known.all():
             return np.empty((0, 2), np.int64)
         order = np.argsort(~is_known, kind="stable")
         pairs = _kernel.crossings(
-            self.xy, self.steps.ends[order], int(is_known.sum()), self._threads
+            self.xy, self.segments.ends[order], int(is_known.sum()), self._threads
         )
         if len(pairs) == 0:
-            self._uncrossed = self.steps.keys
+            self._uncrossed = self.segments.keys
         crossing: NDArray[np.int64] = np.sort(order[pairs], axis=1)
         return crossing
 
     def split_at_crossings(self, pairs: NDArray[np.int64]) -> None:
-        """Split the segments of all pairs where they cross."""
+        """Split the edges of all pairs where they cross."""
         vertex = np.repeat(self._vertices_at(self.places_of(pairs)), 2)
-        segment = pairs.ravel()
-        inside = (self.steps.ends[segment] != vertex[:, None]).all(axis=1)
-        split, at = _numbers_of(np.unique(_key_of(segment[inside], vertex[inside])))
+        edge = pairs.ravel()
+        inside = (self.segments.ends[edge] != vertex[:, None]).all(axis=1)
+        split, at = _numbers_of(np.unique(_key_of(edge[inside], vertex[inside])))
         # Of every pair at least one is split: the others do not cross one another.
-        uncrossed = np.ones(len(self.steps.keys), np.bool_)
+        uncrossed = np.ones(len(self.segments.keys), np.bool_)
         uncrossed[split] = False
-        self._uncrossed = self.steps.keys[uncrossed]
+        self._uncrossed = self.segments.keys[uncrossed]
         self._split(split, at.astype(np.int32), bends=False)
         self._is_rounded = True
 
     def places_of(self, pairs: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Return where the segments of each pair cross, (c, 2)."""
-        return _kernel.intersections(self.xy, self.steps.ends, pairs.astype(np.int32))
+        """Return where the edges of each pair cross, (c, 2)."""
+        return _kernel.intersections(self.xy, self.segments.ends, pairs.astype(np.int32))
 
     def _vertices_at(self, places: NDArray[np.float64]) -> NDArray[np.int32]:
         """Find or make the vertex at each place."""
@@ -282,54 +282,54 @@ class Splitting:
 
     def _split(
         self,
-        segment: NDArray[np.int64],
+        edge: NDArray[np.int64],
         vertex: NDArray[np.int32],
         *,
         bends: bool,
     ) -> None:
-        """Split every step along a segment at the vertices given with it."""
-        steps = self.steps
-        segment, vertex = self._in_order(segment, vertex, bends=bends)
-        count = np.bincount(segment, minlength=len(steps.keys))
+        """Split every segment along an edge at the vertices given with it."""
+        segments = self.segments
+        edge, vertex = self._in_order(edge, vertex, bends=bends)
+        count = np.bincount(edge, minlength=len(segments.keys))
         first = np.cumsum(count) - count
-        step = np.repeat(np.arange(len(steps.start)), count[steps.segment])
-        nth = np.arange(len(step)) - np.searchsorted(step, step)
-        on = steps.segment[step]
-        row = first[on] + np.where(steps.is_backward[step], count[on] - 1 - nth, nth)
-        at, vertex = steps.start[step], vertex[row]
-        elevations = self.elevations_at(step, self.xy[vertex])
+        segment = np.repeat(np.arange(len(segments.start)), count[segments.edge])
+        nth = np.arange(len(segment)) - np.searchsorted(segment, segment)
+        on = segments.edge[segment]
+        row = first[on] + np.where(segments.is_backward[segment], count[on] - 1 - nth, nth)
+        at, vertex = segments.start[segment], vertex[row]
+        elevations = self.elevations_at(segment, self.xy[vertex])
         self.elevations = np.insert(self.elevations, at + 1, elevations)
         self.is_given = np.insert(self.is_given, at + 1, values=False)
         self.polylines = self.polylines.insert(at, vertex)
-        self.steps = Steps.along(self.polylines, self.xy)
+        self.segments = Segments.along(self.polylines, self.xy)
 
     def _in_order(
-        self, segment: NDArray[np.int64], vertex: NDArray[np.int32], *, bends: bool
+        self, edge: NDArray[np.int64], vertex: NDArray[np.int32], *, bends: bool
     ) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
-        """Sort by segment, then from its first end to the second.
+        """Sort by edge, then from its first end to the second.
 
         Rounding is monotone: exact places and rounded crossings are in order by x and by y. Where
-        lines bend, the projection decides; of two places across an upright or level segment, which
+        lines bend, the projection decides; of two places across an upright or level edge, which
         are then equally far along it, the coordinates.
         """
-        a, b, p = self._ends_and_places(segment, vertex)
+        a, b, p = self._ends_and_places(edge, vertex)
         x, y = (np.sign(b - a) * p).T
         keys = (*p.T, y, x, _projection(a, b, p)) if bends else (y, x)
-        order = np.lexsort((*keys, segment))
-        return segment[order], vertex[order]
+        order = np.lexsort((*keys, edge))
+        return edge[order], vertex[order]
 
     def _ends_and_places(
-        self, segment: NDArray[np.int64], vertex: NDArray[np.int32]
+        self, edge: NDArray[np.int64], vertex: NDArray[np.int32]
     ) -> tuple[NDArray[np.float64], ...]:
-        first, second = self.steps.ends[segment].T
+        first, second = self.segments.ends[edge].T
         return self.xy[first], self.xy[second], self.xy[vertex]
 
     def elevations_at(
-        self, step: NDArray[np.int64], places: NDArray[np.float64]
+        self, segment: NDArray[np.int64], places: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """Interpolate the elevations of steps at places on them; the same both ways."""
-        start, backward = self.steps.start[step], self.steps.is_backward[step]
-        first, second = self.steps.ends[self.steps.segment[step]].T
+        """Interpolate the elevations of segments at places on them; the same both ways."""
+        start, backward = self.segments.start[segment], self.segments.is_backward[segment]
+        first, second = self.segments.ends[self.segments.edge[segment]].T
         a, b = self.xy[first], self.xy[second]
         z_a = self.elevations[start + backward]
         z_b = self.elevations[start + ~backward]

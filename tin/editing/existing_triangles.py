@@ -107,8 +107,8 @@ def _edges_of_no_line(version: Version) -> list[NDArray[np.int32]]:
         flagged = flagged & (surface.neighbors > topology.NO_NEIGHBOR)
     edges = np.unique(np.sort(topology.edges_at(surface.triangles, flagged), axis=1), axis=0)
     n = len(surface.points)
-    is_step = np.isin(topology.edge_keys(edges, n), topology.edge_keys(lines.steps(), n))
-    return list(edges[~is_step])
+    is_segment = np.isin(topology.edge_keys(edges, n), topology.edge_keys(lines.segments(), n))
+    return list(edges[~is_segment])
 
 
 def _is_whole(surface: Triangulation) -> bool:

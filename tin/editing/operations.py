@@ -11,6 +11,7 @@ from ..._sentences import shown
 from ...errors import LinesError, choice
 from ...policies import CrossingPolicy, DuplicatePolicy
 from ..constraints.breaklines import Breakline
+from ..report import Edit
 from ..validation.options import is_whole_number
 from ..validation.points import as_points
 from .arguments import (
@@ -108,6 +109,10 @@ class Operation:
     def arguments(self) -> dict[str, Any]:
         """Return copies of the arguments by name."""
         return {name: copied(value) for name, value in vars(self).items()}
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain Python values, ready for JSON."""
+        return Edit(self.operation, self.arguments()).to_dict()
 
 
 class MeshOperation(Operation):
@@ -408,6 +413,6 @@ def _require_elevations(found: State, wanted: NDArray[np.float64]) -> None:
 
 def _lines_along(lines: Lines, a: int, b: int) -> list[int]:
     """Return the chains that take an edge."""
-    steps = np.sort(lines.steps(), axis=1)
-    found: list[int] = lines.step_chains()[(steps == sorted((a, b))).all(axis=1)].tolist()
+    segments = np.sort(lines.segments(), axis=1)
+    found: list[int] = lines.segment_chains()[(segments == sorted((a, b))).all(axis=1)].tolist()
     return found

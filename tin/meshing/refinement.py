@@ -337,14 +337,14 @@ def _build(tin: TIN, found: _Found, threads: int) -> TIN | set[tuple[int, int]]:
 
 
 def _force(mesh: _kernel.Mesh, pslg: Pslg, splits: _Splits) -> set[tuple[int, int]] | None:
-    """Fix all steps of lines; return the segments in the way of that, None if there are none."""
-    steps = pslg.polylines.segments()
-    passed, blocked = mesh.force(steps)
+    """Fix all segments of lines; return the segments in the way of that, None if there are none."""
+    segments = pslg.polylines.segments()
+    passed, blocked = mesh.force(segments)
     if not (len(passed) or len(blocked)):
         return None
-    crossed = mesh.crossed(np.ascontiguousarray(steps[blocked]), only_fixed=True).reshape(-1, 3)
+    crossed = mesh.crossed(np.ascontiguousarray(segments[blocked]), only_fixed=True).reshape(-1, 3)
     through = passed.reshape(-1, 2)
-    ends = np.concatenate([steps[blocked], crossed[:, 1:], steps[through[:, 0]]])
+    ends = np.concatenate([segments[blocked], crossed[:, 1:], segments[through[:, 0]]])
     return splits.segments_of(np.concatenate([ends.ravel(), through[:, 1]]))
 
 
@@ -434,10 +434,10 @@ def _nameless(kind: LineKind, sources: NDArray[np.int64]) -> ConstraintTable:
 
 
 def _without_line(tin: TIN) -> list[list[int]]:
-    """Return the constrained edges inside the surface that are no step of a line."""
+    """Return the constrained edges inside the surface that are no segment of a line."""
     is_inner = tin.constrained & (tin.neighbors > topology.NO_NEIGHBOR)
     edges = np.unique(np.sort(topology.edges_at(tin.triangles, is_inner), axis=1), axis=0)
     n = len(tin.points)
-    is_step = np.isin(topology.edge_keys(edges, n), topology.edge_keys(tin.lines.steps(), n))
-    found: list[list[int]] = edges[~is_step].tolist()
+    is_segment = np.isin(topology.edge_keys(edges, n), topology.edge_keys(tin.lines.segments(), n))
+    found: list[list[int]] = edges[~is_segment].tolist()
     return found

@@ -301,7 +301,7 @@ def test_constrained_edges_without_any_lines_are_a_note(tin):
     result = check(replace(tin, lines=Lines()))
     assert result.ok
     assert [note.kind for note in result.notes] == ["lines"]
-    assert result.notes[0].count == len(tin.lines.steps())
+    assert result.notes[0].count == len(tin.lines.segments())
 
 
 # ------------------------------------------------------- lines that were given
