@@ -44,6 +44,8 @@ WITHOUT_EXAMPLE = {
         "Lines.steps",
         "Lines.with_breakline",
         "Report.after_edits",
+        "Merge.to_dict",
+        "Report.describe_crossings",
         "Report.met_by",
         "Report.renumbered",
         "Report.with_lines",

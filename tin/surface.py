@@ -45,7 +45,7 @@ _ARGUMENTS = (
 
 
 class TIN(Editable):
-    """A triangulated irregular network: one height for every place inside its hull.
+    """A triangulated irregular network: one elevation for every place inside its hull.
 
     Built by :func:`tinsmith.triangulate`, or from existing triangles by
     :meth:`TIN.from_triangles`. All arrays are read-only; edits replace them by others.

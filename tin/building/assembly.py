@@ -101,7 +101,7 @@ def _report(
 
 
 class _Ground(NamedTuple):
-    """Lines that all have heights, and the rim where draped ones leave the surface."""
+    """Lines that all have elevations, and the rim where draped ones leave the surface."""
 
     lines: LineSet
     has_rim: bool
@@ -201,7 +201,7 @@ def _erased(inputs: BuildInputs) -> NDArray[np.bool_]:
 
 
 def _draped(rows: NDArray[np.int64], inputs: BuildInputs) -> _Ground:
-    """Give all lines heights: draped ones from the surface of everything else."""
+    """Give all lines elevations: draped ones from the surface of everything else."""
     lines = inputs.lines
     is_draped = lines.is_draped
     if not is_draped.any():
@@ -229,21 +229,19 @@ def _account(
     vertex_of: NDArray[np.int32],
     ground: _Ground,
 ) -> dict[str, Any]:
-    """Return the report's fields about merged rows, left-out rows and lines that met."""
+    """Return the report's fields about merged rows, left-out rows and lines that cross."""
     final = _numbered(made.number_of, number_of)
     account = _without_lost_merges(dict(made.merges), final)
     left_out = np.flatnonzero(vertex_of < 0).astype(np.int32)
     labels = ground.lines.labels()
-    gave_way = made.overruled
+    overruled = made.overruled
     return account | {
         "left_out_rows": left_out,
         "left_out_why": _reasons(inputs, left_out, is_erased, made),
         "n_lines": len(inputs.lines.kinds) - len(inputs.extent),
         "line_labels": tuple(labels),
         "crossings": _crossings(made, final),
-        "overruled": Overruled(
-            _numbered(gave_way.vertices, final), gave_way.lines, gave_way.heights, gave_way.taken
-        ),
+        "overruled": Overruled(_numbered(overruled.vertices, final), *overruled[1:]),
         "notes": (*inputs.notes, *ground.notes),
     }
 
@@ -255,7 +253,7 @@ def _crossings(made: ConstrainedTriangulation, final: NDArray[np.int32]) -> Cros
     return found._replace(
         vertices=_numbered(found.vertices, final),
         lines=np.take_along_axis(found.lines, order, axis=1),
-        heights=np.take_along_axis(found.heights, order, axis=1),
+        elevations=np.take_along_axis(found.elevations, order, axis=1),
     )
 
 
@@ -270,8 +268,8 @@ def _without_lost_merges(account: dict[str, Any], final: NDArray[np.int32]) -> d
     return {
         "merged_vertices": vertices[keep],
         "merged_offsets": offsets_of(counts[keep]).astype(np.int32),
-        "vertex_heights": account["vertex_heights"][keep],
-        **{k: account[k][rows] for k in ("merged_rows", "merged_heights", "merged_shifts")},
+        "vertex_elevations": account["vertex_elevations"][keep],
+        **{k: account[k][rows] for k in ("merged_rows", "merged_elevations", "merged_shifts")},
     }
 
 

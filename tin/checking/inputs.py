@@ -81,7 +81,7 @@ def check_given_lines(tin: TIN, given: LineSet, found: Findings) -> None:
     tin : TIN
         Chains and rim sound.
     given : LineSet
-        Lines as the caller gave them, draped ones without heights. Chains of further lines are
+        Lines as the caller gave them, draped ones without elevations. Chains of further lines are
         not looked at.
     """
     xy, snap = tin.points[:, :2], tin.report.snap

@@ -33,11 +33,11 @@ class Breakline:
     ----------
     coords : (k, 3) or (k, 2) float64 array
         Vertices, k >= 2, CRS units; first and last equal if it is closed. With two columns it is
-        draped: its heights are taken from the surface of everything that has heights.
+        draped: its elevations are taken from the surface of everything that has elevations.
     kind : {"hard", "soft"}
         A soft breakline shapes the surface, but is no break of slope.
     priority : int
-        Where breaklines cross, the height of the higher one counts; among equals, of the first.
+        Where breaklines cross, the elevation of the higher one counts; among equals, of the first.
     name : str
         For reports and pictures.
 
@@ -78,7 +78,7 @@ class Breakline:
 
     @property
     def is_draped(self) -> bool:
-        """Whether the heights come from the surface."""
+        """Whether the elevations come from the surface."""
         return int(self.coords.shape[1]) == 2
 
     def __repr__(self) -> str:
@@ -98,7 +98,7 @@ class Water:
     ring : (k, 2) float64 array
         Corners in order, the first not repeated, k >= 3, CRS units.
     z : float
-        Its constant height.
+        Its constant elevation.
     name : str
 
     Raises

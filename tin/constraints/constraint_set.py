@@ -37,7 +37,7 @@ ABOVE_ALL = np.inf
 """Priority of water: it stays flat whatever crosses it."""
 
 BELOW_ALL = -np.inf
-"""Priority of draped lines: they never change a height."""
+"""Priority of draped lines: they never change an elevation."""
 
 
 class LineSet(NamedTuple):
@@ -46,7 +46,7 @@ class LineSet(NamedTuple):
     Attributes
     ----------
     xy : (k, 2) float64 array
-    heights : (k,) float64 array
+    elevations : (k,) float64 array
         NaN for draped lines.
     offsets : (l + 1,) int64 array
     table : ConstraintTable
@@ -54,7 +54,7 @@ class LineSet(NamedTuple):
     """
 
     xy: NDArray[np.float64]
-    heights: NDArray[np.float64]
+    elevations: NDArray[np.float64]
     offsets: NDArray[np.int64]
     table: ConstraintTable
 
@@ -80,8 +80,8 @@ class LineSet(NamedTuple):
 
     @property
     def is_draped(self) -> NDArray[np.bool_]:
-        """Whether each line takes its heights from the surface."""
-        return np.isnan(self.heights[self.offsets[:-1]])
+        """Whether each line takes its elevations from the surface."""
+        return np.isnan(self.elevations[self.offsets[:-1]])
 
     @property
     def line_of(self) -> NDArray[np.int64]:
@@ -106,7 +106,7 @@ class LineSet(NamedTuple):
         """Return the lines of several sets as one."""
         return cls(
             np.concatenate([part.xy for part in sets]),
-            np.concatenate([part.heights for part in sets]),
+            np.concatenate([part.elevations for part in sets]),
             offsets_of(np.concatenate([np.diff(part.offsets) for part in sets])),
             ConstraintTable.joined([part.table for part in sets]),
         )
@@ -116,7 +116,7 @@ class LineSet(NamedTuple):
         rows = is_chosen[self.line_of]
         return LineSet(
             self.xy[rows],
-            self.heights[rows],
+            self.elevations[rows],
             offsets_of(np.diff(self.offsets)[is_chosen]),
             self.table.take(np.flatnonzero(is_chosen)),
         )
@@ -281,10 +281,10 @@ def _stacked(coords: list[NDArray[np.float64]]) -> tuple[NDArray[np.float64], ND
         return np.empty((0, 2)), np.empty(0)
     xy = np.concatenate([line[:, :2] for line in coords])
     draped = [len(line) if line.shape[1] == 2 else 0 for line in coords]
-    heights = np.concatenate(
+    elevations = np.concatenate(
         [np.full(n, np.nan) if n else line[:, 2] for n, line in zip(draped, coords, strict=True)]
     )
-    return np.ascontiguousarray(xy), heights
+    return np.ascontiguousarray(xy), elevations
 
 
 def _sources(kinds: Sequence[str]) -> NDArray[np.int32]:

@@ -1,4 +1,4 @@
-"""Draping: lines without heights are laid on a surface, and get a vertex at every edge of it."""
+"""Draping: lines without elevations are laid on a surface, and get a vertex at every edge of it."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ __all__ = ["Draped", "drape"]
 
 
 class Draped(NamedTuple):
-    """Lines with heights.
+    """Lines with elevations.
 
     Attributes
     ----------
@@ -47,7 +47,7 @@ def drape(surface: Surface, lines: LineSet, *, threads: int) -> Draped:
     ring = np.ascontiguousarray(surface.points[hull, :2])
     if (in_rings(lines.xy, [ring]) >= 0).all():
         xy, polylines = _vertices_once(lines)
-        whole = _with_heights(surface, xy, np.full(len(xy), np.nan), polylines, lines)
+        whole = _with_elevations(surface, xy, np.full(len(xy), np.nan), polylines, lines)
         return Draped(whole, _no_lines(lines), 0)
     return _cut_at_rim(surface, hull, lines, threads=threads)
 
@@ -72,23 +72,23 @@ def _cut_at_rim(
     noded = node(
         xy,
         Polylines.whole(vertex_of, np.append(lines.offsets, len(both))),
-        np.concatenate([lines.heights, rim[:, 2]]),
+        np.concatenate([lines.elevations, rim[:, 2]]),
         np.append(lines.priorities, 0.0),
         threads=threads,
     )
     vertices, offsets = noded.polylines.vertices, noded.polylines.offsets
     rim_chain = vertices[offsets[-2] :]
-    rim_heights = noded.elevations[offsets[-2] :]
+    rim_elevations = noded.elevations[offsets[-2] :]
     places = np.concatenate([xy, noded.new_points[:, :2]])
     side = in_rings(places, [rim[:-1, :2]])
     side[rim_chain] = 0
     cut = Polylines.whole(vertices[: offsets[-2]], offsets[:-1])
     is_inside = np.asarray((side[cut.segments()] >= 0).all(axis=1), np.bool_)
-    heights = np.full(len(places), np.nan)
-    heights[rim_chain] = rim_heights
+    elevations = np.full(len(places), np.nan)
+    elevations[rim_chain] = rim_elevations
     return Draped(
-        _with_heights(surface, places, heights, cut.keep(is_inside), lines),
-        _split_rim(places, rim_chain, rim_heights, vertex_of[len(lines.xy) :]),
+        _with_elevations(surface, places, elevations, cut.keep(is_inside), lines),
+        _split_rim(places, rim_chain, rim_elevations, vertex_of[len(lines.xy) :]),
         len(np.unique(cut.segment_lines()[~is_inside])),
     )
 
@@ -96,7 +96,7 @@ def _cut_at_rim(
 def _split_rim(
     places: NDArray[np.float64],
     chain: NDArray[np.int32],
-    heights: NDArray[np.float64],
+    elevations: NDArray[np.float64],
     own: NDArray[np.int32],
 ) -> LineSet:
     """Return the edges of the rim that have vertices between their ends, as lines.
@@ -116,7 +116,7 @@ def _split_rim(
     rows = np.arange(offsets[-1]) + np.repeat(begins - offsets[:-1], counts)
     sources = np.full(len(counts), -1, np.int32)
     table = ConstraintTable.of_kind("boundary", sources, np.full(len(counts), BELOW_ALL))
-    return LineSet(places[chain[rows]], heights[rows], offsets, table)
+    return LineSet(places[chain[rows]], elevations[rows], offsets, table)
 
 
 def _hidden_edges(
@@ -143,17 +143,17 @@ def _are_beyond(xy: NDArray[np.float64], edge: NDArray[np.float64]) -> NDArray[n
     return beyond
 
 
-def _with_heights(
+def _with_elevations(
     surface: Surface,
     places: NDArray[np.float64],
-    heights: NDArray[np.float64],
+    elevations: NDArray[np.float64],
     polylines: Polylines,
     lines: LineSet,
 ) -> LineSet:
-    """Give polylines a vertex at every edge of the surface, and every vertex its height."""
+    """Give polylines a vertex at every edge of the surface, and every vertex its elevation."""
     xy, owner = _along_surface(surface, places, polylines)
     z = _kernel.Locator(surface.points, surface.triangles, surface.neighbors).interpolate(xy)
-    known = _heights_at(xy, places, heights)
+    known = _elevations_at(xy, places, elevations)
     z = np.where(np.isnan(known), z, known)
     keep = ~np.isnan(z)
     xy, z, owner = xy[keep], z[keep], owner[keep]
@@ -163,18 +163,18 @@ def _with_heights(
     return LineSet(xy, z, offsets_of(counts), table)
 
 
-def _heights_at(
-    xy: NDArray[np.float64], places: NDArray[np.float64], heights: NDArray[np.float64]
+def _elevations_at(
+    xy: NDArray[np.float64], places: NDArray[np.float64], elevations: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Look up the heights of places that have one already; NaN elsewhere."""
-    known = np.flatnonzero(~np.isnan(heights))
+    """Look up the elevations of places that have one already; NaN elsewhere."""
+    known = np.flatnonzero(~np.isnan(elevations))
     found = np.full(len(xy), np.nan)
     if len(known):
         both = np.concatenate([places[known], xy])
         _, number = np.unique(both, axis=0, return_inverse=True)
         number = number.reshape(-1)
         table = np.full(int(number.max()) + 1, np.nan)
-        table[number[: len(known)]] = heights[known]
+        table[number[: len(known)]] = elevations[known]
         found = table[number[len(known) :]]
     return found
 

@@ -45,13 +45,13 @@ class Touches(NamedTuple):
     ----------
     vertex, line : (t,) int32 arrays
         Sorted by vertex, then by line.
-    height : (t,) float64 array
-        The line's own height there; NaN if it has none.
+    elevation : (t,) float64 array
+        The line's own elevation there; NaN if it has none.
     """
 
     vertex: NDArray[np.int32]
     line: NDArray[np.int32]
-    height: NDArray[np.float64]
+    elevation: NDArray[np.float64]
 
 
 class Noded(NamedTuple):
@@ -110,9 +110,9 @@ def node(
     elevations : (k,) float64 array
         The line's own elevation at each of its vertices; NaN if it has none.
     priority : (l,) int array
-        At a vertex made by crossing lines, the height of the line with the highest priority is
+        At a vertex made by crossing lines, the elevation of the line with the highest priority is
         taken, among equals of the first line, and of one line its lowest; of a line without
-        heights only if no other has any.
+        elevations only if no other has any.
     snap : float
         A vertex within this distance bends a line onto itself, CRS units. Not one that is also
         within it of an end of the segment.
@@ -193,7 +193,7 @@ class _Visits(NamedTuple):
 
     vertex: NDArray[np.int32]
     line: NDArray[np.int32]
-    height: NDArray[np.float64]
+    elevation: NDArray[np.float64]
 
 
 def _visits(work: Splitting, at: NDArray[np.int64]) -> _Visits:
@@ -227,7 +227,7 @@ def _account(work: Splitting, priority: NDArray[Any]) -> Noded:
     is_new = winners.vertex >= n_given
     passed = ~work.is_given & (work.polylines.vertices < n_given)
     return Noded(
-        np.column_stack([made[order], winners.height[is_new]]),
+        np.column_stack([made[order], winners.elevation[is_new]]),
         work.polylines,
         work.elevations,
         crossings,
@@ -238,22 +238,22 @@ def _account(work: Splitting, priority: NDArray[Any]) -> Noded:
 def _crossings(
     work: Splitting, is_crossing: NDArray[np.bool_], priority: NDArray[Any]
 ) -> tuple[Crossings, _Visits]:
-    """Return the crossings, and whose height counts at each vertex, by vertex."""
+    """Return the crossings, and whose elevation counts at each vertex, by vertex."""
     at = np.flatnonzero(is_crossing[work.polylines.vertices])
-    vertex, line, height = _visits(work, at)
+    vertex, line, elevation = _visits(work, at)
     part_of = work.polylines.lines[line]
     rank = np.where(np.isneginf(priority[line]), 0, part_of)  # draped lines have no order
-    best = np.lexsort((line, height, rank, -priority[line], np.isnan(height), vertex))
-    vertex, line, height = vertex[best], line[best], height[best]
+    best = np.lexsort((line, elevation, rank, -priority[line], np.isnan(elevation), vertex))
+    vertex, line, elevation = vertex[best], line[best], elevation[best]
     is_winner = np.ones(len(vertex), np.bool_)
     is_winner[1:] = np.diff(vertex) != 0
     winner = np.flatnonzero(is_winner)[np.cumsum(is_winner) - 1]
     other = np.flatnonzero(~is_winner)
     pair = np.stack([winner[other], other], axis=1)
     crossings = Crossings(
-        vertex[other], work.xy[vertex[other]], line[pair], height[pair], height[winner[other]]
+        vertex[other], work.xy[vertex[other]], line[pair], elevation[pair], elevation[winner[other]]
     )
-    return crossings, _Visits(vertex[is_winner], line[is_winner], height[is_winner])
+    return crossings, _Visits(vertex[is_winner], line[is_winner], elevation[is_winner])
 
 
 def _crossing_error(
@@ -266,16 +266,16 @@ def _crossing_error(
     first = np.lexsort((places[:, 1], places[:, 0], lines[:, 1], lines[:, 0]))[0]
     a, b = lines[first].tolist()
     x, y = places[first].tolist()
-    heights = work.elevations_at(segment[first], places[[first, first]]).tolist()
+    elevations = work.elevations_at(segment[first], places[[first, first]]).tolist()
     label_a, label_b = (f"line {i}" if names is None else names[i] for i in (a, b))
     whom = "itself" if a == b else label_b
     return LinesError(
         f"{label_a[0].upper()}{label_a[1:]} crosses {whom} at ({x:.12g}, {y:.12g}), "
-        f"{_in_words(heights)}: crossing='split' makes a vertex there.",
+        f"{_in_words(elevations)}: crossing='split' makes a vertex there.",
         lines=sorted({a, b}),
     )
 
 
-def _in_words(heights: list[float]) -> str:
-    first, second = ("no height" if np.isnan(z) else f"height {z:.10g}" for z in heights)
+def _in_words(elevations: list[float]) -> str:
+    first, second = ("no elevation" if np.isnan(z) else f"elevation {z:.10g}" for z in elevations)
     return f"with {first} and {second}"

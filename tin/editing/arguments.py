@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "as_ends",
-    "as_heights",
     "as_point",
+    "as_vertex_elevations",
     "as_vertices",
     "copied",
     "require_distinct",
@@ -87,11 +87,12 @@ def as_point(point: Any) -> NDArray[np.float64]:
     return place
 
 
-def as_heights(z: ArrayLike, count: int) -> NDArray[np.float64]:
+def as_vertex_elevations(z: ArrayLike, count: int) -> NDArray[np.float64]:
     """Return one elevation for all of so many vertices, or one for each."""
-    heights = as_elevations(z) + 0.0  # no -0.0
-    if heights.ndim == 1 and len(heights) != count:
+    elevations = as_elevations(z) + 0.0  # no -0.0
+    if elevations.ndim == 1 and len(elevations) != count:
         raise PointsError(
-            f"{heights.size} heights for {count} vertices: one each, or one for all, is needed."
+            f"{elevations.size} elevations for {count} vertices: one each, or one for all, is "
+            "needed."
         )
-    return heights
+    return elevations

@@ -35,7 +35,7 @@ __all__ = [
     "PutVertices",
     "SetElevations",
     "count_breaklines",
-    "has_own_heights",
+    "has_own_elevations",
 ]
 
 NO_ROWS = np.empty(0, np.int64)
@@ -142,10 +142,10 @@ def count_breaklines(lines: LineSet) -> int:
     return is_other.index(True) if any(is_other) else len(is_other)
 
 
-def has_own_heights(lines: LineSet) -> NDArray[np.bool_]:
-    """Tell which vertices of lines have heights that can change: not draped ones, nor water's."""
+def has_own_elevations(lines: LineSet) -> NDArray[np.bool_]:
+    """Tell which vertices of lines have elevations to change: not draped ones, nor water's."""
     is_level = (lines.priorities == ABOVE_ALL)[lines.line_of]
-    has_own: NDArray[np.bool_] = ~np.isnan(lines.heights) & ~is_level
+    has_own: NDArray[np.bool_] = ~np.isnan(lines.elevations) & ~is_level
     return has_own
 
 
@@ -183,10 +183,10 @@ class PutVertices(NamedTuple):
 
     def apply(self, lines: LineSet) -> LineSet:
         """Return the changed lines."""
-        xy, heights = lines.xy.copy(), lines.heights.copy()
+        xy, elevations = lines.xy.copy(), lines.elevations.copy()
         xy[self.rows] = self.point[:2]
-        heights[self.rows[has_own_heights(lines)[self.rows]]] = self.point[2]
-        return lines._replace(xy=xy, heights=heights)
+        elevations[self.rows[has_own_elevations(lines)[self.rows]]] = self.point[2]
+        return lines._replace(xy=xy, elevations=elevations)
 
 
 class SetElevations(NamedTuple):
@@ -197,9 +197,9 @@ class SetElevations(NamedTuple):
 
     def apply(self, lines: LineSet) -> LineSet:
         """Return the changed lines."""
-        heights = lines.heights.copy()
-        heights[self.rows] = self.elevations
-        return lines._replace(heights=heights)
+        elevations = lines.elevations.copy()
+        elevations[self.rows] = self.elevations
+        return lines._replace(elevations=elevations)
 
 
 class DropVertices(NamedTuple):
@@ -227,7 +227,7 @@ class DropVertices(NamedTuple):
         rows = source[keep]
         return lines._replace(
             xy=lines.xy[rows],
-            heights=lines.heights[rows],
+            elevations=lines.elevations[rows],
             offsets=offsets_of(counts),
         )
 

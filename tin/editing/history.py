@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ..._sentences import shown
 from ...errors import PointsError, TinsmithError
 from ..report import Edit
-from .operations import OPERATIONS
+from .operations import FORMER_NAMES, OPERATIONS
 
 if TYPE_CHECKING:
     from .editable import Editable
@@ -49,9 +49,10 @@ def _taken_apart(edit: Edit | Mapping[str, Any], number: int) -> tuple[str, dict
     if isinstance(edit, Edit):
         return edit.operation, edit.arguments
     arguments = {name: value for name, value in edit.items() if name not in ("op", "notes")}
-    operation = edit.get("op")
+    name = edit.get("op")
+    operation = FORMER_NAMES.get(name, name) if isinstance(name, str) else ""
     if operation not in OPERATIONS:
         raise PointsError(
-            f"Edit {number} has op {shown(operation)}: one of {', '.join(OPERATIONS)} is needed."
+            f"Edit {number} has op {shown(name)}: one of {', '.join(OPERATIONS)} is needed."
         )
     return operation, arguments

@@ -51,8 +51,10 @@ def is_local(build_inputs: BuildInputs) -> bool:
     lines, options = build_inputs.lines, build_inputs.options
     has_all_rows = not build_inputs.erase and build_inputs.is_masked is None
     is_simple = options.snap == 0.0 and has_all_rows and not build_inputs.conforming
-    has_own_heights = bool(np.isfinite(lines.priorities).all() and np.isfinite(lines.heights).all())
-    return is_simple and has_own_heights and not build_inputs.is_clipped
+    has_own_elevations = bool(
+        np.isfinite(lines.priorities).all() and np.isfinite(lines.elevations).all()
+    )
+    return is_simple and has_own_elevations and not build_inputs.is_clipped
 
 
 class _Counts(NamedTuple):
@@ -170,11 +172,11 @@ class Editor:
         slots = self._grown_with(xyz) if is_large else self._inserted(xyz)
         is_new = slots == np.arange(first, first + len(xyz), dtype=np.int32)
         try:
-            heights: dict[int, float] = {}
+            elevations: dict[int, float] = {}
             if not is_new.all():
                 self._require_in_order(slots, first)
                 old = np.flatnonzero(~is_new).tolist()
-                heights = self._merged_elevations(xyz, slots, old, policy)
+                elevations = self._merged_elevations(xyz, slots, old, policy)
             if self._has_lines:
                 self._require_clear(slots)
         except (PointsError, NotLocal):
@@ -184,7 +186,7 @@ class Editor:
                 self._take_back(slots[is_new])
                 self._keep_empty(xyz, first)
             raise
-        return slots, self._enter(xyz, slots, is_new, heights)
+        return slots, self._enter(xyz, slots, is_new, elevations)
 
     def _inserted(self, xyz: NDArray[np.float64]) -> NDArray[np.int32]:
         return self._mesh.insert(np.ascontiguousarray(xyz[:, :2]))
@@ -203,14 +205,14 @@ class Editor:
         policy: DuplicatePolicy,
     ) -> dict[int, float]:
         """Return the elevations of vertices at which further rows come to stand."""
-        heights: dict[int, float] = {}
+        elevations: dict[int, float] = {}
         first = self._live.slots - len(xyz)
         for row in old:
             slot = int(slots[row])
             here = self._points.at(slot)[2] if slot < first else xyz[slot - first, 2]
-            here = heights.get(slot, float(here))
-            heights[slot] = merged_elevation(here, float(xyz[row, 2]), policy)
-        return heights
+            here = elevations.get(slot, float(here))
+            elevations[slot] = merged_elevation(here, float(xyz[row, 2]), policy)
+        return elevations
 
     def _require_clear(self, slots: NDArray[np.int32]) -> None:
         for slot in set(slots.tolist()):
@@ -240,24 +242,24 @@ class Editor:
         xyz: NDArray[np.float64],
         slots: NDArray[np.int32],
         is_new: NDArray[np.bool_],
-        heights: dict[int, float],
+        elevations: dict[int, float],
     ) -> Change:
         first = len(self._points)
         self._points.extend(xyz)
         row = self._n_first_rows + self._n_new
         moved = []
-        if heights:
+        if elevations:
             self._removed.extend((first + np.flatnonzero(~is_new)).tolist())
-            moved = [self._put_elevation(slot, height) for slot, height in heights.items()]
+            moved = [self._put_elevation(slot, elevation) for slot, elevation in elevations.items()]
         for number, slot in enumerate(slots.tolist(), row):
             self._more_rows.setdefault(slot, []).append(number)
         self._new_slots.extend(slots)
         self._n_new += len(xyz)
-        if not heights:
+        if not elevations:
             return Change(added=xyz)
         added = xyz.copy()
-        for slot, height in heights.items():
-            added[slots == slot, 2] = height
+        for slot, elevation in elevations.items():
+            added[slots == slot, 2] = elevation
         return _joined(moved)._replace(added=added)
 
     def _is_large(self, count: int) -> bool:
@@ -349,21 +351,21 @@ class Editor:
                 self._put_back([slot])
                 raise
 
-    def set_z(self, slots: NDArray[np.int32], z: NDArray[np.float64]) -> Change:
+    def set_elevations(self, slots: NDArray[np.int32], z: NDArray[np.float64]) -> Change:
         """Give vertices, and the rows there, other elevations."""
         if self._has_lines and any(map(self._mesh.has_fixed_edge, slots.tolist())):
             raise NotLocal
-        heights = np.broadcast_to(z, len(slots)).tolist()
+        elevations = np.broadcast_to(z, len(slots)).tolist()
         return _joined(
             [
-                self._put_elevation(slot, height)
-                for slot, height in zip(slots.tolist(), heights, strict=True)
+                self._put_elevation(slot, elevation)
+                for slot, elevation in zip(slots.tolist(), elevations, strict=True)
             ]
         )
 
-    def _put_elevation(self, slot: int, height: float) -> Change:
+    def _put_elevation(self, slot: int, elevation: float) -> Change:
         point = self._points.at(slot).copy()
-        point[2] = height
+        point[2] = elevation
         self._points.put(slot, point)
         return self._moved(slot, point)
 

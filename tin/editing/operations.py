@@ -16,8 +16,8 @@ from ..validation.options import is_whole_number
 from ..validation.points import as_points
 from .arguments import (
     as_ends,
-    as_heights,
     as_point,
+    as_vertex_elevations,
     as_vertices,
     copied,
     require_distinct,
@@ -32,7 +32,7 @@ from .changes import (
     PutVertices,
     SetElevations,
     count_breaklines,
-    has_own_heights,
+    has_own_elevations,
 )
 from .flipping import FLIP, flipped_edge, require_inner
 from .mesh_editor import Editor, merged_elevation, occupied
@@ -226,7 +226,7 @@ class Move(MeshOperation):
 class SetElevation(MeshOperation):
     """Vertices at other elevations."""
 
-    operation: ClassVar[str] = "set_z"
+    operation: ClassVar[str] = "set_elevation"
 
     vertices: ArrayLike
     z: ArrayLike
@@ -234,12 +234,12 @@ class SetElevation(MeshOperation):
     def apply(self, tin: Edited) -> Done:
         """Build the TIN of the changed inputs."""
         numbers = as_vertices(self.vertices, tin.count)
-        heights = np.broadcast_to(as_heights(self.z, len(numbers)), len(numbers))
+        elevations = np.broadcast_to(as_vertex_elevations(self.z, len(numbers)), len(numbers))
         state, inputs = tin.now(), tin.inputs()
-        change = _with_elevations(state, inputs, numbers, heights)
+        change = _with_elevations(state, inputs, numbers, elevations)
         made = numbers[~_has_own_elevation(state, inputs, numbers)]
         wanted = state.triangulation.points.copy()
-        wanted[numbers, 2] = heights
+        wanted[numbers, 2] = elevations
         change = change._replace(added=wanted[np.unique(made)])
         found = tin.build(inputs.after([change]))
         _require_elevations(found, wanted[np.unique(numbers)])
@@ -248,7 +248,9 @@ class SetElevation(MeshOperation):
     def apply_to_mesh(self, editor: Editor) -> Done:
         """Change the mesh, if no line is near."""
         numbers = as_vertices(self.vertices, editor.count)
-        return Done(editor.set_z(editor.slots(numbers), as_heights(self.z, len(numbers))))
+        return Done(
+            editor.set_elevations(editor.slots(numbers), as_vertex_elevations(self.z, len(numbers)))
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -293,12 +295,12 @@ class AddBreakline(Operation):
         inputs = tin.inputs().after([change])
         found = tin.build(inputs)
         number = count_breaklines(inputs.build_inputs.lines) - 1
-        met = found.report.met_by(inputs.build_inputs.lines.label(number))
-        if met and self.crossing == "error":
-            raise LinesError(f'{met[0][:-1]}: crossing="error" allows none.')
+        crossings = found.report.describe_crossings(inputs.build_inputs.lines.label(number))
+        if crossings and self.crossing == "error":
+            raise LinesError(f'{crossings[0][:-1]}: crossing="error" allows none.')
         if line.is_draped and not found.lines.has_breakline(number):
             raise LinesError("The draped line lies outside the surface.")
-        return Done(change, found, notes=tuple(met))
+        return Done(change, found, notes=tuple(crossings))
 
 
 @dataclass(frozen=True, eq=False)
@@ -324,6 +326,9 @@ OPERATIONS: dict[str, type[Operation]] = {
     for kind in (Insert, Remove, Move, SetElevation, Flip, AddBreakline, RemoveBreakline)
 }
 """The operations by the names of the methods of a TIN that do them."""
+
+FORMER_NAMES = {"set_z": SetElevation.operation}
+"""Names that edits may have in scripts of earlier versions."""
 
 
 def _flipped(state: State, a: int, b: int) -> LineChange:
@@ -352,29 +357,29 @@ def _merged_elevations(
     _, place = np.unique(xyz[:, :2], axis=0, return_inverse=True)
     place = place.reshape(-1)
     is_alone = (np.bincount(place)[place] == 1) & np.isnan(own)
-    heights: dict[int, float] = {}
+    elevations: dict[int, float] = {}
     for row in np.flatnonzero(~is_alone).tolist():
-        here = heights.get(int(place[row]), float(own[row]))
-        heights[int(place[row])] = (
+        here = elevations.get(int(place[row]), float(own[row]))
+        elevations[int(place[row])] = (
             float(z[row]) if np.isnan(here) else merged_elevation(here, float(z[row]), policy)
         )
     for row in np.flatnonzero(~is_alone).tolist():
-        z[row] = heights[int(place[row])]
+        z[row] = elevations[int(place[row])]
     return z
 
 
 def _with_elevations(
-    state: State, inputs: NumberedInputs, vertices: NDArray[Any], heights: NDArray[np.float64]
+    state: State, inputs: NumberedInputs, vertices: NDArray[Any], elevations: NDArray[np.float64]
 ) -> Change:
     """Give the rows and the lines at vertices other elevations."""
-    height_of = np.full(len(state.triangulation.points) + 1, np.nan)  # the last is of no vertex
-    height_of[vertices] = heights
-    wanted = height_of[state.vertex_of_row]
+    elevation_of = np.full(len(state.triangulation.points) + 1, np.nan)  # the last is of no vertex
+    elevation_of[vertices] = elevations
+    wanted = elevation_of[state.vertex_of_row]
     rows = np.flatnonzero(~np.isnan(wanted))
     places = inputs.build_inputs.points[np.searchsorted(inputs.rows, rows)]
     places[:, 2] = wanted[rows]
-    of_lines = height_of[state.line_vertices(inputs)]
-    on_lines = np.flatnonzero(~np.isnan(of_lines) & has_own_heights(inputs.build_inputs.lines))
+    of_lines = elevation_of[state.line_vertices(inputs)]
+    on_lines = np.flatnonzero(~np.isnan(of_lines) & has_own_elevations(inputs.build_inputs.lines))
     lines = (SetElevations(on_lines, of_lines[on_lines]),) if len(on_lines) else ()
     return Change(moved=rows, places=places, lines=lines)
 
@@ -383,7 +388,7 @@ def _has_own_elevation(
     state: State, inputs: NumberedInputs, vertices: NDArray[np.int64]
 ) -> NDArray[np.bool_]:
     """Tell which vertices stand for rows or for vertices of lines with elevations."""
-    of_lines = state.line_vertices(inputs)[~np.isnan(inputs.build_inputs.lines.heights)]
+    of_lines = state.line_vertices(inputs)[~np.isnan(inputs.build_inputs.lines.elevations)]
     return np.isin(vertices, np.append(state.vertex_of_row, of_lines))
 
 

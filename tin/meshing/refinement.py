@@ -1,6 +1,6 @@
 """Refine: a TIN becomes a mesh for finite elements, its triangles good and small enough.
 
-Where to put points is decided by the core; here their heights are found, and the TIN is built of
+Where to put points is decided by the core; here their elevations are found, and the TIN is built of
 all points and of the segments as they were split.
 """
 
@@ -56,8 +56,9 @@ def refine(
     Delaunay refinement [1]_ [2]_ with off-centres [3]_: where a triangle has too small an angle, is
     too large or has too long an edge, a point is put that mends it; edges of the rim and of lines
     are split where they are in the way. All vertices stay, and so do rim and lines but for
-    rounding. New points lie on the surface of the TIN: on rim and lines at the height there, inside
-    at the interpolated one. The result is a function of the TIN's surface, whatever its numbering.
+    rounding. New points lie on the surface of the TIN: on rim and lines at the elevation there,
+    inside at the interpolated one. The result is a function of the TIN's surface, whatever its
+    numbering.
 
     Parameters
     ----------
@@ -173,7 +174,7 @@ def _too_many(max_vertices: int) -> str:
     )
 
 
-# ----------------------------------------------------------------------- heights
+# ----------------------------------------------------------------------- elevations
 
 
 class _Splits(NamedTuple):
@@ -225,7 +226,7 @@ def _key(a: int, b: int) -> tuple[int, int]:
 
 
 def _lifted(tin: TIN, xy: NDArray[np.float64], splits: _Splits) -> NDArray[np.float64]:
-    """Return the new points with heights: on segments from their ends, else from the surface."""
+    """Return the new points with elevations: on segments from their ends, else from the surface."""
     n = len(tin.points)
     is_on_segment = np.zeros(len(xy), np.bool_)
     is_on_segment[splits.middle - n] = True
@@ -250,7 +251,7 @@ def _shares(points: NDArray[np.float64], splits: _Splits) -> NDArray[np.float64]
 
 
 def _on_surface(tin: TIN, xy: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return heights; a place beside the rim by a rounding has that of the nearest edge there."""
+    """Return elevations; beside the rim by a rounding that of the nearest edge there."""
     z = tin.interpolate(xy)
     for row in np.flatnonzero(np.isnan(z)).tolist():
         z[row] = _on_rim(tin, xy[row])
