@@ -37,9 +37,9 @@ LEFT_OUT = (
 """Why a row of points has no vertex; ``Report.left_out_why`` holds places in this list."""
 
 UNMENDED_WHY = (
-    "lines or the rim meet there under a small angle",
+    "lines or the boundary meet there under a small angle",
     "only far shorter edges would help",
-    "a line or the rim in the way has no room for a further vertex",
+    "a line or the boundary in the way has no room for a further vertex",
 )
 """Why a triangle stays as it is; ``Unmended.why`` holds places in this list."""
 

@@ -160,11 +160,11 @@ def boundary_rings(
     """Return the boundary as closed vertex rings (first vertex not repeated), interior on the left.
 
     At a vertex where two rings touch, they are kept apart by turning about the vertex through
-    the triangles inside, so that every ring is one walk along the surface's rim.
+    the triangles inside, so that every ring is one walk along the surface's boundary.
     """
     triangle, corner = np.nonzero(neighbors == NO_NEIGHBOR)
     start = triangles[triangle, (corner + 1) % 3]
-    place = np.searchsorted(3 * triangle + corner, _next_on_rim(triangles, neighbors))
+    place = np.searchsorted(3 * triangle + corner, _next_on_boundary(triangles, neighbors))
     following = place.tolist()
     is_left = [True] * len(following)
     rings: list[NDArray[np.int32]] = []
@@ -179,8 +179,10 @@ def boundary_rings(
     return rings
 
 
-def _next_on_rim(triangles: NDArray[np.int32], neighbors: NDArray[np.int32]) -> NDArray[np.int64]:
-    """Return for every rim edge the next one, both as 3 * triangle + corner.
+def _next_on_boundary(
+    triangles: NDArray[np.int32], neighbors: NDArray[np.int32]
+) -> NDArray[np.int64]:
+    """Return for every boundary edge the next one, both as 3 * triangle + corner.
 
     It is found by turning about the end of the edge, through the triangles inside.
     """

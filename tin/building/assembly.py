@@ -101,15 +101,17 @@ def _report(
 
 
 class _Ground(NamedTuple):
-    """Lines that all have elevations, and the rim where draped ones leave the surface."""
+    """Lines that all have elevations, and the boundary where draped ones leave the surface."""
 
     lines: LineSet
-    has_rim: bool
+    has_own_boundary: bool
     notes: list[str]
 
-    def without_rim(self) -> _Ground:
-        """Return the same lines without the parts of the rim."""
-        return self._replace(lines=self.lines.chosen(self.lines.sources >= 0), has_rim=False)
+    def without_own_boundary(self) -> _Ground:
+        """Return the same lines without the parts of the boundary."""
+        return self._replace(
+            lines=self.lines.chosen(self.lines.sources >= 0), has_own_boundary=False
+        )
 
 
 def _with_lines(inputs: BuildInputs) -> Built:
@@ -117,9 +119,9 @@ def _with_lines(inputs: BuildInputs) -> Built:
     rows = np.flatnonzero(~is_erased)
     ground = _draped(rows, inputs)
     made, pslg = _made(inputs, ground, rows)
-    has_rings = bool(inputs.boundary or inputs.extent or inputs.holes or inputs.has_rim)
-    if not has_rings and pslg.loses_vertices_at_rim(made.surface):
-        ground = ground.without_rim()
+    has_rings = bool(inputs.boundary or inputs.extent or inputs.holes or inputs.has_own_boundary)
+    if not has_rings and pslg.loses_vertices_at_own_boundary(made.surface):
+        ground = ground.without_own_boundary()
         made, pslg = _made(inputs, ground, rows)
     surface, number_of = pslg.surface(made.surface)
     vertex_of = _numbered(pslg.vertex_of, number_of)
@@ -159,7 +161,7 @@ def _gather_pslg(
             boundary=inputs.boundary,
             extent=inputs.extent,
             holes=inputs.holes,
-            has_rim=ground.has_rim or inputs.has_rim,
+            has_own_boundary=ground.has_own_boundary or inputs.has_own_boundary,
             max_edge=inputs.max_edge,
             is_trimmed_everywhere=inputs.trim == "everywhere",
         ),
@@ -175,7 +177,7 @@ def _groups(inputs: BuildInputs, lines: LineSet) -> NDArray[np.int64]:
     ]
     of_hole = [HOLES + number for number, rings in enumerate(inputs.holes) for _ in rings]
     groups: dict[str, list[int]] = {"boundary": of_ring, "hole": of_hole}
-    if inputs.has_rim:  # of existing triangles, whose rings are edges of the rim
+    if inputs.has_own_boundary:  # of existing triangles, whose rings are edges of the boundary
         groups = {}
     found = [
         groups[kind][source] if kind in groups and source >= 0 else BOUNDARY
@@ -214,8 +216,8 @@ def _draped(rows: NDArray[np.int64], inputs: BuildInputs) -> _Ground:
             f"Of {counted(laid.n_cut, 'draped line')} the parts outside the surface "
             "of the points were left out."
         )
-    together = LineSet.joined([lines.chosen(~is_draped), laid.lines, laid.rim])
-    return _Ground(together, len(laid.rim.kinds) > 0, notes)
+    together = LineSet.joined([lines.chosen(~is_draped), laid.lines, laid.boundary])
+    return _Ground(together, len(laid.boundary.kinds) > 0, notes)
 
 
 # ----------------------------------------------------------------------- account

@@ -53,8 +53,8 @@ class BuildInputs:
         The rings of each region: the outer one, then its islands.
     max_edge : float
         Infinity for none.
-    has_rim : bool
-        Whether some of the lines are edges of the rim of existing triangles.
+    has_own_boundary : bool
+        Whether some of the lines are edges of the boundary of existing triangles.
     """
 
     points: NDArray[np.float64]
@@ -70,7 +70,7 @@ class BuildInputs:
     options: LineOptions
     crs: CRS | None
     elevation_unit: Unit | None = None
-    has_rim: bool = False
+    has_own_boundary: bool = False
     skipped: Mapping[str, int] = field(default_factory=dict)
     notes: Sequence[str] = ()
 
@@ -83,7 +83,7 @@ class BuildInputs:
     @property
     def is_clipped(self) -> bool:
         """Whether only a part of the hull may be the surface."""
-        has_rings = bool(self.boundary or self.extent or self.holes or self.has_rim)
+        has_rings = bool(self.boundary or self.extent or self.holes or self.has_own_boundary)
         return has_rings or bool(np.isfinite(self.max_edge))
 
     def with_lines(self, lines: LineSet) -> BuildInputs:
@@ -96,7 +96,7 @@ class BuildInputs:
         """
         require_length(lines)
         _require_simple_rings(lines)
-        if self.has_rim:
+        if self.has_own_boundary:
             return replace(self, lines=lines)
         rings = {kind: _rings_of(lines, kind) for kind in ("boundary", "hole")}
         corners = iter(rings["hole"])

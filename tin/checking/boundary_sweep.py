@@ -1,8 +1,8 @@
-"""The rim of a surface: its edges meet in vertices only, and the surface lies once beside them.
+"""The boundary of a surface: its edges meet in vertices only, the surface lies once beside them.
 
 A plane sweep [1]_ with exact signs. A vertical line moves from west to east over the vertices of
-the rim (leaning by an infinitesimal, so that of two above each other the lower one comes first);
-the edges that it meets are kept from below to above::
+the boundary (leaning by an infinitesimal, so that of two above each other the lower one comes
+first); the edges that it meets are kept from below to above::
 
       |  <--------  3   surface below
       |  --------->  2   surface above       Number 0 must have the surface above it, number 1
@@ -34,13 +34,13 @@ from ..predicates import ORIENTATION_BOUND
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Rim", "RimFault", "find_fault", "sides_of"]
+__all__ = ["Boundary", "BoundaryFault", "find_fault", "sides_of"]
 
 Place = tuple[float, float]
 
 
-class Rim(NamedTuple):
-    """The directed edges of the rim, the surface on their left.
+class Boundary(NamedTuple):
+    """The directed edges of the boundary, the surface on their left.
 
     Attributes
     ----------
@@ -54,7 +54,7 @@ class Rim(NamedTuple):
     end: NDArray[np.int64]
 
 
-class RimFault(NamedTuple):
+class BoundaryFault(NamedTuple):
     """Where the sweep found a fault; what lies east of it was not looked at.
 
     Attributes
@@ -78,31 +78,31 @@ class _Edge(NamedTuple):
     is_below_surface: bool
 
 
-def find_fault(rim: Rim) -> RimFault | None:
-    """Find the westernmost place where the rim is not what it should be.
+def find_fault(boundary: Boundary) -> BoundaryFault | None:
+    """Find the westernmost place where the boundary is not what it should be.
 
     Time grows with the number k of edges as k log k: some 2 seconds for 100,000.
     """
-    sweep, starting = _Sweep(), _edges_from(rim)
-    x, y = rim.points[:, 0], rim.points[:, 1]
-    vertices = np.unique(rim.start)
+    sweep, starting = _Sweep(), _edges_from(boundary)
+    x, y = boundary.points[:, 0], boundary.points[:, 1]
+    vertices = np.unique(boundary.start)
     for vertex in vertices[np.lexsort((y[vertices], x[vertices]))].tolist():
         place = (float(x[vertex]), float(y[vertex]))
         if place not in starting:
             continue  # another vertex stands there
         is_meeting = sweep.pass_place(place, starting.pop(place))
         if is_meeting is not None:
-            return RimFault(vertex, is_meeting)
+            return BoundaryFault(vertex, is_meeting)
     return None
 
 
-def sides_of(rim: Rim, places: NDArray[np.float64]) -> NDArray[np.int8]:
-    """Tell where (k, 2) places lie: +1 strictly inside the surface, 0 on its rim, -1 outside.
+def sides_of(boundary: Boundary, places: NDArray[np.float64]) -> NDArray[np.int8]:
+    """Tell where (k, 2) places lie: +1 strictly inside the surface, 0 on its boundary, -1 outside.
 
-    The rim must be without faults.
+    The boundary must be without faults.
     """
-    sweep, starting = _Sweep(), _edges_from(rim)
-    corners = np.unique(rim.points[np.unique(rim.start), :2], axis=0)
+    sweep, starting = _Sweep(), _edges_from(boundary)
+    corners = np.unique(boundary.points[np.unique(boundary.start), :2], axis=0)
     xy = np.concatenate([places[:, :2], corners])
     sides = np.zeros(len(places), np.int8)
     for number in np.lexsort((xy[:, 1], xy[:, 0])).tolist():
@@ -114,9 +114,9 @@ def sides_of(rim: Rim, places: NDArray[np.float64]) -> NDArray[np.int8]:
     return sides
 
 
-def _edges_from(rim: Rim) -> dict[Place, list[_Edge]]:
-    """Return the edges that start, seen from the west, at every place of the rim."""
-    a, b = rim.points[rim.start, :2].tolist(), rim.points[rim.end, :2].tolist()
+def _edges_from(boundary: Boundary) -> dict[Place, list[_Edge]]:
+    """Return the edges that start, seen from the west, at every place of the boundary."""
+    a, b = boundary.points[boundary.start, :2].tolist(), boundary.points[boundary.end, :2].tolist()
     edges: defaultdict[Place, list[_Edge]] = defaultdict(list)
     for (ax, ay), (bx, by) in zip(a, b, strict=True):
         if (ax, ay) < (bx, by):
@@ -135,14 +135,14 @@ class _Sweep:
         self._met: list[_Edge] = []
 
     def side_of(self, place: Place) -> int:
-        """Tell where a place lies that is no vertex of the rim: as :func:`sides_of`."""
+        """Tell where a place lies that is no vertex of the boundary: as :func:`sides_of`."""
         low, high = self._through(place)
         return 0 if high > low else 1 if low % 2 else -1
 
     def pass_place(self, place: Place, starting: list[_Edge]) -> bool | None:
         """Exchange the edges that end at a place for those that start; None if all is well.
 
-        Otherwise whether it is a meeting, as in :class:`RimFault`.
+        Otherwise whether it is a meeting, as in :class:`BoundaryFault`.
         """
         low, high = self._through(place)
         if any(edge[2:4] != place for edge in self._met[low:high]):

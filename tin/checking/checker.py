@@ -2,21 +2,21 @@
 
 Why levels 1 to 3 together are a proof. Take a place on no edge and count the triangles over it. If
 all triangles are counter-clockwise (level 2) and every inner edge has two of them, which walk it in
-opposite directions (level 1), then the count is the number of times that the rim winds about the
-place: inner edges cancel out. Level 2 shows that this is 1 inside the rim and 0 outside, in one of
-two ways:
+opposite directions (level 1), then the count is the number of times that the boundary winds about
+the place: inner edges cancel out. Level 2 shows that this is 1 inside the boundary and 0 outside,
+in one of two ways:
 
-- The rim is one convex ring that turns round once.
-- Else a sweep shows that edges of the rim meet in vertices only, and that a line from below to
-  above goes in and out of the surface in turn (:mod:`.check_rim`). As the number is 0 below
+- The boundary is one convex ring that turns round once.
+- Else a sweep shows that edges of the boundary meet in vertices only, and that a line from below to
+  above goes in and out of the surface in turn (:mod:`.boundary_sweep`). As the number is 0 below
   everything, it is then 0 and 1 in turn.
 
-So the triangles tile what the rim encloses, with no gap or overlap. That areas add up follows;
+So the triangles tile what the boundary encloses, with no gap or overlap. That areas add up follows;
 their comparison is a test of the check itself, and no part of the proof.
 
 A triangulation of a convex region whose every edge passes the in-circle test (level 3) is Delaunay.
-If edges are constrained, those of a rim that is not convex included, and every other edge passes,
-it is the constrained Delaunay triangulation of the surface [1]_.
+If edges are constrained, those of a boundary that is not convex included, and every other edge
+passes, it is the constrained Delaunay triangulation of the surface [1]_.
 
 References
 ----------
@@ -39,7 +39,7 @@ from .connections import check_arrays, check_connections
 from .delaunay import check_delaunay
 from .findings import Findings, Problem
 from .inputs import check_given_lines, check_rows
-from .shape import check_shape, has_sound_rim
+from .shape import check_shape, has_sound_boundary
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -235,7 +235,7 @@ def _check_given(
     """Check lines and rows, as far as the surface is fit to be asked about them."""
     if has_sound_chains(found):
         check_segments(tin, found)
-        if lines.kinds and has_sound_rim(found):
+        if lines.kinds and has_sound_boundary(found):
             check_given_lines(tin, lines, found)
     if rows is not None:
         check_rows(tin, rows, found)

@@ -205,14 +205,16 @@ def _seen_from_across(
 def _count_edges(tin: TIN, found: Findings) -> None:
     """Count edges; two pairs of triangles at one edge show as an edge that comes twice."""
     first = np.arange(len(tin.triangles))[:, None]
-    is_rim = tin.neighbors == topology.NO_NEIGHBOR
-    edges = topology.edges_at(tin.triangles, is_rim | (tin.neighbors > first))
+    is_boundary = tin.neighbors == topology.NO_NEIGHBOR
+    edges = topology.edges_at(tin.triangles, is_boundary | (tin.neighbors > first))
     keys = topology.edge_keys(edges, len(tin.points))
     keys.sort()
     found.counts["edges"] = len(keys)
-    found.counts["boundary_edges"] = int(np.count_nonzero(is_rim))
-    inner = np.count_nonzero(tin.constrained & ~is_rim)
-    found.counts["constrained_edges"] = int(inner // 2 + np.count_nonzero(tin.constrained & is_rim))
+    found.counts["boundary_edges"] = int(np.count_nonzero(is_boundary))
+    inner = np.count_nonzero(tin.constrained & ~is_boundary)
+    found.counts["constrained_edges"] = int(
+        inner // 2 + np.count_nonzero(tin.constrained & is_boundary)
+    )
     found.report(
         "edge",
         np.unique(keys[1:][keys[1:] == keys[:-1]] // len(tin.points)),

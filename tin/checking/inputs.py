@@ -10,7 +10,7 @@ vertices between two vertices of the line. Allowed are m + 1 units.
 
 Of a part of a line that is left out, outside the surface or in water, the number of cuts is not
 known: 16 more are allowed for, where that matters. It must lie outside the surface or in water, by
-its vertices and the middles between them, and the chain must end at the rim or at water.
+its vertices and the middles between them, and the chain must end at the boundary or at water.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ import numpy as np
 from ..report import LEFT_OUT
 from .boundary_sweep import sides_of
 from .chain_matching import UNSEEN_CUTS, Walk, distance, walk_along
-from .shape import has_sound_rim, rim_of
+from .shape import boundary_of, has_sound_boundary
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -60,7 +60,7 @@ def check_rows(tin: TIN, rows: NDArray[np.float64], found: Findings) -> None:
         "{count} [row is not where its|rows are not where their] vertex is, "
         f"within snap {tin.report.snap:g} (first: [row|rows] {{first}}).",
     )
-    if not has_sound_rim(found):
+    if not has_sound_boundary(found):
         return
     codes = [LEFT_OUT.index(reason) for reason in _OUTSIDE]
     outside = tin.report.left_out_rows[np.isin(tin.report.left_out_why, codes)]
@@ -79,7 +79,7 @@ def check_given_lines(tin: TIN, given: LineSet, found: Findings) -> None:
     Parameters
     ----------
     tin : TIN
-        Chains and rim sound.
+        Chains and boundary sound.
     given : LineSet
         Lines as the caller gave them, draped ones without elevations. Chains of further lines are
         not looked at.
@@ -143,11 +143,11 @@ def _check_gaps(tin: TIN, given: LineSet, walk: Walk, slack: float, found: Findi
 
 
 def _check_ends(tin: TIN, given: LineSet, walk: Walk, slack: float, found: Findings) -> None:
-    """Check that chains end with their line, at the rim or at water."""
+    """Check that chains end with their line, at the boundary or at water."""
     vertices = np.array(walk.end_vertices, np.int64)
     is_wet = np.repeat([kind == "water" for kind in tin.lines.kinds], np.diff(tin.lines.offsets))
     shore = tin.lines.vertices[is_wet.astype(np.bool_)]
-    loose = np.flatnonzero(~np.isin(vertices, np.append(rim_of(tin).start, shore)))
+    loose = np.flatnonzero(~np.isin(vertices, np.append(boundary_of(tin).start, shore)))
     places = tin.points[vertices[loose], :2]
     is_wrong = _is_inside(tin, places, slack)
     is_wrong[is_wrong] = ~_is_in_water(places[is_wrong], given, slack)
@@ -160,14 +160,14 @@ def _check_ends(tin: TIN, given: LineSet, walk: Walk, slack: float, found: Findi
 
 
 def _is_inside(tin: TIN, places: NDArray[np.float64], slack: float) -> NDArray[np.bool_]:
-    """Tell which places lie inside the surface, further than ``slack`` from its rim."""
+    """Tell which places lie inside the surface, further than ``slack`` from its boundary."""
     low, high = tin.points[:, :2].min(axis=0), tin.points[:, :2].max(axis=0)
     candidates = np.flatnonzero(((places > low) & (places < high)).all(axis=1))
     is_inside = np.zeros(len(places), np.bool_)
     if len(candidates):
-        rim = rim_of(tin)
-        a, b = rim.points[rim.start, :2], rim.points[rim.end, :2]
-        for number in candidates[sides_of(rim, places[candidates]) > 0]:
+        boundary = boundary_of(tin)
+        a, b = boundary.points[boundary.start, :2], boundary.points[boundary.end, :2]
+        for number in candidates[sides_of(boundary, places[candidates]) > 0]:
             is_inside[number] = distance(places[number], a, b).min() > slack
     return is_inside
 

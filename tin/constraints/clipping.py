@@ -19,7 +19,7 @@ __all__ = [
     "BOUNDARY",
     "EXTENT",
     "HOLES",
-    "RIM",
+    "OWN_BOUNDARY",
     "RingSegments",
     "Surface",
     "clipped",
@@ -45,8 +45,8 @@ def in_rings(xy: NDArray[np.float64], rings: Sequence[NDArray[np.float64]]) -> N
     return _kernel.places_in_rings(np.ascontiguousarray(xy), corners, offsets)
 
 
-RIM = -1
-"""Group of the segments of a rim: the surface is on their left, and nothing on their right."""
+OWN_BOUNDARY = -1
+"""Group of the segments of a boundary that is there: the surface is on their left only."""
 
 BOUNDARY = 0
 """Group of the segments of all boundary rings together."""
@@ -88,7 +88,7 @@ def is_inside(
     half = _half_edges(surface, segments)
     region, largest = _regions(surface, half)
     is_out = np.zeros(len(largest), np.bool_)
-    is_out[region[half.triangle[half.is_behind_rim]]] = True
+    is_out[region[half.triangle[half.is_behind_own_boundary]]] = True
     toggles = _toggles(segments, len(surface.points))
     place = _center(surface, largest)
     side = _Sides(boundary, extent, holes)
@@ -105,7 +105,7 @@ class _HalfEdges(NamedTuple):
     triangle: NDArray[np.int64]
     corner: NDArray[np.int64]
     key: NDArray[np.int64]
-    is_behind_rim: NDArray[np.bool_]
+    is_behind_own_boundary: NDArray[np.bool_]
 
 
 def _half_edges(surface: Surface, segments: RingSegments) -> _HalfEdges:
@@ -115,8 +115,8 @@ def _half_edges(surface: Surface, segments: RingSegments) -> _HalfEdges:
     key = edge_keys(np.stack([start, end], axis=1), n)
     is_ring = np.isin(key, edge_keys(segments.pairs, n))
     triangle, corner, key = triangle[is_ring], corner[is_ring], key[is_ring]
-    rim = segments.pairs[segments.groups == RIM].astype(np.int64)
-    backwards = rim[:, 1] * n + rim[:, 0]
+    boundary = segments.pairs[segments.groups == OWN_BOUNDARY].astype(np.int64)
+    backwards = boundary[:, 1] * n + boundary[:, 0]
     is_behind = np.isin(start[is_ring] * n + end[is_ring], backwards)
     return _HalfEdges(triangle, corner, key, is_behind)
 
@@ -133,7 +133,7 @@ def _toggles(segments: RingSegments, n_vertices: int) -> dict[int, int]:
     toggles: dict[int, int] = {}
     keys = edge_keys(segments.pairs, n_vertices).tolist()
     for key, group in zip(keys, segments.groups.tolist(), strict=True):
-        toggles[key] = toggles.get(key, 0) ^ (0 if group == RIM else 1 << group)
+        toggles[key] = toggles.get(key, 0) ^ (0 if group == OWN_BOUNDARY else 1 << group)
     return toggles
 
 
@@ -238,7 +238,7 @@ def trimmed(
 ) -> NDArray[np.bool_]:
     """Drop triangles at edges longer than ``max_edge`` that are no lines.
 
-    From the perimeter only the triangles go that lie at a long outer edge, as long as there are
+    From the boundary only the triangles go that lie at a long outer edge, as long as there are
     any; everywhere all that have a long edge.
     """
     a, b, c = (surface.points[surface.triangles[:, k], :2] for k in range(3))
@@ -263,7 +263,7 @@ def trimmed(
 def clipped(surface: Surface, keep: NDArray[np.bool_]) -> tuple[Surface, NDArray[np.int32]]:
     """Return the kept triangles with the vertices that they use, and the new number of each vertex.
 
-    Vertices without a triangle have number -1. The new rim is constrained.
+    Vertices without a triangle have number -1. The new boundary is constrained.
     """
     number = np.cumsum(keep, dtype=np.int32) - np.int32(1)
     beside = surface.neighbors[keep]

@@ -26,14 +26,14 @@ class Draped(NamedTuple):
     ----------
     lines : LineSet
         The given lines, cut where they leave the surface; kind, source and name are kept.
-    rim : LineSet
-        The parts of the surface's rim that got vertices where lines leave it.
+    boundary : LineSet
+        The parts of the surface's boundary that got vertices where lines leave it.
     n_cut : int
         Lines of which a part lies outside the surface.
     """
 
     lines: LineSet
-    rim: LineSet
+    boundary: LineSet
     n_cut: int
 
 
@@ -49,7 +49,7 @@ def drape(surface: Surface, lines: LineSet, *, threads: int) -> Draped:
         xy, polylines = _vertices_once(lines)
         whole = _with_elevations(surface, xy, np.full(len(xy), np.nan), polylines, lines)
         return Draped(whole, _no_lines(lines), 0)
-    return _cut_at_rim(surface, hull, lines, threads=threads)
+    return _cut_at_boundary(surface, hull, lines, threads=threads)
 
 
 def _no_lines(lines: LineSet) -> LineSet:
@@ -62,50 +62,50 @@ def _vertices_once(lines: LineSet) -> tuple[NDArray[np.float64], Polylines]:
     return xy, Polylines.whole(vertex_of.reshape(-1).astype(np.int32), lines.offsets)
 
 
-def _cut_at_rim(
+def _cut_at_boundary(
     surface: Surface, hull: NDArray[np.int32], lines: LineSet, *, threads: int
 ) -> Draped:
-    rim = surface.points[np.append(hull, hull[0])]
-    both = np.concatenate([lines.xy, rim[:, :2]])
+    boundary = surface.points[np.append(hull, hull[0])]
+    both = np.concatenate([lines.xy, boundary[:, :2]])
     xy, inverse = np.unique(both, axis=0, return_inverse=True)
     vertex_of: NDArray[np.int32] = inverse.reshape(-1).astype(np.int32)
     noded = node(
         xy,
         Polylines.whole(vertex_of, np.append(lines.offsets, len(both))),
-        np.concatenate([lines.elevations, rim[:, 2]]),
+        np.concatenate([lines.elevations, boundary[:, 2]]),
         np.append(lines.priorities, 0.0),
         threads=threads,
     )
     vertices, offsets = noded.polylines.vertices, noded.polylines.offsets
-    rim_chain = vertices[offsets[-2] :]
-    rim_elevations = noded.elevations[offsets[-2] :]
+    boundary_chain = vertices[offsets[-2] :]
+    boundary_elevations = noded.elevations[offsets[-2] :]
     places = np.concatenate([xy, noded.new_points[:, :2]])
-    side = in_rings(places, [rim[:-1, :2]])
-    side[rim_chain] = 0
+    side = in_rings(places, [boundary[:-1, :2]])
+    side[boundary_chain] = 0
     cut = Polylines.whole(vertices[: offsets[-2]], offsets[:-1])
     is_inside = np.asarray((side[cut.segments()] >= 0).all(axis=1), np.bool_)
     elevations = np.full(len(places), np.nan)
-    elevations[rim_chain] = rim_elevations
+    elevations[boundary_chain] = boundary_elevations
     return Draped(
         _with_elevations(surface, places, elevations, cut.keep(is_inside), lines),
-        _split_rim(places, rim_chain, rim_elevations, vertex_of[len(lines.xy) :]),
+        _split_boundary(places, boundary_chain, boundary_elevations, vertex_of[len(lines.xy) :]),
         len(np.unique(cut.segment_lines()[~is_inside])),
     )
 
 
-def _split_rim(
+def _split_boundary(
     places: NDArray[np.float64],
     chain: NDArray[np.int32],
     elevations: NDArray[np.float64],
     own: NDArray[np.int32],
 ) -> LineSet:
-    """Return the edges of the rim that have vertices between their ends, as lines.
+    """Return the edges of the boundary that have vertices between their ends, as lines.
 
-    Edges that such a vertex hides belong to them: where rounding put it beyond the rim, a sliver
-    that is no surface lies between it and the next edges in line::
+    Edges that such a vertex hides belong to them: where rounding put it beyond the boundary, a
+    sliver that is no surface lies between it and the next edges in line::
 
-        rim  --------- v ----.         v is above the rim by a rounding; the edge from a to b tells
-             ______.--' `--. a ___ b   the sliver v, a, b apart from the surface below
+        --------- v ----.         v is above the boundary by a rounding; the edge from a to b
+        ______.--' `--. a ___ b   tells the sliver v, a, b apart from the surface below
     """
     corner = np.flatnonzero(np.isin(chain, own))
     is_split = np.diff(corner) > 1
@@ -122,7 +122,7 @@ def _split_rim(
 def _hidden_edges(
     xy: NDArray[np.float64], corner: NDArray[np.int64], is_split: NDArray[np.bool_]
 ) -> NDArray[np.bool_]:
-    """Tell which edges of a closed rim, from corner to corner, a vertex on another one hides."""
+    """Tell which edges of a closed boundary, corner to corner, a vertex on another one hides."""
     is_hidden = np.zeros(len(is_split), np.bool_)
     n = len(is_split)
     for edge in np.flatnonzero(is_split).tolist():

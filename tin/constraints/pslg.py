@@ -15,7 +15,7 @@ from ...errors import LinesError
 from .. import _kernel
 from ..topology import edge_keys, edges_at
 from .breaklines import Lines
-from .clipping import BOUNDARY, RIM, RingSegments, Surface, clipped, is_inside, trimmed
+from .clipping import BOUNDARY, OWN_BOUNDARY, RingSegments, Surface, clipped, is_inside, trimmed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -36,8 +36,8 @@ class Clip:
         Rings.
     holes : list of lists of (k, 2) float64 arrays
         The rings of each, the outer one and its islands.
-    has_rim : bool
-        Whether there are lines of the rim, beyond which there is no surface.
+    has_own_boundary : bool
+        Whether there are lines of a boundary that is there, beyond which is no surface.
     max_edge : float
         Infinity for none.
     is_trimmed_everywhere : bool
@@ -46,7 +46,7 @@ class Clip:
     boundary: list[NDArray[np.float64]] = field(default_factory=list)
     extent: list[NDArray[np.float64]] = field(default_factory=list)
     holes: list[list[NDArray[np.float64]]] = field(default_factory=list)
-    has_rim: bool = False
+    has_own_boundary: bool = False
     max_edge: float = np.inf
     is_trimmed_everywhere: bool = False
 
@@ -57,7 +57,7 @@ class Clip:
 
     @property
     def _has_rings(self) -> bool:
-        return bool(self.boundary or self.extent or self.holes or self.has_rim)
+        return bool(self.boundary or self.extent or self.holes or self.has_own_boundary)
 
     def keeps(self, surface: Surface, ring_segments: RingSegments) -> NDArray[np.bool_]:
         """Tell which triangles are kept.
@@ -93,7 +93,7 @@ class Pslg:
         Distinct places.
     polylines : Polylines
     constraints : ConstraintTable
-        What their lines are; source -1 is an edge of the rim that was cut.
+        What their lines are; source -1 is an edge of the boundary that was cut.
     groups : (l,) int64 array
         Of each line whose side it changes, if it is a ring, as in :mod:`.clipping`.
     clip : Clip
@@ -113,7 +113,7 @@ class Pslg:
         if self.clip.is_none:
             return hull, np.arange(len(hull.points), dtype=np.int32)
         group = self._ring_groups()[self.polylines.segment_lines()]
-        is_ring = group >= (RIM if self.clip.has_rim else BOUNDARY)
+        is_ring = group >= (OWN_BOUNDARY if self.clip.has_own_boundary else BOUNDARY)
         rings = RingSegments(self.polylines.segments()[is_ring], group[is_ring])
         keep = self.clip.keeps(hull, rings)
         if keep.all():
@@ -121,22 +121,22 @@ class Pslg:
         return clipped(hull, keep)
 
     def _ring_groups(self) -> NDArray[np.int64]:
-        """Return the group of each line, that of the rim too; below all if it is no ring."""
+        """Return the group of each line, that of the boundary too; below all if it is no ring."""
         table = self.constraints
-        groups = np.where(table.sources < 0, RIM, self.groups)
-        return np.where(table.is_kind("boundary", "hole"), groups, RIM - 1)
+        groups = np.where(table.sources < 0, OWN_BOUNDARY, self.groups)
+        return np.where(table.is_kind("boundary", "hole"), groups, OWN_BOUNDARY - 1)
 
-    def loses_vertices_at_rim(self, hull: Surface) -> bool:
-        """Tell whether vertices lie beyond the rim, which is so only if a rounding bent it.
+    def loses_vertices_at_own_boundary(self, hull: Surface) -> bool:
+        """Tell whether vertices lie beyond a boundary that is there: only if a rounding bent it.
 
-        Rings that end at the rim need it none the less, to have an inside.
+        Rings that end at the boundary need it none the less, to have an inside.
         """
-        if not self.clip.has_rim:
+        if not self.clip.has_own_boundary:
             return False
-        without = replace(self, clip=replace(self.clip, has_rim=False))
+        without = replace(self, clip=replace(self.clip, has_own_boundary=False))
         try:
             (_, within), (_, everywhere) = self.surface(hull), without.surface(hull)
-        except LinesError:  # nothing is left: the same without the rim, or it was its fault
+        except LinesError:  # nothing is left: the same without the boundary, or it was its fault
             return True
         return bool(((within < 0) & (everywhere >= 0)).any())
 

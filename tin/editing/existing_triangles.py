@@ -1,7 +1,7 @@
 """Existing triangles as the build of inputs, so that they can be edited.
 
 The vertices are the rows. Lines, and flagged edges of no line as soft breaklines, are kept; where
-the rim is not convex, or a boundary, there is no surface beyond it.
+the boundary is not convex, or given by lines, there is no surface beyond it.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...errors import PointsError, TinsmithError
-from .. import _kernel, topology
+from .. import topology
 from ..building.assembly import assemble
 from ..building.constrained import LineOptions
 from ..building.inputs import BuildInputs
@@ -49,19 +49,19 @@ def inputs_of_triangles(version: Version) -> BuildInputs:
     ordered += [("soft", "", edge) for edge in _edges_of_no_line(version)]
     n_breaklines = len(ordered)
     ordered += [chain for chain, first in zip(chains, is_breakline, strict=True) if not first]
-    has_rim = not _is_whole(surface) or "boundary" in lines.kinds
-    rim = [np.append(ring, ring[:1]) for ring in surface.rings] if has_rim else []
+    has_own_boundary = not surface.fills_hull or "boundary" in lines.kinds
+    boundary = [np.append(ring, ring[:1]) for ring in surface.rings] if has_own_boundary else []
     sources = np.concatenate(
-        [np.arange(n_breaklines), np.zeros(len(ordered) - n_breaklines), np.full(len(rim), -1)]
+        [np.arange(n_breaklines), np.zeros(len(ordered) - n_breaklines), np.full(len(boundary), -1)]
     )
     return BuildInputs(
         points=as_points(surface.points),
         is_masked=None,
         lines=_line_set(
             surface.points,
-            [chain for _, _, chain in ordered] + rim,
-            [kind for kind, _, _ in ordered] + ["boundary"] * len(rim),
-            [name for _, name, _ in ordered] + [""] * len(rim),
+            [chain for _, _, chain in ordered] + boundary,
+            [kind for kind, _, _ in ordered] + ["boundary"] * len(boundary),
+            [name for _, name, _ in ordered] + [""] * len(boundary),
             sources.astype(np.int32),
         ),
         boundary=[],
@@ -73,7 +73,7 @@ def inputs_of_triangles(version: Version) -> BuildInputs:
         conforming=False,
         options=LineOptions(threads=thread_count(None, len(surface.points))),
         crs=None,
-        has_rim=has_rim,
+        has_own_boundary=has_own_boundary,
     )
 
 
@@ -100,7 +100,7 @@ def _line_set(
 
 
 def _edges_of_no_line(version: Version) -> list[NDArray[np.int32]]:
-    """Return the flagged edges that no line takes; those of the rim count if there are no lines."""
+    """Return the flagged edges of no line; those of the boundary count if there are no lines."""
     surface, lines = version.triangulation, version.lines
     flagged = surface.constrained
     if len(lines):
@@ -109,15 +109,6 @@ def _edges_of_no_line(version: Version) -> list[NDArray[np.int32]]:
     n = len(surface.points)
     is_segment = np.isin(topology.edge_keys(edges, n), topology.edge_keys(lines.segments(), n))
     return list(edges[~is_segment])
-
-
-def _is_whole(surface: Triangulation) -> bool:
-    """Tell whether the surface fills its convex hull."""
-    if len(surface.rings) != 1:
-        return False
-    ring = surface.points[surface.rings[0], :2]
-    a, b, c = (np.ascontiguousarray(np.roll(ring, -k, axis=0)) for k in range(3))
-    return bool((_kernel.orientation(a, b, c) >= 0).all())
 
 
 def state_of_triangles(version: Version, inputs: NumberedInputs) -> State:

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 __all__ = ["LARGEST_MIN_ANGLE", "refine"]
 
 _MOST_ATTEMPTS = 5
-"""The last one but one splits no edge of the rim where splitting some was not to be had."""
+"""The last one but one splits no edge of the boundary where splitting some was not to be had."""
 
 LARGEST_MIN_ANGLE = 33.0
 """Degrees; beyond about 34 refinement as good as never ends [1]_ in :func:`refine`."""
@@ -54,11 +54,11 @@ def refine(
     """Add points to a TIN until its triangles are good enough for finite elements.
 
     Delaunay refinement [1]_ [2]_ with off-centres [3]_: where a triangle has too small an angle, is
-    too large or has too long an edge, a point is put that mends it; edges of the rim and of lines
-    are split where they are in the way. All vertices stay, and so do rim and lines but for
-    rounding. New points lie on the surface of the TIN: on rim and lines at the elevation there,
-    inside at the interpolated one. The result is a function of the TIN's surface, whatever its
-    numbering.
+    too large or has too long an edge, a point is put that mends it; edges of the boundary and of
+    lines are split where they are in the way. All vertices stay, and so do boundary and lines but
+    for rounding. New points lie on the surface of the TIN: on boundary and lines at the elevation
+    there, inside at the interpolated one. The result is a function of the TIN's surface, whatever
+    its numbering.
 
     Parameters
     ----------
@@ -67,8 +67,8 @@ def refine(
     min_angle : float
         Least angle of a triangle, degrees in the plane, from 0 (any) to 33. It is reached for sure
         up to 20.7 degrees if no lines meet under less than 60; beyond, nearly always up to 30.
-        Where lines or the rim meet under a small angle, triangles between them stay below it: the
-        one at the meeting, and those across, whose shortest edge joins the two.
+        Where lines or the boundary meet under a small angle, triangles between them stay below it:
+        the one at the meeting, and those across, whose shortest edge joins the two.
     max_area : float, optional
         Largest area of a triangle in the plane, CRS units squared.
     max_edge : float, optional
@@ -81,9 +81,9 @@ def refine(
     Returns
     -------
     TIN
-        Vertices of ``tin`` first, as they were; then those on rim and lines and those inside.
-        ``lines`` are those of ``tin`` with more vertices, and the rim as ``boundary`` if there was
-        none. ``report.unmended`` lists the triangles that miss what was asked for, and why;
+        Vertices of ``tin`` first, as they were; then those on boundary and lines and those inside.
+        ``lines`` are those of ``tin`` with more vertices, and the boundary as ``boundary`` if there
+        was none. ``report.unmended`` lists the triangles that miss what was asked for, and why;
         ``report.notes`` tells how many points came, and counts those triangles.
 
     Raises
@@ -135,8 +135,8 @@ def refine(
         in_the_way = refined if attempt < _MOST_ATTEMPTS - 2 else None
         kept_whole = _more_kept_whole(tin, kept_whole, in_the_way)
     raise PointsError(
-        "The TIN cannot be refined: parts of its rim or of its lines lie nearer to each other than "
-        "coordinates are rounded, or overlap."
+        "The TIN cannot be refined: parts of its boundary or of its lines lie nearer to each other "
+        "than coordinates are rounded, or overlap."
     )
 
 
@@ -161,7 +161,7 @@ def _require_limits(
 
 
 def _require_room(tin: TIN, max_area: float | None, max_vertices: int) -> None:
-    """Refuse at once what cannot be: a vertex has two triangles, but for those on the rim."""
+    """Refuse at once what cannot be: a vertex has two triangles, but for those on the boundary."""
     least = 0.0 if max_area is None else tin.area / max_area / 2.0
     if max(least, len(tin.points)) > max_vertices:
         raise PointsError(_too_many(max_vertices))
@@ -251,22 +251,22 @@ def _shares(points: NDArray[np.float64], splits: _Splits) -> NDArray[np.float64]
 
 
 def _on_surface(tin: TIN, xy: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return elevations; beside the rim by a rounding that of the nearest edge there."""
+    """Return elevations; beside the boundary by a rounding that of the nearest edge there."""
     z = tin.interpolate(xy)
     for row in np.flatnonzero(np.isnan(z)).tolist():
-        z[row] = _on_rim(tin, xy[row])
+        z[row] = _on_boundary(tin, xy[row])
     return z
 
 
-def _on_rim(tin: TIN, place: NDArray[np.float64]) -> float:
-    start, end = (tin.points[ends] for ends in _rim_ends(tin))
+def _on_boundary(tin: TIN, place: NDArray[np.float64]) -> float:
+    start, end = (tin.points[ends] for ends in _boundary_ends(tin))
     whole = end[:, :2] - start[:, :2]
     share = ((place - start[:, :2]) * whole).sum(axis=1) / (whole * whole).sum(axis=1)
     foot = start + np.clip(share, 0.0, 1.0)[:, None] * (end - start)
     return float(foot[np.hypot(*(foot[:, :2] - place).T).argmin(), 2])
 
 
-def _rim_ends(tin: TIN) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _boundary_ends(tin: TIN) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     triangle, corner = np.nonzero(tin.neighbors == topology.NO_NEIGHBOR)
     return topology.ends(tin.triangles, triangle, corner)
 
@@ -316,11 +316,11 @@ def _find_points(tin: TIN, goal: _Goal, kept_whole: NDArray[np.int32]) -> _Found
 
 
 def _build(tin: TIN, found: _Found, threads: int) -> TIN | set[tuple[int, int]]:
-    """Build the TIN of all points, with the rim and the lines as they were split.
+    """Build the TIN of all points, with the boundary and the lines as they were split.
 
-    The core sees the surface only. Vertices on the rim are rounded, and beyond it, across a gap as
-    narrow as that, there can be another part of the rim: then it returns the segments of ``tin``
-    that are in the way of each other when they are split.
+    The core sees the surface only. Vertices on the boundary are rounded, and beyond it, across a
+    gap as narrow as that, there can be another part of the boundary: then it returns the segments
+    of ``tin`` that are in the way of each other when they are split.
     """
     points = np.concatenate([tin.points, _lifted(tin, found.xy, found.splits)])
     pslg = _gather_pslg(tin, points, found.splits)
@@ -352,11 +352,11 @@ def _force(mesh: _kernel.Mesh, pslg: Pslg, splits: _Splits) -> set[tuple[int, in
 def _more_kept_whole(
     tin: TIN, kept_whole: NDArray[np.int32], in_the_way: set[tuple[int, int]] | None
 ) -> NDArray[np.int32]:
-    """Add the segments in the way; or the whole rim, if none are known that are not kept yet."""
+    """Add the segments in the way; or the whole boundary, if no further ones are known."""
     news = (in_the_way or set()) - set(map(tuple, kept_whole.tolist()))
     if news:
         return np.concatenate([kept_whole, np.array(sorted(news), np.int32)])
-    return np.sort(np.stack(_rim_ends(tin), axis=1), axis=1).astype(np.int32)
+    return np.sort(np.stack(_boundary_ends(tin), axis=1), axis=1).astype(np.int32)
 
 
 def _refined(
@@ -390,7 +390,7 @@ def _report(tin: TIN, surface: Surface, found: _Found) -> Report:
 def _note(n_new: int, n_on_segments: int) -> str:
     return (
         f"Refinement added {counted(n_new, 'point')}, "
-        f"{n_on_segments:,} of them on the rim and on lines."
+        f"{n_on_segments:,} of them on the boundary and on lines."
     )
 
 
@@ -407,13 +407,13 @@ def _gather_pslg(tin: TIN, points: NDArray[np.float64], splits: _Splits) -> Pslg
         polylines=Polylines.of_chains([splits.along(chain) for chain in chains]),
         constraints=_constraints(tin, len(nameless), len(rings)),
         groups=np.full(len(chains), BOUNDARY),
-        clip=Clip(has_rim=True),
+        clip=Clip(has_own_boundary=True),
         vertex_of=tin.vertex_of,
     )
 
 
 def _constraints(tin: TIN, n_nameless: int, n_rings: int) -> ConstraintTable:
-    """Return what the lines are: the TIN's own, edges of no line, and rings twice, as the rim."""
+    """Return what the lines are: the TIN's own, edges of no line, rings twice, as boundary."""
     lines = tin.lines
     n_breaklines = sum(kind in ("hard", "soft") for kind in lines.kinds)
     outer = np.arange(0 if "boundary" in lines.kinds else n_rings)

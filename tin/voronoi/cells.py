@@ -115,16 +115,16 @@ def _half_edges(triangles: NDArray[np.int32], neighbors: NDArray[np.int32]) -> _
     across = neighbors.ravel()
     n_inner = across.size
     start, end = topology.directed_edges(triangles)
-    rim = np.flatnonzero(across == NO_NEIGHBOR)
+    boundary = np.flatnonzero(across == NO_NEIGHBOR)
     met = np.flatnonzero(across != NO_NEIGHBOR)
     corner = np.argmax(neighbors[across[met]] == (met // 3)[:, None], axis=1)
-    twin = np.empty(n_inner + len(rim), np.int64)
+    twin = np.empty(n_inner + len(boundary), np.int64)
     twin[met] = 3 * across[met].astype(np.int64) + corner
-    twin[rim] = n_inner + np.arange(len(rim))
-    twin[n_inner:] = rim
+    twin[boundary] = n_inner + np.arange(len(boundary))
+    twin[n_inner:] = boundary
     return _HalfEdges(
-        start=np.concatenate([start.ravel(), end.ravel()[rim]]),
-        left=np.concatenate([np.arange(n_inner) // 3, np.full(len(rim), _OUTSIDE)]),
+        start=np.concatenate([start.ravel(), end.ravel()[boundary]]),
+        left=np.concatenate([np.arange(n_inner) // 3, np.full(len(boundary), _OUTSIDE)]),
         twin=twin,
     )
 
@@ -139,8 +139,8 @@ def _turning_order(edges: _HalfEdges, n_vertices: int, n_triangles: int) -> NDAr
     inner = number[: 3 * n_triangles]
     first = np.empty(n_vertices, np.int64)
     first[edges.start] = number
-    rim = edges.twin[len(inner) :]
-    first[edges.start[rim]] = rim
+    boundary = edges.twin[len(inner) :]
+    first[edges.start[boundary]] = boundary
     following = number.copy()
     following[inner] = edges.twin[inner + np.where(inner % 3 == 0, 2, -1)]
     following = np.where(following == first[edges.start], number, following)
@@ -186,8 +186,8 @@ def _centres_and_cut_cells(
     _set_exactly(centres, first, is_exact, triangles, plane)
     is_cut = np.zeros(len(xy), np.bool_)
     is_cut[triangles[centres.where == _BEYOND]] = True
-    rim = np.arange(triangles.size, len(edges.start))
-    is_cut[edges.start[rim]] = is_cut[edges.start[edges.twin[rim]]] = True
+    boundary = np.arange(triangles.size, len(edges.start))
+    is_cut[edges.start[boundary]] = is_cut[edges.start[edges.twin[boundary]]] = True
     corners = is_cut[triangles].sum(axis=1)
     is_shared = np.bincount(first, (corners > 0) & (corners < 3), len(triangles)) > 0
     is_shared = is_shared[first] & ~is_exact & (centres.where == _INSIDE)

@@ -661,18 +661,18 @@ def test_edits_after_one_that_failed_are_as_if_it_had_not_been(count, steps):
 
 
 def test_lines_come_and_go_in_existing_triangles_of_a_part_of_the_hull():
-    """Beyond their rim there is no surface, before and after an edit of lines."""
+    """Beyond their boundary there is no surface, before and after an edit of lines."""
     rng = np.random.default_rng(8)
     points = np.c_[rng.random((60, 2)) * 8, rng.random(60)]
     bay = [[0.5, 0.5], [7.5, 0.5], [7.5, 7.5], [4, 2], [0.5, 7.5]]
     made = ts.triangulate(points, boundary=[bay])
     tin = ts.TIN.from_triangles(made.points, made.triangles, constrained=made.constrained)
-    rim = {frozenset(made.points[ring, 0].tolist()) for ring in made.rings}
+    boundary = {frozenset(made.points[ring, 0].tolist()) for ring in made.rings}
     n_given = int(tin.lines.sources.max(initial=-1)) + 1
     tin.add_breakline([[1, 1.2, 5], [6.5, 1.1, 6]], name="kerb")
     ts.check(tin).raise_if_failed()
     assert tin.area == pytest.approx(made.area, rel=1e-12)
-    assert {frozenset(tin.points[ring, 0].tolist()) for ring in tin.rings} == rim
+    assert {frozenset(tin.points[ring, 0].tolist()) for ring in tin.rings} == boundary
     assert "kerb" in tin.lines.names
     number = int(tin.lines.sources[tin.lines.names.index("kerb")])
     assert number >= n_given

@@ -180,7 +180,7 @@ def tin_fields(tin: TIN) -> list[Field]:
     across, _ = units(tin)
     fields = [
         ("TIN", tin_counts(tin)),
-        ("Edges", f"{len(tin.edges):,}, {len(tin.hull):,} of them on the hull"),
+        ("Edges", f"{len(tin.edges):,}, {sum(map(len, tin.boundary)):,} of them on the boundary"),
         *extent_fields(tin),
     ]
     if facts["area"] is not None:
