@@ -164,8 +164,8 @@ def boundary_rings(
     """
     triangle, corner = np.nonzero(neighbors == NO_NEIGHBOR)
     start = triangles[triangle, (corner + 1) % 3]
-    place = np.searchsorted(3 * triangle + corner, _next_on_boundary(triangles, neighbors))
-    following = place.tolist()
+    at = np.searchsorted(3 * triangle + corner, _next_on_boundary(triangles, neighbors))
+    following = at.tolist()
     is_left = [True] * len(following)
     rings: list[NDArray[np.int32]] = []
     for first in range(len(following)):
@@ -239,9 +239,9 @@ def find_triangles(
 ) -> NDArray[np.int32]:
     """Return the triangle on the left of each edge, ``NO_NEIGHBOR`` if there is none."""
     wanted = start * (len(edges.offsets) - 1) + end
-    place = np.minimum(np.searchsorted(edges.keys, wanted), len(edges.keys) - 1)
-    found = edges.keys[place] == wanted
-    return np.where(found, edges.triangles[place], np.int32(NO_NEIGHBOR))
+    at = np.minimum(np.searchsorted(edges.keys, wanted), len(edges.keys) - 1)
+    found = edges.keys[at] == wanted
+    return np.where(found, edges.triangles[at], np.int32(NO_NEIGHBOR))
 
 
 def turn_about(

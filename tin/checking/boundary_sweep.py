@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Boundary", "BoundaryFault", "find_fault", "sides_of"]
 
-Place = tuple[float, float]
+Point = tuple[float, float]
 
 
 class Boundary(NamedTuple):
@@ -87,37 +87,37 @@ def find_fault(boundary: Boundary) -> BoundaryFault | None:
     x, y = boundary.points[:, 0], boundary.points[:, 1]
     vertices = np.unique(boundary.start)
     for vertex in vertices[np.lexsort((y[vertices], x[vertices]))].tolist():
-        place = (float(x[vertex]), float(y[vertex]))
-        if place not in starting:
+        point = (float(x[vertex]), float(y[vertex]))
+        if point not in starting:
             continue  # another vertex stands there
-        is_meeting = sweep.pass_place(place, starting.pop(place))
+        is_meeting = sweep.pass_point(point, starting.pop(point))
         if is_meeting is not None:
             return BoundaryFault(vertex, is_meeting)
     return None
 
 
-def sides_of(boundary: Boundary, places: NDArray[np.float64]) -> NDArray[np.int8]:
+def sides_of(boundary: Boundary, points: NDArray[np.float64]) -> NDArray[np.int8]:
     """Tell where (k, 2) places lie: +1 strictly inside the surface, 0 on its boundary, -1 outside.
 
     The boundary must be without faults.
     """
     sweep, starting = _Sweep(), _edges_from(boundary)
     corners = np.unique(boundary.points[np.unique(boundary.start), :2], axis=0)
-    xy = np.concatenate([places[:, :2], corners])
-    sides = np.zeros(len(places), np.int8)
+    xy = np.concatenate([points[:, :2], corners])
+    sides = np.zeros(len(points), np.int8)
     for number in np.lexsort((xy[:, 1], xy[:, 0])).tolist():
-        place = (float(xy[number, 0]), float(xy[number, 1]))
-        if number < len(places):
-            sides[number] = 0 if place in starting else sweep.side_of(place)
+        point = (float(xy[number, 0]), float(xy[number, 1]))
+        if number < len(points):
+            sides[number] = 0 if point in starting else sweep.side_of(point)
         else:
-            sweep.pass_place(place, starting[place])
+            sweep.pass_point(point, starting[point])
     return sides
 
 
-def _edges_from(boundary: Boundary) -> dict[Place, list[_Edge]]:
+def _edges_from(boundary: Boundary) -> dict[Point, list[_Edge]]:
     """Return the edges that start, seen from the west, at every place of the boundary."""
     a, b = boundary.points[boundary.start, :2].tolist(), boundary.points[boundary.end, :2].tolist()
-    edges: defaultdict[Place, list[_Edge]] = defaultdict(list)
+    edges: defaultdict[Point, list[_Edge]] = defaultdict(list)
     for (ax, ay), (bx, by) in zip(a, b, strict=True):
         if (ax, ay) < (bx, by):
             edges[ax, ay].append(_Edge(ax, ay, bx, by, is_below_surface=True))
@@ -134,18 +134,18 @@ class _Sweep:
     def __init__(self) -> None:
         self._met: list[_Edge] = []
 
-    def side_of(self, place: Place) -> int:
+    def side_of(self, point: Point) -> int:
         """Tell where a place lies that is no vertex of the boundary: as :func:`sides_of`."""
-        low, high = self._through(place)
+        low, high = self._through(point)
         return 0 if high > low else 1 if low % 2 else -1
 
-    def pass_place(self, place: Place, starting: list[_Edge]) -> bool | None:
+    def pass_point(self, point: Point, starting: list[_Edge]) -> bool | None:
         """Exchange the edges that end at a place for those that start; None if all is well.
 
         Otherwise whether it is a meeting, as in :class:`BoundaryFault`.
         """
-        low, high = self._through(place)
-        if any(edge[2:4] != place for edge in self._met[low:high]):
+        low, high = self._through(point)
+        if any(edge[2:4] != point for edge in self._met[low:high]):
             return True
         starting = _from_below(starting)
         self._met[low:high] = starting
@@ -160,9 +160,9 @@ class _Sweep:
             is_even = not is_even
         return None
 
-    def _through(self, place: Place) -> tuple[int, int]:
+    def _through(self, point: Point) -> tuple[int, int]:
         """Return the range of edges that hold the place; those before it lie below."""
-        x, y = place
+        x, y = point
         low = bisect_left(self._met, 0, key=lambda edge: -_side(edge, x, y))
         high = low
         while high < len(self._met) and _side(self._met[high], x, y) == 0:

@@ -21,7 +21,7 @@ __all__ = ["UNSEEN_CUTS", "Walk", "distance", "walk_along"]
 UNSEEN_CUTS = 16
 """Cuts that are allowed for in a part of a line that is left out."""
 
-Place = list[float]
+Point = list[float]
 Between = tuple[int, int, int]
 """Position of a vertex that is none of its line, and the rows of the line's before and after."""
 Passing = Literal["first", "nearest", "last", "beyond"]
@@ -40,7 +40,7 @@ class Walk(NamedTuple):
         before and after.
     gap_rows : list of int
         Rows of the line's vertices behind which a part is left out.
-    gap_places, gap_lines : lists of places and of int
+    gap_points, gap_lines : lists of points and of int
         Vertices left out and middles between them, and their lines.
     end_vertices, end_lines : lists of int
         Where chains begin or end, but not their line.
@@ -50,7 +50,7 @@ class Walk(NamedTuple):
 
     between: NDArray[np.int64]
     gap_rows: list[int]
-    gap_places: list[Place]
+    gap_points: list[Point]
     gap_lines: list[int]
     end_vertices: list[int]
     end_lines: list[int]
@@ -115,15 +115,15 @@ class _Walker:
     def __init__(
         self,
         vertices: list[int],
-        places: list[Place],
+        points: list[Point],
         given: LineSet,
         snap: float,
         unit: float,
     ) -> None:
         self._vertices = vertices
-        self._places = places
+        self._points = points
         self._xy = given.xy
-        self._given: list[Place] = given.xy.tolist()
+        self._given: list[Point] = given.xy.tolist()
         self._offsets: list[int] = given.offsets.tolist()
         self._snap = snap
         self._unit = unit
@@ -148,7 +148,7 @@ class _Walker:
             return
         at, here = 0, None
         for chain, course in zip(chains, courses, strict=True):
-            if here is not None or not self._is_at(self._places[chain[0]], rows[0]):
+            if here is not None or not self._is_at(self._points[chain[0]], rows[0]):
                 self._pass_gap(line, rows[at : course.begin + 1], here, chain[0])
             self._between += course.between
             at, here = course.end, chain[-1]
@@ -190,9 +190,9 @@ class _Walker:
         first = self._given[rows[0]]
         return all(_far(first, self._given[row]) <= 2 * self._snap for row in rows)
 
-    def _is_at(self, place: Place, row: int) -> bool:
+    def _is_at(self, point: Point, row: int) -> bool:
         given = self._given[row]
-        return place == given or (self._snap > 0 and _far(place, given) <= self._snap)
+        return point == given or (self._snap > 0 and _far(point, given) <= self._snap)
 
     def _courses(
         self, rows: list[int], at: int, here: int | None, chain: range
@@ -235,13 +235,13 @@ class _Walker:
         self, rows: list[int], at: int, here: int | None, chain: range
     ) -> NDArray[np.float64]:
         """Return how far from each segment a chain's first step is; inf if it goes back there."""
-        first, second = (np.array([self._places[position]]) for position in chain[:2])
+        first, second = (np.array([self._points[position]]) for position in chain[:2])
         a, b = self._xy[rows[at:-1]], self._xy[rows[at + 1 :]]
         off = np.maximum(distance(first, a, b), distance(second, a, b))
         begin, end = _along(first, a, b), _along(second, a, b)
         off[end < begin - self._unit] = np.inf
         if here is not None and len(begin):  # not behind the end of the chain before; both may move
-            passed = _along(np.array(self._places[here]), a[:1], b[:1]) - 2 * self._unit
+            passed = _along(np.array(self._points[here]), a[:1], b[:1]) - 2 * self._unit
             off[:1][begin[:1] < passed] = np.inf
         return off
 
@@ -250,18 +250,18 @@ class _Walker:
     ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64]]:
         """Return how far vertices are off their line, and back of the one before; its rows."""
         positions, before, after = np.array(between, np.int64).reshape(-1, 3).T
-        places = np.array([self._places[position] for position in positions]).reshape(-1, 2)
+        points = np.array([self._points[position] for position in positions]).reshape(-1, 2)
         a, b = self._xy[before], self._xy[after]
         back = np.zeros(len(before))
-        back[1:] = np.where(np.diff(before) == 0, -np.diff(_along(places, a, b)), 0.0)
-        return distance(places, a, b), back, before
+        back[1:] = np.where(np.diff(before) == 0, -np.diff(_along(points, a, b)), 0.0)
+        return distance(points, a, b), back, before
 
     def _begins_with(self, rows: list[int], chain: range) -> bool:
         """Tell if a chain begins where its line does, and in the same direction."""
-        if not self._is_at(self._places[chain[0]], rows[0]):
+        if not self._is_at(self._points[chain[0]], rows[0]):
             return False
         (ax, ay), (bx, by) = self._given[rows[0]], self._given[rows[1]]
-        x, y = self._places[chain[1]]
+        x, y = self._points[chain[1]]
         across = (bx - ax) * (y - ay) - (by - ay) * (x - ax)
         is_ahead = (bx - ax) * (x - ax) + (by - ay) * (y - ay) > 0
         # m vertices between two of the line's are within m + 1 units (see check_given); the chain
@@ -285,7 +285,7 @@ class _Walker:
         row = before - rows[begin]
         cuts = np.bincount(row, minlength=rows[end] - rows[begin] + 1)
         unseen = np.zeros_like(cuts)
-        if not (is_first and self._is_at(self._places[chain[0]], rows[0])):
+        if not (is_first and self._is_at(self._points[chain[0]], rows[0])):
             unseen[0] = UNSEEN_CUTS
         if end < len(rows) - 1:
             unseen[-1] = UNSEEN_CUTS
@@ -299,11 +299,11 @@ class _Walker:
         self, rows: list[int], at: int, chain: range, *, passing: Passing
     ) -> tuple[int, list[Between]]:
         """Return what a chain passes last of its line's own vertices, and what lies between."""
-        places, last = self._places, len(rows) - 1
-        is_passed = self._is_at(places[chain[0]], rows[at])
+        points, last = self._points, len(rows) - 1
+        is_passed = self._is_at(points[chain[0]], rows[at])
         between = []
         for position in chain:
-            while at < last and self._is_at(places[position], rows[at + 1]):
+            while at < last and self._is_at(points[position], rows[at + 1]):
                 if self._is_later(position, chain[-1], rows[at + 1], passing):
                     break
                 at, is_passed = at + 1, True
@@ -317,14 +317,14 @@ class _Walker:
         """Tell if one of the line's vertices is to be passed behind this one of the chain."""
         if position == end:
             return passing == "beyond"
-        given, after = self._given[row], self._places[position + 1]
+        given, after = self._given[row], self._points[position + 1]
         if passing == "nearest":
-            return _far(after, given) < _far(self._places[position], given)
+            return _far(after, given) < _far(self._points[position], given)
         return passing in ("last", "beyond") and self._is_at(after, row)
 
     def _pass_gap(self, line: int, rows: Sequence[int], here: int | None, then: int | None) -> None:
         """Note the part of a line from one chain to the next, or from or to its ends."""
-        ends = [self._places[position] for position in (here, then) if position is not None]
+        ends = [self._points[position] for position in (here, then) if position is not None]
         left_out = list(rows[here is not None :])
         while left_out and here is not None and self._is_at(ends[0], left_out[0]):
             del left_out[0]
@@ -336,12 +336,12 @@ class _Walker:
             return
         gaps = self._gaps
         gaps.gap_rows.extend(rows)
-        places = [
+        points = [
             *(self._given[row] for row in left_out),
             *([p[0] / 2 + q[0] / 2, p[1] / 2 + q[1] / 2] for p, q in pairwise(nodes)),
         ]
-        gaps.gap_places.extend(places)
-        gaps.gap_lines.extend([line] * len(places))
+        gaps.gap_points.extend(points)
+        gaps.gap_lines.extend([line] * len(points))
         for position in (here, then):
             if position is not None:
                 gaps.end_vertices.append(self._vertices[position])
@@ -351,7 +351,7 @@ class _Walker:
 # -------------------------------------------------------------------- measures
 
 
-def _far(p: Place, q: Place) -> float:
+def _far(p: Point, q: Point) -> float:
     return hypot(p[0] - q[0], p[1] - q[1])
 
 

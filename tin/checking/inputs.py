@@ -131,9 +131,9 @@ def _check_course(
 
 def _check_gaps(tin: TIN, given: LineSet, walk: Walk, slack: float, found: Findings) -> None:
     """Check that what is left out of lines lies outside the surface or in water."""
-    places = np.array(walk.gap_places, np.float64).reshape(-1, 2)
-    is_wrong = _is_inside(tin, places, slack)
-    is_wrong[is_wrong] = ~_is_in_water(places[is_wrong], given, slack)
+    points = np.array(walk.gap_points, np.float64).reshape(-1, 2)
+    is_wrong = _is_inside(tin, points, slack)
+    is_wrong[is_wrong] = ~_is_in_water(points[is_wrong], given, slack)
     found.report(
         "lines",
         np.unique(np.array(walk.gap_lines, np.int64)[is_wrong]),
@@ -148,9 +148,9 @@ def _check_ends(tin: TIN, given: LineSet, walk: Walk, slack: float, found: Findi
     is_wet = np.repeat([kind == "water" for kind in tin.lines.kinds], np.diff(tin.lines.offsets))
     shore = tin.lines.vertices[is_wet.astype(np.bool_)]
     loose = np.flatnonzero(~np.isin(vertices, np.append(boundary_of(tin).start, shore)))
-    places = tin.points[vertices[loose], :2]
-    is_wrong = _is_inside(tin, places, slack)
-    is_wrong[is_wrong] = ~_is_in_water(places[is_wrong], given, slack)
+    points = tin.points[vertices[loose], :2]
+    is_wrong = _is_inside(tin, points, slack)
+    is_wrong[is_wrong] = ~_is_in_water(points[is_wrong], given, slack)
     found.report(
         "lines",
         np.unique(np.array(walk.end_lines, np.int64)[loose[is_wrong]]),
@@ -159,36 +159,36 @@ def _check_ends(tin: TIN, given: LineSet, walk: Walk, slack: float, found: Findi
     )
 
 
-def _is_inside(tin: TIN, places: NDArray[np.float64], slack: float) -> NDArray[np.bool_]:
+def _is_inside(tin: TIN, points: NDArray[np.float64], slack: float) -> NDArray[np.bool_]:
     """Tell which places lie inside the surface, further than ``slack`` from its boundary."""
     low, high = tin.points[:, :2].min(axis=0), tin.points[:, :2].max(axis=0)
-    candidates = np.flatnonzero(((places > low) & (places < high)).all(axis=1))
-    is_inside = np.zeros(len(places), np.bool_)
+    candidates = np.flatnonzero(((points > low) & (points < high)).all(axis=1))
+    is_inside = np.zeros(len(points), np.bool_)
     if len(candidates):
         boundary = boundary_of(tin)
         a, b = boundary.points[boundary.start, :2], boundary.points[boundary.end, :2]
-        for number in candidates[sides_of(boundary, places[candidates]) > 0]:
-            is_inside[number] = distance(places[number], a, b).min() > slack
+        for number in candidates[sides_of(boundary, points[candidates]) > 0]:
+            is_inside[number] = distance(points[number], a, b).min() > slack
     return is_inside
 
 
-def _is_in_water(places: NDArray[np.float64], given: LineSet, slack: float) -> NDArray[np.bool_]:
+def _is_in_water(points: NDArray[np.float64], given: LineSet, slack: float) -> NDArray[np.bool_]:
     """Tell which places lie in water, or within ``slack`` of its shore."""
     shores = [
         given.xy[given.offsets[line] : given.offsets[line + 1]]
         for line, kind in enumerate(given.kinds)
         if kind == "water"
     ]
-    in_water = [any(_is_in_ring(place, shore, slack) for shore in shores) for place in places]
+    in_water = [any(_is_in_ring(point, shore, slack) for shore in shores) for point in points]
     return np.array(in_water, np.bool_)
 
 
-def _is_in_ring(place: NDArray[np.float64], ring: NDArray[np.float64], slack: float) -> bool:
+def _is_in_ring(point: NDArray[np.float64], ring: NDArray[np.float64], slack: float) -> bool:
     """Tell if a place lies in a closed ring, or nearly."""
     a, b = ring[:-1], ring[1:]
-    if distance(place, a, b).min() <= slack:
+    if distance(point, a, b).min() <= slack:
         return True
-    spans = (a[:, 1] <= place[1]) != (b[:, 1] <= place[1])
+    spans = (a[:, 1] <= point[1]) != (b[:, 1] <= point[1])
     a, b = a[spans], b[spans]
-    crossing = a[:, 0] + (place[1] - a[:, 1]) * (b[:, 0] - a[:, 0]) / (b[:, 1] - a[:, 1])
-    return bool(np.count_nonzero(crossing > place[0]) % 2)
+    crossing = a[:, 0] + (point[1] - a[:, 1]) * (b[:, 0] - a[:, 0]) / (b[:, 1] - a[:, 1])
+    return bool(np.count_nonzero(crossing > point[0]) % 2)

@@ -90,9 +90,9 @@ def is_inside(
     is_out = np.zeros(len(largest), np.bool_)
     is_out[region[half.triangle[half.is_behind_own_boundary]]] = True
     toggles = _toggles(segments, len(surface.points))
-    place = _center(surface, largest)
+    point = _center(surface, largest)
     side = _Sides(boundary, extent, holes)
-    bits = _spread(surface, region, half, toggles, is_out, largest, place, side)
+    bits = _spread(surface, region, half, toggles, is_out, largest, point, side)
     keep = ~is_out & np.array([side.is_kept(own) for own in bits])
     _require_all_cut(bits, is_out, side)
     chosen: NDArray[np.bool_] = keep[region]
@@ -150,10 +150,10 @@ class _Sides:
         self._needed = sum(1 << group for group in (BOUNDARY, EXTENT) if self._groups[group])
         self.n_holes = len(holes)
 
-    def at(self, place: NDArray[np.float64]) -> int:
+    def at(self, point: NDArray[np.float64]) -> int:
         bits = 0
         for group, rings in self._groups.items():
-            if len(rings) and in_rings(place[None], rings)[0] > 0:
+            if len(rings) and in_rings(point[None], rings)[0] > 0:
                 bits |= 1 << group
         return bits
 
@@ -171,7 +171,7 @@ def _spread(
     toggles: dict[int, int],
     is_out: NDArray[np.bool_],
     largest: NDArray[np.int32],
-    place: NDArray[np.float64],
+    point: NDArray[np.float64],
     side: _Sides,
 ) -> list[int]:
     """Return the bits of every region, from the largest one across the rings."""
@@ -180,7 +180,7 @@ def _spread(
     for start in _by_size(surface, largest):
         if bits[start] is not None:
             continue
-        bits[start] = side.at(place[start])
+        bits[start] = side.at(point[start])
         pending = [start] if not is_out[start] else []
         while pending:
             here = pending.pop()

@@ -79,22 +79,22 @@ def _cut_at_boundary(
     vertices, offsets = noded.polylines.vertices, noded.polylines.offsets
     boundary_chain = vertices[offsets[-2] :]
     boundary_elevations = noded.elevations[offsets[-2] :]
-    places = np.concatenate([xy, noded.new_points[:, :2]])
-    side = in_rings(places, [boundary[:-1, :2]])
+    points = np.concatenate([xy, noded.new_points[:, :2]])
+    side = in_rings(points, [boundary[:-1, :2]])
     side[boundary_chain] = 0
     cut = Polylines.whole(vertices[: offsets[-2]], offsets[:-1])
     is_inside = np.asarray((side[cut.segments()] >= 0).all(axis=1), np.bool_)
-    elevations = np.full(len(places), np.nan)
+    elevations = np.full(len(points), np.nan)
     elevations[boundary_chain] = boundary_elevations
     return Draped(
-        _with_elevations(surface, places, elevations, cut.keep(is_inside), lines),
-        _split_boundary(places, boundary_chain, boundary_elevations, vertex_of[len(lines.xy) :]),
+        _with_elevations(surface, points, elevations, cut.keep(is_inside), lines),
+        _split_boundary(points, boundary_chain, boundary_elevations, vertex_of[len(lines.xy) :]),
         len(np.unique(cut.segment_lines()[~is_inside])),
     )
 
 
 def _split_boundary(
-    places: NDArray[np.float64],
+    points: NDArray[np.float64],
     chain: NDArray[np.int32],
     elevations: NDArray[np.float64],
     own: NDArray[np.int32],
@@ -109,14 +109,14 @@ def _split_boundary(
     """
     corner = np.flatnonzero(np.isin(chain, own))
     is_split = np.diff(corner) > 1
-    is_split |= _hidden_edges(places[chain], corner, is_split)
+    is_split |= _hidden_edges(points[chain], corner, is_split)
     begins, ends = corner[:-1][is_split], corner[1:][is_split] + 1
     counts = ends - begins
     offsets = offsets_of(counts)
     rows = np.arange(offsets[-1]) + np.repeat(begins - offsets[:-1], counts)
     sources = np.full(len(counts), -1, np.int32)
     table = ConstraintTable.of_kind("boundary", sources, np.full(len(counts), BELOW_ALL))
-    return LineSet(places[chain[rows]], elevations[rows], offsets, table)
+    return LineSet(points[chain[rows]], elevations[rows], offsets, table)
 
 
 def _hidden_edges(
@@ -138,22 +138,22 @@ def _hidden_edges(
 
 def _are_beyond(xy: NDArray[np.float64], edge: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Tell which places lie to the right of an edge from its first end to its second."""
-    start, end = (np.ascontiguousarray(np.broadcast_to(place, xy.shape)) for place in edge)
+    start, end = (np.ascontiguousarray(np.broadcast_to(point, xy.shape)) for point in edge)
     beyond: NDArray[np.bool_] = _kernel.orientation(start, end, np.ascontiguousarray(xy)) < 0
     return beyond
 
 
 def _with_elevations(
     surface: Surface,
-    places: NDArray[np.float64],
+    points: NDArray[np.float64],
     elevations: NDArray[np.float64],
     polylines: Polylines,
     lines: LineSet,
 ) -> LineSet:
     """Give polylines a vertex at every edge of the surface, and every vertex its elevation."""
-    xy, owner = _along_surface(surface, places, polylines)
+    xy, owner = _along_surface(surface, points, polylines)
     z = _kernel.Locator(surface.points, surface.triangles, surface.neighbors).interpolate(xy)
-    known = _elevations_at(xy, places, elevations)
+    known = _elevations_at(xy, points, elevations)
     z = np.where(np.isnan(known), z, known)
     keep = ~np.isnan(z)
     xy, z, owner = xy[keep], z[keep], owner[keep]
@@ -164,13 +164,13 @@ def _with_elevations(
 
 
 def _elevations_at(
-    xy: NDArray[np.float64], places: NDArray[np.float64], elevations: NDArray[np.float64]
+    xy: NDArray[np.float64], points: NDArray[np.float64], elevations: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Look up the elevations of places that have one already; NaN elsewhere."""
     known = np.flatnonzero(~np.isnan(elevations))
     found = np.full(len(xy), np.nan)
     if len(known):
-        both = np.concatenate([places[known], xy])
+        both = np.concatenate([points[known], xy])
         _, number = np.unique(both, axis=0, return_inverse=True)
         number = number.reshape(-1)
         table = np.full(int(number.max()) + 1, np.nan)
@@ -180,7 +180,7 @@ def _elevations_at(
 
 
 def _along_surface(
-    surface: Surface, places: NDArray[np.float64], polylines: Polylines
+    surface: Surface, points: NDArray[np.float64], polylines: Polylines
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Return the places along every polyline, with those where it crosses edges, and its number."""
     mesh = _kernel.Mesh(
@@ -189,21 +189,21 @@ def _along_surface(
         surface.neighbors,
         np.ones(surface.triangles.shape, np.bool_),  # so that every edge is there to be crossed
     )
-    slots = np.full(len(places), -1, np.int32)
+    slots = np.full(len(points), -1, np.int32)
     used = np.unique(polylines.vertices)
-    slots[used] = mesh.insert(np.ascontiguousarray(places[used]))
+    slots[used] = mesh.insert(np.ascontiguousarray(points[used]))
     own = polylines.segments()
     n_own = len(surface.points)
     crossed = mesh.crossed(np.ascontiguousarray(slots[own]), True).reshape(-1, 3)
     xy = np.concatenate([surface.points[:, :2], np.empty((mesh.slots - n_own, 2))])
-    xy[slots[used]] = places[used]
+    xy[slots[used]] = points[used]
     pairs = np.stack([crossed[:, 0], len(own) + np.arange(len(crossed))], axis=1)
     segments = np.concatenate([slots[own], crossed[:, 1:]]).astype(np.int32)
     meets = _kernel.intersections(
         np.ascontiguousarray(xy), np.ascontiguousarray(segments), pairs.astype(np.int32)
     )
     at = polylines.starts()[crossed[:, 0]]
-    along = np.insert(places[polylines.vertices], at + 1, meets, axis=0)
+    along = np.insert(points[polylines.vertices], at + 1, meets, axis=0)
     owner = np.insert(polylines.owners, at + 1, polylines.owners[at])
     is_new = np.ones(len(along), np.bool_)
     is_new[1:] = (np.diff(along, axis=0) != 0).any(axis=1) | (np.diff(owner) != 0)

@@ -260,13 +260,13 @@ def _crossing_error(
     work: Splitting, pairs: NDArray[np.int64], names: Sequence[str] | None
 ) -> LinesError:
     """Name the first crossing: by lines, then by place."""
-    places = work.places_of(pairs)
+    points = work.points_of(pairs)
     segment = np.sort(work.segments.first_segment[pairs], axis=1)
     lines = work.polylines.owners[work.segments.start[segment]]
-    first = np.lexsort((places[:, 1], places[:, 0], lines[:, 1], lines[:, 0]))[0]
+    first = np.lexsort((points[:, 1], points[:, 0], lines[:, 1], lines[:, 0]))[0]
     a, b = lines[first].tolist()
-    x, y = places[first].tolist()
-    elevations = work.elevations_at(segment[first], places[[first, first]]).tolist()
+    x, y = points[first].tolist()
+    elevations = work.elevations_at(segment[first], points[[first, first]]).tolist()
     label_a, label_b = (f"line {i}" if names is None else names[i] for i in (a, b))
     whom = "itself" if a == b else label_b
     return LinesError(

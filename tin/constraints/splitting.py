@@ -114,7 +114,7 @@ class Splitting:
     Attributes
     ----------
     xy : (n, 2) float64 array
-        Places of the vertices: of the given ones, then of those made where lines cross.
+        Coordinates of the vertices: of the given ones, then of those made where lines cross.
     polylines : Polylines
     elevations : (k,) float64 array
         The line's own at each position; NaN if it has none.
@@ -220,7 +220,7 @@ class Splitting:
     ) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
         """Keep all touches of an edge if that leaves shorter parts, else only the nearest."""
         edge, vertex = self._in_order(edge, vertex, bends=True)
-        a, b, p = self._ends_and_places(edge, vertex)
+        a, b, p = self._ends_and_points(edge, vertex)
         is_first = np.append(True, np.diff(edge) != 0)
         before = np.where(is_first[:, None], a, np.roll(p, 1, axis=0))
         after = np.where(np.roll(is_first, -1)[:, None], b, np.roll(p, -1, axis=0))
@@ -249,7 +249,7 @@ class Splitting:
 
     def split_at_crossings(self, pairs: NDArray[np.int64]) -> None:
         """Split the edges of all pairs where they cross."""
-        vertex = np.repeat(self._vertices_at(self.places_of(pairs)), 2)
+        vertex = np.repeat(self._vertices_at(self.points_of(pairs)), 2)
         edge = pairs.ravel()
         inside = (self.segments.ends[edge] != vertex[:, None]).all(axis=1)
         split, at = _numbers_of(np.unique(_key_of(edge[inside], vertex[inside])))
@@ -260,21 +260,21 @@ class Splitting:
         self._split(split, at.astype(np.int32), bends=False)
         self._is_rounded = True
 
-    def places_of(self, pairs: NDArray[np.int64]) -> NDArray[np.float64]:
+    def points_of(self, pairs: NDArray[np.int64]) -> NDArray[np.float64]:
         """Return where the edges of each pair cross, (c, 2)."""
         return _kernel.intersections(self.xy, self.segments.ends, pairs.astype(np.int32))
 
-    def _vertices_at(self, places: NDArray[np.float64]) -> NDArray[np.int32]:
+    def _vertices_at(self, points: NDArray[np.float64]) -> NDArray[np.int32]:
         """Find or make the vertex at each place."""
-        order = np.lexsort((places[:, 1], places[:, 0]))
-        is_first = np.append(True, (np.diff(places[order], axis=0) != 0).any(axis=1))
-        distinct = places[order[is_first]]
+        order = np.lexsort((points[:, 1], points[:, 0]))
+        is_first = np.append(True, (np.diff(points[order], axis=0) != 0).any(axis=1))
+        distinct = points[order[is_first]]
         vertices = _kernel.vertices_at(self.xy, distinct)
         is_new = vertices < 0
         vertices[is_new] = len(self.xy) + np.arange(is_new.sum(), dtype=np.int32)
         self.xy = np.concatenate([self.xy, distinct[is_new]])
         self.crossing_vertices = np.union1d(self.crossing_vertices, vertices)
-        number = np.empty(len(places), np.int32)
+        number = np.empty(len(points), np.int32)
         number[order] = vertices[np.cumsum(is_first) - 1]
         return number
 
@@ -312,20 +312,20 @@ class Splitting:
         lines bend, the projection decides; of two places across an upright or level edge, which
         are then equally far along it, the coordinates.
         """
-        a, b, p = self._ends_and_places(edge, vertex)
+        a, b, p = self._ends_and_points(edge, vertex)
         x, y = (np.sign(b - a) * p).T
         keys = (*p.T, y, x, _projection(a, b, p)) if bends else (y, x)
         order = np.lexsort((*keys, edge))
         return edge[order], vertex[order]
 
-    def _ends_and_places(
+    def _ends_and_points(
         self, edge: NDArray[np.int64], vertex: NDArray[np.int32]
     ) -> tuple[NDArray[np.float64], ...]:
         first, second = self.segments.ends[edge].T
         return self.xy[first], self.xy[second], self.xy[vertex]
 
     def elevations_at(
-        self, segment: NDArray[np.int64], places: NDArray[np.float64]
+        self, segment: NDArray[np.int64], points: NDArray[np.float64]
     ) -> NDArray[np.float64]:
         """Interpolate the elevations of segments at places on them; the same both ways."""
         start, backward = self.segments.start[segment], self.segments.is_backward[segment]
@@ -333,7 +333,7 @@ class Splitting:
         a, b = self.xy[first], self.xy[second]
         z_a = self.elevations[start + backward]
         z_b = self.elevations[start + ~backward]
-        return interpolate_linearly(z_a, z_b, _projection(a, b, places) / _square(a, b))
+        return interpolate_linearly(z_a, z_b, _projection(a, b, points) / _square(a, b))
 
 
 def endless() -> LinesError:

@@ -83,8 +83,8 @@ def as_point(point: Any) -> NDArray[np.float64]:
         raise PointsError(
             f"There are {len(rows)} points: one, easting, northing, elevation, is needed."
         )
-    place: NDArray[np.float64] = rows[0]
-    return place
+    row: NDArray[np.float64] = rows[0]
+    return row
 
 
 def as_vertex_elevations(z: ArrayLike, count: int) -> NDArray[np.float64]:

@@ -57,7 +57,7 @@ class Change(NamedTuple):
     ----------
     removed : (r,) int64 array
         Rows, by their lasting numbers.
-    moved, places : (k,) int64 array, (k, 3) float64 array
+    moved, points : (k,) int64 array, (k, 3) float64 array
         Rows, and where they are now.
     added : (a, 3) float64 array
         New rows.
@@ -67,7 +67,7 @@ class Change(NamedTuple):
 
     removed: NDArray[np.int64] = NO_ROWS
     moved: NDArray[np.int64] = NO_ROWS
-    places: NDArray[np.float64] = NO_XYZ
+    points: NDArray[np.float64] = NO_XYZ
     added: NDArray[np.float64] = NO_XYZ
     lines: tuple[LineChange, ...] = ()
 
@@ -118,7 +118,7 @@ class NumberedInputs(Frozen):
             points[end : end + len(change.added)] = change.added
             is_there[end : end + len(change.added)] = True
             end += len(change.added)
-            points[change.moved] = change.places
+            points[change.moved] = change.points
             is_there[change.removed] = False
             for line_change in change.lines:
                 lines = line_change.apply(lines)

@@ -371,8 +371,8 @@ class Editor:
 
     def _moved(self, slot: int, point: NDArray[np.float64]) -> Change:
         rows = np.array(self._rows_at(slot), np.int64)
-        places = point[None] if len(rows) == 1 else np.tile(point, (len(rows), 1))
-        return Change(moved=rows, places=places)
+        points = point[None] if len(rows) == 1 else np.tile(point, (len(rows), 1))
+        return Change(moved=rows, points=points)
 
     def flip(self, a: int, b: int) -> Change:
         """Put the other diagonal of the two triangles at an edge in its place, as a soft line.
@@ -481,7 +481,7 @@ def _joined(changes: list[Change]) -> Change:
         return Change()
     return Change(
         moved=np.concatenate([change.moved for change in changes]),
-        places=np.concatenate([change.places for change in changes]),
+        points=np.concatenate([change.points for change in changes]),
     )
 
 

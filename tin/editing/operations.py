@@ -198,22 +198,22 @@ class Move(MeshOperation):
 
     def apply(self, tin: Edited) -> Done:
         """Build the TIN of the changed inputs."""
-        numbers, place = as_vertices([self.vertex], tin.count), as_point(self.point)
+        numbers, point = as_vertices([self.vertex], tin.count), as_point(self.point)
         state, inputs = tin.now(), tin.inputs()
-        (there,) = state.vertices_at(place[None, :2]).tolist()
+        (there,) = state.vertices_at(point[None, :2]).tolist()
         if there >= 0 and there != numbers[0]:
-            raise occupied(there, *place[:2].tolist())
+            raise occupied(there, *point[:2].tolist())
         rows = np.flatnonzero(np.isin(state.vertex_of_row, numbers))
         of_lines = state.line_vertices(inputs)
         on_lines = np.flatnonzero(of_lines == numbers[0])
         _require_given(numbers, state.vertex_of_row[rows], of_lines[on_lines], "moved")
         change = Change(
             moved=rows,
-            places=np.tile(place, (len(rows), 1)),
-            lines=(PutVertices(on_lines, place),) if len(on_lines) else (),
+            points=np.tile(point, (len(rows), 1)),
+            lines=(PutVertices(on_lines, point),) if len(on_lines) else (),
         )
         found = tin.build(inputs.after([change]))
-        _require_elevations(found, place[None])
+        _require_elevations(found, point[None])
         return Done(change, found)
 
     def apply_to_mesh(self, editor: Editor) -> Done:
@@ -376,12 +376,12 @@ def _with_elevations(
     elevation_of[vertices] = elevations
     wanted = elevation_of[state.vertex_of_row]
     rows = np.flatnonzero(~np.isnan(wanted))
-    places = inputs.build_inputs.points[np.searchsorted(inputs.rows, rows)]
-    places[:, 2] = wanted[rows]
+    points = inputs.build_inputs.points[np.searchsorted(inputs.rows, rows)]
+    points[:, 2] = wanted[rows]
     of_lines = elevation_of[state.line_vertices(inputs)]
     on_lines = np.flatnonzero(~np.isnan(of_lines) & has_own_elevations(inputs.build_inputs.lines))
     lines = (SetElevations(on_lines, of_lines[on_lines]),) if len(on_lines) else ()
-    return Change(moved=rows, places=places, lines=lines)
+    return Change(moved=rows, points=points, lines=lines)
 
 
 def _has_own_elevation(

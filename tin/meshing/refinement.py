@@ -258,12 +258,12 @@ def _on_surface(tin: TIN, xy: NDArray[np.float64]) -> NDArray[np.float64]:
     return z
 
 
-def _on_boundary(tin: TIN, place: NDArray[np.float64]) -> float:
+def _on_boundary(tin: TIN, point: NDArray[np.float64]) -> float:
     start, end = (tin.points[ends] for ends in _boundary_ends(tin))
     whole = end[:, :2] - start[:, :2]
-    share = ((place - start[:, :2]) * whole).sum(axis=1) / (whole * whole).sum(axis=1)
+    share = ((point - start[:, :2]) * whole).sum(axis=1) / (whole * whole).sum(axis=1)
     foot = start + np.clip(share, 0.0, 1.0)[:, None] * (end - start)
-    return float(foot[np.hypot(*(foot[:, :2] - place).T).argmin(), 2])
+    return float(foot[np.hypot(*(foot[:, :2] - point).T).argmin(), 2])
 
 
 def _boundary_ends(tin: TIN) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

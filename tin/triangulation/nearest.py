@@ -43,11 +43,11 @@ class NearestVertex:
         kept = np.arange(len(points), dtype=np.int32)
         if growth.kept_row is not None:
             kept = np.flatnonzero(growth.kept_row == kept).astype(np.int32)
-        places = np.ascontiguousarray(points[kept])
+        distinct = np.ascontiguousarray(points[kept])
         self._number = kept
-        self._xy = np.ascontiguousarray(places[:, :2])
+        self._xy = np.ascontiguousarray(distinct[:, :2])
         self._triangles = growth.triangles
-        self._locator = _kernel.Locator(places, growth.triangles, growth.neighbors)
+        self._locator = _kernel.Locator(distinct, growth.triangles, growth.neighbors)
         edges = topology.edges(growth.triangles, growth.neighbors).astype(np.int64)
         start, end = np.concatenate([edges, edges[:, ::-1]]).T
         self._neighbors = end[np.argsort(start)]
@@ -84,9 +84,9 @@ class NearestVertex:
         candidates = []
         for axis in (0, 1):
             order = np.argsort(hull[:, axis], kind="stable")
-            place = np.searchsorted(hull[order, axis], xy[:, axis])
+            at = np.searchsorted(hull[order, axis], xy[:, axis])
             candidates += [
-                self._hull[order[np.clip(place + k, 0, len(hull) - 1)]] for k in (-2, -1, 0, 1)
+                self._hull[order[np.clip(at + k, 0, len(hull) - 1)]] for k in (-2, -1, 0, 1)
             ]
         tried = np.stack(candidates, axis=1)
         best = np.argmin(self._squared(xy[:, None], tried), axis=1)

@@ -51,7 +51,7 @@ class _Centres(NamedTuple):
     To the bit equal for triangles of one circle.
     """
 
-    places: NDArray[np.float64]
+    points: NDArray[np.float64]
     where: NDArray[np.int8]
 
 
@@ -181,7 +181,7 @@ def _centres_and_cut_cells(
     """
     first = _on_one_circle(xy, triangles, edges)
     found = _circles(xy, triangles, box)
-    centres = _Centres(found.places[first], found.where[first])
+    centres = _Centres(found.points[first], found.where[first])
     is_exact = centres.where == _DOUBTFUL
     _set_exactly(centres, first, is_exact, triangles, plane)
     is_cut = np.zeros(len(xy), np.bool_)
@@ -192,7 +192,7 @@ def _centres_and_cut_cells(
     is_shared = np.bincount(first, (corners > 0) & (corners < 3), len(triangles)) > 0
     is_shared = is_shared[first] & ~is_exact & (centres.where == _INSIDE)
     _set_exactly(centres, first, is_shared, triangles, plane)
-    return centres.places, is_cut
+    return centres.points, is_cut
 
 
 def _set_exactly(
@@ -204,11 +204,11 @@ def _set_exactly(
 ) -> None:
     """Compute some circumcentres exactly, and where they lie; ``which`` holds whole circles."""
     for t in np.flatnonzero(which & (first == np.arange(len(first)))).tolist():
-        place = plane.centre(*triangles[t].tolist())
-        centres.where[t] = _BEYOND if place is None else _INSIDE
-        if place is not None:
-            centres.places[t] = place
-    centres.places[which] = centres.places[first[which]]
+        point = plane.centre(*triangles[t].tolist())
+        centres.where[t] = _BEYOND if point is None else _INSIDE
+        if point is not None:
+            centres.points[t] = point
+    centres.points[which] = centres.points[first[which]]
     centres.where[which] = centres.where[first[which]]
 
 

@@ -23,7 +23,7 @@ __all__ = ["ExactPlane", "HalfPlane"]
 
 _MANTISSA_BITS = 53
 
-Place = tuple[int, int]
+Point = tuple[int, int]
 Corner = tuple[int, int, int]
 
 
@@ -63,20 +63,20 @@ class ExactPlane:
         lowest = min(int(self._exponents.min()), int(exponents.min()))
         self._shift = _MANTISSA_BITS - lowest
         self._lowest = lowest
-        self._places: dict[int, Place] = {}
+        self._points: dict[int, Point] = {}
         self._low, self._high = (
             self._whole(*row) for row in zip(mantissas, exponents, strict=True)
         )
 
-    def place(self, vertex: int) -> Place:
+    def point(self, vertex: int) -> Point:
         """Return a vertex's coordinates in whole numbers."""
-        known = self._places.get(vertex)
+        known = self._points.get(vertex)
         if known is None:
             known = self._whole(self._mantissas[vertex], self._exponents[vertex])
-            self._places[vertex] = known
+            self._points[vertex] = known
         return known
 
-    def _whole(self, mantissas: NDArray[np.float64], exponents: NDArray[np.int32]) -> Place:
+    def _whole(self, mantissas: NDArray[np.float64], exponents: NDArray[np.int32]) -> Point:
         x, y = (
             int(mantissa * 2**_MANTISSA_BITS) << (exponent - self._lowest if mantissa else 0)
             for mantissa, exponent in zip(mantissas.tolist(), exponents.tolist(), strict=True)
@@ -85,8 +85,8 @@ class ExactPlane:
 
     def centre(self, a: int, b: int, c: int) -> tuple[float, float] | None:
         """Return the circumcentre of three vertices; None unless it is strictly inside the box."""
-        origin = self.place(a)
-        sides = (_bisector(origin, self.place(vertex)) for vertex in (b, c))
+        origin = self.point(a)
+        sides = (_bisector(origin, self.point(vertex)) for vertex in (b, c))
         corner = next(sides).corner_with(next(sides))
         if corner[2] < 0:
             corner = (-corner[0], -corner[1], -corner[2])
@@ -102,12 +102,12 @@ class ExactPlane:
         neighbors : iterable of int
             Those of the Delaunay triangulation, counter-clockwise.
         """
-        origin = self.place(vertex)
-        sides = [_bisector(origin, self.place(other)) for other in neighbors]
+        origin = self.point(vertex)
+        sides = [_bisector(origin, self.point(other)) for other in neighbors]
         corners = _corners_of_common_part(_by_direction(sides, self._walls(origin)))
         return [self._rounded(origin, corner) for corner in corners]
 
-    def _walls(self, origin: Place) -> tuple[HalfPlane, ...]:
+    def _walls(self, origin: Point) -> tuple[HalfPlane, ...]:
         x, y = origin
         return (
             HalfPlane(1, 0, self._high[0] - x),
@@ -116,7 +116,7 @@ class ExactPlane:
             HalfPlane(0, -1, y - self._low[1]),
         )
 
-    def _rounded(self, origin: Place, corner: Corner) -> tuple[float, float]:
+    def _rounded(self, origin: Point, corner: Corner) -> tuple[float, float]:
         """Return the nearest doubles; dividing whole numbers rounds once, to nearest."""
         x, y, w = corner
         divisor, factor = w, 1
@@ -127,7 +127,7 @@ class ExactPlane:
         return (origin[0] * w + x) * factor / divisor, (origin[1] * w + y) * factor / divisor
 
 
-def _bisector(origin: Place, other: Place) -> HalfPlane:
+def _bisector(origin: Point, other: Point) -> HalfPlane:
     """Return the places nearer to the origin than to another, relative to the origin."""
     x, y = other[0] - origin[0], other[1] - origin[1]
     return HalfPlane(2 * x, 2 * y, x * x + y * y)
