@@ -19,6 +19,8 @@ import numpy as np
 from ..errors import PointsError
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from numpy.typing import NDArray
 
 __all__ = [
@@ -30,6 +32,8 @@ __all__ = [
     "edges",
     "edges_at",
     "ends",
+    "find_offsets",
+    "find_owners",
     "find_triangles",
     "gather",
     "neighbors_of",
@@ -230,7 +234,7 @@ def sort_half_edges(triangles: NDArray[np.int32], n_vertices: int) -> HalfEdges:
     return HalfEdges(
         keys=keys[order],
         triangles=(order // 3).astype(np.int32),
-        offsets=np.append(0, np.cumsum(counts)),
+        offsets=find_offsets(counts),
     )
 
 
@@ -275,11 +279,29 @@ def turn_about(
     return np.array(around, np.int32), np.array(neighbors, np.int32)
 
 
+# ---------------------------------------------------------------- ragged arrays
+#
+#   offsets   0       2   2           5      part 0 has two items, part 1 none, part 2 three
+#   items     a   b   c   d   e
+#   owners    0   0   2   2   2
+
+
+def find_offsets(lengths: Iterable[int] | NDArray[Any]) -> NDArray[np.int64]:
+    """Return where each part of a ragged array begins, and the last one ends."""
+    lengths = lengths if isinstance(lengths, np.ndarray) else list(lengths)
+    return np.concatenate([[0], np.cumsum(lengths, dtype=np.int64)])
+
+
+def find_owners(offsets: NDArray[Any]) -> NDArray[np.int64]:
+    """Return for each item of a ragged array the part that it belongs to."""
+    return np.repeat(np.arange(len(offsets) - 1), np.diff(offsets))
+
+
 def gather(
-    offsets: NDArray[np.int64], rows: NDArray[np.int64]
+    offsets: NDArray[np.int64], parts: NDArray[np.int64]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return where the items of some rows of a ragged array stand, and the place of each's row."""
-    counts = offsets[rows + 1] - offsets[rows]
-    owner = np.repeat(np.arange(len(rows)), counts)
-    before = np.cumsum(counts) - counts
-    return np.arange(len(owner)) + (offsets[rows] - before)[owner], owner
+    """Return where the items of some parts of a ragged array stand, and whose of these each is."""
+    begins = offsets[parts]
+    chosen = find_offsets(offsets[parts + 1] - begins)
+    owner = find_owners(chosen)
+    return np.arange(len(owner)) + (begins - chosen[:-1])[owner], owner

@@ -12,9 +12,9 @@ from ..constraints.breaklines import Lines
 from ..constraints.clipping import BOUNDARY, EXTENT, HOLES, Surface, in_rings
 from ..constraints.constraint_set import LineSet
 from ..constraints.draping import drape
-from ..constraints.polylines import offsets_of
 from ..constraints.pslg import Clip, Pslg, lines_in
 from ..report import LEFT_OUT, Crossings, Overruled, Report
+from ..topology import find_offsets
 from ..validation.points import require_three
 from .constrained import ConstrainedTriangulation, triangulate_constrained
 from .duplicates import merge_rows
@@ -269,7 +269,7 @@ def _without_lost_merges(account: dict[str, Any], final: NDArray[np.int32]) -> d
     rows = np.repeat(keep, counts)
     return {
         "merged_vertices": vertices[keep],
-        "merged_offsets": offsets_of(counts[keep]).astype(np.int32),
+        "merged_offsets": find_offsets(counts[keep]).astype(np.int32),
         "vertex_elevations": account["vertex_elevations"][keep],
         **{k: account[k][rows] for k in ("merged_rows", "merged_elevations", "merged_shifts")},
     }

@@ -9,8 +9,7 @@ import numpy as np
 
 from ...errors import LinesError
 from .. import _kernel, topology
-from ..topology import edge_keys
-from .polylines import offsets_of
+from ..topology import edge_keys, find_offsets
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -40,7 +39,7 @@ class Surface(NamedTuple):
 
 def in_rings(xy: NDArray[np.float64], rings: Sequence[NDArray[np.float64]]) -> NDArray[np.int8]:
     """Tell where places lie: +1 inside an odd number of rings, 0 on one, -1 outside."""
-    offsets = offsets_of(map(len, rings)).astype(np.int32)
+    offsets = find_offsets(map(len, rings)).astype(np.int32)
     corners = np.ascontiguousarray(np.concatenate([ring[:, :2] for ring in rings]))
     return _kernel.places_in_rings(np.ascontiguousarray(xy), corners, offsets)
 

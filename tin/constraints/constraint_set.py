@@ -10,10 +10,10 @@ import numpy as np
 from ..._sentences import shown
 from ...errors import LinesError
 from .. import _kernel
+from ..topology import find_offsets, find_owners
 from .breaklines import Breakline, Water, as_ring
 from .constraint_table import ConstraintTable
 from .polygons import rings_of
-from .polylines import offsets_of, owners_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -86,7 +86,7 @@ class LineSet(NamedTuple):
     @property
     def line_of(self) -> NDArray[np.int64]:
         """The line of each row."""
-        return owners_of(self.offsets)
+        return find_owners(self.offsets)
 
     def label(self, line: int) -> str:
         """Return what a line is called in sentences."""
@@ -107,7 +107,7 @@ class LineSet(NamedTuple):
         return cls(
             np.concatenate([part.xy for part in sets]),
             np.concatenate([part.elevations for part in sets]),
-            offsets_of(np.concatenate([np.diff(part.offsets) for part in sets])),
+            find_offsets(np.concatenate([np.diff(part.offsets) for part in sets])),
             ConstraintTable.joined([part.table for part in sets]),
         )
 
@@ -117,7 +117,7 @@ class LineSet(NamedTuple):
         return LineSet(
             self.xy[rows],
             self.elevations[rows],
-            offsets_of(np.diff(self.offsets)[is_chosen]),
+            find_offsets(np.diff(self.offsets)[is_chosen]),
             self.table.take(np.flatnonzero(is_chosen)),
         )
 
@@ -166,7 +166,7 @@ def _arrays_alone(breaklines: Sequence[Any]) -> LineSet | None:
     return LineSet(
         np.ascontiguousarray(coords[:, :2]),
         coords[:, 2],
-        offsets_of(map(len, breaklines)),
+        find_offsets(map(len, breaklines)),
         ConstraintTable.of_kind("hard", np.arange(n, dtype=np.int32), np.zeros(n)),
     )
 
@@ -212,7 +212,7 @@ def _gathered(
         ),
         names=(*(line.name for line in lines), *("" for _ in rings), *(p.name for p in ponds)),
     )
-    return LineSet(*_stacked(coords), offsets_of(map(len, coords)), table)
+    return LineSet(*_stacked(coords), find_offsets(map(len, coords)), table)
 
 
 def gather_extent(extent: Sequence[ArrayLike], n_boundary: int) -> LineSet:
@@ -226,7 +226,7 @@ def gather_extent(extent: Sequence[ArrayLike], n_boundary: int) -> LineSet:
         np.arange(n_boundary, n_boundary + n, dtype=np.int32),
         np.where([ring.shape[1] == 2 for ring in rings], BELOW_ALL, 0.0),
     )
-    return LineSet(*_stacked(rings), offsets_of(map(len, rings)), table)
+    return LineSet(*_stacked(rings), find_offsets(map(len, rings)), table)
 
 
 def gather_rings(rings: Sequence[Any], what: str) -> list[NDArray[np.float64]]:

@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from .. import _kernel, topology
+from ..topology import find_offsets
 from .clipping import Surface, in_rings
 from .constraint_set import BELOW_ALL, LineSet
 from .constraint_table import ConstraintTable
 from .noding import node
-from .polylines import Polylines, offsets_of
+from .polylines import Polylines
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -112,7 +113,7 @@ def _split_boundary(
     is_split |= _hidden_edges(points[chain], corner, is_split)
     begins, ends = corner[:-1][is_split], corner[1:][is_split] + 1
     counts = ends - begins
-    offsets = offsets_of(counts)
+    offsets = find_offsets(counts)
     rows = np.arange(offsets[-1]) + np.repeat(begins - offsets[:-1], counts)
     sources = np.full(len(counts), -1, np.int32)
     table = ConstraintTable.of_kind("boundary", sources, np.full(len(counts), BELOW_ALL))
@@ -160,7 +161,7 @@ def _with_elevations(
     counts = np.bincount(owner, minlength=len(polylines))
     table = lines.table.take(polylines.lines)
     table = table._replace(priorities=np.full(len(polylines), BELOW_ALL))
-    return LineSet(xy, z, offsets_of(counts), table)
+    return LineSet(xy, z, find_offsets(counts), table)
 
 
 def _elevations_at(

@@ -15,7 +15,7 @@ import numpy as np
 from ...errors import LinesError
 from ..constraints.breaklines import Breakline
 from ..constraints.constraint_set import ABOVE_ALL, LineSet, gather_lines
-from ..constraints.polylines import offsets_of
+from ..topology import find_offsets
 from ..types import Frozen
 
 if TYPE_CHECKING:
@@ -228,7 +228,7 @@ class DropVertices(NamedTuple):
         return lines._replace(
             xy=lines.xy[rows],
             elevations=lines.elevations[rows],
-            offsets=offsets_of(counts),
+            offsets=find_offsets(counts),
         )
 
 

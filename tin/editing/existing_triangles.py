@@ -18,7 +18,7 @@ from ..building.inputs import BuildInputs
 from ..constraints.clipping import Surface
 from ..constraints.constraint_set import BELOW_ALL, LineSet
 from ..constraints.constraint_table import ConstraintTable
-from ..constraints.polylines import offsets_of
+from ..topology import find_offsets
 from ..triangulation import Triangulation
 from ..validation.points import as_points
 from ..validation.threads import thread_count
@@ -94,7 +94,7 @@ def _line_set(
     return LineSet(
         np.ascontiguousarray(points[vertices, :2]),
         points[vertices, 2],
-        offsets_of(map(len, chains)),
+        find_offsets(map(len, chains)),
         ConstraintTable(tuple(kinds), sources, priorities, tuple(names)),
     )
 

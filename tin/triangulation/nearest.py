@@ -51,7 +51,7 @@ class NearestVertex:
         edges = topology.edges(growth.triangles, growth.neighbors).astype(np.int64)
         start, end = np.concatenate([edges, edges[:, ::-1]]).T
         self._neighbors = end[np.argsort(start)]
-        self._offsets = np.append(0, np.cumsum(np.bincount(start, minlength=len(kept))))
+        self._offsets = topology.find_offsets(np.bincount(start, minlength=len(kept)))
         self._hull = np.unique(
             topology.edges_at(growth.triangles, growth.neighbors == topology.NO_NEIGHBOR)
         )
@@ -109,7 +109,7 @@ class NearestVertex:
         neighbor, of = self._neighbors[item], rows[owner]
         away = self._squared(xy[of], neighbor)
         here = self._squared(xy[rows], at[rows])
-        first = np.append(0, np.cumsum(np.bincount(owner, minlength=len(rows)))[:-1])
+        first = topology.find_offsets(np.bincount(owner, minlength=len(rows)))[:-1]
         least = np.minimum.reduceat(away, first)
         is_least = np.flatnonzero(away == least[owner])
         best = neighbor[is_least[np.searchsorted(owner[is_least], np.arange(len(rows)))]]

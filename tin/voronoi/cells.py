@@ -17,8 +17,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from .. import _kernel, topology
-from ..constraints.polylines import offsets_of
-from ..topology import NO_NEIGHBOR
+from ..topology import NO_NEIGHBOR, find_offsets
 from .exact_corners import ExactPlane
 
 if TYPE_CHECKING:
@@ -333,11 +332,11 @@ def _with_area(rings: Rings) -> Rings:
     """Empty the rings of fewer than three corners: cells of the width of a rounding."""
     counts = np.diff(rings.offsets)
     left = np.where(counts >= 3, counts, 0)
-    return Rings(rings.coords[np.repeat(left > 0, counts)], offsets_of(left))
+    return Rings(rings.coords[np.repeat(left > 0, counts)], find_offsets(left))
 
 
 def _offsets(cell: NDArray[np.int64], n_cells: int) -> NDArray[np.int64]:
-    return offsets_of(np.bincount(cell, minlength=n_cells))
+    return find_offsets(np.bincount(cell, minlength=n_cells))
 
 
 def _following(offsets: NDArray[np.int64]) -> NDArray[np.int64]:

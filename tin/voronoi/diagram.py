@@ -12,7 +12,7 @@ from ..._sentences import counted
 from ...errors import LinesError, OptionError
 from .. import _kernel
 from ..constraints.breaklines import as_ring
-from ..constraints.polylines import offsets_of
+from ..topology import find_offsets
 from ..types import Bounds
 from ..validation.options import require_distance
 from ..validation.threads import thread_count
@@ -164,7 +164,7 @@ def _cells(points: NDArray[np.float64], box: Bounds) -> Rings:
     cells = cells_in_box(np.ascontiguousarray(xy[is_kept]), growth, box)
     counts = np.zeros(len(xy), np.int64)
     counts[is_kept] = np.diff(cells.offsets)
-    return Rings(cells.coords, offsets_of(counts))
+    return Rings(cells.coords, find_offsets(counts))
 
 
 # ---------------------------------------------------------------- the boundary
@@ -231,7 +231,7 @@ def _clipped(cells: Rings, ring: NDArray[np.float64]) -> Voronoi:
     counts = np.bincount(owner, np.diff(rings.offsets)[np.argsort(order)], len(cells.offsets) - 1)
     return Voronoi(
         coords=rings.coords,
-        offsets=offsets_of(counts.astype(np.int64)),
+        offsets=find_offsets(counts.astype(np.int64)),
         part_offsets=rings.offsets,
         boundary=ring,
     )
@@ -252,7 +252,7 @@ def _only(rings: Rings, which: NDArray[np.int64]) -> Rings:
     """Return some of the rings; the others are empty."""
     counts = np.diff(rings.offsets)
     taken = np.bincount(which, minlength=len(counts)) * counts
-    return Rings(rings.coords[np.repeat(taken > 0, counts)], offsets_of(taken))
+    return Rings(rings.coords[np.repeat(taken > 0, counts)], find_offsets(taken))
 
 
 def _parts_inside(region: Any, shapes: NDArray[Any]) -> tuple[NDArray[Any], NDArray[np.int64]]:
@@ -285,7 +285,7 @@ def _rings(polygons: NDArray[Any]) -> Rings:
     coords, ring = shapely.get_coordinates(polygons, return_index=True)
     is_last = np.append(ring[1:] != ring[:-1], True)[: len(ring)]
     coords, ring = coords[~is_last], ring[~is_last]
-    offsets = offsets_of(np.bincount(ring, minlength=len(polygons)))
+    offsets = find_offsets(np.bincount(ring, minlength=len(polygons)))
     clockwise = (signed_areas(Rings(coords, offsets)) < 0)[ring]
     number = np.arange(len(coords))
     turned = np.where(clockwise, offsets[ring] + offsets[ring + 1] - 1 - number, number)

@@ -84,12 +84,10 @@ class ExactPlane:
         return x, y
 
     def centre(self, a: int, b: int, c: int) -> tuple[float, float] | None:
-        """Return the circumcentre of three vertices; None unless it is strictly inside the box."""
+        """Return the circumcentre of a triangle, counter-clockwise; None if not within the box."""
         origin = self.point(a)
         sides = (_bisector(origin, self.point(vertex)) for vertex in (b, c))
         corner = next(sides).corner_with(next(sides))
-        if corner[2] < 0:
-            corner = (-corner[0], -corner[1], -corner[2])
         is_inside = all(wall.holds(corner) for wall in self._walls(origin))
         return self._rounded(origin, corner) if is_inside else None
 
