@@ -235,15 +235,15 @@ class Unmended(NamedTuple):
         ]
 
 
-def _none_overruled() -> Overruled:
-    return Overruled(_no_rows(), _no_rows(), np.empty(0), np.empty(0))
+def _make_none_overruled() -> Overruled:
+    return Overruled(_make_no_rows(), _make_no_rows(), np.empty(0), np.empty(0))
 
 
-def _no_rows() -> NDArray[np.int32]:
+def _make_no_rows() -> NDArray[np.int32]:
     return np.empty(0, np.int32)
 
 
-def _no_numbers() -> NDArray[np.float64]:
+def _make_no_numbers() -> NDArray[np.float64]:
     return np.empty(0)
 
 
@@ -302,18 +302,18 @@ class Report(Frozen):
     n_triangles: int
     duplicates: str = "mean"
     snap: float = 0.0
-    merged_vertices: NDArray[np.int32] = field(default_factory=_no_rows)
+    merged_vertices: NDArray[np.int32] = field(default_factory=_make_no_rows)
     merged_offsets: NDArray[np.int32] = field(default_factory=lambda: np.zeros(1, np.int32))
-    merged_rows: NDArray[np.int32] = field(default_factory=_no_rows)
-    merged_elevations: NDArray[np.float64] = field(default_factory=_no_numbers)
-    merged_shifts: NDArray[np.float64] = field(default_factory=_no_numbers)
-    vertex_elevations: NDArray[np.float64] = field(default_factory=_no_numbers)
-    left_out_rows: NDArray[np.int32] = field(default_factory=_no_rows)
+    merged_rows: NDArray[np.int32] = field(default_factory=_make_no_rows)
+    merged_elevations: NDArray[np.float64] = field(default_factory=_make_no_numbers)
+    merged_shifts: NDArray[np.float64] = field(default_factory=_make_no_numbers)
+    vertex_elevations: NDArray[np.float64] = field(default_factory=_make_no_numbers)
+    left_out_rows: NDArray[np.int32] = field(default_factory=_make_no_rows)
     left_out_why: NDArray[np.int8] = field(default_factory=lambda: np.empty(0, np.int8))
     n_lines: int = 0
     line_labels: tuple[str, ...] = ()
     crossings: Crossings = field(default_factory=Crossings.none)
-    overruled: Overruled = field(default_factory=_none_overruled)
+    overruled: Overruled = field(default_factory=_make_none_overruled)
     skipped: Mapping[str, int] = field(default_factory=dict)
     notes: Sequence[str] = ()
     edits: Sequence[Edit] = ()
@@ -400,7 +400,7 @@ class Report(Frozen):
             f"{self.crossings.vertex_elevations[row]:g} was taken."
         )
 
-    def renumbered(
+    def renumber(
         self, number: NDArray[np.int32], n_rows: int, n_vertices: int, n_triangles: int
     ) -> Report:
         """Return the report with vertex ``v`` of the lines' account called ``number[v]``."""
@@ -413,6 +413,8 @@ class Report(Frozen):
             crossings=crossings._replace(vertices=number[crossings.vertices]),
             overruled=overruled._replace(vertices=number[overruled.vertices]),
         )
+
+    renumbered = renumber
 
     def merges(self) -> Iterator[Merge]:
         """Walk the merges, one vertex at a time.
@@ -451,24 +453,24 @@ class Report(Frozen):
             "duplicates": self.duplicates,
             "snap": self.snap,
             "merges": [merge.to_dict() for merge in self.merges()],
-            "left_out": self._left_out(),
+            "left_out": self._list_left_out(),
             "lines": self.n_lines,
-            "crossings": self._crossings(),
-            "overruled": self._overruled(),
+            "crossings": self._list_crossings(),
+            "overruled": self._list_overruled(),
             "skipped": dict(self.skipped),
             "notes": list(self.notes),
             "edits": [edit.to_dict() for edit in self.edits],
             "unmended": self.unmended.to_list(),
         }
 
-    def _left_out(self) -> dict[str, list[int]]:
+    def _list_left_out(self) -> dict[str, list[int]]:
         return {
             reason: self.left_out_rows[self.left_out_why == code].tolist()
             for code, reason in enumerate(LEFT_OUT)
             if (self.left_out_why == code).any()
         }
 
-    def _crossings(self) -> list[dict[str, Any]]:
+    def _list_crossings(self) -> list[dict[str, Any]]:
         return [
             {
                 "vertex": vertex,
@@ -482,7 +484,7 @@ class Report(Frozen):
             )
         ]
 
-    def _overruled(self) -> list[dict[str, Any]]:
+    def _list_overruled(self) -> list[dict[str, Any]]:
         return [
             {
                 "vertex": vertex,

@@ -85,10 +85,12 @@ def edge_keys(pairs: NDArray[Any], n_vertices: int) -> NDArray[np.int64]:
         Vertices.
     n_vertices : int
     """
-    return _keys(pairs[..., 0].astype(np.int64), pairs[..., 1].astype(np.int64), n_vertices)
+    return _make_keys(pairs[..., 0].astype(np.int64), pairs[..., 1].astype(np.int64), n_vertices)
 
 
-def _keys(start: NDArray[np.int64], end: NDArray[np.int64], n_vertices: int) -> NDArray[np.int64]:
+def _make_keys(
+    start: NDArray[np.int64], end: NDArray[np.int64], n_vertices: int
+) -> NDArray[np.int64]:
     keys: NDArray[np.int64] = np.minimum(start, end) * n_vertices + np.maximum(start, end)
     return keys
 
@@ -112,7 +114,7 @@ def neighbors_of(triangles: NDArray[np.int32], n_vertices: int) -> NDArray[np.in
         If an edge is used by more than two triangles or twice in the same direction.
     """
     start, end = directed_edges(triangles)
-    keys = _keys(start, end, n_vertices).ravel()
+    keys = _make_keys(start, end, n_vertices).ravel()
     forward = (start < end).ravel()
     order = np.argsort(keys, kind="stable")
     sorted_keys = keys[order]
@@ -133,20 +135,20 @@ def _require_manifold(
 ) -> None:
     thrice = same[1:] & same[:-1]
     if thrice.any():
-        start, end = _edge_at(triangles, int(order[np.argmax(thrice)]))
+        start, end = _get_edge(triangles, int(order[np.argmax(thrice)]))
         raise PointsError(
             f"Edge {start}-{end} belongs to more than two triangles: a TIN allows two at most."
         )
     clash = same & (forward[order[1:]] == forward[order[:-1]])
     if clash.any():
-        start, end = _edge_at(triangles, int(order[np.argmax(clash)]))
+        start, end = _get_edge(triangles, int(order[np.argmax(clash)]))
         raise PointsError(
             f"The two triangles at edge {start}-{end} lie on the same side of it: "
             "triangles of a TIN must not overlap."
         )
 
 
-def _edge_at(triangles: NDArray[np.int32], slot: int) -> tuple[int, int]:
+def _get_edge(triangles: NDArray[np.int32], slot: int) -> tuple[int, int]:
     triangle, corner = divmod(slot, 3)
     return int(triangles[triangle, (corner + 1) % 3]), int(triangles[triangle, (corner + 2) % 3])
 
@@ -168,7 +170,7 @@ def boundary_rings(
     """
     triangle, corner = np.nonzero(neighbors == NO_NEIGHBOR)
     start = triangles[triangle, (corner + 1) % 3]
-    at = np.searchsorted(3 * triangle + corner, _next_on_boundary(triangles, neighbors))
+    at = np.searchsorted(3 * triangle + corner, _find_next_on_boundary(triangles, neighbors))
     following = at.tolist()
     is_left = [True] * len(following)
     rings: list[NDArray[np.int32]] = []
@@ -183,7 +185,7 @@ def boundary_rings(
     return rings
 
 
-def _next_on_boundary(
+def _find_next_on_boundary(
     triangles: NDArray[np.int32], neighbors: NDArray[np.int32]
 ) -> NDArray[np.int64]:
     """Return for every boundary edge the next one, both as 3 * triangle + corner.

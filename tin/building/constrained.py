@@ -15,9 +15,9 @@ from .. import _kernel
 from ..constraints.clipping import Surface, in_rings
 from ..constraints.conforming import conform
 from ..constraints.constraint_set import ABOVE_ALL, BELOW_ALL, LineSet
-from ..constraints.noding import Noded, node, untouched
+from ..constraints.noding import Noded, accept_noded, node
 from ..constraints.polylines import Polylines
-from ..constraints.pslg import force, mesh_of, mesh_of_growth
+from ..constraints.pslg import build_mesh, build_mesh_of_growth, force
 from ..report import Overruled
 from ..topology import edge_keys
 from ..validation.points import require_three
@@ -99,19 +99,19 @@ def triangulate_constrained(
     xyz = points[rows]
     merged = _merge(xyz, rows, lines, options)
     mesh, noded = (
-        mesh_of_growth(merged.points, merged.growth),
-        untouched(merged.polylines, lines.elevations),
+        build_mesh_of_growth(merged.points, merged.growth),
+        accept_noded(merged.polylines, lines.elevations),
     )
     is_simple = options.snap == 0.0 and not (lines.priorities == ABOVE_ALL).any()
     is_forced = is_simple and _is_forced(mesh, noded.polylines)
     if not is_forced:
-        noded = _noded(merged, lines, options)
+        noded = _node(merged, lines, options)
         if is_simple:  # edges were fixed in vain
-            mesh = mesh_of_growth(merged.points, merged.growth)
+            mesh = build_mesh_of_growth(merged.points, merged.growth)
         if len(noded.new_points):
             mesh.insert(np.ascontiguousarray(noded.new_points[:, :2]))
     points = np.concatenate([merged.points, noded.new_points])
-    overruled = _passed_by(points, noded, merged.overruled)
+    overruled = _add_touches(points, noded, merged.overruled)
     polylines, wet, overruled = _leave_out_water(points, noded.polylines, lines, overruled)
     if not is_forced:
         mesh.remove(np.flatnonzero(wet).astype(np.int32))
@@ -120,7 +120,7 @@ def triangulate_constrained(
     points, polylines = points[~wet], polylines.renumber(number_of)
     if conforming:
         if wet.any():  # numbers without gaps
-            mesh = mesh_of(points, polylines, threads=options.threads)
+            mesh = build_mesh(points, polylines, threads=options.threads)
         mesh, points, polylines = conform(
             mesh, points, polylines, lines.priorities, threads=options.threads
         )
@@ -143,7 +143,7 @@ def _is_forced(mesh: _kernel.Mesh, polylines: Polylines) -> bool:
     return not (len(passed) or len(blocked))
 
 
-def _noded(merged: _Merged, lines: LineSet, options: LineOptions) -> Noded:
+def _node(merged: _Merged, lines: LineSet, options: LineOptions) -> Noded:
     return node(
         np.ascontiguousarray(merged.points[:, :2]),
         merged.polylines,
@@ -175,7 +175,7 @@ def _merge(
     vertex_of = (np.cumsum(is_kept, dtype=np.int32) - np.int32(1))[place]
     points = rows[is_kept]
     merges = _merge_points(xyz, rows_of, vertex_of[:n], points, options.duplicates)
-    overruled = _line_elevations(points, vertex_of, n, lines)
+    overruled = _set_line_elevations(points, vertex_of, n, lines)
     polylines = Polylines.whole(vertex_of[n:], lines.offsets)
     return _Merged(points, vertex_of, polylines, growth, merges, overruled)
 
@@ -205,7 +205,7 @@ def _merge_points(
     return account
 
 
-def _line_elevations(
+def _set_line_elevations(
     points: NDArray[np.float64], vertex_of: NDArray[np.int32], n: int, lines: LineSet
 ) -> Overruled:
     """Give vertices on lines the elevation of the line that counts most there, its lowest."""
@@ -229,7 +229,7 @@ def _line_elevations(
     )
 
 
-def _passed_by(points: NDArray[np.float64], noded: Noded, overruled: Overruled) -> Overruled:
+def _add_touches(points: NDArray[np.float64], noded: Noded, overruled: Overruled) -> Overruled:
     """Add the elevations of lines that run through a vertex of others, where they differ."""
     touches = noded.touches
     elevation = points[touches.vertex, 2]
@@ -272,7 +272,7 @@ def _leave_out_water(
     given = polylines
     for line in np.flatnonzero(lines.priorities == ABOVE_ALL).tolist():
         shore = given.vertices[given.offsets[line] : given.offsets[line + 1]]
-        inside = _inside(points[:, :2], points[shore, :2])
+        inside = _find_inside(points[:, :2], points[shore, :2])
         segments, line_of = polylines.segments(), polylines.segment_lines()
         in_water = inside[segments].any(axis=1) | _are_chords_within(points[:, :2], segments, shore)
         stays = (line_of == line) | is_ring[line_of] | _runs_along(segments, shore, len(points))
@@ -329,14 +329,14 @@ def _is_ring_around(
         start ------- end -----|--->
                                |
     """
-    on_left = _orientation(start, end, ring) > 0
+    on_left = _orient(start, end, ring) > 0
     crosses = np.flatnonzero(on_left[:-1] != on_left[1:])
     is_down = on_left[crosses]
     left, right = (ring[crosses + np.where(is_down, k, 1 - k)] for k in (0, 1))
-    return bool(np.count_nonzero(_orientation(left, right, end) <= 0) % 2)
+    return bool(np.count_nonzero(_orient(left, right, end) <= 0) % 2)
 
 
-def _orientation(
+def _orient(
     a: NDArray[np.float64], b: NDArray[np.float64], c: NDArray[np.float64]
 ) -> NDArray[np.int8]:
     a, b, c = (np.ascontiguousarray(places) for places in np.broadcast_arrays(a, b, c))
@@ -350,7 +350,7 @@ def _runs_along(
     return np.isin(edge_keys(segments, n_vertices), edge_keys(own, n_vertices))
 
 
-def _inside(xy: NDArray[np.float64], ring: NDArray[np.float64]) -> NDArray[np.bool_]:
+def _find_inside(xy: NDArray[np.float64], ring: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Tell which places lie strictly inside a ring whose first corner is repeated."""
     if len(ring) < 4:
         return np.zeros(len(xy), np.bool_)

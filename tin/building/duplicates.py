@@ -54,11 +54,11 @@ def merge_rows(
     is_kept = kept_row == np.arange(n, dtype=np.int32)
     vertex_at = np.cumsum(is_kept, dtype=np.int32) - np.int32(1)
     vertex_of = vertex_at[kept_row]
-    rows, offsets, vertices = _groups(vertex_of, kept_row, is_kept)
+    rows, offsets, vertices = _group_rows(vertex_of, kept_row, is_kept)
     if policy == "error" and len(rows):
         _refuse(xyz, rows, offsets, rows_of)
     points = xyz[is_kept]
-    elevations = _chosen_elevations(xyz[rows, 2], offsets, policy)
+    elevations = _choose_elevations(xyz[rows, 2], offsets, policy)
     points[vertices, 2] = elevations
     account = {
         "merged_vertices": vertices,
@@ -71,7 +71,7 @@ def merge_rows(
     return Merged(points, vertex_of, account)
 
 
-def _groups(
+def _group_rows(
     vertex_of: NDArray[np.int32], kept_row: NDArray[np.int32], is_kept: NDArray[np.bool_]
 ) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]]:
     """Return rows of merged vertices, group after group and ascending within, with offsets."""
@@ -85,7 +85,7 @@ def _groups(
     return rows, offsets, vertices
 
 
-def _chosen_elevations(
+def _choose_elevations(
     elevations: NDArray[np.float64], offsets: NDArray[np.int32], policy: DuplicatePolicy
 ) -> NDArray[np.float64]:
     starts, ends = offsets[:-1], offsets[1:]
@@ -97,23 +97,23 @@ def _chosen_elevations(
         return np.minimum.reduceat(elevations, starts)
     if policy == "highest":
         return np.maximum.reduceat(elevations, starts)
-    return _mean_elevations(elevations, starts, ends - starts)
+    return _average_elevations(elevations, starts, ends - starts)
 
 
-def _mean_elevations(
+def _average_elevations(
     elevations: NDArray[np.float64], starts: NDArray[np.int32], counts: NDArray[np.int32]
 ) -> NDArray[np.float64]:
     """Average what lies above the lowest of each group, all made small enough not to overflow."""
     group = np.repeat(np.arange(len(counts)), counts)
     ascending = elevations[np.lexsort((elevations, group))]
-    halvings = _needed_halvings(elevations, counts)
+    halvings = _count_halvings(elevations, counts)
     ascending = np.ldexp(ascending, -halvings)
     lowest = ascending[starts]
     excess = np.add.reduceat(ascending - lowest[group], starts) / counts
     return np.asarray(np.ldexp(lowest + excess, halvings), np.float64)
 
 
-def _needed_halvings(elevations: NDArray[np.float64], counts: NDArray[np.int32]) -> int:
+def _count_halvings(elevations: NDArray[np.float64], counts: NDArray[np.int32]) -> int:
     """Return how often to halve so that differences and their sums stay finite."""
     _, size = np.frexp(np.abs(elevations).max(initial=0.0))
     _, most = np.frexp(float(counts.max(initial=1)))

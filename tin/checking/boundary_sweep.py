@@ -34,7 +34,7 @@ from ..predicates import ORIENTATION_BOUND
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Boundary", "BoundaryFault", "find_fault", "sides_of"]
+__all__ = ["Boundary", "BoundaryFault", "find_fault", "find_sides"]
 
 Point = tuple[float, float]
 
@@ -83,7 +83,7 @@ def find_fault(boundary: Boundary) -> BoundaryFault | None:
 
     Time grows with the number k of edges as k log k: some 2 seconds for 100,000.
     """
-    sweep, starting = _Sweep(), _edges_from(boundary)
+    sweep, starting = _Sweep(), _gather_edges(boundary)
     x, y = boundary.points[:, 0], boundary.points[:, 1]
     vertices = np.unique(boundary.start)
     for vertex in vertices[np.lexsort((y[vertices], x[vertices]))].tolist():
@@ -96,12 +96,12 @@ def find_fault(boundary: Boundary) -> BoundaryFault | None:
     return None
 
 
-def sides_of(boundary: Boundary, points: NDArray[np.float64]) -> NDArray[np.int8]:
+def find_sides(boundary: Boundary, points: NDArray[np.float64]) -> NDArray[np.int8]:
     """Tell where (k, 2) places lie: +1 strictly inside the surface, 0 on its boundary, -1 outside.
 
     The boundary must be without faults.
     """
-    sweep, starting = _Sweep(), _edges_from(boundary)
+    sweep, starting = _Sweep(), _gather_edges(boundary)
     corners = np.unique(boundary.points[np.unique(boundary.start), :2], axis=0)
     xy = np.concatenate([points[:, :2], corners])
     sides = np.zeros(len(points), np.int8)
@@ -114,7 +114,7 @@ def sides_of(boundary: Boundary, points: NDArray[np.float64]) -> NDArray[np.int8
     return sides
 
 
-def _edges_from(boundary: Boundary) -> dict[Point, list[_Edge]]:
+def _gather_edges(boundary: Boundary) -> dict[Point, list[_Edge]]:
     """Return the edges that start, seen from the west, at every place of the boundary."""
     a, b = boundary.points[boundary.start, :2].tolist(), boundary.points[boundary.end, :2].tolist()
     edges: defaultdict[Point, list[_Edge]] = defaultdict(list)
@@ -135,8 +135,8 @@ class _Sweep:
         self._met: list[_Edge] = []
 
     def side_of(self, point: Point) -> int:
-        """Tell where a place lies that is no vertex of the boundary: as :func:`sides_of`."""
-        low, high = self._through(point)
+        """Tell where a place lies that is no vertex of the boundary: as :func:`find_sides`."""
+        low, high = self._find_edges_through(point)
         return 0 if high > low else 1 if low % 2 else -1
 
     def pass_point(self, point: Point, starting: list[_Edge]) -> bool | None:
@@ -144,10 +144,10 @@ class _Sweep:
 
         Otherwise whether it is a meeting, as in :class:`BoundaryFault`.
         """
-        low, high = self._through(point)
+        low, high = self._find_edges_through(point)
         if any(edge[2:4] != point for edge in self._met[low:high]):
             return True
-        starting = _from_below(starting)
+        starting = _sort_from_below(starting)
         self._met[low:high] = starting
         top = low + len(starting)
         neighbors = {(low - 1, low), (top - 1, top)} | {(i, i + 1) for i in range(low, top - 1)}
@@ -160,12 +160,12 @@ class _Sweep:
             is_even = not is_even
         return None
 
-    def _through(self, point: Point) -> tuple[int, int]:
+    def _find_edges_through(self, point: Point) -> tuple[int, int]:
         """Return the range of edges that hold the place; those before it lie below."""
         x, y = point
-        low = bisect_left(self._met, 0, key=lambda edge: -_side(edge, x, y))
+        low = bisect_left(self._met, 0, key=lambda edge: -_compare(edge, x, y))
         high = low
-        while high < len(self._met) and _side(self._met[high], x, y) == 0:
+        while high < len(self._met) and _compare(self._met[high], x, y) == 0:
             high += 1
         return low, high
 
@@ -177,21 +177,21 @@ class _Sweep:
         if below[2:4] == above[2:4]:
             return below[:2] != above[:2]
         if below[2:4] < above[2:4]:
-            return _side(above, below.bx, below.by) < 0
-        return _side(below, above.bx, above.by) > 0
+            return _compare(above, below.bx, below.by) < 0
+        return _compare(below, above.bx, above.by) > 0
 
 
-def _from_below(edges: list[_Edge]) -> list[_Edge]:
+def _sort_from_below(edges: list[_Edge]) -> list[_Edge]:
     """Sort edges from one place by the angle under which they leave it."""
     return edges if len(edges) < 2 else sorted(edges, key=cmp_to_key(_turn))
 
 
 def _turn(edge: _Edge, other: _Edge) -> int:
     """Return -1 if the other edge leaves above, +1 below, 0 in the same direction."""
-    return -_side(edge, other.bx, other.by)
+    return -_compare(edge, other.bx, other.by)
 
 
-def _side(edge: _Edge, x: float, y: float) -> int:
+def _compare(edge: _Edge, x: float, y: float) -> int:
     """Return +1 if a place lies above the line of an edge, -1 below, 0 on it."""
     west, south, east, north, _ = edge
     left, right = (west - x) * (north - y), (south - y) * (east - x)

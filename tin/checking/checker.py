@@ -123,8 +123,8 @@ class CheckResult:
         return {
             "ok": self.ok,
             "level": self.level,
-            "problems": [_plain(problem) for problem in self.problems],
-            "notes": [_plain(note) for note in self.notes],
+            "problems": [_as_plain(problem) for problem in self.problems],
+            "notes": [_as_plain(note) for note in self.notes],
             "counts": dict(self.counts),
         }
 
@@ -134,7 +134,7 @@ class CheckResult:
         return f"<CheckResult: level {self.level}, {verdict}>"
 
 
-def _plain(problem: Problem) -> dict[str, Any]:
+def _as_plain(problem: Problem) -> dict[str, Any]:
     return asdict(problem) | {"first": list(problem.first)}
 
 
@@ -197,7 +197,7 @@ def check(
         raise OptionError("level", level, "1, 2 or 3")
     require_tin(tin)
     is_conforming = as_flag("conforming", conforming)
-    rows, lines = _rows_of(points), _lines_of(points, breaklines)
+    rows, lines = _as_rows(points), _as_lines(points, breaklines)
     found = Findings()
     if check_arrays(tin, found) and check_connections(tin, found):
         check_chains(tin, found)
@@ -213,13 +213,13 @@ def check(
     return CheckResult(level, tuple(found.problems), tuple(found.notes), found.counts)
 
 
-def _rows_of(points: Survey | ArrayLike | None) -> NDArray[np.float64] | None:
+def _as_rows(points: Survey | ArrayLike | None) -> NDArray[np.float64] | None:
     if points is None:
         return None
     return as_masked_points(points.points if isinstance(points, Survey) else points).values
 
 
-def _lines_of(
+def _as_lines(
     points: Survey | ArrayLike | None, breaklines: Sequence[Breakline | ArrayLike]
 ) -> LineSet:
     own = points.breaklines if isinstance(points, Survey) else ()

@@ -20,9 +20,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..report import LEFT_OUT
-from .boundary_sweep import sides_of
+from .boundary_sweep import find_sides
 from .chain_matching import UNSEEN_CUTS, Walk, distance, walk_along
-from .shape import boundary_of, has_sound_boundary
+from .shape import find_boundary, has_sound_boundary
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -64,7 +64,7 @@ def check_rows(tin: TIN, rows: NDArray[np.float64], found: Findings) -> None:
         return
     codes = [LEFT_OUT.index(reason) for reason in _OUTSIDE]
     outside = tin.report.left_out_rows[np.isin(tin.report.left_out_why, codes)]
-    slack = (1 + UNSEEN_CUTS) * _unit(tin, rows)
+    slack = (1 + UNSEEN_CUTS) * _measure_unit(tin, rows)
     found.report(
         "rows",
         outside[_is_inside(tin, rows[outside, :2], slack)],
@@ -85,7 +85,7 @@ def check_given_lines(tin: TIN, given: LineSet, found: Findings) -> None:
         not looked at.
     """
     xy, snap = tin.points[:, :2], tin.report.snap
-    unit = _unit(tin, given.xy)
+    unit = _measure_unit(tin, given.xy)
     walk = walk_along(xy, tin.lines, given, snap=snap * (1 + _ROUNDING), unit=unit)
     found.report(
         "lines",
@@ -99,7 +99,7 @@ def check_given_lines(tin: TIN, given: LineSet, found: Findings) -> None:
     _check_ends(tin, given, walk, slack, found)
 
 
-def _unit(tin: TIN, xy: NDArray[np.float64]) -> float:
+def _measure_unit(tin: TIN, xy: NDArray[np.float64]) -> float:
     """Return by how much one cut may move a line."""
     largest = max(np.abs(tin.points[:, :2]).max(), np.abs(xy[:, :2]).max(initial=0.0))
     return float(tin.report.snap + _UNITS_OF_ROUNDING * np.spacing(largest))
@@ -147,7 +147,7 @@ def _check_ends(tin: TIN, given: LineSet, walk: Walk, slack: float, found: Findi
     vertices = np.array(walk.end_vertices, np.int64)
     is_wet = np.repeat([kind == "water" for kind in tin.lines.kinds], np.diff(tin.lines.offsets))
     shore = tin.lines.vertices[is_wet.astype(np.bool_)]
-    loose = np.flatnonzero(~np.isin(vertices, np.append(boundary_of(tin).start, shore)))
+    loose = np.flatnonzero(~np.isin(vertices, np.append(find_boundary(tin).start, shore)))
     points = tin.points[vertices[loose], :2]
     is_wrong = _is_inside(tin, points, slack)
     is_wrong[is_wrong] = ~_is_in_water(points[is_wrong], given, slack)
@@ -165,9 +165,9 @@ def _is_inside(tin: TIN, points: NDArray[np.float64], slack: float) -> NDArray[n
     candidates = np.flatnonzero(((points > low) & (points < high)).all(axis=1))
     is_inside = np.zeros(len(points), np.bool_)
     if len(candidates):
-        boundary = boundary_of(tin)
+        boundary = find_boundary(tin)
         a, b = boundary.points[boundary.start, :2], boundary.points[boundary.end, :2]
-        for number in candidates[sides_of(boundary, points[candidates]) > 0]:
+        for number in candidates[find_sides(boundary, points[candidates]) > 0]:
             is_inside[number] = distance(points[number], a, b).min() > slack
     return is_inside
 

@@ -15,7 +15,7 @@ from ..._sentences import inflect
 from ..predicates import Columns, columns, is_last, orientation
 from ..topology import NO_NEIGHBOR
 from .boundary_sweep import Boundary, find_fault
-from .shape import boundary_of
+from .shape import find_boundary
 
 if TYPE_CHECKING:
     from ..surface import TIN
@@ -48,10 +48,14 @@ def describe_overlaps(tin: TIN) -> list[str]:
     >>> describe_overlaps(TIN.from_triangles(points, [[0, 1, 2], [3, 4, 5]]))[0]
     'Triangles overlap (westernmost place: near vertex 3); a check tells more.'
     """
-    return [*_overlaps(boundary_of(tin), tin), *_unused(tin), *_one_sided(tin)]
+    return [
+        *_describe_overlaps(find_boundary(tin), tin),
+        *_describe_unused(tin),
+        *_describe_one_sided(tin),
+    ]
 
 
-def _overlaps(boundary: Boundary, tin: TIN) -> list[str]:
+def _describe_overlaps(boundary: Boundary, tin: TIN) -> list[str]:
     if _is_convex(columns(tin.points), boundary):
         return []
     if len(boundary.start) > _MOST_EDGES:
@@ -81,7 +85,7 @@ def _is_convex(xy: Columns, boundary: Boundary) -> bool:
     return bool((turns >= 0).all() and np.count_nonzero(is_extreme) == 1)
 
 
-def _unused(tin: TIN) -> list[str]:
+def _describe_unused(tin: TIN) -> list[str]:
     is_used = np.zeros(len(tin.points), np.bool_)
     is_used[tin.triangles] = True
     count = len(is_used) - int(np.count_nonzero(is_used))
@@ -93,7 +97,7 @@ def _unused(tin: TIN) -> list[str]:
     return [f"{count:,} {inflect(sentence, count)}"]
 
 
-def _one_sided(tin: TIN) -> list[str]:
+def _describe_one_sided(tin: TIN) -> list[str]:
     triangle, corner = np.nonzero(tin.constrained)
     across = tin.neighbors[triangle, corner]
     inner = across != NO_NEIGHBOR

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ..surface import TIN
     from .findings import Findings
 
-__all__ = ["boundary_of", "check_shape", "has_sound_boundary"]
+__all__ = ["check_shape", "find_boundary", "has_sound_boundary"]
 
 _UNIT_ROUNDOFF = 2.0**-53
 
@@ -58,8 +58,8 @@ def _check_boundary(
     here = np.concatenate(rings)
     before = np.concatenate([np.roll(ring, 1) for ring in rings])
     after = np.concatenate([np.roll(ring, -1) for ring in rings])
-    is_constrained = _flags_on_boundary(tin, here, after)
-    came_constrained = _flags_on_boundary(tin, before, here)
+    is_constrained = _get_boundary_flags(tin, here, after)
+    came_constrained = _get_boundary_flags(tin, before, here)
     is_reflex = orientation(xy, before, here, after) < 0
     is_allowed = is_constrained & came_constrained
     found.report(
@@ -80,7 +80,7 @@ def has_sound_boundary(found: Findings) -> bool:
     return faults.isdisjoint(problem.kind for problem in found.problems)
 
 
-def boundary_of(tin: TIN) -> Boundary:
+def find_boundary(tin: TIN) -> Boundary:
     """Return the edges with a triangle on one side only."""
     triangle, corner = np.nonzero(tin.neighbors == topology.NO_NEIGHBOR)
     start, end = topology.ends(tin.triangles, triangle, corner)
@@ -89,7 +89,7 @@ def boundary_of(tin: TIN) -> Boundary:
 
 def _check_overlaps(tin: TIN, found: Findings) -> None:
     """Check that the boundary meets itself in vertices only, with the surface on one side of it."""
-    fault = find_fault(boundary_of(tin))
+    fault = find_fault(find_boundary(tin))
     if fault is not None:
         what = (
             "The boundary crosses or overlaps itself, or runs through a vertex of itself"
@@ -99,7 +99,7 @@ def _check_overlaps(tin: TIN, found: Findings) -> None:
         found.report("overlap", [fault.vertex], f"{what} (westernmost: near vertex {{first}}).")
 
 
-def _flags_on_boundary(
+def _get_boundary_flags(
     tin: TIN, start: NDArray[np.int32], end: NDArray[np.int32]
 ) -> NDArray[np.bool_]:
     """Return whether the boundary edges from ``start`` to ``end`` are constrained."""
@@ -136,10 +136,12 @@ def _check_euler(rings: list[NDArray[np.int32]], is_free: bool, found: Findings)
 def _check_areas(tin: TIN, rings: list[NDArray[np.int32]], found: Findings) -> None:
     """Compare the areas of all triangles with what the boundary encloses, rounding bounded."""
     corners = [tin.triangles[:, k] for k in range(3)]
-    inside, inside_error = _doubled_area(tin.points, *corners)
+    inside, inside_error = _measure_doubled_areas(tin.points, *corners)
     start = np.concatenate(rings)
     end = np.concatenate([np.roll(ring, -1) for ring in rings])
-    enclosed, enclosed_error = _doubled_area(tin.points, np.full_like(start, start[0]), start, end)
+    enclosed, enclosed_error = _measure_doubled_areas(
+        tin.points, np.full_like(start, start[0]), start, end
+    )
     if not abs(inside - enclosed) <= inside_error + enclosed_error:
         found.fail(
             "area",
@@ -148,7 +150,7 @@ def _check_areas(tin: TIN, rings: list[NDArray[np.int32]], found: Findings) -> N
         )
 
 
-def _doubled_area(
+def _measure_doubled_areas(
     points: NDArray[np.float64], a: NDArray[np.int32], b: NDArray[np.int32], c: NDArray[np.int32]
 ) -> tuple[float, float]:
     """Return twice the signed area of triangles, and a bound for its error.

@@ -194,9 +194,11 @@ class Lines(Frozen):
             names=(*self.names, line.name),
         )
 
-    def renumbered(self, number: NDArray[np.int32]) -> Lines:
+    def renumber(self, number: NDArray[np.int32]) -> Lines:
         """Return the same lines with vertex ``v`` called ``number[v]``."""
         return replace(self, vertices=number[self.vertices])
+
+    renumbered = renumber
 
     def __repr__(self) -> str:
         kinds = ", ".join(f"{self.kinds.count(kind)} {kind}" for kind in get_args(LineKind))
@@ -273,7 +275,7 @@ def as_ring(ring: ArrayLike, what: str) -> NDArray[np.float64]:
     return coords
 
 
-def elevations_at_start(ring: ArrayLike, what: str) -> NDArray[np.float64]:
+def find_elevations_at_start(ring: ArrayLike, what: str) -> NDArray[np.float64]:
     """Return the vertices where a ring closes, one for each elevation, ascending; none if flat."""
     coords = as_coords(ring, what, least=3)
     if coords.shape[1] == 2:

@@ -21,10 +21,10 @@ __all__ = [
     "OWN_BOUNDARY",
     "RingSegments",
     "Surface",
-    "clipped",
+    "clip",
     "in_rings",
     "is_inside",
-    "trimmed",
+    "trim",
 ]
 
 
@@ -77,21 +77,29 @@ def is_inside(
 
     The triangles between the rings are regions. Where the largest triangle of all lies is found by
     comparing its middle with the rings, which leaves no doubt. From there on every ring that is
-    crossed changes sides, so slivers between rings that nearly coincide are told exactly.
+    crossed changes sides, so slivers between rings that nearly coincide are told exactly::
+
+        +---------------- boundary ----+      bits: 1 for the boundary, 4, 8 ... for the holes
+        |        +--- hole ----+       |
+        |   1    |  5   +---+  |   1   |   0  across an edge the bits of its rings flip: the island
+        |        |      | 1 |  |       |      is a second ring of the hole, so inside it 4 is off
+        |        |      +---+  |       |
+        |        +-------------+       |      kept: all that is needed is on, no hole is
+        +------------------------------+
 
     Raises
     ------
     LinesError
         If a hole cuts nothing away.
     """
-    half = _half_edges(surface, segments)
-    region, largest = _regions(surface, half)
+    half = _gather_half_edges(surface, segments)
+    region, largest = _find_regions(surface, half)
     is_out = np.zeros(len(largest), np.bool_)
     is_out[region[half.triangle[half.is_behind_own_boundary]]] = True
-    toggles = _toggles(segments, len(surface.points))
-    point = _center(surface, largest)
+    toggles = _find_toggles(segments, len(surface.points))
+    point = _find_middles(surface, largest)
     side = _Sides(boundary, extent, holes)
-    bits = _spread(surface, region, half, toggles, is_out, largest, point, side)
+    bits = _spread_bits(surface, region, half, toggles, is_out, largest, point, side)
     keep = ~is_out & np.array([side.is_kept(own) for own in bits])
     _require_all_cut(bits, is_out, side)
     chosen: NDArray[np.bool_] = keep[region]
@@ -107,7 +115,7 @@ class _HalfEdges(NamedTuple):
     is_behind_own_boundary: NDArray[np.bool_]
 
 
-def _half_edges(surface: Surface, segments: RingSegments) -> _HalfEdges:
+def _gather_half_edges(surface: Surface, segments: RingSegments) -> _HalfEdges:
     n = len(surface.points)
     triangle, corner = np.nonzero(surface.constrained)
     start, end = topology.ends(surface.triangles, triangle, corner)
@@ -120,14 +128,16 @@ def _half_edges(surface: Surface, segments: RingSegments) -> _HalfEdges:
     return _HalfEdges(triangle, corner, key, is_behind)
 
 
-def _regions(surface: Surface, half: _HalfEdges) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+def _find_regions(
+    surface: Surface, half: _HalfEdges
+) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
     barrier = np.zeros(surface.constrained.shape, np.bool_)
     barrier[half.triangle, half.corner] = True
     xy = np.ascontiguousarray(surface.points[:, :2])
     return _kernel.regions(xy, surface.triangles, surface.neighbors, barrier)
 
 
-def _toggles(segments: RingSegments, n_vertices: int) -> dict[int, int]:
+def _find_toggles(segments: RingSegments, n_vertices: int) -> dict[int, int]:
     """Return for each edge along rings the groups that lie on other sides of it, as bits."""
     toggles: dict[int, int] = {}
     keys = edge_keys(segments.pairs, n_vertices).tolist()
@@ -163,7 +173,7 @@ class _Sides:
         return self.is_within(bits) and bits >> HOLES == 0
 
 
-def _spread(
+def _spread_bits(
     surface: Surface,
     region: NDArray[np.int32],
     half: _HalfEdges,
@@ -174,9 +184,9 @@ def _spread(
     side: _Sides,
 ) -> list[int]:
     """Return the bits of every region, from the largest one across the rings."""
-    beside = _beside(surface, region, half)
+    beside = _find_regions_beside(surface, region, half)
     bits: list[int | None] = [None] * len(largest)
-    for start in _by_size(surface, largest):
+    for start in _sort_by_size(surface, largest):
         if bits[start] is not None:
             continue
         bits[start] = side.at(point[start])
@@ -190,7 +200,7 @@ def _spread(
     return [own or 0 for own in bits]
 
 
-def _beside(
+def _find_regions_beside(
     surface: Surface, region: NDArray[np.int32], half: _HalfEdges
 ) -> dict[int, list[tuple[int, int]]]:
     """Return for each region those across a ring, with an edge between them."""
@@ -206,7 +216,7 @@ def _beside(
     return found
 
 
-def _by_size(surface: Surface, largest: NDArray[np.int32]) -> list[int]:
+def _sort_by_size(surface: Surface, largest: NDArray[np.int32]) -> list[int]:
     a, b, c = (surface.points[surface.triangles[largest, k], :2] for k in range(3))
     (x, y), (u, v) = (b - a).T, (c - a).T
     order: list[int] = np.argsort(-(x * v - y * u), kind="stable").tolist()
@@ -226,19 +236,25 @@ def _require_all_cut(bits: list[int], is_out: NDArray[np.bool_], side: _Sides) -
             )
 
 
-def _center(surface: Surface, triangles: NDArray[np.int32]) -> NDArray[np.float64]:
+def _find_middles(surface: Surface, triangles: NDArray[np.int32]) -> NDArray[np.float64]:
     a, b, c = (surface.points[surface.triangles[triangles, k], :2] for k in range(3))
     center: NDArray[np.float64] = a + ((b - a) + (c - a)) / 3.0
     return center
 
 
-def trimmed(
+def trim(
     surface: Surface, keep: NDArray[np.bool_], max_edge: float, *, everywhere: bool
 ) -> NDArray[np.bool_]:
     """Drop triangles at edges longer than ``max_edge`` that are no lines.
 
     From the boundary only the triangles go that lie at a long outer edge, as long as there are
-    any; everywhere all that have a long edge.
+    any; everywhere all that have a long edge::
+
+        a ------------------ b       a-b is outer and long: the triangle a-b-c goes. Then a-c is
+          `.   `.          .'        outer, and long too: a-c-d goes. c-d is short: what lies
+            `.    `.     .'          beyond it stays.
+              `.     `..'
+                d ---- c
     """
     a, b, c = (surface.points[surface.triangles[:, k], :2] for k in range(3))
     sides = np.stack([np.hypot(*(c - b).T), np.hypot(*(a - c).T), np.hypot(*(b - a).T)], axis=1)
@@ -259,10 +275,14 @@ def trimmed(
     return keep
 
 
-def clipped(surface: Surface, keep: NDArray[np.bool_]) -> tuple[Surface, NDArray[np.int32]]:
+def clip(surface: Surface, keep: NDArray[np.bool_]) -> tuple[Surface, NDArray[np.int32]]:
     """Return the kept triangles with the vertices that they use, and the new number of each vertex.
 
-    Vertices without a triangle have number -1. The new boundary is constrained.
+    Vertices without a triangle have number -1. The new boundary is constrained::
+
+        triangle   0  1  2  3  4
+        keep       x     x  x         what is beside a kept triangle gets its number of now,
+        number     0  -  1  2  -      or none, and then the edge between them is constrained
     """
     number = np.cumsum(keep, dtype=np.int32) - np.int32(1)
     beside = surface.neighbors[keep]

@@ -47,17 +47,17 @@ def drape(surface: Surface, lines: LineSet, *, threads: int) -> Draped:
     hull = topology.boundary_rings(surface.triangles, surface.neighbors)[0]
     ring = np.ascontiguousarray(surface.points[hull, :2])
     if (in_rings(lines.xy, [ring]) >= 0).all():
-        xy, polylines = _vertices_once(lines)
-        whole = _with_elevations(surface, xy, np.full(len(xy), np.nan), polylines, lines)
-        return Draped(whole, _no_lines(lines), 0)
+        xy, polylines = _find_vertices(lines)
+        whole = _take_elevations(surface, xy, np.full(len(xy), np.nan), polylines, lines)
+        return Draped(whole, _make_no_lines(lines), 0)
     return _cut_at_boundary(surface, hull, lines, threads=threads)
 
 
-def _no_lines(lines: LineSet) -> LineSet:
-    return lines.chosen(np.zeros(len(lines.kinds), np.bool_))
+def _make_no_lines(lines: LineSet) -> LineSet:
+    return lines.choose(np.zeros(len(lines.kinds), np.bool_))
 
 
-def _vertices_once(lines: LineSet) -> tuple[NDArray[np.float64], Polylines]:
+def _find_vertices(lines: LineSet) -> tuple[NDArray[np.float64], Polylines]:
     """Return the places of the lines' vertices, and the lines through these."""
     xy, vertex_of = np.unique(lines.xy, axis=0, return_inverse=True)
     return xy, Polylines.whole(vertex_of.reshape(-1).astype(np.int32), lines.offsets)
@@ -88,7 +88,7 @@ def _cut_at_boundary(
     elevations = np.full(len(points), np.nan)
     elevations[boundary_chain] = boundary_elevations
     return Draped(
-        _with_elevations(surface, points, elevations, cut.keep(is_inside), lines),
+        _take_elevations(surface, points, elevations, cut.keep(is_inside), lines),
         _split_boundary(points, boundary_chain, boundary_elevations, vertex_of[len(lines.xy) :]),
         len(np.unique(cut.segment_lines()[~is_inside])),
     )
@@ -110,7 +110,7 @@ def _split_boundary(
     """
     corner = np.flatnonzero(np.isin(chain, own))
     is_split = np.diff(corner) > 1
-    is_split |= _hidden_edges(points[chain], corner, is_split)
+    is_split |= _find_hidden_edges(points[chain], corner, is_split)
     begins, ends = corner[:-1][is_split], corner[1:][is_split] + 1
     counts = ends - begins
     offsets = find_offsets(counts)
@@ -120,7 +120,7 @@ def _split_boundary(
     return LineSet(points[chain[rows]], elevations[rows], offsets, table)
 
 
-def _hidden_edges(
+def _find_hidden_edges(
     xy: NDArray[np.float64], corner: NDArray[np.int64], is_split: NDArray[np.bool_]
 ) -> NDArray[np.bool_]:
     """Tell which edges of a closed boundary, corner to corner, a vertex on another one hides."""
@@ -144,7 +144,7 @@ def _are_beyond(xy: NDArray[np.float64], edge: NDArray[np.float64]) -> NDArray[n
     return beyond
 
 
-def _with_elevations(
+def _take_elevations(
     surface: Surface,
     points: NDArray[np.float64],
     elevations: NDArray[np.float64],
@@ -152,9 +152,9 @@ def _with_elevations(
     lines: LineSet,
 ) -> LineSet:
     """Give polylines a vertex at every edge of the surface, and every vertex its elevation."""
-    xy, owner = _along_surface(surface, points, polylines)
+    xy, owner = _follow_surface(surface, points, polylines)
     z = _kernel.Locator(surface.points, surface.triangles, surface.neighbors).interpolate(xy)
-    known = _elevations_at(xy, points, elevations)
+    known = _look_elevations_up(xy, points, elevations)
     z = np.where(np.isnan(known), z, known)
     keep = ~np.isnan(z)
     xy, z, owner = xy[keep], z[keep], owner[keep]
@@ -164,7 +164,7 @@ def _with_elevations(
     return LineSet(xy, z, find_offsets(counts), table)
 
 
-def _elevations_at(
+def _look_elevations_up(
     xy: NDArray[np.float64], points: NDArray[np.float64], elevations: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Look up the elevations of places that have one already; NaN elsewhere."""
@@ -180,10 +180,17 @@ def _elevations_at(
     return found
 
 
-def _along_surface(
+def _follow_surface(
     surface: Surface, points: NDArray[np.float64], polylines: Polylines
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Return the places along every polyline, with those where it crosses edges, and its number."""
+    """Return the places along every polyline, with those where it crosses edges, and its number.
+
+    ::
+
+                  /          .
+        a ------ x ---------- x ---- b      a segment, and two edges of the surface in its way:
+                /              .            along it lie a, x, x and b, a place in a row once
+    """
     mesh = _kernel.Mesh(
         surface.points,
         surface.triangles,

@@ -35,7 +35,7 @@ from .splitting import Splitting, drop_repeats
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Noded", "Touches", "node", "node_again", "untouched"]
+__all__ = ["Noded", "Touches", "accept_noded", "node", "node_again"]
 
 
 class Touches(NamedTuple):
@@ -77,7 +77,7 @@ class Noded(NamedTuple):
     touches: Touches
 
 
-def untouched(polylines: Polylines, elevations: NDArray[np.float64]) -> Noded:
+def accept_noded(polylines: Polylines, elevations: NDArray[np.float64]) -> Noded:
     """Return lines that meet nowhere, as :func:`node` would; repeated vertices are dropped."""
     none = np.empty(0, np.int32)
     return Noded(
@@ -151,9 +151,9 @@ def node(
         np.ascontiguousarray(xy, np.float64), polylines, elevations, float(snap), threads
     )
     work.split_everywhere(
-        None if crossing == "split" else lambda pairs: _crossing_error(work, pairs, names)
+        None if crossing == "split" else lambda pairs: _explain_crossing(work, pairs, names)
     )
-    return _account(work, np.asarray(priority))
+    return _number_and_account(work, np.asarray(priority))
 
 
 def node_again(
@@ -181,7 +181,7 @@ def node_again(
     xy = np.ascontiguousarray(points[:, :2])
     work = Splitting(xy, polylines, points[polylines.vertices, 2], 0.0, threads)
     work.split_everywhere()
-    noded = _account(work, priority)
+    noded = _number_and_account(work, priority)
     return np.concatenate([points, noded.new_points]), noded.polylines
 
 
@@ -196,8 +196,18 @@ class _Visits(NamedTuple):
     elevation: NDArray[np.float64]
 
 
-def _visits(work: Splitting, at: NDArray[np.int64]) -> _Visits:
-    """Gather what passes the positions ``at``, in order of vertex, line and position."""
+def _gather_visits(work: Splitting, at: NDArray[np.int64]) -> _Visits:
+    """Gather what passes the positions ``at``, in order of vertex, line and position.
+
+    A line may come through a vertex several times. Twice between the same neighbours, forwards or
+    back, is one visit, with the lower of the elevations::
+
+            b
+            |            a line  a v b ... b v a ... c v d  comes through v three times,
+        c - v - d        which are two visits: a-v-b and c-v-d
+            |
+            a
+    """
     vertices, line = work.polylines.vertices, work.polylines.owners.astype(np.int32)
     same_before = np.append(False, line[1:] == line[:-1])
     before = np.where(same_before[at], vertices[at - 1], -1)
@@ -212,7 +222,7 @@ def _visits(work: Splitting, at: NDArray[np.int64]) -> _Visits:
     return _Visits(vertices[at], line[at], work.elevations[at])
 
 
-def _account(work: Splitting, priority: NDArray[Any]) -> Noded:
+def _number_and_account(work: Splitting, priority: NDArray[Any]) -> Noded:
     """Return everything, the new points numbered by place."""
     n_given = work.n_given
     made = work.xy[n_given:]
@@ -223,7 +233,7 @@ def _account(work: Splitting, priority: NDArray[Any]) -> Noded:
     work.xy = np.concatenate([work.xy[:n_given], made[order]])
     is_crossing = np.zeros(len(work.xy), np.bool_)
     is_crossing[number[work.crossing_vertices]] = True
-    crossings, winners = _crossings(work, is_crossing, priority)
+    crossings, winners = _gather_crossings(work, is_crossing, priority)
     is_new = winners.vertex >= n_given
     passed = ~work.is_given & (work.polylines.vertices < n_given)
     return Noded(
@@ -231,16 +241,25 @@ def _account(work: Splitting, priority: NDArray[Any]) -> Noded:
         work.polylines,
         work.elevations,
         crossings,
-        Touches(*_visits(work, np.flatnonzero(passed))),
+        Touches(*_gather_visits(work, np.flatnonzero(passed))),
     )
 
 
-def _crossings(
+def _gather_crossings(
     work: Splitting, is_crossing: NDArray[np.bool_], priority: NDArray[Any]
 ) -> tuple[Crossings, _Visits]:
-    """Return the crossings, and whose elevation counts at each vertex, by vertex."""
+    """Return the crossings, and whose elevation counts at each vertex, by vertex.
+
+    The visits are sorted by vertex, at each the one that counts in front::
+
+        vertex      7  7  7  9  9
+        line        2  0  3  1  4
+        is_winner   x        x
+        winner      0  0  0  3  3            the row of the winner at the same vertex
+        crossings   (2, 0) (2, 3) (1, 4)     a pair for each other visit, the winner in front
+    """
     at = np.flatnonzero(is_crossing[work.polylines.vertices])
-    vertex, line, elevation = _visits(work, at)
+    vertex, line, elevation = _gather_visits(work, at)
     part_of = work.polylines.lines[line]
     rank = np.where(np.isneginf(priority[line]), 0, part_of)  # draped lines have no order
     best = np.lexsort((line, elevation, rank, -priority[line], np.isnan(elevation), vertex))
@@ -256,26 +275,26 @@ def _crossings(
     return crossings, _Visits(vertex[is_winner], line[is_winner], elevation[is_winner])
 
 
-def _crossing_error(
+def _explain_crossing(
     work: Splitting, pairs: NDArray[np.int64], names: Sequence[str] | None
 ) -> LinesError:
     """Name the first crossing: by lines, then by place."""
-    points = work.points_of(pairs)
+    points = work.find_crossing_points(pairs)
     segment = np.sort(work.segments.first_segment[pairs], axis=1)
     lines = work.polylines.owners[work.segments.start[segment]]
     first = np.lexsort((points[:, 1], points[:, 0], lines[:, 1], lines[:, 0]))[0]
     a, b = lines[first].tolist()
     x, y = points[first].tolist()
-    elevations = work.elevations_at(segment[first], points[[first, first]]).tolist()
+    elevations = work.interpolate_elevations(segment[first], points[[first, first]]).tolist()
     label_a, label_b = (f"line {i}" if names is None else names[i] for i in (a, b))
     whom = "itself" if a == b else label_b
     return LinesError(
         f"{label_a[0].upper()}{label_a[1:]} crosses {whom} at ({x:.12g}, {y:.12g}), "
-        f"{_in_words(elevations)}: crossing='split' makes a vertex there.",
+        f"{_describe_elevations(elevations)}: crossing='split' makes a vertex there.",
         lines=sorted({a, b}),
     )
 
 
-def _in_words(elevations: list[float]) -> str:
+def _describe_elevations(elevations: list[float]) -> str:
     first, second = ("no elevation" if np.isnan(z) else f"elevation {z:.10g}" for z in elevations)
     return f"with {first} and {second}"

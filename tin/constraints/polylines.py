@@ -15,7 +15,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["Polylines"]
+__all__ = ["Polylines", "offsets_of", "owners_of"]
+
+offsets_of, owners_of = find_offsets, find_owners  # their names at first
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,7 +15,7 @@ from ...errors import LinesError
 from .. import _kernel
 from ..topology import edge_keys, edges_at
 from .breaklines import Lines
-from .clipping import BOUNDARY, OWN_BOUNDARY, RingSegments, Surface, clipped, is_inside, trimmed
+from .clipping import BOUNDARY, OWN_BOUNDARY, RingSegments, Surface, clip, is_inside, trim
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from .constraint_table import ConstraintTable
     from .polylines import Polylines
 
-__all__ = ["Clip", "Pslg", "force", "lines_in", "mesh_of", "mesh_of_growth"]
+__all__ = ["Clip", "Pslg", "build_mesh", "build_mesh_of_growth", "find_lines_in", "force"]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -73,7 +73,7 @@ class Clip:
             _require_triangles(keep, "The boundary and the holes leave no triangle of the surface")
         if np.isfinite(self.max_edge):
             everywhere = self.is_trimmed_everywhere
-            keep = trimmed(surface, keep, self.max_edge, everywhere=everywhere)
+            keep = trim(surface, keep, self.max_edge, everywhere=everywhere)
             _require_triangles(keep, f"No triangle is left with max_edge {self.max_edge:g}")
         return keep
 
@@ -112,15 +112,15 @@ class Pslg:
         """Cut the triangulated hull; return the surface and the new number of each vertex."""
         if self.clip.is_none:
             return hull, np.arange(len(hull.points), dtype=np.int32)
-        group = self._ring_groups()[self.polylines.segment_lines()]
+        group = self._find_ring_groups()[self.polylines.segment_lines()]
         is_ring = group >= (OWN_BOUNDARY if self.clip.has_own_boundary else BOUNDARY)
         rings = RingSegments(self.polylines.segments()[is_ring], group[is_ring])
         keep = self.clip.keeps(hull, rings)
         if keep.all():
             return hull, np.arange(len(hull.points), dtype=np.int32)
-        return clipped(hull, keep)
+        return clip(hull, keep)
 
-    def _ring_groups(self) -> NDArray[np.int64]:
+    def _find_ring_groups(self) -> NDArray[np.int64]:
         """Return the group of each line, that of the boundary too; below all if it is no ring."""
         table = self.constraints
         groups = np.where(table.sources < 0, OWN_BOUNDARY, self.groups)
@@ -141,14 +141,14 @@ class Pslg:
         return bool(((within < 0) & (everywhere >= 0)).any())
 
 
-def mesh_of(points: NDArray[np.float64], polylines: Polylines, *, threads: int) -> _kernel.Mesh:
+def build_mesh(points: NDArray[np.float64], polylines: Polylines, *, threads: int) -> _kernel.Mesh:
     """Triangulate distinct points, and fix the segments of lines that are cut where they meet."""
-    mesh = mesh_of_growth(points, _kernel.grow(points, threads=threads))
+    mesh = build_mesh_of_growth(points, _kernel.grow(points, threads=threads))
     force(mesh, polylines)
     return mesh
 
 
-def mesh_of_growth(points: NDArray[np.float64], growth: _kernel.Growth) -> _kernel.Mesh:
+def build_mesh_of_growth(points: NDArray[np.float64], growth: _kernel.Growth) -> _kernel.Mesh:
     """Return the triangulation of distinct points as a mesh, with no edge fixed."""
     return _kernel.Mesh(points, growth.triangles, growth.neighbors)
 
@@ -160,7 +160,7 @@ def force(mesh: _kernel.Mesh, polylines: Polylines) -> None:
         raise AssertionError("lines were not cut at all places where they meet")
 
 
-def lines_in(
+def find_lines_in(
     polylines: Polylines,
     constraints: ConstraintTable,
     number_of: NDArray[np.int32],

@@ -22,6 +22,16 @@ MOST_ROUNDS = 1000  # cascades of roundings end after a few
 class Segments(NamedTuple):
     """Segments of all polylines, and the distinct edges along which they run.
 
+    Two lines that share a part have four segments on three edges. What touches or crosses an edge
+    is found once, and splits all of its segments::
+
+        line 0    u ---> v ---> w             position   0  1  2   3  4  5
+        line 1           v <--- w <--- x      vertex     u  v  w   x  w  v
+
+        start     0    1    3    4            edges      u-v  v-w  w-x
+        edge      u-v  v-w  w-x  v-w
+        backward  no   no   yes  yes
+
     Attributes
     ----------
     start : (s,) int64 array
@@ -51,9 +61,9 @@ class Segments(NamedTuple):
         start = polylines.starts()
         a, b = (polylines.vertices[at].astype(np.int64) for at in (start, start + 1))
         keys, first_segment, edge = np.unique(
-            _key_of(np.minimum(a, b), np.maximum(a, b)), return_index=True, return_inverse=True
+            _make_keys(np.minimum(a, b), np.maximum(a, b)), return_index=True, return_inverse=True
         )
-        ends = np.stack(_numbers_of(keys), axis=1).astype(np.int32)
+        ends = np.stack(_split_keys(keys), axis=1).astype(np.int32)
         swapped = is_before(xy[ends[:, 1]], xy[ends[:, 0]])
         ends[swapped] = ends[swapped, ::-1]
         return cls(start, edge, ends[edge, 0] != a, keys, ends, first_segment)
@@ -72,13 +82,13 @@ def drop_repeats(
     moves[first] = True
     starts = np.flatnonzero(moves)
     lowest = np.minimum.reduceat(elevations, starts) if len(starts) else elevations
-    ends = _closing_ends(polylines, elevations)
+    ends = _find_closing_ends(polylines, elevations)
     run = np.searchsorted(starts, ends, side="right") - 1
     lowest[run] = lowest[run].min(axis=0)
     return polylines.choose_positions(moves), lowest
 
 
-def _closing_ends(polylines: Polylines, elevations: NDArray[np.float64]) -> NDArray[np.int64]:
+def _find_closing_ends(polylines: Polylines, elevations: NDArray[np.float64]) -> NDArray[np.int64]:
     """Return where polylines begin and end that close with one elevation, (2, c).
 
     Others keep both of their elevations: a ramp may end above its begin.
@@ -89,13 +99,13 @@ def _closing_ends(polylines: Polylines, elevations: NDArray[np.float64]) -> NDAr
     return ends[:, (a == b) & (z_a == z_b)]
 
 
-def _key_of(first: NDArray[Any], second: NDArray[Any]) -> NDArray[np.int64]:
+def _make_keys(first: NDArray[Any], second: NDArray[Any]) -> NDArray[np.int64]:
     """Make one number of two below 2^31."""
     key: NDArray[np.int64] = (first.astype(np.int64) << 32) | second
     return key
 
 
-def _numbers_of(keys: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _split_keys(keys: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     return keys >> 32, keys & 0xFFFFFFFF
 
 
@@ -164,7 +174,7 @@ class Splitting:
                 raise refuse(pairs)
             self.split_at_crossings(pairs)
             self.split_at_touches()
-        raise endless()
+        raise explain_endless()
 
     # ---------------------------------------------------------------- touches
 
@@ -174,14 +184,14 @@ class Splitting:
             edge, vertex = self._find_touches()
             bends = self._snap > 0 or self._is_rounded
             if len(edge) and bends:
-                edge, vertex = self._shortening(edge, vertex)
+                edge, vertex = self._keep_shortening(edge, vertex)
             if len(edge):
                 self._split(edge, vertex, bends=bends)
             if len(edge) == 0 or not bends:  # exact splits leave no touches
                 self._untouched = self.segments.keys
                 self._n_touched = len(self.xy)
                 return
-        raise endless()
+        raise explain_endless()
 
     def _find_touches(self) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
         """Ask new edges about all vertices, known ones about new vertices."""
@@ -215,19 +225,26 @@ class Splitting:
         self._n_touched = len(self.xy)
         return touches[:, 0].astype(np.int64), touches[:, 1]
 
-    def _shortening(
+    def _keep_shortening(
         self, edge: NDArray[np.int64], vertex: NDArray[np.int32]
     ) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
-        """Keep all touches of an edge if that leaves shorter parts, else only the nearest."""
-        edge, vertex = self._in_order(edge, vertex, bends=True)
-        a, b, p = self._ends_and_points(edge, vertex)
+        """Keep all touches of an edge if that leaves shorter parts, else only the nearest.
+
+        ::
+
+                   p                    a-p, p-q and q-b are all shorter than a-b: both are kept.
+            a ---------- q ---- b       If a part were not, only q would be, as it is the nearest
+                                        to the line, and a-q and q-b would be looked at again.
+        """
+        edge, vertex = self._sort_along(edge, vertex, bends=True)
+        a, b, p = self._get_ends_and_points(edge, vertex)
         is_first = np.append(True, np.diff(edge) != 0)
         before = np.where(is_first[:, None], a, np.roll(p, 1, axis=0))
         after = np.where(np.roll(is_first, -1)[:, None], b, np.roll(p, -1, axis=0))
-        whole = _square(a, b)
-        grows = (_square(before, p) >= whole) | (_square(p, after) >= whole)
+        whole = _measure_square(a, b)
+        grows = (_measure_square(before, p) >= whole) | (_measure_square(p, after) >= whole)
         keep = ~np.isin(edge, edge[grows])
-        nearest = np.lexsort((p[:, 1], p[:, 0], np.abs(_cross(a, b, p)), edge))
+        nearest = np.lexsort((p[:, 1], p[:, 0], np.abs(_measure_cross(a, b, p)), edge))
         keep[nearest[is_first]] = True  # both orders are by edge first
         return edge[keep], vertex[keep]
 
@@ -249,10 +266,10 @@ class Splitting:
 
     def split_at_crossings(self, pairs: NDArray[np.int64]) -> None:
         """Split the edges of all pairs where they cross."""
-        vertex = np.repeat(self._vertices_at(self.points_of(pairs)), 2)
+        vertex = np.repeat(self._find_or_make_vertices(self.find_crossing_points(pairs)), 2)
         edge = pairs.ravel()
         inside = (self.segments.ends[edge] != vertex[:, None]).all(axis=1)
-        split, at = _numbers_of(np.unique(_key_of(edge[inside], vertex[inside])))
+        split, at = _split_keys(np.unique(_make_keys(edge[inside], vertex[inside])))
         # Of every pair at least one is split: the others do not cross one another.
         uncrossed = np.ones(len(self.segments.keys), np.bool_)
         uncrossed[split] = False
@@ -260,11 +277,11 @@ class Splitting:
         self._split(split, at.astype(np.int32), bends=False)
         self._is_rounded = True
 
-    def points_of(self, pairs: NDArray[np.int64]) -> NDArray[np.float64]:
+    def find_crossing_points(self, pairs: NDArray[np.int64]) -> NDArray[np.float64]:
         """Return where the edges of each pair cross, (c, 2)."""
         return _kernel.intersections(self.xy, self.segments.ends, pairs.astype(np.int32))
 
-    def _vertices_at(self, points: NDArray[np.float64]) -> NDArray[np.int32]:
+    def _find_or_make_vertices(self, points: NDArray[np.float64]) -> NDArray[np.int32]:
         """Find or make the vertex at each place."""
         order = np.lexsort((points[:, 1], points[:, 0]))
         is_first = np.append(True, (np.diff(points[order], axis=0) != 0).any(axis=1))
@@ -287,9 +304,19 @@ class Splitting:
         *,
         bends: bool,
     ) -> None:
-        """Split every segment along an edge at the vertices given with it."""
+        """Split every segment along an edge at the vertices given with it.
+
+        The vertices of an edge are one run of rows, from its first end to its second; a segment
+        that goes backwards reads its run from the end::
+
+            row                 4  5  6             edge a-b is split at r, s, t
+            vertex              r  s  t
+
+            a -> r -> s -> t -> b   nth 0 1 2   row 4 5 6
+            b -> t -> s -> r -> a   nth 0 1 2   row 6 5 4     (is_backward)
+        """
         segments = self.segments
-        edge, vertex = self._in_order(edge, vertex, bends=bends)
+        edge, vertex = self._sort_along(edge, vertex, bends=bends)
         count = np.bincount(edge, minlength=len(segments.keys))
         first = np.cumsum(count) - count
         segment = np.repeat(np.arange(len(segments.start)), count[segments.edge])
@@ -297,13 +324,13 @@ class Splitting:
         on = segments.edge[segment]
         row = first[on] + np.where(segments.is_backward[segment], count[on] - 1 - nth, nth)
         at, vertex = segments.start[segment], vertex[row]
-        elevations = self.elevations_at(segment, self.xy[vertex])
+        elevations = self.interpolate_elevations(segment, self.xy[vertex])
         self.elevations = np.insert(self.elevations, at + 1, elevations)
         self.is_given = np.insert(self.is_given, at + 1, values=False)
         self.polylines = self.polylines.insert(at, vertex)
         self.segments = Segments.along(self.polylines, self.xy)
 
-    def _in_order(
+    def _sort_along(
         self, edge: NDArray[np.int64], vertex: NDArray[np.int32], *, bends: bool
     ) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
         """Sort by edge, then from its first end to the second.
@@ -312,19 +339,19 @@ class Splitting:
         lines bend, the projection decides; of two places across an upright or level edge, which
         are then equally far along it, the coordinates.
         """
-        a, b, p = self._ends_and_points(edge, vertex)
+        a, b, p = self._get_ends_and_points(edge, vertex)
         x, y = (np.sign(b - a) * p).T
-        keys = (*p.T, y, x, _projection(a, b, p)) if bends else (y, x)
+        keys = (*p.T, y, x, _project(a, b, p)) if bends else (y, x)
         order = np.lexsort((*keys, edge))
         return edge[order], vertex[order]
 
-    def _ends_and_points(
+    def _get_ends_and_points(
         self, edge: NDArray[np.int64], vertex: NDArray[np.int32]
     ) -> tuple[NDArray[np.float64], ...]:
         first, second = self.segments.ends[edge].T
         return self.xy[first], self.xy[second], self.xy[vertex]
 
-    def elevations_at(
+    def interpolate_elevations(
         self, segment: NDArray[np.int64], points: NDArray[np.float64]
     ) -> NDArray[np.float64]:
         """Interpolate the elevations of segments at places on them; the same both ways."""
@@ -333,10 +360,10 @@ class Splitting:
         a, b = self.xy[first], self.xy[second]
         z_a = self.elevations[start + backward]
         z_b = self.elevations[start + ~backward]
-        return interpolate_linearly(z_a, z_b, _projection(a, b, points) / _square(a, b))
+        return interpolate_linearly(z_a, z_b, _project(a, b, points) / _measure_square(a, b))
 
 
-def endless() -> LinesError:
+def explain_endless() -> LinesError:
     """Return the error for lines that do not come to an end."""
     return LinesError(
         f"The lines still meet at new places after {MOST_ROUNDS} rounds of splitting: "
@@ -355,14 +382,14 @@ def interpolate_linearly(
     return np.clip(between, np.minimum(start, end), np.maximum(start, end))
 
 
-def _projection(
+def _project(
     a: NDArray[np.float64], b: NDArray[np.float64], p: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     along: NDArray[np.float64] = ((p - a) * (b - a)).sum(axis=1)
     return along
 
 
-def _cross(
+def _measure_cross(
     a: NDArray[np.float64], b: NDArray[np.float64], p: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     u, v = b - a, p - a
@@ -370,7 +397,7 @@ def _cross(
     return area
 
 
-def _square(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
+def _measure_square(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
     square: NDArray[np.float64] = ((b - a) ** 2).sum(axis=1)
     return square
 

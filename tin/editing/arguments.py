@@ -20,15 +20,15 @@ __all__ = [
     "as_point",
     "as_vertex_elevations",
     "as_vertices",
-    "copied",
+    "copy_argument",
     "require_distinct",
 ]
 
 
-def copied(value: Any) -> Any:
+def copy_argument(value: Any) -> Any:
     """Return an argument so that the caller's further use of it changes nothing."""
     if isinstance(value, list):
-        return [copied(one) if isinstance(one, list) else one for one in value]
+        return [copy_argument(one) if isinstance(one, list) else one for one in value]
     return value.copy() if isinstance(value, np.ndarray) else value
 
 

@@ -157,9 +157,9 @@ class AddLine(NamedTuple):
     def apply(self, lines: LineSet) -> LineSet:
         """Return the changed lines."""
         is_breakline = np.arange(len(lines.kinds)) < count_breaklines(lines)
-        return _numbered(
-            [lines.chosen(is_breakline), gather_lines([self.breakline], (), (), ())],
-            lines.chosen(~is_breakline),
+        return _number_lines(
+            [lines.choose(is_breakline), gather_lines([self.breakline], (), (), ())],
+            lines.choose(~is_breakline),
         )
 
 
@@ -172,7 +172,7 @@ class DropLines(NamedTuple):
         """Return the changed lines."""
         stays = ~np.isin(np.arange(len(lines.kinds)), self.numbers)
         is_breakline = np.arange(len(lines.kinds)) < count_breaklines(lines)
-        return _numbered([lines.chosen(is_breakline & stays)], lines.chosen(~is_breakline))
+        return _number_lines([lines.choose(is_breakline & stays)], lines.choose(~is_breakline))
 
 
 class PutVertices(NamedTuple):
@@ -232,9 +232,9 @@ class DropVertices(NamedTuple):
         )
 
 
-def _numbered(breaklines: Iterable[LineSet], others: LineSet) -> LineSet:
+def _number_lines(breaklines: Iterable[LineSet], others: LineSet) -> LineSet:
     """Return all lines, the breaklines numbered from 0."""
-    together = LineSet.joined([*breaklines, others])
+    together = LineSet.join([*breaklines, others])
     sources = together.sources.copy()
     count = len(together.kinds) - len(others.kinds)
     sources[:count] = np.arange(count, dtype=np.int32)

@@ -31,10 +31,10 @@ if TYPE_CHECKING:
     from .changes import NumberedInputs
     from .version import Version
 
-__all__ = ["inputs_of_triangles", "state_of_triangles"]
+__all__ = ["build_state_of_triangles", "gather_inputs_of_triangles"]
 
 
-def inputs_of_triangles(version: Version) -> BuildInputs:
+def gather_inputs_of_triangles(version: Version) -> BuildInputs:
     """Return what existing triangles are built of.
 
     Raises
@@ -43,10 +43,10 @@ def inputs_of_triangles(version: Version) -> BuildInputs:
         If a vertex is not finite.
     """
     surface, lines = version.triangulation, version.lines
-    chains = [(kind, name, chain) for kind, name, chain in _named_chains(version)]
+    chains = [(kind, name, chain) for kind, name, chain in _list_named_chains(version)]
     is_breakline = [kind in ("hard", "soft") for kind, _, _ in chains]
     ordered = [chain for chain, is_first in zip(chains, is_breakline, strict=True) if is_first]
-    ordered += [("soft", "", edge) for edge in _edges_of_no_line(version)]
+    ordered += [("soft", "", edge) for edge in _find_edges_of_no_line(version)]
     n_breaklines = len(ordered)
     ordered += [chain for chain, first in zip(chains, is_breakline, strict=True) if not first]
     has_own_boundary = not surface.fills_hull or "boundary" in lines.kinds
@@ -57,7 +57,7 @@ def inputs_of_triangles(version: Version) -> BuildInputs:
     return BuildInputs(
         points=as_points(surface.points),
         is_masked=None,
-        lines=_line_set(
+        lines=_make_line_set(
             surface.points,
             [chain for _, _, chain in ordered] + boundary,
             [kind for kind, _, _ in ordered] + ["boundary"] * len(boundary),
@@ -77,12 +77,12 @@ def inputs_of_triangles(version: Version) -> BuildInputs:
     )
 
 
-def _named_chains(version: Version) -> list[tuple[LineKind, str, NDArray[np.int32]]]:
+def _list_named_chains(version: Version) -> list[tuple[LineKind, str, NDArray[np.int32]]]:
     lines = version.lines
     return list(zip(lines.kinds, lines.names, lines.chains(), strict=True))
 
 
-def _line_set(
+def _make_line_set(
     points: NDArray[np.float64],
     chains: list[NDArray[np.int32]],
     kinds: list[LineKind],
@@ -99,7 +99,7 @@ def _line_set(
     )
 
 
-def _edges_of_no_line(version: Version) -> list[NDArray[np.int32]]:
+def _find_edges_of_no_line(version: Version) -> list[NDArray[np.int32]]:
     """Return the flagged edges of no line; those of the boundary count if there are no lines."""
     surface, lines = version.triangulation, version.lines
     flagged = surface.constrained
@@ -111,7 +111,7 @@ def _edges_of_no_line(version: Version) -> list[NDArray[np.int32]]:
     return list(edges[~is_segment])
 
 
-def state_of_triangles(version: Version, inputs: NumberedInputs) -> State:
+def build_state_of_triangles(version: Version, inputs: NumberedInputs) -> State:
     """Build existing triangles from their inputs.
 
     Raises
@@ -123,9 +123,9 @@ def state_of_triangles(version: Version, inputs: NumberedInputs) -> State:
     try:
         built = assemble(inputs.build_inputs)
     except TinsmithError:
-        raise _unfit() from None
+        raise _explain_unfit() from None
     if not _have_same_triangles(built.surface, given):
-        raise _unfit()
+        raise _explain_unfit()
     lines = built.lines
     return State(
         Triangulation(**built.surface._asdict()), built.vertex_of, lines, built.report, None
@@ -138,7 +138,7 @@ def _have_same_triangles(found: Surface, given: Triangulation) -> bool:
     return bool((_as_set(found.triangles) == _as_set(given.triangles)).all())
 
 
-def _unfit() -> PointsError:
+def _explain_unfit() -> PointsError:
     return PointsError(
         "The TIN cannot be edited: its triangles overlap, or are not the Delaunay triangulation of "
         "its points and lines that edits must keep; triangulate its points first."

@@ -32,7 +32,7 @@ def apply_edits(tin: Editable, edits: Iterable[Edit | Mapping[str, Any]]) -> Non
         At the first edit that fails, with its number; those before it stay done.
     """
     for number, edit in enumerate(edits):
-        operation, arguments = _taken_apart(edit, number)
+        operation, arguments = _take_apart(edit, number)
         try:
             getattr(tin, operation)(**arguments)
         except TypeError:
@@ -45,7 +45,7 @@ def apply_edits(tin: Editable, edits: Iterable[Edit | Mapping[str, Any]]) -> Non
             raise numbered from error
 
 
-def _taken_apart(edit: Edit | Mapping[str, Any], number: int) -> tuple[str, dict[str, Any]]:
+def _take_apart(edit: Edit | Mapping[str, Any], number: int) -> tuple[str, dict[str, Any]]:
     if isinstance(edit, Edit):
         return edit.operation, edit.arguments
     arguments = {name: value for name, value in edit.items() if name not in ("op", "notes")}

@@ -19,7 +19,7 @@ from .arguments import (
     as_point,
     as_vertex_elevations,
     as_vertices,
-    copied,
+    copy_argument,
     require_distinct,
 )
 from .changes import (
@@ -34,8 +34,8 @@ from .changes import (
     count_breaklines,
     has_own_elevations,
 )
-from .flipping import FLIP, flipped_edge, require_inner
-from .mesh_editor import Editor, merged_elevation, occupied
+from .flipping import FLIP, make_flipped_edge, require_inner
+from .mesh_editor import Editor, explain_occupied, merge_elevations
 from .state import State
 
 if TYPE_CHECKING:
@@ -108,7 +108,7 @@ class Operation:
 
     def arguments(self) -> dict[str, Any]:
         """Return copies of the arguments by name."""
-        return {name: copied(value) for name, value in vars(self).items()}
+        return {name: copy_argument(value) for name, value in vars(self).items()}
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain Python values, ready for JSON."""
@@ -146,9 +146,9 @@ class Insert(MeshOperation):
         state, inputs = tin.now(), tin.inputs()
         there = state.vertices_at(xyz[:, :2])
         own = np.where(there < 0, np.nan, state.triangulation.points[there, 2])
-        z = _merged_elevations(xyz, own, choice("duplicates", self.duplicates, DuplicatePolicy))
+        z = _merge_new_elevations(xyz, own, choice("duplicates", self.duplicates, DuplicatePolicy))
         at_vertex = there >= 0
-        change = _with_elevations(state, inputs, there[at_vertex], z[at_vertex])
+        change = _change_elevations(state, inputs, there[at_vertex], z[at_vertex])
         change = change._replace(added=np.column_stack([xyz[:, :2], z]))
         found = tin.build(inputs.after([change]))
         return Done(change, found, found.vertex_of_row[len(found.vertex_of_row) - len(xyz) :])
@@ -202,7 +202,7 @@ class Move(MeshOperation):
         state, inputs = tin.now(), tin.inputs()
         (there,) = state.vertices_at(point[None, :2]).tolist()
         if there >= 0 and there != numbers[0]:
-            raise occupied(there, *point[:2].tolist())
+            raise explain_occupied(there, *point[:2].tolist())
         rows = np.flatnonzero(np.isin(state.vertex_of_row, numbers))
         of_lines = state.line_vertices(inputs)
         on_lines = np.flatnonzero(of_lines == numbers[0])
@@ -236,7 +236,7 @@ class SetElevation(MeshOperation):
         numbers = as_vertices(self.vertices, tin.count)
         elevations = np.broadcast_to(as_vertex_elevations(self.z, len(numbers)), len(numbers))
         state, inputs = tin.now(), tin.inputs()
-        change = _with_elevations(state, inputs, numbers, elevations)
+        change = _change_elevations(state, inputs, numbers, elevations)
         made = numbers[~_has_own_elevation(state, inputs, numbers)]
         wanted = state.triangulation.points.copy()
         wanted[numbers, 2] = elevations
@@ -266,7 +266,7 @@ class Flip(MeshOperation):
         """Build the TIN of the changed inputs."""
         first, second = as_ends(self.a, self.b, tin.count).tolist()
         state = tin.now()
-        change = Change(lines=(_flipped(state, first, second),))
+        change = Change(lines=(_flip_line(state, first, second),))
         return Done(change, tin.build(tin.inputs().after([change])))
 
     def apply_to_mesh(self, editor: Editor) -> Done:
@@ -331,7 +331,7 @@ FORMER_NAMES = {"set_z": SetElevation.operation}
 """Names that edits may have in scripts of earlier versions."""
 
 
-def _flipped(state: State, a: int, b: int) -> LineChange:
+def _flip_line(state: State, a: int, b: int) -> LineChange:
     """Return the line to be added, or those to be dropped."""
     surface = state.triangulation
     holds = (surface.triangles == a).any(axis=1) & (surface.triangles == b).any(axis=1)
@@ -346,10 +346,10 @@ def _flipped(state: State, a: int, b: int) -> LineChange:
     runs = ((corners == a) & (np.roll(corners, -1, axis=1) == b)).any(axis=1)  # its left side
     corners = corners[np.argsort(~runs)]
     left, right = corners[(corners != a) & (corners != b)].tolist()
-    return AddLine(flipped_edge(surface.points[[a, b, left, right]]))
+    return AddLine(make_flipped_edge(surface.points[[a, b, left, right]]))
 
 
-def _merged_elevations(
+def _merge_new_elevations(
     xyz: NDArray[np.float64], own: NDArray[np.float64], policy: DuplicatePolicy
 ) -> NDArray[np.float64]:
     """Return the elevation that each new row has in the end, given those of vertices there."""
@@ -361,14 +361,14 @@ def _merged_elevations(
     for row in np.flatnonzero(~is_alone).tolist():
         here = elevations.get(int(place[row]), float(own[row]))
         elevations[int(place[row])] = (
-            float(z[row]) if np.isnan(here) else merged_elevation(here, float(z[row]), policy)
+            float(z[row]) if np.isnan(here) else merge_elevations(here, float(z[row]), policy)
         )
     for row in np.flatnonzero(~is_alone).tolist():
         z[row] = elevations[int(place[row])]
     return z
 
 
-def _with_elevations(
+def _change_elevations(
     state: State, inputs: NumberedInputs, vertices: NDArray[Any], elevations: NDArray[np.float64]
 ) -> Change:
     """Give the rows and the lines at vertices other elevations."""

@@ -13,14 +13,14 @@ if TYPE_CHECKING:
 
     from ..predicates import Columns
 
-__all__ = ["minimum_angles", "overlapping", "violating"]
+__all__ = ["find_overlapping", "find_violating", "measure_minimum_angles"]
 
 _ROWS = 1 << 20  # point-in-circle tests at a time
 _BLOCK = 256  # triangles at a time
 _CHUNK = 32  # neighbours of each looked at before asking whether an overlap is found
 
 
-def violating(points: NDArray[np.float64], triangles: NDArray[np.int32]) -> NDArray[np.bool_]:
+def find_violating(points: NDArray[np.float64], triangles: NDArray[np.int32]) -> NDArray[np.bool_]:
     """Tell which triangles have a point strictly inside their circle; exactly.
 
     Parameters
@@ -49,7 +49,9 @@ def violating(points: NDArray[np.float64], triangles: NDArray[np.int32]) -> NDAr
     return found
 
 
-def overlapping(points: NDArray[np.float64], triangles: NDArray[np.int32]) -> NDArray[np.bool_]:
+def find_overlapping(
+    points: NDArray[np.float64], triangles: NDArray[np.int32]
+) -> NDArray[np.bool_]:
     """Tell which triangles share area with another one; exactly.
 
     Parameters
@@ -116,7 +118,7 @@ def _is_apart(
     return apart
 
 
-def minimum_angles(
+def measure_minimum_angles(
     points: NDArray[np.float64], triangles: NDArray[np.int32]
 ) -> NDArray[np.float64]:
     """Return the smallest angle of every triangle, (m,) array in degrees."""

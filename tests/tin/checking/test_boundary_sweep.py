@@ -12,7 +12,7 @@ from support.oracles import orientation, place
 
 import tinsmith as ts
 from tinsmith.tin import TIN, check
-from tinsmith.tin.checking.boundary_sweep import Boundary, find_fault, sides_of
+from tinsmith.tin.checking.boundary_sweep import Boundary, find_fault, find_sides
 
 UTM = np.array([500_000.0, 4_000_000.0])
 SQUARE = np.array([[0, 0], [6, 0], [6, 6], [0, 6]], float)
@@ -110,7 +110,7 @@ def require_sides(boundary, rings, size, origin):
     xy = np.column_stack([x.ravel(), y.ravel()])
     exact = [[place(p) for p in ring.tolist()] for ring in rings]
     wanted = [is_inside(place(p), exact) for p in xy.tolist()]
-    assert sides_of(boundary, xy + origin).tolist() == wanted
+    assert find_sides(boundary, xy + origin).tolist() == wanted
 
 
 # ------------------------------------------------------------------ by name
@@ -148,10 +148,10 @@ def test_rings_that_may_not(rings, is_meeting):
 
 def test_sides_of_nothing_and_of_corners():
     boundary = boundary_of(SQUARE, SQUARE[::-1] / 3 + 2)
-    assert sides_of(boundary, np.empty((0, 2))).tolist() == []
-    assert sides_of(boundary, boundary.points).tolist() == [0] * 8
+    assert find_sides(boundary, np.empty((0, 2))).tolist() == []
+    assert find_sides(boundary, boundary.points).tolist() == [0] * 8
     xy = np.array([[1, 1], [3, 3], [3, 0], [2, 3], [6, 3], [7, 3], [-1, -1]], float)
-    assert sides_of(boundary, xy).tolist() == [1, -1, 0, 0, 0, -1, -1]
+    assert find_sides(boundary, xy).tolist() == [1, -1, 0, 0, 0, -1, -1]
 
 
 def test_near_misses_are_told_apart():
