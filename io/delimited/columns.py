@@ -77,10 +77,11 @@ _UNIT_NAMES = (
     *("us survey foot", "us survey feet", "survey foot", "survey feet", "usfoot", "usfeet"),
     *("ift", "intft", "int ft", "international foot", "international feet", "ftint"),
 )
+_UNIT_WORDS = "|".join(sorted(_UNIT_NAMES, key=len, reverse=True)).replace(" ", r"[\s._]+")
 # The brackets inside keep the pattern linear: a text of nothing but brackets is tried once.
 _UNIT = re.compile(
     r"[\[(](?P<inside>[^\[\]()]*)[\])]"
-    rf"|(?<=[^\W_])[_ .-]+(?P<behind>{'|'.join(sorted(_UNIT_NAMES, key=len, reverse=True))})$",
+    rf"|(?<=[^\W_])[_ .-]+(?P<behind>{_UNIT_WORDS})$",
     re.IGNORECASE,
 )
 _SHOWN_LETTERS, _SHOWN_NAMES = 40, 12

@@ -81,10 +81,10 @@ def _cut_at_boundary(
     boundary_chain = vertices[offsets[-2] :]
     boundary_elevations = noded.elevations[offsets[-2] :]
     points = np.concatenate([xy, noded.new_points[:, :2]])
-    side = in_rings(points, [boundary[:-1, :2]])
-    side[boundary_chain] = 0
     cut = Polylines.whole(vertices[: offsets[-2]], offsets[:-1])
-    is_inside = np.asarray((side[cut.segments()] >= 0).all(axis=1), np.bool_)
+    is_outside = np.zeros(len(points), np.bool_)
+    is_outside[: len(xy)] = in_rings(xy, [boundary[:-1, :2]]) < 0
+    is_inside = ~_run_outside(cut, is_outside, boundary_chain)
     elevations = np.full(len(points), np.nan)
     elevations[boundary_chain] = boundary_elevations
     return Draped(
@@ -92,6 +92,31 @@ def _cut_at_boundary(
         _split_boundary(points, boundary_chain, boundary_elevations, vertex_of[len(lines.xy) :]),
         len(np.unique(cut.segment_lines()[~is_inside])),
     )
+
+
+def _run_outside(
+    cut: Polylines, is_outside: NDArray[np.bool_], boundary_chain: NDArray[np.int32]
+) -> NDArray[np.bool_]:
+    """Tell which segments of noded lines lie outside a convex boundary.
+
+    From one vertex on the boundary to the next a line stays on one side, which its given vertices
+    tell. A crossing tells nothing: where another line crosses near the boundary, rounding may put
+    it beyond::
+
+        ----.x.---- boundary     the line from below gets a vertex at x, where it crosses a line
+             |                   along the boundary, and then one on it: up to there it is inside
+
+    A run without a given vertex is a part of one segment between two points of the boundary:
+    inside.
+    """
+    segments = cut.segments()
+    is_on_boundary = np.zeros(len(is_outside), np.bool_)
+    is_on_boundary[boundary_chain] = True
+    begins = np.diff(cut.segment_lines(), prepend=-1) != 0
+    run_of = np.cumsum(begins | is_on_boundary[segments[:, 0]]) - 1
+    shows = (is_outside & ~is_on_boundary)[segments].any(axis=1)
+    found: NDArray[np.bool_] = np.isin(run_of, run_of[shows])
+    return found
 
 
 def _split_boundary(
