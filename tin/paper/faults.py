@@ -40,11 +40,11 @@ def find_violating(points: NDArray[np.float64], triangles: NDArray[np.int32]) ->
     for start in range(0, len(triangles), at_once):
         block = triangles[start : start + at_once]
         which = np.repeat(np.arange(len(block)), len(points))
-        points_ = np.tile(everywhere, len(block))
-        other = (block[which] != points_[:, None]).all(axis=1)
-        which, points_ = which[other], points_[other]
+        candidates = np.tile(everywhere, len(block))
+        other = (block[which] != candidates[:, None]).all(axis=1)
+        which, candidates = which[other], candidates[other]
         a, b, c = block[which].T
-        inside = in_circle(xy, a, b, c, points_) > 0
+        inside = in_circle(xy, a, b, c, candidates) > 0
         found[start + which[inside]] = True
     return found
 
@@ -52,18 +52,7 @@ def find_violating(points: NDArray[np.float64], triangles: NDArray[np.int32]) ->
 def find_overlapping(
     points: NDArray[np.float64], triangles: NDArray[np.int32]
 ) -> NDArray[np.bool_]:
-    """Tell which triangles share area with another one; exactly.
-
-    Parameters
-    ----------
-    points : (n, 3) float64 array
-    triangles : (m, 3) int32 array
-        Counter-clockwise.
-
-    Returns
-    -------
-    (m,) bool array
-    """
+    """Tell which triangles share area with another one, exactly: as :func:`find_violating`."""
     xy = columns(points)
     found = np.zeros(len(triangles), np.bool_)
     for start in range(0, len(triangles), _BLOCK):
