@@ -46,7 +46,7 @@ def main(folder: Path = HERE) -> None:
     for axis in axes[:, 0]:
         axis.set_ylabel("Northing (m)")
     figure.suptitle(
-        "Four methods on the same vertices: breaklines (red) stay breaks of slope, vertical scale 3:1"
+        "Four methods on the same vertices: breaklines (red) stay breaks of slope; vertical 3:1"
     )
     figure.savefig(folder / "interpolation.png", dpi=85, metadata={"Software": None})
 

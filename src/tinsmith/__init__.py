@@ -40,11 +40,20 @@ if TYPE_CHECKING:
         with_lines,
         write,
     )
-    from .terrain import comparison_picture, histogram
+    from .terrain import comparison_picture, contour_map, earthwork_map, histogram, profile_picture
+    from .terrain.earthwork import Difference, difference, stage_storage, volume
     from .terrain.gridding import height_above, rasterize
+    from .terrain.isolines import (
+        ContourCheck,
+        check_contours,
+        contour_bands,
+        contour_labels,
+        contours,
+    )
     from .terrain.lift import lift
     from .terrain.preview.picture import preview
     from .terrain.results import Features, Raster, Table
+    from .terrain.sections import cross_sections, drape, profile, section_lines
     from .terrain.slope import aspect, slope
     from .tin import (
         TIN,
@@ -109,14 +118,27 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "write",
             ),
             ".terrain": (
+                "ContourCheck",
+                "Difference",
                 "aspect",
+                "check_contours",
                 "comparison_picture",
+                "contour_bands",
+                "contour_labels",
+                "contour_map",
+                "contours",
+                "difference",
+                "earthwork_map",
                 "histogram",
                 "lift",
                 "preview",
+                "profile_picture",
                 "slope",
+                "stage_storage",
+                "volume",
             ),
             ".terrain.gridding": ("height_above", "rasterize"),
+            ".terrain.sections": ("cross_sections", "drape", "profile", "section_lines"),
             ".terrain.results": ("Features", "Raster", "Table"),
             ".tin": (
                 "TIN",
@@ -154,7 +176,9 @@ __all__ = [
     "CheckError",
     "CheckResult",
     "Comparison",
+    "ContourCheck",
     "CrsError",
+    "Difference",
     "Features",
     "Format",
     "FormatError",
@@ -182,8 +206,17 @@ __all__ = [
     "__version__",
     "aspect",
     "check",
+    "check_contours",
     "compare",
     "comparison_picture",
+    "contour_bands",
+    "contour_labels",
+    "contour_map",
+    "contours",
+    "cross_sections",
+    "difference",
+    "drape",
+    "earthwork_map",
     "find_format",
     "height_above",
     "histogram",
@@ -194,6 +227,8 @@ __all__ = [
     "lines_from_codes",
     "paper",
     "preview",
+    "profile",
+    "profile_picture",
     "quality",
     "rasterize",
     "read",
@@ -202,11 +237,14 @@ __all__ = [
     "read_rings",
     "read_water",
     "refine",
+    "section_lines",
     "slope",
+    "stage_storage",
     "terrain",
     "tin",
     "transform_points",
     "triangulate",
+    "volume",
     "voronoi",
     "with_lines",
     "write",

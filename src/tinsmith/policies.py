@@ -18,6 +18,7 @@ __all__ = [
     "InterpolationMethod",
     "LineKind",
     "LineRole",
+    "OutsidePolicy",
     "OverviewMethod",
     "RasterSample",
     "RasterValue",
@@ -73,3 +74,6 @@ SurfacePart: TypeAlias = Literal["triangle", "vertex"]
 
 OverviewMethod: TypeAlias = Literal["average", "nearest", "none"]
 """How the cells of a raster's smaller copies are found."""
+
+OutsidePolicy: TypeAlias = Literal["error", "nan", "cut"]
+"""What becomes of parts of features where there is no surface."""

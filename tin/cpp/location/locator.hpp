@@ -132,8 +132,22 @@ class Locator {
     return visit_queries(
         queries, count, keep_going, [&](std::int64_t i, Point p, Triangle triangle) {
           result[i] = triangle == kNoTriangle ? std::numeric_limits<double>::quiet_NaN()
-                                              : elevation_at(surface_, p, triangle);
+                                              : tinsmith::elevation_at(surface_, p, triangle);
         });
+  }
+
+  // Every triangle whose box a band may meet, and some more, in no order.
+  template <typename Near, typename Visit>
+  void visit_near(const Near& band, Visit&& visit) const {
+    const auto wanted = [&](const Box& box, std::int64_t) { return band.meets(box); };
+    tree_.visit_leaves_if(wanted, [&](std::int32_t begin, std::int32_t end) {
+      for (std::int32_t i = begin; i < end; ++i) visit(triangles_[i]);
+      return false;
+    });
+  }
+
+  double elevation_at(Point p, Triangle triangle) const {
+    return tinsmith::elevation_at(surface_, p, triangle);
   }
 
   // visit(i, point, triangle) of each query, kNoTriangle outside: in an order in which neighbours in
