@@ -101,6 +101,42 @@ def test_slivers_along_the_hull_take_no_digits(method, offset):
     np.testing.assert_allclose(tin.interpolate(xy, method), wanted, rtol=0, atol=1e-9)
 
 
+ROUNDINGS_APART = {
+    "off a line, circles of 1e31": (
+        [
+            [33333.333333333314, 0.09999999999999999],
+            [0.10000000000000002, 10799999.999999998],
+            [0.20000000000000004, 10799999.999999996],
+            [33333.33333333333, 0.10000000000000005],
+            [66666.66666666672, 0.10000000000000005],
+            [0.2000000000000001, 10800000.0],
+            [0.20000000000000004, 5400000.000000001],
+        ],
+        [50044.43500677012, 0.10000000000000005],
+    ),
+    "two neighbours a rounding apart, far away": (
+        [
+            [0.2999999999999999, 0.9999999999999996],
+            [10800000.000000004, 10800000.000000006],
+            [16199999.999999994, 10799999.999999994],
+            [10800000.000000006, 10799999.999999996],
+            [10800000.000000006, 16199999.999999994],
+        ],
+        [13500000.0, 10800000.0],
+    ),
+}
+
+
+@pytest.mark.parametrize("method", ["natural", "laplace"])
+@pytest.mark.parametrize("case", ROUNDINGS_APART)
+def test_points_a_rounding_apart_take_no_digits(method, case):
+    sites, place = ROUNDINGS_APART[case]
+    z = rng(1).random(len(sites)) * 100
+    tin = ts.triangulate(np.column_stack([sites, z]))
+    wanted = expected(WEIGHTS[method], sites, z, place)
+    assert float(tin.interpolate(place, method)) == pytest.approx(wanted, abs=1e-8)
+
+
 @pytest.mark.parametrize("method", ["natural", "laplace"])
 def test_next_to_an_edge_of_the_hull_the_limit_is_linear(method):
     points = np.array([[0, 0, 1], [4, 0, 3], [2, 5, 100]], float)
