@@ -548,3 +548,13 @@ def test_a_crossing_that_rounds_to_a_given_vertex_is_that_vertex(first):
     (place,) = tin.report.crossings.xy
     assert place.tolist() == [third, third]
     assert tin.report.crossings.vertices.tolist() == [first]
+
+
+def test_lines_are_shown_in_one_line():
+    assert repr(ts.Breakline([[0, 0, 1], [1, 1, 2]])) == "<Breakline: hard, 2 vertices>"
+    draped = ts.Breakline([[0, 0], [1, 1], [2, 0]], kind="soft", name="kerb")
+    assert repr(draped) == "<Breakline: soft, 3 vertices, draped, 'kerb'>"
+    tin = ts.triangulate(
+        [[0, 0, 0], [9, 0, 0], [9, 9, 0], [0, 9, 0]], breaklines=[[[1, 1, 1], [2, 2, 2]]]
+    )
+    assert repr(tin.lines) == ("<Lines: 1 hard, 0 soft, 0 boundary, 0 hole, 0 water; 2 vertices>")
