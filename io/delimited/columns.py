@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from ...errors import FormatError, ReadError
+from ...errors import OptionError, ReadError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -365,13 +365,13 @@ def columns_by_word(
 
     Raises
     ------
-    FormatError
+    OptionError
         If the word names no such column, a role twice, or not all three coordinates.
     """
     if isinstance(word, Mapping):
         roles = {_checked_role(role): _column(which, header, count) for role, which in word.items()}
         _complete(roles, word)
-        _require_distinct(roles)
+        _require_distinct(roles, word)
         names = numbered(header, count)
         notes = _contradictions(header, roles)
         in_degrees = _are_degrees(names, roles)
@@ -380,12 +380,11 @@ def columns_by_word(
     named = [meaning for meaning in given if meaning in _ROLES]
     twice = next((one for one in named if named.count(one) > 1), None)
     if twice:
-        raise FormatError(f"The option columns ({word}) names the {twice} twice.")
+        raise OptionError("columns", word, f"a layout that does not name the {twice} twice")
     roles = _complete({one: i for i, one in enumerate(given) if one in _ROLES}, word)
     if len(given) > count:
-        raise FormatError(
-            f"The option columns names {len(given)} columns ({word}), but the file has {count}."
-        )
+        allowed = f"a layout of the {count} columns of the file, not of {len(given)} columns"
+        raise OptionError("columns", word, allowed)
     names = tuple(_own_name(given, header, i) for i in range(count))
     notes = _contradictions(header, roles)
     in_degrees = _are_degrees(names, roles) or _are_degrees(_as_names(word), roles)
@@ -399,13 +398,14 @@ def _are_degrees(names: Sequence[str], roles: Mapping[str, int]) -> bool:
     return all(rank is not None and rank[1] for rank in ranks)
 
 
-def _require_distinct(roles: Mapping[str, int]) -> None:
+def _require_distinct(roles: Mapping[str, int], word: object) -> None:
     for role, column in roles.items():
         same = [other for other, one in roles.items() if one == column and other != role]
         if same:
-            raise FormatError(
-                f"The option columns names column {column + 1} twice: as {role} and {same[0]}."
+            allowed = (
+                f"a layout that takes no column twice: column {column + 1} is {role} and {same[0]}"
             )
+            raise OptionError("columns", word, allowed)
 
 
 def _contradictions(header: Sequence[str], roles: Mapping[str, int]) -> tuple[str, ...]:
@@ -446,38 +446,32 @@ def _as_names(word: str | Sequence[str]) -> list[str]:
 def _checked_role(role: str) -> str:
     known = role if role in _ROLES else role_of(role)
     if known is None:
-        raise FormatError(
-            f"The option columns names '{role}': one of {', '.join(_ROLES)} is needed.",
-            known=_ROLES,
-        )
+        raise OptionError("columns", role, _ROLES)
     return known
 
 
 def _column(which: str | int, header: Sequence[str], count: int) -> int:
     if isinstance(which, int):
         if not 1 <= which <= count:
-            raise FormatError(f"The option columns names column {which}: 1 to {count} are there.")
+            raise OptionError("columns", which, f"a column from 1 to {count}")
         return which - 1
     found = [i for i, name in enumerate(header) if name.strip().casefold() == which.casefold()]
     if len(found) == 1:
         return found[0]
     there = f"the header has {list_names(header)}" if header else "the file has no header"
     number = "no" if not found else f"{len(found)}"
-    raise FormatError(
-        f"The option columns names '{shorten(which)}', of which there are {number} columns: "
-        f"{there}.",
-        known=header,
-    )
+    allowed = f"the name of one column, and {number} columns have it: {there}"
+    raise OptionError("columns", which, allowed)
 
 
 def _complete(roles: dict[str, int], word: object) -> dict[str, int]:
     missing = [role for role in COORDINATES if role not in roles]
     if missing:
-        raise FormatError(
-            f"The option columns ({word}) does not say which column is the {_listed(missing)}: "
-            "it may be letters (P number, N northing, E easting, Z elevation, D description, "
-            "X easting, Y northing, - other) or names.",
-            known=tuple(_LETTERS),
+        raise OptionError(
+            "columns",
+            word,
+            "letters (P number, N northing, E easting, Z elevation, D description, X easting, "
+            f"Y northing, - other) or names that say which column is the {_listed(missing)}",
         )
     return roles
 
