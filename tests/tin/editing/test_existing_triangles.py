@@ -103,7 +103,7 @@ def test_an_edit_of_no_vertex_changes_nothing():
 
 def test_what_may_cross_is_split_or_error():
     tin = ts.triangulate(CORNERS)
-    with pytest.raises(ts.LinesError, match=r"Invalid crossing 'both'"):
+    with pytest.raises(ts.OptionError, match=r"Invalid crossing 'both'"):
         tin.add_breakline(CORNERS[4:], crossing="both")
     assert tin.edits == ()
 
