@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ..._sentences import shown
 from ...crs import CRS
 from ...errors import CrsError, LinesError, PointsError
 from ...tin import Breakline
 from ...tin.constraints.breaklines import as_coords
 from ...tin.constraints.polylines import offsets_of
-from ...tin.validation.options import shown
 from ...tin.validation.points import require_exact_range
 from ..results import Features
 
