@@ -87,9 +87,7 @@ class ExactPlane:
         """Return the circumcentre of three vertices; None unless it is strictly inside the box."""
         origin = self.place(a)
         sides = (_bisector(origin, self.place(vertex)) for vertex in (b, c))
-        corner = next(sides).corner_with(next(sides))
-        if corner[2] < 0:
-            corner = (-corner[0], -corner[1], -corner[2])
+        corner = next(sides).corner_with(next(sides))  # third number > 0: a, b, c turn left
         is_inside = all(wall.holds(corner) for wall in self._walls(origin))
         return self._rounded(origin, corner) if is_inside else None
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import tinsmith as ts
+from tinsmith.tin.editing import mesh_editor
 
 CORNERS = [[0, 0, 0], [8, 0, 0], [8, 8, 0], [0, 8, 0], [1, 4, 10], [7, 4, 10]]
 ARRAYS = ("points", "triangles", "neighbors", "constrained")
@@ -230,3 +231,24 @@ def test_new_rows_at_one_place_are_merged_as_by_a_build(strict):
     assert tin.insert(new, duplicates="last").tolist() == [4, 4, 5, 4]
     assert tin.points[4:].tolist() == [[2, 3, 7], [5, 5, 2]]
     assert tin.vertex_of.tolist() == [0, 1, 2, 3, 4, 4, 5, 4]
+
+
+@pytest.mark.parametrize("lines", [[], [[[1.5, 1.5, 1], [6.5, 6.25, 2]]]])
+@pytest.mark.parametrize("removed", [False, True])
+def test_many_rows_at_once_are_as_one_by_one(monkeypatch, lines, removed):
+    """They are triangulated together with the others, unless lines or gaps are there."""
+    monkeypatch.setattr(mesh_editor, "_LARGE_BATCH", 10)
+    rng = np.random.default_rng(3)
+    first = np.r_[CORNERS[:4], np.c_[rng.uniform(0, 8, (20, 2)), rng.random(20)]]
+    new = np.c_[rng.integers(0, 9, (40, 2)), rng.random(40)]  # some at one place
+    tin, slowly = (ts.triangulate(first, breaklines=lines) for _ in range(2))
+    if removed:
+        tin.remove([7])
+        slowly.remove([7])
+    tin.insert(new, duplicates="highest")
+    for row in new:
+        slowly.insert([row], duplicates="highest")
+    for name in (*ARRAYS, "vertex_of"):
+        np.testing.assert_array_equal(getattr(tin, name), getattr(slowly, name), err_msg=name)
+    assert tin.lines.vertices.tolist() == slowly.lines.vertices.tolist()
+    assert ts.check(tin).ok

@@ -264,3 +264,7 @@ def test_no_row_and_no_argument_may_hold_what_is_not_finite(n, bad):
                     given[argument][row, axis] = bad
                     with pytest.raises(ValueError, match="finite"):
                         predicate(*given)
+
+
+def test_both_implementations_are_exact_in_the_same_range():
+    assert exact.EXACT_RANGE == _kernel.EXACT_RANGE
