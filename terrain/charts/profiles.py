@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ... import _optional
-from ..._sentences import shown
 from ...crs import CRS, Unit, assume_elevation_unit
 from ...errors import OptionError
 from ...tin.validation.options import is_finite_number, is_whole_number

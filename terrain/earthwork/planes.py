@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._sentences import shown
 from ...errors import OptionError
 from ...tin import TIN
 
