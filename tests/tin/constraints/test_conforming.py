@@ -383,7 +383,7 @@ def test_segments_are_split_on_shells_around_the_given_end_or_in_the_middle(leng
         segments = np.array(
             [pair[::-1] if reverse else pair for pair in (both, first, second, none)]
         )
-        split = conforming._split_points(points, segments.astype(np.int32), 2)
+        split = conforming._place_split_points(points, segments.astype(np.int32), 2)
         along = split[:, :2] @ direction
         assert along[[0, 3]] == pytest.approx(length / 2)
         for distance in (along[1], length - along[2]):

@@ -97,7 +97,7 @@ def test_an_edit_of_no_vertex_changes_nothing():
         tin.insert(np.empty((0, 3)))
         for name in ARRAYS:
             np.testing.assert_array_equal(getattr(tin, name), before[name], err_msg=name)
-        assert [edit.operation for edit in tin.edits] == ["set_z", "remove", "insert"]
+        assert [edit.operation for edit in tin.edits] == ["set_elevation", "remove", "insert"]
         tin.undo(3)
         assert tin.edits == ()
 
