@@ -22,11 +22,11 @@ from ..constraints.constraint_set import (
     require_length,
 )
 from ..constraints.polygons import starts_with_elevations
-from ..survey import Survey
 from ..validation.options import as_flag, require_distance, require_positive
 from ..validation.points import as_masked_points, require_three
 from ..validation.threads import thread_count
 from .constrained import LineOptions
+from .survey import Survey
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

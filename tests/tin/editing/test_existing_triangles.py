@@ -38,7 +38,9 @@ def test_a_flagged_edge_has_the_priority_of_a_line_that_says_nothing(priority, e
     assert tin.lines.sources.tolist() == fresh.lines.sources.tolist() == [0, 1]
 
 
-@pytest.mark.parametrize("operation", ["insert", "remove", "move", "set_z", "add_breakline"])
+@pytest.mark.parametrize(
+    "operation", ["insert", "remove", "move", "set_elevation", "add_breakline"]
+)
 def test_a_part_of_a_hull_stays_one_after_any_edit(operation):
     """The notch of an L is no surface, and a further line is known by its number and name."""
     axis = np.arange(7.0)
@@ -53,7 +55,7 @@ def test_a_part_of_a_hull_stays_one_after_any_edit(operation):
         "insert": {"points": [[0.5, 0.25, 3.0]]},
         "remove": {"vertices": [at]},
         "move": {"vertex": at, "point": [1.25, 1.125, 5.0]},
-        "set_z": {"vertices": [at], "z": 7.0},
+        "set_elevation": {"vertices": [at], "z": 7.0},
         "add_breakline": {"coords": [[0.5, 0.5, 1], [5.5, 1.5, 2]], "name": "wall"},
     }
     before = tin.points[tin.vertex_of]
@@ -92,7 +94,7 @@ def test_an_edit_of_no_vertex_changes_nothing():
     for tin in (ts.triangulate(CORNERS), with_a_flagged_edge()):
         before = {name: getattr(tin, name).copy() for name in ARRAYS}
         none = np.empty(0, np.int64)
-        tin.set_z(none, 5.0)
+        tin.set_elevation(none, 5.0)
         tin.remove(none)
         tin.insert(np.empty((0, 3)))
         for name in ARRAYS:
@@ -114,7 +116,7 @@ def test_what_may_cross_is_split_or_error():
 
 def edit_both(tin, rows, rng):
     """Edit a TIN and the table of its rows, each in its own way."""
-    kind = rng.choice(["insert", "insert", "onto", "remove", "move", "set_z"])
+    kind = rng.choice(["insert", "insert", "onto", "remove", "move", "set_elevation"])
     own = [r for r in range(4, len(rows)) if rows[r] is not None]
     row = int(rng.choice(own))
     vertex = int(tin.vertex_of[row])
@@ -138,7 +140,7 @@ def edit_both(tin, rows, rng):
         tin.move(vertex, place)
         changed = place
     else:
-        tin.set_z([vertex], 3.5)
+        tin.set_elevation([vertex], 3.5)
         changed = [*rows[row][:2], 3.5]
     for r in sharing:
         rows[r] = changed
