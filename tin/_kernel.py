@@ -34,6 +34,7 @@ __all__ = [
     "grow",
     "in_circle",
     "intersections",
+    "nearest_vertices",
     "orientation",
     "places_in_rings",
     "refine",
@@ -53,6 +54,7 @@ Locator = _core.Locator
 NaturalNeighbors = _core.NaturalNeighbors
 NaturalWeights = _core.NaturalWeights
 NearestBoundary = _core.NearestBoundary
+nearest_vertices = _core.nearest_vertices
 SmoothPatches = _core.SmoothPatches
 Mesh = _core.Mesh
 refine = _core.refine

@@ -79,7 +79,7 @@ class Interpolator:
         if method == "nearest":
             is_inside = self._surface.locator.locate(xy) >= 0
             found = np.full(len(xy), np.nan)
-            found[is_inside] = self._nearest(np.ascontiguousarray(xy[is_inside]))
+            found[is_inside] = self._nearest(np.ascontiguousarray(xy[is_inside]), threads)
             return found
         if method == "c1":
             return self._patches.interpolate(xy, threads)
@@ -87,7 +87,7 @@ class Interpolator:
 
     def _outside(self, xy: NDArray[np.float64], method: InterpolationMethod) -> NDArray[np.float64]:
         if method == "nearest":
-            return self._nearest(xy)
+            return self._nearest(xy, 1)
         edges, shares = self._boundary.find(xy)
         if method == "c1":
             return self._patches.on_edges(edges, shares)
@@ -97,8 +97,8 @@ class Interpolator:
         end = self._elevations[corners[first + (edges + 2) % 3]]
         return _between(start, end, shares)
 
-    def _nearest(self, xy: NDArray[np.float64]) -> NDArray[np.float64]:
-        return self._elevations[self._surface.nearest.find(xy)]
+    def _nearest(self, xy: NDArray[np.float64], threads: int) -> NDArray[np.float64]:
+        return self._elevations[self._surface.nearest.find(xy, threads=threads)]
 
     @property
     def _elevations(self) -> NDArray[np.float64]:

@@ -12,9 +12,11 @@
 
 namespace tinsmith {
 
-// The triangle across an edge is looked at: there is one, and the edge is no barrier.
+// The triangle across an edge is looked at: there is one, and the edge is no barrier. Without
+// barriers all edges are open.
 inline bool is_open(const Surface& surface, const bool* barriers, Triangle t, std::uint32_t k) {
-  return !barriers[entry_of(t, k)] && surface.is_triangle(surface.neighbor(t, k));
+  return (barriers == nullptr || !barriers[entry_of(t, k)]) &&
+         surface.is_triangle(surface.neighbor(t, k));
 }
 
 inline std::uint32_t corner_facing(const Surface& surface, Triangle t, Triangle neighbor) {

@@ -14,6 +14,7 @@
 #include "../interpolation/batch.hpp"
 #include "../interpolation/natural_neighbors.hpp"
 #include "../interpolation/nearest_boundary.hpp"
+#include "../interpolation/nearest_vertex.hpp"
 #include "../interpolation/smooth_patches.hpp"
 #include "arrays.hpp"
 #include "bind_location.hpp"
@@ -139,10 +140,21 @@ class HeldNearestBoundary {
   NearestBoundary boundary_;
 };
 
+// Vertex numbers of a Delaunay triangulation, as doubles; NaN outside.
+inline Elevations nearest_vertices(const HeldLocator& locator, const GivenXy& xy, int threads) {
+  return elevations_at(locator.locator(), xy, threads, [&] {
+    return [search = NearestVertex(locator.surface())](Point p, Triangle t) mutable {
+      return static_cast<double>(number(search.find(p, t)));
+    };
+  });
+}
+
 inline void bind_interpolation(nb::module_& m) {
   nb::enum_<NaturalWeights>(m, "NaturalWeights", "How natural neighbours weigh.")
       .value("SIBSON", NaturalWeights::kSibson)
       .value("LAPLACE", NaturalWeights::kLaplace);
+  m.def("nearest_vertices", &nearest_vertices, "locator"_a, "xy"_a.noconvert(), "threads"_a = 1,
+        "The nearest vertex of a Delaunay triangulation at each point, NaN outside.");
   nb::class_<HeldNaturalNeighbors>(m, "NaturalNeighbors", "Natural neighbour interpolation.")
       .def(nb::init<const HeldLocator&, const GivenFlags&>(), "locator"_a, "barriers"_a.noconvert(),
            nb::keep_alive<1, 2>())
