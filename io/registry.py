@@ -22,11 +22,11 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Format",
+    "choose_format",
     "find_format",
-    "fitting_format",
-    "format_of_suffix",
+    "find_format_of_suffix",
+    "find_suffixes",
     "known_formats",
-    "known_suffixes",
     "list_suffixes",
     "load_function",
     "require_options",
@@ -81,7 +81,7 @@ class Format:
         ('kind', 'projected')
         """
         target = getattr(self, action)
-        return () if target is None else _options(load_function(target))
+        return () if target is None else _find_options(load_function(target))
 
 
 _DELIMITED = Format(
@@ -173,14 +173,14 @@ def known_formats() -> tuple[Format, ...]:
     """
     formats = list(_BUILT_IN)
     for entry in sorted(entry_points(group=_ENTRY_POINTS), key=lambda entry: entry.name):
-        added = _from_plug_in(entry.name, entry.load)
+        added = _load_plug_in(entry.name, entry.load)
         if any(added.name == one.name for one in formats):
             raise FormatError(f"Plug-in '{entry.name}' takes the name '{added.name}', in use.")
         formats.append(added)
     return tuple(formats)
 
 
-def _from_plug_in(name: str, load: Callable[[], object]) -> Format:
+def _load_plug_in(name: str, load: Callable[[], object]) -> Format:
     try:
         added = load()
     except Exception as error:
@@ -212,16 +212,16 @@ def find_format(name: str) -> Format:
     raise FormatError(f"Unknown format '{name}': one of {', '.join(names)}.", known=names)
 
 
-def fitting_format(suffix: str, action: str) -> Format | None:
+def choose_format(suffix: str, action: str) -> Format | None:
     """Return the format of a suffix, one that can do the action first."""
     fitting = [one for one in known_formats() if suffix in one.suffixes]
     able = [one for one in fitting if getattr(one, action) is not None]
     return next(iter(able + fitting), None)
 
 
-def format_of_suffix(path: Path, action: str) -> Format:
+def find_format_of_suffix(path: Path, action: str) -> Format:
     """Return the format of a file's suffix; refuse an unknown one."""
-    found = fitting_format(path.suffix.lower(), action)
+    found = choose_format(path.suffix.lower(), action)
     if found is not None:
         return found
     suffix = f"has the unknown suffix '{path.suffix}'" if path.suffix else "has no suffix"
@@ -229,11 +229,11 @@ def format_of_suffix(path: Path, action: str) -> Format:
         f"'{path}' {suffix}: {list_suffixes(action)} can be "
         f"{'read' if action == 'read' else 'written'}; "
         "the option format names one whatever the suffix.",
-        known=known_suffixes(action),
+        known=find_suffixes(action),
     )
 
 
-def known_suffixes(action: str) -> tuple[str, ...]:
+def find_suffixes(action: str) -> tuple[str, ...]:
     """Return the suffixes that can be read, or written."""
     return tuple(
         suffix
@@ -245,7 +245,7 @@ def known_suffixes(action: str) -> tuple[str, ...]:
 
 def list_suffixes(action: str) -> str:
     """List the suffixes that can be read, or written, for a sentence."""
-    return ", ".join(known_suffixes(action))
+    return ", ".join(find_suffixes(action))
 
 
 def load_function(target: str) -> Callable[..., Any]:
@@ -255,7 +255,7 @@ def load_function(target: str) -> Callable[..., Any]:
     return loaded
 
 
-def _options(function: Callable[..., Any]) -> tuple[str, ...]:
+def _find_options(function: Callable[..., Any]) -> tuple[str, ...]:
     parameters = inspect.signature(function).parameters.values()
     return tuple(
         one.name
@@ -268,7 +268,7 @@ def require_options(
     chosen: Format, action: str, function: Callable[..., Any], options: Mapping[str, object]
 ) -> None:
     """Refuse options that a reader or writer does not have."""
-    allowed = _options(function)
+    allowed = _find_options(function)
     accepted = {*allowed, "progress", "z_unit"} & set(inspect.signature(function).parameters)
     unknown = [name for name in options if name not in accepted]
     if not unknown:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 from ..errors import FormatError
 from .registry import (
     find_format,
-    format_of_suffix,
-    known_suffixes,
+    find_format_of_suffix,
+    find_suffixes,
     list_suffixes,
     load_function,
     require_options,
@@ -65,12 +65,12 @@ def write(
     <TIN: 3 vertices, 1 triangle, z 5 to 8, crs EPSG:32616>
     """
     file = Path(path)
-    chosen = format_of_suffix(file, "write") if format is None else find_format(format)
+    chosen = find_format_of_suffix(file, "write") if format is None else find_format(format)
     if chosen.write is None:
         raise FormatError(
             f"Cannot write '{file}': {chosen.description} can be read, not written; "
             f"{list_suffixes('write')} can be written.",
-            known=known_suffixes("write"),
+            known=find_suffixes("write"),
         )
     writer = load_function(chosen.write)
     require_options(chosen, "write", writer, options)

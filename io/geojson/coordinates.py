@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from ...tin import TIN, Survey
 
-__all__ = ["Places", "crs_places", "require_one_piece", "texts", "wgs84_places"]
+__all__ = ["Places", "format_positions", "keep_in_crs", "project_to_wgs84", "require_one_piece"]
 
 DEGREE_DECIMALS = 9  # a tenth of a millimetre on the ground
 ELEVATION_DECIMALS = 6  # a micrometre
@@ -44,7 +44,7 @@ class Places(NamedTuple):
     members: tuple[tuple[str, str], ...] = ()
 
 
-def wgs84_places(surface: TIN | Survey) -> Places:
+def project_to_wgs84(surface: TIN | Survey) -> Places:
     """Move points to WGS 84 longitude, latitude and elevation in metres, rounded.
 
     Parameters
@@ -74,10 +74,10 @@ def wgs84_places(surface: TIN | Survey) -> Places:
     _require_on_earth(moved, points, crs)
     moved[:, :2] = np.round(moved[:, :2], DEGREE_DECIMALS)
     moved[:, 2] = np.round(moved[:, 2], ELEVATION_DECIMALS)
-    return Places(moved + 0.0, members=_assumption(surface))
+    return Places(moved + 0.0, members=_note_assumed_unit(surface))
 
 
-def _assumption(surface: TIN | Survey) -> tuple[tuple[str, str], ...]:
+def _note_assumed_unit(surface: TIN | Survey) -> tuple[tuple[str, str], ...]:
     """Tell which unit elevations were taken to have, where they were converted from it."""
     usual = None if surface.crs is None else surface.crs.usual_elevation_unit
     if surface.elevation_unit is not None or usual is None or usual == METRE:
@@ -86,7 +86,7 @@ def _assumption(surface: TIN | Survey) -> tuple[tuple[str, str], ...]:
     return (("elevations", text),)
 
 
-def crs_places(surface: TIN | Survey) -> Places:
+def keep_in_crs(surface: TIN | Survey) -> Places:
     """Keep points as they are, and name their CRS by the rule of 2008 (``null``: unknown)."""
     unit = surface.elevation_unit
     members = () if unit is None else (("elevation_unit", unit.name),)
@@ -101,7 +101,7 @@ def crs_places(surface: TIN | Survey) -> Places:
     )
 
 
-def texts(xyz: NDArray[np.float64]) -> NDArray[np.object_]:
+def format_positions(xyz: NDArray[np.float64]) -> NDArray[np.object_]:
     """Return each position as JSON text, in the fewest digits that give the same double back."""
     written = np.empty(len(xyz), object)
     for start in range(0, len(xyz), _BATCH):
@@ -128,7 +128,7 @@ def require_one_piece(longitudes: NDArray[np.float64], path: Path) -> None:
     wide = np.ptp(longitudes, axis=1) > _HALF_TURN
     if wide.any():
         raise WriteError(
-            f"Cannot write '{path}': {_crossing(int(wide.sum()))} a pole, "
+            f"Cannot write '{path}': {_describe_crossing(int(wide.sum()))} a pole, "
             "which longitude and latitude cannot show in one piece; keep the coordinates "
             "of the CRS with projected=True.",
             path=path,
@@ -149,6 +149,6 @@ def _require_on_earth(moved: NDArray[np.float64], points: NDArray[np.float64], c
         )
 
 
-def _crossing(count: int) -> str:
+def _describe_crossing(count: int) -> str:
     cross, hold = ("crosses", "holds") if count == 1 else ("cross", "hold")
     return f"{counted(count, 'triangle')} {cross} the antimeridian or {hold}"

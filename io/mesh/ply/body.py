@@ -75,7 +75,7 @@ class _Body:
         self.cells: NDArray[Any] = (
             np.frombuffer(content, np.uint8)[header.size :]
             if self.byte_order
-            else _numbers(content[header.size :], path)
+            else _parse_text_body(content[header.size :], path)
         )
 
     def dtype(self, type_name: str) -> np.dtype[Any]:
@@ -109,23 +109,23 @@ class _Body:
     def require_end(self, element: Element) -> None:
         """Refuse a file that holds further rows: its header tells too small a count."""
         rest = len(self.cells) - self.cursor
-        if rest >= max(_least(element, self), _LINE_END if self.byte_order else 1):
+        if rest >= max(_measure_shortest_row(element, self), _LINE_END if self.byte_order else 1):
             raise ReadError(
                 f"'{self.path}' goes on behind its last element: its header promises "
-                f"{_rows(element)}, and more follow.",
+                f"{_count_rows(element)}, and more follow.",
                 path=self.path,
             )
 
     def _require_room(self, element: Element) -> None:
         """Refuse a count that the file cannot hold before anything is allocated for it."""
         room = len(self.cells) - self.cursor
-        if element.count * max(_least(element, self), 1) > room:
+        if element.count * max(_measure_shortest_row(element, self), 1) > room:
             raise self._truncated(element)
 
     def _truncated(self, element: Element) -> ReadError:
         return ReadError(
-            f"'{self.path}' ends too early: its header promises {_rows(element)}, more than the "
-            "file holds.",
+            f"'{self.path}' ends too early: its header promises {_count_rows(element)}, more than "
+            "the file holds.",
             path=self.path,
         )
 
@@ -211,16 +211,16 @@ class _Body:
         return Ragged(self.picked(cells, type_name), offsets)
 
 
-def _rows(element: Element) -> str:
+def _count_rows(element: Element) -> str:
     return f"{element.count} {'row' if element.count == 1 else 'rows'} of '{element.name}'"
 
 
-def _least(element: Element, body: _Body) -> int:
+def _measure_shortest_row(element: Element, body: _Body) -> int:
     """Return the cells of the shortest row that an element can have."""
     return sum(body.width(prop.count_type or prop.type) for prop in element.properties)
 
 
-def _numbers(text: bytes, path: Path) -> NDArray[np.float64]:
+def _parse_text_body(text: bytes, path: Path) -> NDArray[np.float64]:
     with warnings.catch_warnings():
         warnings.simplefilter("error", DeprecationWarning)
         try:

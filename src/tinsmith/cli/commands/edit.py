@@ -145,13 +145,13 @@ def _read_script(path: Path) -> list[dict[str, Any]]:
 
 
 def _content(path: Path) -> bytes:
-    from ...io.isolated.spooling import as_sentence, ordinary_file
+    from ...io.isolated.spooling import describe_system_error, open_ordinary_file
     from ..files import standard_input
 
     if path == STANDARD:
         return standard_input().read()
-    with ordinary_file(path) as local:
+    with open_ordinary_file(path) as local:
         try:
             return local.read_bytes()
         except OSError as error:
-            raise as_sentence(path, error) from error
+            raise describe_system_error(path, error) from error
