@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
-CORE := $(wildcard tin/cpp/* tin/cpp/*/*)
+CORE := $(wildcard tin/cpp/* tin/cpp/*/* terrain/cpp/* terrain/cpp/*/*)
 TREE := build/typing
 
 # Pins reach the isolated build of the core too.
@@ -86,7 +86,7 @@ mutants: $(READY) ## Change the code at random and list what the tests miss: MUT
 format: $(READY) ## Format the code
 	$(BIN)/ruff format .
 	$(BIN)/ruff check --fix .
-	$(BIN)/clang-format -i $$(git ls-files "tin/cpp/*.hpp" "tin/cpp/*.inc" "tin/cpp/*.cpp" "tests/cpp/*.cpp")
+	$(BIN)/clang-format -i $$(git ls-files "t*/cpp/*.hpp" "tin/cpp/*.inc" "t*/cpp/*.cpp")
 
 clean: ## Remove what was built
 	rm -rf $(VENV) build demo

@@ -2,35 +2,10 @@
 
 from __future__ import annotations
 
-import signal
-import threading
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import TYPE_CHECKING, NamedTuple
 
+from .._interrupts import hold_interrupts
 from ..errors import PointsError
-
-
-@contextmanager
-def hold_interrupts() -> Iterator[None]:
-    """Handle SIGINT at the end of the block, not within it.
-
-    The core makes Python types while it is loaded, and an exception raised in there ends the
-    process. Only the main thread handles signals; in others this does nothing.
-    """
-    handler = signal.getsignal(signal.SIGINT)
-    if handler is None or threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    caught: list[int] = []
-    signal.signal(signal.SIGINT, lambda number, _: caught.append(number))
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, handler)
-    if caught:
-        signal.raise_signal(signal.SIGINT)
-
 
 with hold_interrupts():
     from . import _core
@@ -53,7 +28,6 @@ __all__ = [
     "count_work",
     "crossings",
     "grow",
-    "hold_interrupts",
     "in_circle",
     "intersections",
     "orientation",

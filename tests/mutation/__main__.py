@@ -25,6 +25,7 @@ import sysconfig
 import time
 import tomllib
 from concurrent.futures import ThreadPoolExecutor
+from importlib import import_module
 from pathlib import Path
 from py_compile import PycInvalidationMode
 from queue import SimpleQueue
@@ -161,7 +162,7 @@ def draw(kind: str, count: int, seed: int, only: str) -> list[Mutant]:
     if kind == "python":
         files, changes = python_files(), python_changes
     else:
-        files, changes = sorted((ROOT / "tin" / "cpp").rglob("*.hpp")), cpp_changes
+        files, changes = sorted(ROOT.glob("t*/cpp/**/*.hpp")), cpp_changes
     name, _, line = only.partition(":")
     files = [path for path in files if name in str(path.relative_to(ROOT))]
     everything = [(path, change) for path in files for change in changes(path.read_text())]
@@ -231,15 +232,17 @@ class Workshop:
         shutil.copy(TESTS / "mutation" / "sitecustomize.py", self.folder / "tree")
         how = PycInvalidationMode.CHECKED_HASH  # two mutants may be written in one second
         compileall.compile_dir(package, quiet=2, invalidation_mode=how)
-        self.core = package / "tin" / f"_core{sysconfig.get_config_var('EXT_SUFFIX')}"
+        name = f"_core{sysconfig.get_config_var('EXT_SUFFIX')}"
+        self.cores = {"": package / "tin" / name, "terrain": package / "terrain" / name}
         if kind == "python":
-            shutil.copy(installed_core(), self.core)
+            for room, core in self.cores.items():
+                shutil.copy(installed_core(room or "tin"), core)
         else:
             self._copy_sources()
 
     def _copy_sources(self) -> None:
         source = self.folder / "source"
-        for folder in (Path("tin", "cpp"), Path("tests", "cpp")):
+        for folder in (Path("tin", "cpp"), Path("terrain", "cpp"), Path("tests", "cpp")):
             shutil.copytree(ROOT / folder, source / folder, dirs_exist_ok=True)
         shutil.copy(ROOT / "CMakeLists.txt", source)
         nanobind = subprocess.check_output([sys.executable, "-m", "nanobind", "--cmake_dir"])
@@ -274,7 +277,8 @@ class Workshop:
     def _build(self) -> bool:
         done = subprocess.run(["cmake", "--build", self.folder / "cmake"], capture_output=True)
         if done.returncode == 0:
-            shutil.copy(next((self.folder / "cmake").glob("_core.*so")), self.core)
+            for folder, core in self.cores.items():
+                shutil.copy(next((self.folder / "cmake" / folder).glob("_core.*so")), core)
         return done.returncode == 0
 
     def _test(self, stages: tuple[tuple[str, ...], ...], limit: float) -> str:
@@ -314,11 +318,8 @@ class Workshop:
 
     def map_coverage(self, only: str) -> int:
         """Follow all tests, or add those of some files to the map; return the exit status."""
-        slow = (
-            "test_fuzz.py",
-            "test_repository.py",
-            "test_benchmarks.py",
-        )  # say little of one line
+        # These say little of one line.
+        slow = ("test_fuzz.py", "test_repository.py", "test_benchmarks.py")
         tests = [path for path in sorted(TESTS.rglob("test_*.py")) if only in str(path)]
         tests = [path for path in tests if only or path.name not in slow]
         if not only:
@@ -333,10 +334,8 @@ class Workshop:
         ).returncode  # fmt: skip
 
 
-def installed_core() -> str:
-    import tinsmith.tin._core as core
-
-    return str(core.__file__)
+def installed_core(package: str) -> str:
+    return str(import_module(f"tinsmith.{package}._core").__file__)
 
 
 def run(mutants: list[Mutant], given: argparse.Namespace) -> dict[str, list[str]]:

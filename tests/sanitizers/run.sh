@@ -55,12 +55,15 @@ build -S . -B "$built/cmake" -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo \
   -DTINSMITH_SANITIZE="$flags" -DPython_EXECUTABLE="$python" -Dnanobind_DIR="$nanobind"
 build --build "$built/cmake"
 
-# The package as it is installed, with this core in place of the other: links, as for the types.
-rm -rf "$built/tree" && mkdir -p "$built/tree/tinsmith/tin"
-ln -s "$root"/src/tinsmith/* "$root/io" "$root/terrain" "$built/tree/tinsmith/"
-ln -s "$root"/tin/* "$built/tree/tinsmith/tin/"
-rm -f "$built"/tree/tinsmith/tin/_core.*
+# The package as it is installed, with these cores in place of others: links, as for the types.
+rm -rf "$built/tree" && mkdir -p "$built/tree/tinsmith/tin" "$built/tree/tinsmith/terrain"
+ln -s "$root"/src/tinsmith/* "$root/io" "$built/tree/tinsmith/"
+for package in tin terrain; do
+  ln -s "$root/$package"/* "$built/tree/tinsmith/$package/"
+  rm -f "$built/tree/tinsmith/$package"/_core.*so
+done
 ln -s "$built"/cmake/_core.*so "$built/tree/tinsmith/tin/"
+ln -s "$built"/cmake/terrain/_core.*so "$built/tree/tinsmith/terrain/"
 cp "$here/sitecustomize.py" "$built/tree/"
 
 # Reports go to files (UBSan's to stderr, after ASan's library): what dies in a child is seen, too.
