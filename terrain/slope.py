@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .units import scales_of
+from .units import find_scales
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from ..crs import CRS
     from ..tin import TIN
 
-__all__ = ["areas", "aspect", "normals", "ring_area", "slope"]
+__all__ = ["aspect", "compute_normals", "measure_areas", "measure_ring_area", "slope"]
 
 
 def slope(tin: TIN) -> NDArray[np.float64]:
@@ -43,7 +43,7 @@ def slope(tin: TIN) -> NDArray[np.float64]:
     >>> slope(tin).round(6)
     array([45.])
     """
-    east, north, up = normals(tin).T
+    east, north, up = compute_normals(tin).T
     degrees: NDArray[np.float64] = np.degrees(np.arctan2(np.hypot(east, north), up))
     return degrees
 
@@ -68,7 +68,7 @@ def aspect(tin: TIN) -> NDArray[np.float64]:
     >>> aspect(tin)
     array([270.])
     """
-    east, north, _ = normals(tin).T
+    east, north, _ = compute_normals(tin).T
     azimuth: NDArray[np.float64] = np.degrees(np.arctan2(east, north)) % 360.0
     # A hair west of north rounds up to the full circle, which is north.
     azimuth[azimuth == 360.0] = 0.0
@@ -76,7 +76,7 @@ def aspect(tin: TIN) -> NDArray[np.float64]:
     return azimuth
 
 
-def areas(tin: TIN) -> NDArray[np.float64]:
+def measure_areas(tin: TIN) -> NDArray[np.float64]:
     """Measure the area of each triangle in the plane on the ground.
 
     Parameters
@@ -88,12 +88,14 @@ def areas(tin: TIN) -> NDArray[np.float64]:
     (m,) float64 array
         In square metres; in CRS units squared where those are not known.
     """
-    measured: NDArray[np.float64] = tin.triangle_areas * area_scale(tin.crs, _middle_northings(tin))
+    measured: NDArray[np.float64] = tin.triangle_areas * find_area_scale(
+        tin.crs, _average_northings(tin)
+    )
     return measured
 
 
-def ring_area(crs: CRS | None, ring: NDArray[np.float64]) -> float:
-    """Measure the area inside a ring in the plane on the ground, as :func:`areas` does.
+def measure_ring_area(crs: CRS | None, ring: NDArray[np.float64]) -> float:
+    """Measure the area inside a ring in the plane on the ground, as :func:`measure_areas` does.
 
     Parameters
     ----------
@@ -109,17 +111,17 @@ def ring_area(crs: CRS | None, ring: NDArray[np.float64]) -> float:
     x, y = (ring[:, :2] - ring[0, :2]).T
     steps = x * np.roll(y, -1) - np.roll(x, -1) * y
     middle = (ring[:, 1] + np.roll(ring[:, 1], -1) + ring[0, 1]) / 3
-    return float((steps * area_scale(crs, middle)).sum()) / 2
+    return float((steps * find_area_scale(crs, middle)).sum()) / 2
 
 
-def area_scale(crs: CRS | None, northing: ArrayLike) -> Any:
+def find_area_scale(crs: CRS | None, northing: ArrayLike) -> Any:
     """Return the factor from areas in CRS units squared to square metres, at each northing."""
-    scales = scales_of(crs, None, northing)
+    scales = find_scales(crs, None, northing)
     metres = None if crs is None else crs.horizontal_unit.metres
     return scales.east * scales.north * (metres or 1.0) ** 2
 
 
-def normals(tin: TIN) -> NDArray[np.float64]:
+def compute_normals(tin: TIN) -> NDArray[np.float64]:
     """Return the upward normal of each triangle, its length twice the triangle's area in space.
 
     Parameters
@@ -134,12 +136,12 @@ def normals(tin: TIN) -> NDArray[np.float64]:
     """
     corners = [tin.points[tin.triangles[:, k]] for k in range(3)]
     upward: NDArray[np.float64] = np.cross(corners[1] - corners[0], corners[2] - corners[0])
-    east, north, up = scales_of(tin.crs, tin.elevation_unit, _middle_northings(tin))
+    east, north, up = find_scales(tin.crs, tin.elevation_unit, _average_northings(tin))
     for axis, factor in enumerate((north * up, east * up, east * north)):
         upward[:, axis] *= factor
     return upward
 
 
-def _middle_northings(tin: TIN) -> NDArray[np.float64]:
+def _average_northings(tin: TIN) -> NDArray[np.float64]:
     middle: NDArray[np.float64] = tin.points[:, 1][tin.triangles].mean(axis=1)
     return middle

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...errors import FormatError
-from ...terrain.linework import EDGE_KINDS, line_edges
+from ...terrain.linework import EDGE_KINDS, find_line_edges
 from ...tin.topology import edge_keys, edges_at
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ def format_edge_properties(tin: TIN, flags: NDArray[np.bool_]) -> NDArray[np.obj
 
 def _find_edge_kinds(tin: TIN, pairs: NDArray[np.int32]) -> NDArray[np.int8]:
     """Return the kind of each edge, a place in ``EDGE_KINDS``; -1 where no line is known."""
-    known = line_edges(tin, guess=False)
+    known = find_line_edges(tin, guess=False)
     keys = edge_keys(known.pairs, len(tin.points))
     order = np.argsort(keys)
     wanted = edge_keys(pairs, len(tin.points))
@@ -71,7 +71,7 @@ def require_lines(tin: TIN) -> None:
 
 def list_line_vertices(tin: TIN) -> list[NDArray[np.int32]]:
     """Return the chains of a TIN; where none are known, its constrained edges one by one."""
-    return list(tin.lines.chains()) if len(tin.lines) else list(line_edges(tin).pairs)
+    return list(tin.lines.chains()) if len(tin.lines) else list(find_line_edges(tin).pairs)
 
 
 def format_lines(tin: TIN, positions: NDArray[np.object_]) -> Iterator[str]:

@@ -10,7 +10,7 @@ import numpy as np
 from ..._atomic import replacing
 from ..._sentences import counted
 from ...errors import FormatError, WriteError
-from ...terrain.slope import areas, aspect, ring_area, slope
+from ...terrain.slope import aspect, measure_areas, measure_ring_area, slope
 from ...tin import Survey
 from ..mesh.common import require_writable
 from .coordinates import Places, format_positions, keep_in_crs, project_to_wgs84, require_one_piece
@@ -185,7 +185,7 @@ class _Measures(NamedTuple):
 def _measure_triangles(tin: TIN) -> _Measures:
     # As written, a hair west of north must not become the full circle.
     falls = np.round(aspect(tin), 4) % 360.0
-    return _Measures(slope(tin), falls, areas(tin))
+    return _Measures(slope(tin), falls, measure_areas(tin))
 
 
 def _format_triangles(tin: TIN, places: Places) -> Iterator[tuple[int, str]]:
@@ -263,7 +263,7 @@ def _format_hull(tin: TIN, places: Places) -> Iterator[tuple[int, str]]:
     positions = format_positions(places.xyz)
     features = []
     for number, rings in enumerate(_group_rings(tin)):
-        area = sum(ring_area(tin.crs, tin.points[ring]) for ring in rings)
+        area = sum(measure_ring_area(tin.crs, tin.points[ring]) for ring in rings)
         turned = [_close_ring(ring, places.xyz, k == 0) for k, ring in enumerate(rings)]
         written = ",".join(f"[{','.join(positions[ring])}]" for ring in turned)
         features.append(_HULL % (number, area, written))

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...tin import Bounds
-from ..rounding import format_number, round_down, ticks
-from .camera import View, ground_axes, pixels_per_unit
-from .tints import tints
+from ..rounding import choose_ticks, format_number, round_down
+from .camera import View, measure_pixels_per_unit, project_ground_axes
+from .tints import interpolate_tints
 
 if TYPE_CHECKING:
     from ...crs import Unit
@@ -88,7 +88,7 @@ def annotate(overlay: Overlay, sheet: Sheet, caption: Caption, camera: Any) -> N
     _draw_margins(overlay, sheet)
     _draw_title(overlay, sheet, caption)
     _draw_north_arrow(overlay, camera)
-    _draw_scale_bar(overlay, caption.unit, pixels_per_unit(camera, sheet.height))
+    _draw_scale_bar(overlay, caption.unit, measure_pixels_per_unit(camera, sheet.height))
     _draw_notes(overlay, caption.exaggeration, View.of(camera))
     _draw_legend(overlay, sheet, caption)
 
@@ -131,11 +131,11 @@ def _draw_title(overlay: Overlay, sheet: Sheet, caption: Caption) -> None:
         (caption.title, 62.0, 30.0, True, INK),
         (caption.subtitle, 92.0, 17.0, False, GREY),
     ):
-        fitting = _elided(overlay, words, room, size=size, bold=bold)
+        fitting = _elide(overlay, words, room, size=size, bold=bold)
         overlay.text((MARGIN, sheet.height - drop), fitting, color, size=size, bold=bold)
 
 
-def _elided(overlay: Overlay, words: str, room: float, *, size: float, bold: bool) -> str:
+def _elide(overlay: Overlay, words: str, room: float, *, size: float, bold: bool) -> str:
     """Cut words that are too long for the room, and show that they are cut."""
     if overlay.text_width(words, size=size, bold=bold) <= room:
         return words
@@ -146,7 +146,7 @@ def _elided(overlay: Overlay, words: str, room: float, *, size: float, bold: boo
 
 def _draw_north_arrow(overlay: Overlay, camera: Any) -> None:
     """Draw a compass that lies on the ground, foreshortened like the ground itself."""
-    axes = ground_axes(camera) * _COMPASS_RADIUS
+    axes = project_ground_axes(camera) * _COMPASS_RADIUS
     center = np.array([MARGIN + _COMPASS_RADIUS, 66.0])
     turn = np.linspace(0.0, 2 * np.pi, 49)
     overlay.line(np.column_stack([np.sin(turn), np.cos(turn)]) @ axes + center, GREY)
@@ -181,11 +181,11 @@ def _draw_scale_bar(overlay: Overlay, unit: Unit, pixels: float) -> None:
 
 def _draw_notes(overlay: Overlay, exaggeration: float, view: View) -> None:
     left = _BAR_LEFT + _BAR_WIDTH + 100.0
-    overlay.text((left, 62.0), _exaggeration_words(exaggeration, view), INK, size=17)
+    overlay.text((left, 62.0), _describe_exaggeration(exaggeration, view), INK, size=17)
     overlay.text((left, 38.0), view.caption, GREY, size=14)
 
 
-def _exaggeration_words(factor: float, view: View) -> str:
+def _describe_exaggeration(factor: float, view: View) -> str:
     """Say how much heights are exaggerated; from above only the hillshade shows it."""
     what = "Hillshade with vertical" if view.is_map else "Vertical"
     true = " (true to scale)" if factor == 1 else ""
@@ -197,7 +197,7 @@ def _draw_legend(overlay: Overlay, sheet: Sheet, caption: Caption) -> None:
     unit = caption.elevation_caption
     name = f"Elevation ({unit})" if unit else "Elevation (unit not known)"
     overlay.text((left, bottom + height + 8.0), name, INK, size=15)
-    colors = tints(100).tolist()
+    colors = interpolate_tints(100).tolist()
     step = _LEGEND_WIDTH / len(colors)
     for k, (red, green, blue) in enumerate(colors):
         overlay.rectangle((left + k * step, bottom), (step + 0.5, height), (red, green, blue))
@@ -208,7 +208,7 @@ def _draw_legend_ticks(
     overlay: Overlay, elevations: tuple[float, float], corner: tuple[float, float]
 ) -> None:
     (low, high), (left, bottom) = elevations, corner
-    inner = ticks(low, high, count=5)
+    inner = choose_ticks(low, high, count=5)
     step = (inner[1] - inner[0]) if len(inner) > 1 else max(high - low, 1.0)
     used: list[tuple[float, float]] = []
     ends = [(value, INK) for value in (low, high)]

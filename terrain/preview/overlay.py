@@ -100,7 +100,7 @@ class Overlay:
         return (box[1] - box[0] + 1) / self.factor
 
     def _set_font(self, style: Any, words: str, *, size: float, bold: bool) -> None:
-        wide = _wide_font(bold=bold) if max(words, default="") > _LAST_LATIN else None
+        wide = _find_wide_font(bold=bold) if max(words, default="") > _LAST_LATIN else None
         if wide is None:
             style.SetFontFamilyToArial()
         else:
@@ -134,7 +134,7 @@ class Overlay:
 
 
 @cache
-def _wide_font(*, bold: bool) -> Path | None:
+def _find_wide_font(*, bold: bool) -> Path | None:
     """Find DejaVu Sans, which has more alphabets: matplotlib ships it, and pyvista needs that."""
     spec = find_spec("matplotlib")
     if spec is None or spec.origin is None:

@@ -17,11 +17,17 @@ from tinsmith.terrain.preview.annotations import (
     annotate,
     scale_bar_length,
 )
-from tinsmith.terrain.preview.camera import VIEWS, View, aim, ground_axes, pixels_per_unit
+from tinsmith.terrain.preview.camera import (
+    VIEWS,
+    View,
+    aim,
+    measure_pixels_per_unit,
+    project_ground_axes,
+)
 from tinsmith.terrain.preview.overlay import Overlay
-from tinsmith.terrain.preview.scene import add_lights, scene_points
-from tinsmith.terrain.preview.tints import tints
-from tinsmith.terrain.units import METRE, ground_of
+from tinsmith.terrain.preview.scene import add_lights, place_vertices
+from tinsmith.terrain.preview.tints import interpolate_tints
+from tinsmith.terrain.units import METRE, find_ground
 from tinsmith.tin import Bounds
 
 pv = pytest.importorskip("pyvista")
@@ -82,8 +88,8 @@ def tinsmith_hill(crs):
 @pytest.mark.parametrize("crs", ["EPSG:32616", "EPSG:2264+5703"])
 def test_elevations_are_drawn_with_the_exaggeration(crs, factor):
     tin = tinsmith_hill(crs)
-    ground = ground_of(tin)
-    plain, drawn = scene_points(tin, ground, 1.0), scene_points(tin, ground, factor)
+    ground = find_ground(tin)
+    plain, drawn = place_vertices(tin, ground, 1.0), place_vertices(tin, ground, factor)
     np.testing.assert_array_equal(drawn[:, :2], plain[:, :2])
     np.testing.assert_allclose(np.ptp(drawn[:, 2]), factor * np.ptp(plain[:, 2]), rtol=1e-12)
     assert np.ptp(drawn[:, 2]) == pytest.approx(
@@ -107,7 +113,7 @@ def test_the_caption_states_the_exaggeration_that_is_drawn(factor):
 @pytest.mark.parametrize("extent", [0.7, 37.0, 500.0, 8_300.0, 120_000.0])
 def test_the_scale_bar_is_as_long_as_it_says(extent):
     overlay, camera = annotated(VIEWS["top"], extent=extent)
-    pixels = pixels_per_unit(camera, SHEET.height)
+    pixels = measure_pixels_per_unit(camera, SHEET.height)
     length, shown, symbol = scale_bar_length(METRE, pixels)
     parts = [r for r in overlay.rectangles if r[3] == 7.0]
     assert [color for *_, color in parts] == [INK, PAPER, INK, PAPER]
@@ -139,7 +145,7 @@ def test_kilometres_begin_at_one(length, expected):
 @pytest.mark.parametrize("view", [*VIEWS.values(), View(90.0, 90.0), View(300.0, 20.0)])
 def test_needle_and_letter_lie_to_the_north(view):
     overlay, camera = annotated(view)
-    axes = ground_axes(camera)
+    axes = project_ground_axes(camera)
     (left, dark), (right, light) = overlay.polygons
     assert (dark, light) == (INK, PAPER)
     circle = max((p for p, _ in overlay.lines), key=len)
@@ -178,7 +184,7 @@ def test_the_legend_rises_from_left_to_right(elevations):
     overlay, _ = annotated(VIEWS["top"], elevations=elevations)
     low, high = elevations
     boxes = [r for r in overlay.rectangles if r[3] == 14.0]
-    assert [color for *_, color in boxes] == [tuple(c) for c in tints(100).tolist()]
+    assert [color for *_, color in boxes] == [tuple(c) for c in interpolate_tints(100).tolist()]
     assert (np.diff([x for x, *_ in boxes]) > 0).all()
     left = boxes[0][0]
     width = boxes[-1][0] - left + boxes[1][0] - left
@@ -270,7 +276,7 @@ def test_the_settings_of_vtk_come_back_after_drawing():
     try:
         for backend in (words.MathText, words.FreeType):
             words.SetDefaultBackend(backend)
-            with drawing._plain_vtk():
+            with drawing._keep_vtk_plain():
                 assert words.GetDefaultBackend() == words.FreeType
             assert words.GetDefaultBackend() == backend
     finally:
