@@ -131,7 +131,7 @@ class Columns:
         place = f"column {column + 1}"
         return place if name in ("", place) else f"{place} ('{shorten(name)}')"
 
-    def permuted(self, order: Sequence[int]) -> Columns:
+    def permute(self, order: Sequence[int]) -> Columns:
         """Return the same with the columns of the coordinates exchanged.
 
         Parameters

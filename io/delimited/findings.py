@@ -69,7 +69,7 @@ def require_in_area(
             f"northing {y:.10g}), outside its area of use: check that they are no local "
             "coordinates, and no degrees."
         ]
-    outside = area.outside(points[:, :2])
+    outside = area.find_outside(points[:, :2])
     if len(outside) == 0:
         return []
     if 2 * len(outside) > len(points):
@@ -99,7 +99,7 @@ def _require_no_exchange(
     for order in orders:
         moved = points[:, list(order)]
         if are_plausible_elevations(moved[:, 2]) and area.covers_most(moved[:, :2]):
-            right = columns.permuted(order)
+            right = columns.permute(order)
             places = (
                 f"{role} in {right.label(right.roles[role])}"
                 for role in ("easting", "northing", "elevation")

@@ -178,7 +178,7 @@ def find_layout(
     data, skipped = _select_data_lines(lines, wishes)
     if len(data) == 0:
         raise ReadError(f"'{path}' holds no points: only blank and comment lines.", path=path)
-    sample = lines.texts(_sample_lines(data))
+    sample = lines.decode_lines(_sample_lines(data))
     found = wishes.delimiter or find_delimiter(sample)
     if found is None and all(text.lstrip().startswith(COMMENT_PREFIXES) for text in sample):
         raise ReadError(f"'{path}' holds no points: only blank and comment lines.", path=path)
@@ -189,7 +189,7 @@ def find_layout(
             path=path,
         )
     data, skipped = _drop_fillers(lines, data, skipped, found, wishes)
-    rows = lines.texts(_sample_lines(data))
+    rows = lines.decode_lines(_sample_lines(data))
     cells = [split_line(text, found) for text in rows]
     try:
         if found == "," and wishes.delimiter is None:
@@ -212,7 +212,7 @@ def _choose_decimal_mark(
         return DecimalMark(wishes.decimal)
     found = find_decimal_mark(cells, delimiter)
     if found is None and delimiter != ",":
-        decimals = lines.texts(_sample_lines(lines.with_decimals(data)))
+        decimals = lines.decode_lines(_sample_lines(lines.find_with_decimals(data)))
         found = find_decimal_mark([split_line(text, delimiter) for text in decimals], delimiter)
     return found or DecimalMark(".")
 
@@ -323,7 +323,7 @@ def _drop_fillers(
     """Set aside rows of nothing but delimiters, and comments that start with a semicolon."""
     if delimiter != BLANKS:
         starters = data[lines.starts_with(delimiter)[data]]
-        fillers = [i for i in starters if not lines.text(i).strip(f"{delimiter} \t")]
+        fillers = [i for i in starters if not lines.decode_line(i).strip(f"{delimiter} \t")]
         data = np.delete(data, np.searchsorted(data, np.array(fillers, np.int64)))
         skipped = skipped + Counter({"blank lines": len(fillers)})
     if wishes.comment is None and delimiter != ";":
@@ -432,7 +432,7 @@ def _find_header_in_comment(
     """Return the names in the comment line right above the table, if it is a header."""
     if first_row == 0:
         return None
-    above = lines.text(first_row - 1).strip()
+    above = lines.decode_line(first_row - 1).strip()
     for prefix in ("", *COMMENT_PREFIXES):
         if above.startswith(prefix):
             names = split_line(above.removeprefix(prefix), delimiter)

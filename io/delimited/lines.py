@@ -71,13 +71,13 @@ class TextLines:
         """The bytes as numbers."""
         return np.frombuffer(self.data, np.uint8)
 
-    def text(self, line: int) -> str:
+    def decode_line(self, line: int) -> str:
         """Return one line; ``line`` counts from 0."""
         return self.data[self.starts[line] : self.ends[line]].decode()
 
-    def texts(self, lines: Iterable[int]) -> list[str]:
+    def decode_lines(self, lines: Iterable[int]) -> list[str]:
         """Return some lines."""
-        return [self.text(line) for line in lines]
+        return [self.decode_line(line) for line in lines]
 
     @cached_property
     def firsts(self) -> NDArray[np.int64]:
@@ -108,7 +108,7 @@ class TextLines:
             fits[fits] = codes[at[fits]] == code
         return fits
 
-    def with_decimals(self, lines: NDArray[np.int64]) -> NDArray[np.int64]:
+    def find_with_decimals(self, lines: NDArray[np.int64]) -> NDArray[np.int64]:
         """Return those of the chosen lines in which a comma or a point stands between digits."""
         codes = self.codes
         is_digit = (codes >= ord("0")) & (codes <= ord("9"))
@@ -116,7 +116,7 @@ class TextLines:
         places = np.flatnonzero(is_mark & is_digit[:-2] & is_digit[2:]) + 1
         return np.intersect1d(np.searchsorted(self.starts, places, side="right") - 1, lines)
 
-    def joined(self, lines: NDArray[np.int64]) -> bytes:
+    def join(self, lines: NDArray[np.int64]) -> bytes:
         """Return the chosen lines (ascending numbers) as one text."""
         if len(lines) == 0:
             return b""

@@ -116,7 +116,7 @@ def read_cells(lines: TextLines, layout: Layout, path: Path) -> Cells:
     one by one, by the rules of Python's csv module, on the way. Every number is the float64
     nearest to its text.
     """
-    data = lines.joined(layout.rows)
+    data = lines.join(layout.rows)
     if _is_regular(data, layout):
         return Cells(
             _parse_with_pandas(data, layout.delimiter, layout, len(layout.rows), path), layout.rows
@@ -282,7 +282,7 @@ def _iterate_cells(lines: TextLines, layout: Layout) -> Iterator[tuple[int, str,
     """Walk the rows: line number (from 0), its text, and its cells or what is wrong with them."""
     for start in range(0, len(layout.rows), _QUOTED_ROWS):
         rows = layout.rows[start : start + _QUOTED_ROWS]
-        text = lines.joined(rows).decode()
+        text = lines.join(rows).decode()
         if layout.delimiter == BLANKS:
             texts = [line.strip(" ") for line in text.replace("\t", " ").split("\n")]
         else:
@@ -407,7 +407,7 @@ def _describe_column(column: pd.Series[Any], i: int, layout: Layout, *, has_grou
     values = numbers.values
     is_there = ~np.isnan(values)
     known = values if is_there.all() else values[is_there]
-    is_whole = i not in layout.divided and len(known) > 0 and _are_whole(known)
+    is_whole = i not in layout.divided and len(known) > 0 and _are_counts(known)
     return Column(
         values,
         is_whole=is_whole,
@@ -417,7 +417,7 @@ def _describe_column(column: pd.Series[Any], i: int, layout: Layout, *, has_grou
     )
 
 
-def _are_whole(values: NDArray[np.float64]) -> bool:
+def _are_counts(values: NDArray[np.float64]) -> bool:
     with np.errstate(invalid="ignore"):
         return bool((values >= 0).all() and (np.floor(values) == values).all())
 
@@ -472,7 +472,7 @@ def read_table(cells: Cells, layout: Layout, columns: Columns, lines: TextLines)
 def _describe_fault(lines: TextLines, layout: Layout, columns: Columns, line: int, k: int) -> str:
     """Say which cell of a row is at fault, and what is in it."""
     column = columns.coordinates[k]
-    cell = split_line(lines.text(line), layout.delimiter)[column]
+    cell = split_line(lines.decode_line(line), layout.delimiter)[column]
     value = f"is '{cell[:40]}'" if cell else "is empty"
     return f"{COORDINATES[k]} in {columns.label(column)} {value}"
 

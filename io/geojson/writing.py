@@ -310,13 +310,13 @@ def _format_points(surface: TIN | Survey, places: Places) -> Iterator[tuple[int,
     properties = "{" + ",".join(f"{name.replace('%', '%%')}:%s" for name in ['"id"', *names]) + "}"
     for done, part in _iterate_slices(len(places.xyz)):
         values = zip(
-            *(map(_format_value, column[part].tolist()) for column in (ids, *columns)), strict=True
+            *(map(_format_json, column[part].tolist()) for column in (ids, *columns)), strict=True
         )
         rows = zip(map(properties.__mod__, values), format_positions(places.xyz[part]), strict=True)
         yield done, ",\n".join(map(_POINT.__mod__, rows))
 
 
-def _format_value(value: Any) -> str:
+def _format_json(value: Any) -> str:
     """Return a value of an attribute as JSON; what JSON has no word for becomes text or null."""
     if value is None or value != value:  # NaN and NaT
         return "null"

@@ -105,7 +105,7 @@ class _Worker:
             send(self._process.stdin, Answer({**request, "limits": list(limits)}, {}))
         seconds = START_SECONDS
         while True:
-            answer = self._next(seconds, path, limits)
+            answer = self._receive_next(seconds, path, limits)
             kind = answer.value.get("kind")
             if kind in _SOUND_ENDS:
                 self.is_sound = True
@@ -117,7 +117,7 @@ class _Worker:
                 raise _describe_answer(answer.value, path, limits)
             seconds = limits.waiting_seconds
 
-    def _next(self, seconds: float, path: Path, limits: Limits) -> Answer:
+    def _receive_next(self, seconds: float, path: Path, limits: Limits) -> Answer:
         watchdog = threading.Timer(seconds, self._time_out)
         watchdog.daemon = True
         watchdog.start()

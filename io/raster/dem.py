@@ -57,7 +57,7 @@ class _Cells:
     def columns(self) -> NDArray[np.int64]:
         return np.arange(self.column, self.column + self.width, self.stride)
 
-    def rows(self, start: int, stop: int) -> NDArray[np.int64]:
+    def find_rows(self, start: int, stop: int) -> NDArray[np.int64]:
         """Return the rows wanted among ``start`` to ``stop``."""
         first = start + (self.row - start) % self.stride
         return np.arange(first, stop, self.stride)
@@ -204,7 +204,7 @@ class _Affine(NamedTuple):
             column * self.d + row * self.e + self.f,
         )
 
-    def inverse(self) -> _Affine:
+    def invert(self) -> _Affine:
         """Return the transform from easting and northing to columns and rows."""
         a, b, c, d, e, f = self
         area = a * e - b * d
@@ -397,7 +397,7 @@ def _cut_bounds(dataset: _Header, bounds: Bounds, path: Path) -> tuple[int, int,
         raise FormatError(f"Invalid window {bounds}: four finite numbers are needed.")
     x = np.array([bounds.xmin, bounds.xmin, bounds.xmax, bounds.xmax])
     y = np.array([bounds.ymin, bounds.ymax, bounds.ymin, bounds.ymax])
-    columns, rows = dataset.transform.inverse().apply(x, y)
+    columns, rows = dataset.transform.invert().apply(x, y)
     column, row = max(0, int(np.floor(columns.min()))), max(0, int(np.floor(rows.min())))
     right = min(dataset.width, int(np.ceil(columns.max())))
     bottom = min(dataset.height, int(np.ceil(rows.max())))
@@ -468,7 +468,7 @@ def _cut_into_strips(dataset: _Header, cells: _Cells) -> list[NDArray[np.int64]]
     height = _choose_strip_height(dataset, cells)
     end = cells.row + cells.height
     strips = [
-        cells.rows(start, min(start + height, end)) for start in range(cells.row, end, height)
+        cells.find_rows(start, min(start + height, end)) for start in range(cells.row, end, height)
     ]
     return [rows for rows in strips if len(rows)]
 

@@ -90,7 +90,7 @@ class AreaOfUse:
             return False
         return not self.covers(xy[_find_outermost(xy)], margin=0.0).any()
 
-    def outside(self, xy: NDArray[np.float64]) -> NDArray[np.int64]:
+    def find_outside(self, xy: NDArray[np.float64]) -> NDArray[np.int64]:
         """Return the rows that lie outside; all are looked at only if the outermost do not fit."""
         if len(xy) == 0 or self.covers(xy[_find_outermost(xy)]).all():
             return np.empty(0, np.int64)

@@ -147,9 +147,9 @@ def test_rows_outside_are_found_wherever_they_stand():
         UTM_16, np.column_stack([rng.uniform(-88, -86, 3000), rng.uniform(30, 45, 3000)])
     )
     area = area_of(UTM_16)
-    assert area.outside(xy).tolist() == area.outside(xy[:0]).tolist() == []
+    assert area.find_outside(xy).tolist() == area.find_outside(xy[:0]).tolist() == []
     for k, away in enumerate(([9e6, 0], [-9e6, 0], [0, 2e7], [0, -3e7])):
         rows = sorted(rng.choice(3000, k + 1, replace=False).tolist())
         moved = xy.copy()
         moved[rows] += away
-        assert area.outside(moved).tolist() == rows
+        assert area.find_outside(moved).tolist() == rows

@@ -45,19 +45,19 @@ class Recorder:
     def clear(self):
         self.__init__()
 
-    def rectangle(self, corner, size, color):
+    def draw_rectangle(self, corner, size, color):
         self.rectangles.append((*corner, *size, tuple(color)))
 
-    def polygon(self, corners, color):
+    def draw_polygon(self, corners, color):
         self.polygons.append((np.array(corners, float), tuple(color)))
 
-    def line(self, places, color, *, width=1.0):
+    def draw_line(self, places, color, *, width=1.0):
         self.lines.append((np.array(places, float), tuple(color)))
 
-    def text(self, place, words, color, *, size, bold=False, align="left"):
+    def draw_text(self, place, words, color, *, size, bold=False, align="left"):
         self.texts.append((words, *place, align))
 
-    def text_width(self, words, *, size, bold=False):
+    def measure_text(self, words, *, size, bold=False):
         return 0.6 * size * len(words)
 
     def place_of(self, words):
@@ -231,7 +231,7 @@ def test_a_title_too_long_for_the_sheet_is_cut_and_shows_it():
     annotate(overlay, SHEET, caption, camera)
     (title,) = [said for said, *_ in overlay.texts if said.startswith("word")]
     assert title.endswith("...")
-    assert 0.8 * 1312 < overlay.text_width(title, size=30.0) <= 1312
+    assert 0.8 * 1312 < overlay.measure_text(title, size=30.0) <= 1312
 
 
 @pytest.mark.parametrize("length", [100, 101])
@@ -241,8 +241,8 @@ def test_a_title_is_cut_to_the_last_letter_that_fits(length):
     aim(camera, np.eye(3), view=VIEWS["top"], frame=SHEET.frame, size=(1400, 900))
     annotate(overlay, SHEET, Caption("x" * length, "short", 1.0, (0.0, 1.0), "m", METRE), camera)
     (title,) = [said for said, *_ in overlay.texts if said.startswith("x")]
-    letter = overlay.text_width("x", size=30.0)
-    assert 1312 - letter < overlay.text_width(title, size=30.0) <= 1312
+    letter = overlay.measure_text("x", size=30.0)
+    assert 1312 - letter < overlay.measure_text(title, size=30.0) <= 1312
 
 
 # ----------------------------------------------------------------------- lights
@@ -291,18 +291,18 @@ def test_what_an_overlay_draws_is_where_it_was_asked_for(factor, can_draw):
     plotter.background_color = "white"
     plotter.disable_anti_aliasing()
     overlay = Overlay(plotter.renderer, factor=factor)
-    overlay.rectangle((20, 10), (60, 30), red)
-    overlay.polygon([(100, 10), (140, 10), (100, 50)], green)
-    overlay.line([(20, 80), (80, 80), (80, 110)], blue, width=3.0)
+    overlay.draw_rectangle((20, 10), (60, 30), red)
+    overlay.draw_polygon([(100, 10), (140, 10), (100, 50)], green)
+    overlay.draw_line([(20, 80), (80, 80), (80, 110)], blue, width=3.0)
     for align in ("left", "center", "right"):
-        overlay.text(
+        overlay.draw_text(
             (150, {"left": 20, "center": 60, "right": 95}[align]),
             "HHH",
             black,
             size=16,
             align=align,
         )
-    width = overlay.text_width("HHH", size=16)
+    width = overlay.measure_text("HHH", size=16)
     shot = plotter.screenshot(return_img=True)[::-1].astype(int)
 
     def box_of(color):
