@@ -38,10 +38,10 @@ def describe() -> dict[str, str]:
             versions[package] = version(package)
         except PackageNotFoundError:
             continue
-    return versions | _library_versions()
+    return versions | _find_library_versions()
 
 
-def _library_versions() -> dict[str, str]:
+def _find_library_versions() -> dict[str, str]:
     found = {}
     if CGAL_VERSION.exists():
         lines = CGAL_VERSION.read_text().splitlines()
