@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from ..errors import CrsError, FormatError, ReadError, WriteError
+    from ..errors import CrsError, FormatError, OptionError, ReadError, WriteError
     from .field_codes import lines_from_codes
     from .reading import read
     from .registry import Format, find_format, known_formats
@@ -20,7 +20,7 @@ else:  # a type checker takes every name for one that such a __getattr__ has
         {
             ".field_codes": ("lines_from_codes",),
             ".reprojection.transformation": ("LengthUnit", "length_unit", "transform_points"),
-            "..errors": ("CrsError", "FormatError", "ReadError", "WriteError"),
+            "..errors": ("CrsError", "FormatError", "OptionError", "ReadError", "WriteError"),
             ".reading": ("read",),
             ".registry": ("Format", "find_format", "known_formats"),
             ".vector.reading": ("read_lines", "read_polygons", "read_rings", "read_water"),
@@ -34,6 +34,7 @@ __all__ = [
     "Format",
     "FormatError",
     "LengthUnit",
+    "OptionError",
     "ReadError",
     "WriteError",
     "find_format",

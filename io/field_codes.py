@@ -12,11 +12,12 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import TYPE_CHECKING, get_args
 
 import numpy as np
 
-from ..errors import LinesError
+from ..errors import LinesError, OptionError
+from ..policies import BreaklineKind, LineRole
 from ..tin import Breakline, Water
 
 if TYPE_CHECKING:
@@ -25,9 +26,6 @@ if TYPE_CHECKING:
     from ..tin import Survey
 
 __all__ = ["MARKS", "RULES", "LineRole", "lines_from_codes"]
-
-LineRole = Literal["hard", "soft", "boundary", "hole", "erase", "water"]
-"""What the line of a code becomes."""
 
 RULES: Mapping[str, LineRole] = {
     **dict.fromkeys(("RDG", "RIDGE", "GB", "BRK", "BL"), "hard"),
@@ -84,6 +82,8 @@ def lines_from_codes(survey: Survey, rules: Mapping[str, LineRole] | None = None
     ------
     LinesError
         If there are no descriptions or no line codes.
+    OptionError
+        If a rule gives a code another role.
 
     Examples
     --------
@@ -122,12 +122,10 @@ def lines_from_codes(survey: Survey, rules: Mapping[str, LineRole] | None = None
 
 
 def _require_rules(rules: Mapping[str, LineRole]) -> dict[str, LineRole]:
-    allowed = get_args(LineRole)
     for code, role in rules.items():
-        if role not in allowed:
-            raise LinesError(
-                f"Invalid rule '{role}' for the code '{code}': one of {', '.join(allowed)}."
-            )
+        if role not in get_args(LineRole):
+            roles = ", ".join(get_args(LineRole))
+            raise OptionError("rules", {code: role}, f"a role for each code, one of {roles}")
     return {code.upper(): role for code, role in rules.items()}
 
 
@@ -237,7 +235,7 @@ def _note_water_level(survey: Survey, run: _Run) -> str:
 
 def _make_breakline(survey: Survey, run: _Run) -> Breakline:
     rows = [*run.rows, run.rows[0]] if run.is_closed else run.rows
-    kind: Literal["hard", "soft"] = "soft" if run.role == "soft" else "hard"
+    kind: BreaklineKind = "soft" if run.role == "soft" else "hard"
     return Breakline(survey.points[rows], kind=kind, name=run.name)
 
 

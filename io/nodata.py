@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..errors import FormatError
-from ..tin.validation.options import shown
+from ..errors import OptionError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -38,15 +37,13 @@ def parse_nodata(nodata: float | Sequence[float] | None) -> NDArray[np.float64]:
 
     Raises
     ------
-    FormatError
+    OptionError
         If they are no numbers.
     """
     try:
         return np.atleast_1d(np.asarray([] if nodata is None else nodata, np.float64)).ravel()
     except (TypeError, ValueError, OverflowError) as error:
-        raise FormatError(
-            f"Invalid nodata {shown(nodata)}: a number, or several, are needed."
-        ) from error
+        raise OptionError("nodata", nodata, "a number, or several") from error
 
 
 @dataclass(frozen=True, slots=True)

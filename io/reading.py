@@ -75,7 +75,8 @@ def read(
     CrsError
         If the CRS is unknown, or another than that of a TIN.
     OptionError
-        If the unit is unknown, or another than the one that the file gives.
+        If an option has a value that it cannot have; if the unit is unknown, or another than the
+        one that the file gives.
     MissingExtraError
         If the library that reads the format is not installed.
 

@@ -5,11 +5,15 @@ from .charts.comparison import comparison_picture
 from .charts.histogram import histogram
 from .lift import lift
 from .preview.picture import preview
+from .results import Features, Raster, Table
 from .slope import aspect, slope
 
 __all__ = [
+    "Features",
     "OptionError",
+    "Raster",
     "RenderError",
+    "Table",
     "aspect",
     "comparison_picture",
     "histogram",

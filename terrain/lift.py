@@ -111,7 +111,7 @@ def parse_exaggeration(exaggeration: float) -> float:
     """Return a vertical exaggeration as a float, or raise OptionError."""
     factor = float(exaggeration)
     if not (math.isfinite(factor) and factor > 0):
-        raise OptionError("exaggeration", exaggeration, allowed="a finite number above 0")
+        raise OptionError("exaggeration", exaggeration, "a finite number above 0")
     return factor
 
 
@@ -122,7 +122,5 @@ def _round_down_to_power(extent: float) -> float:
 def _parse_origin(origin: ArrayLike) -> NDArray[np.float64]:
     shift = np.array(origin, np.float64)
     if shift.shape != (3,) or not np.isfinite(shift).all():
-        raise OptionError(
-            "origin", origin, allowed="three finite numbers: easting, northing, elevation"
-        )
+        raise OptionError("origin", origin, "three finite numbers: easting, northing, elevation")
     return shift

@@ -1,6 +1,13 @@
 """Points and lines become triangles: build, edit, query, check. Knows no files, no pictures."""
 
-from ..errors import CheckError, LinesError, MissingExtraError, PointsError, TinsmithError
+from ..errors import (
+    CheckError,
+    LinesError,
+    MissingExtraError,
+    OptionError,
+    PointsError,
+    TinsmithError,
+)
 from . import paper
 from .checking.checker import CheckResult, check
 from .constraints.breaklines import Breakline, Lines, Water
@@ -26,6 +33,7 @@ __all__ = [
     "LinesError",
     "Merge",
     "MissingExtraError",
+    "OptionError",
     "Outcome",
     "PointsError",
     "Quality",

@@ -6,15 +6,14 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from .building.assembly import assemble
-from .building.constrained import CrossingPolicy
-from .building.duplicates import DuplicatePolicy
-from .building.inputs import TrimPolicy, gather_inputs
+from .building.inputs import gather_inputs
 from .surface import TIN
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from ..crs import CrsLike, UnitLike
+    from ..policies import CrossingPolicy, DuplicatePolicy, TrimPolicy
     from .constraints.breaklines import Breakline, Water
     from .survey import Survey
 
@@ -105,11 +104,12 @@ def triangulate(
     PointsError
         If names of columns do not tell the coordinates, if a coordinate is not finite or outside
         the exact range, if fewer than three places are distinct, if all are collinear, or
-        (``duplicates="error"``) if two rows coincide; if an option is none of the allowed.
+        (``duplicates="error"``) if two rows coincide.
     CrsError
         If the CRS is unknown, or another than the survey's own.
     OptionError
-        If ``z_unit`` is unknown, or another than the one that survey or CRS give.
+        If an option is none of the allowed; if ``z_unit`` is unknown, or another than the one that
+        survey or CRS give.
     LinesError
         If a line has too few vertices or coordinates that are not finite, if a ring crosses
         itself, if lines cross and must not, if a hole lies outside, or if no triangle is left.

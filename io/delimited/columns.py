@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from ...errors import FormatError, ReadError
+from ...errors import OptionError, ReadError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -77,10 +77,11 @@ _UNIT_NAMES = (
     *("us survey foot", "us survey feet", "survey foot", "survey feet", "usfoot", "usfeet"),
     *("ift", "intft", "int ft", "international foot", "international feet", "ftint"),
 )
+_UNIT_WORDS = "|".join(sorted(_UNIT_NAMES, key=len, reverse=True)).replace(" ", r"[\s._]+")
 # The brackets inside keep the pattern linear: a text of nothing but brackets is tried once.
 _UNIT = re.compile(
     r"[\[(](?P<inside>[^\[\]()]*)[\])]"
-    rf"|(?<=[^\W_])[_ .-]+(?P<behind>{'|'.join(sorted(_UNIT_NAMES, key=len, reverse=True))})$",
+    rf"|(?<=[^\W_])[_ .-]+(?P<behind>{_UNIT_WORDS})$",
     re.IGNORECASE,
 )
 _SHOWN_LETTERS, _SHOWN_NAMES = 40, 12
@@ -372,7 +373,7 @@ def find_columns_by_word(
 
     Raises
     ------
-    FormatError
+    OptionError
         If the word names no such column, a role twice, or not all three coordinates.
     """
     if isinstance(word, Mapping):
@@ -380,7 +381,7 @@ def find_columns_by_word(
             _require_role(role): _find_column(which, header, count) for role, which in word.items()
         }
         _require_coordinates(roles, word)
-        _require_distinct(roles)
+        _require_distinct(roles, word)
         names = name_columns(header, count)
         notes = _describe_contradictions(header, roles)
         in_degrees = _are_degrees(names, roles)
@@ -389,12 +390,11 @@ def find_columns_by_word(
     named = [meaning for meaning in given if meaning in _ROLES]
     twice = next((one for one in named if named.count(one) > 1), None)
     if twice:
-        raise FormatError(f"The option columns ({word}) names the {twice} twice.")
+        raise OptionError("columns", word, f"a layout that does not name the {twice} twice")
     roles = _require_coordinates({one: i for i, one in enumerate(given) if one in _ROLES}, word)
     if len(given) > count:
-        raise FormatError(
-            f"The option columns names {len(given)} columns ({word}), but the file has {count}."
-        )
+        allowed = f"a layout of the {count} columns of the file, not of {len(given)} columns"
+        raise OptionError("columns", word, allowed)
     names = tuple(_choose_name(given, header, i) for i in range(count))
     notes = _describe_contradictions(header, roles)
     in_degrees = _are_degrees(names, roles) or _are_degrees(_list_given_names(word), roles)
@@ -410,13 +410,14 @@ def _are_degrees(names: Sequence[str], roles: Mapping[str, int]) -> bool:
     return all(rank is not None and rank[1] for rank in ranks)
 
 
-def _require_distinct(roles: Mapping[str, int]) -> None:
+def _require_distinct(roles: Mapping[str, int], word: object) -> None:
     for role, column in roles.items():
         same = [other for other, one in roles.items() if one == column and other != role]
         if same:
-            raise FormatError(
-                f"The option columns names column {column + 1} twice: as {role} and {same[0]}."
+            allowed = (
+                f"a layout that takes no column twice: column {column + 1} is {role} and {same[0]}"
             )
+            raise OptionError("columns", word, allowed)
 
 
 def _describe_contradictions(header: Sequence[str], roles: Mapping[str, int]) -> tuple[str, ...]:
@@ -457,38 +458,32 @@ def _list_given_names(word: str | Sequence[str]) -> list[str]:
 def _require_role(role: str) -> str:
     known = role if role in _ROLES else find_role(role)
     if known is None:
-        raise FormatError(
-            f"The option columns names '{role}': one of {', '.join(_ROLES)} is needed.",
-            known=_ROLES,
-        )
+        raise OptionError("columns", role, _ROLES)
     return known
 
 
 def _find_column(which: str | int, header: Sequence[str], count: int) -> int:
     if isinstance(which, int):
         if not 1 <= which <= count:
-            raise FormatError(f"The option columns names column {which}: 1 to {count} are there.")
+            raise OptionError("columns", which, f"a column from 1 to {count}")
         return which - 1
     found = [i for i, name in enumerate(header) if name.strip().casefold() == which.casefold()]
     if len(found) == 1:
         return found[0]
     there = f"the header has {list_names(header)}" if header else "the file has no header"
     number = "no" if not found else f"{len(found)}"
-    raise FormatError(
-        f"The option columns names '{shorten(which)}', of which there are {number} columns: "
-        f"{there}.",
-        known=header,
-    )
+    allowed = f"the name of one column, and {number} columns have it: {there}"
+    raise OptionError("columns", which, allowed)
 
 
 def _require_coordinates(roles: dict[str, int], word: object) -> dict[str, int]:
     missing = [role for role in COORDINATES if role not in roles]
     if missing:
-        raise FormatError(
-            f"The option columns ({word}) does not say which column is the {_join_words(missing)}: "
-            "it may be letters (P number, N northing, E easting, Z elevation, D description, "
-            "X easting, Y northing, - other) or names.",
-            known=tuple(_LETTERS),
+        raise OptionError(
+            "columns",
+            word,
+            "letters (P number, N northing, E easting, Z elevation, D description, X easting, "
+            f"Y northing, - other) or names that say which column is the {_join_words(missing)}",
         )
     return roles
 

@@ -52,7 +52,7 @@ _UNIT_WORDS = frozenset(
 )
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Layout:
     """How to read the table of a text file.
 

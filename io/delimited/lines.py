@@ -92,20 +92,30 @@ class TextLines:
             active = active[firsts[active] < self.ends[active]]
         return firsts
 
-    @property
+    @cached_property
     def is_blank(self) -> NDArray[np.bool_]:
         """Whether a line holds nothing but spaces and tabs, (k,) array."""
         blank: NDArray[np.bool_] = self.firsts == self.ends
         return blank
 
+    @cached_property
+    def first_codes(self) -> NDArray[np.uint8]:
+        """The byte at ``firsts``, (k,) array; 0 where a line is blank."""
+        codes = np.zeros(len(self), np.uint8)
+        filled = np.flatnonzero(~self.is_blank)
+        codes[filled] = self.codes[self.firsts[filled]]
+        return codes
+
     def starts_with(self, prefix: str) -> NDArray[np.bool_]:
         """Whether a line starts with a prefix, leading spaces aside, (k,) array."""
-        codes = self.codes
-        fits = np.ones(len(self), np.bool_)
-        for place, code in enumerate(prefix.encode()):
-            at = self.firsts + place
-            fits &= at < self.ends
-            fits[fits] = codes[at[fits]] == code
+        code, *others = prefix.encode()
+        fits: NDArray[np.bool_] = self.first_codes == code
+        for place, other in enumerate(others, start=1):
+            lines = np.flatnonzero(fits)
+            at = self.firsts[lines] + place
+            is_inside = at < self.ends[lines]
+            fits[lines] = is_inside
+            fits[lines[is_inside]] = self.codes[at[is_inside]] == other
         return fits
 
     def find_with_decimals(self, lines: NDArray[np.int64]) -> NDArray[np.int64]:

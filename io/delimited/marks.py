@@ -7,7 +7,7 @@ from collections import Counter
 from statistics import median_high
 from typing import TYPE_CHECKING, NamedTuple
 
-from ...errors import FormatError, ReadError
+from ...errors import OptionError, ReadError
 from .cells import BLANKS, is_grouped, is_number, is_number_like, may_group_or_divide, split_line
 from .columns import find_columns_by_header
 from .lines import COMMENT_PREFIXES, decode_head
@@ -60,16 +60,15 @@ def parse_delimiter(word: str | None) -> str | None:
 
     Raises
     ------
-    FormatError
+    OptionError
         If it is neither one letter that may be a delimiter nor the name of one.
     """
     if word is None:
         return None
     delimiter = _SPOKEN.get(word.strip().lower(), word) if word != BLANKS else word
     if len(delimiter) != 1 or delimiter.isalnum() or delimiter in '"\n\r.+-' or delimiter > "~":
-        raise FormatError(
-            f"Invalid delimiter '{word}': one letter such as ',' or one of {', '.join(_SPOKEN)}.",
-            known=tuple(_SPOKEN),
+        raise OptionError(
+            "delimiter", word, f"one letter such as ',' or one of {', '.join(_SPOKEN)}"
         )
     return delimiter
 
@@ -79,13 +78,11 @@ def parse_decimal_mark(word: str | None) -> str | None:
 
     Raises
     ------
-    FormatError
+    OptionError
         If it is neither "." nor ",".
     """
     if word not in (None, ".", ","):
-        raise FormatError(
-            f"Invalid decimal mark '{word}': '.' or ',' is allowed.", known=(".", ",")
-        )
+        raise OptionError("decimal", word, "'.' or ','")
     return word
 
 

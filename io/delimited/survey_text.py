@@ -108,12 +108,11 @@ def read(
         If there is no table, its columns cannot be told or may be told in two ways, a row is bad
         (with ``skip_bad`` more than half of them), no point has an elevation, or the coordinates
         would be in degrees.
-    FormatError
-        If an option has a value that it cannot have.
     CrsError
         If a CRS is unknown, or the points lie in its area of use only with coordinates exchanged.
     OptionError
-        If ``z_unit`` is unknown, or another than the header gives.
+        If an option has a value that it cannot have; if ``z_unit`` is unknown, or another than the
+        header gives.
 
     Notes
     -----

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, get_args
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from ..._atomic import replacing
 from ..._sentences import counted
-from ...errors import FormatError, WriteError
+from ...errors import FormatError, WriteError, choice
+from ...policies import FeatureKind
 from ...terrain.slope import aspect, measure_areas, measure_ring_area, slope
 from ...tin import Survey
 from ..mesh.common import require_writable
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Kind", "write"]
 
-Kind = Literal["triangles", "points", "edges", "lines", "hull"]
+Kind = FeatureKind
 
 _BATCH = 16_384
 _FEATURE = '{"type":"Feature","properties":%s,"geometry":{"type":"%s","coordinates":%s}}'
@@ -73,8 +74,10 @@ def write(
     ------
     CrsError
         If the CRS is not known, or puts points outside the Earth.
+    OptionError
+        If there is no such kind.
     FormatError
-        If there is no such kind, a survey is asked for triangles, or a TIN without lines for lines.
+        If a survey is asked for triangles, or a TIN without lines for lines.
     WriteError
         If the file cannot be written, a coordinate is not finite, or the surface crosses the
         antimeridian.
@@ -125,9 +128,7 @@ def _require_kind(surface: TIN | Survey, kind: str | None) -> str:
     is_survey = isinstance(surface, Survey)
     if kind is None:
         return "points" if is_survey else "triangles"
-    allowed = get_args(Kind)
-    if kind not in allowed:
-        raise FormatError(f"Invalid kind '{kind}': one of {', '.join(allowed)}.", known=allowed)
+    choice("kind", kind, Kind)
     if is_survey and kind != "points":
         raise FormatError(
             f"A survey has no {kind}, only points: triangulate it first.", known=("points",)

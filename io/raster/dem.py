@@ -13,7 +13,7 @@ import numpy as np
 from ... import _optional
 from ..._sentences import counted
 from ...crs import CRS, Unit
-from ...errors import FormatError, OptionError, ReadError
+from ...errors import OptionError, ReadError
 from ...tin import Bounds, Survey
 from ..isolated import Limits, choose_limits, run_isolated, stream_isolated
 from ..nodata import describe_suspects, find_suspect_elevations, parse_nodata
@@ -109,12 +109,11 @@ def read(
     ReadError
         If GDAL cannot read the file, it is a picture or has no georeference, its CRS is in
         degrees and no other is wanted, or no cell has an elevation.
-    FormatError
-        If band, window or stride is not one that the raster has, or nodata is no number.
+    OptionError
+        If band, window or stride is not one that the raster has, nodata is no number, or
+        ``z_unit`` is unknown, or another than the raster's own.
     CrsError
         If the points cannot be transformed.
-    OptionError
-        If ``z_unit`` is unknown, or another than the raster's own.
     MissingExtraError
         If rasterio is not installed.
 
@@ -283,8 +282,10 @@ def _choose_band(dataset: _Header, band: int | None, path: Path) -> int:
         )
     number = 1 if band is None else band
     if not isinstance(number, Integral) or not 1 <= number <= dataset.count:
-        there_are = "only band 1 is" if dataset.count == 1 else f"bands 1 to {dataset.count} are"
-        raise FormatError(f"Invalid band {band!r}: {there_are} in '{path}'.")
+        known = (
+            "1, the only band" if dataset.count == 1 else f"one of the bands 1 to {dataset.count}"
+        )
+        raise OptionError("band", band, f"{known} of '{path}'")
     return int(number)
 
 
@@ -365,9 +366,11 @@ def _choose_cells(
         part = _cut_window(dataset, window, path)
     smaller = min(part[2:])
     if not isinstance(stride, Integral) or not (1 <= stride < smaller or stride == 1):
-        raise FormatError(
-            f"Invalid stride {stride!r}: a whole number from 1 to {max(1, smaller - 1)} is needed "
-            f"for the {counted(part[2], 'column')} and {counted(part[3], 'row')} to read."
+        raise OptionError(
+            "stride",
+            stride,
+            f"a whole number from 1 to {max(1, smaller - 1)} for the {counted(part[2], 'column')} "
+            f"and {counted(part[3], 'row')} to read",
         )
     return _Cells(*part, int(stride), bounds)
 
@@ -379,14 +382,15 @@ def _cut_window(dataset: _Header, window: Sequence[int], path: Path) -> tuple[in
     except TypeError:
         numbers = ()
     if len(numbers) != 4 or not all(isinstance(one, Integral) for one in numbers):
-        raise FormatError(
-            f"Invalid window {window!r}: four whole numbers (first column, first row, width, "
-            f"height) or Bounds are needed; {size}."
+        raise OptionError(
+            "window",
+            window,
+            f"four whole numbers (first column, first row, width, height) or Bounds; {size}",
         )
     column, row, width, height = (int(one) for one in numbers)
     fits = 0 <= column < column + width <= dataset.width
     if not (fits and 0 <= row < row + height <= dataset.height):
-        raise FormatError(f"Window {numbers} does not lie in '{path}': {size}.")
+        raise OptionError("window", numbers, f"a part of '{path}': {size}")
     return column, row, width, height
 
 
@@ -394,7 +398,7 @@ def _cut_bounds(dataset: _Header, bounds: Bounds, path: Path) -> tuple[int, int,
     """Return the cells of the smallest upright window that covers the bounds."""
     limits = (bounds.xmin, bounds.ymin, bounds.xmax, bounds.ymax)
     if not all(isinstance(one, Real) and np.isfinite(one) for one in limits):
-        raise FormatError(f"Invalid window {bounds}: four finite numbers are needed.")
+        raise OptionError("window", limits, "four finite numbers")
     x = np.array([bounds.xmin, bounds.xmin, bounds.xmax, bounds.xmax])
     y = np.array([bounds.ymin, bounds.ymax, bounds.ymin, bounds.ymax])
     columns, rows = dataset.transform.invert().apply(x, y)
@@ -403,9 +407,11 @@ def _cut_bounds(dataset: _Header, bounds: Bounds, path: Path) -> tuple[int, int,
     bottom = min(dataset.height, int(np.ceil(rows.max())))
     if column >= right or row >= bottom or bounds.width < 0 or bounds.height < 0:
         left, low, east, high = dataset.bounds
-        raise FormatError(
-            f"Window {limits} does not meet '{path}', which spans easting {left:g} to {east:g} "
-            f"and northing {low:g} to {high:g}."
+        raise OptionError(
+            "window",
+            limits,
+            f"an area that meets '{path}', which spans easting {left:g} to {east:g} and northing "
+            f"{low:g} to {high:g}",
         )
     return column, row, right - column, bottom - row
 
@@ -459,7 +465,7 @@ def _read_points(
             kept.append(keep)
             n_nodata += missing
     if not any(map(len, found)) and n_nodata == 0:
-        raise FormatError(f"Window {cells.bounds} holds no cell centre of '{dataset.path}'.")
+        raise OptionError("window", cells.bounds, f"an area with a cell centre of '{dataset.path}'")
     return np.concatenate(found), np.concatenate(kept), n_nodata
 
 

@@ -13,8 +13,9 @@ import numpy as np
 
 from ...crs import CRS, Unit
 from ...errors import ReadError
+from ...policies import BreaklineKind
 from ...tin import Breakline, Water
-from ...tin.constraints.breaklines import BreaklineKind, as_ring
+from ...tin.constraints.breaklines import as_ring
 from .features import Features, read_features
 from .parts import Part, Wanted, find_elevation_factor, split_into_parts
 

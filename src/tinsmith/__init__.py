@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from .terrain import comparison_picture, histogram
     from .terrain.lift import lift
     from .terrain.preview.picture import preview
+    from .terrain.results import Features, Raster, Table
     from .terrain.slope import aspect, slope
     from .tin import (
         TIN,
@@ -112,6 +113,7 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "preview",
                 "slope",
             ),
+            ".terrain.results": ("Features", "Raster", "Table"),
             ".tin": (
                 "TIN",
                 "Bounds",
@@ -149,6 +151,7 @@ __all__ = [
     "CheckResult",
     "Comparison",
     "CrsError",
+    "Features",
     "Format",
     "FormatError",
     "Grid",
@@ -160,10 +163,12 @@ __all__ = [
     "Outcome",
     "PointsError",
     "Quality",
+    "Raster",
     "ReadError",
     "RenderError",
     "Report",
     "Survey",
+    "Table",
     "TinsmithError",
     "Unit",
     "Voronoi",

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import re
+from typing import Any
 
-__all__ = ["counted", "inflect", "printable"]
+__all__ = ["counted", "inflect", "printable", "shown"]
 
 _INFLECTED = re.compile(r"\[([^\[|\]]*)\|([^\[|\]]*)\]")
 _ODD_LETTER = "\N{REPLACEMENT CHARACTER}"
+_LONGEST = 60
+_MOST_ITEMS = 5
+_MOST_BITS = 200
 
 
 def counted(number: int, noun: str, plural: str = "") -> str:
@@ -37,3 +41,39 @@ def printable(text: str) -> str:
     if text.isprintable():
         return text
     return "".join(letter if letter.isprintable() else _ODD_LETTER for letter in text)
+
+
+def shown(value: Any) -> str:
+    """Return a value as a sentence can hold it: short, and NumPy's numbers as plain ones.
+
+    Examples
+    --------
+    >>> shown("x" * 99)[-9:], shown(list(range(9)))
+    ('xxxxxx...', '[0, 1, 2, 3, 4, ...]')
+    """
+    if _is_of_numpy(value):
+        if value.shape:
+            return f"an array of shape {value.shape}"
+        value = value.item()
+    if type(value) in (list, tuple) and value:
+        more = ", ..." if len(value) > _MOST_ITEMS else ""
+        return _shortened(f"[{', '.join(shown(item) for item in value[:_MOST_ITEMS])}{more}]")
+    if isinstance(value, int) and not isinstance(value, bool) and value.bit_length() > _MOST_BITS:
+        return f"{'-' if value < 0 else ''}2^{value.bit_length() - 1} or more"
+    try:
+        text = " ".join(repr(value).split())
+    except Exception:
+        text = f"a {type(value).__name__}"
+    return _shortened(text)
+
+
+def _is_of_numpy(value: Any) -> bool:
+    """Whether it is an array or a number of NumPy, which this module does not load."""
+    return any(
+        base.__name__ in ("ndarray", "generic") and base.__module__ == "numpy"
+        for base in type(value).__mro__
+    )
+
+
+def _shortened(text: str) -> str:
+    return text if len(text) <= _LONGEST else text[: _LONGEST - 3] + "..."

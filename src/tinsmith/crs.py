@@ -96,7 +96,7 @@ class Unit:
             return value
         found = _unit_named(value) if isinstance(value, str) else None
         if found is None:
-            raise OptionError("unit of elevations", str(value), allowed=_ALLOWED_UNITS)
+            raise OptionError("unit of elevations", str(value), _ALLOWED_UNITS)
         return found
 
     @property
@@ -484,7 +484,7 @@ def require_same_unit(known: Unit, declared: Unit, why: str) -> None:
     OptionError
     """
     if known != declared:
-        raise OptionError("unit of elevations", declared.name, allowed=f"{known.name}, {why}")
+        raise OptionError("unit of elevations", declared.name, f"{known.name}, {why}")
 
 
 def assume_elevation_unit(crs: CRS | None, unit: Unit | None) -> Unit | None:

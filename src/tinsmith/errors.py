@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar, get_args
 
-from ._sentences import printable
+from ._sentences import printable, shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -22,11 +22,24 @@ __all__ = [
     "RenderError",
     "TinsmithError",
     "WriteError",
+    "choice",
 ]
+
+Value = TypeVar("Value")
 
 
 class TinsmithError(Exception):
     """Root of every error that tinsmith raises on purpose; its text is one clear sentence."""
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Copy and pickle sentence and data, whatever the class is made of."""
+        return _remade, (type(self), self.args), self.__dict__
+
+
+def _remade(kind: type[TinsmithError], arguments: tuple[Any, ...]) -> TinsmithError:
+    error = kind.__new__(kind)
+    error.args = arguments
+    return error
 
 
 class OptionError(TinsmithError, ValueError):
@@ -38,12 +51,51 @@ class OptionError(TinsmithError, ValueError):
         Name of the parameter.
     value : object
         What was given.
+    allowed : str or tuple of str
+        What may be given instead: the words, where it is one of a few.
+
+    Examples
+    --------
+    >>> print(OptionError("snap", -1, "a distance >= 0"))
+    Invalid snap -1: it must be a distance >= 0.
+    >>> print(OptionError("crossing", "join", ["split", "error"]))
+    Invalid crossing 'join': it must be one of split, error.
     """
 
-    def __init__(self, option: str, value: object, *, allowed: str) -> None:
-        super().__init__(f"Invalid {option} {value!r}: it must be {allowed}.")
+    def __init__(self, option: str, value: object, allowed: str | Iterable[str]) -> None:
+        is_text = isinstance(allowed, str)
+        self.allowed = allowed if is_text else tuple(allowed)
+        what = allowed if is_text else f"one of {', '.join(allowed)}"
+        super().__init__(printable(f"Invalid {option} {shown(value)}: it must be {what}."))
         self.option = option
         self.value = value
+
+
+def choice(option: str, value: Value, allowed: Any) -> Value:
+    """Return an option that is one of a few words, or refuse it.
+
+    Parameters
+    ----------
+    option : str
+        Name of the parameter.
+    value : str
+    allowed : Literal or sequence of str
+        The words.
+
+    Raises
+    ------
+    OptionError
+        If it is none of them.
+
+    Examples
+    --------
+    >>> choice("crossing", "split", ("split", "error"))
+    'split'
+    """
+    words = get_args(allowed) or tuple(allowed)
+    if not (isinstance(value, str) and value in words):
+        raise OptionError(option, value, words)
+    return value
 
 
 class CrsError(TinsmithError, ValueError):
@@ -61,7 +113,7 @@ class CrsError(TinsmithError, ValueError):
 
 
 class PointsError(TinsmithError, ValueError):
-    """Points, or options for them, that cannot make a TIN.
+    """Points that cannot make a TIN, or vertices that it does not have.
 
     Attributes
     ----------
@@ -75,7 +127,7 @@ class PointsError(TinsmithError, ValueError):
 
 
 class LinesError(TinsmithError, ValueError):
-    """Breaklines, rings or options for them that the surface cannot hold.
+    """Breaklines, rings or water that the surface cannot hold.
 
     Attributes
     ----------
@@ -141,7 +193,7 @@ class WriteError(TinsmithError, OSError):
 
 
 class FormatError(TinsmithError, ValueError):
-    """No format fits, or an option, or its value, that the format does not have.
+    """No format fits, or the format does not have what is asked of it.
 
     Attributes
     ----------

@@ -33,7 +33,7 @@ _LEAST_SPAN = 1.5
 """Highest over lowest value of a logarithmic axis, at least."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class _Panel:
     """One measure: its values, what it is called, the unit behind numbers, and its axis."""
 

@@ -220,11 +220,11 @@ def _make_caption(tin: TIN, ground: Ground, factor: float, title: str) -> Captio
 
 def _check_options(size: tuple[int, int], view: str) -> None:
     if view not in VIEWS:
-        raise OptionError("view", view, allowed=" or ".join(map(repr, VIEWS)))
+        raise OptionError("view", view, " or ".join(map(repr, VIEWS)))
     low, high = _SIZE_RANGE
     whole = all(isinstance(side, Integral) for side in size)
     if len(size) != 2 or not whole or not all(low <= side <= high for side in size):
-        raise OptionError("size", size, allowed=f"width and height, {low} to {high} pixels each")
+        raise OptionError("size", size, f"width and height, {low} to {high} pixels each")
 
 
 def _require_picture_path(output: str | os.PathLike[str]) -> Path:

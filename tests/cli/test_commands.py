@@ -12,8 +12,8 @@ from click.testing import CliRunner
 
 import tinsmith as ts
 from tinsmith.cli import group, main
-from tinsmith.cli.options import DUPLICATES, KINDS
 from tinsmith.cli.output.summaries import describe_file_size
+from tinsmith.policies import CrossingPolicy, DuplicatePolicy, FeatureKind, TrimPolicy
 
 SAMPLES = Path(__file__).parents[2] / "sample_data"
 SURVEY = str(SAMPLES / "site_survey.csv")
@@ -82,11 +82,15 @@ def test_version_is_the_package_version():
 
 
 def test_choices_are_those_of_the_library():
-    from tinsmith.io.geojson.writing import Kind
-    from tinsmith.tin.building.duplicates import DuplicatePolicy
-
-    assert get_args(DuplicatePolicy) == DUPLICATES
-    assert get_args(Kind) == KINDS
+    choices = {
+        one.name: one.type.choices
+        for one in group.main.get_command(None, "build").params
+        if isinstance(one.type, click.Choice)
+    }
+    assert tuple(choices["duplicates"]) == get_args(DuplicatePolicy)
+    assert tuple(choices["kind"]) == get_args(FeatureKind)
+    assert tuple(choices["crossing"]) == get_args(CrossingPolicy)
+    assert tuple(choices["trim"]) == get_args(TrimPolicy)
 
 
 # ------------------------------------------------------------------ build

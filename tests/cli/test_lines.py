@@ -12,10 +12,8 @@ from click.testing import CliRunner
 
 import tinsmith as ts
 from tinsmith.cli import main
-from tinsmith.cli.line_options import CROSSINGS, TRIMS
 from tinsmith.cli.options import Triangulating
-from tinsmith.tin.building.constrained import CrossingPolicy
-from tinsmith.tin.building.inputs import TrimPolicy
+from tinsmith.policies import TrimPolicy
 
 pyogrio = pytest.importorskip("pyogrio")
 
@@ -102,11 +100,6 @@ def test_every_option_of_triangulate_has_its_own():
     assert Triangulating().method == defaults
 
 
-def test_choices_are_those_of_triangulate():
-    assert get_args(CrossingPolicy) == CROSSINGS
-    assert get_args(TrimPolicy) == TRIMS
-
-
 def test_all_lines_at_once_are_counted_and_held(points, files, tmp_path):
     options = [part for name, path in files.items() for part in (f"--{name}", path)]
     out, report = tmp_path / "out.ply", tmp_path / "report.json"
@@ -176,7 +169,7 @@ def test_max_edge_and_trim(points, files, tmp_path):
     trimmed = ("--erase", files["erase"], "--max-edge", 15, "--trim")
     areas = [
         facts("build", points, *trimmed, trim, "-o", tmp_path / "a.ply")["tin"]["area"]
-        for trim in TRIMS
+        for trim in get_args(TrimPolicy)
     ]
     # Without the point in the middle, a square on its corners is left, of side 14.14.
     assert areas == [10_000.0, 10_000.0 - 200.0]

@@ -58,7 +58,7 @@ def generate(rng: np.random.Generator) -> Case:
     site = choose(rng, tuple(SITES))
     crs, (e, n), _ = SITES[site]
     count = int(rng.integers(4, 40)) if rng.random() < 0.9 else int(rng.integers(300, 700))
-    digits = int(choose(rng, (3, 3, 2, 1, 0)))
+    digits = int(choose(rng, (3, 3, 2, 1, 0, 0)))
     layout, delimiter = choose(rng, LAYOUTS), choose(rng, DELIMITERS)
     decimal = "," if delimiter in ";\t " and rng.random() < 0.4 else "."
     size = float(choose(rng, (5.0, 60.0, 900.0)))
@@ -73,18 +73,34 @@ def generate(rng: np.random.Generator) -> Case:
     for row in range(count):
         if rng.random() < float(choose(rng, (0.0, 0.0, 0.1))):
             columns["Z"][row] = choose(rng, ("", "NaN", "-"))
-    return {
+    case = {
         "site": site,
         "layout": layout,
         "delimiter": delimiter,
+        "separator": delimiter,
         "decimal": decimal,
         "has_crs": bool(crs is not None and rng.random() < 0.7),
         "told": bool(rng.random() < 0.15),
         "header": header(rng, layout) if rng.random() < 0.4 else [],
         "is_quoted": bool(rng.random() < 0.7),
         "groups": bool(digits and rng.random() < 0.1),  # 4.024 is no thousand to anyone
+        "groups_of_whole": False,
         "suffix": choose(rng, (".csv", ".txt", ".txt", ".xyz", ".asc")),
         "rows": [[columns[letter][row] for letter in layout] for row in range(count)],
+    }
+    return separated_by_two(rng, case) if not digits and decimal == "." else case
+
+
+def separated_by_two(rng: np.random.Generator, case: Case) -> Case:
+    """Let two letters stand between whole numbers, some of which have thousands separators."""
+    if case["delimiter"] == " " or rng.random() < 0.3:
+        return case
+    others = (" ", "\t") if case["delimiter"] == "," else (" ", ",", ",")
+    pair = [case["delimiter"], choose(rng, others)]
+    return case | {
+        "separator": "".join(rng.permutation(pair)),
+        "is_quoted": False,
+        "groups_of_whole": bool(rng.random() < 0.7),
     }
 
 
@@ -131,7 +147,7 @@ def text_of(case: Case) -> str:
         if case["is_quoted"] and delimiter != " ":
             writer.writerow(row)
         else:
-            text.write(delimiter.join(row) + "\n")
+            text.write(case["separator"].join(row) + "\n")
     return text.getvalue()
 
 
@@ -140,13 +156,19 @@ def cells_of(row: list[str], case: Case) -> list[str]:
     for letter, cell in zip(case["layout"], row, strict=True):
         shown = cell
         if letter in "ENZ":
-            shown = grouped(cell) if case["groups"] and case["is_quoted"] else cell
+            shown = grouped(cell) if has_groups(case) else cell
             if case["decimal"] == ",":
                 shown = shown.replace(",", "_").replace(".", ",").replace("_", ".")
         if case["delimiter"] == " " and not cell and letter != "D":
             shown = "-"
         cells.append(shown)
     return cells
+
+
+def has_groups(case: Case) -> bool:
+    """Whether digits are grouped, and no group can be a column: quoted, or delimited apart."""
+    is_apart = case["delimiter"] != "," or case["separator"] != ","
+    return (case["groups"] and case["is_quoted"]) or (case["groups_of_whole"] and is_apart)
 
 
 def grouped(cell: str) -> str:
@@ -190,7 +212,7 @@ def examine(case: Case) -> str:
         return "refused"
     if np.array_equal(found.points, expected):
         return "read"
-    if case["groups"] and any("usual between semicolons" in note for note in found.notes):
+    if has_groups(case) and any("usual between semicolons" in note for note in found.notes):
         return "read by custom"
     is_custom = any("the convention for" in note for note in found.notes)
     assert is_custom, f"other points, and the notes say {found.notes}"
@@ -204,7 +226,8 @@ def must_read(case: Case, is_certain: bool) -> bool:
     told = case["told"] or case["header"]
     places = case["has_crs"] and is_certain and case["layout"][0] != "D"
     has_odd_text = "D" in case["layout"] and not (case["is_quoted"] and case["delimiter"] != " ")
-    is_plain = not has_odd_text and not case["groups"] and len(truth(case)) > 3
+    is_plain = not has_odd_text and not has_groups(case) and len(truth(case)) > 3
+    is_plain &= case["is_quoted"] or case["separator"].strip(" ") == case["delimiter"]
     is_blank = case["delimiter"] == " "
     digits = {len(row[case["layout"].index("E")].partition(".")[2]) for row in case["rows"]}
     is_blank |= case["decimal"] == "," and case["delimiter"] != ";" and digits == {3}

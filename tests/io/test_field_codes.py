@@ -119,7 +119,8 @@ def test_lines_are_added_to_those_that_there_are():
 
 def test_faults_are_counted_and_named_by_point():
     refused("No description begins with a line code: RDG", "GS", "TR")
-    refused("Invalid rule 'wall' for the code 'W'", "W1", rules={"W": "wall"})
+    with pytest.raises(ts.OptionError, match=r"Invalid rules {'W': 'wall'}: .* one of hard, soft"):
+        lines_from_codes(survey("W1"), {"W": "wall"})
 
 
 def warned(words, *descriptions, **given):

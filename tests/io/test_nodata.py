@@ -137,6 +137,6 @@ def test_values_that_callers_name(given, values):
 @pytest.mark.parametrize("given", ["none", [1, "x"], {}, 10**400])
 def test_what_is_no_value_is_refused(given):
     with pytest.raises(
-        ts.FormatError, match=r"Invalid nodata .*: a number, or several, are needed"
+        ts.OptionError, match=r"Invalid nodata .*: it must be a number, or several\."
     ):
         parse_nodata(given)

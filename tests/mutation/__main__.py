@@ -67,11 +67,34 @@ NEAREST = {
 }  # fmt: skip
 """Test files that are likeliest to notice changes in a folder of the core; they run first."""
 
+CAMPAIGNS = {
+    "tin/editing": ("edits",),
+    "tin/constraints": ("lines", "islands", "conforming", "edits"),
+    "tin/building": ("points", "lines", "edits"),
+    "tin/checking": ("lines", "conforming"),
+    "tin/meshing": ("refine",),
+    "tin/voronoi": ("voronoi",),
+    "tin/paper": (),
+    "tin/cpp/refinement": ("refine", "conforming"),
+    "tin/cpp": ("points", "lines", "edits", "conforming"),
+    "tin": ("arguments", "points", "lines", "edits", "roundtrip"),
+    "io/delimited": ("survey text", "damaged survey text", "readers-delimited"),
+    "io/mesh": tuple(f"readers-{name}" for name in ("ply", "obj", "stl", "vtk", "gmsh")),
+    "io/raster": ("readers-raster",),
+    "io/vector": ("readers-vectors",),
+    "io": ("roundtrip", "units"),
+    "terrain": ("units",),
+    "src/tinsmith": ("commands", "arguments", "units"),
+}
+"""Campaigns that are about a folder, the innermost first; `make test` runs 40 cases of each."""
+
+CASES, CASES_SEED = 40, 20
 BUILDERS = ("validation/test_points", "kernel/test_growth", "kernel/test_seams")
 NO_TESTS = 5
 N_NEAREST = 3
 SECONDS_OF_TESTS = 10.0
-"""Of the tests that run a place, the shortest that together take so long are run."""
+"""Of the tests that run a place, the shortest that together take so long are run, unless told
+otherwise."""
 
 
 class Mutant(NamedTuple):
@@ -172,7 +195,7 @@ def draw(kind: str, count: int, seed: int, only: str) -> list[Mutant]:
     return [Mutant(path, change) for path, change in chosen]
 
 
-def staged(mutant: Mutant, kind: str, known: CoverageMap) -> Mutant:
+def staged(mutant: Mutant, kind: str, known: CoverageMap, seconds: float) -> Mutant:
     """Return a mutant with its tests: the likeliest files first, as to collect all takes long."""
     if kind == "core":
         return mutant._replace(tests=file_stages(core_tests_of(mutant.path)))
@@ -185,15 +208,17 @@ def staged(mutant: Mutant, kind: str, known: CoverageMap) -> Mutant:
     near = [file for file in files if held[file]][:N_NEAREST]
     first = [test for test in tests if test.partition("::")[0] in near]
     rest = [test for test in tests if test not in set(first)]
-    return mutant._replace(tests=(affordable(first, known), affordable(rest, known)))
+    return mutant._replace(
+        tests=(affordable(first, known, seconds), affordable(rest, known, seconds))
+    )
 
 
-def affordable(tests: list[str], known: CoverageMap) -> tuple[str, ...]:
+def affordable(tests: list[str], known: CoverageMap, seconds: float) -> tuple[str, ...]:
     """Return the first tests, which are the shortest, as far as there is time; one at least."""
     total, chosen = 0.0, []
     for test in tests:
         total += known.seconds.get(test, 0.05)
-        if chosen and total > SECONDS_OF_TESTS:
+        if chosen and total > seconds:
             break
         chosen.append(test)
     return tuple(chosen)
@@ -212,6 +237,12 @@ def inside_package(path: Path) -> Path:
 def core_tests_of(path: Path) -> tuple[Path, ...]:
     names = dict.fromkeys((*NEAREST.get(path.parent.name, BUILDERS), *CORE_TESTS))
     return tuple(TESTS / "tin" / f"{name}.py" for name in names)
+
+
+def campaigns_of(path: Path) -> tuple[str, ...]:
+    """Return the campaigns of the innermost folder that has some."""
+    folders = [folder for folder in CAMPAIGNS if path.is_relative_to(ROOT / folder)]
+    return CAMPAIGNS[max(folders, key=len)] if folders else ()
 
 
 # ---------------------------------------------------------------------------- running
@@ -265,7 +296,7 @@ class Workshop:
                 compile(target.read_text(), str(target), "exec")
             elif not self._build():
                 return "does not compile"
-            return self._test(mutant.tests, limit)
+            return self._test(mutant, limit)
         finally:
             target.write_text(text)
 
@@ -281,13 +312,30 @@ class Workshop:
                 shutil.copy(next((self.folder / "cmake" / folder).glob("_core.*so")), core)
         return done.returncode == 0
 
-    def _test(self, stages: tuple[tuple[str, ...], ...], limit: float) -> str:
+    def _test(self, mutant: Mutant, limit: float) -> str:
         end = time.monotonic() + limit
-        for tests in stages:
+        for tests in mutant.tests:
             verdict = self.run_tests(tests, end - time.monotonic()) if tests else "SURVIVED"
             if verdict != "SURVIVED":
                 return verdict
-        return "SURVIVED"
+        return self.run_campaigns(campaigns_of(mutant.path), end - time.monotonic())
+
+    def run_campaigns(self, names: tuple[str, ...], limit: float) -> str:
+        """Run the cases of campaigns that `make test` runs."""
+        if not names:
+            return "SURVIVED"
+        options = ["--cases", str(CASES), "--seed", str(CASES_SEED), "--shrink-seconds", "0"]
+        options += ["--jobs", "1", "--folder", str(self.folder / "finds")]
+        options += [word for name in names for word in ("--campaign", name)]
+        command = [sys.executable, "-m", "fuzz", *options]
+        try:
+            done = subprocess.run(
+                command, cwd=ROOT, env=self.environment(), capture_output=True, timeout=limit
+            )
+        except subprocess.TimeoutExpired:
+            return "out of time"
+        self.noticed_by = f"a campaign: {', '.join(names)}"
+        return "SURVIVED" if done.returncode == 0 else "noticed"
 
     def run_tests(self, tests: tuple[str, ...], limit: float) -> str:
         chosen = self.folder / "chosen.json"
@@ -340,7 +388,8 @@ def installed_core(package: str) -> str:
 
 def run(mutants: list[Mutant], given: argparse.Namespace) -> dict[str, list[str]]:
     """Judge all mutants, or those that there is time for; return their descriptions by verdict."""
-    results = BUILD / f"{given.kind}-{given.seed}.json"
+    again = "-again" if given.again else ""
+    results = BUILD / f"{given.kind}-{given.seed}{again}.json"
     deadline = time.monotonic() + 60 * given.minutes
     workshops: SimpleQueue[Workshop] = SimpleQueue()
     known = CoverageMap(MAP, DURATIONS)
@@ -355,7 +404,8 @@ def run(mutants: list[Mutant], given: argparse.Namespace) -> dict[str, list[str]
             began = time.monotonic()
             verdict = "not begun"
             if began < deadline:
-                verdict = workshop.judge(staged(mutant, given.kind, known), given.limit)
+                whole = staged(mutant, given.kind, known, given.seconds)
+                verdict = workshop.judge(whole, given.limit)
             verdicts.setdefault(verdict, []).append(mutant.describe())
             seconds = time.monotonic() - began
             by = f"\n    by {workshop.noticed_by}" if verdict == "noticed" else ""
@@ -394,6 +444,11 @@ def main() -> int:
     add("--seed", type=int, default=1)
     add("--jobs", type=int, default=os.cpu_count() or 1)
     add("--limit", type=float, default=300.0, help="seconds for the tests of a mutant [300]")
+    add(
+        "--seconds", type=float, default=SECONDS_OF_TESTS, metavar="S",
+        help=f"of the tests that run a place, the shortest that take so long [{SECONDS_OF_TESTS}]",
+    )  # fmt: skip
+    add("--again", type=Path, metavar="FILE", help="only those that lived by these results")
     add("--skip", type=int, default=0, help="of the mutants drawn, leave out the first so many")
     add("--minutes", type=float, default=math.inf, help="begin no mutant after so many [all]")
     add(
@@ -407,6 +462,9 @@ def main() -> int:
     if given.kind == "map":
         return Workshop(0, "python").map_coverage(given.only)
     mutants = draw(given.kind, given.count, given.seed, given.only)[given.skip :]
+    if given.again:
+        lived = set(json.loads(given.again.read_text())["SURVIVED"])
+        mutants = [mutant for mutant in mutants if mutant.describe() in lived]
     verdicts = run(mutants, given)
     survivors = sorted(verdicts.get("SURVIVED", []))
     n_run = sum(len(v) for k, v in verdicts.items() if k not in NOT_RUN)

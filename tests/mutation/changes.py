@@ -46,6 +46,12 @@ ARITHMETIC = {
 SYMMETRIC = {"max", "min", "maximum", "minimum", "hypot", "gcd"}
 """Functions to which it is the same which argument comes first."""
 
+UNSEEN = {
+    "slots": "of a dataclass: memory only",
+    "strict": "of zip: a guard against a mistake of our own, which no input makes",
+}
+"""Keywords whose values show nowhere, and why."""
+
 
 def python_changes(text: str) -> list[Change]:
     """Return all changes of a module; type hints, docstrings and `__all__` stay as they are."""
@@ -85,7 +91,7 @@ class _Python:
         if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "__all__":
             return
         yield node
-        if isinstance(node, ast.keyword) and node.arg == "slots":  # of a dataclass: memory only
+        if isinstance(node, ast.keyword) and node.arg in UNSEEN:
             return
         skipped = {"annotation", "returns", "type_comment"}
         for name, value in ast.iter_fields(node):

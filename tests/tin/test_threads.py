@@ -17,6 +17,7 @@ from support.kernel_datasets import DATASETS, make_points, require_same_growth, 
 
 import tinsmith as ts
 from tinsmith._interrupts import hold_interrupts
+from tinsmith._sentences import shown
 from tinsmith.tin import _kernel
 from tinsmith.tin.validation import threads as threads_module
 from tinsmith.tin.validation.threads import LEAST_POINTS_PER_THREAD, thread_count
@@ -35,10 +36,10 @@ def require_same_tin(found, wanted):
 
 @pytest.mark.parametrize("threads", [0, -1, 1.5, 2.0, True, "2", np.nan, [2], (), np.True_])
 def test_a_wrong_number_of_threads_is_named_in_one_sentence(threads):
-    with pytest.raises(ts.PointsError) as error:
+    with pytest.raises(ts.OptionError) as error:
         ts.triangulate(FOUR_CORNERS, threads=threads)
     assert str(error.value) == (
-        f"Invalid threads {threads!r}: a whole number >= 1, or None, is needed."
+        f"Invalid threads {shown(threads)}: it must be a whole number >= 1, or None."
     )
 
 

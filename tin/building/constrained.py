@@ -6,10 +6,11 @@ triangulated, and the steps of the lines are forced into the triangulation.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ...policies import CrossingPolicy, DuplicatePolicy
 from .. import _kernel
 from ..constraints.clipping import Surface, in_rings
 from ..constraints.conforming import conform
@@ -20,14 +21,12 @@ from ..constraints.pslg import force, mesh_of, mesh_of_growth
 from ..report import Overruled
 from ..topology import edge_keys
 from ..validation.points import require_three
-from .duplicates import DuplicatePolicy, merge_rows
+from .duplicates import merge_rows
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 __all__ = ["ConstrainedTriangulation", "CrossingPolicy", "LineOptions", "triangulate_constrained"]
-
-CrossingPolicy = Literal["split", "error"]
 
 
 class LineOptions(NamedTuple):

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from ...errors import PointsError
+from ...policies import DuplicatePolicy
 from ..validation.points import SHOWN
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 __all__ = ["DuplicatePolicy", "Merged", "merge_rows"]
-
-DuplicatePolicy = Literal["mean", "first", "last", "lowest", "highest", "error"]
 
 
 class Merged(NamedTuple):

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ...crs import CRS, Unit, require_one_unit, require_same_unit
-from ...errors import CrsError, LinesError, PointsError
+from ...errors import CrsError, LinesError, choice
+from ...policies import CrossingPolicy, DuplicatePolicy, TrimPolicy
 from .. import _kernel
 from ..constraints.constraint_set import (
     LineSet,
@@ -22,11 +23,10 @@ from ..constraints.constraint_set import (
 )
 from ..constraints.polygons import starts_with_elevations
 from ..survey import Survey
-from ..validation.options import as_flag, is_finite_number, require_one_of, shown
+from ..validation.options import as_flag, require_distance, require_positive
 from ..validation.points import as_masked_points, require_three
 from ..validation.threads import thread_count
-from .constrained import CrossingPolicy, LineOptions
-from .duplicates import DuplicatePolicy
+from .constrained import LineOptions
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -35,8 +35,6 @@ if TYPE_CHECKING:
     from ..constraints.breaklines import Breakline, Water
 
 __all__ = ["BuildInputs", "TrimPolicy", "gather_inputs"]
-
-TrimPolicy = Literal["perimeter", "everywhere"]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -226,13 +224,9 @@ def _require_options(
         ("trim", trim, TrimPolicy),
         ("crossing", crossing, CrossingPolicy),
     ):
-        require_one_of(name, value, get_args(kind))
-    if not (is_finite_number(snap) and snap >= 0):
-        raise PointsError(f"Invalid snap {shown(snap)}: a distance >= 0 in CRS units is needed.")
-    if max_edge is not None and not (is_finite_number(max_edge) and max_edge > 0):
-        raise PointsError(
-            f"Invalid max_edge {shown(max_edge)}: a length > 0 in CRS units is needed."
-        )
+        choice(name, value, kind)
+    require_distance("snap", snap)
+    require_positive("max_edge", max_edge)
 
 
 def _require_simple_rings(lines: LineSet) -> None:

@@ -29,10 +29,10 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from ...errors import CheckError, PointsError
+from ...errors import CheckError, OptionError
 from ..constraints.constraint_set import as_sequence, gather_lines
 from ..survey import Survey
-from ..validation.options import as_flag, is_whole_number, require_tin, shown
+from ..validation.options import as_flag, is_whole_number, require_tin
 from ..validation.points import as_masked_points
 from .chains import check_chains, check_steps, has_sound_chains
 from .connections import check_arrays, check_connections
@@ -175,9 +175,10 @@ def check(
 
     Raises
     ------
+    OptionError
+        If ``level`` is none of 1, 2, 3.
     PointsError
-        If ``level`` is none of 1, 2, 3, or ``points`` are no points. Faults of the TIN never
-        raise.
+        If ``points`` are no points. Faults of the TIN never raise.
     LinesError
         If the lines given are none.
 
@@ -193,7 +194,7 @@ def check(
     <CheckResult: level 3, ok>
     """
     if not (is_whole_number(level) and level in LEVELS):
-        raise PointsError(f"Invalid level {shown(level)}: 1, 2 or 3 is needed.")
+        raise OptionError("level", level, "1, 2 or 3")
     require_tin(tin)
     is_conforming = as_flag("conforming", conforming)
     rows, lines = _rows_of(points), _lines_of(points, breaklines)

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 
-from ...errors import LinesError, PointsError
+from ..._sentences import shown
+from ...errors import LinesError, OptionError, PointsError, choice
+from ...policies import BreaklineKind, LineKind
 from ..types import Frozen
-from ..validation.options import is_finite_number, require_one_of, shown
+from ..validation.options import is_finite_number, is_whole_number
 from ..validation.tables import as_table
 from .polylines import Polylines
 
@@ -21,9 +23,6 @@ __all__ = ["Breakline", "BreaklineKind", "LineKind", "Lines", "Water"]
 
 MOST_PRIORITY = 2**53
 """Up to here whole numbers are told apart as floats, which priorities become."""
-
-BreaklineKind = Literal["hard", "soft"]
-LineKind = Literal["hard", "soft", "boundary", "hole", "water"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,13 +65,10 @@ class Breakline:
         priority: int = 0,
         name: str = "",
     ) -> None:
-        require_one_of("breakline kind", kind, get_args(BreaklineKind), LinesError)
-        is_whole = isinstance(priority, int | np.integer) and not isinstance(priority, bool)
-        if not is_whole or abs(int(priority)) > MOST_PRIORITY:
-            raise LinesError(
-                f"Invalid priority {shown(priority)}: a whole number from {-MOST_PRIORITY} to "
-                f"{MOST_PRIORITY} is needed."
-            )
+        choice("kind", kind, BreaklineKind)
+        if not is_whole_number(priority) or abs(int(priority)) > MOST_PRIORITY:
+            allowed = f"a whole number from {-MOST_PRIORITY} to {MOST_PRIORITY}"
+            raise OptionError("priority", priority, allowed)
         name = _as_name(name)
         what = f"breakline '{name}'" if name else "a breakline"
         object.__setattr__(self, "coords", as_coords(coords, what, least=2))
@@ -119,7 +115,7 @@ class Water:
         name = _as_name(name)
         what = f"water '{name}'" if name else "a water polygon"
         if not is_finite_number(z):
-            raise LinesError(f"Invalid height {shown(z)} of {what}: a finite number is needed.")
+            raise LinesError(f"Invalid elevation {shown(z)} of {what}: a finite number is needed.")
         object.__setattr__(self, "ring", as_ring(ring, what)[:, :2])
         object.__setattr__(self, "z", float(z))
         object.__setattr__(self, "name", str(name))
@@ -207,7 +203,7 @@ class Lines(Frozen):
 
 def _as_name(name: Any) -> str:
     if not isinstance(name, str | int | float | np.number):
-        raise LinesError(f"Invalid name {shown(name)}: text is needed.")
+        raise OptionError("name", name, "text")
     return str(name)
 
 

@@ -7,16 +7,18 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ..._sentences import shown
 from ...errors import LinesError
 from .. import _kernel
-from ..validation.options import shown
-from .breaklines import Breakline, LineKind, Water, as_ring
+from .breaklines import Breakline, Water, as_ring
 from .constraint_table import ConstraintTable
 from .polygons import rings_of
 from .polylines import offsets_of, owners_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
+
+    from ...policies import LineKind
 
 __all__ = [
     "ABOVE_ALL",

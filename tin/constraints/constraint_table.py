@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from .breaklines import LineKind
+    from ...policies import LineKind
 
 __all__ = ["ConstraintTable"]
 

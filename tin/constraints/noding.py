@@ -26,7 +26,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...errors import LinesError
+from ...errors import LinesError, choice
+from ...policies import CrossingPolicy
 from ..report import Crossings
 from .polylines import Polylines
 from .splitting import Splitting, drop_repeats
@@ -128,8 +129,10 @@ def node(
 
     Raises
     ------
+    OptionError
+        If ``crossing`` is unknown.
     LinesError
-        If ``crossing`` is unknown, or lines cross and it is "error".
+        If lines cross and it is "error".
 
     Notes
     -----
@@ -143,8 +146,7 @@ def node(
     >>> noded.new_points.tolist(), noded.polylines.vertices.tolist()
     ([[2.0, 2.0, 6.0]], [0, 4, 1, 2, 4, 3])
     """
-    if crossing not in ("split", "error"):
-        raise LinesError(f"Invalid crossing '{crossing}': one of split, error.")
+    choice("crossing", crossing, CrossingPolicy)
     work = Splitting(
         np.ascontiguousarray(xy, np.float64), polylines, elevations, float(snap), threads
     )

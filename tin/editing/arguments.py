@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, cast, get_args
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._sentences import shown
 from ...errors import PointsError
-from ..building.duplicates import DuplicatePolicy
-from ..validation.options import require_one_of, shown
 from ..validation.points import as_elevations, as_points
 from ..validation.tables import as_table
 from ..validation.vertices import require_vertices
@@ -22,7 +21,6 @@ __all__ = [
     "as_heights",
     "as_plain_dict",
     "as_point",
-    "as_policy",
     "as_vertices",
     "copied",
     "require_distinct",
@@ -79,12 +77,6 @@ def as_ends(a: int, b: int, count: int) -> NDArray[np.int64]:
     if ends[0] == ends[1]:
         raise PointsError("An edge has two different ends.")
     return ends
-
-
-def as_policy(policy: str) -> DuplicatePolicy:
-    """Return a policy for points at one place, if it is one."""
-    require_one_of("duplicates", policy, get_args(DuplicatePolicy))
-    return cast("DuplicatePolicy", policy)
 
 
 def require_distinct(vertices: NDArray[np.int64]) -> NDArray[np.int64]:

@@ -15,10 +15,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
-    from ..building.constrained import CrossingPolicy
-    from ..building.duplicates import DuplicatePolicy
+    from ...policies import BreaklineKind, CrossingPolicy, DuplicatePolicy
     from ..building.inputs import BuildInputs
-    from ..constraints.breaklines import BreaklineKind
     from .history import Edit
     from .session import Session
     from .version import Version
@@ -115,7 +113,7 @@ class Editable:
 
         Raises
         ------
-        PointsError, LinesError
+        PointsError, LinesError, OptionError
             As :func:`tinsmith.triangulate`; then nothing has changed.
 
         Examples
@@ -238,6 +236,8 @@ class Editable:
         ------
         LinesError
             If the line is none, or crosses another and must not. Then nothing has changed.
+        OptionError
+            If kind, priority, name or crossing is none that is allowed.
         """
         self._edit(
             "add_breakline",
@@ -273,6 +273,8 @@ class Editable:
         ------
         PointsError
             If there are not so many.
+        OptionError
+            If ``count`` is no whole number above 0.
         """
         with self._lock:
             self._open_session().undo(count)

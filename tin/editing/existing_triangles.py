@@ -27,7 +27,7 @@ from .state import State
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from ..constraints.breaklines import LineKind
+    from ...policies import LineKind
     from .changes import NumberedInputs
     from .version import Version
 

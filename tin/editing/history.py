@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from copy import copy
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from ..._sentences import shown
 from ...errors import PointsError, TinsmithError
-from ..validation.options import shown
 from .arguments import as_plain_dict
 from .operations import OPERATIONS
 
@@ -50,7 +51,7 @@ def apply_edits(tin: TIN, edits: Iterable[Edit | Mapping[str, Any]]) -> None:
 
     Raises
     ------
-    PointsError, LinesError
+    PointsError, LinesError, OptionError
         At the first edit that fails, with its number; those before it stay done.
     """
     for number, edit in enumerate(edits):
@@ -62,7 +63,9 @@ def apply_edits(tin: TIN, edits: Iterable[Edit | Mapping[str, Any]]) -> None:
                 f"Edit {number} ({operation}) has the wrong arguments: {', '.join(arguments)}."
             ) from None
         except TinsmithError as error:
-            raise type(error)(f"Edit {number} ({operation}): {error}") from error
+            numbered = copy(error)
+            numbered.args = (f"Edit {number} ({operation}): {error}",)
+            raise numbered from error
 
 
 def _taken_apart(edit: Edit | Mapping[str, Any], number: int) -> tuple[str, dict[str, Any]]:

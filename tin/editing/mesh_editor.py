@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from ..building.duplicates import DuplicatePolicy
+    from ...policies import DuplicatePolicy
     from ..building.inputs import BuildInputs
     from .changes import NumberedInputs
 

@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol, get_args
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol
 
 import numpy as np
 
-from ...errors import LinesError
-from ..building.constrained import CrossingPolicy
+from ..._sentences import shown
+from ...errors import LinesError, choice
+from ...policies import CrossingPolicy, DuplicatePolicy
 from ..constraints.breaklines import Breakline
-from ..validation.options import is_whole_number, require_one_of, shown
+from ..validation.options import is_whole_number
 from ..validation.points import as_points
 from .arguments import (
     as_ends,
     as_heights,
     as_plain_dict,
     as_point,
-    as_policy,
     as_vertices,
     copied,
     require_distinct,
@@ -41,8 +41,8 @@ from .state import State
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from ..building.duplicates import DuplicatePolicy
-    from ..constraints.breaklines import BreaklineKind, Lines
+    from ...policies import BreaklineKind
+    from ..constraints.breaklines import Lines
 
 __all__ = [
     "OPERATIONS",
@@ -146,7 +146,7 @@ class Insert(MeshOperation):
         state, inputs = tin.now(), tin.inputs()
         there = state.vertices_at(xyz[:, :2])
         own = np.where(there < 0, np.nan, state.triangulation.points[there, 2])
-        z = _merged_elevations(xyz, own, as_policy(self.duplicates))
+        z = _merged_elevations(xyz, own, choice("duplicates", self.duplicates, DuplicatePolicy))
         at_vertex = there >= 0
         change = _with_elevations(state, inputs, there[at_vertex], z[at_vertex])
         change = change._replace(added=np.column_stack([xyz[:, :2], z]))
@@ -155,7 +155,9 @@ class Insert(MeshOperation):
 
     def apply_to_mesh(self, editor: Editor) -> Done:
         """Change the mesh, if no line is near."""
-        slots, change = editor.insert(as_points(self.points), as_policy(self.duplicates))
+        slots, change = editor.insert(
+            as_points(self.points), choice("duplicates", self.duplicates, DuplicatePolicy)
+        )
         return Done(change, result=editor.numbers(slots))
 
 
@@ -286,7 +288,7 @@ class AddBreakline(Operation):
     def apply(self, tin: Edited) -> Done:
         """Build the TIN of the changed inputs."""
         line = Breakline(self.coords, kind=self.kind, priority=self.priority, name=self.name)
-        require_one_of("crossing", self.crossing, get_args(CrossingPolicy), LinesError)
+        choice("crossing", self.crossing, CrossingPolicy)
         change = Change(lines=(AddLine(line),))
         inputs = tin.inputs().after([change])
         found = tin.build(inputs)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from ...errors import PointsError, TinsmithError
-from ..validation.options import is_whole_number, shown
+from ..validation.options import require_count
 from .changes import Change, NumberedInputs
 from .existing_triangles import inputs_of_triangles, state_of_triangles
 from .history import Edit
@@ -155,9 +155,10 @@ class Session:
         ------
         PointsError
             If there are not so many.
+        OptionError
+            If it is no whole number above 0.
         """
-        if not is_whole_number(count) or count < 1:
-            raise PointsError(f"Invalid count {shown(count)}: a whole number >= 1 is needed.")
+        require_count("count", count)
         if count > len(self.edits):
             raise PointsError(f"{count} edits cannot be taken back: {len(self.edits)} were made.")
         left = len(self.edits) - count

@@ -13,21 +13,21 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ..._sentences import counted
-from ...errors import PointsError
+from ...errors import OptionError, PointsError
 from .. import _kernel, topology
 from ..constraints.clipping import BOUNDARY, Surface
 from ..constraints.constraint_table import ConstraintTable
 from ..constraints.polylines import Polylines
 from ..constraints.pslg import Clip, Pslg, lines_in, mesh_of_growth
 from ..surface import TIN
-from ..validation.options import is_finite_number, is_whole_number, require_tin, shown
+from ..validation.options import is_finite_number, is_whole_number, require_positive, require_tin
 from ..validation.threads import thread_count
 from .unmended import find_unmended
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from ..constraints.breaklines import LineKind
+    from ...policies import LineKind
     from ..report import Report
 
 __all__ = ["LARGEST_MIN_ANGLE", "refine"]
@@ -87,9 +87,10 @@ def refine(
 
     Raises
     ------
+    OptionError
+        For a least angle above 33 degrees, or other limits that are not positive numbers.
     PointsError
-        For a least angle above 33 degrees, other limits that are not positive numbers, a mesh of
-        more than ``max_vertices``, or a TIN that overlaps itself.
+        For a mesh of more than ``max_vertices``, or a TIN that overlaps itself.
 
     Notes
     -----
@@ -145,20 +146,17 @@ def _require_limits(
     min_angle: float, max_area: float | None, max_edge: float | None, max_vertices: int
 ) -> None:
     if not is_finite_number(min_angle) or not 0.0 <= min_angle <= LARGEST_MIN_ANGLE:
-        raise PointsError(
-            f"Invalid min_angle {shown(min_angle)}: it must be from 0 to {LARGEST_MIN_ANGLE:g} "
-            "degrees, for no mesh of larger angles can be promised."
+        raise OptionError(
+            "min_angle",
+            min_angle,
+            f"from 0 to {LARGEST_MIN_ANGLE:g} degrees, for no mesh of larger angles can be "
+            "promised",
         )
-    for name, value in (("max_area", max_area), ("max_edge", max_edge)):
-        if value is not None and not (is_finite_number(value) and value > 0.0):
-            raise PointsError(
-                f"Invalid {name} {shown(value)}: a number above 0, or None, is needed."
-            )
+    require_positive("max_area", max_area, what="an area")
+    require_positive("max_edge", max_edge)
     if not is_whole_number(max_vertices) or not 0 < max_vertices <= _kernel.MOST_POINTS:
-        raise PointsError(
-            f"Invalid max_vertices {shown(max_vertices)}: a whole number from 1 to "
-            f"{_kernel.MOST_POINTS:,} is needed."
-        )
+        allowed = f"a whole number from 1 to {_kernel.MOST_POINTS:,}"
+        raise OptionError("max_vertices", max_vertices, allowed)
 
 
 def _require_room(tin: TIN, max_area: float | None, max_vertices: int) -> None:

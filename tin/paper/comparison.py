@@ -15,7 +15,7 @@ from ...errors import PointsError
 from .. import _kernel
 from ..construction import triangulate
 from ..survey import Survey
-from ..validation.options import is_whole_number, shown
+from ..validation.options import require_count
 from ..validation.points import as_points
 from .cover import cover
 from .faults import minimum_angles, overlapping, violating
@@ -223,6 +223,8 @@ def compare(points: Survey | ArrayLike, *, limit: int = MOST_POINTS) -> Comparis
     PointsError
         If there are more than ``limit`` points, if a coordinate is not finite or outside the exact
         range, or if there are no three points that are not collinear.
+    OptionError
+        If ``limit`` is no whole number above 0.
 
     Notes
     -----
@@ -239,8 +241,7 @@ def compare(points: Survey | ArrayLike, *, limit: int = MOST_POINTS) -> Comparis
     [('original', 4), ('improved', 4), ('improved (open)', 1), ('improved (ties)', 4), ('exact', 4)]
     """
     rows = as_points(points.points if isinstance(points, Survey) else points)
-    if not (is_whole_number(limit) and limit > 0):
-        raise PointsError(f"Invalid limit {shown(limit)}: a whole number >= 1 is needed.")
+    require_count("limit", limit)
     if len(rows) > limit:
         raise PointsError(
             f"{len(rows):,} points are too many to compare, for the paper's algorithms take "

@@ -35,13 +35,14 @@ paper's, not the arithmetic's; circles on edges and distances to them are in dou
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...errors import PointsError
+from ...errors import PointsError, choice
+from ...policies import DistanceRule, EmptyCircleRule
 from ..predicates import columns
-from ..validation.options import as_flag, is_one_of, is_whole_number, shown
+from ..validation.options import as_flag, require_count
 from ..validation.points import as_points
 from .lists import Edge, Lists, Triangle, sides
 from .rules import (
@@ -61,8 +62,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Distance", "EmptyCircle", "Network", "improved", "original"]
 
-EmptyCircle = Literal["angle", "open"]
-Distance = Literal["circle", "ties"]
+EmptyCircle = EmptyCircleRule
+Distance = DistanceRule
 
 _RULES: dict[EmptyCircle, Rule] = {
     "angle": closest_in_circle_or_widest_angle,
@@ -191,28 +192,23 @@ def improved(
     Raises
     ------
     PointsError
-        As :func:`original`; or if ``empty`` or ``distance`` is none of the allowed.
+        As :func:`original`.
+    OptionError
+        If ``empty`` or ``distance`` is none of the allowed.
 
     Examples
     --------
     >>> improved([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8], [2, 1, 9]])
     <Network: 5 points, 4 triangles, 0 edges not extended>
     """
-    if not is_one_of(empty, tuple(_RULES)):
-        allowed = " or ".join(repr(name) for name in get_args(EmptyCircle))
-        raise PointsError(f"Invalid empty {shown(empty)}: it must be {allowed}.")
-    if not is_one_of(distance, get_args(Distance)):
-        allowed = " or ".join(repr(name) for name in get_args(Distance))
-        raise PointsError(f"Invalid distance {shown(distance)}: it must be {allowed}.")
+    choice("empty", empty, EmptyCircle)
+    choice("distance", distance, Distance)
     rule = _RULES[empty] if distance == "circle" else widest_angle_then_closest
     return _grown(as_points(points), rule, removal=removal, most=most_triangles)
 
 
 def _grown(rows: NDArray[np.float64], rule: Rule, *, removal: bool, most: int | None) -> Network:
-    if most is not None and not (is_whole_number(most) and most > 0):
-        raise PointsError(
-            f"Invalid most_triangles {shown(most)}: a whole number >= 1, or None, is needed."
-        )
+    require_count("most_triangles", most, or_none=True)
     points = _distinct(rows)
     lists = Lists(columns(points), removal=as_flag("removal", removal))
     lists.enter(_first_triangle(lists.xy, len(rows)))

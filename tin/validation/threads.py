@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import os
 
-from ...errors import PointsError
-from .options import is_whole_number, shown
+from .options import require_count
 
 __all__ = ["thread_count"]
 
@@ -26,15 +25,12 @@ def thread_count(threads: int | None, n_points: int) -> int:
 
     Raises
     ------
-    PointsError
+    OptionError
         If it is no whole number above 0.
     """
     if threads is None:
         return max(1, min(available_cores(), n_points // LEAST_POINTS_PER_THREAD))
-    if not is_whole_number(threads) or threads < 1:
-        raise PointsError(
-            f"Invalid threads {shown(threads)}: a whole number >= 1, or None, is needed."
-        )
+    require_count("threads", threads, or_none=True)
     return min(int(threads), MOST_THREADS)
 
 

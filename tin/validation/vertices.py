@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._sentences import shown
 from ...errors import PointsError
-from .options import is_whole_number, shown
+from .options import is_whole_number
 from .tables import is_masked_array
 
 if TYPE_CHECKING:

@@ -41,7 +41,7 @@ def voronoi(
 
     Raises
     ------
-    PointsError
+    OptionError
         If ``pad`` is no distance, or given together with a boundary.
     LinesError
         If the boundary has fewer than three corners, coordinates that are not finite, no

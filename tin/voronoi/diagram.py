@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..._sentences import counted
-from ...errors import LinesError, PointsError
+from ...errors import LinesError, OptionError
 from .. import _kernel
 from ..constraints.breaklines import as_ring
 from ..constraints.polylines import offsets_of
 from ..types import Bounds
-from ..validation.options import is_finite_number, shown
+from ..validation.options import require_distance
 from ..validation.threads import thread_count
 from .cells import Rings, cells_in_box, signed_areas
 
@@ -130,9 +130,7 @@ def divide_plane(
 ) -> Voronoi:
     """Build the Voronoi diagram of the vertices of a TIN; see :func:`tinsmith.voronoi`."""
     if boundary is not None and pad is not None:
-        raise PointsError(
-            f"Invalid pad {shown(pad)}: a boundary is given, and only bounds are padded."
-        )
+        raise OptionError("pad", pad, "None where a boundary is given: only bounds are padded")
     extent = Bounds.of(points)
     if boundary is None:
         box = _padded(extent, pad)
@@ -175,8 +173,8 @@ def _cells(points: NDArray[np.float64], box: Bounds) -> Rings:
 def _padded(extent: Bounds, pad: float | None) -> Bounds:
     if pad is None:
         pad = _PAD_SHARE * max(extent.width, extent.height)
-    elif not (is_finite_number(pad) and pad >= 0):
-        raise PointsError(f"Invalid pad {shown(pad)}: a distance >= 0 in CRS units is needed.")
+    else:
+        require_distance("pad", pad)
     return Bounds(extent.xmin - pad, extent.ymin - pad, extent.xmax + pad, extent.ymax + pad)
 
 

@@ -40,7 +40,7 @@ class Ragged(NamedTuple):
     offsets: NDArray[np.int64]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Table:
     """One element's values by property name."""
 

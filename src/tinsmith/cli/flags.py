@@ -25,7 +25,7 @@ def name_flags(text: str, **renamed: str) -> str:
     if context is None:
         return text
     flags = _list_flags(_find_running_command(context)) | renamed
-    text = text.replace(", or None, is", " is")
+    text = text.replace(", or None.", ".")
     text = re.sub(r"(?<=its options are )[\w, ]+", lambda found: _name_known(found[0], flags), text)
     for name, flag in flags.items():
         text = re.sub(rf"\b[Tt]he option '?{name}\b'?", flag, text)

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, get_args
 
 import click
 
+from ..policies import CrossingPolicy, TrimPolicy
 from .paths import LINES
 
-__all__ = ["CROSSINGS", "LINE_OPTIONS", "TRIMS"]
-
-CROSSINGS = ("split", "error")
-TRIMS = ("perimeter", "everywhere")
+__all__ = ["LINE_OPTIONS"]
 
 
 def _make_files_option(name: str, words: str) -> Any:
@@ -74,7 +72,7 @@ LINE_OPTIONS = (
     ),
     click.option(
         "--crossing",
-        type=click.Choice(CROSSINGS),
+        type=click.Choice(get_args(CrossingPolicy)),
         default="split",
         show_default=True,
         help="Where lines cross: make a vertex there, or refuse.",
@@ -90,7 +88,7 @@ LINE_OPTIONS = (
     ),
     click.option(
         "--trim",
-        type=click.Choice(TRIMS),
+        type=click.Choice(get_args(TrimPolicy)),
         default="perimeter",
         show_default=True,
         help="Where --max-edge drops them: from the outside inwards, or everywhere.",

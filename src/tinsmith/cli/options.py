@@ -6,10 +6,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, fields
 from functools import wraps
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, get_args
 
 import click
 
+from ..policies import DuplicatePolicy, FeatureKind
 from .line_options import LINE_OPTIONS
 from .output.console import Console
 from .paths import INPUT
@@ -29,8 +30,6 @@ __all__ = [
 Function = TypeVar("Function", bound=Callable[..., Any])
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
-DUPLICATES = ("mean", "first", "last", "lowest", "highest", "error")
-KINDS = ("triangles", "points", "edges", "lines", "hull")
 _METHOD = ("duplicates", "snap", "threads", "crossing", "conforming", "max_edge", "trim")
 _FILES = ("breaklines", "soft_breaklines", "boundary", "holes", "erase", "water")
 
@@ -237,7 +236,7 @@ triangulating_options = _gather(
     Triangulating,
     click.option(
         "--duplicates",
-        type=click.Choice(DUPLICATES),
+        type=click.Choice(get_args(DuplicatePolicy)),
         default="mean",
         show_default=True,
         help="Elevation where several points share one place.",
@@ -265,7 +264,9 @@ writing_options = _gather(
     click.option(
         "--output-format", metavar="NAME", help="Format of the output, whatever its suffix."
     ),
-    click.option("--kind", type=click.Choice(KINDS), help="What a GeoJSON file shows."),
+    click.option(
+        "--kind", type=click.Choice(get_args(FeatureKind)), help="What a GeoJSON file shows."
+    ),
     click.option(
         "--projected",
         is_flag=True,

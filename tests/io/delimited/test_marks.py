@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from tinsmith.io import FormatError, ReadError
+from tinsmith.io import OptionError, ReadError
 from tinsmith.io.delimited import cells
 from tinsmith.io.delimited.cells import BLANKS
 from tinsmith.io.delimited.marks import (
@@ -75,15 +75,15 @@ def test_delimiters_by_name(word, delimiter):
 
 @pytest.mark.parametrize("word", ["", ",,", "a", "7", ".", "+", "-", '"', "\n", "\r", "\x7f", "é"])
 def test_what_is_no_delimiter(word):
-    with pytest.raises(FormatError, match="one letter such as ',' or one of comma, semicolon") as e:
+    with pytest.raises(OptionError, match="one letter such as ',' or one of comma, semicolon") as e:
         parse_delimiter(word)
-    assert "tab" in e.value.known
+    assert "tab" in e.value.allowed
 
 
 def test_decimal_marks_by_name():
     assert [parse_decimal_mark(word) for word in (None, ".", ",")] == [None, ".", ","]
     for word in (";", "", "point"):
-        with pytest.raises(FormatError, match=r"Invalid decimal mark .*: '\.' or ',' is allowed"):
+        with pytest.raises(OptionError, match=r"Invalid decimal .*: it must be '\.' or ','"):
             parse_decimal_mark(word)
 
 

@@ -14,7 +14,7 @@ import pytest
 import shapely
 
 import tinsmith as ts
-from tinsmith.errors import CrsError, FormatError, WriteError
+from tinsmith.errors import CrsError, FormatError, OptionError, WriteError
 from tinsmith.io.geojson import writing as geojson
 
 UTM16 = "EPSG:32616"
@@ -417,8 +417,8 @@ def test_a_survey_with_a_coordinate_that_is_not_finite(tmp_path, value):
 
 def test_a_kind_that_there_is_not(tmp_path):
     refused(
-        FormatError,
-        "'faces': one of triangles, points, edges, lines, hull",
+        OptionError,
+        "'faces': it must be one of triangles, points, edges, lines, hull",
         *(hills(9), tmp_path / "a.geojson"),
         kind="faces",
     )

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import tinsmith as ts
-from tinsmith.io import CrsError, FormatError, ReadError, read
+from tinsmith.io import CrsError, OptionError, ReadError, read
 from tinsmith.io.raster import dem as reading
 
 rasterio = pytest.importorskip("rasterio")
@@ -124,7 +124,7 @@ def test_alpha_band_is_a_mask(raster):
 @pytest.mark.parametrize("nodata", ["none", [1.0, "x"], 10**400, object()])
 def test_nodata_that_is_no_number_is_refused(raster, nodata):
     with pytest.raises(
-        ts.FormatError, match=r"Invalid nodata .*: a number, or several, are needed"
+        ts.OptionError, match=r"Invalid nodata .*: it must be a number, or several\."
     ):
         ts.read(raster(np.ones((3, 3), np.float32)), nodata=nodata)
 
@@ -143,7 +143,7 @@ def test_band_by_number(raster):
     assert np.array_equal(read(path).points[:, 2], first.ravel())
     assert np.array_equal(read(path, band=2).points[:, 2], second.ravel())
     for band in (0, 3, -1, 1.5, "1"):
-        assert "bands 1 to 2" in fault(path, FormatError, band=band)
+        assert "bands 1 to 2" in fault(path, OptionError, band=band)
 
 
 def test_strips_join_without_a_seam(raster, monkeypatch):
@@ -238,7 +238,7 @@ def test_window_beyond_a_side_of_the_raster_holds_what_there_is(raster, transfor
     ],
 )
 def test_window_that_the_raster_does_not_have(raster, window):
-    assert "indow" in fault(raster(heights()), FormatError, window=window)
+    assert "indow" in fault(raster(heights()), OptionError, window=window)
 
 
 @pytest.mark.parametrize("stride", [1, 3])
@@ -256,7 +256,7 @@ def test_cells_are_no_more_than_an_int32_can_number(monkeypatch, stride):
 
 @pytest.mark.parametrize("stride", [0, -2, 6, 100, 1.5, "2"])
 def test_stride_that_cannot_be(raster, stride):
-    assert "1 to 5" in fault(raster(heights()), FormatError, stride=stride)
+    assert "1 to 5" in fault(raster(heights()), OptionError, stride=stride)
 
 
 # ------------------------------------------------------------------ CRS

@@ -179,7 +179,7 @@ def test_elevations_that_look_like_no_data_are_told_and_named(tmp_path, value):
 
 def test_nodata_that_is_no_number_is_refused(tmp_path):
     path = write(tmp_path / "a.tif", hills(4, 4))
-    with pytest.raises(ts.FormatError, match="Invalid nodata 'none'"):
+    with pytest.raises(ts.OptionError, match="Invalid nodata 'none'"):
         ts.read(path, nodata="none")
 
 

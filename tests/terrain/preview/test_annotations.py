@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import itertools
 import math
 
 import numpy as np
@@ -40,7 +41,8 @@ class Recorder:
     """An overlay that draws nothing and keeps all that it was asked for."""
 
     def __init__(self):
-        self.rectangles, self.polygons, self.lines, self.texts = [], [], [], []
+        self.rectangles, self.polygons, self.lines = [], [], []
+        self.texts, self.styles = [], []
 
     def clear(self):
         self.__init__()
@@ -56,6 +58,7 @@ class Recorder:
 
     def draw_text(self, place, words, color, *, size, bold=False, align="left"):
         self.texts.append((words, *place, align))
+        self.styles.append((tuple(color), size, bold))
 
     def measure_text(self, words, *, size, bold=False):
         return 0.6 * size * len(words)
@@ -243,6 +246,87 @@ def test_a_title_is_cut_to_the_last_letter_that_fits(length):
     (title,) = [said for said, *_ in overlay.texts if said.startswith("x")]
     letter = overlay.measure_text("x", size=30.0)
     assert 1312 - letter < overlay.measure_text(title, size=30.0) <= 1312
+
+
+def test_every_word_stands_where_the_layout_has_it():
+    """The sheet as a whole, so that nothing moves, is lost or says something else unseen."""
+    overlay, camera = annotated(VIEWS["oblique"])
+    pixels = measure_pixels_per_unit(camera, SHEET.height)
+    assert 100 * pixels <= 260 < 200 * pixels
+    tip = overlay.polygons[0][0][0]
+    north = project_ground_axes(camera)[1]
+    letter = tip + 12.0 * north / np.linalg.norm(north) - (0, 6)
+    expected = [
+        ("Title", 44.0, 838.0, "left"),
+        ("Subtitle", 44.0, 808.0, "left"),
+        ("N", *letter, "center"),
+        ("0", 140.0, 76.0, "center"),
+        ("50", 140.0 + 50 * pixels, 76.0, "center"),
+        ("100", 140.0 + 100 * pixels, 76.0, "center"),
+        ("m", 140.0 + 100 * pixels + 0.6 * 15 * 3 / 2 + 5.0, 76.0, "left"),
+        ("true from left to right", 140.0, 38.0, "left"),
+        ("Vertical exaggeration 2\N{MULTIPLICATION SIGN}", 500.0, 62.0, "left"),
+        (VIEWS["oblique"].caption, 500.0, 38.0, "left"),
+        ("Elevation (m)", 956.0, 84.0, "left"),
+        ("312", 956.0, 43.0, "center"),
+        ("399", 1356.0, 43.0, "center"),
+        *((f"{z}", 956.0 + 400 * (z - 312.4) / 86.2, 43.0, "center") for z in (340, 360, 380)),
+    ]
+    assert [words for words, *_ in overlay.texts] == [words for words, *_ in expected]
+    for found, wanted in zip(overlay.texts, expected, strict=True):
+        assert found[1:3] == pytest.approx(wanted[1:3])
+        assert found[3] == wanted[3]
+
+
+def test_words_have_the_size_and_colour_of_their_rank():
+    overlay, _ = annotated(VIEWS["top"])
+    styles = dict(zip((words for words, *_ in overlay.texts), overlay.styles, strict=True))
+    dark, grey = (28, 34, 40), (96, 106, 114)
+    assert styles["Title"] == (dark, 30.0, True)
+    assert styles["Subtitle"] == (grey, 17.0, False)
+    assert styles["N"] == (dark, 17, True)
+    assert styles["200"] == styles["m"] == styles["Elevation (m)"] == (dark, 15, False)
+    assert styles["true from left to right"] == styles["Map view, north up"] == (grey, 14, False)
+    assert styles["312"] == (dark, 13, False)
+    assert styles["360"] == (grey, 13, False)
+    assert overlay.rectangles[0][-1] == overlay.rectangles[1][-1] == (255, 255, 255)
+
+
+@pytest.mark.parametrize(
+    ("view", "factor", "words"),
+    [
+        (VIEWS["top"], 2.0, "Hillshade with vertical exaggeration 2\N{MULTIPLICATION SIGN}"),
+        (VIEWS["oblique"], 1.5, "Vertical exaggeration 1.5\N{MULTIPLICATION SIGN}"),
+        (VIEWS["oblique"], 1.0, "Vertical exaggeration 1\N{MULTIPLICATION SIGN} (true to scale)"),
+    ],
+)
+def test_the_exaggeration_is_put_in_words(view, factor, words):
+    overlay, _ = annotated(view, exaggeration=factor)
+    assert overlay.place_of(words).tolist() == [500.0, 62.0]
+
+
+@pytest.mark.parametrize(
+    ("elevations", "words"),
+    [
+        ((0.0, 100.0), ["0", "20", "40", "60", "80", "100"]),
+        ((0.0, 96.0), ["0", "20", "40", "60", "80", "96"]),  # 80 + half its width has room
+        ((1.0, 99.0), ["1", "20", "40", "60", "80", "99"]),
+        ((0.0, 1.0), ["0.00", "0.2", "0.4", "0.6", "0.8", "1.00"]),
+        ((-3.0, 4.0), ["-3.0", "-2", "-1", "0", "1", "2", "3", "4.0"]),
+        ((1e5, 1e5 + 40), ["100,000", "100,010", "100,020", "100,030", "100,040"]),
+    ],
+)
+def test_numbers_of_the_legend_do_not_run_into_each_other(elevations, words):
+    overlay, _ = annotated(VIEWS["top"], elevations=elevations)
+    low, high = elevations
+    found = sorted((x, said) for said, x, y, _ in overlay.texts if y == 43.0)
+    assert [said for _, said in found] == words
+    for (x, said), (other, after) in itertools.pairwise(found):
+        room = (overlay.measure_text(said, size=13) + overlay.measure_text(after, size=13)) / 2
+        assert other - x >= room + 12.0
+    inner = [float(said.replace(",", "")) for _, said in found[1:-1]]
+    for (x, _), value in zip(found[1:-1], inner, strict=True):
+        assert x == pytest.approx(956.0 + 400.0 * (value - low) / (high - low))
 
 
 # ----------------------------------------------------------------------- lights

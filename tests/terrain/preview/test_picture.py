@@ -200,7 +200,7 @@ class TestPicture:
         written = []
         monkeypatch.setattr(opengl, "require_window", lambda: None)
         monkeypatch.setattr(
-            module.Overlay, "text", lambda self, place, words, *_, **__: written.append(words)
+            module.Overlay, "draw_text", lambda self, place, words, *_, **__: written.append(words)
         )
         plotter = pv.Plotter
 

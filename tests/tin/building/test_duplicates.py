@@ -167,13 +167,13 @@ def test_error_policy_refuses_snapped_rows_too():
 
 @pytest.mark.parametrize("policy", ["median", "", None, 1])
 def test_other_policies_are_refused(policy):
-    with pytest.raises(ts.PointsError, match=r"duplicates .* mean, first, last"):
+    with pytest.raises(ts.OptionError, match=r"duplicates .* mean, first, last"):
         ts.triangulate(FOUR_CORNERS, duplicates=policy)
 
 
 @pytest.mark.parametrize("snap", [-1, math.nan, math.inf, "1", None])
 def test_other_snaps_are_refused(snap):
-    with pytest.raises(ts.PointsError, match=r"snap .* >= 0"):
+    with pytest.raises(ts.OptionError, match=r"snap .* >= 0"):
         ts.triangulate(FOUR_CORNERS, snap=snap)
 
 

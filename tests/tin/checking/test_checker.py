@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from support import oracles
 
 import tinsmith as ts
-from tinsmith.tin import TIN, CheckError, PointsError, _kernel, check
+from tinsmith.tin import TIN, CheckError, OptionError, PointsError, _kernel, check
 from tinsmith.tin.checking import shape as check_shape
 from tinsmith.tin.checking.findings import Findings
 
@@ -474,7 +474,7 @@ def test_levels_look_at_no_more_than_asked(tin):
 
 @pytest.mark.parametrize("level", [0, 4, -1, "3", None, 2.5])
 def test_other_levels_are_refused(tin, level):
-    with pytest.raises(PointsError, match=r"level .* 1, 2 or 3"):
+    with pytest.raises(OptionError, match=r"level .* 1, 2 or 3"):
         check(tin, level=level)
 
 

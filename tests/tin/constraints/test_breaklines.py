@@ -401,10 +401,6 @@ BOW_TIE = [[10, 10], [90, 90], [90, 10], [10, 90]]
         ({"holes": [[[200, 200], [210, 200], [205, 210]]]}, "Hole 0 lies outside"),
         ({"boundary": [[[200, 200], [210, 200], [205, 210]]]}, "leave no triangle"),
         ({"max_edge": 1e-3}, "No triangle is left"),
-        ({"max_edge": -1}, "Invalid max_edge"),
-        ({"max_edge": NAN}, "Invalid max_edge"),
-        ({"trim": "inside"}, "Invalid trim 'inside'"),
-        ({"crossing": "ignore"}, "Invalid crossing 'ignore'"),
         ({"water": [[[1, 1], [2, 2], [1, 2]]]}, r"tinsmith\.Water"),
         ({"erase": [[[-99, -99], [199, -99], [199, 199], [-99, 199]]]}, "points"),
     ],
@@ -418,8 +414,6 @@ def test_bad_lines_are_refused_in_one_sentence(options, sentence):
 @pytest.mark.parametrize(
     ("make", "sentence"),
     [
-        (lambda: ts.Breakline([[1, 1, 1], [2, 2, 2]], kind="sharp"), "Invalid breakline kind"),
-        (lambda: ts.Breakline([[1, 1, 1], [2, 2, 2]], priority=0.5), "Invalid priority"),
         (lambda: ts.Water([[1, 1], [2, 2], [1, 2]], NAN), "finite number"),
         (lambda: ts.Water([[1, 1], [2, 2]], 1.0), "k >= 3"),
     ],
@@ -427,6 +421,37 @@ def test_bad_lines_are_refused_in_one_sentence(options, sentence):
 def test_bad_values_are_refused_in_one_sentence(make, sentence):
     with pytest.raises(ts.LinesError, match=sentence):
         make()
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        ({"max_edge": -1}, "Invalid max_edge -1: it must be a length > 0"),
+        ({"max_edge": NAN}, "Invalid max_edge nan: it must be a length > 0"),
+        ({"trim": "inside"}, "Invalid trim 'inside': it must be one of perimeter, everywhere"),
+        ({"crossing": "ignore"}, "Invalid crossing 'ignore': it must be one of split, error"),
+    ],
+)
+def test_bad_options_are_refused_in_one_sentence(options, sentence):
+    with pytest.raises(ts.OptionError, match=sentence) as caught:
+        ts.triangulate(terrain(), **options)
+    assert [(caught.value.option, caught.value.value)] == list(options.items())
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        ({"kind": "sharp"}, "Invalid kind 'sharp': it must be one of hard, soft"),
+        (
+            {"priority": 0.5},
+            "Invalid priority 0.5: it must be a whole number from -900719",
+        ),
+        ({"name": ["a"]}, r"Invalid name \['a'\]: it must be text"),
+    ],
+)
+def test_bad_options_of_a_breakline_are_refused_in_one_sentence(options, sentence):
+    with pytest.raises(ts.OptionError, match=sentence):
+        ts.Breakline([[1, 1, 1], [2, 2, 2]], **options)
 
 
 # ------------------------------------------------------------------ found by trying

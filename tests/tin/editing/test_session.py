@@ -356,7 +356,7 @@ def test_a_failed_edit_of_lines_changes_nothing():
     tin = crossed()
     before = state(tin)
     for arguments in ({"crossing": "error"}, {"crossing": "split", "kind": "loft"}):
-        with pytest.raises(ts.LinesError):
+        with pytest.raises((ts.LinesError, ts.OptionError)):
             tin.add_breakline([[0, 1, 0], [3, 4, 0]], **arguments)
         require_state(tin, before)
     tin.insert([[1, 1.5, 1]])
@@ -552,7 +552,7 @@ def test_tin_that_is_not_delaunay_is_not_edited():
 def test_bad_edits_are_refused_in_a_sentence_and_change_nothing(operation, arguments, sentence):
     tin = square()
     before = state(tin)
-    with pytest.raises((ts.PointsError, ts.LinesError), match=sentence):
+    with pytest.raises((ts.PointsError, ts.LinesError, ts.OptionError), match=sentence):
         getattr(tin, operation)(**arguments)
     require_state(tin, before)
     assert tin.edits == ()

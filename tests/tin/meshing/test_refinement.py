@@ -499,11 +499,21 @@ def test_any_small_survey_ends_sound(places, lines, min_angle):
         ({"min_angle": float("nan")}, "Invalid min_angle nan"),
         ({"min_angle": "25"}, "Invalid min_angle '25'"),
         ({"max_area": 0}, "Invalid max_area 0"),
-        ({"max_area": -1.0}, "Invalid max_area -1"),
+        ({"max_area": -1.0}, "Invalid max_area -1.0"),
         ({"max_edge": 0.0}, "Invalid max_edge 0.0"),
         ({"max_edge": float("inf")}, "Invalid max_edge inf"),
         ({"max_vertices": 0}, "Invalid max_vertices 0"),
         ({"max_vertices": 1.5}, "Invalid max_vertices 1.5"),
+    ],
+)
+def test_bad_options_are_told_in_a_sentence(options, words):
+    with pytest.raises(ts.OptionError, match=f"{words}: it must be "):
+        refine(random_points(), **options)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
         ({"max_vertices": 5}, "more than 5 vertices"),
         ({"max_area": 1e-9}, "more than 10,000,000 vertices"),
         ({"max_edge": 0.5, "max_vertices": 2000}, "more than 2,000 vertices"),

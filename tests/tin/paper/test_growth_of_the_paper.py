@@ -15,7 +15,7 @@ from scipy.spatial import Delaunay
 from support import oracles
 
 import tinsmith as ts
-from tinsmith.tin import PointsError, paper
+from tinsmith.tin import OptionError, PointsError, paper
 from tinsmith.tin.paper.rules import _cotangents, widest_angle, widest_angle_then_closest
 
 BOTH = [paper.original, paper.improved]
@@ -423,7 +423,7 @@ def test_coordinates_out_of_range_are_refused(bad):
 
 
 def test_unknown_reading_is_refused():
-    with pytest.raises(PointsError, match="'angle' or 'open'"):
+    with pytest.raises(OptionError, match="one of angle, open"):
         paper.improved(flat(CLOSEST_IS_NOT_DELAUNAY), empty="widen")
 
 

@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
+import copy
 import math
+import pickle
+from pathlib import Path
+from typing import Literal, get_args
 
 import numpy as np
 import pytest
 
 import tinsmith as ts
-from tinsmith.errors import TinsmithError
+from tinsmith._sentences import shown
+from tinsmith.errors import TinsmithError, choice
+from tinsmith.tin.editing.history import apply_edits
 from tinsmith.tin.paper.comparison import compare
 from tinsmith.tin.paper.growth import improved
 from tinsmith.tin.validation.options import (
     as_flag,
     is_finite_number,
-    is_one_of,
     is_whole_number,
     require_tin,
-    shown,
 )
 from tinsmith.tin.validation.points import as_elevations
 
@@ -79,14 +83,40 @@ def test_what_is_no_finite_number(value):
 
 
 def test_words_and_flags():
-    assert is_one_of("a", ("a", "b"))
-    assert not is_one_of("c", ("a", "b"))
-    assert not is_one_of(0, ("a", "b"))
-    assert not is_one_of("a", ())
+    assert choice("name", "a", ("a", "b")) == "a"
+    assert choice("name", "b", Literal["a", "b"]) == "b"
+    for value, words in (("c", ("a", "b")), (0, ("a", "b")), ("a", ()), (["a"], Literal["a"])):
+        with pytest.raises(ts.OptionError, match=r"Invalid name .*: it must be one of") as caught:
+            choice("name", value, words)
+        assert caught.value.value is value
+        assert caught.value.allowed == (get_args(words) or words)
     assert as_flag("name", np.True_) is True
     assert as_flag("name", False) is False
-    with pytest.raises(ts.PointsError, match=r"Invalid name 1: True or False is needed\."):
+    with pytest.raises(ts.OptionError, match=r"Invalid name 1: it must be True or False\."):
         as_flag("name", 1)
+
+
+@pytest.mark.parametrize(
+    "again", [copy.copy, copy.deepcopy, lambda one: pickle.loads(pickle.dumps(one))]
+)
+def test_errors_are_copied_with_what_they_carry(again):
+    for error in (
+        ts.OptionError("snap", -1, "a distance"),
+        ts.OptionError("crossing", "join", ("split", "error")),
+        ts.PointsError("No.", rows=[1, 2]),
+        ts.MissingExtraError("pyproj", extra="crs", purpose="A CRS"),
+        ts.WriteError("No room.", path=Path("a.ply")),
+    ):
+        found = again(error)
+        assert (type(found), str(found)) == (type(error), str(error))
+        assert vars(found) == vars(error)
+
+
+def test_an_edit_that_fails_is_numbered_and_keeps_what_its_error_carries():
+    edit = {"op": "insert", "points": [[1, 1, 1]], "duplicates": 0}
+    with pytest.raises(ts.OptionError, match=r"Edit 0 \(insert\): Invalid duplicates") as caught:
+        apply_edits(ts.triangulate(CORNERS), [edit])
+    assert (caught.value.option, caught.value.value) == ("duplicates", 0)
 
 
 def test_what_is_no_tin():
@@ -102,23 +132,23 @@ POLYGON = [[0.5, 0.5], [3.5, 0.5], [3.5, 2.5]]
 @pytest.mark.parametrize(
     ("act", "sentence"),
     [
-        (lambda: compare(CORNERS, limit=0), "Invalid limit 0: a whole number >= 1 is needed."),
-        (lambda: compare(CORNERS, limit=2.5), "Invalid limit 2.5: a whole number >= 1"),
+        (lambda: compare(CORNERS, limit=0), "Invalid limit 0: it must be a whole number >= 1."),
+        (lambda: compare(CORNERS, limit=2.5), "Invalid limit 2.5: it must be a whole number >= 1"),
         (lambda: compare(CORNERS, limit=4), "5 points are too many to compare"),
         (
             lambda: improved(CORNERS, distance="far"),
-            "Invalid distance 'far': it must be 'circle' or",
+            "Invalid distance 'far': it must be one of circle, ties",
         ),
-        (lambda: improved(CORNERS, empty="x"), "Invalid empty 'x': it must be '"),
+        (lambda: improved(CORNERS, empty="x"), "Invalid empty 'x': it must be one of angle, open"),
         (
             lambda: improved(CORNERS, most_triangles=0),
-            "Invalid most_triangles 0: a whole number >= 1",
+            "Invalid most_triangles 0: it must be a whole number >= 1",
         ),
-        (lambda: improved(CORNERS, removal=1), "Invalid removal 1: True or False is needed."),
+        (lambda: improved(CORNERS, removal=1), "Invalid removal 1: it must be True or False."),
         (lambda: as_elevations([[1.0, 2.0]]), r"Elevations have shape \(1, 2\): one, or a row"),
         (lambda: as_elevations(np.ma.masked_less([1.0, 2.0], 2)), "An elevation is masked"),
-        (lambda: ts.Breakline(POLYGON, name=["a"]), r"Invalid name \['a'\]: text is needed."),
-        (lambda: ts.Water(POLYGON, z=math.nan), "Invalid height nan of a water polygon"),
+        (lambda: ts.Breakline(POLYGON, name=["a"]), r"Invalid name \['a'\]: it must be text."),
+        (lambda: ts.Water(POLYGON, z=math.nan), "Invalid elevation nan of a water polygon"),
         (lambda: ts.triangulate(CORNERS, holes=[[], []]), "(?i)invalid|shape"),
         (lambda: ts.triangulate({"x": [0, 1], "y": [0, 1, 2], "z": [0, 1]}), "different lengths"),
         (lambda: ts.triangulate(CORNERS).remove_breakline(0), "There is no breakline 0."),

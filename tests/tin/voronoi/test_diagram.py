@@ -12,7 +12,7 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tinsmith import TIN, Bounds, LinesError, PointsError, triangulate
+from tinsmith import TIN, Bounds, LinesError, OptionError, triangulate
 
 UTM = np.array([742_000.0, 4_030_000.0])
 
@@ -434,10 +434,10 @@ def test_bounds_that_hold_all_are_the_box_and_smaller_ones_clip():
 @pytest.mark.parametrize(
     ("options", "error", "says"),
     [
-        ({"pad": -1.0}, PointsError, "Invalid pad -1.0: a distance >= 0"),
-        ({"pad": np.nan}, PointsError, "Invalid pad nan"),
-        ({"pad": "wide"}, PointsError, "Invalid pad 'wide'"),
-        ({"pad": 1.0, "boundary": Bounds(0, 0, 1, 1)}, PointsError, "only bounds are padded"),
+        ({"pad": -1.0}, OptionError, "Invalid pad -1.0: it must be a distance >= 0"),
+        ({"pad": np.nan}, OptionError, "Invalid pad nan"),
+        ({"pad": "wide"}, OptionError, "Invalid pad 'wide'"),
+        ({"pad": 1.0, "boundary": Bounds(0, 0, 1, 1)}, OptionError, "only bounds are padded"),
         ({"boundary": [[0, 0], [1, 1]]}, LinesError, "The boundary has"),
         ({"boundary": [[0, 0], [1, 0], [np.nan, 1]]}, LinesError, "The boundary"),
         ({"boundary": [[0, 0], [2, 2], [2, 0], [0, 2]]}, LinesError, "no simple ring"),

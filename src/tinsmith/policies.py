@@ -1,0 +1,47 @@
+"""The words that options take, one list of each: for the library, its checkers and its commands.
+
+Loads nothing: a command names them in its help before any library is there.
+"""
+
+from __future__ import annotations
+
+from typing import Literal, TypeAlias
+
+__all__ = [
+    "BreaklineKind",
+    "CrossingPolicy",
+    "DistanceRule",
+    "DuplicatePolicy",
+    "EmptyCircleRule",
+    "FeatureKind",
+    "LineKind",
+    "LineRole",
+    "TrimPolicy",
+]
+
+DuplicatePolicy: TypeAlias = Literal["mean", "first", "last", "lowest", "highest", "error"]
+"""Which elevation several points at one place get."""
+
+CrossingPolicy: TypeAlias = Literal["split", "error"]
+"""Whether lines that cross get a vertex there, or are refused."""
+
+TrimPolicy: TypeAlias = Literal["perimeter", "everywhere"]
+"""Where triangles with too long an edge are dropped: from the outside inwards, or everywhere."""
+
+BreaklineKind: TypeAlias = Literal["hard", "soft"]
+"""Whether a line of edges is a break of the slope."""
+
+LineKind: TypeAlias = Literal["hard", "soft", "boundary", "hole", "water"]
+"""What a line in a TIN is."""
+
+LineRole: TypeAlias = Literal["hard", "soft", "boundary", "hole", "erase", "water"]
+"""What the line of a survey code becomes."""
+
+FeatureKind: TypeAlias = Literal["triangles", "points", "edges", "lines", "hull"]
+"""What a GeoJSON file shows of a surface."""
+
+EmptyCircleRule: TypeAlias = Literal["angle", "open"]
+"""How the paper's rule of the empty circle is read."""
+
+DistanceRule: TypeAlias = Literal["circle", "ties"]
+"""Among which points the paper's distance decides."""

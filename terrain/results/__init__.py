@@ -1,0 +1,7 @@
+"""What products of a TIN are returned as: features, rasters and tables."""
+
+from .features import Features
+from .raster import Raster
+from .table import Table
+
+__all__ = ["Features", "Raster", "Table"]

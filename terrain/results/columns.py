@@ -1,0 +1,214 @@
+"""Named columns and their units, none of which can be changed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any, Generic, TypeAlias, TypeVar
+
+import numpy as np
+
+from ..._sentences import shown
+from ...crs import Unit
+from ...errors import OptionError
+from ...tin.types import seal
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import NDArray
+
+__all__ = [
+    "FrozenMapping",
+    "Units",
+    "as_columns",
+    "as_name",
+    "as_notes",
+    "as_units",
+    "frozen_copy",
+    "named_items",
+    "unit_text",
+]
+
+Units: TypeAlias = "Mapping[str, Unit | str | None]"
+Value = TypeVar("Value")
+
+UNKNOWN_UNIT = "unknown"
+"""How a unit that is not known is written."""
+
+_NUMBERS = "biuf"
+
+
+class FrozenMapping(Mapping[str, Value], Generic[Value]):
+    """A dictionary that cannot be changed, nor can its arrays, and that can be pickled."""
+
+    __slots__ = ("_items",)
+
+    def __init__(self, items: Mapping[str, Value]) -> None:
+        self._items = dict(items)
+        for value in self._items.values():  # arrays that come from a pickle can be written to
+            if isinstance(value, np.ndarray):
+                seal(value)
+
+    def __getitem__(self, name: str) -> Value:
+        return self._items[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._items)
+
+    def __len__(self) -> int:
+        return len(self._items)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return FrozenMapping, (self._items,)
+
+    def __repr__(self) -> str:
+        return repr(self._items)
+
+
+def frozen_copy(values: NDArray[Any]) -> NDArray[Any]:
+    """Return an array as it is if it is read-only already, else a read-only copy."""
+    return seal(np.array(values)) if values.flags.writeable else values
+
+
+def as_columns(columns: Any, count: int | None, what: str) -> FrozenMapping[NDArray[Any]]:
+    """Return named columns of equal length.
+
+    Parameters
+    ----------
+    columns : mapping of str to (n,) array-like
+        Numbers, truth values or texts (None where there is none).
+    count : int or None
+        Length that every column must have; None takes that of the first.
+    what : str
+        What a row is: "feature", "row".
+
+    Raises
+    ------
+    OptionError
+        If a name is empty, lengths differ, or values are of another kind.
+    """
+    items = named_items("columns", columns)
+    arrays = {name: _as_column(name, values) for name, values in items}
+    expected = count
+    for name, array in arrays.items():
+        expected = len(array) if expected is None else expected
+        if len(array) != expected:
+            allowed = f"{expected:,}, one value for each {what}"
+            raise OptionError(f"length of column '{name}'", len(array), allowed=allowed)
+    return FrozenMapping(arrays)
+
+
+def named_items(option: str, mapping: Any) -> list[tuple[str, Any]]:
+    """Return the items of a mapping whose keys are names."""
+    if mapping is None:
+        return []
+    if not isinstance(mapping, Mapping):
+        raise OptionError(option, _Shown(mapping), allowed="a mapping of names to values")
+    items = list(mapping.items())
+    for name, _ in items:
+        if not (isinstance(name, str) and name.strip() and name.isprintable()):
+            raise OptionError(f"name among {option}", _Shown(name), allowed="a printable text")
+    return [(str(name), value) for name, value in items]
+
+
+def _as_column(name: str, values: Any) -> NDArray[Any]:
+    array = np.asarray(values)
+    if array.dtype.kind == "T":
+        array = array.astype(object)
+    if array.ndim != 1:
+        raise OptionError(f"shape of column '{name}'", array.shape, allowed="(n,), one dimension")
+    if array.dtype.kind == "O":
+        return _as_texts(name, array)
+    if array.dtype.kind not in _NUMBERS + "U":
+        kind = str(array.dtype)
+        raise OptionError(
+            f"type of column '{name}'", kind, allowed="one of numbers, truth values or texts"
+        )
+    return frozen_copy(array)
+
+
+def _as_texts(name: str, array: NDArray[Any]) -> NDArray[Any]:
+    """Return a column of objects, all of them texts or None."""
+    texts = np.array([None if _is_missing(value) else value for value in array] or [], object)
+    for row, value in enumerate(texts):
+        if not (value is None or isinstance(value, str)):
+            raise OptionError(
+                f"value in row {row} of column '{name}'",
+                _Shown(value),
+                allowed="a text or None, where numbers and texts are not mixed",
+            )
+    return seal(texts)
+
+
+def _is_missing(value: Any) -> bool:
+    return value is None or (isinstance(value, float) and value != value)
+
+
+def as_units(units: Any, names: Iterable[str]) -> FrozenMapping[Unit | str | None]:
+    """Return the units of columns.
+
+    Parameters
+    ----------
+    units : mapping of str to Unit, str or None
+        None is a unit that is not known; a column that is not named has no unit.
+    names : iterable of str
+        Of the columns.
+
+    Raises
+    ------
+    OptionError
+        If there is no such column, or a unit is neither Unit, text nor None.
+    """
+    known = list(names)
+    items = dict(named_items("units", units))
+    for name, unit in items.items():
+        if name not in known:
+            listed = ", ".join(f"'{one}'" for one in known) or "none, as there are no columns"
+            raise OptionError("column with a unit", name, allowed=f"one of {listed}")
+        is_text = isinstance(unit, str) and unit.strip() and unit.isprintable()
+        if not (unit is None or isinstance(unit, Unit) or is_text):
+            allowed = "a Unit, the symbol of one, or None if it is not known"
+            raise OptionError(f"unit of '{name}'", _Shown(unit), allowed=allowed)
+    return FrozenMapping(items)
+
+
+def unit_text(units: Units, name: str) -> str:
+    """Return the symbol of a column's unit as it is written: "" for none, "unknown".
+
+    Examples
+    --------
+    >>> from tinsmith import Unit
+    >>> units = {"elevation": Unit.of("US survey foot"), "depth": None}
+    >>> unit_text(units, "elevation"), unit_text(units, "depth"), unit_text(units, "id")
+    ('US ft', 'unknown', '')
+    """
+    if name not in units:
+        return ""
+    unit = units[name]
+    if isinstance(unit, Unit):
+        return unit.symbol or unit.name
+    return UNKNOWN_UNIT if unit is None else unit
+
+
+def as_name(name: Any) -> str:
+    """Return the name of a product."""
+    if not (isinstance(name, str) and name.isprintable()):
+        raise OptionError("name", _Shown(name), allowed="a printable text")
+    return str(name)
+
+
+def as_notes(notes: Any) -> tuple[str, ...]:
+    """Return notes as a tuple of sentences."""
+    if isinstance(notes, str) or not all(isinstance(note, str) for note in notes):
+        raise OptionError("notes", _Shown(notes), allowed="a sequence of texts")
+    return tuple(notes)
+
+
+class _Shown:
+    """A value whose repr is short enough for a sentence."""
+
+    def __init__(self, value: object) -> None:
+        self._text = shown(value)
+
+    def __repr__(self) -> str:
+        return self._text

@@ -1,0 +1,140 @@
+"""Raster: bands of values in the cells of a grid."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..._sentences import counted
+from ...crs import CRS, shorten_crs
+from ...errors import OptionError
+from ...tin.types import Frozen, Grid
+from .columns import FrozenMapping, as_name, as_notes, as_units, frozen_copy, named_items
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from .columns import Units
+
+__all__ = ["Raster"]
+
+_FEWEST_ULPS = 8.0
+"""Roundings that the far edge of a grid may be off its spacing times its cells."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Raster(Frozen):
+    """Values in the square cells of a grid, in one or several bands.
+
+    Attributes
+    ----------
+    bands : mapping of str to (rows, columns) array
+        By name; row 0 is the northernmost. Numbers or truth values. Instead of an array, anything
+        with ``shape``, ``dtype`` and ``band[rows, columns]`` (slices) that returns an array: its
+        blocks are asked for as they are written, so that a raster may be larger than memory.
+    grid : Grid
+    crs : CRS or None
+        Given as a code ("EPSG:32616"), number, WKT or ``pyproj.CRS``.
+    nodata : float
+        Value of cells without surface; NaN by default.
+    units : mapping of str to Unit, str or None
+        Of bands: a unit or its symbol, None if it is not known; a band without an entry has none.
+    name : str
+        Of the product, for captions.
+    notes : tuple of str
+        What was assumed or left out, in sentences.
+
+    Raises
+    ------
+    OptionError
+        If shapes do not fit the grid, or a unit, name or value without data is none.
+    CrsError
+        If the CRS is not known.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import tinsmith as ts
+    >>> grid = ts.Grid(ts.Bounds(0.0, 0.0, 3.0, 2.0), shape=(2, 3), spacing=1.0)
+    >>> ts.Raster({"elevation": np.zeros((2, 3))}, grid, crs="EPSG:32616", units={"elevation": "m"})
+    <Raster: 2 rows by 3 columns, spacing 1, bands elevation, crs EPSG:32616>
+    """
+
+    bands: Mapping[str, NDArray[Any]]
+    grid: Grid
+    crs: CRS | None = field(default=None, kw_only=True)
+    nodata: float = field(default=math.nan, kw_only=True)
+    units: Units = field(default_factory=dict, kw_only=True)
+    name: str = field(default="", kw_only=True)
+    notes: Sequence[str] = field(default=(), kw_only=True)
+
+    def __post_init__(self) -> None:
+        keep = object.__setattr__
+        _require_grid(self.grid)
+        items = dict(named_items("bands", self.bands))
+        if not items:
+            raise OptionError("number of bands", 0, allowed="1 or more")
+        shape = tuple(self.grid.shape)
+        bands = {name: _as_band(name, values, shape) for name, values in items.items()}
+        keep(self, "bands", FrozenMapping(bands))
+        keep(self, "crs", CRS.of(self.crs))
+        keep(self, "nodata", _as_nodata(self.nodata))
+        keep(self, "units", as_units(self.units, bands))
+        keep(self, "name", as_name(self.name))
+        keep(self, "notes", as_notes(self.notes))
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns."""
+        return self.grid.shape
+
+    def __repr__(self) -> str:
+        rows, columns = self.grid.shape
+        title = f" {self.name}" if self.name else ""
+        return (
+            f"<Raster{title}: {counted(rows, 'row')} by {counted(columns, 'column')}, "
+            f"spacing {self.grid.spacing:g}, bands {', '.join(self.bands)}, "
+            f"crs {shorten_crs(self.crs)}>"
+        )
+
+
+def _as_band(name: str, values: Any, shape: tuple[int, ...]) -> Any:
+    is_lazy = not isinstance(values, np.ndarray) and all(
+        hasattr(values, member) for member in ("shape", "dtype", "__getitem__")
+    )
+    band = values if is_lazy else np.asarray(values)
+    if tuple(band.shape) != shape:
+        raise OptionError(f"shape of band '{name}'", tuple(band.shape), allowed=f"{shape}")
+    if np.dtype(band.dtype).kind not in "biuf":
+        raise OptionError(
+            f"type of band '{name}'", str(band.dtype), allowed="one of numbers or truth values"
+        )
+    return band if is_lazy else frozen_copy(band)
+
+
+def _as_nodata(value: Any) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float | np.number):
+        raise OptionError("nodata", value, allowed="a number or NaN")
+    return float(value)
+
+
+def _require_grid(grid: Any) -> None:
+    if not isinstance(grid, Grid):
+        raise OptionError("grid", type(grid).__name__, allowed="a Grid")
+    rows, columns = grid.shape
+    if rows < 1 or columns < 1:
+        raise OptionError("shape of the grid", grid.shape, allowed="1 or more rows and columns")
+    if not (math.isfinite(grid.spacing) and grid.spacing > 0):
+        raise OptionError("spacing of the grid", grid.spacing, allowed="finite and above 0")
+    bounds = grid.bounds
+    sides = ((bounds.xmin, bounds.xmax, columns), (bounds.ymin, bounds.ymax, rows))
+    for low, high, cells in sides:
+        rounding = _FEWEST_ULPS * math.ulp(max(abs(low), abs(high), cells * grid.spacing))
+        if not abs(high - low - cells * grid.spacing) <= rounding:
+            allowed = f"{cells} cells of {grid.spacing!r} apart"
+            raise OptionError("bounds of the grid", (low, high), allowed=allowed)

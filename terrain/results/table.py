@@ -1,0 +1,75 @@
+"""Table: named columns with units."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from ..._sentences import counted
+from ...errors import OptionError
+from ...tin.types import Frozen
+from .columns import as_columns, as_name, as_notes, as_units
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from .columns import Units
+
+__all__ = ["Table"]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Table(Frozen):
+    """Named columns of equal length, with units.
+
+    Attributes
+    ----------
+    columns : mapping of str to (n,) array
+        Numbers, truth values or texts (None where there is none).
+    units : mapping of str to Unit, str or None
+        A unit or its symbol, None if it is not known; a column without an entry has no unit.
+    name : str
+        Of the product, for captions.
+    notes : tuple of str
+        What was assumed or left out, in sentences.
+
+    Raises
+    ------
+    OptionError
+        If there is no column, lengths differ, or a unit or name is none.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> table = ts.Table({"level": [318.0, 319.0], "volume": [0.0, 52.5]}, units={"volume": "m³"})
+    >>> table
+    <Table: 2 rows, columns level, volume>
+    >>> table["volume"]
+    array([ 0. , 52.5])
+    """
+
+    columns: Mapping[str, NDArray[Any]]
+    units: Units = field(default_factory=dict, kw_only=True)
+    name: str = field(default="", kw_only=True)
+    notes: Sequence[str] = field(default=(), kw_only=True)
+
+    def __post_init__(self) -> None:
+        keep = object.__setattr__
+        keep(self, "columns", as_columns(self.columns, None, "row"))
+        if not self.columns:
+            raise OptionError("number of columns", 0, allowed="1 or more")
+        keep(self, "units", as_units(self.units, self.columns))
+        keep(self, "name", as_name(self.name))
+        keep(self, "notes", as_notes(self.notes))
+
+    def __len__(self) -> int:
+        return len(next(iter(self.columns.values())))
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        return self.columns[name]
+
+    def __repr__(self) -> str:
+        title = f" {self.name}" if self.name else ""
+        return f"<Table{title}: {counted(len(self), 'row')}, columns {', '.join(self.columns)}>"

@@ -1,0 +1,54 @@
+"""Dataclasses: values that nobody changes, and arrays that are not compared by ``==``."""
+
+from __future__ import annotations
+
+import dataclasses
+import importlib
+import inspect
+import pkgutil
+from pathlib import Path
+
+import pytest
+
+import tinsmith
+
+WORKED_ON = {"_Top", "_Run"}
+"""Filled in step by step within one function."""
+
+
+def modules():
+    """All modules of the installed packages but the compiled one and those of benchmarks."""
+    for found in pkgutil.walk_packages(tinsmith.__path__, "tinsmith."):
+        if not {"_core", "benchmarks", "__main__"} & set(found.name.split(".")):
+            yield importlib.import_module(found.name)
+
+
+def dataclasses_of(module):
+    for one in vars(module).values():
+        is_own = inspect.isclass(one) and one.__module__ == module.__name__
+        if is_own and "__dataclass_params__" in vars(one):
+            yield one
+
+
+CLASSES = [one for module in modules() for one in dataclasses_of(module)]
+
+
+@pytest.mark.parametrize("one", CLASSES, ids=lambda one: one.__name__)
+def test_a_value_cannot_be_changed(one):
+    assert one.__dataclass_params__.frozen != (one.__name__ in WORKED_ON)
+
+
+@pytest.mark.parametrize("one", CLASSES, ids=lambda one: one.__name__)
+def test_values_that_hold_arrays_are_equal_only_to_themselves(one):
+    """``==`` of arrays is no truth value."""
+    holds = any("NDArray" in str(field.type) for field in dataclasses.fields(one))
+    if holds:
+        assert one.__eq__ is object.__eq__
+        assert one.__hash__ is object.__hash__
+
+
+def test_all_dataclasses_are_seen():
+    root = Path(__file__).parents[1]
+    places = [root / name for name in ("tin", "io", "terrain", "src/tinsmith")]
+    texts = [path.read_text() for place in places for path in place.rglob("*.py")]
+    assert len(CLASSES) == sum(text.count("\n@dataclass") for text in texts)
