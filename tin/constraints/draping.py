@@ -80,10 +80,10 @@ def _cut_at_rim(
     rim_chain = vertices[offsets[-2] :]
     rim_heights = noded.elevations[offsets[-2] :]
     places = np.concatenate([xy, noded.new_points[:, :2]])
-    side = in_rings(places, [rim[:-1, :2]])
-    side[rim_chain] = 0
     cut = Polylines.whole(vertices[: offsets[-2]], offsets[:-1])
-    is_inside = np.asarray((side[cut.segments()] >= 0).all(axis=1), np.bool_)
+    is_outside = np.zeros(len(places), np.bool_)
+    is_outside[: len(xy)] = in_rings(xy, [rim[:-1, :2]]) < 0
+    is_inside = ~_runs_outside(cut, is_outside, rim_chain)
     heights = np.full(len(places), np.nan)
     heights[rim_chain] = rim_heights
     return Draped(
@@ -91,6 +91,29 @@ def _cut_at_rim(
         _split_rim(places, rim_chain, rim_heights, vertex_of[len(lines.xy) :]),
         len(np.unique(cut.segment_lines()[~is_inside])),
     )
+
+
+def _runs_outside(
+    cut: Polylines, is_outside: NDArray[np.bool_], rim_chain: NDArray[np.int32]
+) -> NDArray[np.bool_]:
+    """Tell which segments of noded lines lie outside a convex rim.
+
+    From one vertex on the rim to the next a line stays on one side, which its given vertices tell.
+    A crossing tells nothing: where another line crosses near the rim, rounding may put it beyond::
+
+        ----.x.---- rim      the line from below gets a vertex at x, where it crosses a line along
+             |               the rim, and then one on the rim: up to there it is inside
+
+    A run without a given vertex is a part of one segment between two points of the rim: inside.
+    """
+    segments = cut.segments()
+    is_on_rim = np.zeros(len(is_outside), np.bool_)
+    is_on_rim[rim_chain] = True
+    begins = np.diff(cut.segment_lines(), prepend=-1) != 0
+    run_of = np.cumsum(begins | is_on_rim[segments[:, 0]]) - 1
+    shows = (is_outside & ~is_on_rim)[segments].any(axis=1)
+    found: NDArray[np.bool_] = np.isin(run_of, run_of[shows])
+    return found
 
 
 def _split_rim(
