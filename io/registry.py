@@ -17,7 +17,7 @@ from ..errors import FormatError
 from . import signatures
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
 __all__ = [
@@ -26,6 +26,7 @@ __all__ = [
     "find_format",
     "find_format_of_suffix",
     "find_suffixes",
+    "find_writer",
     "known_formats",
     "list_suffixes",
     "load_function",
@@ -34,6 +35,15 @@ __all__ = [
 
 _ENTRY_POINTS = "tinsmith.formats"
 _OWN_PARAMETERS = frozenset({"crs", "z_unit", "progress"})
+SURFACES = ("TIN", "Survey")
+_ONE = {
+    "TIN": "a TIN",
+    "Survey": "a Survey",
+    "Features": "Features",
+    "Raster": "a Raster",
+    "Table": "a Table",
+}
+"""What can be written, by the name of its class."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,6 +61,9 @@ class Format:
     read, write : str, optional
         ``"module:function"``. A reader takes ``(path, *, crs=None, z_unit=None, <options>)``, a CRS
         and a Unit or None, and returns a Survey or a TIN; a writer ``(obj, path, *, <options>)``.
+    writes : tuple of str
+        What the writer takes: "TIN", "Survey", "Features", "Raster", "Table". Several formats may
+        share a suffix, if they hold different things.
     extra : str, optional
         The extra of this package that brings the library it needs.
     sniff : callable, optional
@@ -68,6 +81,7 @@ class Format:
     suffixes: tuple[str, ...]
     read: str | None = None
     write: str | None = None
+    writes: tuple[str, ...] = SURFACES
     extra: str | None = None
     sniff: Callable[[bytes], bool] | None = None
 
@@ -110,6 +124,7 @@ _BUILT_IN = (
         description="GeoJSON (RFC 7946)",
         suffixes=(".geojson", ".json"),
         write="tinsmith.io.geojson.writing:write",
+        writes=(*SURFACES, "Features"),
         sniff=signatures.is_geojson,
     ),
     Format(
@@ -153,6 +168,60 @@ _BUILT_IN = (
         write="tinsmith.io.mesh.gmsh:write",
         extra="mesh",
         sniff=signatures.is_gmsh,
+    ),
+    Format(
+        name="gpkg",
+        description="GeoPackage",
+        suffixes=(".gpkg",),
+        write="tinsmith.io.products.geopackage:write",
+        writes=("Features",),
+        extra="vector",
+    ),
+    Format(
+        name="flatgeobuf",
+        description="FlatGeobuf",
+        suffixes=(".fgb",),
+        write="tinsmith.io.products.flatgeobuf:write",
+        writes=("Features",),
+        extra="vector",
+    ),
+    Format(
+        name="shapefile",
+        description="Shapefile (with its parts .shx, .dbf, .prj, .cpg)",
+        suffixes=(".shp",),
+        write="tinsmith.io.products.shapefile:write",
+        writes=("Features",),
+        extra="vector",
+    ),
+    Format(
+        name="geotiff",
+        description="GeoTIFF",
+        suffixes=(".tif", ".tiff"),
+        write="tinsmith.io.products.geotiff:write",
+        writes=("Raster",),
+        extra="raster",
+    ),
+    Format(
+        name="cog",
+        description="Cloud optimized GeoTIFF",
+        suffixes=(".tif", ".tiff"),
+        write="tinsmith.io.products.geotiff:write_cog",
+        writes=("Raster",),
+        extra="raster",
+    ),
+    Format(
+        name="csv",
+        description="CSV (RFC 4180) with units in the header",
+        suffixes=(".csv", ".tsv", ".txt"),
+        write="tinsmith.io.products.csv_tables:write",
+        writes=("Table", "Features"),
+    ),
+    Format(
+        name="json",
+        description="JSON with units",
+        suffixes=(".json",),
+        write="tinsmith.io.products.json_tables:write",
+        writes=("Table",),
     ),
 )
 
@@ -233,14 +302,58 @@ def find_format_of_suffix(path: Path, action: str) -> Format:
     )
 
 
+def find_writer(path: Path, name: str | None, kinds: Sequence[str]) -> Format:
+    """Choose the format to write a file in.
+
+    Parameters
+    ----------
+    path : Path
+    name : str or None
+        Of a format, to choose it whatever the suffix.
+    kinds : sequence of str
+        What is to be written is one of these: "TIN", "Survey", "Features", "Raster", "Table".
+
+    Raises
+    ------
+    FormatError
+        If there is no such format, it cannot be written, or it holds other things.
+    """
+    known = find_format_of_suffix(path, "write") if name is None else find_format(name)
+    fitting = [one for one in known_formats() if one.write is not None and {*kinds} & {*one.writes}]
+    wanted = path.suffix.lower() if name is None else _as_suffix(name)
+    named = [one for one in fitting if name is not None and one.name == name.strip().lower()]
+    found = next(iter(named + [one for one in fitting if wanted in one.suffixes]), None)
+    if found is not None:
+        return found
+    suffixes = tuple(dict.fromkeys(suffix for one in fitting for suffix in one.suffixes))
+    if not any(one.write for one in known_formats() if one is known or wanted in one.suffixes):
+        what = f"{known.description} can be read, not written"
+    else:
+        what = f"{known.description} holds {_listed(known.writes)}, not {_listed(kinds)}"
+    raise FormatError(
+        f"Cannot write '{path}': {what}; {_listed(kinds)} can be written to "
+        f"{', '.join(suffixes) or 'no format'}.",
+        known=suffixes,
+    )
+
+
+def _as_suffix(name: str) -> str:
+    return f".{name.strip().lower().lstrip('.')}"
+
+
+def _listed(kinds: Sequence[str]) -> str:
+    return " or ".join(_ONE.get(kind, kind) for kind in kinds)
+
+
 def find_suffixes(action: str) -> tuple[str, ...]:
     """Return the suffixes that can be read, or written."""
-    return tuple(
+    suffixes = (
         suffix
         for one in known_formats()
         if getattr(one, action) is not None
         for suffix in one.suffixes
     )
+    return tuple(dict.fromkeys(suffixes))
 
 
 def list_suffixes(action: str) -> str:

@@ -6,19 +6,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import FormatError
-from .registry import (
-    find_format,
-    find_format_of_suffix,
-    find_suffixes,
-    list_suffixes,
-    load_function,
-    require_options,
-)
+from ..terrain.results import Features, Raster, Table
+from ..tin import TIN, Survey
+from .registry import find_writer, load_function, require_options
 
 if TYPE_CHECKING:
     import os
 
 __all__ = ["write"]
+
+_KINDS = {"TIN": TIN, "Survey": Survey, "Features": Features, "Raster": Raster, "Table": Table}
 
 
 def write(
@@ -28,11 +25,11 @@ def write(
     format: str | None = None,  # noqa: A002 - as in read
     **options: Any,
 ) -> Path:
-    """Write a TIN or a Survey; the writer is chosen by suffix.
+    """Write a TIN, a Survey or a product; the writer is chosen by what it is and the suffix.
 
     Parameters
     ----------
-    obj : TIN or Survey
+    obj : TIN, Survey, Features, Raster or Table
     path : path-like
     format : str, optional
         Name of a format, to choose it whatever the suffix.
@@ -49,9 +46,14 @@ def write(
     WriteError
         If the file cannot be written; one that was there before is left whole.
     FormatError
-        If no format fits, or the format has no such option.
+        If no format fits, it holds other things, or it has no such option.
     MissingExtraError
         If the library that writes the format is not installed.
+
+    Warns
+    -----
+    LossWarning
+        If the format cannot hold all that there is, such as the whole names of columns.
 
     Examples
     --------
@@ -65,14 +67,19 @@ def write(
     <TIN: 3 vertices, 1 triangle, z 5 to 8, crs EPSG:32616>
     """
     file = Path(path)
-    chosen = find_format_of_suffix(file, "write") if format is None else find_format(format)
-    if chosen.write is None:
-        raise FormatError(
-            f"Cannot write '{file}': {chosen.description} can be read, not written; "
-            f"{list_suffixes('write')} can be written.",
-            known=find_suffixes("write"),
-        )
-    writer = load_function(chosen.write)
+    chosen = find_writer(file, format, (_kind_of(obj, file),))
+    writer = load_function(chosen.write or "")
     require_options(chosen, "write", writer, options)
     writer(obj, file, **options)
     return file
+
+
+def _kind_of(obj: object, path: Path) -> str:
+    for name, kind in _KINDS.items():
+        if isinstance(obj, kind):
+            return name
+    raise FormatError(
+        f"Cannot write '{path}': it is of type {type(obj).__name__}, and neither a TIN nor a "
+        "Survey, Features, Raster or Table.",
+        known=tuple(_KINDS),
+    )

@@ -25,6 +25,7 @@ __all__ = [
     "NO_NEIGHBOR",
     "HalfEdges",
     "boundary_rings",
+    "boundary_walks",
     "directed_edges",
     "edge_keys",
     "edges",
@@ -162,21 +163,35 @@ def boundary_rings(
     At a vertex where two rings touch, they are kept apart by turning about the vertex through
     the triangles inside, so that every ring is one walk along the surface's rim.
     """
+    return [
+        triangles[walk // 3, (walk % 3 + 1) % 3] for walk in boundary_walks(triangles, neighbors)
+    ]
+
+
+def boundary_walks(
+    triangles: NDArray[np.int32], neighbors: NDArray[np.int32]
+) -> list[NDArray[np.int64]]:
+    """Return the boundary edges, ring by ring, as in :func:`boundary_rings`.
+
+    Returns
+    -------
+    list of (k,) int64 array
+        Each edge as 3 * triangle + corner that it lies opposite of.
+    """
     triangle, corner = np.nonzero(neighbors == NO_NEIGHBOR)
-    start = triangles[triangle, (corner + 1) % 3]
-    place = np.searchsorted(3 * triangle + corner, _next_on_rim(triangles, neighbors))
-    following = place.tolist()
+    edge = 3 * triangle + corner
+    following = np.searchsorted(edge, _next_on_rim(triangles, neighbors)).tolist()
     is_left = [True] * len(following)
-    rings: list[NDArray[np.int32]] = []
+    walks: list[NDArray[np.int64]] = []
     for first in range(len(following)):
-        ring, here = [], first
+        walk, here = [], first
         while is_left[here]:
             is_left[here] = False
-            ring.append(here)
+            walk.append(here)
             here = following[here]
-        if ring:
-            rings.append(start[ring])
-    return rings
+        if walk:
+            walks.append(edge[walk])
+    return walks
 
 
 def _next_on_rim(triangles: NDArray[np.int32], neighbors: NDArray[np.int32]) -> NDArray[np.int64]:

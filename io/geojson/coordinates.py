@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
@@ -17,14 +17,37 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from ...tin import TIN, Survey
+    from ...crs import Unit
 
-__all__ = ["Places", "format_positions", "keep_in_crs", "project_to_wgs84", "require_one_piece"]
+__all__ = [
+    "Located",
+    "Places",
+    "format_positions",
+    "keep_in_crs",
+    "project_to_wgs84",
+    "require_one_piece",
+]
 
 DEGREE_DECIMALS = 9  # a tenth of a millimetre on the ground
 ELEVATION_DECIMALS = 6  # a micrometre
 _HALF_TURN = 180.0
 _BATCH = 65_536
+
+
+class Located(Protocol):
+    """Points with what they are measured in: a TIN, a survey, coordinates of features."""
+
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """Coordinates, (n, 3)."""
+
+    @property
+    def crs(self) -> CRS | None:
+        """CRS of the points."""
+
+    @property
+    def elevation_unit(self) -> Unit | None:
+        """Unit of their elevations."""
 
 
 class Places(NamedTuple):
@@ -44,12 +67,12 @@ class Places(NamedTuple):
     members: tuple[tuple[str, str], ...] = ()
 
 
-def project_to_wgs84(surface: TIN | Survey) -> Places:
+def project_to_wgs84(surface: Located) -> Places:
     """Move points to WGS 84 longitude, latitude and elevation in metres, rounded.
 
     Parameters
     ----------
-    surface : TIN or Survey
+    surface : TIN, Survey, or another holder of points
 
     Raises
     ------
@@ -77,7 +100,7 @@ def project_to_wgs84(surface: TIN | Survey) -> Places:
     return Places(moved + 0.0, members=_note_assumed_unit(surface))
 
 
-def _note_assumed_unit(surface: TIN | Survey) -> tuple[tuple[str, str], ...]:
+def _note_assumed_unit(surface: Located) -> tuple[tuple[str, str], ...]:
     """Tell which unit elevations were taken to have, where they were converted from it."""
     usual = None if surface.crs is None else surface.crs.usual_elevation_unit
     if surface.elevation_unit is not None or usual is None or usual == METRE:
@@ -86,7 +109,7 @@ def _note_assumed_unit(surface: TIN | Survey) -> tuple[tuple[str, str], ...]:
     return (("elevations", text),)
 
 
-def keep_in_crs(surface: TIN | Survey) -> Places:
+def keep_in_crs(surface: Located) -> Places:
     """Keep points as they are, and name their CRS by the rule of 2008 (``null``: unknown)."""
     unit = surface.elevation_unit
     members = () if unit is None else (("elevation_unit", unit.name),)
@@ -102,12 +125,18 @@ def keep_in_crs(surface: TIN | Survey) -> Places:
 
 
 def format_positions(xyz: NDArray[np.float64]) -> NDArray[np.object_]:
-    """Return each position as JSON text, in the fewest digits that give the same double back."""
+    """Return each position as JSON text, in the fewest digits that give the same double back.
+
+    Parameters
+    ----------
+    xyz : (n, 3) or (n, 2) float64 array
+    """
+    position = f"[{','.join(['%r'] * xyz.shape[1])}]"
     written = np.empty(len(xyz), object)
     for start in range(0, len(xyz), _BATCH):
         batch = xyz[start : start + _BATCH]
         written[start : start + _BATCH] = list(
-            map("[%r,%r,%r]".__mod__, zip(*batch.T.tolist(), strict=True))
+            map(position.__mod__, zip(*batch.T.tolist(), strict=True))
         )
     return written
 

@@ -11,10 +11,12 @@ from ..._atomic import replacing
 from ..._sentences import counted
 from ...errors import FormatError, WriteError, choice
 from ...policies import FeatureKind
+from ...terrain.results import Features
 from ...terrain.slope import aspect, measure_areas, measure_ring_area, slope
 from ...tin import Survey
 from ..mesh.common import require_writable
 from .coordinates import Places, format_positions, keep_in_crs, project_to_wgs84, require_one_piece
+from .features import write_features
 from .lines import format_edge_properties, format_lines, list_line_vertices, require_lines
 
 if TYPE_CHECKING:
@@ -42,18 +44,18 @@ _HULL = _FEATURE % ('{"id":%d,"area":%.12g}', "Polygon", "[%s]")
 
 
 def write(
-    surface: TIN | Survey,
+    surface: TIN | Survey | Features,
     path: Path,
     *,
     kind: Kind | None = None,
     projected: bool = False,
     progress: Callable[[float], None] | None = None,
 ) -> None:
-    """Write a surface, or the points of a survey, as GeoJSON.
+    """Write a surface, the points of a survey, or features as GeoJSON.
 
     Parameters
     ----------
-    surface : TIN or Survey
+    surface : TIN, Survey or Features
         Its CRS must be known, unless ``projected``.
     path : Path
     kind : {"triangles", "points", "edges", "lines", "hull"}, optional
@@ -77,7 +79,7 @@ def write(
     OptionError
         If there is no such kind.
     FormatError
-        If a survey is asked for triangles, or a TIN without lines for lines.
+        If features are asked for a kind, a survey for triangles, or a TIN without lines for lines.
     WriteError
         If the file cannot be written, a coordinate is not finite, or the surface crosses the
         antimeridian.
@@ -96,6 +98,10 @@ def write(
     The file is written in batches; beside the surface itself memory holds about 100 bytes for
     each vertex.
     """
+    if isinstance(surface, Features):
+        _require_no_kind(kind)
+        write_features(surface, path, projected=projected, progress=progress)
+        return
     surface = require_writable(surface, path)
     chosen = _require_kind(surface, kind)
     if chosen == "lines" and not isinstance(surface, Survey):
@@ -122,6 +128,11 @@ def write(
             if progress is not None:
                 progress(min(1.0, done / max(total, 1)))
         file.write("\n]}\n")
+
+
+def _require_no_kind(kind: str | None) -> None:
+    if kind is not None:
+        raise FormatError(f"Invalid kind '{kind}': features are written as they are, without one.")
 
 
 def _require_kind(surface: TIN | Survey, kind: str | None) -> str:

@@ -19,7 +19,14 @@ if TYPE_CHECKING:
     from ...crs import CRS, Unit
     from .features import Features
 
-__all__ = ["Part", "Wanted", "find_elevation_factor", "split_into_parts"]
+__all__ = [
+    "Part",
+    "Wanted",
+    "crs_notes",
+    "find_elevation_factor",
+    "move_to_crs",
+    "split_into_parts",
+]
 
 _POLYGON = 3
 
@@ -98,12 +105,12 @@ def split_into_parts(
     bounds = offsets_of(shapely.get_num_coordinates(lines.shapes))
     has_z = shapely.has_z(lines.shapes) & (not drape)
     _require_finite_vertices(xyz, np.repeat(has_z, np.diff(bounds)), bounds, lines.rows, features)
-    said = list(features.notes) + _note_crs(features, wanted)
+    said = list(features.notes) + crs_notes(features, wanted)
     if has_z.any():
         xyz[:, 2] *= find_elevation_factor(features, wanted, notes=said)
     if notes is not None:
         notes.extend(said)
-    xyz[:, :2] = _project(xyz[:, :2], features, wanted.crs)
+    xyz[:, :2] = move_to_crs(xyz[:, :2], features, wanted.crs)
     return [
         Part(xyz[start:end, :width], row, is_closed, ring)
         for start, end, width, row, is_closed, ring in zip(
@@ -172,8 +179,16 @@ def _require_finite_vertices(
 # --------------------------------------------------------------------------- CRS
 
 
-def _project(xy: NDArray[np.float64], features: Features, crs: CRS | None) -> NDArray[np.float64]:
-    """Reproject in the plane."""
+def move_to_crs(
+    xy: NDArray[np.float64], features: Features, crs: CRS | None
+) -> NDArray[np.float64]:
+    """Reproject places of features in the plane.
+
+    Raises
+    ------
+    CrsError
+        If they cannot be brought into the CRS.
+    """
     level = np.column_stack([xy, np.zeros(len(xy))])
     source, target = _drop_vertical_axis(features.crs), _drop_vertical_axis(crs)
     return place(level, source=source, target=target, path=features.path).points[:, :2]
@@ -184,7 +199,8 @@ def _drop_vertical_axis(crs: CRS | None) -> CRS | None:
     return None if crs is None else crs.horizontal
 
 
-def _note_crs(features: Features, wanted: Wanted) -> list[str]:
+def crs_notes(features: Features, wanted: Wanted) -> list[str]:
+    """Tell which CRS is assumed where one of the two is not known."""
     source, crs, name = features.crs, wanted.crs, features.path.name
     if source is None:
         return [] if crs is None else [f"'{name}' names no CRS: taken to be in {crs.label}."]

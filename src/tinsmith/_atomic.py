@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import secrets
+import shutil
 from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Literal, overload
@@ -11,10 +12,10 @@ from typing import IO, TYPE_CHECKING, Literal, overload
 from .errors import TinsmithError, WriteError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
     from contextlib import AbstractContextManager
 
-__all__ = ["replacing", "replacing_path", "require_writable"]
+__all__ = ["replacing", "replacing_files", "replacing_path", "require_writable"]
 
 _STEM = 40
 """Letters of a name that the name of the file beside it begins with: names have 255 bytes."""
@@ -145,3 +146,50 @@ def _create(beside: Path, target: Path) -> None:
     os.close(descriptor)
     if target.exists():
         beside.chmod(target.stat().st_mode & 0o777)
+
+
+@contextmanager
+def replacing_files(path: Path, *, parts: Sequence[str] = ()) -> Iterator[Path]:
+    """Yield a path of the same name in a new folder, for libraries that write several files.
+
+    Parameters
+    ----------
+    path : Path
+    parts : sequence of str
+        What the names of files that belong to it end with instead of its suffix (``".shx"``), or
+        after it (``".tif.ovr"``). Those of an earlier file, which do not belong to the new one,
+        are removed.
+
+    Yields
+    ------
+    Path
+        In a folder beside ``path``. All files there take their places when the block ends without
+        an error, that of ``path`` last; the folder is removed in any case.
+
+    Raises
+    ------
+    WriteError
+        As :func:`replacing`.
+    """
+    with _faults_as_sentences(path):
+        target = _target(path)
+        _require_replaceable(path, target)
+        folder = target.with_name(f".{target.stem[:_STEM]}-{secrets.token_hex(4)}")
+        try:  # begins before the folder is there, so that no signal can come in between
+            folder.mkdir()
+            yield folder / target.name
+            _move(folder, target, parts)
+        finally:
+            shutil.rmtree(folder, ignore_errors=True)
+
+
+def _move(folder: Path, target: Path, parts: Sequence[str]) -> None:
+    """Let the files of a folder take their places, and remove parts of the file before."""
+    made = sorted(folder.iterdir(), key=lambda one: one.name == target.name)
+    if target.exists():
+        (folder / target.name).chmod(target.stat().st_mode & 0o777)
+    stale = {target.with_name(target.stem + part) for part in parts}
+    for one in stale - {target.with_name(one.name) for one in made}:
+        one.unlink(missing_ok=True)
+    for one in made:
+        one.replace(target.with_name(one.name))

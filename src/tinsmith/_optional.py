@@ -11,11 +11,14 @@ from .errors import MissingExtraError
 __all__ = ["load", "require"]
 
 _EXTRA_OF = {
+    "geopandas": "interop",
     "matplotlib": "plot",
     "meshio": "mesh",
+    "pyarrow": "interop",
     "pyogrio": "vector",
     "pyvista": "view",
     "rasterio": "raster",
+    "xarray": "interop",
 }
 
 

@@ -15,6 +15,7 @@ __all__ = [
     "CrsError",
     "FormatError",
     "LinesError",
+    "LossWarning",
     "MissingExtraError",
     "OptionError",
     "PointsError",
@@ -225,3 +226,7 @@ class MissingExtraError(TinsmithError, ImportError):
             f'run pip install "tinsmith[{extra}]".'
         )
         self.extra = extra
+
+
+class LossWarning(UserWarning):
+    """A format could not hold all that was written; the text is one sentence that says what."""

@@ -16,6 +16,9 @@ __all__ = [
     "FeatureKind",
     "LineKind",
     "LineRole",
+    "OverviewMethod",
+    "SlopeUnit",
+    "SurfacePart",
     "TrimPolicy",
 ]
 
@@ -45,3 +48,12 @@ EmptyCircleRule: TypeAlias = Literal["angle", "open"]
 
 DistanceRule: TypeAlias = Literal["circle", "ties"]
 """Among which points the paper's distance decides."""
+
+SlopeUnit: TypeAlias = Literal["degrees", "percent", "ratio"]
+"""How a slope is given: as an angle, or as rise over a run of 100 or of 1."""
+
+SurfacePart: TypeAlias = Literal["triangle", "vertex"]
+"""Of what a measure of the surface is given."""
+
+OverviewMethod: TypeAlias = Literal["average", "nearest", "none"]
+"""How the cells of a raster's smaller copies are found."""

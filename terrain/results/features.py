@@ -266,6 +266,68 @@ class Features(Frozen):
             return counted(len(self), noun)
         return f"{counted(len(self), 'feature')} of {counted(len(self.offsets[-2]) - 1, noun)}"
 
+    # ------------------------------------------------------------------ other libraries
+
+    def to_shapely(self) -> NDArray[np.object_]:
+        """Return the geometries of shapely.
+
+        Returns
+        -------
+        (n_features,) array of shapely.Geometry
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> ts.Features.of_points([[1, 2, 3]]).to_shapely()[0].wkt
+        'POINT Z (1 2 3)'
+        """
+        from .geometries import build_geometries
+
+        return build_geometries(self)
+
+    def to_geodataframe(self) -> Any:
+        """Return a GeoDataFrame with the columns, geometries and CRS.
+
+        Returns
+        -------
+        geopandas.GeoDataFrame
+            Its ``attrs`` have ``name``, ``units``, ``elevation_unit`` and ``notes``.
+
+        Raises
+        ------
+        MissingExtraError
+            If geopandas is not installed.
+        OptionError
+            If a column is called ``geometry``.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> points = ts.Features.of_points([[1, 2, 3]], columns={"label": ["a"]}, crs="EPSG:32616")
+        >>> points.to_geodataframe().crs.to_epsg()
+        32616
+        """
+        from .geometries import build_frame
+
+        return build_frame(self)
+
+    @property
+    def __geo_interface__(self) -> dict[str, Any]:
+        """The features as GeoJSON-like values, in their own CRS."""
+        from .geometries import build_collection
+
+        return build_collection(self)
+
+    def __arrow_c_stream__(self, requested_schema: object | None = None) -> object:
+        """Return the features as a stream of Arrow, geometries as GeoArrow (needs pyarrow).
+
+        GeoPandas, Polars, DuckDB, lonboard and pyarrow take an object that has this.
+        """
+        from .arrow import build_table
+
+        stream: object = build_table(self).__arrow_c_stream__(requested_schema)
+        return stream
+
 
 def _levels(*offsets: ArrayLike | None) -> tuple[Any, ...]:
     return tuple(level for level in offsets if level is not None)
@@ -349,8 +411,8 @@ def _as_offsets(given: Any, count: int, least: int, what: str) -> NDArray[np.int
 
 
 def _require_closed(coordinates: NDArray[np.float64], offsets: NDArray[np.int64]) -> None:
-    first, last = coordinates[offsets[:-1], :2], coordinates[offsets[1:] - 1, :2]
-    is_open = (first != last).any(axis=1)
+    first, last = coordinates[offsets[:-1]], coordinates[offsets[1:] - 1]
+    is_open = ((first != last) & ~(np.isnan(first) & np.isnan(last))).any(axis=1)
     if is_open.any():
         ring = int(is_open.argmax())
         raise OptionError(

@@ -93,6 +93,33 @@ class Raster(Frozen):
         """Rows and columns."""
         return self.grid.shape
 
+    def to_xarray(self) -> Any:
+        """Return a data set of xarray, with a variable for each band.
+
+        Returns
+        -------
+        xarray.Dataset
+            Dimensions ``y`` and ``x``, coordinates of the cell centres, northings falling. The CRS
+            is in the coordinate ``spatial_ref``, as CF and rioxarray have it; each variable has
+            ``units`` if they are known, and ``_FillValue``.
+
+        Raises
+        ------
+        MissingExtraError
+            If xarray is not installed.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import tinsmith as ts
+        >>> grid = ts.Grid(ts.Bounds(0.0, 0.0, 2.0, 2.0), shape=(2, 2), spacing=1.0)
+        >>> ts.Raster({"elevation": np.eye(2)}, grid).to_xarray()["y"].values
+        array([1.5, 0.5])
+        """
+        from .gridded import build_dataset
+
+        return build_dataset(self)
+
     def __repr__(self) -> str:
         rows, columns = self.grid.shape
         title = f" {self.name}" if self.name else ""

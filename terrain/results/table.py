@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any
 from ..._sentences import counted
 from ...errors import OptionError
 from ...tin.types import Frozen
-from .columns import as_columns, as_name, as_notes, as_units
+from .columns import as_columns, as_name, as_notes, as_units, unit_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    import pandas as pd
     from numpy.typing import NDArray
 
     from .columns import Units
@@ -69,6 +70,27 @@ class Table(Frozen):
 
     def __getitem__(self, name: str) -> NDArray[Any]:
         return self.columns[name]
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return a data frame; its ``attrs`` have ``name``, ``units`` and ``notes``.
+
+        Returns
+        -------
+        pandas.DataFrame
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> frame = ts.Table({"level": [318.0]}, units={"level": "m"}).to_dataframe()
+        >>> frame.attrs["units"]
+        {'level': 'm'}
+        """
+        import pandas as pd
+
+        frame = pd.DataFrame({name: values.copy() for name, values in self.columns.items()})
+        units = {name: unit_text(self.units, name) for name in self.units}
+        frame.attrs |= {"name": self.name, "units": units, "notes": list(self.notes)}
+        return frame
 
     def __repr__(self) -> str:
         title = f" {self.name}" if self.name else ""

@@ -189,7 +189,10 @@ def test_unknown_option_names_those_there_are(tmp_path):
 def test_writers_are_found_by_suffix(tmp_path):
     survey = ts.Survey(points=np.eye(3))
     assert "'.abc'" in fault(FormatError, lambda: write(survey, tmp_path / "a.abc"))
-    assert "read, not written" in fault(FormatError, lambda: write(survey, tmp_path / "a.tif"))
+    assert "read, not written" in fault(FormatError, lambda: write(survey, tmp_path / "a.asc"))
+    assert "holds a Raster, not a Survey" in fault(
+        FormatError, lambda: write(survey, tmp_path / "a.tif")
+    )
     assert write(survey, str(tmp_path / "a.CSV")) == tmp_path / "a.CSV"
     assert write(survey, tmp_path / "b.abc", format="csv").exists()
 

@@ -20,9 +20,12 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ..io import Format
+    from ..terrain import Features, Raster, Table
     from ..tin import TIN, Survey
     from .options import Reading, Triangulating, Writing
     from .output.console import Console
+
+    Product = TIN | Survey | Features | Raster | Table
 
 __all__ = [
     "Output",
@@ -40,7 +43,7 @@ __all__ = [
     "write_text",
 ]
 
-_TEXT_FORMATS = ("delimited", "geojson", "obj")
+_TEXT_FORMATS = ("delimited", "geojson", "obj", "csv", "json")
 """Formats that a terminal can show."""
 
 
@@ -167,8 +170,19 @@ def plan_outputs(
     inputs: Sequence[Named],
     console: Console,
     report: Path | None = None,
+    kinds: Sequence[str] = ("TIN", "Survey"),
 ) -> list[Output]:
     """Choose the format of every output, and compare all paths, before any work is done.
+
+    Parameters
+    ----------
+    paths : sequence of Path
+    writing : Writing
+    inputs : sequence of Named
+    console : Console
+    report : Path, optional
+    kinds : sequence of str
+        What will be written is one of these: "TIN", "Survey", "Features", "Raster", "Table".
 
     Raises
     ------
@@ -183,7 +197,7 @@ def plan_outputs(
     if report is not None:
         outputs.append(Named(report, "--report"))
     require_separate(inputs, outputs)
-    formats = [_choose_output_format(path, writing.output_format) for path in paths]
+    formats = [_choose_output_format(path, writing.output_format, kinds) for path in paths]
     given: dict[str, Any] = {} if writing.kind is None else {"kind": writing.kind}
     if writing.projected:
         given["projected"] = True
@@ -260,31 +274,15 @@ def _require_taken(left_over: set[str]) -> None:
         raise click.UsageError(f"No output takes the option --{min(left_over)}: GeoJSON does.")
 
 
-def _choose_output_format(path: Path, name: str | None) -> Format:
-    from ..errors import FormatError
-    from ..io import find_format, known_formats
+def _choose_output_format(path: Path, name: str | None, kinds: Sequence[str]) -> Format:
+    from ..io.registry import find_writer
 
-    if name is not None:
-        chosen = find_format(name)
-        if chosen.write is None:
-            raise FormatError(f"The format {chosen.name} can be read, not written.")
-        return chosen
-    if path == STANDARD:
+    if name is None and path == STANDARD:
         raise click.UsageError("'-o -' needs --output-format: standard output has no suffix.")
-    able = [one for one in known_formats() if one.write is not None]
-    for one in able:
-        if path.suffix.lower() in one.suffixes:
-            return one
-    suffixes = tuple(suffix for one in able for suffix in one.suffixes)
-    what = f"the suffix '{path.suffix}'" if path.suffix else "no suffix"
-    raise FormatError(
-        f"Cannot write '{path}': no format that can be written has {what}; "
-        f"{', '.join(suffixes)} can be written.",
-        known=suffixes,
-    )
+    return find_writer(path, name, kinds)
 
 
-def write_outputs(obj: TIN | Survey, outputs: Sequence[Output], console: Console) -> None:
+def write_outputs(obj: Product, outputs: Sequence[Output], console: Console) -> None:
     """Write every output, showing progress."""
     with console.steps() as steps:
         for output in outputs:
@@ -299,13 +297,13 @@ def write_outputs(obj: TIN | Survey, outputs: Sequence[Output], console: Console
             note_written(output.path)
 
 
-def _write_file(obj: TIN | Survey, path: Path, one: Format, options: dict[str, Any]) -> None:
+def _write_file(obj: Product, path: Path, one: Format, options: dict[str, Any]) -> None:
     from ..io import write
 
     write(obj, path, format=one.name, **options)
 
 
-def _write_to_stdout(obj: TIN | Survey, output: Output, options: dict[str, Any]) -> None:
+def _write_to_stdout(obj: Product, output: Output, options: dict[str, Any]) -> None:
     """Write a whole file first, so that nothing comes if it fails."""
     with tempfile.TemporaryDirectory(prefix="tinsmith-") as folder:
         path = Path(folder) / f"output{output.suffix}"

@@ -1,0 +1,199 @@
+"""GeoJSON of products: features with their columns as properties."""
+
+from __future__ import annotations
+
+import json
+from itertools import pairwise
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ..._atomic import replacing
+from ...errors import WriteError
+from ...terrain.results.columns import unit_text
+from .coordinates import format_positions, keep_in_crs, project_to_wgs84
+from .values import json_texts, properties_template
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from ...crs import CRS, Unit
+    from ...terrain.results import Features
+    from .coordinates import Places
+
+__all__ = ["write_features"]
+
+_BATCH = 16_384
+_HALF_TURN = 180.0
+
+
+class _Located(NamedTuple):
+    """Coordinates with what they are measured in, as :func:`project_to_wgs84` takes them."""
+
+    points: NDArray[np.float64]
+    crs: CRS | None
+    elevation_unit: Unit | None
+
+
+def write_features(
+    features: Features,
+    path: Path,
+    *,
+    projected: bool = False,
+    progress: Callable[[float], None] | None = None,
+) -> None:
+    """Write features as GeoJSON.
+
+    Parameters
+    ----------
+    features : Features
+        The CRS must be known, unless ``projected``.
+    path : Path
+    projected : bool
+        Leave the coordinates in the CRS, and name it as the specification of 2008 does.
+    progress : callable, optional
+        Called with the fraction done.
+
+    Raises
+    ------
+    CrsError
+        If the CRS is not known, or puts points outside the Earth.
+    WriteError
+        If the file cannot be written, or a feature crosses the antimeridian.
+
+    Notes
+    -----
+    As a surface's GeoJSON: longitude and latitude with 9 decimals, elevations in metres with 6. A
+    position whose elevation is not known has two numbers. Columns stay in their own units, which
+    the member ``units`` names (``"unknown"`` if they are not known); exterior rings run
+    counter-clockwise.
+    """
+    located = _located(features)
+    places = (keep_in_crs if projected else project_to_wgs84)(located)
+    if places.crs_member is None:
+        _require_one_side(places.xyz, features, path)
+    geometries = _geometries(features, places)
+    template = properties_template(list(features.columns))
+    with replacing(path, binary=False) as file:
+        file.write(_head(features, places))
+        separator = "\n"
+        for start in range(0, len(features), _BATCH):
+            part = slice(start, min(start + _BATCH, len(features)))
+            columns = [json_texts(column[part]) for column in features.columns.values()]
+            rows = zip(*columns, strict=True) if columns else [()] * (part.stop - start)
+            written = map(_feature, map(template.__mod__, rows), geometries[part])
+            file.write(separator + ",\n".join(written))
+            separator = ",\n"
+            if progress is not None:
+                progress(part.stop / len(features))
+        file.write("\n]}\n")
+
+
+def _located(features: Features) -> _Located:
+    """Return coordinates with elevations; 0 stands for those that are not known or not there."""
+    points = np.zeros((len(features.coordinates), 3))
+    points[:, : features.coordinates.shape[1]] = features.coordinates
+    has_gaps = bool(np.isnan(points[:, 2]).any())
+    if has_gaps:
+        points[:, 2] = np.nan_to_num(points[:, 2])
+    crs = features.crs
+    if crs is not None and not features.has_elevations:
+        crs = crs.horizontal
+    return _Located(points, crs, features.elevation_unit)
+
+
+def _head(features: Features, places: Places) -> str:
+    lines = ['"type":"FeatureCollection"']
+    if features.name:
+        lines.append(f'"name":{json.dumps(features.name)}')
+    if places.crs_member is not None:
+        lines.append(f'"crs":{places.crs_member}')
+    if features.has_elevations:
+        lines += [f"{json.dumps(name)}:{json.dumps(text)}" for name, text in places.members]
+    units = {name: unit_text(features.units, name) for name in features.units}
+    if units:
+        lines.append(f'"units":{json.dumps(units)}')
+    if features.notes:
+        lines.append(f'"notes":{json.dumps(list(features.notes))}')
+    if len(places.xyz) and not (features.has_elevations and np.isnan(features.coordinates).any()):
+        corners = places.xyz[:, : features.coordinates.shape[1]]
+        box = [*corners.min(axis=0).tolist(), *corners.max(axis=0).tolist()]
+        lines.append(f'"bbox":{json.dumps(box)}')
+    return "{" + ",\n".join(lines) + ',\n"features":['
+
+
+def _feature(properties: str, geometry: str) -> str:
+    return f'{{"type":"Feature","properties":{properties},"geometry":{geometry}}}'
+
+
+# ------------------------------------------------------------------------- geometries
+
+
+def _texts(features: Features, places: Places) -> NDArray[np.object_]:
+    """Return each position, with two numbers where its elevation is not known."""
+    if not features.has_elevations:
+        return format_positions(places.xyz[:, :2])
+    written = format_positions(places.xyz)
+    gaps = np.isnan(features.coordinates[:, 2])
+    written[gaps] = format_positions(places.xyz[gaps, :2])
+    return written
+
+
+def _geometries(features: Features, places: Places) -> list[str]:
+    """Return the geometry of each feature."""
+    positions = _texts(features, places)
+    if features.kind == "polygons" and places.crs_member is None:
+        positions = positions[_turned(features, places.xyz)]
+    pieces: list[str] = positions.tolist()
+    for offsets in features.offsets:
+        pieces = [f"[{','.join(pieces[a:b])}]" for a, b in pairwise(offsets.tolist())]
+    kind = features.geometry_type
+    return [f'{{"type":"{kind}","coordinates":{piece}}}' for piece in pieces]
+
+
+def _turned(features: Features, xyz: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Return the order of points in which exterior rings run counter-clockwise, holes clockwise.
+
+    A map may be mirrored (westings), or a ring turn by rounding.
+    """
+    offsets, polygons = features.offsets[:2]
+    order = np.arange(len(xyz))
+    if len(offsets) == 1:
+        return order
+    is_exterior = np.zeros(len(offsets) - 1, np.bool_)
+    is_exterior[polygons[:-1]] = True
+    areas = _ring_areas(xyz[:, :2], offsets)
+    for ring in np.flatnonzero((areas != 0) & ((areas > 0) != is_exterior)):
+        part = slice(offsets[ring], offsets[ring + 1])
+        order[part] = order[part][::-1]
+    return order
+
+
+def _ring_areas(xy: NDArray[np.float64], offsets: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Return twice the signed area of each closed ring, positive counter-clockwise."""
+    near = xy - np.repeat(xy[offsets[:-1]], np.diff(offsets), axis=0)
+    steps = np.zeros(len(xy))
+    steps[:-1] = near[:-1, 0] * near[1:, 1] - near[1:, 0] * near[:-1, 1]
+    steps[offsets[1:] - 1] = 0.0  # from the end of one ring to the start of the next
+    sums: NDArray[np.float64] = np.add.reduceat(steps, offsets[:-1])
+    return sums
+
+
+def _require_one_side(xyz: NDArray[np.float64], features: Features, path: Path) -> None:
+    """Refuse a line or ring that jumps from one end of the longitudes to the other."""
+    if not features.offsets or len(xyz) == 0:
+        return
+    jumps = np.abs(np.diff(xyz[:, 0])) > _HALF_TURN
+    jumps[features.offsets[0][1:-1] - 1] = False
+    if jumps.any():
+        what = features.kind[:-1]
+        number = int(np.searchsorted(features.offsets[0], jumps.argmax(), side="right")) - 1
+        raise WriteError(
+            f"Cannot write '{path}': {what if what == 'line' else 'ring'} {number} crosses the "
+            "antimeridian or holds a pole, which longitude and latitude cannot show in one piece; "
+            "keep the coordinates of the CRS with projected=True.",
+            path=path,
+        )

@@ -1,0 +1,1 @@
+"""Files of products: features for GIS, rasters, tables."""

@@ -1,0 +1,64 @@
+"""Whether a file kept the CRS that was written to it."""
+
+from __future__ import annotations
+
+import warnings
+from typing import TYPE_CHECKING
+
+from ...crs import CRS
+from ...errors import CrsError, LossWarning, WriteError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+__all__ = ["require_kept"]
+
+
+def require_kept(crs: CRS | None, found: str | None, path: Path) -> None:
+    """Compare a CRS with the one that was read back.
+
+    Parameters
+    ----------
+    crs : CRS or None
+        As it was written.
+    found : str or None
+        WKT as GDAL reads it back.
+    path : Path
+
+    Raises
+    ------
+    WriteError
+        If a unit has changed, or nothing is left of the CRS.
+
+    Warns
+    -----
+    LossWarning
+        If it is another CRS with the same units.
+    """
+    if crs is None:
+        return
+    kept = _parsed(found)
+    if kept is None or _units(kept) != _units(crs):
+        raise WriteError(
+            f"Cannot write '{path}': the format does not keep the CRS {crs.label}, it would be "
+            f"{'none' if kept is None else kept.name}; name its horizontal part alone.",
+            path=path,
+        )
+    if not kept.to_pyproj().equals(crs.to_pyproj(), ignore_axis_order=True):
+        warnings.warn(
+            f"'{path}' has the CRS as the format can describe it, '{kept.name}', which PROJ does "
+            f"not take for the same as {crs.label}.",
+            LossWarning,
+            stacklevel=4,
+        )
+
+
+def _parsed(found: str | None) -> CRS | None:
+    try:
+        return CRS.of(found or None)
+    except CrsError:
+        return None
+
+
+def _units(crs: CRS) -> tuple[object, object]:
+    return crs.horizontal_unit, crs.vertical_unit

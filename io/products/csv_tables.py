@@ -1,0 +1,117 @@
+"""CSV (RFC 4180): tables, and features that are points, with units in the header."""
+
+from __future__ import annotations
+
+import csv
+from itertools import chain
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..._atomic import replacing
+from ...errors import FormatError
+from ...terrain.results import Features, Table
+from ...terrain.results.columns import unit_text
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from ...terrain.results.columns import Units
+
+__all__ = ["header_text", "write"]
+
+_CHUNK_ROWS = 100_000
+_AXES = ("easting", "northing", "elevation")
+
+
+def write(
+    obj: Table | Features, path: Path, *, progress: Callable[[float], None] | None = None
+) -> None:
+    """Write a table, or points with their columns.
+
+    Parameters
+    ----------
+    obj : Table or Features
+    path : Path
+        Cells are parted by commas, in a ``.tsv`` by tabs.
+    progress : callable, optional
+        Called with the fraction done.
+
+    Raises
+    ------
+    FormatError
+        If features are lines or polygons, or a column of points has the name of a coordinate.
+    WriteError
+        If the file cannot be written.
+
+    Notes
+    -----
+    The header has the unit of a column in brackets: ``volume (m³)``, ``depth (unknown)`` where it
+    is not known, and nothing where there is none. Every number is written so that it reads back
+    as the same float64; NaN and missing texts are empty. Lines end with CR LF, as RFC 4180 has it.
+    Notes and the CRS have no place in a CSV.
+    """
+    table = obj if isinstance(obj, Table) else _points_table(obj, path)
+    names = [header_text(name, table.units) for name in table.columns]
+    columns = list(table.columns.values())
+    delimiter = "\t" if path.suffix.lower() == ".tsv" else ","
+    with replacing(path, binary=False) as file:
+        writer = csv.writer(file, delimiter=delimiter, lineterminator="\r\n")
+        writer.writerows(chain([names], _rows(columns, len(table), progress)))
+
+
+def header_text(name: str, units: Units) -> str:
+    """Return the name of a column with its unit in brackets, if it has one.
+
+    Examples
+    --------
+    >>> header_text("volume", {"volume": "m³"}), header_text("depth", {"depth": None})
+    ('volume (m³)', 'depth (unknown)')
+    """
+    unit = unit_text(units, name)
+    return f"{name} ({unit})" if unit else name
+
+
+def _points_table(features: Features, path: Path) -> Table:
+    """Return points as a table of their coordinates and columns."""
+    if features.kind != "points":
+        raise FormatError(
+            f"Cannot write '{path}': CSV holds points, not {features.kind}; GeoJSON and GeoPackage "
+            "hold them."
+        )
+    axes = _AXES[: features.coordinates.shape[1]]
+    taken = [name for name in axes if name in features.columns]
+    if taken:
+        raise FormatError(
+            f"Cannot write '{path}': the points have a coordinate and a column that are both "
+            f"called '{taken[0]}': rename the column."
+        )
+    units = {} if features.crs is None else dict.fromkeys(axes[:2], features.crs.horizontal_unit)
+    heights = {"elevation": features.elevation_unit} if features.has_elevations else {}
+    return Table(
+        {**dict(zip(axes, features.coordinates.T, strict=True)), **features.columns},
+        units={**units, **heights, **features.units},
+    )
+
+
+def _rows(
+    columns: Sequence[NDArray[Any]], count: int, progress: Callable[[float], None] | None
+) -> Iterator[tuple[Any, ...]]:
+    for start in range(0, count, _CHUNK_ROWS):
+        stop = min(start + _CHUNK_ROWS, count)
+        yield from zip(*(_cells(column[start:stop]) for column in columns), strict=True)
+        if progress is not None:
+            progress(stop / count)
+
+
+def _cells(values: NDArray[Any]) -> list[Any]:
+    """Return values as CSV has them: empty where there is none."""
+    if values.dtype.kind == "b":
+        return [("false", "true")[value] for value in values.tolist()]
+    cells: list[Any] = values.tolist()
+    if values.dtype.kind == "f" and np.isnan(values).any():
+        return ["" if value != value else value for value in cells]
+    return cells  # csv writes the shortest digits of a float, and nothing for None

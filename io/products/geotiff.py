@@ -1,0 +1,251 @@
+"""GeoTIFF and cloud optimized GeoTIFF through rasterio, block by block."""
+
+from __future__ import annotations
+
+import math
+import os
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ... import _optional
+from ..._atomic import replacing_files
+from ...errors import WriteError, choice
+from ...policies import OverviewMethod
+from ...terrain.results.columns import UNKNOWN_UNIT, unit_text
+from .crs_kept import require_kept
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from ...terrain.results import Raster
+
+__all__ = ["write", "write_cog"]
+
+_TILE = 512
+_BLOCK_CELLS = 4 * 1024 * 1024
+"""Cells that are asked for at a time."""
+_SMALLEST_OVERVIEW = 256
+_MOST_SIDE = 2**31 - 1
+_WIDER = {"bool": "uint8", "float16": "float32"}
+_PARTS = (".aux.xml", ".ovr", ".msk", ".ovr.msk")
+"""What GDAL keeps beside a raster, and would use with the new one."""
+
+
+def write(
+    raster: Raster,
+    path: Path,
+    *,
+    overviews: OverviewMethod | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> None:
+    """Write a raster as a tiled GeoTIFF, compressed without loss.
+
+    Parameters
+    ----------
+    raster : Raster
+    path : Path
+    overviews : {"average", "nearest", "none"}, optional
+        How the cells of smaller copies for display are found. Default the mean, but the nearest
+        cell for whole numbers and if a band is an aspect, whose mean is none.
+    progress : callable, optional
+        Called with the fraction done.
+
+    Raises
+    ------
+    MissingExtraError
+        If rasterio is not installed.
+    OptionError
+        If there are no such overviews.
+    WriteError
+        If the file cannot be written, or the value of cells without data is none that the bands
+        can hold.
+
+    Notes
+    -----
+    Bands have their names and units; the tag ``unit`` is "unknown" where it is not known. Bands of
+    several types are written in the one that holds all of them. A file that may grow beyond 4 GB
+    is a BigTIFF. Blocks of some million cells are asked for and written, so that memory does not
+    grow with the raster.
+    """
+    resampling = _resampling(raster, overviews)
+    with replacing_files(path, parts=_parts(path)) as new, _faults_as_sentences(path):
+        _write_tiles(raster, new, path, progress)
+        if resampling != "none":
+            _add_overviews(raster, new, resampling)
+        _require_crs(raster, new, path)
+
+
+def write_cog(
+    raster: Raster,
+    path: Path,
+    *,
+    overviews: OverviewMethod | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> None:
+    """Write a raster as a cloud optimized GeoTIFF; parameters and errors as :func:`write`.
+
+    Notes
+    -----
+    The driver copies a whole raster: a GeoTIFF is written beside it first, and removed.
+    """
+    resampling = _resampling(raster, overviews)
+    with replacing_files(path, parts=_parts(path)) as new, _faults_as_sentences(path):
+        plain = new.with_name(f"plain-{new.name}")
+        _write_tiles(raster, plain, path, progress)
+        _optional.load("rasterio.shutil", f"Writing '{path}'").copy(
+            os.fspath(plain),
+            os.fspath(new),
+            driver="COG",
+            COMPRESS="DEFLATE",
+            PREDICTOR="YES",
+            BIGTIFF="IF_SAFER",
+            OVERVIEWS="NONE" if resampling == "none" else "AUTO",
+            **({} if resampling == "none" else {"OVERVIEW_RESAMPLING": resampling.upper()}),
+        )
+        plain.unlink()
+        _require_crs(raster, new, path)
+
+
+def _parts(path: Path) -> tuple[str, ...]:
+    return tuple(path.suffix + part for part in _PARTS)
+
+
+def _resampling(raster: Raster, overviews: str | None) -> str:
+    if overviews is not None:
+        return choice("overviews", overviews, OverviewMethod)
+    is_circular = any("aspect" in name.casefold() for name in raster.bands)
+    return "nearest" if is_circular or _dtype(raster).kind != "f" else "average"
+
+
+def _dtype(raster: Raster) -> np.dtype[Any]:
+    """Return the type that holds the values of all bands, one that GeoTIFF knows."""
+    found = np.result_type(*(np.dtype(band.dtype) for band in raster.bands.values()))
+    known = np.dtype(_WIDER.get(found.name, found.name))
+    return np.dtype(np.float64) if known.kind == "f" and known.itemsize > 8 else known
+
+
+def _nodata(raster: Raster, dtype: np.dtype[Any], path: Path) -> float | None:
+    """Return the value of cells without data; None where there is none."""
+    value = raster.nodata
+    if dtype.kind == "f":
+        held = float(np.asarray(value, dtype)) if not math.isnan(value) else value
+    elif math.isnan(value):
+        return None
+    else:
+        limits = np.iinfo(dtype)
+        held = value if value == int(value) and limits.min <= value <= limits.max else math.inf
+    if held == value or math.isnan(value):
+        return value
+    raise WriteError(
+        f"Cannot write '{path}': nodata {value!r} is no value that bands of {dtype.name} can have.",
+        path=path,
+    )
+
+
+def _write_tiles(
+    raster: Raster, new: Path, path: Path, progress: Callable[[float], None] | None
+) -> None:
+    rasterio = _optional.load("rasterio", f"Writing '{path}'")
+    with rasterio.open(new, "w", **_profile(raster, path)) as dataset:
+        for number, name in enumerate(raster.bands, 1):
+            _describe(dataset, number, raster, name)
+        if raster.notes:
+            dataset.update_tags(notes=" ".join(raster.notes))
+        blocks = list(_blocks(*raster.shape))
+        for done, (rows, columns) in enumerate(blocks, 1):
+            window = rasterio.windows.Window.from_slices(rows, columns)
+            for number, band in enumerate(raster.bands.values(), 1):
+                values = np.asarray(band[rows, columns])
+                dataset.write(values.astype(dataset.dtypes[0], copy=False), number, window=window)
+            if progress is not None:
+                progress(done / len(blocks))
+
+
+def _profile(raster: Raster, path: Path) -> dict[str, Any]:
+    (rows, columns), bounds, dtype = raster.shape, raster.grid.bounds, _dtype(raster)
+    affine = _optional.load("rasterio", f"Writing '{path}'").Affine
+    spacing = raster.grid.spacing
+    tiles = {"tiled": True, "blockxsize": _TILE, "blockysize": _TILE}
+    return {
+        "driver": "GTiff",
+        "width": columns,
+        "height": rows,
+        "count": len(raster.bands),
+        "dtype": dtype.name,
+        "crs": _crs(raster, path),
+        "transform": affine(spacing, 0.0, bounds.xmin, 0.0, -spacing, bounds.ymax),
+        "nodata": _nodata(raster, dtype, path),
+        "compress": "deflate",
+        "predictor": 3 if dtype.kind == "f" else 2,
+        "interleave": "band",
+        "bigtiff": "IF_SAFER",
+        **(tiles if max(rows, columns) > _TILE else {}),
+    }
+
+
+def _crs(raster: Raster, path: Path) -> Any:
+    """Return the CRS for GDAL: as a code where it knows it, whose vertical part it keeps."""
+    rasterio = _optional.load("rasterio", f"Writing '{path}'")
+    if raster.crs is None:
+        return None
+    try:
+        return rasterio.crs.CRS.from_user_input(str(raster.crs))
+    except rasterio.errors.CRSError:
+        return rasterio.crs.CRS.from_wkt(raster.crs.to_wkt())
+
+
+def _require_crs(raster: Raster, new: Path, path: Path) -> None:
+    rasterio = _optional.load("rasterio", f"Writing '{path}'")
+    if raster.crs is None:
+        return
+    with rasterio.open(new) as dataset:
+        found = None if dataset.crs is None else dataset.crs.to_wkt(version="WKT2_2019")
+    require_kept(raster.crs, found, path)
+
+
+def _describe(dataset: Any, number: int, raster: Raster, name: str) -> None:
+    dataset.set_band_description(number, name)
+    unit = unit_text(raster.units, name)
+    if unit == UNKNOWN_UNIT:
+        dataset.update_tags(number, unit=unit)
+    elif unit:
+        dataset.set_band_unit(number, unit)
+
+
+def _blocks(rows: int, columns: int) -> Iterator[tuple[slice, slice]]:
+    """Cut a raster into blocks of whole tiles, from the north-west on."""
+    width = min(columns, _BLOCK_CELLS // _TILE)
+    height = max(1, _BLOCK_CELLS // (width * _TILE)) * _TILE
+    for top in range(0, rows, height):
+        for left in range(0, columns, width):
+            yield slice(top, min(top + height, rows)), slice(left, min(left + width, columns))
+
+
+def _add_overviews(raster: Raster, new: Path, resampling: str) -> None:
+    rasterio = _optional.load("rasterio", "Writing overviews")
+    largest = max(raster.shape)
+    factors = [2**k for k in range(1, 32) if largest / 2 ** (k - 1) > _SMALLEST_OVERVIEW * 2]
+    if not factors:
+        return
+    with (
+        rasterio.Env(COMPRESS_OVERVIEW="DEFLATE", BIGTIFF_OVERVIEW="IF_SAFER"),
+        rasterio.open(new, "r+") as dataset,
+    ):
+        dataset.build_overviews(factors, rasterio.enums.Resampling[resampling])
+
+
+@contextmanager
+def _faults_as_sentences(path: Path) -> Iterator[None]:
+    rasterio = _optional.load("rasterio", f"Writing '{path}'")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
+            yield
+    except rasterio.errors.RasterioError as error:
+        reason = " ".join(str(error.__cause__ or error).split()).rstrip(".")
+        raise WriteError(f"Cannot write '{path}': {reason}.", path=path) from error

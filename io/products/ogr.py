@@ -1,0 +1,168 @@
+"""Features through pyogrio, into whole files or none."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ... import _optional
+from ...errors import WriteError
+from ...terrain.results.columns import UNKNOWN_UNIT, unit_text
+from ...terrain.results.geometries import build_geometries
+from .crs_kept import require_kept
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from ...terrain.results import Features
+
+__all__ = ["describe", "require_int64", "write_layer"]
+
+_NO_CLOCK = "1970-01-01T00:00:00Z"
+"""Time that GDAL writes as the present one, so that the same features give the same bytes."""
+
+
+def write_layer(
+    features: Features,
+    path: Path,
+    shown: Path,
+    *,
+    driver: str,
+    names: Sequence[str] | None = None,
+    metadata: Mapping[str, str] | None = None,
+    **options: str,
+) -> None:
+    """Write features as one layer.
+
+    Parameters
+    ----------
+    features : Features
+    path : Path
+        A new file.
+    shown : Path
+        What it is called in sentences; the layer is called as the product, else as this file.
+    driver : str
+        Name of GDAL's driver.
+    names : sequence of str, optional
+        Of the columns, if the format needs others.
+    metadata : mapping of str to str, optional
+        Of the layer.
+    **options : str
+        Of the layer's creation.
+
+    Raises
+    ------
+    MissingExtraError
+        If pyogrio is not installed.
+    WriteError
+        If it cannot be written, or GDAL had to change a value.
+    """
+    pyogrio = _optional.load("pyogrio", f"Writing '{shown}'")
+    columns = [_as_field(name, values, shown) for name, values in features.columns.items()]
+    with _faults_as_sentences(shown), _without_clock():
+        pyogrio.raw.write(
+            os.fspath(path),
+            _well_known_binary(features),
+            columns,
+            list(features.columns) if names is None else list(names),
+            field_mask=[_missing(values) for values in columns],
+            driver=driver,
+            layer=features.name or shown.stem,
+            geometry_type=features.geometry_type + (" Z" if features.has_elevations else ""),
+            crs=None if features.crs is None else features.crs.to_wkt(),
+            encoding="UTF-8",
+            promote_to_multi=False,
+            layer_metadata=None if metadata is None else dict(metadata),
+            layer_options=options,
+        )
+        found = pyogrio.read_info(path)["crs"] if features.crs is not None else None
+    require_kept(features.crs, found, shown)
+
+
+def describe(features: Features) -> dict[str, str]:
+    """Return units and notes as metadata of a layer.
+
+    Returns
+    -------
+    dict of str to str
+        ``elevation_unit`` of the coordinates, ``unit of <column>``, and ``notes``; a unit that is
+        not known is "unknown".
+    """
+    told = {}
+    if features.has_elevations:
+        unit = features.elevation_unit
+        told["elevation_unit"] = UNKNOWN_UNIT if unit is None else unit.name
+    told |= {f"unit of {name}": unit_text(features.units, name) for name in features.units}
+    if features.notes:
+        told["notes"] = " ".join(features.notes)
+    return told
+
+
+def require_int64(name: str, values: NDArray[Any], path: Path) -> None:
+    """Refuse whole numbers that GDAL would wrap around."""
+    if values.dtype == np.uint64 and len(values) and values.max() > np.iinfo(np.int64).max:
+        raise WriteError(
+            f"Cannot write '{path}': column '{name}' holds {values.max()}, and "
+            f"{np.iinfo(np.int64).max} is the largest whole number of the format.",
+            path=path,
+        )
+
+
+def _well_known_binary(features: Features) -> NDArray[np.object_]:
+    import shapely
+
+    dimension = 3 if features.has_elevations else 2
+    geometries = build_geometries(features)
+    written: Any = shapely.to_wkb(geometries, output_dimension=dimension, flavor="iso")
+    return np.asarray(written, object)
+
+
+def _as_field(name: str, values: NDArray[Any], path: Path) -> NDArray[Any]:
+    """Return a column as a type that pyogrio writes."""
+    require_int64(name, values, path)
+    if values.dtype.kind == "U":
+        return values.astype(object)
+    if values.dtype.kind == "f" and values.dtype.itemsize not in (4, 8):
+        return values.astype(np.float32 if values.dtype.itemsize == 2 else np.float64)
+    narrow = {np.dtype(np.int8): np.int16, np.dtype(np.uint64): np.int64}
+    return values.astype(narrow.get(values.dtype, values.dtype))
+
+
+def _missing(values: NDArray[Any]) -> NDArray[np.bool_] | None:
+    """Return which values are missing, None if none is."""
+    if values.dtype.kind == "O":
+        gaps = np.array([value is None for value in values], np.bool_)
+        return gaps if gaps.any() else None
+    return None
+
+
+@contextmanager
+def _faults_as_sentences(path: Path) -> Iterator[None]:
+    """Turn what GDAL says into a sentence, also where it only warns that a value was changed."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", RuntimeWarning)
+            warnings.filterwarnings("ignore", message="'crs' was not provided")
+            yield
+    except (RuntimeError, RuntimeWarning, ValueError, OSError) as error:
+        reason = " ".join(str(error).split()).rstrip(".") or type(error).__name__
+        raise WriteError(f"Cannot write '{path}': {reason}.", path=path) from error
+
+
+@contextmanager
+def _without_clock() -> Iterator[None]:
+    """Let GDAL write a fixed time."""
+    pyogrio = _optional.load("pyogrio", "Writing features")
+    before = pyogrio.get_gdal_config_option("OGR_CURRENT_DATE")
+    pyogrio.set_gdal_config_options({"OGR_CURRENT_DATE": _NO_CLOCK})
+    try:
+        yield
+    finally:
+        pyogrio.set_gdal_config_options({"OGR_CURRENT_DATE": before})

@@ -1,0 +1,154 @@
+"""Shapefile: features with names of ten bytes."""
+
+from __future__ import annotations
+
+import warnings
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..._atomic import replacing_files
+from ..._sentences import counted
+from ...errors import LossWarning, WriteError
+from .ogr import write_layer
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from ...terrain.results import Features
+
+__all__ = ["short_names", "write"]
+
+_PARTS = (".shx", ".dbf", ".prj", ".cpg", ".qpj", ".sbn", ".sbx", ".qix", ".idx", ".shp.xml")
+_NAME_BYTES = 10
+_TEXT_BYTES = 254
+_MOST_COLUMNS = 255
+_MOST_BYTES = 2**31 - 1
+_LARGEST = 1e22
+"""Numbers are written with 24 digits, 15 of them behind the point where they fit."""
+_LARGEST_WHOLE = 10**18
+
+
+def write(features: Features, path: Path) -> None:
+    """Write features as a shapefile: PointZ, PolyLineZ or PolygonZ where there are elevations.
+
+    Parameters
+    ----------
+    features : Features
+    path : Path
+        Its parts are written beside it: ``.shx``, ``.dbf``, ``.cpg``, with a CRS ``.prj``.
+
+    Raises
+    ------
+    MissingExtraError
+        If pyogrio is not installed.
+    WriteError
+        If the file cannot be written, would be larger than 2 GiB, or a value has no room: texts of
+        more than 254 bytes, numbers of 1e22 and more, elevations that are not known.
+
+    Warns
+    -----
+    LossWarning
+        For names that are cut to ten bytes, and units and notes, which have no place.
+
+    Notes
+    -----
+    Coordinates are the same float64; numbers have 15 decimals at most. All parts take their places
+    after all of them are written, the ``.shp`` last.
+    """
+    _require_room(features, path)
+    names = short_names(features.columns)
+    _warn_of_losses(features, names, path)
+    with replacing_files(path, parts=_PARTS) as new:
+        write_layer(
+            features,
+            new,
+            path,
+            driver="ESRI Shapefile",
+            names=names,
+            DBF_DATE_LAST_UPDATE="1970-01-01",
+        )
+
+
+def short_names(names: Iterable[str]) -> list[str]:
+    """Return names of at most ten bytes, no two the same with capitals aside.
+
+    Examples
+    --------
+    >>> short_names(["elevation", "slope_mean_degrees", "slope_mean_percent"])
+    ['elevation', 'slope_mean', 'slope_me_2']
+    """
+    taken: dict[str, None] = {}
+    short = []
+    for name in names:
+        candidate, number = _cut(name, _NAME_BYTES), 1
+        while candidate.casefold() in taken:
+            number += 1
+            end = f"_{number}"
+            candidate = _cut(name, _NAME_BYTES - len(end)) + end
+        taken[candidate.casefold()] = None
+        short.append(candidate)
+    return short
+
+
+def _cut(name: str, most: int) -> str:
+    """Cut a name to so many bytes, not within a letter."""
+    return name.encode()[:most].decode(errors="ignore")
+
+
+def _warn_of_losses(features: Features, names: list[str], path: Path) -> None:
+    renamed = [
+        f"'{name}' is '{short}'"
+        for name, short in zip(features.columns, names, strict=True)
+        if name != short
+    ]
+    lost = []
+    if renamed:
+        lost.append(f"names have ten bytes at most ({', '.join(renamed)})")
+    is_in_crs = features.crs is not None and features.crs.vertical_unit is not None
+    if features.units or (features.elevation_unit is not None and not is_in_crs):
+        lost.append("units have no place")
+    if features.notes:
+        lost.append("notes have no place")
+    if lost:
+        warnings.warn(f"'{path}' is a shapefile: {', and '.join(lost)}.", LossWarning, stacklevel=3)
+
+
+def _require_room(features: Features, path: Path) -> None:
+    """Refuse what a shapefile would cut, round away or leave out."""
+    size = features.coordinates.nbytes + 100 * len(features)
+    if size > _MOST_BYTES:
+        raise _too_much(path, f"{counted(len(features.coordinates), 'point')} take {size:,} bytes")
+    if len(features.columns) > _MOST_COLUMNS:
+        raise _too_much(path, f"{counted(len(features.columns), 'column')} are there")
+    if np.isnan(features.coordinates).any():
+        raise _too_much(path, "some elevations are not known")
+    for name, values in features.columns.items():
+        _require_values(name, values, path)
+
+
+def _require_values(name: str, values: NDArray[Any], path: Path) -> None:
+    if values.dtype.kind in "OU":
+        longest = max((len(value.encode()) for value in values if value is not None), default=0)
+        if longest > _TEXT_BYTES:
+            raise _too_much(path, f"column '{name}' has a text of {longest} bytes")
+        return
+    numbers = values[np.isfinite(values)] if values.dtype.kind == "f" else values
+    most = _LARGEST if values.dtype.kind == "f" else _LARGEST_WHOLE
+    is_large = (numbers >= most) | (numbers <= -most) if values.dtype.kind != "b" else np.False_
+    if np.isinf(values).any() if values.dtype.kind == "f" else False:
+        raise _too_much(path, f"column '{name}' has a number that is not finite")
+    if np.any(is_large):
+        raise _too_much(path, f"column '{name}' has the number {numbers[is_large][0]}")
+
+
+def _too_much(path: Path, what: str) -> WriteError:
+    return WriteError(
+        f"Cannot write '{path}': {what}, and a shapefile holds 2 GiB, 255 columns, texts of 254 "
+        "bytes, numbers below 1e22 (whole ones 1e18) and elevations that are known; a GeoPackage "
+        "(.gpkg) holds them.",
+        path=path,
+    )

@@ -1,0 +1,113 @@
+"""Features as a table of Arrow, with geometries as GeoArrow has them.
+
+References
+----------
+GeoArrow format 0.2, https://geoarrow.org/format.html: native encodings, interleaved coordinates.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ... import _optional
+from ...errors import OptionError
+from .columns import UNKNOWN_UNIT, unit_text
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .features import Features
+
+__all__ = ["build_table"]
+
+_GEOMETRY = "geometry"
+_NESTING = {
+    "Point": (),
+    "LineString": ("vertices",),
+    "MultiLineString": ("vertices", "linestrings"),
+    "Polygon": ("vertices", "rings"),
+    "MultiPolygon": ("vertices", "rings", "polygons"),
+}
+"""What the members of each level are called, from the coordinates up."""
+
+_LARGEST_OFFSET = 2**31 - 1
+
+
+def build_table(features: Features) -> Any:
+    """Return a ``pyarrow.Table`` of the columns, and of the geometries in column ``geometry``.
+
+    Parameters
+    ----------
+    features : Features
+
+    Raises
+    ------
+    MissingExtraError
+        If pyarrow is not installed.
+    OptionError
+        If a column is called ``geometry``.
+    """
+    pa = _optional.load("pyarrow", "Handing features over as Arrow")
+    if _GEOMETRY in features.columns:
+        raise OptionError(
+            "column", _GEOMETRY, allowed="called otherwise: geometries have this name"
+        )
+    arrays = [pa.array(values) for values in features.columns.values()]
+    fields = [
+        pa.field(name, array.type, metadata=_unit(features, name))
+        for name, array in zip(features.columns, arrays, strict=True)
+    ]
+    geometries = _geometries(pa, features)
+    fields.append(pa.field(_GEOMETRY, geometries.type, False, metadata=_extension(features)))
+    schema = pa.schema(fields, metadata=_description(features))
+    return pa.Table.from_arrays([*arrays, geometries], schema=schema)
+
+
+def _geometries(pa: Any, features: Features) -> Any:
+    size = features.coordinates.shape[1]
+    names = _NESTING[features.geometry_type]
+    built = pa.FixedSizeListArray.from_arrays(
+        pa.array(features.coordinates.ravel()),
+        type=pa.list_(pa.field("xyz"[:size], pa.float64(), False), size),
+    )
+    for name, offsets in zip(names, features.offsets, strict=True):
+        built = _nested(pa, built, name, offsets)
+    return built
+
+
+def _nested(pa: Any, values: Any, name: str, offsets: NDArray[np.int64]) -> Any:
+    """Return lists of values, with offsets of 32 bits where they fit."""
+    member = pa.field(name, values.type, False)
+    if offsets[-1] > _LARGEST_OFFSET:
+        kind, numbers, array = pa.large_list(member), offsets, pa.LargeListArray
+    else:
+        kind, numbers, array = pa.list_(member), offsets.astype(np.int32), pa.ListArray
+    return array.from_arrays(pa.array(numbers), values, type=kind)
+
+
+def _extension(features: Features) -> dict[str, str]:
+    """Return what tells readers that a column has geometries, and their CRS."""
+    crs: dict[str, Any] = {}
+    if features.crs is not None:
+        crs = {"crs": features.crs.to_pyproj().to_json_dict(), "crs_type": "projjson"}
+    return {
+        "ARROW:extension:name": f"geoarrow.{features.geometry_type.lower()}",
+        "ARROW:extension:metadata": json.dumps(crs),
+    }
+
+
+def _unit(features: Features, name: str) -> dict[str, str] | None:
+    return {"unit": unit_text(features.units, name)} if name in features.units else None
+
+
+def _description(features: Features) -> dict[str, str]:
+    unit = features.elevation_unit
+    heights = {"elevation_unit": UNKNOWN_UNIT if unit is None else unit.name}
+    return {
+        "name": features.name,
+        **(heights if features.has_elevations else {}),
+        "notes": json.dumps(list(features.notes)),
+    }
