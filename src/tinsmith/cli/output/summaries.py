@@ -180,7 +180,7 @@ def summarise_tin(tin: TIN) -> list[Row]:
     across, _ = find_symbols(tin)
     rows = [
         ("TIN", describe_counts(tin)),
-        ("Edges", f"{len(tin.edges):,}, {len(tin.hull):,} of them on the hull"),
+        ("Edges", f"{len(tin.edges):,}, {sum(map(len, tin.boundary)):,} of them on the boundary"),
         *summarise_extent(tin),
     ]
     if record["area"] is not None:
@@ -263,8 +263,8 @@ def summarise_merges(report: Report, survey: Survey) -> list[Row]:
         return []
     text = f"{counted(surplus, 'row')} at {counted(len(report.merged_vertices), 'place')}"
     starts = report.merged_offsets[:-1]
-    spread = np.maximum.reduceat(report.merged_heights, starts) - np.minimum.reduceat(
-        report.merged_heights, starts
+    spread = np.maximum.reduceat(report.merged_elevations, starts) - np.minimum.reduceat(
+        report.merged_elevations, starts
     )
     worst = int(spread.argmax())
     if spread[worst] == 0:
@@ -290,9 +290,9 @@ def _iterate_merges(report: Report, index: int) -> Any:
         merged_vertices=report.merged_vertices[index:],
         merged_offsets=report.merged_offsets[index:] - begin,
         merged_rows=report.merged_rows[begin:],
-        merged_heights=report.merged_heights[begin:],
+        merged_elevations=report.merged_elevations[begin:],
         merged_shifts=report.merged_shifts[begin:],
-        vertex_heights=report.vertex_heights[index:],
+        vertex_elevations=report.vertex_elevations[index:],
     ).merges()
 
 
