@@ -8,7 +8,7 @@ import numpy as np
 
 from ...errors import OptionError
 from ...tin.validation.options import is_finite_number
-from ..slope import aspect, normals, slope
+from ..slope import aspect, compute_normals, slope
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -45,7 +45,7 @@ def _shade(tin: TIN, azimuth: float, altitude: float) -> NDArray[np.float64]:
             raise OptionError(name, angle, f"an angle from {low} to {high} degrees")
     turn, rise = np.radians(azimuth), np.radians(altitude)
     light = np.array([np.sin(turn) * np.cos(rise), np.cos(turn) * np.cos(rise), np.sin(rise)])
-    upward = normals(tin)
+    upward = compute_normals(tin)
     longest = np.abs(upward).max(axis=1, keepdims=True)
     unit = upward / longest
     shade: NDArray[np.float64] = 255.0 * (unit @ light) / np.linalg.norm(unit, axis=1)
