@@ -7,6 +7,7 @@ from .charts.earthwork import earthwork_map
 from .charts.histogram import histogram
 from .charts.profiles import profile_picture
 from .earthwork import Difference, difference, level_surface, stage_storage, volume
+from .gridding import height_above, rasterize
 from .isolines import ContourCheck, check_contours, contour_bands, contour_labels, contours
 from .lift import lift
 from .preview.picture import preview
@@ -33,12 +34,14 @@ __all__ = [
     "difference",
     "drape",
     "earthwork_map",
+    "height_above",
     "histogram",
     "level_surface",
     "lift",
     "preview",
     "profile",
     "profile_picture",
+    "rasterize",
     "section_lines",
     "slope",
     "stage_storage",

@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     )
     from .terrain import comparison_picture, contour_map, earthwork_map, histogram, profile_picture
     from .terrain.earthwork import Difference, difference, stage_storage, volume
+    from .terrain.gridding import height_above, rasterize
     from .terrain.isolines import (
         ContourCheck,
         check_contours,
@@ -136,6 +137,7 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "stage_storage",
                 "volume",
             ),
+            ".terrain.gridding": ("height_above", "rasterize"),
             ".terrain.sections": ("cross_sections", "drape", "profile", "section_lines"),
             ".terrain.results": ("Features", "Raster", "Table"),
             ".tin": (
@@ -216,6 +218,7 @@ __all__ = [
     "drape",
     "earthwork_map",
     "find_format",
+    "height_above",
     "histogram",
     "io",
     "known_formats",
@@ -227,6 +230,7 @@ __all__ = [
     "profile",
     "profile_picture",
     "quality",
+    "rasterize",
     "read",
     "read_lines",
     "read_polygons",
