@@ -28,8 +28,8 @@ _COLORS = ("#7a5230", "#c0392b", "#1f618d", "#6c3483", "#117864")
 _GROUND = "#efe6da"
 _CUT, _FILL = "#e8a598", "#a3cfa8"
 _NAME_LETTERS = 20
-_LABELS = 11
-"""About so many stations are labelled."""
+_LABELS = 8
+"""About so many stations are labelled, twice as many at most."""
 
 # Inches.
 _PLOT_WIDTH, _LEFT, _RIGHT = 9.4, 1.5, 0.35
