@@ -10,7 +10,7 @@ import numpy as np
 from ..._sentences import counted
 from ...errors import LinesError, OptionError, choice
 from ...policies import OutsidePolicy
-from ...tin.constraints.polylines import offsets_of, owners_of
+from ...tin.topology import find_offsets, find_owners
 from ..results import Features
 from .geometries import as_features, require_same_crs
 from .rows import cut_rows
@@ -146,7 +146,7 @@ def _noted(
 
 def _whole(given: Features, rows: Rows, lines: NDArray[np.int64]) -> Features:
     xyz = np.column_stack([rows.places.xy, rows.elevations[:, 0]])
-    pieces = offsets_of(np.bincount(lines, minlength=len(given.offsets[0]) - 1))
+    pieces = find_offsets(np.bincount(lines, minlength=len(given.offsets[0]) - 1))
     return replace(given, coordinates=xyz, offsets=(pieces, *given.offsets[1:]))
 
 
@@ -154,7 +154,7 @@ def _cut_runs(given: Features, rows: Rows, lines: NDArray[np.int64]) -> Features
     runs = runs_of(rows)
     owner = lines[runs.first_rows]
     if given.is_multi:
-        owner = owners_of(given.offsets[1])[owner]
+        owner = find_owners(given.offsets[1])[owner]
     return _chosen(given, runs.coordinates, (runs.offsets,), owner)
 
 
@@ -175,7 +175,7 @@ def _chosen(
     return replace(
         given,
         coordinates=coordinates,
-        offsets=(*offsets, offsets_of(counts)) if has_parts else offsets,
+        offsets=(*offsets, find_offsets(counts)) if has_parts else offsets,
         columns={name: column[kept] for name, column in given.columns.items()},
         notes=(*given.notes, note) if lost else given.notes,
     )
