@@ -158,17 +158,18 @@ def profile_picture(
 
 def _curves(table: Any, line: Any) -> tuple[list[_Curve], NDArray[np.float64]]:
     """Return the surfaces along one line, and the stations where breaklines are crossed."""
-    if not isinstance(table, Table) or not {"line", "station"} <= set(table.columns):
+    names = set(table.columns) if isinstance(table, Table) else set()
+    if not {"line", "station"} <= names or "offset" in names:
         raise OptionError("profile", table, allowed="a table that profile returned")
     if not is_whole_number(line) or not (table["line"] == line).any():
         allowed = f"a whole number from 0 to {int(table['line'].max())}"
         raise OptionError("line", line, allowed=allowed)
     own = table["line"] == line
-    names = [name for name in table.columns if name.partition("_")[0] == "elevation"]
+    measured = [name for name in table.columns if name.partition("_")[0] == "elevation"]
     stations = table["station"][own]
     curves = [
         _Curve(name.partition("_")[2], stations, table[name][own], _COLORS[k % len(_COLORS)])
-        for k, name in enumerate(names)
+        for k, name in enumerate(measured)
     ]
     if not any(np.isfinite(curve.elevations).any() for curve in curves):
         raise OptionError("line", int(line), allowed="one that meets a surface")
