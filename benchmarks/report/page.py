@@ -385,7 +385,7 @@ SECTIONS: dict[str, Callable[[list[Result], str], str]] = {
     writers.SECTION: _make_part_formatter(
         "Writers", "triangles", "From the TIN to the file; every file is read back and compared.\n"
     ),
-    answers.SECTION: _others(
+    answers.SECTION: _make_part_formatter(
         "Answers from the surface",
         "points",
         "What is derived from a TIN, on one and the same TIN, answers compared. To prepare is\n"
