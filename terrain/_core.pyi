@@ -40,3 +40,39 @@ def smooth_contours(
     NDArray[np.bool_],
     NDArray[np.float64],
 ]: ...
+def sum_between(
+    points: NDArray[np.float64],
+    triangles: NDArray[np.int32],
+    groups: NDArray[np.int32],
+    group_count: int,
+    other_points: NDArray[np.float64],
+    other_triangles: NDArray[np.int32],
+    up: float,
+    threads: int = ...,
+) -> NDArray[np.float64]: ...
+def sum_heights(
+    points: NDArray[np.float64],
+    triangles: NDArray[np.int32],
+    heights: NDArray[np.float64],
+    groups: NDArray[np.int32],
+    group_count: int,
+    up: float,
+) -> NDArray[np.float64]: ...
+def overlay(
+    points: NDArray[np.float64],
+    triangles: NDArray[np.int32],
+    other_points: NDArray[np.float64],
+    other_triangles: NDArray[np.int32],
+) -> tuple[
+    NDArray[np.float64],
+    NDArray[np.int32],
+    NDArray[np.int64],
+    NDArray[np.int32],
+    NDArray[np.int32],
+]: ...
+def stage_sums(
+    points: NDArray[np.float64],
+    triangles: NDArray[np.int32],
+    levels: NDArray[np.float64],
+    up: float,
+) -> NDArray[np.float64]: ...

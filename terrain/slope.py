@@ -1,11 +1,14 @@
-"""Slope and aspect: how steep each triangle is, and which way it falls."""
+"""Slope and aspect: how steep the surface is, and which way it falls."""
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..errors import choice
+from ..policies import SlopeUnit, SurfacePart
 from .units import scales_of
 
 if TYPE_CHECKING:
@@ -14,20 +17,44 @@ if TYPE_CHECKING:
     from ..crs import CRS
     from ..tin import TIN
 
-__all__ = ["areas", "aspect", "normals", "ring_area", "slope"]
+__all__ = [
+    "areas",
+    "aspect",
+    "normals",
+    "normals_of",
+    "ring_area",
+    "slope",
+    "slope_of",
+]
+
+_SLIVER = 2.0**-20
+"""Normals of triangles whose area is a smaller share of their squared size are found exactly."""
 
 
-def slope(tin: TIN) -> NDArray[np.float64]:
-    """Measure the slope of each triangle.
+def slope(
+    tin: TIN, *, unit: SlopeUnit = "degrees", per: SurfacePart = "triangle"
+) -> NDArray[np.float64]:
+    """Measure the slope of each triangle, or at each vertex.
 
     Parameters
     ----------
     tin : TIN
+    unit : {"degrees", "percent", "ratio"}, optional
+        Angle with the horizontal plane, or rise over run, of 100 or of 1.
+    per : {"triangle", "vertex"}, optional
+        At a vertex it is that of the mean normal of its triangles, weighted by their areas in
+        space; so the gradient is their mean weighted by their areas in the plane.
 
     Returns
     -------
-    (m,) float64 array, degrees
-        Angle between the triangle and the horizontal plane, 0 (level) to below 90.
+    (m,) or (n,) float64 array
+        In degrees 0 (level) to 90, in percent or as a ratio from 0 on; NaN at a vertex that no
+        triangle has.
+
+    Raises
+    ------
+    OptionError
+        For another unit, or another place.
 
     Notes
     -----
@@ -40,26 +67,45 @@ def slope(tin: TIN) -> NDArray[np.float64]:
     --------
     >>> from tinsmith import TIN
     >>> tin = TIN.from_triangles([[0, 0, 0], [1, 0, 1], [0, 1, 0]], [[0, 1, 2]])
-    >>> slope(tin).round(6)
-    array([45.])
+    >>> slope(tin).round(6), slope(tin, unit="percent", per="vertex").round(6)
+    (array([45.]), array([100., 100., 100.]))
     """
-    east, north, up = normals(tin).T
-    degrees: NDArray[np.float64] = np.degrees(np.arctan2(np.hypot(east, north), up))
-    return degrees
+    choice("unit", unit, SlopeUnit)
+    return slope_of(normals_of(tin, per), unit)
 
 
-def aspect(tin: TIN) -> NDArray[np.float64]:
-    """Find the direction in which each triangle falls.
+def slope_of(upward: NDArray[np.float64], unit: SlopeUnit) -> NDArray[np.float64]:
+    """Return the slope of planes with some upward normals, (k, 3), NaN where there is none."""
+    east, north, up = upward.T
+    run = np.hypot(east, north)
+    if unit == "degrees":
+        found = np.degrees(np.arctan2(run, up))
+    else:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            found = run / up * (100.0 if unit == "percent" else 1.0)
+    values: NDArray[np.float64] = np.where((run == 0.0) & (up == 0.0), np.nan, found)
+    return values
+
+
+def aspect(tin: TIN, *, per: SurfacePart = "triangle") -> NDArray[np.float64]:
+    """Find the direction in which each triangle, or the surface at each vertex, falls.
 
     Parameters
     ----------
     tin : TIN
+    per : {"triangle", "vertex"}, optional
+        As in :func:`slope`.
 
     Returns
     -------
-    (m,) float64 array, degrees
+    (m,) or (n,) float64 array, degrees
         Azimuth of the steepest descent, clockwise from grid north (of a geographic CRS
-        true north), 0 up to but not including 360; NaN where a triangle is level and falls nowhere.
+        true north), 0 up to but not including 360; NaN where it is level and falls nowhere.
+
+    Raises
+    ------
+    OptionError
+        For another place.
 
     Examples
     --------
@@ -68,7 +114,7 @@ def aspect(tin: TIN) -> NDArray[np.float64]:
     >>> aspect(tin)
     array([270.])
     """
-    east, north, _ = normals(tin).T
+    east, north, _ = normals_of(tin, per).T
     azimuth: NDArray[np.float64] = np.degrees(np.arctan2(east, north)) % 360.0
     # A hair west of north rounds up to the full circle, which is north.
     azimuth[azimuth == 360.0] = 0.0
@@ -133,11 +179,43 @@ def normals(tin: TIN) -> NDArray[np.float64]:
         metres. Its horizontal part points downhill; the vertical part is positive.
     """
     corners = [tin.points[tin.triangles[:, k]] for k in range(3)]
-    upward: NDArray[np.float64] = np.cross(corners[1] - corners[0], corners[2] - corners[0])
+    first, second = corners[1] - corners[0], corners[2] - corners[0]
+    upward: NDArray[np.float64] = np.cross(first, second)
+    size = np.abs(first[:, :2]).max(axis=1) * np.abs(second[:, :2]).max(axis=1)
+    for row in np.flatnonzero(~(upward[:, 2] > _SLIVER * size)).tolist():
+        upward[row] = _exact_normal(*(corner[row] for corner in corners))
     east, north, up = scales_of(tin.crs, tin.elevation_unit, _middle_northings(tin))
     for axis, factor in enumerate((north * up, east * up, east * north)):
         upward[:, axis] *= factor
     return upward
+
+
+def _exact_normal(*corners: NDArray[np.float64]) -> list[float]:
+    """Return the normal of a triangle, each component rounded once.
+
+    The corners of a sliver lie nearly in a line, so that the products of its sides cancel.
+    """
+    a, b, c = ([Fraction(value) for value in corner.tolist()] for corner in corners)
+    u, v = ([end - start for start, end in zip(a, other, strict=True)] for other in (b, c))
+    turns = ((1, 2), (2, 0), (0, 1))
+    return [float(u[i] * v[j] - u[j] * v[i]) for i, j in turns]
+
+
+def normals_of(tin: TIN, per: SurfacePart) -> NDArray[np.float64]:
+    """Return the upward normals of triangles, or their sums at each vertex, (n, 3).
+
+    Raises
+    ------
+    OptionError
+        For another place.
+    """
+    choice("per", per, SurfacePart)
+    upward = normals(tin)
+    if per == "triangle":
+        return upward
+    corners, count = tin.triangles.ravel(), len(tin.points)
+    sums = [np.bincount(corners, np.repeat(axis, 3), count) for axis in upward.T]
+    return np.stack(sums, axis=1)
 
 
 def _middle_northings(tin: TIN) -> NDArray[np.float64]:

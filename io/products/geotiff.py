@@ -7,13 +7,14 @@ import os
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ... import _optional
 from ..._atomic import replacing_files
-from ...errors import OptionError, WriteError
+from ...errors import WriteError, choice
+from ...policies import OverviewMethod
 from ...terrain.results.columns import UNKNOWN_UNIT, unit_text
 from .crs_kept import require_kept
 
@@ -23,9 +24,7 @@ if TYPE_CHECKING:
 
     from ...terrain.results import Raster
 
-__all__ = ["Overviews", "write", "write_cog"]
-
-Overviews = Literal["average", "nearest", "none"]
+__all__ = ["write", "write_cog"]
 
 _TILE = 512
 _BLOCK_CELLS = 4 * 1024 * 1024
@@ -41,7 +40,7 @@ def write(
     raster: Raster,
     path: Path,
     *,
-    overviews: Overviews | None = None,
+    overviews: OverviewMethod | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> None:
     """Write a raster as a tiled GeoTIFF, compressed without loss.
@@ -85,7 +84,7 @@ def write_cog(
     raster: Raster,
     path: Path,
     *,
-    overviews: Overviews | None = None,
+    overviews: OverviewMethod | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> None:
     """Write a raster as a cloud optimized GeoTIFF; parameters and errors as :func:`write`.
@@ -118,10 +117,7 @@ def _parts(path: Path) -> tuple[str, ...]:
 
 def _resampling(raster: Raster, overviews: str | None) -> str:
     if overviews is not None:
-        allowed = get_args(Overviews)
-        if overviews not in allowed:
-            raise OptionError("overviews", overviews, allowed=f"one of {', '.join(allowed)}")
-        return overviews
+        return choice("overviews", overviews, OverviewMethod)
     is_circular = any("aspect" in name.casefold() for name in raster.bands)
     return "nearest" if is_circular or _dtype(raster).kind != "f" else "average"
 

@@ -40,7 +40,8 @@ if TYPE_CHECKING:
         with_lines,
         write,
     )
-    from .terrain import comparison_picture, contour_map, histogram
+    from .terrain import comparison_picture, contour_map, earthwork_map, histogram, profile_picture
+    from .terrain.earthwork import Difference, difference, stage_storage, volume
     from .terrain.isolines import (
         ContourCheck,
         check_contours,
@@ -51,6 +52,7 @@ if TYPE_CHECKING:
     from .terrain.lift import lift
     from .terrain.preview.picture import preview
     from .terrain.results import Features, Raster, Table
+    from .terrain.sections import cross_sections, drape, profile, section_lines
     from .terrain.slope import aspect, slope
     from .tin import (
         TIN,
@@ -116,6 +118,7 @@ else:  # a type checker takes every name for one that such a __getattr__ has
             ),
             ".terrain": (
                 "ContourCheck",
+                "Difference",
                 "aspect",
                 "check_contours",
                 "comparison_picture",
@@ -123,11 +126,17 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "contour_labels",
                 "contour_map",
                 "contours",
+                "difference",
+                "earthwork_map",
                 "histogram",
                 "lift",
                 "preview",
+                "profile_picture",
                 "slope",
+                "stage_storage",
+                "volume",
             ),
+            ".terrain.sections": ("cross_sections", "drape", "profile", "section_lines"),
             ".terrain.results": ("Features", "Raster", "Table"),
             ".tin": (
                 "TIN",
@@ -167,6 +176,7 @@ __all__ = [
     "Comparison",
     "ContourCheck",
     "CrsError",
+    "Difference",
     "Features",
     "Format",
     "FormatError",
@@ -201,6 +211,10 @@ __all__ = [
     "contour_labels",
     "contour_map",
     "contours",
+    "cross_sections",
+    "difference",
+    "drape",
+    "earthwork_map",
     "find_format",
     "histogram",
     "io",
@@ -210,6 +224,8 @@ __all__ = [
     "lines_from_codes",
     "paper",
     "preview",
+    "profile",
+    "profile_picture",
     "quality",
     "read",
     "read_lines",
@@ -217,11 +233,14 @@ __all__ = [
     "read_rings",
     "read_water",
     "refine",
+    "section_lines",
     "slope",
+    "stage_storage",
     "terrain",
     "tin",
     "transform_points",
     "triangulate",
+    "volume",
     "voronoi",
     "with_lines",
     "write",

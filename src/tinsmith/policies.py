@@ -16,6 +16,10 @@ __all__ = [
     "FeatureKind",
     "LineKind",
     "LineRole",
+    "OutsidePolicy",
+    "OverviewMethod",
+    "SlopeUnit",
+    "SurfacePart",
     "TrimPolicy",
 ]
 
@@ -45,3 +49,15 @@ EmptyCircleRule: TypeAlias = Literal["angle", "open"]
 
 DistanceRule: TypeAlias = Literal["circle", "ties"]
 """Among which points the paper's distance decides."""
+
+SlopeUnit: TypeAlias = Literal["degrees", "percent", "ratio"]
+"""How a slope is given: as an angle, or as rise over a run of 100 or of 1."""
+
+SurfacePart: TypeAlias = Literal["triangle", "vertex"]
+"""Of what a measure of the surface is given."""
+
+OverviewMethod: TypeAlias = Literal["average", "nearest", "none"]
+"""How the cells of a raster's smaller copies are found."""
+
+OutsidePolicy: TypeAlias = Literal["error", "nan", "cut"]
+"""What becomes of parts of features where there is no surface."""

@@ -10,7 +10,6 @@ import numpy as np
 from ...crs import Unit
 from ...errors import OptionError
 from ...tin.types import seal
-from ...tin.validation.options import shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -103,11 +102,11 @@ def named_items(option: str, mapping: Any) -> list[tuple[str, Any]]:
     if mapping is None:
         return []
     if not isinstance(mapping, Mapping):
-        raise OptionError(option, _Shown(mapping), allowed="a mapping of names to values")
+        raise OptionError(option, mapping, allowed="a mapping of names to values")
     items = list(mapping.items())
     for name, _ in items:
         if not (isinstance(name, str) and name.strip() and name.isprintable()):
-            raise OptionError(f"name among {option}", _Shown(name), allowed="a printable text")
+            raise OptionError(f"name among {option}", name, allowed="a printable text")
     return [(str(name), value) for name, value in items]
 
 
@@ -134,7 +133,7 @@ def _as_texts(name: str, array: NDArray[Any]) -> NDArray[Any]:
         if not (value is None or isinstance(value, str)):
             raise OptionError(
                 f"value in row {row} of column '{name}'",
-                _Shown(value),
+                value,
                 allowed="a text or None, where numbers and texts are not mixed",
             )
     return seal(texts)
@@ -168,7 +167,7 @@ def as_units(units: Any, names: Iterable[str]) -> FrozenMapping[Unit | str | Non
         is_text = isinstance(unit, str) and unit.strip() and unit.isprintable()
         if not (unit is None or isinstance(unit, Unit) or is_text):
             allowed = "a Unit, the symbol of one, or None if it is not known"
-            raise OptionError(f"unit of '{name}'", _Shown(unit), allowed=allowed)
+            raise OptionError(f"unit of '{name}'", unit, allowed=allowed)
     return FrozenMapping(items)
 
 
@@ -193,22 +192,12 @@ def unit_text(units: Units, name: str) -> str:
 def as_name(name: Any) -> str:
     """Return the name of a product."""
     if not (isinstance(name, str) and name.isprintable()):
-        raise OptionError("name", _Shown(name), allowed="a printable text")
+        raise OptionError("name", name, allowed="a printable text")
     return str(name)
 
 
 def as_notes(notes: Any) -> tuple[str, ...]:
     """Return notes as a tuple of sentences."""
     if isinstance(notes, str) or not all(isinstance(note, str) for note in notes):
-        raise OptionError("notes", _Shown(notes), allowed="a sequence of texts")
+        raise OptionError("notes", notes, allowed="a sequence of texts")
     return tuple(notes)
-
-
-class _Shown:
-    """A value whose repr is short enough for a sentence."""
-
-    def __init__(self, value: object) -> None:
-        self._text = shown(value)
-
-    def __repr__(self) -> str:
-        return self._text

@@ -219,10 +219,12 @@ def test_draped_boundary_leaves_the_surface_as_it_was():
     np.testing.assert_allclose(tin.interpolate(inner), whole.interpolate(inner), atol=1e-5)
 
 
-def test_boundary_with_heights_is_the_rim():
+def test_boundary_with_heights_is_that_of_the_surface():
     ring = [[10, 10, 50], [90, 10, 51], [90, 90, 52], [10, 90, 53]]
     tin = ts.triangulate(terrain(), boundary=[ring])
-    assert {tuple(p) for p in tin.points[tin.hull].tolist()} >= {tuple(map(float, p)) for p in ring}
+    assert {tuple(p) for p in tin.points[tin.boundary[0]].tolist()} >= {
+        tuple(map(float, p)) for p in ring
+    }
 
 
 def test_several_boundaries_and_a_ring_within_a_ring():
@@ -573,3 +575,22 @@ def test_a_crossing_that_rounds_to_a_given_vertex_is_that_vertex(first):
     (place,) = tin.report.crossings.xy
     assert place.tolist() == [third, third]
     assert tin.report.crossings.vertices.tolist() == [first]
+
+
+def test_a_draped_line_ends_at_the_hull_where_a_crossing_was_rounded_beyond_it():
+    """Where two parts of the line cross, on the hull but for a rounding, it was left out whole."""
+    points = [[0, 2, 0], [1 / 3, 2 + 1 / 3, 0]]
+    draped = ts.Breakline(np.array([[1, 1], [0, 2.3], [1, 3], [0, 2]]))
+    low = ts.Breakline(np.array([[0.0, 0, 0], [1, 0, 2]]), kind="soft")
+    tin = ts.triangulate(points, breaklines=[draped, low])
+    given = ts.Survey(points=points, breaklines=[draped, low])
+    assert ts.check(tin, points=given).ok
+    inside = polygon([[0, 0], [1, 0], [1 / 3, 2 + 1 / 3], [0, 2]]).buffer(1e-12)
+    kept = shapely.LineString(draped.coords[:, :2]).intersection(inside).length
+    found = [tin.points[chain][:, :2] for chain in tin.lines.chains()]
+    drawn = sum(
+        np.hypot(*np.diff(xy, axis=0).T).sum()
+        for xy, name in zip(found, tin.lines.kinds, strict=True)
+        if name == "hard"
+    )
+    assert drawn == pytest.approx(kept, rel=1e-9)
