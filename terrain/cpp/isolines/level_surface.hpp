@@ -77,7 +77,10 @@ inline Point cross_edge(const RankedVertex& low, const RankedVertex& high, doubl
 class LevelSurface {
  public:
   LevelSurface(const SurfaceArrays& surface, const Levels& levels)
-      : surface_(surface), levels_(levels), vertices_(surface.vertex_count) {
+      : surface_(surface),
+        levels_(levels),
+        vertices_(surface.vertex_count),
+        rank_(surface.vertex_count) {
     double lowest = HUGE_VAL, highest = -HUGE_VAL;
     for (std::int32_t v = 0; v < surface.vertex_count; ++v) {
       const double* const row = surface.xyz + 3 * std::size_t(v);
@@ -86,6 +89,7 @@ class LevelSurface {
       highest = std::max(highest, row[2]);
     }
     rank_vertices(kNear * highest - kNear * lowest);
+    for (std::int32_t v = 0; v < surface.vertex_count; ++v) rank_[v] = vertices_[v].rank;
   }
 
   const SurfaceArrays& arrays() const { return surface_; }
@@ -93,7 +97,7 @@ class LevelSurface {
   double level(std::int32_t number) const { return levels_.values[number]; }
 
   // How many levels are at or below a vertex.
-  std::int32_t rank(Vertex v) const { return vertices_[number(v)].rank; }
+  std::int32_t rank(Vertex v) const { return rank_[number(v)]; }
   bool is_above(Vertex v, std::int32_t level) const { return rank(v) > level; }
   bool is_at(Vertex v, std::int32_t level) const { return vertices_[number(v)].elevation == levels_.values[level]; }
 
@@ -261,6 +265,7 @@ class LevelSurface {
   SurfaceArrays surface_;
   Levels levels_;
   ScratchVector<RankedVertex> vertices_;
+  ScratchVector<std::int32_t> rank_;  // once more: so few bytes stay in the cache
 };
 
 }  // namespace tinsmith::isolines
