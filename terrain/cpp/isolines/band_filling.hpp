@@ -29,8 +29,7 @@ struct Bands {
 
 class BandFiller {
  public:
-  BandFiller(const LevelSurface& surface, Team& team)
-      : surface_(surface), team_(team) {
+  BandFiller(const LevelSurface& surface, Team& team) : surface_(surface), team_(team) {
     list_triangles();
   }
 
@@ -99,10 +98,8 @@ class BandFiller {
     const std::int32_t lowest = surface_.rank(edge.low);
     const std::int32_t highest = surface_.rank(edge.high);
     if (band < lowest || band > highest) return;
-    const Point low =
-        band > lowest ? surface_.crossing(edge, band - 1) : surface_.point(edge.low);
-    const Point high =
-        band < highest ? surface_.crossing(edge, band) : surface_.point(edge.high);
+    const Point low = band > lowest ? surface_.crossing(edge, band - 1) : surface_.point(edge.low);
+    const Point high = band < highest ? surface_.crossing(edge, band) : surface_.point(edge.high);
     if (low == high) return;
     segments.push_back(is_rising ? BoundarySegment{low, high} : BoundarySegment{high, low});
   }
@@ -117,8 +114,8 @@ class BandFiller {
     const RingNesting nesting(rings);
     std::vector<std::vector<std::size_t>> holes(rings.size());
     for (std::size_t i = 0; i < rings.size(); ++i) {
-      const std::int32_t around = rings[i].is_exterior ? RingNesting::kNone
-                                                       : nesting.exterior_of(rings[i]);
+      const std::int32_t around =
+          rings[i].is_exterior ? RingNesting::kNone : nesting.exterior_of(rings[i]);
       if (around != RingNesting::kNone) holes[around].push_back(i);
     }
     for (std::size_t i = 0; i < rings.size(); ++i) {

@@ -63,10 +63,9 @@ inline Point cross_edge(const RankedVertex& low, const RankedVertex& high, doubl
   if (high.elevation == level) return high.point;
   const double rise = high.elevation - low.elevation;
   // Halves where the difference of two huge elevations overflows.
-  const double share =
-      std::isfinite(rise)
-          ? (level - low.elevation) / rise
-          : (0.5 * level - 0.5 * low.elevation) / (0.5 * high.elevation - 0.5 * low.elevation);
+  const double share = std::isfinite(rise) ? (level - low.elevation) / rise
+                                           : (0.5 * level - 0.5 * low.elevation) /
+                                                 (0.5 * high.elevation - 0.5 * low.elevation);
   const auto between = [share](double a, double b) {
     const double value = a + share * (b - a);
     return std::min(std::max(value, std::min(a, b)), std::max(a, b));
@@ -99,7 +98,9 @@ class LevelSurface {
   // How many levels are at or below a vertex.
   std::int32_t rank(Vertex v) const { return rank_[number(v)]; }
   bool is_above(Vertex v, std::int32_t level) const { return rank(v) > level; }
-  bool is_at(Vertex v, std::int32_t level) const { return vertices_[number(v)].elevation == levels_.values[level]; }
+  bool is_at(Vertex v, std::int32_t level) const {
+    return vertices_[number(v)].elevation == levels_.values[level];
+  }
 
   Vertex corner(Triangle t, std::uint32_t corner) const {
     return Vertex{surface_.triangles[entry_of(t, corner)]};
@@ -258,8 +259,8 @@ class LevelSurface {
         }
       }
     }
-    return static_cast<std::int32_t>(
-        std::upper_bound(values, values + levels_.count, elevation) - values);
+    return static_cast<std::int32_t>(std::upper_bound(values, values + levels_.count, elevation) -
+                                     values);
   }
 
   SurfaceArrays surface_;

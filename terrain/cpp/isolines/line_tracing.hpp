@@ -161,11 +161,10 @@ inline void sort_lines(TracedLines& found) {
   const auto& points = found.points;
   const auto before = [&](const Line& a, const Line& b) {
     if (a.level != b.level) return a.level < b.level;
-    return std::lexicographical_compare(points.begin() + std::ptrdiff_t(a.begin),
-                                        points.begin() + std::ptrdiff_t(a.end),
-                                        points.begin() + std::ptrdiff_t(b.begin),
-                                        points.begin() + std::ptrdiff_t(b.end),
-                                        lexicographically_before);
+    return std::lexicographical_compare(
+        points.begin() + std::ptrdiff_t(a.begin), points.begin() + std::ptrdiff_t(a.end),
+        points.begin() + std::ptrdiff_t(b.begin), points.begin() + std::ptrdiff_t(b.end),
+        lexicographically_before);
   };
   std::sort(found.lines.begin(), found.lines.end(), before);
 }

@@ -141,9 +141,8 @@ class RingTracer {
     std::size_t best = edges_.size();
     for (std::size_t e = first_[at]; e < first_[std::size_t(at) + 1]; ++e) {
       if (edges_[e].is_traced && e != start) continue;
-      if (best == edges_.size() ||
-          is_before(points_[at], points_[edges_[edge].from], points_[edges_[e].to],
-                    points_[edges_[best].to])) {
+      if (best == edges_.size() || is_before(points_[at], points_[edges_[edge].from],
+                                             points_[edges_[e].to], points_[edges_[best].to])) {
         best = e;
       }
     }

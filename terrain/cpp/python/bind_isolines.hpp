@@ -90,11 +90,9 @@ inline auto trace_contours(const GivenXyz& points, const GivenTriples& triangles
                            const GivenTriples& neighbors, const GivenLevels& levels) {
   const isolines::SurfaceArrays surface = surface_of(points, triangles, neighbors);
   const isolines::Levels wanted = levels_of(levels);
-  return hand_over_lines(unlocked(1,
-                                  [&](Team& team) {
-                                    return isolines::trace_lines(surface, wanted, team);
-                                  }),
-                         wanted);
+  return hand_over_lines(
+      unlocked(1, [&](Team& team) { return isolines::trace_lines(surface, wanted, team); }),
+      wanted);
 }
 
 using GivenOffsets = Given<std::int64_t, -1>;
@@ -142,17 +140,17 @@ inline auto smooth_contours(const GivenXyz& points, const GivenTriples& triangle
       !std::all_of(places.data(), places.data() + places.shape(0), is_sound)) {
     throw std::invalid_argument("every point of a line needs a triangle");
   }
-  return hand_over_lines(
-      unlocked(1,
-               [&](Team& team) {
-                 isolines::LineSmoother smoother(surface, wanted, lines, places.data(), team);
-                 if (smooth > 0.0) smoother.smooth(smooth, rounds);
-                 if (simplify > 0.0) smoother.simplify(simplify);
-                 isolines::TracedLines made = smoother.take();
-                 isolines::sort_lines(made);
-                 return made;
-               }),
-      wanted);
+  return hand_over_lines(unlocked(1,
+                                  [&](Team& team) {
+                                    isolines::LineSmoother smoother(surface, wanted, lines,
+                                                                    places.data(), team);
+                                    if (smooth > 0.0) smoother.smooth(smooth, rounds);
+                                    if (simplify > 0.0) smoother.simplify(simplify);
+                                    isolines::TracedLines made = smoother.take();
+                                    isolines::sort_lines(made);
+                                    return made;
+                                  }),
+                         wanted);
 }
 
 // Points of the rings, offsets of rings and polygons, and the band of each polygon.
