@@ -28,8 +28,8 @@ struct TracedLines {
   std::vector<Line> lines;
 };
 
-// Turn a closed line, the last of all, to its first point by easting, then northing; where it passes
-// there twice, to the way whose next point is first.
+// Turn a closed line, the last of all, to its first point by easting, then northing; where it
+// passes there twice, to the way whose next point is first.
 inline void turn_to_first(ScratchVector<Point>& points, std::size_t begin) {
   const auto start = points.begin() + std::ptrdiff_t(begin);
   const std::size_t count = points.size() - begin;
