@@ -4,7 +4,7 @@ from ..errors import OptionError, RenderError
 from .charts.comparison import comparison_picture
 from .charts.earthwork import earthwork_map
 from .charts.histogram import histogram
-from .earthwork import Difference, difference, level_surface, stage_storage, volume
+from .earthwork import Difference, difference, stage_storage, volume
 from .lift import lift
 from .preview.picture import preview
 from .results import Features, Raster, Table
@@ -22,7 +22,6 @@ __all__ = [
     "difference",
     "earthwork_map",
     "histogram",
-    "level_surface",
     "lift",
     "preview",
     "slope",

@@ -193,7 +193,8 @@ def _corners_on_edges(
     """Return the corner of each triangle that lies opposite its longest edge."""
     xy = points[triangles, :2]
     edges = xy[:, [2, 0, 1]] - xy[:, [1, 2, 0]]
-    return np.argmax(np.hypot(edges[..., 0], edges[..., 1]), axis=1)
+    longest: NDArray[np.int64] = np.argmax(np.hypot(edges[..., 0], edges[..., 1]), axis=1)
+    return longest
 
 
 def _drop_unused(

@@ -73,7 +73,7 @@ def _join(start: NDArray[np.int64], end: NDArray[np.int64]) -> list[list[int]]:
     passed = {vertex for chain in chains for vertex in chain}
     for a, b in segments:
         if a in inside and a not in passed:
-            chain = _follow(a, b, following, inside - {a})
+            chain = _follow(a, b, following, inside)
             chains.append(chain)
             passed.update(chain)
     return chains

@@ -172,7 +172,8 @@ def _map(
     console: Console,
 ) -> None:
     """Write polygons and pictures, if there are to be some."""
-    from ...terrain import difference, earthwork_map, level_surface
+    from ...terrain import difference, earthwork_map
+    from ...terrain.earthwork import level_surface
 
     if not (planned.holds("Features") or planned.holds("picture")):
         return
