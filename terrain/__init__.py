@@ -2,15 +2,20 @@
 
 from ..errors import OptionError, RenderError
 from .charts.comparison import comparison_picture
+from .charts.contour_map import contour_map
 from .charts.earthwork import earthwork_map
 from .charts.histogram import histogram
+from .charts.profiles import profile_picture
 from .earthwork import Difference, difference, stage_storage, volume
+from .isolines import ContourCheck, check_contours, contour_bands, contour_labels, contours
 from .lift import lift
 from .preview.picture import preview
 from .results import Features, Raster, Table
+from .sections import cross_sections, drape, profile, section_lines
 from .slope import aspect, slope
 
 __all__ = [
+    "ContourCheck",
     "Difference",
     "Features",
     "OptionError",
@@ -18,12 +23,22 @@ __all__ = [
     "RenderError",
     "Table",
     "aspect",
+    "check_contours",
     "comparison_picture",
+    "contour_bands",
+    "contour_labels",
+    "contour_map",
+    "contours",
+    "cross_sections",
     "difference",
+    "drape",
     "earthwork_map",
     "histogram",
     "lift",
     "preview",
+    "profile",
+    "profile_picture",
+    "section_lines",
     "slope",
     "stage_storage",
     "volume",

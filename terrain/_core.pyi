@@ -2,6 +2,32 @@
 import numpy as np
 from numpy.typing import NDArray
 
+def trace_contours(
+    points: NDArray[np.float64],
+    triangles: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+    levels: NDArray[np.float64],
+) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int32], NDArray[np.bool_]]: ...
+def fill_bands(
+    points: NDArray[np.float64],
+    triangles: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+    levels: NDArray[np.float64],
+) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64], NDArray[np.int32]]: ...
+def smooth_contours(
+    points: NDArray[np.float64],
+    triangles: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+    levels: NDArray[np.float64],
+    xyz: NDArray[np.float64],
+    offsets: NDArray[np.int64],
+    level: NDArray[np.int32],
+    is_closed: NDArray[np.bool_],
+    places: NDArray[np.int32],
+    smooth: float,
+    rounds: int,
+    simplify: float,
+) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int32], NDArray[np.bool_]]: ...
 def sum_between(
     points: NDArray[np.float64],
     triangles: NDArray[np.int32],

@@ -13,7 +13,21 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-__all__ = ["SUMS", "OverlayMesh", "overlay", "stage_sums", "sum_between", "sum_heights"]
+__all__ = [
+    "SUMS",
+    "OverlayMesh",
+    "fill_bands",
+    "overlay",
+    "smooth_contours",
+    "stage_sums",
+    "sum_between",
+    "sum_heights",
+    "trace_contours",
+]
+
+trace_contours = _core.trace_contours
+smooth_contours = _core.smooth_contours
+fill_bands = _core.fill_bands
 
 SUMS = (
     "area",

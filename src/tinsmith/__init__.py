@@ -40,11 +40,19 @@ if TYPE_CHECKING:
         with_lines,
         write,
     )
-    from .terrain import comparison_picture, earthwork_map, histogram
+    from .terrain import comparison_picture, contour_map, earthwork_map, histogram, profile_picture
     from .terrain.earthwork import Difference, difference, stage_storage, volume
+    from .terrain.isolines import (
+        ContourCheck,
+        check_contours,
+        contour_bands,
+        contour_labels,
+        contours,
+    )
     from .terrain.lift import lift
     from .terrain.preview.picture import preview
     from .terrain.results import Features, Raster, Table
+    from .terrain.sections import cross_sections, drape, profile, section_lines
     from .terrain.slope import aspect, slope
     from .tin import (
         TIN,
@@ -109,18 +117,26 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "write",
             ),
             ".terrain": (
+                "ContourCheck",
                 "Difference",
                 "aspect",
+                "check_contours",
                 "comparison_picture",
+                "contour_bands",
+                "contour_labels",
+                "contour_map",
+                "contours",
                 "difference",
                 "earthwork_map",
                 "histogram",
                 "lift",
                 "preview",
+                "profile_picture",
                 "slope",
                 "stage_storage",
                 "volume",
             ),
+            ".terrain.sections": ("cross_sections", "drape", "profile", "section_lines"),
             ".terrain.results": ("Features", "Raster", "Table"),
             ".tin": (
                 "TIN",
@@ -158,6 +174,7 @@ __all__ = [
     "CheckError",
     "CheckResult",
     "Comparison",
+    "ContourCheck",
     "CrsError",
     "Difference",
     "Features",
@@ -187,9 +204,16 @@ __all__ = [
     "__version__",
     "aspect",
     "check",
+    "check_contours",
     "compare",
     "comparison_picture",
+    "contour_bands",
+    "contour_labels",
+    "contour_map",
+    "contours",
+    "cross_sections",
     "difference",
+    "drape",
     "earthwork_map",
     "find_format",
     "histogram",
@@ -200,6 +224,8 @@ __all__ = [
     "lines_from_codes",
     "paper",
     "preview",
+    "profile",
+    "profile_picture",
     "quality",
     "read",
     "read_lines",
@@ -207,6 +233,7 @@ __all__ = [
     "read_rings",
     "read_water",
     "refine",
+    "section_lines",
     "slope",
     "stage_storage",
     "terrain",

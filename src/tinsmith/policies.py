@@ -16,6 +16,7 @@ __all__ = [
     "FeatureKind",
     "LineKind",
     "LineRole",
+    "OutsidePolicy",
     "OverviewMethod",
     "SlopeUnit",
     "SurfacePart",
@@ -57,3 +58,6 @@ SurfacePart: TypeAlias = Literal["triangle", "vertex"]
 
 OverviewMethod: TypeAlias = Literal["average", "nearest", "none"]
 """How the cells of a raster's smaller copies are found."""
+
+OutsidePolicy: TypeAlias = Literal["error", "nan", "cut"]
+"""What becomes of parts of features where there is no surface."""

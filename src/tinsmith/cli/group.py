@@ -32,17 +32,8 @@ if TYPE_CHECKING:
 __all__ = ["main"]
 
 _BUILT_IN = (
-    "build",
-    "info",
-    "check",
-    "view",
-    "compare",
-    "refine",
-    "edit",
-    "convert",
-    "volume",
-    "diff",
-    "formats",
+    *("build", "info", "check", "view", "compare", "refine", "edit", "convert", "formats"),
+    *("contours", "profile", "volume", "diff", "drape"),
 )
 _ENTRY_POINTS = "tinsmith.commands"
 

@@ -2,8 +2,10 @@
 #include <nanobind/nanobind.h>
 
 #include "bind_earthwork.hpp"
+#include "bind_isolines.hpp"
 
 NB_MODULE(_core, m) {
   m.doc() = "Compiled core of tinsmith.terrain: what is derived from a TIN.";
+  tinsmith::python::bind_isolines(m);
   tinsmith::python::bind_earthwork(m);
 }

@@ -1,0 +1,30 @@
+"""Make the picture of profiles: the sample site and the pad designed into it.
+
+Run ``python docs/gallery/profile.py [FOLDER]``; needs the extra "plot".
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import tinsmith as ts
+
+HERE = Path(__file__).parent
+SAMPLES = HERE.parent.parent / "sample_data"
+LINE = [(752770, 4024225), (752800, 4024300), (752835, 4024350)]
+
+
+def main(folder: Path = HERE) -> None:
+    """Write profile.png."""
+    ground, design = (
+        ts.triangulate(ts.lines_from_codes(ts.read(SAMPLES / name, crs="EPSG:32616", z_unit="m")))
+        for name in ("site_survey.csv", "design_pad.csv")
+    )
+    table = ts.profile({"existing ground": ground, "design": design}, LINE)
+    figure = ts.profile_picture(table, title="Profile A-A of the building pad", crs=ground.crs)
+    figure.savefig(folder / "profile.png", dpi=110, metadata={"Software": None})
+
+
+if __name__ == "__main__":
+    main(*map(Path, sys.argv[1:]))

@@ -1,0 +1,235 @@
+"""``tinsmith profile``: surfaces cut along a line, or square to it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ..options import (
+    console_options,
+    output_files,
+    product_options,
+    reading_options,
+    triangulating_options,
+)
+from ..output.console import plain
+from ..paths import INPUT, LINES, Named, title_of
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from ...terrain import Features, Table
+    from ...tin import TIN
+    from ..options import Reading, Triangulating, Writing
+    from ..output.console import Console
+    from ..surfaces import Products
+
+__all__ = ["profile"]
+
+Pair = tuple[float, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Line:
+    """Where to cut."""
+
+    file: Path | None
+    start: Pair | None
+    end: Pair | None
+
+    def require_one(self) -> None:
+        """Refuse a line that is given twice, or by halves."""
+        ends = (self.start is not None) + (self.end is not None)
+        if (self.file is None) == (ends == 0) or ends == 1:
+            raise click.UsageError("A line is needed: --line FILE, or --from X Y and --to X Y.")
+
+
+@click.command(short_help="Cut surfaces along a line: tables, cross sections, a picture.")
+@click.argument("files", nargs=-1, required=True, type=INPUT)
+@output_files
+@click.option("--line", "line_file", metavar="FILE", type=LINES, help="Vector file of the lines.")
+@click.option("--from", "begin", metavar="X Y", nargs=2, type=float, help="Where a line begins.")
+@click.option("--to", "end", metavar="X Y", nargs=2, type=float, help="Where it ends.")
+@click.option(
+    "--interval", metavar="LENGTH", type=float, help="Add a row at every multiple of this station."
+)
+@click.option(
+    "--start", metavar="STATION", type=float, default=0.0, help="Station where the line begins."
+)
+@click.option(
+    "--sections",
+    metavar="INTERVAL WIDTH",
+    nargs=2,
+    type=float,
+    help="Cut square to the line instead, at this interval and over this width.",
+)
+@click.option(
+    "--name",
+    "names",
+    metavar="TEXT",
+    multiple=True,
+    help="Name of a surface, once for each; default its file's.",
+)
+@click.option(
+    "--exaggeration", metavar="FACTOR", type=float, help="Of the picture; chosen if absent."
+)
+@click.option("--title", metavar="TEXT", help="Of the picture; default the first file's name.")
+@reading_options
+@triangulating_options
+@product_options
+@console_options
+def profile(
+    files: tuple[Path, ...],
+    outputs: tuple[Path, ...],
+    line_file: Path | None,
+    begin: Pair | None,
+    end: Pair | None,
+    names: tuple[str, ...],
+    reading: Reading,
+    how: Triangulating,
+    writing: Writing,
+    console: Console,
+    **asked: Any,
+) -> None:
+    """Cut the TINs in FILES, or those of the points in them, along a line.
+
+    A row wherever the line crosses an edge of a TIN, with the elevations of all of them. Tables go
+    to .csv or .json, a picture to .png; cross sections also to .gpkg, .geojson and others as lines
+    in space. Lines in another CRS are reprojected.
+
+    \b
+    Example:
+      tinsmith profile sample_data/site_survey.csv --crs EPSG:32616 --codes
+        --from 752690 4024225 --to 752850 4024330 -o profile.csv -o profile.png
+    """  # noqa: D301 - click reads the control character
+    from ..output.line_summaries import mesh_counts
+    from ..surfaces import read_surfaces
+
+    started = perf_counter()
+    line = _Line(file=line_file, start=begin, end=end)
+    line.require_one()
+    chosen = _names(files, names)
+    planned = _plan(outputs, files, line_file, how, writing, console, asked["sections"])
+    surfaces = dict(zip(chosen, read_surfaces(files, reading, how, console), strict=True))
+    notes: list[str] = []
+    lines = _lines(line, next(iter(surfaces.values())), notes)
+    table, sections = _cut(surfaces, lines, planned.holds("Features"), console, asked)
+    figure = _draw(table, surfaces, files, asked) if planned.holds("picture") else None
+    planned.write("Table", table, console)
+    planned.write("Features", sections, console)
+    planned.draw(lambda: figure, console)
+    notes += table.notes
+    console.summarise(
+        [
+            *[("Surface", f"{name}: {mesh_counts(tin)}") for name, tin in surfaces.items()],
+            ("Rows", f"{len(table):,}"),
+            *[("Note", note) for note in notes],
+            ("Written", planned.text),
+            ("Time", f"{perf_counter() - started:.2f} s"),
+        ]
+    )
+    if console.as_json:
+        console.emit(plain(_facts(files, table, notes, planned)))
+
+
+# ---------------------------------------------------------------- what is given
+
+
+def _names(files: Sequence[Path], given: Sequence[str]) -> list[str]:
+    names = list(given) or [title_of(file) or "surface" for file in files]
+    if len(names) != len(files):
+        raise click.UsageError(
+            f"--name is given {len(names)} times for {len(files)} surfaces: name each once."
+        )
+    repeated = next((name for name in names if names.count(name) > 1), None)
+    if repeated is not None:
+        raise click.UsageError(f"Two surfaces are called '{repeated}': --name tells them apart.")
+    return names
+
+
+def _plan(
+    outputs: Sequence[Path],
+    files: Sequence[Path],
+    line_file: Path | None,
+    how: Triangulating,
+    writing: Writing,
+    console: Console,
+    sections: Pair | None,
+) -> Products:
+    """Choose what each output holds, before any work is done."""
+    from ...io.vector.survey_lines import path_and_layer
+    from ..surfaces import plan_products, surface_inputs
+
+    inputs = surface_inputs(files, how)
+    if line_file is not None:
+        inputs.append(Named(path_and_layer(line_file)[0], "the file of --line"))
+    kinds = ("Table", "picture") if sections is None else ("Table", "Features", "picture")
+    planned = plan_products(outputs, writing, inputs=inputs, console=console, kinds=kinds)
+    if planned.pictures and sections is not None:
+        raise click.UsageError(f"'{planned.pictures[0]}' shows a profile: it has no --sections.")
+    return planned
+
+
+def _lines(line: _Line, tin: TIN, notes: list[str]) -> Any:
+    from ...io import read_lines
+    from ...io.vector.survey_lines import path_and_layer
+
+    if line.file is None:
+        return [line.start, line.end]
+    path, layer = path_and_layer(line.file)
+    return read_lines(path, crs=tin.crs, layer=layer, drape=True, notes=notes)
+
+
+# ---------------------------------------------------------------- what is made
+
+
+def _cut(
+    surfaces: dict[str, TIN], lines: Any, in_space: bool, console: Console, asked: dict[str, Any]
+) -> tuple[Table, Features | None]:
+    """Return the rows, and the sections as lines in space if they are wanted."""
+    from ...terrain import cross_sections, section_lines
+    from ...terrain import profile as cut_profile
+
+    given: Any = surfaces if len(surfaces) > 1 else next(iter(surfaces.values()))
+    with console.steps() as steps, steps.step("Cutting"):
+        if asked["sections"] is None:
+            rows = cut_profile(given, lines, interval=asked["interval"], start=asked["start"])
+            return rows, None
+        interval, width = asked["sections"]
+        how = {"interval": interval, "width": width, "start": asked["start"]}
+        table = cross_sections(given, lines, **how)
+        return table, section_lines(given, lines, **how) if in_space else None
+
+
+def _draw(
+    table: Table, surfaces: dict[str, TIN], files: Sequence[Path], asked: dict[str, Any]
+) -> Any:
+    from ...terrain import profile_picture
+
+    crs = next((tin.crs for tin in surfaces.values() if tin.crs is not None), None)
+    title = asked["title"] or f"Profile: {title_of(files[0])}"
+    return profile_picture(table, exaggeration=asked["exaggeration"], title=title, crs=crs)
+
+
+def _facts(
+    files: Sequence[Path], table: Table, notes: Sequence[str], planned: Products
+) -> dict[str, Any]:
+    """Describe the table: its columns, and the least and largest of those that are measured."""
+    measured = [name for name, values in table.columns.items() if values.dtype.kind == "f"]
+    return {
+        "inputs": [str(file) for file in files],
+        "rows": len(table),
+        "columns": list(table.columns),
+        "ranges": {name: _range(table[name]) for name in measured},
+        "notes": list(notes),
+        "outputs": [str(path) for path in planned.paths],
+    }
+
+
+def _range(values: Any) -> list[float | None]:
+    known = values[values == values]
+    return [float(known.min()), float(known.max())] if len(known) else [None, None]
