@@ -9,7 +9,7 @@ import numpy as np
 
 from ..errors import choice
 from ..policies import SlopeUnit, SurfacePart
-from .units import scales_of
+from .units import find_scales
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -18,11 +18,11 @@ if TYPE_CHECKING:
     from ..tin import TIN
 
 __all__ = [
-    "areas",
     "aspect",
-    "normals",
+    "compute_normals",
+    "measure_areas",
+    "measure_ring_area",
     "normals_of",
-    "ring_area",
     "slope",
     "slope_of",
 ]
@@ -122,7 +122,7 @@ def aspect(tin: TIN, *, per: SurfacePart = "triangle") -> NDArray[np.float64]:
     return azimuth
 
 
-def areas(tin: TIN) -> NDArray[np.float64]:
+def measure_areas(tin: TIN) -> NDArray[np.float64]:
     """Measure the area of each triangle in the plane on the ground.
 
     Parameters
@@ -134,12 +134,14 @@ def areas(tin: TIN) -> NDArray[np.float64]:
     (m,) float64 array
         In square metres; in CRS units squared where those are not known.
     """
-    measured: NDArray[np.float64] = tin.triangle_areas * area_scale(tin.crs, _middle_northings(tin))
+    measured: NDArray[np.float64] = tin.triangle_areas * find_area_scale(
+        tin.crs, _average_northings(tin)
+    )
     return measured
 
 
-def ring_area(crs: CRS | None, ring: NDArray[np.float64]) -> float:
-    """Measure the area inside a ring in the plane on the ground, as :func:`areas` does.
+def measure_ring_area(crs: CRS | None, ring: NDArray[np.float64]) -> float:
+    """Measure the area inside a ring in the plane on the ground, as :func:`measure_areas` does.
 
     Parameters
     ----------
@@ -155,17 +157,17 @@ def ring_area(crs: CRS | None, ring: NDArray[np.float64]) -> float:
     x, y = (ring[:, :2] - ring[0, :2]).T
     steps = x * np.roll(y, -1) - np.roll(x, -1) * y
     middle = (ring[:, 1] + np.roll(ring[:, 1], -1) + ring[0, 1]) / 3
-    return float((steps * area_scale(crs, middle)).sum()) / 2
+    return float((steps * find_area_scale(crs, middle)).sum()) / 2
 
 
-def area_scale(crs: CRS | None, northing: ArrayLike) -> Any:
+def find_area_scale(crs: CRS | None, northing: ArrayLike) -> Any:
     """Return the factor from areas in CRS units squared to square metres, at each northing."""
-    scales = scales_of(crs, None, northing)
+    scales = find_scales(crs, None, northing)
     metres = None if crs is None else crs.horizontal_unit.metres
     return scales.east * scales.north * (metres or 1.0) ** 2
 
 
-def normals(tin: TIN) -> NDArray[np.float64]:
+def compute_normals(tin: TIN) -> NDArray[np.float64]:
     """Return the upward normal of each triangle, its length twice the triangle's area in space.
 
     Parameters
@@ -184,7 +186,7 @@ def normals(tin: TIN) -> NDArray[np.float64]:
     size = np.abs(first[:, :2]).max(axis=1) * np.abs(second[:, :2]).max(axis=1)
     for row in np.flatnonzero(~(upward[:, 2] > _SLIVER * size)).tolist():
         upward[row] = _exact_normal(*(corner[row] for corner in corners))
-    east, north, up = scales_of(tin.crs, tin.elevation_unit, _middle_northings(tin))
+    east, north, up = find_scales(tin.crs, tin.elevation_unit, _average_northings(tin))
     for axis, factor in enumerate((north * up, east * up, east * north)):
         upward[:, axis] *= factor
     return upward
@@ -210,7 +212,7 @@ def normals_of(tin: TIN, per: SurfacePart) -> NDArray[np.float64]:
         For another place.
     """
     choice("per", per, SurfacePart)
-    upward = normals(tin)
+    upward = compute_normals(tin)
     if per == "triangle":
         return upward
     corners, count = tin.triangles.ravel(), len(tin.points)
@@ -218,6 +220,6 @@ def normals_of(tin: TIN, per: SurfacePart) -> NDArray[np.float64]:
     return np.stack(sums, axis=1)
 
 
-def _middle_northings(tin: TIN) -> NDArray[np.float64]:
+def _average_northings(tin: TIN) -> NDArray[np.float64]:
     middle: NDArray[np.float64] = tin.points[:, 1][tin.triangles].mean(axis=1)
     return middle

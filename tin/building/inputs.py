@@ -175,7 +175,7 @@ def gather_inputs(
         max_edge=np.inf if max_edge is None else float(max_edge),
         trim=trim,
         conforming=as_flag("conforming", conforming),
-        options=LineOptions(duplicates, float(snap), crossing, thread_count(threads, len(xyz))),
+        options=LineOptions(thread_count(threads, len(xyz)), duplicates, float(snap), crossing),
         crs=system,
         elevation_unit=unit,
         skipped=own.skipped,
