@@ -6,7 +6,7 @@ from .charts.contour_map import contour_map
 from .charts.earthwork import earthwork_map
 from .charts.histogram import histogram
 from .charts.profiles import profile_picture
-from .earthwork import Difference, difference, level_surface, stage_storage, volume
+from .earthwork import Difference, difference, stage_storage, volume
 from .gridding import height_above, rasterize
 from .isolines import ContourCheck, check_contours, contour_bands, contour_labels, contours
 from .lift import lift
@@ -36,7 +36,6 @@ __all__ = [
     "earthwork_map",
     "height_above",
     "histogram",
-    "level_surface",
     "lift",
     "preview",
     "profile",

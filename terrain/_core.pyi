@@ -27,7 +27,13 @@ def trace_contours(
     triangles: NDArray[np.int32],
     neighbors: NDArray[np.int32],
     levels: NDArray[np.float64],
-) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int32], NDArray[np.bool_]]: ...
+) -> tuple[
+    NDArray[np.float64],
+    NDArray[np.int64],
+    NDArray[np.int32],
+    NDArray[np.bool_],
+    NDArray[np.float64],
+]: ...
 def fill_bands(
     points: NDArray[np.float64],
     triangles: NDArray[np.int32],
@@ -47,7 +53,13 @@ def smooth_contours(
     smooth: float,
     rounds: int,
     simplify: float,
-) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int32], NDArray[np.bool_]]: ...
+) -> tuple[
+    NDArray[np.float64],
+    NDArray[np.int64],
+    NDArray[np.int32],
+    NDArray[np.bool_],
+    NDArray[np.float64],
+]: ...
 def sum_between(
     points: NDArray[np.float64],
     triangles: NDArray[np.int32],

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..._sentences import counted
 from ...errors import OptionError, ReadError
-from .columns import role_of
+from .columns import find_role
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -159,7 +159,7 @@ def _coordinates(
             if name not in header:
                 raise OptionError("column", name, header)
         return (header.index(named[0]), header.index(named[1])), ()
-    roles = [role_of(name) for name in header]
+    roles = [find_role(name) for name in header]
     found = [[k for k, role in enumerate(roles) if role == one] for one in ("easting", "northing")]
     if [len(one) for one in found] != [1, 1]:
         names = ", ".join(header)

@@ -51,7 +51,7 @@ inline isolines::Levels levels_of(const GivenLevels& levels) {
   return {levels.data(), row_count(levels.shape(0))};
 }
 
-// Coordinates, offsets, and the level and whether it is closed of each line.
+// Coordinates and offsets, and of each line its level, whether it is closed, and its length.
 inline auto hand_over_lines(const isolines::TracedLines& found, const isolines::Levels& levels) {
   const std::size_t count = found.lines.size();
   const auto closed = [](const isolines::Line& line) { return line.is_closed; };
@@ -61,25 +61,29 @@ inline auto hand_over_lines(const isolines::TracedLines& found, const isolines::
   auto offsets = streamed_array<std::int64_t>(count + 1);
   auto level = streamed_array<std::int32_t>(count);
   auto is_closed = streamed_array<bool>(count);
+  auto length = streamed_array<double>(count);
   std::size_t at = 0;
   for (std::size_t k = 0; k < count; ++k) {
     const isolines::Line& line = found.lines[k];
     offsets[k] = static_cast<std::int64_t>(at);
     level[k] = line.level;
     is_closed[k] = line.is_closed;
+    length[k] = 0.0;
     const std::size_t points = line.end - line.begin + (line.is_closed ? 1 : 0);
     for (std::size_t i = 0; i < points; ++i, ++at) {
       const Point p = found.points[line.begin + i == line.end ? line.begin : line.begin + i];
       xyz[3 * at] = p.x;
       xyz[3 * at + 1] = p.y;
       xyz[3 * at + 2] = levels.values[line.level];
+      if (i > 0) length[k] += std::hypot(p.x - xyz[3 * at - 3], p.y - xyz[3 * at - 2]);
     }
   }
   offsets[count] = static_cast<std::int64_t>(at);
   return std::make_tuple(hand_over<Xyz>(std::move(xyz), {total, 3}),
                          hand_over<Offsets>(std::move(offsets), {count + 1}),
                          hand_over<Numbers>(std::move(level), {count}),
-                         hand_over<Flags>(std::move(is_closed), {count}));
+                         hand_over<Flags>(std::move(is_closed), {count}),
+                         hand_over<Elevations>(std::move(length), {count}));
 }
 
 inline auto trace_contours(const GivenXyz& points, const GivenTriples& triangles,

@@ -17,7 +17,7 @@ from ..options import (
     reading_options,
     triangulating_options,
 )
-from ..output.console import plain
+from ..output.console import format_json
 from ..output.failures import Failure
 from ..paths import LINES, Named
 
@@ -94,10 +94,10 @@ def interpolate(
         --at places.csv --method natural -o elevations.csv
     """  # noqa: D301 - click reads the control character
     from ...io.delimited.places import read_places
-    from ..files import inputs_of, plan_outputs, read_tin, write_outputs
+    from ..files import list_inputs, plan_outputs, read_tin, write_outputs
 
     started = perf_counter()
-    inputs = [*inputs_of(file, how), Named(places_file, "the file of --at")]
+    inputs = [*list_inputs(file, how), Named(places_file, "the file of --at")]
     planned = plan_outputs(outputs, writing, inputs=inputs, console=console, kinds=("Table",))
     tin, _ = read_tin(file, reading, how, console)
     places = read_places(
@@ -112,7 +112,7 @@ def interpolate(
     if console.as_json:
         facts = {"input": str(file), "places": len(table), "method": asked["method"]}
         facts |= {"outside": _outside(table, asked["column"]), "notes": notes}
-        console.emit(plain(facts | {"outputs": [str(one.path) for one in planned]}))
+        console.emit(format_json(facts | {"outputs": [str(one.path) for one in planned]}))
 
 
 def _table(
@@ -182,7 +182,7 @@ def _tell(
     asked: dict[str, Any],
     console: Console,
 ) -> None:
-    from ..files import written_text
+    from ..files import describe_written
     from ..output.line_summaries import mesh_counts
 
     outside = _outside(table, asked["column"])
@@ -195,7 +195,7 @@ def _tell(
             ("Places", f"{len(table):,}, {told}"),
             ("Method", asked["method"]),
             *[("Note", note) for note in notes],
-            ("Written", written_text(planned)),
+            ("Written", describe_written(planned)),
             ("Time", f"{perf_counter() - started:.2f} s"),
         ]
     )

@@ -15,7 +15,7 @@ from ..options import (
     reading_options,
     triangulating_options,
 )
-from ..output.console import plain
+from ..output.console import format_json
 from ..output.failures import Failure
 from ..paths import LINES, Named
 
@@ -93,13 +93,13 @@ def raster(
       tinsmith raster sample_data/site_survey.csv --crs EPSG:32616 --codes
         --spacing 0.5 -o site.tif
     """  # noqa: D301 - click reads the control character
-    from ..files import inputs_of, plan_outputs, read_tin, write_outputs
+    from ..files import list_inputs, plan_outputs, read_tin, write_outputs
     from ..options import Writing
 
     if (spacing is None) == (like is None):
         raise click.UsageError("One of --spacing and --like is needed.")
     started = perf_counter()
-    inputs = inputs_of(file, how)
+    inputs = list_inputs(file, how)
     if like is not None:
         inputs.append(Named(like, "the raster of --like"))
     writing = Writing(output_format=output_format)
@@ -109,7 +109,7 @@ def raster(
     write_outputs(made, planned, console)
     _tell(tin, made, planned, started, console)
     if console.as_json:
-        console.emit(plain(_facts(file, made, planned)))
+        console.emit(format_json(_facts(file, made, planned)))
 
 
 def _raster(
@@ -136,7 +136,7 @@ def _raster(
 
 
 def _tell(tin: TIN, made: Raster, planned: list[Output], started: float, console: Console) -> None:
-    from ..files import written_text
+    from ..files import describe_written
     from ..output.line_summaries import mesh_counts
 
     rows, columns = made.shape
@@ -146,7 +146,7 @@ def _tell(tin: TIN, made: Raster, planned: list[Output], started: float, console
             ("Surface", mesh_counts(tin)),
             ("Raster", f"{rows:,} rows by {columns:,} columns of {made.grid.spacing:g}"),
             ("", f"west {box.xmin:.10g}, north {box.ymax:.10g}"),
-            ("Written", written_text(planned)),
+            ("Written", describe_written(planned)),
             ("Time", f"{perf_counter() - started:.2f} s"),
         ]
     )
