@@ -5,6 +5,7 @@ from .charts.comparison import comparison_picture
 from .charts.histogram import histogram
 from .lift import lift
 from .preview.picture import preview
+from .relief import aspect_classes, curvature, hillshade, slope_classes, slope_statistics
 from .results import Features, Raster, Table
 from .slope import aspect, slope
 
@@ -15,9 +16,14 @@ __all__ = [
     "RenderError",
     "Table",
     "aspect",
+    "aspect_classes",
     "comparison_picture",
+    "curvature",
+    "hillshade",
     "histogram",
     "lift",
     "preview",
     "slope",
+    "slope_classes",
+    "slope_statistics",
 ]

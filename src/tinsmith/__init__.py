@@ -43,6 +43,13 @@ if TYPE_CHECKING:
     from .terrain import comparison_picture, histogram
     from .terrain.lift import lift
     from .terrain.preview.picture import preview
+    from .terrain.relief import (
+        aspect_classes,
+        curvature,
+        hillshade,
+        slope_classes,
+        slope_statistics,
+    )
     from .terrain.results import Features, Raster, Table
     from .terrain.slope import aspect, slope
     from .tin import (
@@ -115,6 +122,13 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "preview",
                 "slope",
             ),
+            ".terrain.relief": (
+                "aspect_classes",
+                "curvature",
+                "hillshade",
+                "slope_classes",
+                "slope_statistics",
+            ),
             ".terrain.results": ("Features", "Raster", "Table"),
             ".tin": (
                 "TIN",
@@ -179,10 +193,13 @@ __all__ = [
     "WriteError",
     "__version__",
     "aspect",
+    "aspect_classes",
     "check",
     "compare",
     "comparison_picture",
+    "curvature",
     "find_format",
+    "hillshade",
     "histogram",
     "io",
     "known_formats",
@@ -199,6 +216,8 @@ __all__ = [
     "read_water",
     "refine",
     "slope",
+    "slope_classes",
+    "slope_statistics",
     "terrain",
     "tin",
     "transform_points",

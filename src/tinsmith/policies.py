@@ -10,6 +10,7 @@ from typing import Literal, TypeAlias
 __all__ = [
     "BreaklineKind",
     "CrossingPolicy",
+    "CurvatureKind",
     "DistanceRule",
     "DuplicatePolicy",
     "EmptyCircleRule",
@@ -57,3 +58,6 @@ SurfacePart: TypeAlias = Literal["triangle", "vertex"]
 
 OverviewMethod: TypeAlias = Literal["average", "nearest", "none"]
 """How the cells of a raster's smaller copies are found."""
+
+CurvatureKind: TypeAlias = Literal["profile", "plan", "tangential", "mean", "gaussian"]
+"""In which direction a surface is curved."""
