@@ -178,16 +178,22 @@ def normals(tin: TIN) -> NDArray[np.float64]:
         Of the true surface, as in :func:`slope`: in CRS units squared, in a geographic CRS square
         metres. Its horizontal part points downhill; the vertical part is positive.
     """
-    corners = [tin.points[tin.triangles[:, k]] for k in range(3)]
-    first, second = corners[1] - corners[0], corners[2] - corners[0]
-    upward: NDArray[np.float64] = np.cross(first, second)
-    size = np.abs(first[:, :2]).max(axis=1) * np.abs(second[:, :2]).max(axis=1)
-    for row in np.flatnonzero(~(upward[:, 2] > _SLIVER * size)).tolist():
-        upward[row] = _exact_normal(*(corner[row] for corner in corners))
+    first, second, third = (np.ascontiguousarray(corner) for corner in tin.triangles.T)
+    axes = [np.ascontiguousarray(axis) for axis in tin.points.T]
+    (ux, vx), (uy, vy), (uz, vz) = (
+        (axis[second] - axis[first], axis[third] - axis[first]) for axis in axes
+    )
+    components = [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx]
+    sizes = np.maximum(np.abs(ux), np.abs(uy)) * np.maximum(np.abs(vx), np.abs(vy))
+    for row in np.flatnonzero(~(components[2] > _SLIVER * sizes)).tolist():
+        exact = _exact_normal(*tin.points[tin.triangles[row]])
+        for component, value in zip(components, exact, strict=True):
+            component[row] = value
     east, north, up = scales_of(tin.crs, tin.elevation_unit, _middle_northings(tin))
-    for axis, factor in enumerate((north * up, east * up, east * north)):
-        upward[:, axis] *= factor
-    return upward
+    factors = (north * up, east * up, east * north)
+    return np.stack(
+        [component * factor for component, factor in zip(components, factors, strict=True)], axis=1
+    )
 
 
 def _exact_normal(*corners: NDArray[np.float64]) -> list[float]:

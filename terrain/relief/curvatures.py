@@ -135,7 +135,8 @@ def _within_two_edges(
     near = neighbors[slots]
     further, via = gather(offsets, near)
     keys = np.concatenate([owner * n + near, owner[via] * n + neighbors[further]])
-    keys = np.unique(keys)
+    keys.sort()  # many times as fast as the hashing of np.unique
+    keys = keys[np.append(True, keys[1:] != keys[:-1])]
     owners, others = np.divmod(keys, n)
     is_other = others != rows[owners]
     return owners[is_other], others[is_other]

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ...tin.topology import NO_NEIGHBOR, boundary_walks
+from ...tin.topology import NO_NEIGHBOR, boundary_walks, gather
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -67,9 +67,16 @@ def dissolve(tin: TIN, classes: NDArray[np.int64]) -> Dissolved:
         return Dissolved(nothing[:0], nothing, nothing, nothing, nothing[:0])
     neighbors = _within_classes(tin.neighbors, classes)
     parts = _components(neighbors)
-    rings, part_of_ring = _rings(tin.triangles, neighbors, parts, classes)
-    order = _exteriors_first(rings, part_of_ring, classes, tin.points)
-    return _as_levels([rings[k] for k in order], part_of_ring[order], classes)
+    rings = _rings(tin.triangles, neighbors, parts, classes)
+    return _as_levels(rings, _exteriors_first(rings, classes, tin.points), classes)
+
+
+class _Rings(NamedTuple):
+    """Open rings, one after the other, and the component that each bounds."""
+
+    vertices: NDArray[np.int64]
+    offsets: NDArray[np.int64]
+    parts: NDArray[np.int64]
 
 
 def _within_classes(neighbors: NDArray[np.int32], classes: NDArray[np.int64]) -> NDArray[np.int32]:
@@ -106,25 +113,46 @@ def _rings(
     neighbors: NDArray[np.int32],
     parts: NDArray[np.int64],
     classes: NDArray[np.int64],
-) -> tuple[list[NDArray[np.int64]], NDArray[np.int64]]:
-    """Return rings that never meet a vertex twice, and the component of each."""
-    rings: list[NDArray[np.int64]] = []
+) -> _Rings:
+    """Return rings that never meet a vertex twice."""
+    edges, offsets = boundary_walks(triangles, neighbors)
+    first = edges[offsets[:-1]] // 3
+    is_wanted = classes[first] >= 0
+    chosen, _ = gather(offsets, np.flatnonzero(is_wanted))
+    edges, first = edges[chosen], first[is_wanted]
+    lengths = np.diff(offsets)[is_wanted]
+    vertices = triangles[edges // 3, (edges % 3 + 1) % 3].astype(np.int64)
+    walks = _Rings(vertices, np.append(0, np.cumsum(lengths)), parts[first])
+    return _without_repeats(walks)
+
+
+def _without_repeats(walks: _Rings) -> _Rings:
+    """Cut the walks that meet a vertex twice."""
+    lengths = np.diff(walks.offsets)
+    walk = np.repeat(np.arange(len(lengths)), lengths)
+    keys = np.sort(walk * (walks.vertices.max() + 1) + walks.vertices)
+    repeated = np.unique(keys[1:][keys[1:] == keys[:-1]] // (walks.vertices.max() + 1))
+    if len(repeated) == 0:
+        return walks
+    is_whole = np.ones(len(lengths), np.bool_)
+    is_whole[repeated] = False
+    pieces: list[int] = []
+    counts: list[int] = []
     owners: list[int] = []
-    for walk in boundary_walks(triangles, neighbors):
-        first = int(walk[0]) // 3
-        if classes[first] < 0:
-            continue
-        vertices = triangles[walk // 3, (walk % 3 + 1) % 3].astype(np.int64)
-        pieces = _cut_at_repeats(vertices.tolist())
-        rings += [vertices] if len(pieces) == 1 else [np.array(piece) for piece in pieces]
-        owners += [int(parts[first])] * len(pieces)
-    return rings, np.array(owners, np.int64)
+    for number in repeated.tolist():
+        begin, end = walks.offsets[number : number + 2].tolist()
+        for piece in _cut_at_repeats(walks.vertices[begin:end].tolist()):
+            pieces += piece
+            counts.append(len(piece))
+            owners.append(int(walks.parts[number]))
+    vertices = np.append(walks.vertices[is_whole[walk]], np.array(pieces, np.int64))
+    lengths = np.append(lengths[is_whole], np.array(counts, np.int64))
+    parts = np.append(walks.parts[is_whole], np.array(owners, np.int64))
+    return _Rings(vertices, np.append(0, np.cumsum(lengths)), parts)
 
 
 def _cut_at_repeats(walk: list[int]) -> list[list[int]]:
     """Cut a closed walk into rings, each of which meets every vertex once."""
-    if len(set(walk)) == len(walk):
-        return [walk]
     rings: list[list[int]] = []
     path: list[int] = []
     place: dict[int, int] = {}
@@ -142,50 +170,45 @@ def _cut_at_repeats(walk: list[int]) -> list[list[int]]:
 
 
 def _exteriors_first(
-    rings: list[NDArray[np.int64]],
-    parts: NDArray[np.int64],
-    classes: NDArray[np.int64],
-    points: NDArray[np.float64],
+    rings: _Rings, classes: NDArray[np.int64], points: NDArray[np.float64]
 ) -> NDArray[np.int64]:
     """Sort rings by class, by polygon, and within it the exterior before the holes."""
     rank = np.empty(len(points), np.int64)
     rank[np.lexsort((points[:, 1], points[:, 0]))] = np.arange(len(points))
-    starts = np.append(0, np.cumsum([len(ring) for ring in rings])[:-1])
-    vertices = np.concatenate(rings)
-    western = np.minimum.reduceat(rank[vertices], starts)
+    western = np.minimum.reduceat(rank[rings.vertices], rings.offsets[:-1])
     # Where a hole touches its exterior in the westernmost vertex, the exterior turns left.
-    areas = _ring_areas(points, vertices, starts)
-    return np.lexsort((-areas, western, parts, classes[parts]))
+    areas = _ring_areas(points, rings)
+    return np.lexsort((-areas, western, rings.parts, classes[rings.parts]))
 
 
-def _ring_areas(
-    points: NDArray[np.float64], vertices: NDArray[np.int64], starts: NDArray[np.int64]
-) -> NDArray[np.float64]:
-    """Return twice the signed area of each open ring."""
-    lengths = np.diff(np.append(starts, len(vertices)))
-    origin = np.repeat(points[vertices[starts], :2], lengths, axis=0)
-    following = np.arange(1, len(vertices) + 1)
-    following[np.append(starts[1:], len(vertices)) - 1] = starts
-    here = points[vertices, :2] - origin
-    there = points[vertices[following], :2] - origin
-    turns = here[:, 0] * there[:, 1] - there[:, 0] * here[:, 1]
+def _ring_areas(points: NDArray[np.float64], rings: _Rings) -> NDArray[np.float64]:
+    """Return twice the signed area of each ring."""
+    starts, ends = rings.offsets[:-1], rings.offsets[1:]
+    x, y = (np.ascontiguousarray(axis)[rings.vertices] for axis in points[:, :2].T)
+    lengths = ends - starts
+    x, y = (axis - np.repeat(axis[starts], lengths) for axis in (x, y))
+    following = np.arange(1, len(rings.vertices) + 1)
+    following[ends - 1] = starts
+    turns = x * y[following] - x[following] * y
     areas: NDArray[np.float64] = np.add.reduceat(turns, starts)
     return areas
 
 
-def _as_levels(
-    rings: list[NDArray[np.int64]], parts: NDArray[np.int64], classes: NDArray[np.int64]
-) -> Dissolved:
-    """Close the rings, and count them by polygon and by class."""
-    closed = [np.append(ring, ring[0]) for ring in rings]
-    lengths = np.array([len(ring) for ring in closed])
+def _as_levels(rings: _Rings, order: NDArray[np.int64], classes: NDArray[np.int64]) -> Dissolved:
+    """Close the rings in some order, and count them by polygon and by class."""
+    parts = rings.parts[order]
+    slots, owner = gather(rings.offsets, order)
+    lengths = np.bincount(owner, minlength=len(order))
+    ends = np.cumsum(lengths)
+    vertices = rings.vertices[slots]
+    closed = np.insert(vertices, ends, vertices[ends - lengths])
     polygon_starts = np.flatnonzero(np.append(True, parts[1:] != parts[:-1]))
     class_of = classes[parts[polygon_starts]]
     feature_starts = np.flatnonzero(np.append(True, class_of[1:] != class_of[:-1]))
     return Dissolved(
-        np.concatenate(closed),
-        np.append(0, np.cumsum(lengths)),
-        np.append(polygon_starts, len(rings)),
+        closed,
+        np.append(0, np.cumsum(lengths + 1)),
+        np.append(polygon_starts, len(order)),
         np.append(feature_starts, len(polygon_starts)),
         class_of[feature_starts].astype(np.int64),
     )
