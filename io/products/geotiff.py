@@ -133,7 +133,8 @@ def _nodata(raster: Raster, dtype: np.dtype[Any], path: Path) -> float | None:
     """Return the value of cells without data; None where there is none."""
     value = raster.nodata
     if dtype.kind == "f":
-        held = float(np.asarray(value, dtype)) if not math.isnan(value) else value
+        with np.errstate(over="ignore"):
+            held = float(np.float64(value).astype(dtype))
     elif math.isnan(value):
         return None
     else:

@@ -150,6 +150,7 @@ def _faults_as_sentences(path: Path) -> Iterator[None]:
         with warnings.catch_warnings():
             warnings.simplefilter("error", RuntimeWarning)
             warnings.filterwarnings("ignore", message="'crs' was not provided")
+            warnings.filterwarnings("ignore", message="Measured")  # of an empty shapefile
             yield
     except (RuntimeError, RuntimeWarning, ValueError, OSError) as error:
         reason = " ".join(str(error).split()).rstrip(".") or type(error).__name__
