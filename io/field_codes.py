@@ -33,6 +33,7 @@ RULES: Mapping[str, LineRole] = {
     **dict.fromkeys(("TOB", "TOE", "FL", "DITCH", "SWALE", "WALL"), "hard"),
     **dict.fromkeys(("BLDG", "BLD", "SLAB"), "hard"),
     **dict.fromkeys(("WE", "POND", "LAKE"), "water"),
+    "DAYLIGHT": "boundary",  # where a design meets the ground, and ends
 }
 """Codes that make lines, and what these become. A building is a hard line: the ground around it
 stays one surface, for contours and volumes; who wants the footprint cut out says "hole"."""

@@ -2,14 +2,22 @@
 
 from ..errors import OptionError, RenderError
 from .charts.comparison import comparison_picture
+from .charts.contour_map import contour_map
+from .charts.earthwork import earthwork_map
 from .charts.histogram import histogram
+from .charts.profiles import profile_picture
+from .earthwork import Difference, difference, level_surface, stage_storage, volume
+from .isolines import ContourCheck, check_contours, contour_bands, contour_labels, contours
 from .lift import lift
 from .preview.picture import preview
 from .relief import aspect_classes, curvature, hillshade, slope_classes, slope_statistics
 from .results import Features, Raster, Table
+from .sections import cross_sections, drape, profile, section_lines
 from .slope import aspect, slope
 
 __all__ = [
+    "ContourCheck",
+    "Difference",
     "Features",
     "OptionError",
     "Raster",
@@ -17,13 +25,28 @@ __all__ = [
     "Table",
     "aspect",
     "aspect_classes",
+    "check_contours",
     "comparison_picture",
+    "contour_bands",
+    "contour_labels",
+    "contour_map",
+    "contours",
+    "cross_sections",
     "curvature",
+    "difference",
+    "drape",
+    "earthwork_map",
     "hillshade",
     "histogram",
+    "level_surface",
     "lift",
     "preview",
+    "profile",
+    "profile_picture",
+    "section_lines",
     "slope",
     "slope_classes",
     "slope_statistics",
+    "stage_storage",
+    "volume",
 ]

@@ -2,9 +2,80 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, NamedTuple
+
 from .._interrupts import hold_interrupts
 
 with hold_interrupts():
-    from . import _core  # noqa: F401
+    from . import _core
 
-__all__: list[str] = []
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+__all__ = [
+    "SUMS",
+    "OverlayMesh",
+    "fill_bands",
+    "overlay",
+    "smooth_contours",
+    "stage_sums",
+    "sum_between",
+    "sum_heights",
+    "trace_contours",
+]
+
+trace_contours = _core.trace_contours
+smooth_contours = _core.smooth_contours
+fill_bands = _core.fill_bands
+
+SUMS = (
+    "area",
+    "cut_area",
+    "fill_area",
+    "cut",
+    "fill",
+    "squares",
+    "surface_area",
+    "other_surface_area",
+    "lowest",
+    "highest",
+)
+"""Columns of what :func:`sum_between` and :func:`sum_heights` return, a row for each group."""
+
+sum_between = _core.sum_between
+sum_heights = _core.sum_heights
+stage_sums = _core.stage_sums
+
+
+class OverlayMesh(NamedTuple):
+    """The overlay of two surfaces: convex cells that share their vertices.
+
+    Attributes
+    ----------
+    vertices : (n, 3) float64 array
+        Easting, northing, elevation of the second surface above the first.
+    origins : (n, 2) int32 array
+        The vertex of the first surface, and of the second, that it is; -1 for none.
+    offsets : (k + 1,) int64 array
+    corners : (c,) int32 array
+        Cell i has the vertices ``corners[offsets[i]:offsets[i + 1]]``, counter-clockwise.
+    triangles : (k, 2) int32 array
+        Of the first and of the second surface, that the cell is part of.
+    """
+
+    vertices: NDArray[np.float64]
+    origins: NDArray[np.int32]
+    offsets: NDArray[np.int64]
+    corners: NDArray[np.int32]
+    triangles: NDArray[np.int32]
+
+
+def overlay(
+    points: NDArray[np.float64],
+    triangles: NDArray[np.int32],
+    other_points: NDArray[np.float64],
+    other_triangles: NDArray[np.int32],
+) -> OverlayMesh:
+    """Cut two surfaces along the edges of each other, where both are."""
+    return OverlayMesh(*_core.overlay(points, triangles, other_points, other_triangles))

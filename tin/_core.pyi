@@ -43,6 +43,19 @@ class Locator:
     ) -> None: ...
     def locate(self, xy: NDArray[np.float64]) -> NDArray[np.int32]: ...
     def interpolate(self, xy: NDArray[np.float64]) -> NDArray[np.float64]: ...
+    def trace(
+        self, starts: NDArray[np.float64], ends: NDArray[np.float64]
+    ) -> tuple[
+        NDArray[np.int64],
+        NDArray[np.float64],
+        NDArray[np.float64],
+        NDArray[np.float64],
+        NDArray[np.int32],
+        NDArray[np.int32],
+        NDArray[np.int32],
+        NDArray[np.int32],
+        int,
+    ]: ...
 
 class Mesh:
     def __init__(

@@ -61,11 +61,9 @@ def features(path: str, shown: str, *, layer: str | None, where: str | None) -> 
             meta, numbers, geometries, values = raw.read(
                 path, layer=chosen, where=where, return_fids=True
             )
-    except DataSourceError as error:
-        if "not recognized" in str(error):
-            raise Refusal(f"'{shown}' is no vector file that GDAL knows.") from error
-        raise RuntimeError(_reason(error)) from error
     except (RuntimeError, ValueError, IndexError) as error:
+        if isinstance(error, DataSourceError) and "not recognized" in str(error):
+            raise Refusal(f"'{shown}' is no vector file that GDAL knows.") from error
         raise RuntimeError(_reason(error)) from error
     arrays = {"numbers": np.asarray(numbers, np.int64), **_geometries(geometries)}
     arrays |= {f"column {k}": column for k, column in enumerate(values) if _is_plain(column)}

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from ...crs import CRS, Unit
     from .features import Features
 
-__all__ = ["Part", "Wanted", "elevation_factor", "parts_of"]
+__all__ = ["Part", "Wanted", "crs_notes", "elevation_factor", "move_to_crs", "parts_of"]
 
 _POLYGON = 3
 
@@ -98,12 +98,12 @@ def parts_of(
     bounds = offsets_of(shapely.get_num_coordinates(lines.shapes))
     has_z = shapely.has_z(lines.shapes) & (not drape)
     _require_finite(xyz, np.repeat(has_z, np.diff(bounds)), bounds, lines.rows, features)
-    said = list(features.notes) + _crs_notes(features, wanted)
+    said = list(features.notes) + crs_notes(features, wanted)
     if has_z.any():
         xyz[:, 2] *= elevation_factor(features, wanted, notes=said)
     if notes is not None:
         notes.extend(said)
-    xyz[:, :2] = _moved(xyz[:, :2], features, wanted.crs)
+    xyz[:, :2] = move_to_crs(xyz[:, :2], features, wanted.crs)
     return [
         Part(xyz[start:end, :width], row, is_closed, ring)
         for start, end, width, row, is_closed, ring in zip(
@@ -172,8 +172,16 @@ def _require_finite(
 # --------------------------------------------------------------------------- CRS
 
 
-def _moved(xy: NDArray[np.float64], features: Features, crs: CRS | None) -> NDArray[np.float64]:
-    """Reproject in the plane."""
+def move_to_crs(
+    xy: NDArray[np.float64], features: Features, crs: CRS | None
+) -> NDArray[np.float64]:
+    """Reproject places of features in the plane.
+
+    Raises
+    ------
+    CrsError
+        If they cannot be brought into the CRS.
+    """
     level = np.column_stack([xy, np.zeros(len(xy))])
     source, target = _flat(features.crs), _flat(crs)
     return place(level, source=source, target=target, path=features.path).points[:, :2]
@@ -184,7 +192,8 @@ def _flat(crs: CRS | None) -> CRS | None:
     return None if crs is None else crs.horizontal
 
 
-def _crs_notes(features: Features, wanted: Wanted) -> list[str]:
+def crs_notes(features: Features, wanted: Wanted) -> list[str]:
+    """Tell which CRS is assumed where one of the two is not known."""
     source, crs, name = features.crs, wanted.crs, features.path.name
     if source is None:
         return [] if crs is None else [f"'{name}' names no CRS: taken to be in {crs.label}."]

@@ -40,7 +40,15 @@ if TYPE_CHECKING:
         with_lines,
         write,
     )
-    from .terrain import comparison_picture, histogram
+    from .terrain import comparison_picture, contour_map, earthwork_map, histogram, profile_picture
+    from .terrain.earthwork import Difference, difference, stage_storage, volume
+    from .terrain.isolines import (
+        ContourCheck,
+        check_contours,
+        contour_bands,
+        contour_labels,
+        contours,
+    )
     from .terrain.lift import lift
     from .terrain.preview.picture import preview
     from .terrain.relief import (
@@ -51,6 +59,7 @@ if TYPE_CHECKING:
         slope_statistics,
     )
     from .terrain.results import Features, Raster, Table
+    from .terrain.sections import cross_sections, drape, profile, section_lines
     from .terrain.slope import aspect, slope
     from .tin import (
         TIN,
@@ -115,12 +124,24 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "write",
             ),
             ".terrain": (
+                "ContourCheck",
+                "Difference",
                 "aspect",
+                "check_contours",
                 "comparison_picture",
+                "contour_bands",
+                "contour_labels",
+                "contour_map",
+                "contours",
+                "difference",
+                "earthwork_map",
                 "histogram",
                 "lift",
                 "preview",
+                "profile_picture",
                 "slope",
+                "stage_storage",
+                "volume",
             ),
             ".terrain.relief": (
                 "aspect_classes",
@@ -129,6 +150,7 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "slope_classes",
                 "slope_statistics",
             ),
+            ".terrain.sections": ("cross_sections", "drape", "profile", "section_lines"),
             ".terrain.results": ("Features", "Raster", "Table"),
             ".tin": (
                 "TIN",
@@ -166,7 +188,9 @@ __all__ = [
     "CheckError",
     "CheckResult",
     "Comparison",
+    "ContourCheck",
     "CrsError",
+    "Difference",
     "Features",
     "Format",
     "FormatError",
@@ -195,9 +219,18 @@ __all__ = [
     "aspect",
     "aspect_classes",
     "check",
+    "check_contours",
     "compare",
     "comparison_picture",
+    "contour_bands",
+    "contour_labels",
+    "contour_map",
+    "contours",
+    "cross_sections",
     "curvature",
+    "difference",
+    "drape",
+    "earthwork_map",
     "find_format",
     "hillshade",
     "histogram",
@@ -208,6 +241,8 @@ __all__ = [
     "lines_from_codes",
     "paper",
     "preview",
+    "profile",
+    "profile_picture",
     "quality",
     "read",
     "read_lines",
@@ -215,13 +250,16 @@ __all__ = [
     "read_rings",
     "read_water",
     "refine",
+    "section_lines",
     "slope",
     "slope_classes",
     "slope_statistics",
+    "stage_storage",
     "terrain",
     "tin",
     "transform_points",
     "triangulate",
+    "volume",
     "voronoi",
     "with_lines",
     "write",

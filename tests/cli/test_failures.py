@@ -274,10 +274,12 @@ def test_exit_codes_of_what_ends_a_command(monkeypatch, raised, code):
             raise raised
 
     monkeypatch.setattr(click.Group, "main", end)
-    monkeypatch.setattr(group, "silence", lambda stream: None)
+    silenced = []
+    monkeypatch.setattr(group, "silence", silenced.append)
     with pytest.raises(SystemExit) as caught:
         main.main(["formats"])
     assert caught.value.code == code
+    assert silenced == ([sys.stdout] if isinstance(raised, BrokenPipeError) else [])
 
 
 # ------------------------------------------------------------------ standard streams

@@ -49,8 +49,12 @@ SYMMETRIC = {"max", "min", "maximum", "minimum", "hypot", "gcd"}
 UNSEEN = {
     "slots": "of a dataclass: memory only",
     "strict": "of zip: a guard against a mistake of our own, which no input makes",
+    "maxsize": "of a cache: speed only",
 }
 """Keywords whose values show nowhere, and why."""
+
+_LENGTH_TO_FIND = re.compile(r"reshape\([^()]*-$")
+"""Before a number that numpy takes for "as many as there are", whatever negative one it is."""
 
 
 def python_changes(text: str) -> list[Change]:
@@ -80,7 +84,11 @@ class _Python:
 
     def changes(self) -> Iterator[Change]:
         for node in self._nodes(self.tree):
-            yield from self._of(node)
+            yield from filter(self._is_seen, self._of(node))
+
+    def _is_seen(self, change: Change) -> bool:
+        before = self.text[max(0, change.start - 40) : change.start]
+        return not (change.what == "1 + 1" and _LENGTH_TO_FIND.search(before))
 
     def _nodes(self, node: ast.AST) -> Iterator[ast.AST]:
         """Walk what runs: no annotations, no docstrings, no imports, no `__all__`."""

@@ -22,7 +22,7 @@ _SMALL_ANGLES = (1.0, 10.0, 20.0, 30.0)
 _LARGE_ANGLES = (90.0, 120.0, 150.0)
 
 
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Quality:
     """Shape measures of triangles, one row each. All arrays are read-only.
 

@@ -15,7 +15,14 @@ from .threads import thread_count
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["as_elevations", "as_masked_points", "as_points", "as_xy", "require_three"]
+__all__ = [
+    "as_elevations",
+    "as_masked_points",
+    "as_points",
+    "as_xy",
+    "require_exact_range",
+    "require_three",
+]
 
 SHOWN = 5
 
@@ -69,7 +76,7 @@ def as_masked_points(points: Any, *, threads: int | None = 1) -> Table:
     clean, is_sound = _kernel.clean(np.ascontiguousarray(xyz), thread_count(threads, len(xyz)))
     if not is_sound:
         _require_finite(clean)
-        _require_exact_range(clean[:, :2], "Points")
+        require_exact_range(clean[:, :2], "Points")
     return Table(clean, is_masked)
 
 
@@ -90,7 +97,7 @@ def as_xy(xy: Any) -> NDArray[np.float64]:
     if is_masked is not None:
         places = np.where(is_masked[:, None], np.nan, places)
     places = np.ascontiguousarray(places, np.float64)
-    _require_exact_range(places, "Places")
+    require_exact_range(places, "Places")
     return places
 
 
@@ -125,7 +132,14 @@ def _require_finite(xyz: NDArray[np.float64]) -> None:
         )
 
 
-def _require_exact_range(xy: NDArray[np.float64], what: str) -> None:
+def require_exact_range(xy: NDArray[np.float64], what: str) -> None:
+    """Refuse coordinates for which the predicates are not exact; NaN passes.
+
+    Raises
+    ------
+    PointsError
+        The sentence begins with ``what``, in the plural.
+    """
     if xy.size == 0:
         return
     smallest, largest = _kernel.EXACT_RANGE

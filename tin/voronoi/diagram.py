@@ -27,7 +27,7 @@ _PAD_SHARE = 0.1
 """How far the default boundary lies beyond the vertices, of the longer side of their bounds."""
 
 
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Voronoi:
     """A Voronoi diagram within a boundary: for each vertex the places nearest to it.
 

@@ -31,7 +31,10 @@ if TYPE_CHECKING:
 
 __all__ = ["main"]
 
-_BUILT_IN = ("build", "info", "check", "view", "compare", "refine", "edit", "convert", "formats")
+_BUILT_IN = (
+    *("build", "info", "check", "view", "compare", "refine", "edit", "convert", "formats"),
+    *("contours", "profile", "volume", "diff", "drape"),
+)
 _ENTRY_POINTS = "tinsmith.commands"
 
 

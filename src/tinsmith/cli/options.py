@@ -22,6 +22,7 @@ __all__ = [
     "console_options",
     "input_file",
     "output_files",
+    "product_options",
     "reading_options",
     "triangulating_options",
     "writing_options",
@@ -120,7 +121,7 @@ def _gathered(name: str, factory: type, *options: Decorator) -> Callable[[Functi
     def decorate(function: Function) -> Function:
         @wraps(function)
         def gathering(**given: Any) -> Any:
-            value = factory(**{key: given.pop(key) for key in names})
+            value = factory(**{key: given.pop(key) for key in names if key in given})
             return function(**given, **{name: value})
 
         decorated: Any = gathering
@@ -271,6 +272,19 @@ writing_options = _gathered(
         "--projected",
         is_flag=True,
         help="Leave the coordinates of a GeoJSON file in the CRS of the points.",
+    ),
+)
+
+product_options = _gathered(
+    "writing",
+    Writing,
+    click.option(
+        "--output-format", metavar="NAME", help="Format of the output, whatever its suffix."
+    ),
+    click.option(
+        "--projected",
+        is_flag=True,
+        help="Leave the coordinates of a GeoJSON file in the CRS of the TIN.",
     ),
 )
 

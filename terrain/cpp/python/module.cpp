@@ -1,4 +1,11 @@
 // The compiled module of terrain. What is in this folder converts and names, nothing else.
 #include <nanobind/nanobind.h>
 
-NB_MODULE(_core, m) { m.doc() = "Compiled core of tinsmith.terrain: what is derived from a TIN."; }
+#include "bind_earthwork.hpp"
+#include "bind_isolines.hpp"
+
+NB_MODULE(_core, m) {
+  m.doc() = "Compiled core of tinsmith.terrain: what is derived from a TIN.";
+  tinsmith::python::bind_isolines(m);
+  tinsmith::python::bind_earthwork(m);
+}

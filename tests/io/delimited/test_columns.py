@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from tinsmith.io import FormatError, ReadError
+from tinsmith.errors import OptionError
+from tinsmith.io import ReadError
 from tinsmith.io.delimited.columns import (
     Columns,
     columns_by_header,
@@ -74,6 +75,8 @@ HEIGHTS = "The header's 'Z' is taken as the elevation, not {}."
         ("E N Z", "ENZ", []),
         ("X Y Z E N", "--ZEN", [TWO_PAIRS.format("'E' and 'N'", "'X' and 'Y'")]),
         ("East North x y H", "EN--Z", [TWO_PAIRS.format("'East' and 'North'", "'x' and 'y'")]),
+        ("E N Northing Z", "EPNZ", []),
+        ("Easting E N Z", "E-NZ", []),
         ("Y X Z", "NEZ", [TURNED]),
         ("N E Z", "NEZ", []),
         ("N X Y Z", "PENZ", []),
@@ -169,66 +172,81 @@ def test_the_caller_may_contradict_the_header_which_is_told():
     )
 
 
+NO_LAYOUT = "Invalid columns '{}': it must be a layout {}."
 MISSING = (
-    "The option columns ({}) does not say which column is the {}: it may be letters (P number, N "
-    "northing, E easting, Z elevation, D description, X easting, Y northing, - other) or names."
+    "Invalid columns '{}': it must be letters (P number, N northing, E easting, Z elevation, "
+    "D description, X easting, Y northing, - other) or names that say which column is the {}."
 )
 
 
 @pytest.mark.parametrize(
     ("word", "header", "count", "sentence"),
     [
-        ("NEZE", [], 4, "The option columns (NEZE) names the easting twice."),
+        (
+            "NEZE",
+            [],
+            4,
+            NO_LAYOUT.format("NEZE", "that does not name the easting twice"),
+        ),
         ("EN", [], 3, MISSING.format("EN", "elevation")),
         ("P", [], 3, MISSING.format("P", "easting, northing and elevation")),
-        ("ENZD", [], 3, "The option columns names 4 columns (ENZD), but the file has 3."),
+        (
+            "ENZD",
+            [],
+            3,
+            NO_LAYOUT.format("ENZD", "of the 3 columns of the file, not of 4 columns"),
+        ),
         (
             {"colour": 1},
             [],
             3,
-            "The option columns names 'colour': one of easting, northing, elevation, number, "
-            "description is needed.",
+            "Invalid columns 'colour': it must be one of easting, northing, elevation, number, "
+            "description.",
         ),
         (
             {"easting": 4, "northing": 2, "elevation": 3},
             [],
             3,
-            "The option columns names column 4: 1 to 3 are there.",
+            "Invalid columns 4: it must be a column from 1 to 3.",
         ),
         (
             {"easting": 0, "northing": 2, "elevation": 3},
             [],
             3,
-            "The option columns names column 0: 1 to 3 are there.",
+            "Invalid columns 0: it must be a column from 1 to 3.",
         ),
         (
             {"easting": 1, "northing": 1, "elevation": 3},
             [],
             3,
-            "The option columns names column 1 twice: as easting and northing.",
+            "Invalid columns {'easting': 1, 'northing': 1, 'elevation': 3}: it must be a layout "
+            "that takes no column twice: column 1 is easting and northing.",
         ),
         (
             {"easting": "q", "northing": 2, "elevation": 3},
             ["a", "b", "c"],
             3,
-            "The option columns names 'q', of which there are no columns: the header has a, b, c.",
+            "Invalid columns 'q': it must be the name of one column, and no columns have it: "
+            "the header has a, b, c.",
         ),
         (
             {"easting": "A", "northing": 2, "elevation": 3},
             ["a", "a", "c"],
             3,
-            "The option columns names 'A', of which there are 2 columns: the header has a, a, c.",
+            "Invalid columns 'A': it must be the name of one column, and 2 columns have it: "
+            "the header has a, a, c.",
         ),
         (
             {"easting": "q", "northing": 2, "elevation": 3},
             [],
             3,
-            "The option columns names 'q', of which there are no columns: the file has no header.",
+            "Invalid columns 'q': it must be the name of one column, and no columns have it: "
+            "the file has no header.",
         ),
     ],
 )
 def test_words_that_fit_no_table_are_refused(word, header, count, sentence):
-    with pytest.raises(FormatError) as caught:
+    with pytest.raises(OptionError) as caught:
         columns_by_word(word, header, count)
     assert str(caught.value) == sentence
 

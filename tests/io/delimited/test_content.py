@@ -171,6 +171,10 @@ def test_a_column_with_words_or_a_cliff_is_no_coordinate():
         assert f"PENZ {words}" in str(caught.value)
 
 
+def test_whole_eastings_of_three_columns_are_coordinates():
+    assert columns_by_content([whole(EASTING), NORTHING, ELEVATION], None)[0].word == "ENZ"
+
+
 # ------------------------------------------------------------------ measures
 
 

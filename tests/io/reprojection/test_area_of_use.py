@@ -7,7 +7,7 @@ import pyproj
 import pytest
 
 from tinsmith.crs import CRS
-from tinsmith.io.reprojection.area_of_use import AreaOfUse
+from tinsmith.io.reprojection.area_of_use import AreaOfUse, _degrees
 
 UTM_16 = "EPSG:32616"
 NEW_ZEALAND = "EPSG:4167"  # 160.6 E to 171.2 W: across the antimeridian
@@ -153,3 +153,19 @@ def test_rows_outside_are_found_wherever_they_stand():
         moved = xy.copy()
         moved[rows] += away
         assert area.outside(moved).tolist() == rows
+
+
+@pytest.mark.parametrize(
+    ("crs", "place", "angles"),
+    [
+        ("EPSG:4807", (0.0, 50.0), (2.337229167, 45.0)),  # grads from Paris
+        ("EPSG:4807", (-10.0, 40.0), (2.337229167 - 9.0, 36.0)),
+        ("EPSG:4326", (10.0, 40.0), (10.0, 40.0)),
+        ("EPSG:32616", (500_000.0, 0.0), (-87.0, 0.0)),
+        ("EPSG:32616+5703", (500_000.0, 0.0), (-87.0, 0.0)),
+        ("EPSG:27572", (600_000.0, 2_200_000.0), (2.337229167, 46.8)),  # metres from Paris
+    ],
+)
+def test_angles_are_degrees_from_greenwich(crs, place, angles):
+    found = np.concatenate(_degrees(CRS.of(crs), np.array([place])))
+    assert found == pytest.approx(angles, abs=1e-6)

@@ -27,6 +27,7 @@ from tinsmith.tin import Bounds
 pv = pytest.importorskip("pyvista")
 
 WHITE = (255, 255, 255)
+TINTS = [[77, 115, 93], [112, 147, 100], [173, 172, 108], [223, 197, 153], [243, 233, 223]]
 
 
 def hill(*, crs="EPSG:32616", relief=30.0, steps=25, extent=240.0):
@@ -199,6 +200,7 @@ class TestPicture:
         plotter = pv.Plotter
 
         def off_screen_plotter(*, off_screen, **options):
+            assert not off_screen  # a window
             return plotter(off_screen=True, **options)
 
         def turned(self, **_):
@@ -476,6 +478,12 @@ def test_lightness_of_black_white_and_grey():
     np.testing.assert_allclose(lightness(grey), [0.0, 0.5999, 1.0], atol=1e-3)
 
 
+def test_tints_go_from_moss_green_to_limestone():
+    assert tints(5).tolist() == TINTS
+    assert tints(2).tolist() == [TINTS[0], TINTS[-1]]
+    np.testing.assert_array_equal(tints(256)[[0, 255]], [TINTS[0], TINTS[-1]])
+
+
 def test_no_tint_looks_like_water():
     red, green, blue = tints().astype(int).T
     assert (blue < np.maximum(red, green)).all()
@@ -487,6 +495,13 @@ def test_no_tint_looks_like_water():
 )
 def test_lengths_are_rounded_down_to_one_two_five(value, expected):
     assert round_down(value) == pytest.approx(expected)
+
+
+def test_lengths_are_rounded_down_to_the_leads_asked_for():
+    leads = (2.0, 5.0)
+    rounded = [round_down(value, leads=leads) for value in (1.5, 2.0, 4.9, 15.0, 0.019)]
+    assert rounded == pytest.approx([0.5, 2.0, 2.0, 5.0, 0.005])
+    assert round_down(20 - 1e-12) == 20.0  # but for rounding
 
 
 @pytest.mark.parametrize(("low", "high"), [(0, 971), (211.3, 220.5), (-5, 5), (1e-3, 2e-3)])

@@ -317,3 +317,21 @@ def test_mean_of_the_largest_elevations_does_not_overflow(heights, mean):
     corners = [[4.0, 0.0, 1.0], [0.0, 4.0, 2.0]]
     tin = ts.triangulate([*corners, *([0.0, 0.0, z] for z in heights)])
     assert tin.points[2, 2] == pytest.approx(mean, rel=1e-15)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_means_of_elevations_of_any_size_are_the_exact_ones_rounded(seed):
+    """Of two to nine rows a place, up to the largest double of either sign."""
+    rng = np.random.default_rng(seed)
+    largest = np.finfo(float).max * rng.choice([1.0, 0.9, 0.5, 0.26, 1e-300])
+    z = rng.choice([-1.0, 1.0, 0.99, -0.3], 30) * largest
+    place = rng.integers(0, 6, 30)
+    corners = [[-9, -9, 0], [20, -9, 0], [0, 20, 0]]
+    rows = np.concatenate([corners, np.column_stack([place, place % 3, z])])
+    tin = ts.triangulate(rows)
+    for one in np.unique(place):
+        own = z[place == one]
+        exact = sum(map(Fraction, own.tolist())) / len(own)
+        found = Fraction(float(tin.points[tin.vertex_of[3 + np.argmax(place == one)], 2]))
+        rounding = Fraction(float(np.spacing(np.abs(own).max() / 2)))
+        assert abs(found - exact) <= 32 * rounding

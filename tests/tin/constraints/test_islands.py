@@ -5,6 +5,7 @@ import pytest
 import shapely
 
 import tinsmith as ts
+from tinsmith.tin.constraints.polygons import rings_of
 
 SIDE = np.arange(0.0, 11.0)
 GRID = np.array([[x, y, x / 10] for x in SIDE for y in SIDE])
@@ -170,3 +171,46 @@ def test_a_closed_line_of_shapely_is_a_ring_and_an_open_one_is_none():
         ts.triangulate(GRID, holes=[shapely.LineString(square)])
     with pytest.raises(ts.LinesError, match="Invalid hole: a polygon without a ring"):
         ts.triangulate(GRID, holes=[np.empty((0, 3, 2))])
+
+
+def test_regions_are_numbered_in_the_order_in_which_they_are_given():
+    squares = [shapely.box(x, 1, x + 1, 2) for x in (1, 3, 5, 7)]
+    mapping = shapely.geometry.mapping
+    one, four = ({"type": "Feature", "geometry": mapping(squares[k])} for k in (0, 3))
+
+    class Features:
+        __geo_interface__ = {  # noqa: RUF012 - as libraries have it
+            "type": "FeatureCollection",
+            "features": [
+                one,
+                {
+                    "type": "Feature",
+                    "geometry": {
+                        "type": "GeometryCollection",
+                        "geometries": [mapping(shapely.MultiPolygon(squares[1:3]))],
+                    },
+                },
+                four,
+            ],
+        }
+
+    for given in (Features(), shapely.GeometryCollection(squares)):
+        wests = [ring[0][:, 0].min() for ring in rings_of([given], "hole")]
+        assert wests == [1, 3, 5, 7]
+    closed = shapely.LinearRing([[0, 0], [1, 0], [0, 1]])
+    assert len(rings_of([closed, shapely.LineString(closed.coords)], "hole")) == 2
+    for open_line in (shapely.LineString([[0, 0], [1, 0], [0, 1]]), shapely.Point(0, 0)):
+        with pytest.raises(ts.LinesError, match=f"Invalid hole: a {open_line.geom_type} is no"):
+            rings_of([open_line], "hole")
+    with pytest.raises(ts.LinesError, match="Invalid hole: a LineString is no polygon"):
+        rings_of([shapely.LineString([[0, 0], [1, 0], [0, 0]])], "hole")
+    assert rings_of([shapely.Polygon()], "hole") == []
+
+
+def test_rings_are_called_by_their_number_over_all_regions():
+    bad = [[0, 0], [1, 0], [np.nan, 1]]
+    for given, number in (
+        ([bad], 0), ([OUTER, bad], 1), ([[OUTER, INNER], bad], 2), ([DONUT, [OUTER, bad]], 3),
+    ):  # fmt: skip
+        with pytest.raises(ts.LinesError, match=rf"[Hh]ole ring {number}\b"):
+            rings_of(given, "hole")

@@ -440,3 +440,26 @@ def test_cotangents_are_those_of_the_angles():
     turn = np.arctan2(a[1], a[0]) - np.arctan2(b[1], b[0])
     angle = np.abs(np.remainder(turn + np.pi, 2 * np.pi) - np.pi)
     np.testing.assert_allclose(found, 1 / np.tan(angle), rtol=1e-9, atol=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_the_widest_angle_is_exact_among_points_that_are_cocircular_but_for_rounding(seed):
+    """Rounded cotangents put several in a wrong order: exact tests must go on to the best."""
+    rng = np.random.default_rng(seed)
+    angle = np.concatenate([[3.5, 5.9], rng.uniform(0.1, 3.0, 40)])
+    radius = 1.0 + rng.integers(-3, 4, 42) * 1e-15
+    xy = np.stack([radius * np.cos(angle) + 7e5, radius * np.sin(angle) + 4e6])
+    _, first = np.unique(xy, axis=1, return_index=True)
+    xy = np.ascontiguousarray(xy[:, np.sort(first)])
+    qualified = np.arange(2, xy.shape[1])
+    places = [oracles.place([*one, 0.0]) for one in xy.T]
+    wanted = next(
+        p
+        for p in qualified
+        if all(
+            oracles.in_circle(places[0], places[1], places[p], places[q]) <= 0 for q in qualified
+        )
+    )
+    choice = widest_angle((xy[0], xy[1]), 0, 1, qualified)
+    assert choice.point == wanted
+    assert choice.tests == len(qualified) - 1

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import tinsmith as ts
-from tinsmith.tin import check
+from tinsmith.tin import PointsError, _kernel, check
 from tinsmith.tin.validation.points import as_points, as_xy
 
 GOOD = np.array([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8], [1, 2, 9]], float)
@@ -231,3 +231,39 @@ def test_places_may_be_nan_but_not_infinite():
         as_xy([1.0, 2.0])
     with pytest.raises(ts.PointsError, match="no table of real numbers"):
         as_xy([["a", "b"]])
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_the_ends_of_the_exact_range_are_allowed_and_nothing_beyond(axis, sign):
+    smallest, largest = _kernel.EXACT_RANGE
+    for size, beyond in ((largest, np.inf), (smallest, 0.0)):
+        points = np.zeros((3, 3))
+        points[1, axis], points[2, 1 - axis] = sign * size, size
+        assert len(ts.triangulate(points).triangles) == 1
+        points[1, axis] = sign * np.nextafter(size, beyond)
+        with pytest.raises(PointsError, match="1 row outside the exact range") as caught:
+            ts.triangulate(points)
+        assert list(caught.value.rows) == [1]
+
+
+def test_errors_keep_the_first_five_rows_of_many():
+    points = np.random.default_rng(1).random((9, 3))
+    for bad, kind in ((np.nan, "are not finite"), (1e300, "outside the exact range")):
+        rows = points.copy()
+        rows[2:, 0] = bad
+        with pytest.raises(PointsError, match=kind) as caught:
+            ts.triangulate(rows)
+        assert list(caught.value.rows) == [2, 3, 4, 5, 6]
+        assert "(first: row 2" in str(caught.value)
+    triangles = np.full((8, 3), [0, 1, 99])
+    triangles[0] = [0, 1, 2]
+    with pytest.raises(PointsError) as caught:
+        ts.TIN.from_triangles(points, triangles)
+    assert list(caught.value.rows) == [1, 2, 3, 4, 5]
+    assert str(caught.value) == (
+        "Triangle 1 has the vertices [0, 1, 99]: numbers 0 to 8 are allowed."
+    )
+    with pytest.raises(PointsError, match="Triangle 0 has the vertices"):
+        ts.TIN.from_triangles(points, [[0, 1, -1]])
+    assert len(ts.TIN.from_triangles(points, [[0, 1, 8]]).triangles) == 1

@@ -97,6 +97,40 @@ class Locator {
         });
   }
 
+  const Surface& surface() const { return surface_; }
+
+  // Every triangle whose box a band may meet, and some more, in no order.
+  template <typename Near, typename Visit>
+  void visit_near(const Near& band, Visit&& visit) const {
+    const auto wanted = [&](const Box& box, std::int64_t) { return band.meets(box); };
+    tree_.visit_leaves_if(wanted, [&](std::int32_t begin, std::int32_t end) {
+      for (std::int32_t i = begin; i < end; ++i) visit(triangles_[i]);
+      return false;
+    });
+  }
+
+  // Differences from the corner of largest weight keep the digits that the elevations share, and
+  // give a vertex exactly its own elevation; differences of halves cannot overflow.
+  double elevation_at(Point p, Triangle triangle) const {
+    const Point a = surface_.corner(triangle, 0);
+    const Point b = surface_.corner(triangle, 1);
+    const Point c = surface_.corner(triangle, 2);
+    const double weight[3] = {detail::twice_area(b, c, p), detail::twice_area(c, a, p),
+                              detail::twice_area(a, b, p)};
+    const double total = weight[0] + weight[1] + weight[2];
+    std::uint32_t main = weight[1] > weight[0];
+    main = weight[2] > weight[main] ? 2 : main;
+    const std::uint32_t next = (main + 1) % 3, last = (main + 2) % 3;
+    const double z = surface_.elevation(triangle, main);
+    const double z_next = surface_.elevation(triangle, next);
+    const double z_last = surface_.elevation(triangle, last);
+    const double half_rise = weight[next] / total * (0.5 * z_next - 0.5 * z) +
+                             weight[last] / total * (0.5 * z_last - 0.5 * z);
+    const double lowest = std::min({z, z_next, z_last});
+    const double highest = std::max({z, z_next, z_last});
+    return std::min(std::max(z + 2.0 * half_rise, lowest), highest);
+  }
+
  private:
   static constexpr std::int64_t kQueriesAtATime = std::int64_t{1} << 22;  // bounds the memory
   static constexpr std::int32_t kBlock = 4096;  // fits the first-level cache
@@ -203,28 +237,6 @@ class Locator {
     const int positive = side_ab + side_bc + side_ca;
     if (positive == 0) return Within::kOutside;  // a triangle without area holds nothing
     return positive == 3 ? Within::kInside : Within::kBoundary;
-  }
-
-  // Differences from the corner of largest weight keep the digits that the elevations share, and
-  // give a vertex exactly its own elevation; differences of halves cannot overflow.
-  double elevation_at(Point p, Triangle triangle) const {
-    const Point a = surface_.corner(triangle, 0);
-    const Point b = surface_.corner(triangle, 1);
-    const Point c = surface_.corner(triangle, 2);
-    const double weight[3] = {detail::twice_area(b, c, p), detail::twice_area(c, a, p),
-                              detail::twice_area(a, b, p)};
-    const double total = weight[0] + weight[1] + weight[2];
-    std::uint32_t main = weight[1] > weight[0];
-    main = weight[2] > weight[main] ? 2 : main;
-    const std::uint32_t next = (main + 1) % 3, last = (main + 2) % 3;
-    const double z = surface_.elevation(triangle, main);
-    const double z_next = surface_.elevation(triangle, next);
-    const double z_last = surface_.elevation(triangle, last);
-    const double half_rise = weight[next] / total * (0.5 * z_next - 0.5 * z) +
-                             weight[last] / total * (0.5 * z_last - 0.5 * z);
-    const double lowest = std::min({z, z_next, z_last});
-    const double highest = std::max({z, z_next, z_last});
-    return std::min(std::max(z + 2.0 * half_rise, lowest), highest);
   }
 
   Surface surface_;

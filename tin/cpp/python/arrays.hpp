@@ -45,6 +45,7 @@ using Triples = Made<std::int32_t, -1, 3>;
 using Pairs = Made<std::int32_t, -1, 2>;
 using Numbers = Made<std::int32_t, -1>;
 using Elevations = Made<double, -1>;
+using Offsets = Made<std::int64_t, -1>;
 using Signs = Made<std::int8_t, -1>;
 using TripleFlags = Made<bool, -1, 3>;
 using Flags = Made<bool, -1>;

@@ -2,15 +2,24 @@
 #pragma once
 
 #include <nanobind/nanobind.h>
+#include <nanobind/stl/tuple.h>
 
 #include <cstdint>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
+#include <vector>
 
 #include "../location/locator.hpp"
+#include "../location/segment_trace.hpp"
 #include "arrays.hpp"
 
 namespace tinsmith::python {
+
+// Breaks of segments one after the other: where those of each begin, the arrays, and the first
+// segment for which there are none, -1 if all have theirs.
+using TraceArrays = std::tuple<Offsets, Xy, Elevations, Elevations, Numbers, Numbers, Numbers,
+                               Numbers, std::int64_t>;
 
 // A locator with the arrays that it reads.
 class HeldLocator {
@@ -30,7 +39,55 @@ class HeldLocator {
     });
   }
 
+  TraceArrays trace(const GivenXy& starts, const GivenXy& ends) const {
+    const Point* from = exact_points_of(starts);
+    const Point* to = exact_points_of(ends);
+    const auto count = static_cast<std::int64_t>(starts.shape(0));
+    if (ends.shape(0) != starts.shape(0)) {
+      throw std::invalid_argument("starts and ends must have the same number of rows");
+    }
+    TraceBreaks breaks;
+    std::vector<std::int64_t> offsets{0};
+    bool is_stopped = false;
+    {
+      nb::gil_scoped_release release;
+      SegmentTrace trace(locator_);
+      for (std::int64_t i = 0; i < count && !is_stopped; ++i) {
+        if (from[i] == to[i]) throw std::invalid_argument("ends of a segment must be apart");
+        if (!trace.append(from[i], to[i], breaks)) break;
+        offsets.push_back(static_cast<std::int64_t>(breaks.places.size()));
+        is_stopped = i % kSegmentsAtATime == 0 && !no_signal();
+      }
+    }
+    if (is_stopped) throw nb::python_error();
+    const auto done = static_cast<std::int64_t>(offsets.size()) - 1;
+    const std::size_t rows = offsets.back();
+    shorten(breaks, rows);
+    return {copy_over<Offsets, std::int64_t>(offsets, {offsets.size()}),
+            copy_over<Xy, double>(breaks.places, {rows, 2}),
+            copy_over<Elevations, double>(breaks.elevations, {rows}),
+            copy_over<Elevations, double>(breaks.ratios, {rows}),
+            hand_over(breaks.vertices),
+            hand_over(breaks.edges),
+            hand_over(breaks.triangles),
+            hand_over(breaks.along),
+            done < count ? done : -1};
+  }
+
  private:
+  static constexpr std::int64_t kSegmentsAtATime = 64;  // before Ctrl-C is asked for
+
+  // Leave out what a segment that failed has begun.
+  static void shorten(TraceBreaks& breaks, std::size_t rows) {
+    breaks.places.resize(rows);
+    breaks.elevations.resize(rows);
+    breaks.ratios.resize(rows);
+    breaks.vertices.resize(rows);
+    breaks.edges.resize(rows);
+    breaks.triangles.resize(rows);
+    breaks.along.resize(rows);
+  }
+
   Locator index() const {
     if (triangles_.shape(0) != neighbors_.shape(0)) {
       throw std::invalid_argument("triangles and neighbors must have the same number of rows");
@@ -76,7 +133,9 @@ inline void bind_location(nb::module_& m) {
       .def("locate", &HeldLocator::locate, "xy"_a.noconvert(),
            "The triangle at each point, -1 outside; the smallest one where several meet.")
       .def("interpolate", &HeldLocator::interpolate, "xy"_a.noconvert(),
-           "The elevation at each point, NaN outside.");
+           "The elevation at each point, NaN outside.")
+      .def("trace", &HeldLocator::trace, "starts"_a.noconvert(), "ends"_a.noconvert(),
+           "The places along segments where they cross edges, and the triangles between them.");
 }
 
 }  // namespace tinsmith::python

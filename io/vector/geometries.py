@@ -1,0 +1,112 @@
+"""Points, lines or polygons of a vector file with their columns, in the CRS of a surface."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...crs import CRS
+from ...errors import ReadError
+from ...terrain.results import Features
+from .features import read_features
+from .parts import Wanted, crs_notes, move_to_crs
+
+if TYPE_CHECKING:
+    import os
+
+    from numpy.typing import NDArray
+
+    from ...crs import CrsLike
+    from .features import Features as Layer
+
+__all__ = ["read_geometries"]
+
+_KIND_OF = {
+    0: "points",
+    1: "lines",
+    2: "lines",
+    3: "polygons",
+    4: "points",
+    5: "lines",
+    6: "polygons",
+}
+"""By shapely's numbers of types."""
+
+
+def read_geometries(
+    path: str | os.PathLike[str], *, crs: CrsLike | None = None, layer: str | None = None
+) -> Features:
+    """Read points, lines or polygons of one kind; elevations are left aside.
+
+    Parameters
+    ----------
+    path : path-like
+    crs : CRS, str, int or pyproj.CRS, optional
+        CRS wanted; default the file's own.
+    layer : str, optional
+        Needed if several layers have geometry.
+
+    Returns
+    -------
+    Features
+        With the file's columns, by their names in lower case; points of one feature are several.
+        ``notes`` tell what was left out or assumed.
+
+    Raises
+    ------
+    MissingExtraError
+        If pyogrio is not installed.
+    ReadError
+        If the file cannot be read, holds several kinds, or coordinates that are not finite.
+    CrsError
+        If they cannot be brought into the CRS.
+    """
+    import shapely
+
+    read = read_features(Path(path), layer=layer)
+    wanted = Wanted(CRS.of(crs))
+    shapes = shapely.orient_polygons(shapely.force_2d(read.geometries))
+    kind = _kind_of(shapes, read)
+    columns = read.columns
+    if kind == "points":
+        shapes, rows = shapely.get_parts(shapes, return_index=True)
+        columns = {name: column[rows] for name, column in columns.items()}
+    _, coordinates, levels = shapely.to_ragged_array(shapes)
+    _require_finite(coordinates, read)
+    return Features(
+        kind=kind,
+        coordinates=move_to_crs(coordinates, read, wanted.crs),
+        offsets=tuple(levels),
+        columns=columns,
+        crs=read.crs if wanted.crs is None else wanted.crs,
+        notes=(*read.notes, *crs_notes(read, wanted)),
+    )
+
+
+def _kind_of(shapes: NDArray[np.object_], read: Layer) -> Any:
+    import shapely
+
+    types = shapely.get_type_id(shapes).tolist()
+    kinds = [_KIND_OF.get(one, "collections") for one in types]
+    other = next((row for row, kind in enumerate(kinds) if kind != kinds[0]), None)
+    if "collections" in kinds or other is not None:
+        row = kinds.index("collections") if "collections" in kinds else other
+        raise ReadError(
+            f"{read.label(row or 0)} is one of {kinds[row or 0]}, and the first one of {kinds[0]}: "
+            "a layer of points, of lines or of polygons is needed.",
+            path=read.path,
+        )
+    return kinds[0]
+
+
+def _require_finite(coordinates: NDArray[np.float64], read: Layer) -> None:
+    wrong = ~np.isfinite(coordinates).all(axis=1)
+    if wrong.any():
+        row = int(np.argmax(wrong))
+        raise ReadError(
+            f"'{read.path}' has {int(wrong.sum())} coordinates that are not finite (first: "
+            f"{tuple(coordinates[row].tolist())}): every coordinate must be a finite number.",
+            path=read.path,
+        )

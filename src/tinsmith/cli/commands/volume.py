@@ -1,0 +1,261 @@
+"""``tinsmith volume``: cut and fill, or how much a pond holds."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ..options import (
+    console_options,
+    product_options,
+    reading_options,
+    triangulating_options,
+)
+from ..output.console import plain
+from ..paths import INPUT, LINES, Named, title_of
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from ...terrain import Table
+    from ...tin import TIN
+    from ..options import Reading, Triangulating, Writing
+    from ..output.console import Console, Field
+    from ..surfaces import Products
+
+__all__ = ["volume"]
+
+_SHOWN = 12
+_CUBIC_YARD = 27.0
+"""Cubic feet, of either foot."""
+_FEET = ("ft³", "US ft³")
+
+
+def _optional_outputs() -> Any:
+    """Return the option of outputs, which this command can do without."""
+    return click.option(
+        "-o",
+        "--output",
+        "outputs",
+        metavar="FILE",
+        type=INPUT,
+        multiple=True,
+        help="Table (.csv, .json), parts that are cut and filled (.gpkg, .geojson, .shp, .fgb) or "
+        "map (.png) to write. May be given several times.",
+    )
+
+
+@click.command(short_help="Measure cut and fill, or how much a pond holds.")
+@click.argument("files", metavar="GROUND [DESIGN]", nargs=-1, required=True, type=INPUT)
+@_optional_outputs()
+@click.option("--base", metavar="ELEVATION", type=float, help="Level in place of a design.")
+@click.option(
+    "--regions", metavar="FILE", type=LINES, help="Vector file of polygons to measure in."
+)
+@click.option(
+    "--stage-storage",
+    is_flag=True,
+    help="Tabulate area and volume of the water that stands in GROUND at each level.",
+)
+@click.option(
+    "--level", "levels", metavar="ELEVATION", type=float, multiple=True, help="Level of the table."
+)
+@click.option("--interval", metavar="LENGTH", type=float, help="Or multiples of this.")
+@click.option("--title", metavar="TEXT", help="Of the map; default the names of the files.")
+@reading_options
+@triangulating_options
+@product_options
+@console_options
+def volume(
+    files: tuple[Path, ...],
+    outputs: tuple[Path, ...],
+    regions: Path | None,
+    reading: Reading,
+    how: Triangulating,
+    writing: Writing,
+    console: Console,
+    **asked: Any,
+) -> None:
+    """Measure cut and fill from the TIN in GROUND to that in DESIGN, or to a level.
+
+    Both triangulations are overlaid, exactly; either file may hold points, of which the TIN is
+    built. Fill is where the design, or the level, is above the ground, cut where it is below.
+
+    \b
+    Example:
+      tinsmith volume sample_data/site_survey.csv sample_data/design_pad.csv
+        --crs EPSG:32616 --codes -o pad.csv -o pad.gpkg -o pad.png
+      tinsmith volume sample_data/site_survey.csv --crs EPSG:32616 --base 325 -o level.csv
+    """  # noqa: D301 - click reads the control character
+    from ..surfaces import plan_products, read_surfaces, surface_inputs
+
+    started = perf_counter()
+    _require_one_base(files, asked)
+    inputs = surface_inputs(files, how)
+    if regions is not None:
+        inputs.append(_named(regions))
+    kinds = ["Table"] if asked["stage_storage"] else ["Table", "Features", "picture"]
+    planned = plan_products(outputs, writing, inputs=inputs, console=console, kinds=kinds)
+    surfaces = read_surfaces(files, reading, how, console)
+    with console.steps() as steps, steps.step("Measuring"):
+        table = _measure(surfaces, regions, asked)
+    planned.write("Table", table, console)
+    _map(surfaces, files, planned, asked, console)
+    console.summarise(
+        [
+            *_fields(table, surfaces),
+            *_written(planned),
+            ("Time", f"{perf_counter() - started:.2f} s"),
+        ]
+    )
+    if console.as_json:
+        console.emit(plain(_facts(files, table, planned)))
+
+
+# ---------------------------------------------------------------- what is given
+
+
+def _require_one_base(files: Sequence[Path], asked: dict[str, Any]) -> None:
+    if len(files) > 2:
+        raise click.UsageError(f"{len(files)} files are given: a ground, and perhaps a design.")
+    bases = (len(files) == 2) + (asked["base"] is not None) + asked["stage_storage"]
+    if bases != 1:
+        raise click.UsageError(
+            "One of these is needed: a file of the DESIGN, --base ELEVATION, or --stage-storage."
+        )
+    if not asked["stage_storage"] and (asked["levels"] or asked["interval"] is not None):
+        raise click.UsageError("--level and --interval are for --stage-storage.")
+    if asked["levels"] and asked["interval"] is not None:
+        raise click.UsageError("--level and --interval are both given: choose one.")
+
+
+def _named(regions: Path) -> Named:
+    from ...io.vector.survey_lines import path_and_layer
+
+    return Named(path_and_layer(regions)[0], "the file of --regions")
+
+
+def _read_regions(path: Path, tin: TIN) -> dict[str, Any]:
+    """Read polygons, in the CRS of the TIN, by their numbers."""
+    from ...io import read_polygons
+    from ...io.vector.survey_lines import path_and_layer
+
+    file, layer = path_and_layer(path)
+    polygons = read_polygons(file, crs=tin.crs, layer=layer, drape=True)
+    return {str(number): rings for number, rings in enumerate(polygons, start=1)}
+
+
+# ---------------------------------------------------------------- what is made
+
+
+def _measure(surfaces: Sequence[TIN], regions: Path | None, asked: dict[str, Any]) -> Table:
+    from ...terrain import stage_storage
+    from ...terrain import volume as measure
+
+    tin = surfaces[0]
+    chosen = None if regions is None else _read_regions(regions, tin)
+    if not asked["stage_storage"]:
+        base = asked["base"] if len(surfaces) == 1 else None
+        return measure(tin, *surfaces[1:], base=base, regions=chosen)
+    inside = None if chosen is None else [ring for rings in chosen.values() for ring in rings]
+    return stage_storage(
+        tin, levels=asked["levels"] or None, interval=asked["interval"], region=inside
+    )
+
+
+def _map(
+    surfaces: Sequence[TIN],
+    files: Sequence[Path],
+    planned: Products,
+    asked: dict[str, Any],
+    console: Console,
+) -> None:
+    """Write polygons and pictures, if there are to be some."""
+    from ...terrain import difference, earthwork_map, level_surface
+
+    if not (planned.holds("Features") or planned.holds("picture")):
+        return
+    tin = surfaces[0]
+    other = surfaces[1] if len(surfaces) > 1 else level_surface(tin, asked["base"])
+    with console.steps() as steps, steps.step("Overlaying"):
+        found = difference(tin, other)
+    if planned.holds("Features"):
+        planned.write("Features", found.zones, console)
+    title = asked["title"] or f"Cut and fill: {' to '.join(title_of(file) for file in files)}"
+    planned.draw(lambda: earthwork_map(found, ground=tin, title=title), console)
+
+
+# ---------------------------------------------------------------- for people
+
+
+def _fields(table: Table, surfaces: Sequence[TIN]) -> list[Field]:
+    from ..output.line_summaries import mesh_counts
+
+    names = ["Ground", "Design"]
+    fields = [(name, mesh_counts(tin)) for name, tin in zip(names, surfaces, strict=False)]
+    rows = _stages(table) if "level" in table.columns else _volumes(table)
+    more = [("", f"... {len(table) - _SHOWN} more")] if len(table) > _SHOWN else []
+    return [*fields, *rows, *more, *(("Note", note) for note in table.notes)]
+
+
+def _volumes(table: Table) -> list[Field]:
+    fields = []
+    for row in range(min(len(table), _SHOWN)):
+        if len(table) > 1 or table["region"][row] != "all":
+            fields.append(("Region", str(table["region"][row])))
+        for name in ("cut", "fill"):
+            text = f"{_quantity(table, name, row)} over {_quantity(table, f'{name}_area', row)}"
+            fields.append((name.capitalize(), text))
+        fields.append(("Net", f"{_quantity(table, 'net', row)} (fill less cut)"))
+        fields.append(("Area", _area_text(table, row)))
+    return fields
+
+
+def _area_text(table: Table, row: int) -> str:
+    text = f"{_quantity(table, 'area', row)} compared"
+    alone = {"area_alone": "of the ground alone", "base_area_alone": "without ground"}
+    for name, what in alone.items():
+        if name in table.columns and table[name][row] > 0:
+            text += f", {_quantity(table, name, row)} {what}"
+    return text
+
+
+def _stages(table: Table) -> list[Field]:
+    fields = []
+    for row in range(min(len(table), _SHOWN)):
+        spills = "" if table["is_contained"][row] else ", reaches the boundary"
+        area, held = _quantity(table, "area", row), _quantity(table, "volume", row)
+        fields.append(("Level", f"{_quantity(table, 'level', row)}: {held}, {area}{spills}"))
+    return fields
+
+
+def _quantity(table: Table, name: str, row: int) -> str:
+    unit = table.units.get(name)
+    symbol = getattr(unit, "symbol", unit) or ""
+    value = float(table[name][row])
+    text = f"{value:,.2f} {symbol}".rstrip()
+    if symbol in _FEET:
+        text += f" ({value / _CUBIC_YARD:,.2f} yd³)"
+    return text
+
+
+def _written(planned: Products) -> list[Field]:
+    return [("Written", planned.text)] if planned.paths else []
+
+
+def _facts(files: Sequence[Path], table: Table, planned: Products) -> dict[str, Any]:
+    from ...terrain.results.columns import unit_text
+
+    columns = {name: values.tolist() for name, values in table.columns.items()}
+    return {
+        "inputs": [str(file) for file in files],
+        "rows": [
+            dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)
+        ],
+        "units": {name: unit_text(table.units, name) for name in table.units},
+        "notes": list(table.notes),
+        "outputs": [str(path) for path in planned.paths],
+    }

@@ -1,0 +1,172 @@
+// The overlay of two surfaces as a mesh: cells that share their vertices.
+//
+// A vertex is one of the first surface, one of the second, or the place where an edge of one
+// crosses an edge of the other, rounded once. It is known by these numbers, never by its
+// coordinates, so that cells side by side share it whatever rounding does.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <stdexcept>
+#include <vector>
+
+#include "../../../tin/cpp/base/parallel.hpp"
+#include "../../../tin/cpp/constraints/intersection_point.hpp"
+#include "cell.hpp"
+#include "facet.hpp"
+#include "pairs.hpp"
+
+namespace tinsmith::earthwork {
+
+// An edge of the first surface and one of the second, each by its smaller and larger vertex.
+using EdgePair = std::array<std::int32_t, 4>;
+
+// Numbers of edge pairs, from a given one on, by open addressing.
+class EdgePairs {
+ public:
+  EdgePairs() : slots_(kFirstSize) {}
+
+  // The number of the pair, `number` if it is new.
+  std::int32_t find_or_add(const EdgePair& pair, std::int32_t number) {
+    if (2 * ++count_ > slots_.size()) grow();
+    Slot& slot = slot_of(pair);
+    if (slot.number < 0) {
+      slot = {pair, number};
+    } else {
+      --count_;
+    }
+    return slot.number;
+  }
+
+ private:
+  static constexpr std::size_t kFirstSize = 1024;  // a power of two, as all sizes
+
+  struct Slot {
+    EdgePair pair;
+    std::int32_t number = -1;
+  };
+
+  Slot& slot_of(const EdgePair& pair) {
+    std::uint64_t hash = 0;
+    for (const std::int32_t number : pair) {
+      hash = (hash ^ static_cast<std::uint32_t>(number)) * 0x9e3779b97f4a7c15;  // 2^64 / golden
+      hash ^= hash >> 29;
+    }
+    std::size_t at = hash & (slots_.size() - 1);
+    while (slots_[at].number >= 0 && slots_[at].pair != pair) at = (at + 1) & (slots_.size() - 1);
+    return slots_[at];
+  }
+
+  void grow() {
+    std::vector<Slot> old(2 * slots_.size());
+    old.swap(slots_);
+    for (const Slot& slot : old) {
+      if (slot.number >= 0) slot_of(slot.pair) = slot;
+    }
+  }
+
+  std::vector<Slot> slots_;
+  std::size_t count_ = 0;
+};
+
+class Overlay {
+ public:
+  struct OverlayVertex {
+    double x, y;
+    double difference;  // of the second surface above the first
+  };
+
+  Overlay(const Triangles& first, std::int32_t first_count, const Triangles& second,
+          std::int32_t second_count, Team& team)
+      : vertex_of_{std::vector<std::int32_t>(first_count, -1),
+                   std::vector<std::int32_t>(second_count, -1)} {
+    const Pairs pairs(first, second);
+    pairs.visit(team, [&](int, std::int32_t a, std::int32_t b) {
+      const Facet one = Facet::of(first, a), other = Facet::of(second, b);
+      const bool is_kept = is_measured_along(one, other);
+      Cell cell;
+      if (!(is_kept ? cell.cut(one, other) : cell.cut(other, one))) return;
+      for (int i = 0; i < cell.size(); ++i) add_corner(one, other, is_kept, cell, i);
+      offsets.push_back(static_cast<std::int64_t>(corners.size()));
+      triangles.push_back({a, b});
+    });
+  }
+
+  std::vector<OverlayVertex> vertices;
+  std::vector<std::array<std::int32_t, 2>> origins;  // vertex of the first, of the second; -1
+  std::vector<std::int64_t> offsets{0};              // of cells, in corners
+  std::vector<std::int32_t> corners;                 // vertices of cells, counter-clockwise
+  std::vector<std::array<std::int32_t, 2>> triangles;  // of the first and the second, of each cell
+
+ private:
+  void add_corner(const Facet& one, const Facet& other, bool is_kept, const Cell& cell, int i) {
+    const int number = cell.number(i);
+    const double difference = is_kept ? cell.difference(i) : -cell.difference(i);
+    if (number >= Cell::kCrossings) {
+      const int edge = (number - Cell::kCrossings) / 3, across = (number - Cell::kCrossings) % 3;
+      add_crossing(one, is_kept ? edge : across, other, is_kept ? across : edge, difference);
+      return;
+    }
+    const bool is_of_first = (number < 3) == is_kept;
+    const int corner = number % 3;
+    const int shared = shared_corner(is_of_first ? other : one, is_of_first ? one : other, corner);
+    if (is_of_first) {
+      add_vertex(one, corner, shared < 0 ? -1 : other.vertex[shared], difference);
+    } else if (shared >= 0) {
+      add_vertex(one, shared, other.vertex[corner], difference);
+    } else {
+      add_second_vertex(other, corner, difference);
+    }
+  }
+
+  // The corner of a triangle at the same place as a corner of another one, -1 if there is none.
+  static int shared_corner(const Facet& triangle, const Facet& other, int corner) {
+    for (int k = 0; k < 3; ++k) {
+      if (triangle.corner[k] == other.corner[corner]) return k;
+    }
+    return -1;
+  }
+
+  void add_vertex(const Facet& one, int corner, std::int32_t second, double difference) {
+    std::int32_t& number = vertex_of_[0][one.vertex[corner]];
+    if (number < 0) {
+      number = new_vertex(one.corner[corner], difference, {one.vertex[corner], second});
+    }
+    corners.push_back(number);
+  }
+
+  void add_second_vertex(const Facet& other, int corner, double difference) {
+    std::int32_t& number = vertex_of_[1][other.vertex[corner]];
+    if (number < 0) number = new_vertex(other.corner[corner], difference, {-1, other.vertex[corner]});
+    corners.push_back(number);
+  }
+
+  void add_crossing(const Facet& one, int edge, const Facet& other, int across, double difference) {
+    const auto ends = std::minmax(one.vertex[kAfter[edge]], one.vertex[kBefore[edge]]);
+    const auto other_ends = std::minmax(other.vertex[kAfter[across]], other.vertex[kBefore[across]]);
+    const auto next = static_cast<std::int32_t>(vertices.size());
+    const std::int32_t number = crossings_.find_or_add(
+        {ends.first, ends.second, other_ends.first, other_ends.second}, next);
+    if (number == next) {
+      new_vertex(intersection_point(one.start(edge), one.end(edge), other.start(across),
+                                    other.end(across)),
+                 difference, {-1, -1});
+    }
+    corners.push_back(number);
+  }
+
+  std::int32_t new_vertex(Point p, double difference, std::array<std::int32_t, 2> origin) {
+    if (vertices.size() >= static_cast<std::size_t>(INT32_MAX / 4)) {
+      throw std::length_error("the overlay has more vertices than 32-bit indices can number");
+    }
+    vertices.push_back({p.x, p.y, difference});
+    origins.push_back(origin);
+    return static_cast<std::int32_t>(vertices.size() - 1);
+  }
+
+  std::array<std::vector<std::int32_t>, 2> vertex_of_;
+  EdgePairs crossings_;
+};
+
+}  // namespace tinsmith::earthwork

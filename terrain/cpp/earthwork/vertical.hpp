@@ -1,0 +1,76 @@
+// How far one surface lies above another at the corners of their overlay: exactly 0 where they
+// meet, of the exact sign elsewhere, and good to some ten digits of the elevations' range.
+//
+// Each is a sum of three weighted elevations, an orientation in space; where it nearly cancels it
+// is summed as an expansion.
+#pragma once
+
+#include <cmath>
+
+#include "facet.hpp"
+
+namespace tinsmith::earthwork {
+
+namespace detail {
+
+constexpr double kKeptOfSum = 0x1p-20;
+
+inline Expansion<16> exact_area(Point a, Point b, Point c) {
+  return tinsmith::detail::exact_twice_area(a, b, c);
+}
+
+// weight[0] * rise[0] + ..., where `exact` gives each weight as an expansion.
+template <typename ExactWeight>
+double weighted_sum(const double (&weight)[3], const double (&elevation)[3], double datum,
+                    ExactWeight&& exact) {
+  double sum = 0.0, size = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    const double term = weight[k] * (elevation[k] - datum);
+    sum += term;
+    size += std::fabs(term);
+  }
+  if (size == 0.0 || std::fabs(sum) > kKeptOfSum * size) return sum;
+  const auto term = [&](int k) { return exact(k) * expand(exact_difference(elevation[k], datum)); };
+  return (term(0) + term(1) + term(2)).value();
+}
+
+}  // namespace detail
+
+// Of the plane of a facet above a point that it holds: `weight` has the point's twice areas with
+// the edges of the facet.
+inline double height_of_plane(const Facet& facet, Point p, double elevation,
+                              const double (&weight)[3]) {
+  for (int k = 0; k < 3; ++k) {
+    if (weight[kAfter[k]] == 0.0 && weight[kBefore[k]] == 0.0) {
+      return facet.elevation[k] - elevation;  // the point is a corner of the facet
+    }
+  }
+  const double total = weight[0] + weight[1] + weight[2];
+  const double sum =
+      detail::weighted_sum(weight, facet.elevation, elevation, [&](int k) {
+        return detail::exact_area(facet.start(k), facet.end(k), p);
+      });
+  return sum / total;
+}
+
+// An edge with the twice areas of its ends and an edge that it crosses: of opposite signs.
+struct CrossingEdge {
+  Point start, end;
+  double start_elevation, end_elevation;
+  double start_area, end_area;
+};
+
+// Of the second edge above the first where they cross.
+inline double height_at_crossing(const CrossingEdge& first, const CrossingEdge& second) {
+  const double datum = first.start_elevation;
+  const double weight[3] = {second.end_area, -second.start_area, -first.start_area};
+  const double elevation[3] = {second.start_elevation, second.end_elevation, first.end_elevation};
+  const double sum = detail::weighted_sum(weight, elevation, datum, [&](int k) {
+    if (k == 0) return detail::exact_area(first.start, first.end, second.end);
+    if (k == 1) return -detail::exact_area(first.start, first.end, second.start);
+    return -detail::exact_area(second.start, second.end, first.start);
+  });
+  return sum / (first.start_area - first.end_area);
+}
+
+}  // namespace tinsmith::earthwork

@@ -1,0 +1,98 @@
+// Cut and fill between two surfaces, or a surface and heights at its vertices, group by group.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "../../../tin/cpp/base/parallel.hpp"
+#include "cell.hpp"
+#include "facet.hpp"
+#include "pairs.hpp"
+#include "sums.hpp"
+
+namespace tinsmith::earthwork {
+
+// Area in space of a triangle by its area in the plane; `up` converts elevations.
+inline double steepness(const Facet& facet, double up) {
+  const Point a = facet.corner[0], b = facet.corner[1], c = facet.corner[2];
+  const double doubled = twice_area(a, b, c);
+  const double b_rise = (facet.elevation[1] - facet.elevation[0]) * up;
+  const double c_rise = (facet.elevation[2] - facet.elevation[0]) * up;
+  const double east = (b.y - a.y) * c_rise - (c.y - a.y) * b_rise;
+  const double north = (c.x - a.x) * b_rise - (b.x - a.x) * c_rise;
+  return std::hypot(1.0, std::hypot(east / doubled, north / doubled));
+}
+
+inline double cross(Point p, Point q) { return p.x * q.y - p.y * q.x; }
+
+// A cell in triangles from its first corner: visit(twice the area, the differences).
+template <typename Visit>
+void fan_out(const Cell& cell, Visit&& visit) {
+  const Point apex = cell.place(0);
+  const auto from_apex = [&](int i) {
+    return Point{cell.place(i).x - apex.x, cell.place(i).y - apex.y};
+  };
+  for (int i = 1; i + 1 < cell.size(); ++i) {
+    // Rounding may turn over a triangle thinner than coordinates can tell.
+    const double doubled = std::fmax(cross(from_apex(i), from_apex(i + 1)), 0.0);
+    visit(doubled, cell.difference(0), cell.difference(i), cell.difference(i + 1));
+  }
+}
+
+inline std::vector<Sums> add_up(const std::vector<std::vector<Sums>>& parts) {
+  std::vector<Sums> all = parts.front();
+  for (std::size_t part = 1; part < parts.size(); ++part) {
+    for (std::size_t group = 0; group < all.size(); ++group) all[group].add(parts[part][group]);
+  }
+  return all;
+}
+
+inline std::vector<double> all_steepness(const Triangles& triangles, double up) {
+  std::vector<double> values(triangles.count);
+  for (std::int32_t t = 0; t < triangles.count; ++t) {
+    values[t] = steepness(Facet::of(triangles, t), up);
+  }
+  return values;
+}
+
+// Of the second surface above the first; `groups` has the group of each triangle of the first.
+inline std::vector<Sums> sum_between(const Triangles& first, const std::int32_t* groups,
+                                     std::int32_t group_count, const Triangles& second, double up,
+                                     Team& team) {
+  const Pairs pairs(first, second);
+  const auto steep = all_steepness(first, up), other_steep = all_steepness(second, up);
+  std::vector<std::vector<Sums>> parts(team.size(), std::vector<Sums>(group_count));
+  pairs.visit(team, [&](int part, std::int32_t a, std::int32_t b) {
+    const Facet one = Facet::of(first, a), other = Facet::of(second, b);
+    const bool is_kept = is_measured_along(one, other);
+    Cell cell;
+    if (!(is_kept ? cell.cut(one, other) : cell.cut(other, one))) return;
+    Sums& sums = parts[part][groups[a]];
+    const double sign = is_kept ? 1.0 : -1.0;
+    double doubled_area = 0.0;
+    fan_out(cell, [&](double doubled, double u, double v, double w) {
+      sums.add(doubled, sign * u, sign * v, sign * w);
+      doubled_area += doubled;
+    });
+    sums.add_surfaces(0.5 * doubled_area * steep[a], 0.5 * doubled_area * other_steep[b]);
+  });
+  return add_up(parts);
+}
+
+// Of heights at the vertices, which are linear over each triangle.
+inline std::vector<Sums> sum_heights(const Triangles& triangles, const double* heights,
+                                     const std::int32_t* groups, std::int32_t group_count,
+                                     double up) {
+  std::vector<Sums> sums(group_count);
+  for (std::int32_t t = 0; t < triangles.count; ++t) {
+    const Facet facet = Facet::of(triangles, t);
+    const double doubled = twice_area(facet.corner[0], facet.corner[1], facet.corner[2]);
+    Sums& own = sums[groups[t]];
+    own.add(doubled, heights[facet.vertex[0]], heights[facet.vertex[1]], heights[facet.vertex[2]]);
+    own.add_surfaces(0.5 * doubled * steepness(facet, up), 0.5 * doubled);
+  }
+  return sums;
+}
+
+}  // namespace tinsmith::earthwork

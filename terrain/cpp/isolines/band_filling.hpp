@@ -1,0 +1,150 @@
+// Bands: the parts of a surface between one level and the next, as polygons.
+//
+// Band b lies above b levels: from level b - 1, which belongs to it, up to level b. Its boundary
+// is made of the lines of both levels and of parts of the surface's own boundary, triangle by
+// triangle; rings come of it by their points alone.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "../../../tin/cpp/base/parallel.hpp"
+#include "band_pieces.hpp"
+#include "level_surface.hpp"
+#include "ring_tracing.hpp"
+
+namespace tinsmith::isolines {
+
+// Rings of all polygons, of each polygon first the exterior.
+struct Bands {
+  std::vector<Point> points;                  // the first of each ring repeated
+  std::vector<std::int64_t> ring_offsets{0};  // into points
+  std::vector<std::int64_t> polygon_offsets{0};
+  std::vector<std::int32_t> band;  // of each polygon
+};
+
+class BandFiller {
+ public:
+  BandFiller(const LevelSurface& surface, Team& team)
+      : surface_(surface), team_(team), pieces_(surface) {
+    list_triangles();
+  }
+
+  Bands fill() {
+    for (std::int32_t band = 0; band <= surface_.level_count(); ++band) {
+      if (!team_.keeps_going(0)) break;
+      add_polygons(RingTracer(boundary_of(band)).trace(), band);
+    }
+    return std::move(found_);
+  }
+
+ private:
+  // Triangles that have a part of each band and of another, or lie at the boundary.
+  void list_triangles() {
+    first_.assign(std::size_t(surface_.level_count()) + 2, 0);
+    const auto each = [&](const auto& use) {
+      for (const Triangle t : Ids<Triangle>(surface_.arrays().triangle_count)) {
+        const auto [low, high] = surface_.ranks(t);
+        if (low == high && !is_at_boundary(t)) continue;
+        for (std::int32_t band = low; band <= high; ++band) use(t, band);
+      }
+    };
+    each([&](Triangle, std::int32_t band) { ++first_[std::size_t(band) + 1]; });
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    listed_.resize(first_.back());
+    std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
+    each([&](Triangle t, std::int32_t band) { listed_[next[band]++] = t; });
+  }
+
+  bool is_at_boundary(Triangle t) const {
+    return surface_.neighbor(t, 0) == kNoTriangle || surface_.neighbor(t, 1) == kNoTriangle ||
+           surface_.neighbor(t, 2) == kNoTriangle;
+  }
+
+  std::vector<BoundarySegment> boundary_of(std::int32_t band) const {
+    std::vector<BoundarySegment> segments;
+    for (std::size_t i = first_[band]; i < first_[std::size_t(band) + 1]; ++i) {
+      const Triangle t = listed_[i];
+      const auto [low, high] = surface_.ranks(t);
+      if (band > low) add_line(segments, t, band - 1, true);
+      if (band < high) add_line(segments, t, band, false);
+      for (std::uint32_t corner = 0; corner < 3; ++corner) {
+        if (surface_.neighbor(t, corner) == kNoTriangle) add_edge(segments, t, corner, band);
+      }
+    }
+    return segments;
+  }
+
+  // The line of a level in a triangle, with what is above it on the left, or what is below.
+  void add_line(std::vector<BoundarySegment>& segments, Triangle t, std::int32_t level,
+                bool is_above) const {
+    const std::uint32_t above = surface_.corners_above(t, level);
+    const Point start = surface_.crossing(surface_.entry_of_line(t, above), level);
+    const Point end = surface_.crossing(surface_.exit_of(t, above), level);
+    if (start == end) return;
+    segments.push_back(is_above ? BoundarySegment{start, end, t} : BoundarySegment{end, start, t});
+  }
+
+  // The part of a band of an edge of the boundary.
+  void add_edge(std::vector<BoundarySegment>& segments, Triangle t, std::uint32_t corner,
+                std::int32_t band) const {
+    const Vertex from = surface_.corner(t, corner_after(corner));
+    const Vertex to = surface_.corner(t, corner_before(corner));
+    const bool is_rising = surface_.rank(from) <= surface_.rank(to);
+    const Exit edge{corner, is_rising ? from : to, is_rising ? to : from};
+    const std::int32_t lowest = surface_.rank(edge.low);
+    const std::int32_t highest = surface_.rank(edge.high);
+    if (band < lowest || band > highest) return;
+    const Point low =
+        band > lowest ? surface_.crossing(edge, band - 1) : surface_.point(edge.low);
+    const Point high =
+        band < highest ? surface_.crossing(edge, band) : surface_.point(edge.high);
+    if (low == high) return;
+    segments.push_back(is_rising ? BoundarySegment{low, high, t} : BoundarySegment{high, low, t});
+  }
+
+  // Rings of one connected part of the band are one polygon.
+  void add_polygons(std::vector<Ring> rings, std::int32_t band) {
+    const auto by_first = [](const Ring& a, const Ring& b) {
+      return std::lexicographical_compare(a.points.begin(), a.points.end(), b.points.begin(),
+                                          b.points.end(), lexicographically_before);
+    };
+    std::sort(rings.begin(), rings.end(), by_first);
+    std::unordered_map<std::int32_t, std::vector<std::size_t>> holes;
+    for (std::size_t i = 0; i < rings.size(); ++i) {
+      if (!rings[i].is_exterior) holes[pieces_.part_of(rings[i].triangle, band)].push_back(i);
+    }
+    for (const Ring& ring : rings) {
+      if (!ring.is_exterior) continue;
+      add_ring(ring);
+      for (const std::size_t i : holes[pieces_.part_of(ring.triangle, band)]) add_ring(rings[i]);
+      found_.polygon_offsets.push_back(static_cast<std::int64_t>(found_.ring_offsets.size()) - 1);
+      found_.band.push_back(band);
+    }
+  }
+
+  void add_ring(const Ring& ring) {
+    found_.points.insert(found_.points.end(), ring.points.begin(), ring.points.end());
+    found_.points.push_back(ring.points.front());
+    found_.ring_offsets.push_back(static_cast<std::int64_t>(found_.points.size()));
+  }
+
+  const LevelSurface& surface_;
+  Team& team_;
+  const BandPieces pieces_;
+  std::vector<std::size_t> first_;  // of each band
+  std::vector<Triangle> listed_;
+  Bands found_;
+};
+
+inline Bands fill_bands(const SurfaceArrays& arrays, const Levels& levels, Team& team) {
+  const LevelSurface surface(arrays, levels);
+  return BandFiller(surface, team).fill();
+}
+
+}  // namespace tinsmith::isolines

@@ -1,0 +1,169 @@
+// How far from a level the surface is along a straight segment: a walk through its triangles.
+//
+// The walk is careful, not complete: where the segment runs through a vertex or along an edge, and
+// where rounding leaves too much open, it says that it does not know.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "../../../tin/cpp/predicates/predicates.hpp"
+#include "level_surface.hpp"
+
+namespace tinsmith::isolines {
+
+// A place of a line: a point and a triangle that holds it, or kNoTriangle.
+struct Place {
+  Point point;
+  Triangle triangle;
+};
+
+// A cross product and how far from it the rounded one may be.
+struct Turn {
+  double value;
+  double error;
+};
+
+inline Turn measure_turn(Point a, Point b, Point c) {
+  const double left = (a.x - c.x) * (b.y - c.y);
+  const double right = (a.y - c.y) * (b.x - c.x);
+  return {left - right, detail::kOrientationBound * (std::fabs(left) + std::fabs(right))};
+}
+
+class ElevationWalk {
+ public:
+  explicit ElevationWalk(const SurfaceArrays& surface) : surface_(surface) {}
+
+  // Whether the surface is within the tolerance of the level all along a segment but for its ends.
+  // `to.triangle` may be kNoTriangle: then the triangle is found.
+  bool stays_within(const Place& from, Place& to, double level, double tolerance) const {
+    if (from.triangle == kNoTriangle) return false;
+    Triangle t = first_triangle(from, to.point);
+    std::uint32_t entry = kNoCorner;
+    for (std::int32_t steps = 0; t != kNoTriangle && steps < kMostSteps; ++steps) {
+      if (t == to.triangle || holds(t, to.point)) {
+        to.triangle = t;
+        return true;
+      }
+      const std::uint32_t exit = exit_of(t, entry, from.point, to.point);
+      if (exit == kNoCorner) return false;
+      const std::int32_t low = vertex(t, corner_after(exit));
+      const std::int32_t high = vertex(t, corner_before(exit));
+      if (!is_near(from.point, to.point, low, high, level, tolerance)) return false;
+      const Triangle next = neighbor(t, exit);
+      entry = next == kNoTriangle ? kNoCorner : corner_across(next, t);
+      t = next;
+    }
+    return false;
+  }
+
+  // Whether the surface at a place is within the tolerance of the level.
+  bool is_within(const Place& place, double level, double tolerance) const {
+    double weight = 0.0, height = 0.0, error = 0.0, largest = 0.0;
+    for (std::uint32_t corner = 0; corner < 3; ++corner) {
+      const Turn part = measure_turn(point(vertex(place.triangle, corner_after(corner))),
+                                     point(vertex(place.triangle, corner_before(corner))),
+                                     place.point);
+      const double rise = elevation(vertex(place.triangle, corner)) - level;
+      weight += part.value;
+      height += part.value * rise;
+      error += part.error;
+      largest = std::max(largest, std::fabs(rise));
+    }
+    if (!(weight > 2.0 * error)) return false;
+    const double off = std::fabs(height / weight) + 2.0 * largest * error / (weight - error);
+    return off * kRoundings <= tolerance;
+  }
+
+ private:
+  static constexpr std::uint32_t kNoCorner = 3;
+  static constexpr std::int32_t kMostSteps = 100'000;
+  static constexpr double kRoundings = 1.0 + 16.0 * kUnitRoundoff;  // of the last few operations
+
+  std::int32_t vertex(Triangle t, std::uint32_t corner) const {
+    return surface_.triangles[entry_of(t, corner)];
+  }
+  Triangle neighbor(Triangle t, std::uint32_t corner) const {
+    const std::int32_t across = surface_.neighbors[entry_of(t, corner)];
+    return across == kNoNeighbor ? kNoTriangle : Triangle{static_cast<std::uint32_t>(across)};
+  }
+  Point point(std::int32_t v) const {
+    return {surface_.xyz[3 * std::size_t(v)], surface_.xyz[3 * std::size_t(v) + 1]};
+  }
+  double elevation(std::int32_t v) const { return surface_.xyz[3 * std::size_t(v) + 2]; }
+
+  std::uint32_t corner_across(Triangle t, Triangle from) const {
+    for (std::uint32_t corner = 0; corner < 3; ++corner) {
+      if (neighbor(t, corner) == from) return corner;
+    }
+    return kNoCorner;
+  }
+
+  bool holds(Triangle t, Point p) const {
+    const Point a = point(vertex(t, 0)), b = point(vertex(t, 1)), c = point(vertex(t, 2));
+    return orientation(a, b, p) >= 0 && orientation(b, c, p) >= 0 && orientation(c, a, p) >= 0;
+  }
+
+  // Where the walk starts in a vertex, the triangle about it that the segment runs into.
+  Triangle first_triangle(const Place& from, Point to) const {
+    for (std::uint32_t corner = 0; corner < 3; ++corner) {
+      if (point(vertex(from.triangle, corner)) == from.point) {
+        return turn_towards(from.triangle, vertex(from.triangle, corner), to);
+      }
+    }
+    return from.triangle;
+  }
+
+  Triangle turn_towards(Triangle start, std::int32_t about, Point to) const {
+    for (const bool is_left : {true, false}) {
+      Triangle t = start;
+      do {
+        std::uint32_t corner = 0;
+        while (vertex(t, corner) != about) ++corner;
+        const Point right = point(vertex(t, corner_after(corner)));
+        const Point left = point(vertex(t, corner_before(corner)));
+        if (orientation(point(about), right, to) >= 0 && orientation(point(about), left, to) <= 0 &&
+            orientation(right, left, point(about)) > 0) {
+          return t;
+        }
+        t = neighbor(t, is_left ? corner_after(corner) : corner_before(corner));
+      } while (t != kNoTriangle && t != start);
+    }
+    return kNoTriangle;
+  }
+
+  // The edge by which the segment leaves a triangle, kNoCorner where no edge is it for certain.
+  std::uint32_t exit_of(Triangle t, std::uint32_t entry, Point from, Point to) const {
+    for (std::uint32_t corner = 0; corner < 3; ++corner) {
+      if (corner == entry) continue;
+      const Point right = point(vertex(t, corner_after(corner)));
+      const Point left = point(vertex(t, corner_before(corner)));
+      if (orientation(from, to, right) < 0 && orientation(from, to, left) > 0 &&
+          orientation(right, left, to) < 0) {
+        return corner;
+      }
+    }
+    return kNoCorner;
+  }
+
+  // Whether the edge p-q is near the level where the segment crosses it.
+  bool is_near(Point from, Point to, std::int32_t p, std::int32_t q, double level,
+               double tolerance) const {
+    const Turn right = measure_turn(from, to, point(p));
+    const Turn left = measure_turn(from, to, point(q));
+    const double total = std::fabs(right.value) + std::fabs(left.value);
+    const double error = right.error + left.error;
+    if (!(total > 2.0 * error)) return false;
+    const double share = std::fabs(right.value) / total;
+    const double slack = 2.0 * error / (total - error) + 4.0 * kUnitRoundoff;
+    const double rise = elevation(q) - elevation(p);
+    const double off = std::fabs(elevation(p) - level + share * rise) + slack * std::fabs(rise);
+    const double rounding = 4.0 * kUnitRoundoff * (std::fabs(elevation(p)) + std::fabs(level));
+    return (off + rounding) * kRoundings <= tolerance;
+  }
+
+  SurfaceArrays surface_;
+};
+
+}  // namespace tinsmith::isolines

@@ -1,0 +1,130 @@
+// Bindings of volumes between surfaces.
+#pragma once
+
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/tuple.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <stdexcept>
+#include <tuple>
+#include <vector>
+
+#include "../../../tin/cpp/python/arrays.hpp"
+#include "../earthwork/overlay.hpp"
+#include "../earthwork/storage.hpp"
+#include "../earthwork/volumes.hpp"
+
+namespace tinsmith::python {
+
+using GivenValues = Given<double, -1>;
+using StageTable = Made<double, -1, 3>;
+using Offsets = Made<std::int64_t, -1>;
+using SumTable = Made<double, -1, earthwork::Sums::kColumns>;
+
+inline earthwork::Triangles earthwork_triangles(const GivenXyz& points,
+                                                const GivenTriples& triangles) {
+  const std::int32_t point_count = row_count(points.shape(0));
+  const std::int32_t count = row_count(triangles.shape(0));
+  for (std::size_t i = 0; i < 3 * triangles.shape(0); ++i) {
+    if (triangles.data()[i] < 0 || triangles.data()[i] >= point_count) {
+      throw std::invalid_argument("triangles must hold vertex numbers from 0 to n - 1");
+    }
+  }
+  for (std::size_t i = 0; i < 3 * points.shape(0); i += 3) {
+    if (!(std::fabs(points.data()[i]) <= kLargestCoordinate &&
+          std::fabs(points.data()[i + 1]) <= kLargestCoordinate)) {
+      throw std::invalid_argument("points must be finite and within the exact range");
+    }
+  }
+  return {points.data(), triangles.data(), count};
+}
+
+inline void require_groups(const GivenNumbers& groups, std::size_t count, std::int32_t limit) {
+  if (groups.shape(0) != count) throw std::invalid_argument("a group for each triangle is needed");
+  for (std::size_t i = 0; i < count; ++i) {
+    if (groups.data()[i] < 0 || groups.data()[i] >= limit) {
+      throw std::invalid_argument("groups must be numbers from 0 to their count - 1");
+    }
+  }
+}
+
+inline SumTable hand_over(const std::vector<earthwork::Sums>& sums) {
+  std::vector<std::array<double, earthwork::Sums::kColumns>> rows;
+  rows.reserve(sums.size());
+  for (const earthwork::Sums& one : sums) rows.push_back(one.values());
+  return copy_over<SumTable, double>(rows, {rows.size(), earthwork::Sums::kColumns});
+}
+
+inline SumTable sum_between(const GivenXyz& points, const GivenTriples& triangles,
+                            const GivenNumbers& groups, std::int32_t group_count,
+                            const GivenXyz& other_points, const GivenTriples& other_triangles,
+                            double up, int threads) {
+  const auto first = earthwork_triangles(points, triangles);
+  const auto second = earthwork_triangles(other_points, other_triangles);
+  require_groups(groups, triangles.shape(0), group_count);
+  return hand_over(unlocked(threads, [&](Team& team) {
+    return earthwork::sum_between(first, groups.data(), group_count, second, up, team);
+  }));
+}
+
+inline SumTable sum_heights(const GivenXyz& points, const GivenTriples& triangles,
+                            const GivenValues& heights, const GivenNumbers& groups,
+                            std::int32_t group_count, double up) {
+  const auto given = earthwork_triangles(points, triangles);
+  require_groups(groups, triangles.shape(0), group_count);
+  if (heights.shape(0) != points.shape(0)) {
+    throw std::invalid_argument("a height for each point is needed");
+  }
+  nb::gil_scoped_release release;
+  const auto sums =
+      earthwork::sum_heights(given, heights.data(), groups.data(), group_count, up);
+  nb::gil_scoped_acquire acquire;
+  return hand_over(sums);
+}
+
+inline auto overlay(const GivenXyz& points, const GivenTriples& triangles,
+                    const GivenXyz& other_points, const GivenTriples& other_triangles) {
+  const auto first = earthwork_triangles(points, triangles);
+  const auto second = earthwork_triangles(other_points, other_triangles);
+  const earthwork::Overlay made = unlocked(1, [&](Team& team) {
+    return earthwork::Overlay(first, static_cast<std::int32_t>(points.shape(0)), second,
+                              static_cast<std::int32_t>(other_points.shape(0)), team);
+  });
+  return std::make_tuple(copy_over<Xyz, double>(made.vertices, {made.vertices.size(), 3}),
+                         copy_over<Pairs, std::int32_t>(made.origins, {made.origins.size(), 2}),
+                         copy_over<Offsets, std::int64_t>(made.offsets, {made.offsets.size()}),
+                         hand_over(made.corners),
+                         copy_over<Pairs, std::int32_t>(made.triangles, {made.triangles.size(), 2}));
+}
+
+inline StageTable stage_sums(const GivenXyz& points, const GivenTriples& triangles,
+                             const GivenValues& levels, double up) {
+  const auto given = earthwork_triangles(points, triangles);
+  if (!std::is_sorted(levels.data(), levels.data() + levels.shape(0))) {
+    throw std::invalid_argument("levels must ascend");
+  }
+  nb::gil_scoped_release release;
+  const auto rows =
+      earthwork::Storage(given, levels.data(), row_count(levels.shape(0)), up).rows();
+  nb::gil_scoped_acquire acquire;
+  return copy_over<StageTable, double>(rows, {rows.size(), 3});
+}
+
+inline void bind_earthwork(nb::module_& m) {
+  m.def("sum_between", &sum_between, "points"_a.noconvert(), "triangles"_a.noconvert(),
+        "groups"_a.noconvert(), "group_count"_a, "other_points"_a.noconvert(),
+        "other_triangles"_a.noconvert(), "up"_a, "threads"_a = 1,
+        "Cut and fill from one surface to another, a row for each group of the first's triangles.");
+  m.def("sum_heights", &sum_heights, "points"_a.noconvert(), "triangles"_a.noconvert(),
+        "heights"_a.noconvert(), "groups"_a.noconvert(), "group_count"_a, "up"_a,
+        "Cut and fill of heights at the vertices, a row for each group of triangles.");
+  m.def("overlay", &overlay, "points"_a.noconvert(), "triangles"_a.noconvert(),
+        "other_points"_a.noconvert(), "other_triangles"_a.noconvert(),
+        "Vertices with differences, their origins, offsets and corners of cells, triangles of each.");
+  m.def("stage_sums", &stage_sums, "points"_a.noconvert(), "triangles"_a.noconvert(),
+        "levels"_a.noconvert(), "up"_a, "Area, area in space and volume under each level.");
+}
+
+}  // namespace tinsmith::python

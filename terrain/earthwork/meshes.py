@@ -1,0 +1,236 @@
+"""A triangle mesh made sound after rounding, and cut where a linear function is zero."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...errors import LinesError, PointsError
+from ...tin import TIN, check, topology, triangulate
+from ...tin.report import Report
+from .cells import turns
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+__all__ = ["as_mesh", "cut_at_zero", "mend", "rebuild"]
+
+_MOST_ROUNDS = 16
+"""Flat triangles lie side by side in short chains; each round takes one off an end."""
+
+
+_ROUNDINGS = 64
+"""Of the largest coordinate: lines closer than this may be brought together."""
+
+
+def mend(
+    points: NDArray[np.float64], triangles: NDArray[np.int32]
+) -> tuple[NDArray[np.float64], NDArray[np.int32]] | None:
+    """Remove triangles that rounding has made flat or turned over; None if that is not enough.
+
+    Vertices that were rounded to one place become one. The longest edge of a flat triangle is
+    flipped, as its third vertex lies on it but for rounding; one on the boundary is dropped. What
+    moves is as thin as coordinates can tell.
+    """
+    try:
+        return _mended(points, triangles)
+    except PointsError:  # edges with more than two triangles: lines run through each other
+        return None
+
+
+def _mended(
+    points: NDArray[np.float64], triangles: NDArray[np.int32]
+) -> tuple[NDArray[np.float64], NDArray[np.int32]] | None:
+    merged = _merge_places(points, triangles)
+    for _ in range(_MOST_ROUNDS):
+        flat = np.flatnonzero(turns(points, merged) <= 0)
+        if not len(flat):
+            found = _drop_unused(points, merged)
+            return found if _is_sound(*found) else None
+        merged = _flip_longest(points, merged, flat)
+    return None
+
+
+def _is_sound(points: NDArray[np.float64], triangles: NDArray[np.int32]) -> bool:
+    """Whether triangles, all of them counter-clockwise, do not lie over each other."""
+    if not len(triangles):
+        return False
+    return bool(check(as_mesh(points, triangles), level=2).ok)
+
+
+def as_mesh(points: NDArray[np.float64], triangles: NDArray[np.int32], **reference: Any) -> TIN:
+    """Return a TIN whose edges are all constrained: none of them may be flipped."""
+    return TIN(
+        points=points,
+        triangles=triangles,
+        neighbors=topology.neighbors_of(triangles, len(points)),
+        constrained=np.ones((len(triangles), 3), bool),
+        vertex_of=np.arange(len(points), dtype=np.int32),
+        report=Report(n_rows=len(points), n_vertices=len(points), n_triangles=len(triangles)),
+        **reference,
+    )
+
+
+def rebuild(
+    points: NDArray[np.float64], triangles: NDArray[np.int32], holds: Callable[[Any], Any]
+) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    """Triangulate anew with all edges as lines, which are split where rounding lets them cross.
+
+    Parameters
+    ----------
+    points, triangles
+        As they are made, before rounding is looked at.
+    holds : function
+        Whether places, (k, 2), are inside: what is not is cut away.
+
+    Raises
+    ------
+    PointsError
+        If nothing that coordinates can tell is left.
+    """
+    start, end = topology.directed_edges(triangles)
+    once = np.unique(topology.edge_keys(np.stack([start, end], axis=-1), len(points)))
+    pairs = np.stack([once // len(points), once % len(points)], axis=1)
+    pairs = pairs[(points[pairs[:, 0], :2] != points[pairs[:, 1], :2]).any(axis=1)]
+    lines = list(points[pairs])
+    for snap in (0.0, _ROUNDINGS * float(np.spacing(np.abs(points[:, :2]).max()))):
+        try:
+            tin = triangulate(points, breaklines=lines, duplicates="first", snap=snap)
+        except (LinesError, PointsError):  # lines meet anew wherever they are split
+            continue
+        centers = tin.points[tin.triangles, :2].mean(axis=1)
+        found = _drop_unused(tin.points, tin.triangles[holds(centers)])
+        if _is_sound(*found):
+            return found
+    raise PointsError(
+        "What both surfaces cover is thinner than coordinates can tell: round the points of both "
+        "to a unit that they are surveyed in, such as a millimetre."
+    )
+
+
+def _merge_places(points: NDArray[np.float64], triangles: NDArray[np.int32]) -> NDArray[np.int32]:
+    order = np.lexsort((points[:, 1], points[:, 0]))
+    is_new = np.ones(len(points), bool)
+    is_new[1:] = (np.diff(points[order, :2], axis=0) != 0).any(axis=1)
+    if is_new.all():
+        return triangles
+    kept = np.empty(len(points), np.int32)
+    kept[order] = order[is_new][np.cumsum(is_new) - 1]
+    merged = kept[triangles]
+    a, b, c = merged.T
+    return np.ascontiguousarray(merged[(a != b) & (b != c) & (c != a)])
+
+
+def _flip_longest(
+    points: NDArray[np.float64], triangles: NDArray[np.int32], flat: NDArray[np.int64]
+) -> NDArray[np.int32]:
+    """Flip the longest edges of flat triangles, none of which share a neighbour."""
+    corners = triangles.copy()
+    neighbors = topology.neighbors_of(corners, len(points))
+    is_kept = np.ones(len(corners), bool)
+    is_touched = np.zeros(len(corners), bool)
+    for triangle in flat.tolist():
+        corner = _corner_on_edge(points[corners[triangle], :2])
+        across = int(neighbors[triangle, corner])
+        if is_touched[triangle] or (across >= 0 and is_touched[across]):
+            continue
+        is_touched[triangle] = True
+        if across == topology.NO_NEIGHBOR:
+            is_kept[triangle] = False
+            continue
+        is_touched[across] = True
+        apex, start, end = (int(corners[triangle, (corner + k) % 3]) for k in range(3))
+        far = int(next(v for v in corners[across] if v not in (start, end)))
+        corners[triangle], corners[across] = (apex, start, far), (apex, far, end)
+    return np.ascontiguousarray(corners[is_kept])
+
+
+def _corner_on_edge(xy: NDArray[np.float64]) -> int:
+    """Return the corner opposite the longest edge."""
+    edges = xy[[2, 0, 1]] - xy[[1, 2, 0]]
+    return int(np.argmax(np.hypot(edges[:, 0], edges[:, 1])))
+
+
+def _drop_unused(
+    points: NDArray[np.float64], triangles: NDArray[np.int32]
+) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    used = np.zeros(len(points), bool)
+    used[triangles.ravel()] = True
+    number = np.cumsum(used, dtype=np.int32) - np.int32(1)
+    return points[used], np.ascontiguousarray(number[triangles])
+
+
+def cut_at_zero(
+    points: NDArray[np.float64], triangles: NDArray[np.int32]
+) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    r"""Cut triangles along the line where the elevation is 0, which becomes edges.
+
+    It leaves a corner at 0 where there is one, else it cuts two sides::
+
+        +  alone                  +
+       / \                       / \
+           x---x   both ends    or   0   \      from a vertex at 0
+     /    _\  of the line        \-__x
+    -____/  -                     \__ \
+                                          `--
+    """
+    signs = np.sign(points[triangles, 2]).astype(np.int8)
+    is_cut = (signs.max(axis=1) > 0) & (signs.min(axis=1) < 0)
+    if not is_cut.any():
+        return points, triangles
+    corners, signs = _alone_first(triangles[is_cut], signs[is_cut])
+    points, second, third = _zeros_on(points, corners, signs)
+    a, b, c = corners.T
+    whole = signs[:, 1] == 0  # the line runs from corner b: then only a-c is cut
+    parts = [
+        np.stack([a, second, third], axis=1),
+        np.stack([second, b, third], axis=1)[~whole],
+        np.stack([b, c, third], axis=1),
+    ]
+    return points, np.concatenate([triangles[~is_cut], *parts]).astype(np.int32)
+
+
+def _alone_first(
+    corners: NDArray[np.int32], signs: NDArray[np.int8]
+) -> tuple[NDArray[np.int32], NDArray[np.int8]]:
+    """Turn triangles until corner 0 alone has its sign; one at 0, if there is one, is corner 1."""
+    first = np.argmax(signs * np.sign(-_main_sign(signs))[:, None], axis=1)
+    zero = np.argmin(np.abs(signs), axis=1)
+    first = np.where((signs == 0).any(axis=1), (zero + 2) % 3, first)
+    turned = (first[:, None] + np.arange(3)) % 3
+    return np.take_along_axis(corners, turned, axis=1), np.take_along_axis(signs, turned, axis=1)
+
+
+def _main_sign(signs: NDArray[np.int8]) -> NDArray[np.int64]:
+    return signs.sum(axis=1, dtype=np.int64)
+
+
+def _zeros_on(
+    points: NDArray[np.float64], corners: NDArray[np.int32], signs: NDArray[np.int8]
+) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int32]]:
+    """Make the vertices at 0 on the edges 0-1 and 0-2; a corner 1 at 0 is one already."""
+    is_edge = np.stack([signs[:, 1] != 0, np.ones(len(corners), bool)], axis=1)
+    pairs = np.stack([corners[:, [0, 1]], corners[:, [0, 2]]], axis=1)[is_edge]
+    keys, inverse = np.unique(topology.edge_keys(pairs, len(points)), return_inverse=True)
+    made = _zeros_between(points, keys // len(points), keys % len(points))
+    vertices = np.repeat(corners[:, [1]], 2, axis=1)
+    vertices[is_edge] = len(points) + inverse
+    return np.concatenate([points, made]), vertices[:, 0], vertices[:, 1]
+
+
+def _zeros_between(
+    points: NDArray[np.float64], one: NDArray[np.int64], other: NDArray[np.int64]
+) -> NDArray[np.float64]:
+    """Return where the elevation is 0 between vertices, from the lower of them on."""
+    is_lower = points[one, 2] < points[other, 2]
+    low, high = (points[np.where(is_lower, *pair)] for pair in ((one, other), (other, one)))
+    share = (low[:, 2] / (low[:, 2] - high[:, 2]))[:, None]
+    xy = np.where(
+        share <= 0.5,
+        low[:, :2] + share * (high[:, :2] - low[:, :2]),
+        high[:, :2] + (1.0 - share) * (low[:, :2] - high[:, :2]),
+    )
+    return np.column_stack([xy, np.zeros(len(xy))])

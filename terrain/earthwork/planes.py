@@ -1,0 +1,117 @@
+"""A level or a plane, as the base of a volume."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...errors import OptionError
+from ...tin import TIN
+from ...tin.validation.options import shown
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["Plane", "as_plane", "level_surface"]
+
+_ALLOWED = "a level, or three points (easting, northing, elevation) of a plane"
+
+
+@dataclass(frozen=True, slots=True)
+class Plane:
+    """A plane through a point, with its rise in both directions.
+
+    Attributes
+    ----------
+    point : tuple of float
+        Easting, northing, elevation.
+    east, north : float
+        Rise for a unit of easting and of northing, in the unit of elevations.
+    """
+
+    point: tuple[float, float, float]
+    east: float = 0.0
+    north: float = 0.0
+
+    def heights_above(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return how far the plane lies above (n, 3) points."""
+        x, y, z = self.point
+        rise = self.east * (points[:, 0] - x) + self.north * (points[:, 1] - y)
+        heights: NDArray[np.float64] = (z - points[:, 2]) + rise
+        return heights
+
+    def steepness(self, up: float) -> float:
+        """Return the area in space of an area of 1 in the plane of eastings and northings."""
+        return float(np.hypot(1.0, np.hypot(self.east, self.north) * up))
+
+
+def as_plane(base: Any) -> Plane:
+    """Return the plane that a level or three points stand for.
+
+    Raises
+    ------
+    OptionError
+    """
+    try:
+        given = np.asarray(base, np.float64)
+    except (TypeError, ValueError):
+        raise OptionError("base", _Shown(base), allowed=_ALLOWED) from None
+    if given.shape not in ((), (3, 3)) or isinstance(base, bool | str):
+        raise OptionError("base", _Shown(base), allowed=_ALLOWED)
+    if not np.isfinite(given).all():
+        raise OptionError("base", _Shown(base), allowed="finite")
+    if given.shape == ():
+        return Plane((0.0, 0.0, float(given)))
+    return _through(given)
+
+
+def _through(points: NDArray[np.float64]) -> Plane:
+    first, second = points[1] - points[0], points[2] - points[0]
+    doubled = first[0] * second[1] - first[1] * second[0]
+    if doubled == 0.0:
+        raise OptionError("base", points.tolist(), allowed="three points that are not on one line")
+    east = (first[2] * second[1] - second[2] * first[1]) / doubled
+    north = (second[2] * first[0] - first[2] * second[0]) / doubled
+    x, y, z = points[0].tolist()
+    return Plane((x, y, z), float(east), float(north))
+
+
+class _Shown:
+    """A value whose repr is short enough for a sentence."""
+
+    def __init__(self, value: object) -> None:
+        self._text = shown(value)
+
+    def __repr__(self) -> str:
+        return self._text
+
+
+def level_surface(tin: TIN, base: Any) -> TIN:
+    """Return a level or a plane as a TIN of two triangles that covers another one.
+
+    Parameters
+    ----------
+    tin : TIN
+    base : float or (3, 3) array
+        As for :func:`tinsmith.volume`.
+
+    Raises
+    ------
+    OptionError
+        If the base is none.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8]])
+    >>> level_surface(tin, 6.5).points[:, 2]
+    array([6.5, 6.5, 6.5, 6.5])
+    """
+    box = tin.bounds
+    east, north = [box.xmin, box.xmax, box.xmax, box.xmin], [box.ymin, box.ymin, box.ymax, box.ymax]
+    corners = np.column_stack([east, north])
+    flat = np.column_stack([corners, np.zeros(4)])
+    flat[:, 2] = as_plane(base).heights_above(flat)
+    return TIN.from_triangles(flat, [[0, 1, 2], [0, 2, 3]], crs=tin.crs, z_unit=tin.elevation_unit)

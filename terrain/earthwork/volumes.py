@@ -1,0 +1,226 @@
+"""Cut and fill between two surfaces, or a surface and a plane."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...errors import OptionError
+from ...tin.validation.threads import thread_count
+from .. import _kernel
+from ..results import Table
+from .cells import Pieces, cut_pieces
+from .planes import as_plane
+from .reference import Surface, reference_of, require_finite, surfaces_of
+from .regions import as_regions
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from ...tin import TIN
+    from .reference import Reference
+
+__all__ = ["volume"]
+
+_ROUNDING = 1e-12
+"""An area alone that is a smaller share of the whole is what the sums' rounding leaves."""
+
+
+def volume(
+    tin: TIN,
+    other: TIN | None = None,
+    *,
+    base: float | ArrayLike | None = None,
+    regions: Any = None,
+    threads: int | None = None,
+) -> Table:
+    """Measure cut and fill from a surface to another one, or to a level or plane.
+
+    Both triangulations are overlaid: no cell of a raster, no sampling. Fill is what lies between
+    where the other surface, or the base, is above ``tin``; cut where it is below.
+
+    Parameters
+    ----------
+    tin : TIN
+        For example the ground as it is.
+    other : TIN, optional
+        For example the ground as it is to be.
+    base : float or (3, 3) array, optional
+        In place of another TIN: a level in the unit of elevations, or a plane, by three of its
+        points (easting, northing, elevation).
+    regions : polygons, optional
+        Measure region by region: a mapping of names to polygons, :class:`Features`, a
+        GeoDataFrame, or a sequence of polygons (of shapely, or rings). Of a polygon of several
+        rings inside is what an odd number of them holds.
+    threads : int, optional
+        Default every core, where it pays. The result is the same.
+
+    Returns
+    -------
+    Table
+        One row, or one for each region: ``region``; ``cut``, ``fill`` and ``net`` (fill less cut);
+        ``area`` in the plane where both surfaces are, of it ``cut_area``, ``fill_area`` and
+        ``unchanged_area``; ``surface_area`` and ``base_surface_area`` in space over the same;
+        ``area_alone`` and ``base_area_alone``, where only ``tin`` or only the other one is;
+        ``lowest``, ``highest`` and ``mean`` of the other less ``tin``. Volumes in the CRS's unit
+        cubed; units that are not known are written so.
+
+    Raises
+    ------
+    OptionError
+        If there is neither another TIN nor a base, or both; if the base is none.
+    CrsError
+        If coordinates are degrees, the CRSs differ, or only one is known; if units of elevations
+        cannot be told to be the same. Units that are known and differ are converted.
+    LinesError
+        If a region is no sound polygon.
+
+    Notes
+    -----
+    Which triangles overlap, and where edges cross, is decided exactly; so is on which side of the
+    other a surface lies at each corner, so that surfaces that agree have a volume of 0. Sums are
+    exact and rounded once: for any order of triangles they are the same to the last bit, and with
+    the TINs exchanged ``cut`` and ``fill`` change places. What remains are the roundings of single
+    cells, some 1e-14 of each. Two TINs of a million points take some 5 s on one core.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> ground = ts.triangulate([[0, 0, 5], [4, 0, 5], [4, 3, 8], [0, 3, 8]])
+    >>> table = ts.volume(ground, base=6.5)
+    >>> table["cut"], table["fill"], table["area"]
+    (array([4.5]), array([4.5]), array([12.]))
+    """
+    if (other is None) == (base is None):
+        given = "neither" if other is None else "both"
+        raise OptionError("base", given, allowed="a level, a plane, or another TIN, one of them")
+    reference = reference_of(tin, "Volumes")
+    if other is None:
+        return _to_plane(tin, base, regions, reference)
+    reference_of(other, "Volumes")
+    surface, second, notes = surfaces_of(tin, other)
+    names, pieces, parts = _pieces(surface, regions, tin)
+    workers = thread_count(threads, len(tin.points) + len(other.points))
+    sums = _between(pieces, len(names), second, reference.up, workers)
+    own = _areas(pieces, len(names))
+    if parts is None:
+        others = _areas(_whole(second), 1)
+    else:
+        others = _between(parts, len(names), second, reference.up, workers)[:, 0]
+    alone = {
+        "area_alone": _less(own, sums[:, 0]),
+        "base_area_alone": _less(others, sums[:, 0]),
+    }
+    return _table(names, sums, alone, reference, [*notes, *_overlaps(parts, names)])
+
+
+def _to_plane(tin: TIN, base: Any, regions: Any, reference: Reference) -> Table:
+    plane = as_plane(base)
+    surface = Surface(tin.triangulation.points, tin.triangulation.triangles)
+    names, pieces, parts = _pieces(surface, regions, tin)
+    heights = plane.heights_above(pieces.surface.points)
+    sums = _kernel.sum_heights(
+        pieces.surface.points,
+        pieces.surface.triangles,
+        heights,
+        pieces.groups,
+        len(names),
+        reference.up,
+    )
+    sums[:, 7] *= plane.steepness(reference.up)
+    alone: dict[str, NDArray[np.float64]] = {}
+    if parts is not None:
+        alone["base_area_alone"] = _less(_areas(parts, len(names)), sums[:, 0])
+    return _table(names, sums, alone, reference, _overlaps(parts, names))
+
+
+def _whole(surface: Surface) -> Pieces:
+    return Pieces(surface, np.zeros(len(surface.triangles), np.int32))
+
+
+def _pieces(surface: Surface, regions: Any, tin: TIN) -> tuple[list[str], Pieces, Pieces | None]:
+    """Return names of groups, the surface in them, and the regions themselves if there are any."""
+    if regions is None:
+        return ["all"], _whole(surface), None
+    names, parts = as_regions(regions, tin.crs)
+    return names, cut_pieces(surface, parts), parts
+
+
+def _between(
+    pieces: Pieces, count: int, other: Surface, up: float, threads: int
+) -> NDArray[np.float64]:
+    return _kernel.sum_between(
+        pieces.surface.points,
+        pieces.surface.triangles,
+        pieces.groups,
+        count,
+        other.points,
+        other.triangles,
+        up,
+        threads,
+    )
+
+
+def _areas(pieces: Pieces, count: int) -> NDArray[np.float64]:
+    flat = np.zeros(len(pieces.surface.points))
+    sums = _kernel.sum_heights(
+        pieces.surface.points, pieces.surface.triangles, flat, pieces.groups, count, 1.0
+    )
+    return sums[:, 0]
+
+
+def _less(whole: NDArray[np.float64], part: NDArray[np.float64]) -> NDArray[np.float64]:
+    rest = whole - part
+    return np.where(rest <= _ROUNDING * whole, 0.0, rest)
+
+
+def _overlaps(parts: Pieces | None, names: list[str]) -> list[str]:
+    """Tell how much regions overlap: what lies in several counts in each of them."""
+    if parts is None or len(names) < 2:
+        return []
+    sums = _between(parts, len(names), parts.surface, 1.0, 1)
+    doubled = _less(sums[:, 0], _areas(parts, len(names)))
+    if not doubled.any():
+        return []
+    return [
+        f"{np.count_nonzero(doubled)} of the regions overlap others, by {doubled.sum() / 2:.6g} in "
+        "all: what lies in several is counted in each."
+    ]
+
+
+def _table(
+    names: list[str],
+    sums: NDArray[np.float64],
+    alone: dict[str, NDArray[np.float64]],
+    reference: Reference,
+    notes: list[str],
+) -> Table:
+    require_finite(sums)
+    by_name = dict(zip(_kernel.SUMS, sums.T, strict=True))
+    area, cut, fill = (by_name[name] for name in ("area", "cut", "fill"))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        mean = (fill - cut) / area
+    is_met = area > 0.0
+    cut, fill = cut * reference.up, fill * reference.up
+    unchanged = _less(area, by_name["cut_area"] + by_name["fill_area"])
+    columns: dict[str, Any] = {"region": np.array(names, object)}
+    columns |= {"cut": cut, "fill": fill, "net": fill - cut, "area": area}
+    columns |= {name: by_name[name] for name in ("cut_area", "fill_area")}
+    columns |= {"unchanged_area": unchanged, "surface_area": by_name["surface_area"]}
+    columns |= {"base_surface_area": by_name["other_surface_area"]} | alone
+    for name, values in (*((n, by_name[n]) for n in ("lowest", "highest")), ("mean", mean)):
+        columns[name] = np.where(is_met, values, np.nan)
+    return Table(
+        columns, units=_units(columns, reference), name="volumes", notes=_notes(reference, notes)
+    )
+
+
+def _notes(reference: Reference, notes: list[str]) -> list[str]:
+    return list(dict.fromkeys([*reference.notes, *notes]))
+
+
+def _units(columns: dict[str, Any], reference: Reference) -> dict[str, Any]:
+    units: dict[str, Any] = {name: reference.power(2) for name in columns if "area" in name}
+    units |= dict.fromkeys(("cut", "fill", "net"), reference.power(3))
+    return units | dict.fromkeys(("lowest", "highest", "mean"), reference.elevation_unit)

@@ -1,0 +1,173 @@
+"""Where a surface is cut, where filled, and the line between, as features."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...tin import topology
+from .. import _kernel
+from ..results import Features
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...tin.triangulation import Triangulation
+    from .reference import Reference
+
+__all__ = ["classes_of", "zero_line", "zones"]
+
+NAMES = {-1: "cut", 0: "unchanged", 1: "fill"}
+
+
+def classes_of(mesh: Triangulation) -> NDArray[np.int8]:
+    """Return +1 where triangles are filled, -1 where cut, 0 where nothing changes."""
+    # No triangle has both signs, but for roundings, which the mean does not mind.
+    return np.sign(mesh.points[mesh.triangles, 2].sum(axis=1)).astype(np.int8)
+
+
+def zero_line(mesh: Triangulation, reference: Reference) -> Features:
+    """Return the lines between cut, fill and unchanged parts, what is higher on the left.
+
+    Lines end where three parts meet, and at the boundary.
+    """
+    classes = classes_of(mesh)
+    across = np.where(mesh.neighbors >= 0, classes[mesh.neighbors], np.int8(127))
+    triangle, corner = np.nonzero(across < classes[:, None])
+    start, end = topology.ends(mesh.triangles, triangle.astype(np.int64), corner.astype(np.int64))
+    chains = _join(start, end)
+    offsets = np.cumsum([0, *map(len, chains)])
+    vertices = np.concatenate([np.array(chain) for chain in chains]) if chains else np.zeros(0, int)
+    return Features.of_lines(
+        mesh.points[vertices, :2].reshape(-1, 2),
+        offsets,
+        columns={"length": _lengths(mesh.points[vertices, :2], offsets)},
+        units={"length": None if reference.crs is None else reference.crs.horizontal_unit},
+        crs=reference.crs,
+        name="zero line",
+        notes=reference.notes,
+    )
+
+
+def _lengths(xy: NDArray[np.float64], offsets: NDArray[np.int64]) -> NDArray[np.float64]:
+    steps = np.hypot(*np.diff(xy.reshape(-1, 2), axis=0, prepend=xy[:1].reshape(-1, 2)).T)
+    steps[offsets[:-1]] = 0.0
+    return np.add.reduceat(steps, offsets[:-1]) if len(steps) else steps
+
+
+def _join(start: NDArray[np.int64], end: NDArray[np.int64]) -> list[list[int]]:
+    """Join directed segments to lines; where more than two meet, lines end."""
+    leaving = np.unique(start, return_counts=True)
+    arriving = np.unique(end, return_counts=True)
+    inner = np.intersect1d(
+        leaving[0][leaving[1] == 1], arriving[0][arriving[1] == 1], assume_unique=True
+    )
+    order = np.argsort(start, kind="stable")
+    following = dict(zip(start[order].tolist(), end[order].tolist(), strict=True))
+    inside = set(inner.tolist())
+    segments = list(zip(start.tolist(), end.tolist(), strict=True))
+    chains = [_follow(a, b, following, inside) for a, b in segments if a not in inside]
+    passed = {vertex for chain in chains for vertex in chain}
+    for a, b in segments:
+        if a in inside and a not in passed:
+            chain = _follow(a, b, following, inside - {a})
+            chains.append(chain)
+            passed.update(chain)
+    return chains
+
+
+def _follow(a: int, b: int, following: dict[int, int], inside: set[int]) -> list[int]:
+    chain = [a, b]
+    while chain[-1] in inside and chain[-1] != a:
+        chain.append(following[chain[-1]])
+    return chain
+
+
+def zones(mesh: Triangulation, reference: Reference) -> Features:
+    """Return the connected parts that are cut, filled or unchanged as polygons."""
+    classes = classes_of(mesh)
+    barrier = (mesh.neighbors < 0) | (classes[mesh.neighbors] != classes[:, None])
+    part = _number_parts(mesh, barrier)
+    count = int(part.max()) + 1
+    rings, ring_offsets, polygon_offsets = _polygons(mesh, barrier, part, count)
+    sums = _kernel.sum_heights(
+        mesh.points, mesh.triangles, np.ascontiguousarray(mesh.points[:, 2]), part, count, 1.0
+    )
+    kinds = np.zeros(count, np.int8)
+    kinds[part] = classes
+    columns: dict[str, Any] = {
+        "kind": np.array([NAMES[kind] for kind in kinds.tolist()], object),
+        "area": sums[:, 0],
+        "volume": (sums[:, 3] + sums[:, 4]) * reference.up,
+        "lowest": sums[:, 8],
+        "highest": sums[:, 9],
+    }
+    units: dict[str, Any] = {"area": reference.power(2), "volume": reference.power(3)}
+    units |= dict.fromkeys(("lowest", "highest"), reference.elevation_unit)
+    return Features.of_polygons(
+        mesh.points[rings, :2],
+        ring_offsets,
+        polygon_offsets,
+        columns=columns,
+        units=units,
+        crs=reference.crs,
+        name="cut and fill",
+        notes=reference.notes,
+    )
+
+
+def _number_parts(mesh: Triangulation, barrier: NDArray[np.bool_]) -> NDArray[np.int32]:
+    """Give the triangles of each part that no barrier divides one number."""
+    part = np.arange(len(mesh.triangles))
+    triangle, corner = np.nonzero(~barrier)
+    other = mesh.neighbors[triangle, corner].astype(np.int64)
+    while True:
+        smallest = part.copy()
+        np.minimum.at(smallest, triangle, part[other])
+        np.minimum.at(smallest, part[triangle], part[other])
+        smallest = smallest[smallest]
+        if (smallest == part).all():
+            break
+        part = smallest
+    numbers: NDArray[np.int32] = np.unique(part, return_inverse=True)[1].astype(np.int32)
+    return numbers
+
+
+def _polygons(
+    mesh: Triangulation, barrier: NDArray[np.bool_], part: NDArray[np.int32], count: int
+) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
+    """Return the closed rings of the parts, each part's exterior first."""
+    cut = np.where(barrier, np.int32(topology.NO_NEIGHBOR), mesh.neighbors)
+    rings = topology.boundary_rings(mesh.triangles, cut)
+    owner = _owners(mesh, barrier, part, rings)
+    is_hole = [_doubled_area(mesh.points[ring, :2]) < 0 for ring in rings]
+    order = np.lexsort((is_hole, owner))
+    closed = [np.append(rings[i], rings[i][0]).astype(np.int64) for i in order]
+    return (
+        np.concatenate(closed),
+        np.cumsum([0, *map(len, closed)]),
+        np.append(0, np.cumsum(np.bincount(owner, minlength=count))),
+    )
+
+
+def _owners(
+    mesh: Triangulation,
+    barrier: NDArray[np.bool_],
+    part: NDArray[np.int32],
+    rings: list[NDArray[np.int32]],
+) -> NDArray[np.int32]:
+    """Return the part on the left of each ring."""
+    triangle, corner = np.nonzero(barrier)
+    start, end = topology.ends(mesh.triangles, triangle.astype(np.int64), corner.astype(np.int64))
+    size = len(mesh.points)
+    keys = start * size + end
+    order = np.argsort(keys)
+    wanted = np.array([int(ring[0]) * size + int(ring[1]) for ring in rings], np.int64)
+    found: NDArray[np.int32] = part[triangle[order[np.searchsorted(keys[order], wanted)]]]
+    return found
+
+
+def _doubled_area(ring: NDArray[np.float64]) -> float:
+    x, y = (ring - ring[0]).T
+    return float((x * np.roll(y, -1) - np.roll(x, -1) * y).sum())

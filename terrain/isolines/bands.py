@@ -1,0 +1,98 @@
+"""Bands: the parts of a surface between one level and the next, as polygons."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...tin.types import seal
+from ...tin.validation.options import require_tin
+from .. import _kernel
+from ..results import Features
+from .levels import LevelOptions
+from .measures import measure_ring_areas, plane_units, sum_parts
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from ...tin import TIN
+
+__all__ = ["contour_bands"]
+
+
+def contour_bands(
+    tin: TIN,
+    interval: float | None = None,
+    *,
+    levels: ArrayLike | None = None,
+    base: float = 0.0,
+) -> Features:
+    """Fill the bands between the contours of a TIN.
+
+    Parameters
+    ----------
+    tin : TIN
+    interval : float, optional
+        Between levels, in the unit of elevations.
+    levels : (k,) array, optional
+        Explicit levels instead of an interval.
+    base : float, optional
+        One of the levels, from which the others are counted; may lie outside the surface.
+
+    Returns
+    -------
+    Features
+        A multipolygon for each band that has an area, from the lowest, with the columns from, to
+        and area. Of explicit levels the lowest and the highest band are open: their from or to is
+        NaN.
+
+    Raises
+    ------
+    OptionError
+        As :func:`tinsmith.contours`.
+
+    Notes
+    -----
+    A band has its lower level and not its upper one, so that a flat area at a level belongs to the
+    band above. The polygons are valid, share every vertex along their common boundaries, tile the
+    surface and nothing else; their areas add up to that of the TIN, up to rounding.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> tin = ts.triangulate([[0, 0, 0], [4, 0, 4], [4, 4, 4], [0, 4, 0]])
+    >>> bands = ts.contour_bands(tin, interval=3)
+    >>> bands.columns["from"], bands.columns["to"], bands.columns["area"]
+    (array([0., 3.]), array([3., 6.]), array([12.,  4.]))
+    """
+    require_tin(tin)
+    chosen = LevelOptions(interval, levels, base).for_bands(tin)
+    points, ring_offsets, polygon_offsets, band = _kernel.fill_bands(
+        tin.points, tin.triangles, tin.neighbors, chosen.values
+    )
+    numbers, first = np.unique(band, return_index=True)
+    areas = measure_ring_areas(tin.crs, points, ring_offsets)
+    bounds = _band_bounds(chosen.values)
+    columns = {
+        "from": bounds[numbers],
+        "to": bounds[numbers + 1],
+        "area": sum_parts(areas, polygon_offsets[first]),
+    }
+    units = {"from": tin.elevation_unit, "to": tin.elevation_unit}
+    return Features.of_polygons(
+        seal(points),
+        seal(ring_offsets),
+        seal(polygon_offsets),
+        seal(np.append(first, len(band)).astype(np.int64)),
+        columns={name: seal(values) for name, values in columns.items()},
+        units={**units, "area": plane_units(tin.crs).area},
+        crs=tin.crs,
+        elevation_unit=tin.elevation_unit,
+        name="contour bands",
+    )
+
+
+def _band_bounds(levels: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return where bands begin and end, from below all levels to above them."""
+    return np.concatenate([[np.nan], levels, [np.nan]])

@@ -1,0 +1,211 @@
+"""Labels of contours: where an elevation is written along a line, and how it is turned."""
+
+from __future__ import annotations
+
+from decimal import Decimal
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ...errors import OptionError
+from ...tin.types import seal
+from ...tin.validation.options import is_finite_number
+from ..results import Features
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["contour_labels"]
+
+_MOST_DECIMALS = 3
+_SHARE_OF_EXTENT = 3.0
+_SHORTEST = 0.2
+"""A line shorter than this share of the spacing has no label."""
+_WINDOW = 0.04
+"""Of the spacing, to each side: so far a line is taken to run along its label."""
+_TRIES = np.linspace(-0.25, 0.25, 11)
+"""Shares of the spacing by which a label is moved to where the line is straightest."""
+_APART = 0.12
+"""Labels are no nearer to one another than this share of the spacing."""
+
+
+class _Label(NamedTuple):
+    x: float
+    y: float
+    rotation: float
+    uphill: str
+    line: int
+
+
+def contour_labels(
+    lines: Features, *, spacing: float | None = None, index_only: bool = True
+) -> Features:
+    """Place labels along contours.
+
+    Parameters
+    ----------
+    lines : Features
+        As :func:`tinsmith.contours` returns them.
+    spacing : float, optional
+        Between labels of one line, in CRS units; default a third of the extent.
+    index_only : bool, optional
+        Label index contours alone, unless there are none.
+
+    Returns
+    -------
+    Features
+        Points with the columns text, elevation, rotation, uphill and line (the number of the line).
+        ``rotation`` is in degrees counter-clockwise from east, above -90 up to 90, so that a text
+        centred there reads upright on a map with north up. ``uphill`` tells on which side of the
+        text the ground rises: "above" or "below" it.
+
+    Raises
+    ------
+    OptionError
+        If the spacing is not above 0, or the features are no contours.
+
+    Notes
+    -----
+    A label stands where the line is straightest near its regular place. Lines shorter than a fifth
+    of the spacing have none, and of labels that would lie nearer than an eighth the first is kept.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> tin = ts.triangulate([[0, 0, 0], [9, 0, 9], [9, 9, 9], [0, 9, 0]])
+    >>> labels = ts.contour_labels(ts.contours(tin, interval=5, index=1))
+    >>> labels.columns["text"], labels.columns["rotation"], labels.columns["uphill"]
+    (array(['5'], dtype=object), array([90.]), array(['below'], dtype=object))
+    """
+    _require_contours(lines)
+    if spacing is None:
+        spacing = _default_spacing(lines)
+    if not (is_finite_number(spacing) and spacing > 0):
+        raise OptionError("spacing", spacing, "a finite number above 0")
+    is_chosen = lines.columns["is_index"]
+    if not index_only or not is_chosen.any():
+        is_chosen = np.ones(len(lines), np.bool_)
+    placed = _place_labels(lines, np.flatnonzero(is_chosen), float(spacing))
+    return _as_features(lines, placed)
+
+
+def _require_contours(lines: Any) -> None:
+    names = ("elevation", "is_index", "is_closed")
+    if not isinstance(lines, Features) or not all(name in lines.columns for name in names):
+        raise OptionError("lines", lines, "contours, as tinsmith.contours returns them")
+
+
+def _default_spacing(lines: Features) -> float:
+    if len(lines) == 0:
+        return 1.0
+    bounds = lines.bounds
+    return max(bounds.xmax - bounds.xmin, bounds.ymax - bounds.ymin) / _SHARE_OF_EXTENT
+
+
+def _place_labels(lines: Features, chosen: NDArray[np.int64], spacing: float) -> list[_Label]:
+    placed: list[_Label] = []
+    taken = _TakenPlaces(_APART * spacing)
+    for number in chosen.tolist():
+        first, last = lines.offsets[0][number : number + 2]
+        way = _Way(lines.coordinates[first:last, :2], bool(lines.columns["is_closed"][number]))
+        for at in way.places(spacing):
+            label = way.label_at(at, _WINDOW * spacing, number)
+            if taken.take(label.x, label.y):
+                placed.append(label)
+    return placed
+
+
+class _Way:
+    """A line by the distance along it."""
+
+    def __init__(self, xy: NDArray[np.float64], is_closed: bool) -> None:
+        self._xy = xy
+        self._along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(xy, axis=0).T))])
+        self._is_closed = is_closed
+
+    @property
+    def length(self) -> float:
+        return float(self._along[-1])
+
+    def places(self, spacing: float) -> list[float]:
+        """Return the distances at which labels stand."""
+        if self.length < _SHORTEST * spacing:
+            return []
+        count = max(1, round(self.length / spacing))
+        regular = (np.arange(count) + 0.5) * self.length / count
+        reach = min(spacing, self.length / count)
+        tried = regular[:, None] + _TRIES * reach
+        window = _WINDOW * spacing
+        chords = np.linalg.norm(self._at(tried + window) - self._at(tried - window), axis=-1)
+        order = np.lexsort((np.broadcast_to(np.abs(_TRIES), tried.shape), -chords.round(9)))
+        best = tried[np.arange(count), order[:, 0]]
+        return np.clip(best, 0.0, self.length).tolist() if not self._is_closed else best.tolist()
+
+    def label_at(self, at: float, window: float, number: int) -> _Label:
+        x, y = self._at(np.array([at]))[0]
+        east, north = np.subtract(*self._at(np.array([at + window, at - window])))
+        heading = float(np.degrees(np.arctan2(north, east)))
+        is_upright = -90.0 < heading <= 90.0  # along the line the higher side is on the left
+        rotation = heading if is_upright else heading - 180.0 * np.copysign(1.0, heading)
+        rotation = 90.0 if rotation == -90.0 else rotation + 0.0
+        uphill = "above" if is_upright else "below"
+        return _Label(float(x), float(y), rotation, uphill, number)
+
+    def _at(self, along: NDArray[np.float64]) -> NDArray[np.float64]:
+        if self._is_closed:
+            along = along % self.length
+        along = np.clip(along, 0.0, self.length)
+        return np.stack([np.interp(along, self._along, axis) for axis in self._xy.T], axis=-1)
+
+
+class _TakenPlaces:
+    """Places by cells as wide as they must be apart."""
+
+    def __init__(self, apart: float) -> None:
+        self._apart = apart
+        self._cells: dict[tuple[int, int], list[tuple[float, float]]] = {}
+
+    def take(self, x: float, y: float) -> bool:
+        """Take a place, unless one nearby is taken."""
+        column, row = int(x // self._apart), int(y // self._apart)
+        near = [
+            place
+            for i in (column - 1, column, column + 1)
+            for j in (row - 1, row, row + 1)
+            for place in self._cells.get((i, j), ())
+        ]
+        if any(np.hypot(x - one, y - other) < self._apart for one, other in near):
+            return False
+        self._cells.setdefault((column, row), []).append((x, y))
+        return True
+
+
+def _as_features(lines: Features, labels: list[_Label]) -> Features:
+    numbers = np.array([label.line for label in labels], np.int64)
+    levels = lines.columns["elevation"][numbers]
+    decimals = _decimals(lines.columns["elevation"])
+    places = np.array([(label.x, label.y) for label in labels], np.float64).reshape(-1, 2)
+    columns: dict[str, NDArray[Any]] = {
+        "text": np.array([f"{level:.{decimals}f}" for level in levels] or [], object),
+        "elevation": levels,
+        "rotation": np.array([label.rotation for label in labels], np.float64),
+        "uphill": np.array([label.uphill for label in labels] or [], object),
+        "line": numbers,
+    }
+    return Features.of_points(
+        seal(np.column_stack([places, levels])),
+        columns={name: seal(values) for name, values in columns.items()},
+        units={"elevation": lines.units.get("elevation"), "rotation": "°"},
+        crs=lines.crs,
+        elevation_unit=lines.elevation_unit,
+        name="contour labels",
+        notes=lines.notes,
+    )
+
+
+def _decimals(levels: NDArray[np.float64]) -> int:
+    """Return how many decimals the levels need, all of them the same number."""
+    needed = [
+        -int(Decimal(str(level)).normalize().as_tuple().exponent) for level in np.unique(levels)
+    ]
+    return min(max([0, *needed]), _MOST_DECIMALS)

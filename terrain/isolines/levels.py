@@ -1,0 +1,178 @@
+"""Levels: the elevations at which contours are drawn."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..._sentences import counted, shown
+from ...errors import OptionError
+from ...tin.types import seal
+from ...tin.validation.options import is_finite_number, is_whole_number
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...tin import TIN
+
+__all__ = ["MOST_LEVELS", "LevelOptions", "Levels"]
+
+MOST_LEVELS = 100_000
+"""More are refused: an interval with so many was given in another unit, or by a slip."""
+
+
+@dataclass(frozen=True)
+class Levels:
+    """Elevations in ascending order.
+
+    Attributes
+    ----------
+    values : (k,) float64 array
+    is_index : (k,) bool array
+        Whether contours there are index contours.
+    notes : tuple of str
+        What is to be told of them.
+    """
+
+    values: NDArray[np.float64]
+    is_index: NDArray[np.bool_]
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class LevelOptions:
+    """What callers say of levels, checked: an interval and its base, or explicit levels.
+
+    Raises OptionError if a value is none, or both or neither of interval and levels are given.
+    """
+
+    interval: Any
+    levels: Any
+    base: Any
+    index: Any = None
+
+    def __post_init__(self) -> None:
+        if (self.interval is None) == (self.levels is None):
+            given = "neither" if self.interval is None else "both"
+            raise OptionError("interval and levels", given, allowed="one of the two")
+        if self.interval is not None:
+            _require_positive("interval", self.interval)
+        if not is_finite_number(self.base):
+            raise OptionError("base", self.base, allowed="a finite number")
+        if self.index is not None and not (is_whole_number(self.index) and self.index > 0):
+            allowed = "a whole number from 1 on, or None for no index contours"
+            raise OptionError("index", self.index, allowed=allowed)
+
+    def for_lines(self, tin: TIN) -> Levels:
+        """Return the levels above the lowest and up to the highest elevation of a TIN."""
+        lowest, highest = elevation_range(tin)
+        if self.interval is None:
+            return self._explicit(lowest, highest)
+        numbers, values = self._at_interval(lowest, highest)
+        is_within = (values > lowest) & (values <= highest)
+        notes = () if is_within.any() else (self._none_within(lowest, highest),)
+        return Levels(seal(values[is_within]), self._index(numbers[is_within]), notes)
+
+    def for_bands(self, tin: TIN) -> Levels:
+        """Return the levels that bound the bands of a TIN, the explicit ones as they are."""
+        lowest, highest = elevation_range(tin)
+        if self.interval is None:
+            return self._explicit(lowest, highest)
+        _, values = self._at_interval(lowest, highest)
+        first = np.searchsorted(values, lowest, side="right") - 1
+        last = np.searchsorted(values, highest, side="right")
+        bounds = values[first : last + 1]
+        return Levels(seal(bounds), np.zeros(len(bounds), np.bool_))
+
+    def _at_interval(
+        self, lowest: float, highest: float
+    ) -> tuple[NDArray[Any], NDArray[np.float64]]:
+        """Return levels around and between two elevations, and their numbers from the base on.
+
+        They are decimal numbers, each rounded once: 3 x 0.1 is 0.3, as a vertex has it.
+        """
+        step, base = Fraction(str(self.interval)), Fraction(str(self.base))
+        first = math.ceil((Fraction(lowest) - base) / step)
+        last = math.floor((Fraction(highest) - base) / step)
+        if last - first >= MOST_LEVELS:
+            allowed = (
+                f"so large that there are at most {MOST_LEVELS:,} levels, "
+                f"and here there would be {last - first + 1:,}"
+            )
+            raise OptionError("interval", self.interval, allowed=allowed)
+        numbers = np.arange(-2, last - first + 3, dtype=object) + first
+        values = np.array([_rounded(base + k * step) for k in numbers], np.float64)
+        if (np.diff(values) <= 0).any():
+            allowed = "so large that elevations here can differ by it"
+            raise OptionError("interval", self.interval, allowed=allowed)
+        return numbers, values
+
+    def _explicit(self, lowest: float, highest: float) -> Levels:
+        values = as_levels(self.levels)
+        outside = int(((values <= lowest) | (values > highest)).sum())
+        notes: tuple[str, ...] = ()
+        if outside:
+            notes = (
+                f"{outside:,} of {counted(len(values), 'level')} lie outside the elevations of "
+                f"the surface, above {lowest:g} up to {highest:g}, and have no line.",
+            )
+        return Levels(values, self._index(np.arange(len(values))), notes)
+
+    def _index(self, numbers: NDArray[Any]) -> NDArray[np.bool_]:
+        if self.index is None:
+            return np.zeros(len(numbers), np.bool_)
+        return np.array(numbers % int(self.index) == 0, np.bool_)
+
+    def _none_within(self, lowest: float, highest: float) -> str:
+        return (
+            f"No level at the interval {shown(self.interval)} from base {shown(self.base)} lies "
+            f"within the elevations of the surface, above {lowest:g} up to {highest:g}: "
+            "there is no line."
+        )
+
+
+def _rounded(level: Fraction) -> float:
+    try:
+        return float(level)
+    except OverflowError:
+        return math.copysign(math.inf, level)
+
+
+def elevation_range(tin: TIN) -> tuple[float, float]:
+    """Return the lowest and the highest elevation of the vertices that triangles have."""
+    is_used = np.zeros(len(tin.points), np.bool_)
+    is_used[tin.triangles.ravel()] = True
+    z = tin.points[is_used, 2]
+    return (float(z.min()), float(z.max())) if len(z) else (0.0, 0.0)
+
+
+def as_levels(given: Any) -> NDArray[np.float64]:
+    """Return explicit levels in ascending order, each once.
+
+    Raises
+    ------
+    OptionError
+        If they are not one or more finite numbers, or too many.
+    """
+    try:
+        values = np.asarray(given, np.float64)
+    except (TypeError, ValueError):
+        raise OptionError("levels", given, allowed="numbers") from None
+    if values.ndim > 1 or values.size == 0:
+        raise OptionError("levels", given, allowed="a list of one or more numbers")
+    values = np.unique(values)
+    if not np.isfinite(values).all():
+        bad = float(values[~np.isfinite(values)][0])
+        raise OptionError("level", bad, allowed="finite")
+    if len(values) > MOST_LEVELS:
+        raise OptionError("number of levels", len(values), allowed=f"at most {MOST_LEVELS:,}")
+    return seal(values)
+
+
+def _require_positive(option: str, value: Any) -> None:
+    if not (is_finite_number(value) and value > 0):
+        raise OptionError(option, value, allowed="a finite number above 0")

@@ -1,0 +1,120 @@
+"""Contour lines: where the surface has an elevation, as joined polylines."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from ...tin.types import seal
+from ...tin.validation.options import require_tin
+from .. import _kernel
+from ..results import Features
+from .levels import LevelOptions, Levels
+from .measures import measure_lengths, plane_units
+from .smoothing import TracedLines, require_tolerance, smooth_lines
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from ...tin import TIN
+
+__all__ = ["contours"]
+
+
+def contours(
+    tin: TIN,
+    interval: float | None = None,
+    *,
+    levels: ArrayLike | None = None,
+    base: float = 0.0,
+    index: int | None = 5,
+    smooth: float | None = None,
+    simplify: float | None = None,
+) -> Features:
+    """Trace the contour lines of a TIN.
+
+    Parameters
+    ----------
+    tin : TIN
+    interval : float, optional
+        Between levels, in the unit of elevations.
+    levels : (k,) array, optional
+        Explicit levels instead of an interval.
+    base : float, optional
+        One of the levels, from which the others are counted; may lie outside the surface.
+    index : int or None, optional
+        Every so many contours one is an index contour: levels that are multiples of ``index``
+        intervals from ``base``; of explicit levels the first and every ``index``-th after it.
+    smooth : float, optional
+        Round the corners, as far as the surface along the lines stays within this much of the
+        level, in the unit of elevations.
+    simplify : float, optional
+        Drop points, likewise; after smoothing, if both are given.
+
+    Returns
+    -------
+    Features
+        Lines (x, y, elevation) with the columns elevation, is_index, is_closed and length. The
+        higher side is on the left of each. By level, then by the first point.
+
+    Raises
+    ------
+    OptionError
+        If the interval is not above 0, a level is not finite, there are more than 100,000 levels,
+        or an option is none.
+
+    Notes
+    -----
+    Exact for the piecewise linear surface, up to rounding of each coordinate. A level is thought
+    just below its value: a vertex at a level lies above it, and a line along a flat area runs where
+    the surface begins to fall. Every line therefore is closed or ends at the boundary, and no two
+    lines of one level share a segment. A summit or a ridge that only just reaches a level has no
+    line. Time and memory are in proportion to the triangles and the points of the lines.
+
+    Smoothed and simplified lines never touch or cross one another, but where exact lines meet in a
+    vertex at their level, and never leave the tolerance: :func:`tinsmith.check_contours` proves it.
+
+    Levels are computed as decimal numbers: three steps of 0.1 are 0.3, as a vertex has it.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> tin = ts.triangulate([[0, 0, 0], [4, 0, 4], [4, 4, 4], [0, 4, 0]])
+    >>> lines = ts.contours(tin, interval=1.5)
+    >>> lines.columns["elevation"], lines.columns["length"]
+    (array([1.5, 3. ]), array([4., 4.]))
+    """
+    require_tin(tin)
+    options = LevelOptions(interval, levels, base, index)
+    chosen = options.for_lines(tin)
+    tolerances = [
+        require_tolerance(name, value)
+        for name, value in (("smooth", smooth), ("simplify", simplify))
+    ]
+    lines = TracedLines(
+        *_kernel.trace_contours(tin.points, tin.triangles, tin.neighbors, chosen.values)
+    )
+    if any(tolerances) and len(lines.level):
+        lines = smooth_lines(
+            tin, lines, chosen.values, smooth=tolerances[0], simplify=tolerances[1]
+        )
+    return _as_features(tin, lines, chosen)
+
+
+def _as_features(tin: TIN, lines: TracedLines, chosen: Levels) -> Features:
+    xyz, offsets, level, is_closed = lines
+    columns: dict[str, Any] = {
+        "elevation": chosen.values[level],
+        "is_index": chosen.is_index[level],
+        "is_closed": is_closed,
+        "length": measure_lengths(tin.crs, xyz, offsets),
+    }
+    return Features.of_lines(
+        seal(xyz),
+        seal(offsets),
+        columns={name: seal(values) for name, values in columns.items()},
+        units={"elevation": tin.elevation_unit, "length": plane_units(tin.crs).length},
+        crs=tin.crs,
+        elevation_unit=tin.elevation_unit,
+        name="contours",
+        notes=chosen.notes,
+    )

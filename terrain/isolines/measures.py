@@ -1,0 +1,97 @@
+"""Lengths of lines and areas of polygons in the plane, on the ground where CRSs are in degrees."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ...crs import METRE, Unit
+from ..units import scales_of
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...crs import CRS
+
+__all__ = ["PlaneUnits", "measure_lengths", "measure_ring_areas", "plane_units", "sum_parts"]
+
+
+class PlaneUnits(NamedTuple):
+    """Units of lengths and areas; None if they are not known."""
+
+    length: Unit | None
+    area: str | None
+
+
+def plane_units(crs: CRS | None) -> PlaneUnits:
+    """Return the units that lengths and areas are measured in: metres in a geographic CRS."""
+    if crs is None:
+        return PlaneUnits(None, None)
+    unit = METRE if crs.is_geographic else crs.horizontal_unit
+    return PlaneUnits(unit, f"{unit.symbol}²")
+
+
+def measure_lengths(
+    crs: CRS | None, coordinates: NDArray[np.float64], offsets: NDArray[np.int64]
+) -> NDArray[np.float64]:
+    """Measure lines in the plane.
+
+    Parameters
+    ----------
+    crs : CRS or None
+    coordinates : (n, 2) or (n, 3) float64 array
+    offsets : (k + 1,) int64 array
+        Of lines, two points or more each.
+
+    Returns
+    -------
+    (k,) float64 array
+        CRS units; metres along the ellipsoid in a geographic CRS, which holds for segments of some
+        kilometres.
+    """
+    run, rise = np.diff(coordinates[:, 0]), np.diff(coordinates[:, 1])
+    if crs is not None and crs.is_geographic:
+        middle = 0.5 * (coordinates[1:, 1] + coordinates[:-1, 1])
+        scales = scales_of(crs, None, middle)
+        run, rise = run * scales.east, rise * scales.north
+    spans = np.hypot(run, rise, out=run)
+    spans[offsets[1:-1] - 1] = 0.0  # from one line to the next
+    return sum_parts(spans, offsets[:-1])
+
+
+def measure_ring_areas(
+    crs: CRS | None, coordinates: NDArray[np.float64], offsets: NDArray[np.int64]
+) -> NDArray[np.float64]:
+    """Measure the areas inside closed rings.
+
+    Parameters
+    ----------
+    crs : CRS or None
+    coordinates : (n, 2) float64 array
+    offsets : (k + 1,) int64 array
+        Of rings, the first point of each repeated.
+
+    Returns
+    -------
+    (k,) float64 array
+        CRS units squared, square metres in a geographic CRS; positive where the ring runs
+        counter-clockwise.
+    """
+    origin = np.repeat(coordinates[offsets[:-1]], np.diff(offsets), axis=0)
+    x, y = (coordinates - origin).T
+    doubled = np.append(x[:-1] * y[1:] - x[1:] * y[:-1], 0.0)
+    doubled[offsets[1:] - 1] = 0.0
+    if crs is not None and crs.is_geographic:
+        north = coordinates[:, 1]
+        scales = scales_of(crs, None, (north + np.append(north[1:], 0.0) + origin[:, 1]) / 3)
+        doubled *= scales.east * scales.north
+    return 0.5 * sum_parts(doubled, offsets[:-1])
+
+
+def sum_parts(values: NDArray[np.float64], starts: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Sum consecutive parts of an array, none of them empty, that start at these places."""
+    if len(starts) == 0:
+        return np.zeros(0)
+    sums: NDArray[np.float64] = np.add.reduceat(values, starts)
+    return sums

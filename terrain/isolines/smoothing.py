@@ -1,0 +1,123 @@
+"""Smoothing and simplification of contours that never touch and stay within a tolerance."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ...errors import OptionError
+from ...tin.validation.options import is_finite_number
+from .. import _kernel
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...tin import TIN
+
+__all__ = ["TracedLines", "require_tolerance", "smooth_lines"]
+
+_ROUNDS = 3
+"""So often corners are cut: what is left turns by a few degrees in each vertex."""
+
+
+class TracedLines(NamedTuple):
+    """Lines as the kernel returns them.
+
+    Attributes
+    ----------
+    coordinates : (n, 3) float64 array
+        Of closed lines the first point is repeated.
+    offsets : (k + 1,) int64 array
+    level : (k,) int32 array
+        Place in the levels.
+    is_closed : (k,) bool array
+    """
+
+    coordinates: NDArray[np.float64]
+    offsets: NDArray[np.int64]
+    level: NDArray[np.int32]
+    is_closed: NDArray[np.bool_]
+
+
+def require_tolerance(option: str, value: Any) -> float:
+    """Return a vertical tolerance, 0 for None.
+
+    Raises
+    ------
+    OptionError
+        If it is neither None nor a finite number above 0.
+    """
+    if value is None:
+        return 0.0
+    if not (is_finite_number(value) and value > 0):
+        allowed = "a finite number above 0 in the unit of elevations, or None"
+        raise OptionError(option, value, allowed=allowed)
+    return float(value)
+
+
+def smooth_lines(
+    tin: TIN,
+    lines: TracedLines,
+    levels: NDArray[np.float64],
+    *,
+    smooth: float,
+    simplify: float,
+) -> TracedLines:
+    """Round the corners of lines, then drop points of them.
+
+    Parameters
+    ----------
+    tin : TIN
+    lines : TracedLines
+        Its contours.
+    levels : (k,) float64 array
+    smooth, simplify : float
+        How far the surface may be from the level along a line, for each of the two; 0 is neither.
+
+    Returns
+    -------
+    TracedLines
+
+    Notes
+    -----
+    Corners are cut as by Chaikin [1]_, points are dropped as by Visvalingam and Whyatt [2]_. Each
+    step moves a line over triangles that hold no vertex of any line in their closed area, by
+    exact predicates; so it meets none. Its new segments are walked through the TIN: at every edge
+    that they cross the elevation is within the tolerance, whatever the rounding.
+
+    References
+    ----------
+    .. [1] G. M. Chaikin, An algorithm for high-speed curve generation, Computer Graphics and Image
+       Processing 3 (1974), doi:10.1016/0146-664X(74)90028-8.
+    .. [2] M. Visvalingam and J. D. Whyatt, Line generalisation by repeated elimination of points,
+       The Cartographic Journal 30 (1993), doi:10.1179/000870493786962263.
+    """
+    places = _find_places(tin, lines)
+    return TracedLines(
+        *_kernel.smooth_contours(
+            tin.points,
+            tin.triangles,
+            tin.neighbors,
+            levels,
+            *lines,
+            places,
+            smooth,
+            _ROUNDS,
+            simplify,
+        )
+    )
+
+
+def _find_places(tin: TIN, lines: TracedLines) -> NDArray[np.int32]:
+    """Return a triangle for each point but those repeated."""
+    xy = np.ascontiguousarray(lines.coordinates[:, :2])
+    places = np.array(tin.locate(xy))
+    # An end may lie a rounding outside; its segment lies in one triangle.
+    starts, ends = lines.offsets[:-1], lines.offsets[1:] - 1
+    for end, inner in ((starts, starts + 1), (ends, ends - 1)):
+        lost = places[end] < 0
+        places[end[lost]] = tin.locate(0.5 * (xy[end[lost]] + xy[inner[lost]]))
+    is_repeated = np.zeros(len(xy), np.bool_)
+    is_repeated[ends[lines.is_closed]] = True
+    return places[~is_repeated]

@@ -1,0 +1,128 @@
+"""Breaks: where segments cross the edges of one TIN, and the elevations there and between."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ...errors import LinesError
+from ...tin.constraints.polylines import owners_of
+from ...tin.topology import NO_NEIGHBOR
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...tin import TIN
+    from .segments import Segments
+
+__all__ = ["CROSSED", "Breaks", "trace_breaks"]
+
+CROSSED = ("line", "vertex", "edge", "breakline", "boundary")
+"""What a break can be: a vertex of the line inside a triangle or outside, and what it meets."""
+
+_LINE, _VERTEX, _EDGE, _BREAKLINE, _BOUNDARY = range(len(CROSSED))
+
+
+class Breaks(NamedTuple):
+    """Breaks along segments, those of each from its start to its end.
+
+    Attributes
+    ----------
+    segments : (n,) int64 array
+        The segment of each.
+    ratios : (n,) float64 array
+        Share of the segment before it, 0 at the start and 1 at the end.
+    xy : (n, 2) float64 array
+    elevations : (n,) float64 array
+        NaN where there is no surface.
+    crossed : (n,) int8 array
+        Place in ``CROSSED``.
+    triangles : (n,) int32 array
+        Through which, or along an edge of which, the segment goes on; -1 where there is no surface.
+    """
+
+    segments: NDArray[np.int64]
+    ratios: NDArray[np.float64]
+    xy: NDArray[np.float64]
+    elevations: NDArray[np.float64]
+    crossed: NDArray[np.int8]
+    triangles: NDArray[np.int32]
+
+    def scale_elevations(self, factor: float) -> Breaks:
+        """Return the breaks with elevations times a factor."""
+        return self if factor == 1.0 else self._replace(elevations=self.elevations * factor)
+
+    def interpolate_after(
+        self, breaks: NDArray[np.int64], xy: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Interpolate elevations between breaks and those that follow them.
+
+        Parameters
+        ----------
+        breaks : (k,) int64 array
+            Number of the break before each place; none is the last of its segment.
+        xy : (k, 2) float64 array
+            Places on the segments.
+
+        Returns
+        -------
+        (k,) float64 array
+            NaN where there is no surface. Counted from the nearer break, of two the same distance
+            away from the western one, so that it is the same for the line in reverse.
+        """
+        before, after = self.xy[breaks], self.xy[breaks + 1]
+        low, high = self.elevations[breaks], self.elevations[breaks + 1]
+        along = np.abs(after - before)
+        axis = np.where(along[:, 0] >= along[:, 1], 0, 1)[:, None]
+        p, q, x = (np.take_along_axis(at, axis, 1)[:, 0] for at in (before, after, xy))
+        to_p, to_q = np.abs(x - p), np.abs(q - x)
+        is_from_p = (to_p < to_q) | ((to_p == to_q) & (p <= q))
+        near, far = np.where(is_from_p, p, q), np.where(is_from_p, q, p)
+        z, other = np.where(is_from_p, low, high), np.where(is_from_p, high, low)
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            share = np.where(near == far, 0.5, (x - near) / (far - near))
+            found = z + 2.0 * (share * (0.5 * other - 0.5 * z))
+        found = np.clip(found, np.minimum(low, high), np.maximum(low, high))
+        return np.where(self.triangles[breaks] == NO_NEIGHBOR, np.nan, found)
+
+
+def trace_breaks(tin: TIN, segments: Segments) -> Breaks:
+    """Follow segments over a TIN.
+
+    Parameters
+    ----------
+    tin : TIN
+    segments : Segments
+
+    Returns
+    -------
+    Breaks
+        At each segment's ends, where it crosses an edge, passes a vertex, or enters or leaves the
+        surface; decided by exact predicates. Places and elevations of crossings are the true ones
+        rounded once, so they are the same for the reversed segment.
+
+    Raises
+    ------
+    LinesError
+        If a segment meets triangles that lie over each other.
+    """
+    surface = tin.triangulation
+    traced = surface.locator.trace(
+        np.ascontiguousarray(segments.starts), np.ascontiguousarray(segments.ends)
+    )
+    offsets, xy, elevations, ratios, vertices, edges, triangles, _, failed = traced
+    if failed >= 0:
+        start, end = segments.starts[failed].tolist(), segments.ends[failed].tolist()
+        raise LinesError(
+            f"Triangles of the surface lie over each other between {tuple(start)} and "
+            f"{tuple(end)}: one elevation is needed at each place; a check of the TIN tells more.",
+            lines=[int(segments.lines[failed])],
+        )
+    crossed = np.full(len(xy), _LINE, np.int8)
+    crossed[vertices >= 0] = _VERTEX
+    is_edge = edges >= 0
+    crossed[is_edge] = _EDGE
+    crossed[is_edge & surface.constrained.ravel()[edges]] = _BREAKLINE
+    crossed[is_edge & (surface.neighbors.ravel()[edges] == NO_NEIGHBOR)] = _BOUNDARY
+    return Breaks(owners_of(offsets), ratios, xy, elevations, crossed, triangles)

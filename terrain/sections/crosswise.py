@@ -1,0 +1,355 @@
+"""Cross sections: surfaces cut square to a centreline at stations along it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ...crs import scale_elevations
+from ...errors import OptionError, PointsError
+from ...tin.validation.options import shown
+from ...tin.validation.points import as_elevations
+from ..results import Features, Table
+from .geometries import as_features, require_same_crs
+from .profiles import (
+    as_positive,
+    lines_to_segments,
+    measure_rows,
+    require_few,
+    require_number,
+    require_surface,
+)
+from .rows import cut_rows
+from .runs import runs_of
+from .segments import Segments
+from .surfaces import as_surfaces
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from ...tin import TIN
+    from .rows import Rows
+    from .surfaces import Surfaces
+
+__all__ = ["cross_sections", "section_lines"]
+
+
+class _Axes(NamedTuple):
+    """Cross sections in the plane.
+
+    Attributes
+    ----------
+    segments : Segments
+        From left to right, their stations being offsets, their lines the sections.
+    lines : (s,) int64 array
+        The centreline of each section.
+    stations : (s,) float64 array
+    """
+
+    segments: Segments
+    lines: NDArray[np.int64]
+    stations: NDArray[np.float64]
+
+
+class _Cut(NamedTuple):
+    """Sections with what was cut along them."""
+
+    surfaces: Surfaces
+    axes: _Axes
+    rows: Rows
+    notes: tuple[str, ...]
+
+
+def cross_sections(
+    tin: TIN | Sequence[TIN] | Mapping[str, TIN],
+    centreline: Any,
+    *,
+    interval: float | None = None,
+    stations: ArrayLike | None = None,
+    width: float | None = None,
+    left: float | None = None,
+    right: float | None = None,
+    start: float = 0.0,
+) -> Table:
+    """Cut one surface or several square to a centreline.
+
+    Parameters
+    ----------
+    tin : TIN, sequence of TIN, or mapping of str to TIN
+        Surfaces; in a sequence they are called 1, 2, ...
+    centreline : (k, 2) array, Breakline, Features, geometry, or sequence of these
+        As the lines of :func:`tinsmith.profile`.
+    interval : float, optional
+        A section at every station that is a multiple of it, and at both ends, CRS units.
+    stations : (s,) array, optional
+        Sections at these stations, CRS units; with ``interval`` both.
+    width : float, optional
+        Of the sections, half of it to either side, CRS units.
+    left, right : float, optional
+        How far sections reach to either side instead, 0 or more.
+    start : float
+        Station of the first vertex of the centreline.
+
+    Returns
+    -------
+    Table
+        Columns ``line`` (of the centreline), ``section`` (numbers from 0), ``station``, ``offset``
+        (from the centreline, negative to the left), and then as of :func:`tinsmith.profile`: a row
+        at both ends of a section, on the centreline, and wherever a surface has a break.
+
+    Raises
+    ------
+    OptionError
+        If an interval, a width, an offset or a station is no such number, none is given, a station
+        lies off the centreline, or there would be too many sections.
+    LinesError, CrsError
+        As :func:`tinsmith.profile`.
+
+    Notes
+    -----
+    A section is square to the segment of the centreline that holds its station. At a vertex of the
+    centreline it halves the angle between both segments (its direction is square to the mean of
+    their unit vectors); where the centreline turns back on itself it is square to the segment that
+    ends there. Sections on the inside of a sharp bend may cross each other.
+
+    Both ends of a section are rounded, so that its two halves may be out of line by a rounding.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> square = [[0, 0, 0], [4, 0, 4], [4, 4, 8], [0, 4, 4]]
+    >>> tin = ts.TIN.from_triangles(square, [[0, 1, 2], [0, 2, 3]])
+    >>> table = ts.cross_sections(tin, [[1, 2], [3, 2]], stations=[1], width=2)
+    >>> table["offset"], table["elevation"]
+    (array([-1.,  0.,  1.]), array([5., 4., 3.]))
+    """
+    cut = _cut(tin, centreline, interval, stations, (width, left, right), start)
+    section = cut.axes.segments.lines[cut.rows.places.segments]
+    columns = {
+        "line": cut.axes.lines[section],
+        "section": section,
+        "station": cut.axes.stations[section],
+        "offset": cut.rows.places.stations,
+    }
+    return measure_rows(
+        cut.surfaces, cut.axes.segments, cut.rows, columns, name="cross sections", notes=cut.notes
+    )
+
+
+def section_lines(
+    tin: TIN | Sequence[TIN] | Mapping[str, TIN],
+    centreline: Any,
+    *,
+    interval: float | None = None,
+    stations: ArrayLike | None = None,
+    width: float | None = None,
+    left: float | None = None,
+    right: float | None = None,
+    start: float = 0.0,
+) -> Features:
+    """Cut surfaces square to a centreline, and return the sections as lines in space.
+
+    Parameters
+    ----------
+    tin, centreline, interval, stations, width, left, right, start
+        As of :func:`tinsmith.cross_sections`.
+
+    Returns
+    -------
+    Features
+        A line wherever a section runs over a surface without a gap, from left to right, with
+        columns ``line``, ``section``, ``station``, and ``surface`` if they have names.
+
+    Raises
+    ------
+    OptionError, LinesError, CrsError
+        As :func:`tinsmith.cross_sections`.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> square = [[0, 0, 0], [4, 0, 4], [4, 4, 8], [0, 4, 4]]
+    >>> tin = ts.TIN.from_triangles(square, [[0, 1, 2], [0, 2, 3]])
+    >>> ts.section_lines(tin, [[1, 2], [3, 2]], interval=1, width=2).coordinates[:3]
+    array([[1., 3., 4.],
+           [1., 2., 3.],
+           [1., 1., 2.]])
+    """
+    cut = _cut(tin, centreline, interval, stations, (width, left, right), start)
+    runs = [runs_of(cut.rows, k) for k in range(len(cut.surfaces.tins))]
+    first_rows = np.concatenate([one.first_rows for one in runs])
+    section = cut.axes.segments.lines[cut.rows.places.segments[first_rows]]
+    columns: dict[str, Any] = {
+        "line": cut.axes.lines[section],
+        "section": section,
+        "station": cut.axes.stations[section],
+    }
+    if any(cut.surfaces.names):
+        counts = [len(one.first_rows) for one in runs]
+        columns["surface"] = np.repeat(np.array(cut.surfaces.names, object), counts)
+    lengths = np.concatenate([np.diff(one.offsets) for one in runs])
+    crs = cut.surfaces.crs
+    return Features.of_lines(
+        np.concatenate([one.coordinates for one in runs]),
+        np.concatenate([[0], np.cumsum(lengths)]),
+        columns=columns,
+        units={"station": None if crs is None else crs.horizontal_unit},
+        crs=crs,
+        elevation_unit=cut.surfaces.elevation_unit,
+        name="cross sections",
+        notes=cut.notes,
+    )
+
+
+def _cut(
+    tin: Any,
+    centreline: Any,
+    interval: Any,
+    stations: Any,
+    widths: tuple[Any, Any, Any],
+    start: Any,
+) -> _Cut:
+    surfaces = as_surfaces(tin)
+    scale_elevations(surfaces.crs, surfaces.elevation_unit)  # refuses angles
+    features = as_features(centreline, "centreline")
+    notes = surfaces.notes + require_same_crs(features, surfaces.crs, centreline, "lines")
+    segments = lines_to_segments(features, start, "centreline")
+    at = _stations(segments, interval, stations)
+    axes = _axes(segments, *at, *_reaches(*widths))
+    rows = cut_rows(surfaces, axes.segments)
+    require_surface(surfaces, axes.segments, rows, "section")
+    return _Cut(surfaces, axes, rows, notes)
+
+
+# ---------------------------------------------------------------- options
+
+
+def _reaches(width: Any, left: Any, right: Any) -> tuple[float, float]:
+    """Return how far sections reach to the left and to the right."""
+    if width is not None:
+        if left is not None or right is not None:
+            raise OptionError("width", width, allowed="given without left and right")
+        half = as_positive("width", width) / 2
+        return half, half
+    if left is None and right is None:
+        raise OptionError("width", None, allowed="given, or left and right")
+    reach = [
+        0.0 if side is None else require_number(name, side)
+        for name, side in (("left", left), ("right", right))
+    ]
+    for name, side in zip(("left", "right"), reach, strict=True):
+        if side < 0.0:
+            raise OptionError(name, side, allowed="0 or more, in CRS units")
+    if reach == [0.0, 0.0]:
+        raise OptionError("left and right", 0.0, allowed="above 0, one of them at least")
+    return reach[0], reach[1]
+
+
+def _stations(
+    segments: Segments, interval: Any, given: Any
+) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """Return the stations of sections, and the segment of each, the one that begins there."""
+    if interval is None and given is None:
+        raise OptionError("interval", None, allowed="given, or stations")
+    firsts = np.flatnonzero(np.append(True, np.diff(segments.lines) != 0))
+    lasts = np.append(firsts[1:], len(segments.lines)) - 1
+    ends = np.stack([segments.start_stations[firsts], segments.end_stations[lasts]], axis=1)
+    wanted = [_on_lines(ends, given)] if given is not None else [np.empty((0, 2))]
+    if interval is not None:
+        wanted.append(_multiples(ends, as_positive("interval", interval)))
+    pairs = np.unique(np.concatenate(wanted), axis=0)
+    lines, stations = pairs[:, 0].astype(np.int64), pairs[:, 1]
+    segment = np.empty(len(lines), np.int64)
+    for line in np.unique(lines).tolist():
+        own = lines == line
+        begins = segments.start_stations[firsts[line] : lasts[line] + 1]
+        segment[own] = firsts[line] + np.searchsorted(begins, stations[own], side="right") - 1
+    return segment, stations
+
+
+def _multiples(ends: NDArray[np.float64], interval: float) -> NDArray[np.float64]:
+    """Return line and station of every multiple of an interval, and of both ends of each line."""
+    require_few("interval", interval, ends[:, 1] - ends[:, 0])
+    first, last = np.ceil(ends[:, 0] / interval), np.floor(ends[:, 1] / interval)
+    found = [
+        np.concatenate([np.arange(low, high + 1) * interval, pair])
+        for low, high, pair in zip(first.tolist(), last.tolist(), ends, strict=True)
+    ]
+    found = [np.clip(one, pair[0], pair[1]) for one, pair in zip(found, ends, strict=True)]
+    lines = np.repeat(np.arange(len(found)), [len(one) for one in found])
+    return np.column_stack([lines, np.concatenate(found)])
+
+
+def _on_lines(ends: NDArray[np.float64], given: Any) -> NDArray[np.float64]:
+    """Return line and station of stations, on every line that is long enough for them."""
+    try:
+        stations = np.atleast_1d(as_elevations(given))
+    except PointsError:
+        raise OptionError(
+            "stations", shown(given), allowed="finite numbers, in CRS units"
+        ) from None
+    if len(stations) == 0:
+        raise OptionError("stations", [], allowed="one number at least")
+    is_on = (ends[:, :1] <= stations) & (stations <= ends[:, 1:])
+    off = ~is_on.any(axis=0)
+    if off.any():
+        raise OptionError(
+            "station",
+            float(stations[np.argmax(off)]),
+            allowed=f"on the centreline, from {ends[:, 0].min():.6g} to {ends[:, 1].max():.6g}",
+        )
+    line, at = np.nonzero(is_on)
+    return np.column_stack([line, stations[at]])
+
+
+# ---------------------------------------------------------------- in the plane
+
+
+def _axes(
+    segments: Segments,
+    segment: NDArray[np.int64],
+    stations: NDArray[np.float64],
+    left: float,
+    right: float,
+) -> _Axes:
+    """Return the sections, each as the segments left and right of the centreline."""
+    begin, end = segments.start_stations[segment], segments.end_stations[segment]
+    share = ((stations - begin) / (end - begin))[:, None]
+    start, stop = segments.starts[segment], segments.ends[segment]
+    middle = np.where(share == 1.0, stop, start + share * (stop - start))
+    to_left = _directions(segments, segment, stations)[:, ::-1] * (-1.0, 1.0)
+    count = len(stations)
+    outer = np.stack([middle + left * to_left, middle, middle - right * to_left], axis=1)
+    offsets = np.broadcast_to([-left, 0.0, right], (count, 3))
+    sections = np.repeat(np.arange(count), 2)
+    axes = Segments(
+        outer[:, :2].reshape(-1, 2),
+        outer[:, 1:].reshape(-1, 2),
+        offsets[:, :2].ravel() + 0.0,
+        offsets[:, 1:].ravel() + 0.0,
+        sections,
+    )
+    has_length = (axes.starts != axes.ends).any(axis=1)
+    if len(np.unique(sections[has_length])) < count:
+        raise OptionError("width", left + right, allowed="wide enough to tell both ends apart")
+    axes = Segments(*(array[has_length] for array in axes))
+    return _Axes(axes, segments.lines[segment], stations)
+
+
+def _directions(
+    segments: Segments, segment: NDArray[np.int64], stations: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return unit vectors along the centreline, at its vertices the mean of both segments'."""
+    along = segments.directions
+    found = along[segment]
+    is_kink = (stations == segments.start_stations[segment]) & (segment > 0)
+    is_kink &= segments.is_continued[segment - 1]
+    before = along[segment[is_kink] - 1]
+    mean = before + found[is_kink]
+    length = np.hypot(mean[:, 0], mean[:, 1])[:, None]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        found[is_kink] = np.where(length > 0.0, mean / length, before)
+    return found

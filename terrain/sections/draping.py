@@ -1,0 +1,188 @@
+"""Draping: points, lines and polygons get the elevations of a surface."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Literal, get_args
+
+import numpy as np
+
+from ..._sentences import counted
+from ...errors import LinesError, OptionError
+from ...tin.constraints.polylines import offsets_of, owners_of
+from ...tin.validation.options import is_one_of, shown
+from ..results import Features
+from .geometries import as_features, require_same_crs
+from .rows import cut_rows
+from .runs import runs_of
+from .segments import segments_of
+from .surfaces import as_surfaces
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...tin import TIN
+    from .rows import Rows
+
+__all__ = ["Outside", "drape"]
+
+Outside = Literal["error", "nan", "cut"]
+
+
+def drape(tin: TIN, features: Any, *, outside: Outside = "error") -> Features:
+    """Lay points, lines or polygons on a surface.
+
+    Parameters
+    ----------
+    tin : TIN
+    features : Features, (k, 2) array, Breakline, geometry, or sequence of these
+        Of one kind, CRS units. An array is a polyline; a geometry is one of shapely, a
+        GeoDataFrame, or whatever has a ``__geo_interface__``. Elevations in it are replaced.
+    outside : {"error", "nan", "cut"}
+        What becomes of parts without surface below or above them, outside it or in its holes: an
+        error, vertices whose elevation is NaN, or left out (not of polygons).
+
+    Returns
+    -------
+    Features
+        The same features with elevations and a vertex wherever they cross an edge or pass a vertex
+        of the surface, so that they lie on it; columns and units are kept. ``notes`` tell what is
+        outside. With "cut" a line may have several parts, and features that are wholly outside are
+        left out.
+
+    Raises
+    ------
+    LinesError
+        If something is outside and ``outside`` is "error", nothing would be left, a line has no
+        length, coordinates are not finite, or triangles lie over each other.
+    OptionError
+        If ``outside`` is another word, or "cut" for polygons.
+    CrsError
+        If CRSs differ.
+
+    Notes
+    -----
+    A vertex that is added is exact as those of :func:`tinsmith.profile`; a given vertex keeps its
+    place and gets what :meth:`TIN.interpolate` gives. With "nan" a part of a line between two
+    successive vertices that have elevations lies on the surface: what leaves it and comes back at
+    once gets a vertex without elevation between. Vertices that repeat the one before are left out.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> square = [[0, 0, 0], [4, 0, 4], [4, 4, 8], [0, 4, 4]]
+    >>> tin = ts.TIN.from_triangles(square, [[0, 1, 2], [0, 2, 3]])
+    >>> ts.drape(tin, [[1, 2], [3, 2]]).coordinates
+    array([[1., 2., 3.],
+           [2., 2., 4.],
+           [3., 2., 5.]])
+    """
+    if not is_one_of(outside, get_args(Outside)):
+        raise OptionError("outside", _plain(outside), allowed="error, nan or cut")
+    surfaces = as_surfaces([tin])
+    given = as_features(features, "feature")
+    if given.kind == "polygons" and outside == "cut":
+        raise OptionError("outside", outside, allowed="error or nan for polygons")
+    notes = require_same_crs(given, surfaces.crs, features, "features")
+    given = replace(
+        given,
+        crs=surfaces.crs if surfaces.crs is not None else given.crs,
+        elevation_unit=surfaces.elevation_unit,
+        notes=(*given.notes, *notes),
+    )
+    if given.kind == "points":
+        return _drape_points(tin, given, outside)
+    xy = np.ascontiguousarray(given.coordinates[:, :2]) + 0.0
+    segments = segments_of(xy, given.offsets[0], what=given.kind[:-1])
+    rows = cut_rows(surfaces, segments)
+    lines = segments.lines[rows.places.segments]
+    is_outside = np.zeros(len(given.offsets[0]) - 1, np.bool_)
+    is_outside[lines[np.isnan(rows.elevations[:, 0])]] = True
+    given = _tell(given, is_outside, outside, rows, lines)
+    return _cut_runs(given, rows, lines) if outside == "cut" else _whole(given, rows, lines)
+
+
+def _plain(value: Any) -> Any:
+    return value if isinstance(value, str) else shown(value)
+
+
+def _drape_points(tin: TIN, given: Features, outside: Outside) -> Features:
+    xy = np.ascontiguousarray(given.coordinates[:, :2]) + 0.0
+    elevations = tin.interpolate(xy)
+    is_outside = np.isnan(elevations)
+    if is_outside.any():
+        given = _noted(given, is_outside, outside, xy[np.argmax(is_outside)], "point")
+    xyz = np.column_stack([xy, elevations])
+    if outside != "cut":
+        return replace(given, coordinates=xyz)
+    return _chosen(given, xyz[~is_outside], (), np.flatnonzero(~is_outside))
+
+
+def _tell(
+    given: Features,
+    is_outside: NDArray[np.bool_],
+    outside: Outside,
+    rows: Rows,
+    lines: NDArray[Any],
+) -> Features:
+    """Say which pieces of features are outside, or refuse them."""
+    if not is_outside.any():
+        return given
+    first = np.flatnonzero(is_outside[lines] & np.isnan(rows.elevations[:, 0]))[0]
+    what = "line" if given.kind == "lines" else "ring"
+    return _noted(given, is_outside, outside, rows.places.xy[first], what)
+
+
+def _noted(
+    given: Features, is_outside: NDArray[np.bool_], outside: Outside, place: Any, what: str
+) -> Features:
+    count, first = int(is_outside.sum()), int(np.argmax(is_outside))
+    all_of = counted(len(is_outside), what)
+    verb = "lies" if count == 1 else "lie"
+    text = (
+        f"{count:,} of {all_of} {verb} outside the surface or partly so (first: {what} {first}, at "
+        f"{tuple(place.tolist())})"
+    )
+    if outside == "error":
+        ways = "outside='nan' keeps such parts without elevations"
+        cut = "" if given.kind == "polygons" else ", outside='cut' leaves them out"
+        raise LinesError(f"{text}: {ways}{cut}.", lines=np.flatnonzero(is_outside)[:5])
+    became = "have no elevation there" if outside == "nan" else "were cut there"
+    return replace(given, notes=(*given.notes, f"{text}: they {became}."))
+
+
+def _whole(given: Features, rows: Rows, lines: NDArray[np.int64]) -> Features:
+    xyz = np.column_stack([rows.places.xy, rows.elevations[:, 0]])
+    pieces = offsets_of(np.bincount(lines, minlength=len(given.offsets[0]) - 1))
+    return replace(given, coordinates=xyz, offsets=(pieces, *given.offsets[1:]))
+
+
+def _cut_runs(given: Features, rows: Rows, lines: NDArray[np.int64]) -> Features:
+    runs = runs_of(rows)
+    owner = lines[runs.first_rows]
+    if given.is_multi:
+        owner = owners_of(given.offsets[1])[owner]
+    return _chosen(given, runs.coordinates, (runs.offsets,), owner)
+
+
+def _chosen(
+    given: Features,
+    coordinates: NDArray[np.float64],
+    offsets: tuple[NDArray[np.int64], ...],
+    owner: NDArray[np.int64],
+) -> Features:
+    """Return the features that still have parts; ``owner`` says whose each part is."""
+    kept, counts = np.unique(owner, return_counts=True)
+    if len(kept) == 0:
+        verb = "lies" if len(given) == 1 else "lie"
+        raise LinesError(f"{counted(len(given), 'feature')} {verb} wholly outside the surface.")
+    has_parts = given.is_multi or (counts > 1).any()
+    lost = len(given) - len(kept)
+    note = f"{counted(lost, 'feature')} wholly outside {'was' if lost == 1 else 'were'} left out."
+    return replace(
+        given,
+        coordinates=coordinates,
+        offsets=(*offsets, offsets_of(counts)) if has_parts else offsets,
+        columns={name: column[kept] for name, column in given.columns.items()},
+        notes=(*given.notes, note) if lost else given.notes,
+    )

@@ -1,0 +1,241 @@
+"""Geometries: points, lines and polygons as callers give them become Features."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ...crs import CRS
+from ...errors import CrsError, LinesError, PointsError
+from ...tin import Breakline
+from ...tin.constraints.breaklines import as_coords
+from ...tin.constraints.polylines import offsets_of
+from ...tin.validation.options import shown
+from ...tin.validation.points import require_exact_range
+from ..results import Features
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["as_features", "require_same_crs"]
+
+_KINDS = {
+    "Point": ("points", 0),
+    "MultiPoint": ("points", 1),
+    "LineString": ("lines", 0),
+    "LinearRing": ("lines", 0),
+    "MultiLineString": ("lines", 1),
+    "Polygon": ("polygons", 0),
+    "MultiPolygon": ("polygons", 1),
+}
+_GROUPS = {"FeatureCollection": "features", "GeometryCollection": "geometries"}
+_LEAST = {"points": 1, "lines": 2, "polygons": 4}
+"""Vertices of a piece; a ring repeats its first."""
+
+
+class _Item(NamedTuple):
+    """One feature: its kind, its parts, each as pieces (a ring is one) of coordinates."""
+
+    kind: str
+    parts: list[list[Any]]
+    properties: Mapping[str, Any]
+
+
+def as_features(given: Any, what: str = "line") -> Features:
+    """Return geometries as features of one kind.
+
+    Parameters
+    ----------
+    given : Features, Breakline, (k, 2) or (k, 3) array, geometry, or sequence of these
+        A geometry is one of shapely, a GeoDataFrame, or whatever has a ``__geo_interface__``; an
+        array is a polyline.
+    what : str
+        What one of them is called in sentences.
+
+    Raises
+    ------
+    LinesError
+        If it is something else, of several kinds, empty, or has coordinates that are not finite.
+    CrsError
+        If the CRS that it names is unknown.
+    """
+    if isinstance(given, Features):
+        features = given
+    else:
+        items = list(_walk(given, what))
+        features = _gather(items, CRS.of(getattr(given, "crs", None)), what)
+    if len(features.coordinates) == 0:
+        raise LinesError(f"There is no {what}: at least one is needed.")
+    try:
+        require_exact_range(features.coordinates[:, :2], f"Vertices of a {what}")
+    except PointsError as error:
+        raise LinesError(str(error)) from None
+    return features
+
+
+def require_same_crs(
+    features: Features, crs: CRS | None, given: Any, what: str = "lines"
+) -> tuple[str, ...]:
+    """Refuse features of another CRS than that of the surface, and tell what was assumed.
+
+    Parameters
+    ----------
+    features : Features
+    crs : CRS or None
+        Of the surface.
+    given : object
+        What the features were made of: plain coordinates are in the CRS of the surface.
+    what : str
+        What the features are called in sentences.
+
+    Raises
+    ------
+    CrsError
+        If both are known and differ in the plane.
+    """
+    theirs = features.crs
+    if crs is None:
+        return () if theirs is None else (f"The surface names no CRS: taken as {theirs.label}.",)
+    if theirs is None:
+        name = f"The {what} given as features name no CRS: taken as {crs.label}."
+        return (name,) if isinstance(given, Features) else ()
+    if not theirs.horizontal.is_same(crs.horizontal):
+        raise CrsError(
+            f"The {what} are in {theirs.label} and the surface in {crs.label}: reproject one of "
+            "them first.",
+            crs=theirs,
+        )
+    return ()
+
+
+# ---------------------------------------------------------------- what is given
+
+
+def _walk(given: Any, what: str) -> Iterator[_Item]:
+    """Take apart what is given; a collection's features keep their properties."""
+    if isinstance(given, Breakline):
+        yield _line_of(given.coords, what)
+        return
+    interface = given if _is_geometry(given) else getattr(given, "__geo_interface__", None)
+    if isinstance(interface, Mapping):
+        yield from _of_geometry(interface, what)
+    elif _is_one_line(given):
+        yield _line_of(given, what)
+    elif isinstance(given, Iterable) and not isinstance(given, str | bytes | Mapping):
+        for one in given:
+            if not (_is_one_line(one) or isinstance(one, Breakline) or _is_geometry_like(one)):
+                raise _no_line(one, what)
+            yield from _walk(one, what)
+    else:
+        raise _no_line(given, what)
+
+
+def _no_line(given: Any, what: str) -> LinesError:
+    return LinesError(
+        f"Invalid {what} {shown(given)}: a (k, 2) array, a Breakline, Features, or a geometry "
+        "is needed."
+    )
+
+
+def _is_geometry(given: Any) -> bool:
+    return isinstance(given, Mapping) and isinstance(given.get("type"), str)
+
+
+def _is_geometry_like(given: Any) -> bool:
+    return _is_geometry(given) or hasattr(given, "__geo_interface__")
+
+
+def _is_one_line(given: Any) -> bool:
+    """Whether it is a table of numbers: an array of two dimensions, or rows of numbers."""
+    if isinstance(given, np.ndarray) and given.dtype != object:
+        return given.ndim == 2
+    if hasattr(given, "columns") or not isinstance(given, Sequence) or isinstance(given, str):
+        return hasattr(given, "columns")
+    first = given[0] if len(given) else None
+    if not isinstance(first, Sequence | np.ndarray) or isinstance(first, str):
+        return False
+    return len(first) > 0 and not isinstance(first[0], Sequence | np.ndarray)
+
+
+def _line_of(coords: Any, what: str) -> _Item:
+    return _Item("lines", [[as_coords(coords, f"a {what}", least=2)]], {})
+
+
+def _of_geometry(given: Mapping[str, Any], what: str) -> Iterator[_Item]:
+    """Take collections apart without recursion; features keep their properties."""
+    pending: list[tuple[Mapping[str, Any], Mapping[str, Any]]] = [(given, {})]
+    while pending:
+        geometry, properties = pending.pop()
+        kind = geometry.get("type")
+        if kind == "Feature":
+            pending.append((geometry.get("geometry") or {"type": "nothing"}, _properties(geometry)))
+        elif kind in _GROUPS:
+            members = [(one, properties) for one in geometry[_GROUPS[kind]]]
+            pending.extend(reversed(members))
+        elif kind in _KINDS:
+            yield _item_of(str(kind), geometry["coordinates"], properties, what)
+        else:
+            raise LinesError(f"Invalid {what}: a geometry of type {shown(kind)} has no place here.")
+
+
+def _properties(feature: Mapping[str, Any]) -> Mapping[str, Any]:
+    return feature.get("properties") or {}
+
+
+def _item_of(kind: str, coordinates: Any, properties: Mapping[str, Any], what: str) -> _Item:
+    name, is_multi = _KINDS[kind]
+    parts = coordinates if is_multi else [coordinates]
+    pieces = [
+        part if name == "polygons" else [[part] if name == "points" else part] for part in parts
+    ]
+    least = _LEAST[name]
+    tables = [[as_coords(piece, f"a {what}", least=least) for piece in part] for part in pieces]
+    if not tables or not all(tables):
+        raise LinesError(f"Invalid {what}: a {kind} without coordinates.")
+    return _Item(name, tables, properties)
+
+
+# ---------------------------------------------------------------- as features
+
+
+def _gather(items: list[_Item], crs: CRS | None, what: str) -> Features:
+    kinds = sorted({item.kind for item in items})
+    if len(kinds) > 1:
+        raise LinesError(f"There are {' and '.join(kinds)} together: give one kind at a time.")
+    if not items:
+        raise LinesError(f"There is no {what}: at least one is needed.")
+    if kinds == ["points"]:
+        items = [item._replace(parts=[part]) for item in items for part in item.parts]
+    pieces = [piece for item in items for part in item.parts for piece in part]
+    width = min(piece.shape[1] for piece in pieces)
+    coordinates = np.concatenate([piece[:, :width] for piece in pieces])
+    of_items = offsets_of([len(item.parts) for item in items])
+    of_parts = offsets_of([len(part) for item in items for part in item.parts])
+    of_pieces = offsets_of([len(piece) for piece in pieces])
+    has_parts = any(len(item.parts) > 1 for item in items)
+    levels = {"points": (), "lines": (of_pieces,), "polygons": (of_pieces, of_parts)}[kinds[0]]
+    return Features(
+        kind=kinds[0],  # type: ignore[arg-type]
+        coordinates=coordinates,
+        offsets=(*levels, of_items) if has_parts else levels,
+        columns=_columns([item.properties for item in items]),
+        crs=crs,
+    )
+
+
+def _columns(rows: list[Mapping[str, Any]]) -> dict[str, NDArray[Any]]:
+    names = dict.fromkeys(str(name) for row in rows for name in row)
+    return {name: _as_column([row.get(name) for row in rows]) for name in names}
+
+
+def _as_column(values: list[Any]) -> NDArray[Any]:
+    """Return values as truth values, whole numbers, numbers, or else as texts."""
+    plain = [value.item() if isinstance(value, np.generic) else value for value in values]
+    kinds = {type(value) for value in plain}
+    if kinds == {bool} or (kinds == {int} and max(map(abs, plain)) < 2**63):
+        return np.array(plain)
+    if kinds <= {int, float, type(None)} and kinds != {type(None)}:
+        return np.array([np.nan if value is None else value for value in plain], float)
+    return np.array([None if value is None else str(value) for value in plain], object)

@@ -1,0 +1,103 @@
+"""Grades: how steep surfaces are along lines."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...tin.topology import NO_NEIGHBOR
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...tin import TIN
+    from .rows import Rows
+    from .segments import Segments
+    from .surfaces import Surfaces
+
+__all__ = ["measure_grades"]
+
+_SPLITTER = 2.0**27 + 1
+"""Dekker's: cuts a double into two halves of 26 bits."""
+
+
+def measure_grades(surfaces: Surfaces, segments: Segments, rows: Rows) -> NDArray[np.float64]:
+    """Measure the slope of each surface along the line from each row to the next one.
+
+    Returns
+    -------
+    (n, k) float64 array
+        Rise over run, elevations not converted to the unit of eastings: NaN in gaps and at ends.
+
+    Notes
+    -----
+    Taken from the plane of the triangle, or from the two rows where rounding harms that less: the
+    one where they are close to each other, the other where the triangle is a sliver.
+    """
+    directions = segments.directions[rows.places.segments]
+    grades = np.full(rows.elevations.shape, np.nan)
+    for k, (tin, factor) in enumerate(zip(surfaces.tins, surfaces.factors, strict=True)):
+        has = np.flatnonzero((rows.triangles[:, k] != NO_NEIGHBOR) & ~rows.is_last)
+        gradient = factor * _gradients(tin, rows.triangles[has, k])
+        with np.errstate(invalid="ignore", over="ignore", divide="ignore"):
+            of_plane = (gradient * directions[has]).sum(axis=1)
+            plane_error = np.abs(gradient).sum(axis=1) * np.finfo(float).eps
+            of_rows, row_error = _rise_over_run(rows, has, k)
+        is_plane = np.isfinite(of_plane) & ~(row_error < plane_error)
+        grades[has, k] = np.where(is_plane, of_plane, of_rows)
+    return grades
+
+
+def _rise_over_run(
+    rows: Rows, has: NDArray[np.int64], k: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the grades from rows to the next ones, and how far off rounding may have them."""
+    xy, z = rows.places.xy, rows.elevations[:, k]
+    run = np.hypot(*(xy[has + 1] - xy[has]).T)
+    grade = (z[has + 1] - z[has]) / run
+    places = np.spacing(np.abs(xy[has]).max(axis=1))
+    heights = np.spacing(np.maximum(np.abs(z[has]), np.abs(z[has + 1])))
+    return grade, (heights + places * np.abs(grade)) / run
+
+
+def _gradients(tin: TIN, triangles: NDArray[np.int32]) -> NDArray[np.float64]:
+    """Return the rise of triangles eastwards and northwards, (n, 2).
+
+    Counted from the corner opposite the longest side, so that differences lose the least.
+    """
+    chosen, inverse = np.unique(triangles, return_inverse=True)
+    corners = tin.points[tin.triangles[chosen]]
+    sides = np.roll(corners, -1, axis=1) - np.roll(corners, -2, axis=1)
+    first = np.argmax(np.hypot(sides[:, :, 0], sides[:, :, 1]), axis=1)
+    row = np.arange(len(chosen))
+    a, b, c = (corners[row, (first + k) % 3] for k in range(3))
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        (x, y, z), (u, v, w) = (b - a).T, (c - a).T
+        area = _difference_of_products(x, v, y, u)
+        east = _difference_of_products(z, v, y, w) / area
+        north = _difference_of_products(x, w, z, u) / area
+    return np.stack([east, north], axis=1)[inverse.reshape(-1)]
+
+
+def _difference_of_products(
+    a: NDArray[np.float64], b: NDArray[np.float64], c: NDArray[np.float64], d: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return a b - c d, good to a few roundings: what each product loses is given back."""
+    left, right = a * b, c * d
+    mended = (left - right) + (_lost(a, b, left) - _lost(c, d, right))
+    return np.where(np.isfinite(mended), mended, left - right)
+
+
+def _lost(
+    a: NDArray[np.float64], b: NDArray[np.float64], product: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return what a rounded product is short of the true one."""
+    (p, q), (r, s) = _halves(a), _halves(b)
+    return q * s - (((product - p * r) - q * r) - p * s)
+
+
+def _halves(value: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    scaled = _SPLITTER * value
+    high = scaled - (scaled - value)
+    return high, value - high

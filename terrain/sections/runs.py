@@ -1,0 +1,44 @@
+"""Runs: the parts of lines along which a surface is there, as lines in space."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ...tin.constraints.polylines import offsets_of
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .rows import Rows
+
+__all__ = ["Runs", "runs_of"]
+
+
+class Runs(NamedTuple):
+    """Lines without gaps.
+
+    Attributes
+    ----------
+    coordinates : (n, 3) float64 array
+    offsets : (r + 1,) int64 array
+        Run i is ``coordinates[offsets[i]:offsets[i + 1]]``.
+    first_rows : (r,) int64 array
+        The row where each begins.
+    """
+
+    coordinates: NDArray[np.float64]
+    offsets: NDArray[np.int64]
+    first_rows: NDArray[np.int64]
+
+
+def runs_of(rows: Rows, k: int = 0) -> Runs:
+    """Return the runs of surface ``k``; where a line only touches it there is none."""
+    goes_on = ~rows.is_gap[:, k] & ~rows.is_last
+    comes_on = np.append(False, goes_on[:-1])
+    chosen = np.flatnonzero(goes_on | comes_on)
+    is_first = ~comes_on[chosen]
+    firsts = np.flatnonzero(is_first)
+    xyz = np.column_stack([rows.places.xy[chosen], rows.elevations[chosen, k]])
+    return Runs(xyz, offsets_of(np.diff(np.append(firsts, len(chosen)))), chosen[firsts])

@@ -1,0 +1,109 @@
+"""Segments: straight pieces of lines, with the station where each begins and ends."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ...errors import LinesError
+from ...tin.constraints.polylines import owners_of
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["Segments", "segments_of"]
+
+
+class Segments(NamedTuple):
+    """Straight pieces, line after line; those of one line follow each other.
+
+    Attributes
+    ----------
+    starts, ends : (m, 2) float64 array
+    start_stations, end_stations : (m,) float64 array
+    lines : (m,) int64 array
+        The line that each belongs to, in ascending order.
+    """
+
+    starts: NDArray[np.float64]
+    ends: NDArray[np.float64]
+    start_stations: NDArray[np.float64]
+    end_stations: NDArray[np.float64]
+    lines: NDArray[np.int64]
+
+    @property
+    def directions(self) -> NDArray[np.float64]:
+        """Unit vectors along them, (m, 2)."""
+        steps = self.ends - self.starts
+        return steps / np.hypot(steps[:, 0], steps[:, 1])[:, None]
+
+    @property
+    def is_continued(self) -> NDArray[np.bool_]:
+        """Whether the next segment goes on where each ends."""
+        is_continued = np.zeros(len(self.lines), np.bool_)
+        is_continued[:-1] = np.diff(self.lines) == 0
+        return is_continued
+
+    def stations(
+        self, segment: NDArray[np.int64], ratio: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Return the stations of shares of the way along segments, between those of their ends."""
+        first, last = self.start_stations[segment], self.end_stations[segment]
+        between = first + ratio * (last - first)
+        station = np.clip(between, np.minimum(first, last), np.maximum(first, last))
+        return np.where(ratio == 1.0, last, station)
+
+
+def segments_of(
+    xy: NDArray[np.float64], offsets: NDArray[np.int64], *, start: float = 0.0, what: str = "line"
+) -> Segments:
+    """Return the segments of polylines, each line's stations counted from its first vertex.
+
+    Parameters
+    ----------
+    xy : (n, 2) float64 array
+    offsets : (l + 1,) int64 array
+        Line k is ``xy[offsets[k]:offsets[k + 1]]``.
+    start : float
+        Station of each line's first vertex.
+    what : str
+        What a line is called in sentences.
+
+    Raises
+    ------
+    LinesError
+        If a line has no length, or one that is too long for a number.
+
+    Notes
+    -----
+    A vertex that repeats the one before it is passed over. Stations are the sums of the lengths of
+    the segments, added one after the other, each rounded.
+    """
+    lines = owners_of(offsets)
+    is_step = (lines[1:] == lines[:-1]) & (xy[1:] != xy[:-1]).any(axis=1)
+    at = np.flatnonzero(is_step)
+    if len(np.unique(lines[at])) < len(offsets) - 1:
+        empty = int(np.setdiff1d(np.arange(len(offsets) - 1), lines[at])[0])
+        place = tuple(xy[offsets[empty]].tolist())
+        raise LinesError(
+            f"A {what} has no length (number {empty}, at {place}): two vertices apart are needed.",
+            lines=[empty],
+        )
+    steps = xy[at + 1] - xy[at]
+    lengths = np.hypot(steps[:, 0], steps[:, 1])
+    ends = _sum_by_line(lengths, lines[at], start)
+    is_first = np.append(True, np.diff(lines[at]) != 0)
+    begins = np.where(is_first, start, np.roll(ends, 1))
+    return Segments(xy[at], xy[at + 1], begins, ends, lines[at])
+
+
+def _sum_by_line(
+    lengths: NDArray[np.float64], lines: NDArray[np.int64], start: float
+) -> NDArray[np.float64]:
+    """Add lengths up, from the start again for each line."""
+    firsts = np.flatnonzero(np.append(True, np.diff(lines) != 0))
+    sums = [
+        np.cumsum(np.concatenate([[start], part]))[1:] for part in np.split(lengths, firsts[1:])
+    ]
+    return np.concatenate(sums)

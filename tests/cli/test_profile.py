@@ -1,0 +1,200 @@
+"""``tinsmith profile`` and ``tinsmith drape`` as people run them."""
+
+import csv
+import json
+from pathlib import Path
+
+import numpy as np
+import pyogrio
+import pytest
+import shapely
+from click.testing import CliRunner
+
+import tinsmith as ts
+from tinsmith.cli import main
+
+SITE = str(Path(__file__).parents[2] / "sample_data" / "site_survey.csv")
+LINE = ("--from", 752690, 4024225, "--to", 752850, 4024330)
+UTM = "EPSG:32616"
+
+
+def run(*arguments):
+    return CliRunner().invoke(main, list(map(str, arguments)))
+
+
+def refusal(*arguments):
+    out = run(*arguments)
+    assert out.exit_code in (1, 2), out.output
+    assert "Traceback" not in out.output
+    assert "bug" not in out.output
+    return out.stderr
+
+
+@pytest.fixture
+def site(tmp_path):
+    tin = ts.triangulate(ts.read(SITE, crs=UTM))
+    return ts.write(tin, tmp_path / "site.ply")
+
+
+def write_lines(path, lines, crs=UTM, **columns):
+    shapes = shapely.to_wkb([shapely.LineString(line) for line in lines])
+    fields = list(columns)
+    data = [np.array(columns[name], object) for name in fields]
+    pyogrio.raw.write(
+        path, shapes, field_data=data, fields=fields, crs=crs, geometry_type="LineString"
+    )
+    return path
+
+
+def read_csv(path):
+    with path.open(newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def test_a_profile_is_a_table_and_a_picture(site, tmp_path):
+    table, picture = tmp_path / "a.csv", tmp_path / "a.png"
+    out = run("profile", site, *LINE, "-o", table, "-o", picture, "--json")
+    assert out.exit_code == 0, out.output
+    facts = json.loads(out.stdout)
+    rows = read_csv(table)
+    assert facts["rows"] == len(rows) > 50
+    assert facts["outputs"] == [str(table), str(picture)]
+    tin = ts.read(site)
+    expected = ts.profile(tin, [[752690, 4024225], [752850, 4024330]])
+    station = [float(row["station (m)"]) for row in rows]
+    assert station == expected["station"].tolist()
+    assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+def test_several_surfaces_have_names(site, tmp_path):
+    tin = ts.read(site)
+    raised = ts.write(tin.replace(points=tin.points + np.array([0, 0, 2.0])), tmp_path / "b.ply")
+    args = ("profile", site, raised, *LINE, "--name", "old", "--name", "new", "--interval", 10)
+    out = run(*args, "-o", tmp_path / "a.json", "-o", tmp_path / "a.png")
+    assert out.exit_code == 0, out.output
+    text = (tmp_path / "a.json").read_text()
+    assert "difference_new" in text
+    assert "old" in out.stderr
+
+
+def test_lines_of_a_file_are_reprojected(site, tmp_path):
+    here = [[752690, 4024225], [752850, 4024330]]
+    there = ts.transform_points([[*xy, 0.0] for xy in here], UTM, "EPSG:4326")[:, :2]
+    lines = write_lines(tmp_path / "lines.gpkg", [there], "EPSG:4326")
+    out = run("profile", site, "--line", lines, "-o", tmp_path / "a.csv")
+    assert out.exit_code == 0, out.output
+    rows = read_csv(tmp_path / "a.csv")
+    assert [float(rows[0]["x (m)"]), float(rows[0]["y (m)"])] == pytest.approx(here[0], abs=1e-6)
+
+
+def test_sections_are_tables_and_lines_in_space(site, tmp_path):
+    table, lines = tmp_path / "a.csv", tmp_path / "a.gpkg"
+    out = run("profile", site, *LINE, "--sections", 20, 10, "-o", table, "-o", lines)
+    assert out.exit_code == 0, out.output
+    sections = {row["section"] for row in read_csv(table)}
+    assert len(sections) == 11
+    meta, _, shapes, _ = pyogrio.raw.read(lines)
+    assert len(shapes) == 11
+    assert meta["geometry_type"].endswith("Z")
+
+
+def test_points_are_triangulated_with_their_lines(tmp_path):
+    out = run("profile", SITE, "--crs", UTM, "--codes", *LINE, "-o", tmp_path / "a.csv")
+    assert out.exit_code == 0, out.output
+    crossed = {row["crossed"] for row in read_csv(tmp_path / "a.csv")}
+    assert "breakline" in crossed
+
+
+@pytest.mark.parametrize(
+    ("arguments", "why"),
+    [
+        (("-o", "a.csv"), "A line is needed"),
+        (("--from", 1, 1, "-o", "a.csv"), "A line is needed"),
+        ((*LINE, "--line", SITE, "-o", "a.csv"), "A line is needed"),
+        (("--from", 1, 1, "--to", 1, 1, "-o", "a.csv"), "no length"),
+        (("--from", 1, 1, "--to", "nan", 2, "-o", "a.csv"), "not finite"),
+        (("--from", 1, 1, "--to", 2, 2, "-o", "a.csv"), "lies outside the surface"),
+        ((*LINE, "--interval", 0, "-o", "a.csv"), "Invalid --interval 0.0"),
+        ((*LINE, "--interval", 1e-9, "-o", "a.csv"), "at most 1,000,000"),
+        ((*LINE, "--sections", 10, 0, "-o", "a.csv"), "Invalid width 0.0"),
+        ((*LINE, "--sections", 10, 5, "-o", "a.png"), "has no --sections"),
+        ((*LINE, "-o", "a.gpkg"), "a Table can be written to"),
+        ((*LINE, "--name", "a", "--name", "b", "-o", "a.csv"), "name each once"),
+        ((*LINE, "--exaggeration", -1, "-o", "a.png"), "Invalid --exaggeration"),
+        ((*LINE, "--exaggeration", 1e9, "-o", "a.csv", "-o", "a.png"), "or less here"),
+    ],
+)
+def test_what_is_wrong_is_said_and_nothing_is_written(site, tmp_path, arguments, why):
+    given = [tmp_path / a if a in ("a.csv", "a.png", "a.gpkg") else a for a in arguments]
+    assert why in " ".join(refusal("profile", site, *given).split())
+    assert {path.name for path in tmp_path.iterdir()} == {"site.ply"}
+
+
+def test_inputs_are_not_overwritten(site, tmp_path):
+    before = site.read_bytes()
+    copy = tmp_path / "a.csv"
+    copy.write_bytes(Path(SITE).read_bytes())
+    assert "cannot be the output too" in refusal("profile", copy, *LINE, "-o", copy)
+    assert "is the input" in refusal("profile", site, *LINE, "-o", site)
+    assert site.read_bytes() == before
+
+
+def test_surfaces_of_one_name_are_told_apart_by_the_user(site, tmp_path):
+    text = refusal("profile", site, site, *LINE, "-o", tmp_path / "a.csv")
+    assert "Two surfaces are called 'site'" in text
+
+
+def test_features_are_draped_with_their_columns(site, tmp_path):
+    line = [[752690, 4024225], [752850, 4024330]]
+    given = write_lines(tmp_path / "roads.gpkg", [line], name=["Main St"])
+    out = run("drape", site, given, "-o", tmp_path / "b.gpkg", "--json")
+    assert out.exit_code == 0, out.output
+    facts = json.loads(out.stdout)
+    assert facts["vertices_draped"] > facts["vertices_given"] == 2
+    meta, _, shapes, columns = pyogrio.raw.read(tmp_path / "b.gpkg")
+    assert [column.tolist() for column in columns] == [["Main St"]]
+    coordinates = shapely.get_coordinates(shapely.from_wkb(shapes), include_z=True)
+    assert coordinates == pytest.approx(ts.drape(ts.read(site), line).coordinates)
+    assert meta["crs"] == UTM
+
+
+def test_what_lies_outside_is_refused_told_or_cut(site, tmp_path):
+    line = [[752690, 4024225], [753850, 4024330]]
+    given = write_lines(tmp_path / "roads.gpkg", [line])
+    text = refusal("drape", site, given, "-o", tmp_path / "b.gpkg")
+    assert "1 of 1 line lies outside the surface" in text
+    assert "--outside" in text
+    assert not (tmp_path / "b.gpkg").exists()
+    out = run("drape", site, given, "-o", tmp_path / "b.gpkg", "--outside", "cut")
+    assert out.exit_code == 0, out.output
+    assert "were cut there" in out.stderr
+
+
+def test_points_and_polygons_are_draped(site, tmp_path):
+    for name, shapes, kind in (
+        ("points", [shapely.Point(752750, 4024250)], "Point"),
+        ("lots", [shapely.box(752700, 4024230, 752720, 4024260)], "Polygon"),
+    ):
+        path = tmp_path / f"{name}.gpkg"
+        pyogrio.raw.write(
+            path, shapely.to_wkb(shapes), field_data=[], fields=[], crs=UTM, geometry_type=kind
+        )
+        out = run("drape", site, path, "-o", tmp_path / f"{name}.geojson", "--projected")
+        assert out.exit_code == 0, out.output
+        (feature,) = json.loads((tmp_path / f"{name}.geojson").read_text())["features"]
+        assert feature["geometry"]["type"] == kind
+
+
+def test_features_of_several_kinds_are_refused(site, tmp_path):
+    path = tmp_path / "mixed.geojson"
+    shapes = [
+        shapely.Point(752750, 4024250),
+        shapely.LineString([[752750, 4024250], [752760, 4024250]]),
+    ]
+    features = [
+        {"type": "Feature", "properties": {}, "geometry": shapely.geometry.mapping(one)}
+        for one in shapes
+    ]
+    path.write_text(json.dumps({"type": "FeatureCollection", "features": features}))
+    text = refusal("drape", site, path, "-o", tmp_path / "b.gpkg")
+    assert "one of lines, and the first one of points" in text

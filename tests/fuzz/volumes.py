@@ -1,0 +1,106 @@
+"""Volumes and differences of two small TINs against the same in fractions."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from support.earthwork_oracle import exact_volume
+
+import tinsmith as ts
+
+from .campaign import Campaign, Case
+from .coordinates import points
+
+NAMES = ("area", "cut_area", "fill_area", "cut", "fill")
+
+
+def generate(rng: np.random.Generator) -> Case:
+    """Two sets of points of one kind; the second may lie on the edges of the first."""
+    both = np.array(points(rng, int(rng.integers(6, 19))), float)
+    rng.shuffle(both)
+    half = len(both) // 2
+    first, second = both[:half], both[half:]
+    if rng.random() < 0.3:
+        second = on_edges(rng, first, half)
+    if rng.random() < 0.3:
+        first[:, 2] = second[:, 2] = 3.0
+        second[: rng.integers(0, 4), 2] += 1.0
+    kept = rng.random(64) if rng.random() < 0.3 else np.zeros(64)
+    return {"points": first.tolist(), "other": second.tolist(), "kept": kept.tolist()}
+
+
+def on_edges(rng: np.random.Generator, first: Any, count: int) -> Any:
+    """Return points between pairs of others, where edges run, but for rounding; some corners."""
+    a, b = first[rng.integers(0, len(first), count)], first[rng.integers(0, len(first), count)]
+    share = rng.choice([0.0, 0.5, 1 / 3, 0.1], (count, 1))
+    return a + share * (b - a)
+
+
+def examine(case: Case) -> str:
+    """Ask for the exact volumes but for rounding, and a difference that is sound and agrees."""
+    try:
+        tin, other = (ts.triangulate(case[name]) for name in ("points", "other"))
+    except ts.TinsmithError:
+        return "refused: points"
+    tin = without_some(tin, case["kept"])
+    exact = dict(zip((*NAMES, "squares"), exact_volume(tin, other).values(), strict=True))
+    table = ts.volume(tin, other)
+    relief = max(
+        np.ptp(tin.points[:, 2]),
+        np.ptp(other.points[:, 2]),
+        abs(float(tin.points[:, 2].mean() - other.points[:, 2].mean())),
+    )
+    extent = np.ptp(np.concatenate([tin.points, other.points])[:, :2], axis=0)
+    thin = 1e-14 * float(extent.sum()) ** 2  # a corner is rounded once
+    for name in NAMES:
+        found, true = float(table[name][0]), float(exact[name])
+        scale = float(exact["area"]) * (1.0 if "area" in name else float(relief))
+        slack = thin * (1.0 if "area" in name else float(relief))
+        assert true != 0.0 or found == 0.0, f"{name}: {found} instead of 0"
+        assert abs(found - true) <= 1e-11 * scale + slack, f"{name}: {found} instead of {true}"
+    back = ts.volume(other, tin)
+    assert back["cut"] == table["fill"], "exchanged"
+    assert back["area"] == table["area"], "exchanged"
+    return examine_difference(tin, other, table)
+
+
+def without_some(tin: Any, kept: list[float]) -> Any:
+    chosen = np.resize(np.array(kept), len(tin.triangles)) < 0.6
+    return ts.TIN.from_triangles(tin.points, tin.triangles[chosen]) if chosen.any() else tin
+
+
+def examine_difference(tin: Any, other: Any, table: Any) -> str:
+    try:
+        found = ts.difference(tin, other)
+    except ts.PointsError as error:
+        if "can tell" in str(error):
+            return "refused: too thin"
+        if table["area"] > 0.0:
+            raise
+        return "apart"
+    assert ts.check(found.tin).ok, repr(ts.check(found.tin))
+    area, slack = float(table["area"][0]), rounding_of(tin, other)
+    relief = float(np.abs(found.tin.points[:, 2]).max())
+    assert abs(found.tin.area - area) <= slack, "area"
+    zones = found.zones
+    assert abs(zones.columns["area"].sum() - area) <= slack, "zones"
+    for kind in ("cut", "fill"):
+        volume = zones.columns["volume"][zones.columns["kind"] == kind].sum()
+        apart = abs(volume - table[kind][0])
+        assert apart <= slack * relief + 2e-7 * area * relief, f"{kind}: {apart} of {volume}"
+    middle = found.statistics["median"][0]
+    assert found.statistics["lowest"][0] <= middle <= found.statistics["highest"][0]
+    return "overlaid"
+
+
+def rounding_of(tin: Any, other: Any) -> float:
+    """Return the area that moving every vertex by a rounding can change."""
+    xy = np.concatenate([tin.points[:, :2], other.points[:, :2]])
+    edges = 3 * (len(tin.triangles) + len(other.triangles))
+    return float(8 * np.spacing(np.abs(xy).max()) * np.ptp(xy, axis=0).sum() * edges)
+
+
+CAMPAIGNS = (
+    Campaign("volumes", "cut and fill, and the difference of two TINs", generate, examine),
+)

@@ -1,0 +1,118 @@
+"""Bands against fractions, shapely and the area of the surface."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import pairwise
+
+import numpy as np
+import pytest
+import shapely
+from support.isolines import area_between
+
+import tinsmith as ts
+
+
+def polygons_of(features):
+    rings, polygons, parts = features.offsets
+    found = []
+    for first, last in pairwise(parts):
+        members = []
+        for k in range(first, last):
+            loops = [
+                features.coordinates[rings[r] : rings[r + 1]]
+                for r in range(polygons[k], polygons[k + 1])
+            ]
+            members.append(shapely.Polygon(loops[0], loops[1:]))
+        found.append(shapely.MultiPolygon(members))
+    return found
+
+
+def exact_areas(tin, bounds):
+    return [
+        float(sum(area_between(tin.points[t], low, high) for t in tin.triangles))
+        for low, high in bounds
+    ]
+
+
+def bound(value):
+    return None if np.isnan(value) else Fraction(float(value))
+
+
+def require_a_partition(tin, found):
+    polygons = polygons_of(found)
+    assert all(polygon.is_valid for polygon in polygons)
+    parts = [part for polygon in polygons for part in polygon.geoms]
+    assert all(part.exterior.is_ccw for part in parts)
+    assert not any(hole.is_ccw for part in parts for hole in part.interiors)
+    assert sum(polygon.area for polygon in polygons) == pytest.approx(tin.area, rel=1e-10)
+    assert found.columns["area"] == pytest.approx([one.area for one in polygons], rel=1e-9)
+    tree = shapely.STRtree(parts)
+    for a, b in tree.query(parts, predicate="intersects").T:
+        assert a >= b or parts[a].intersection(parts[b]).area < 1e-9
+
+
+def integer_tin(rng):
+    side = int(rng.integers(3, 8))
+    x, y = np.meshgrid(np.arange(side), np.arange(side))
+    z = rng.integers(0, int(rng.integers(2, 6)), side * side)
+    points = np.column_stack([x.ravel(), y.ravel(), z]).astype(float)
+    kept = rng.random(len(points)) < rng.choice([0.75, 1.0])
+    return ts.triangulate(points[kept], max_edge=rng.choice([None, 1.5]))
+
+
+@pytest.mark.parametrize("seed", range(150))
+def test_bands_of_small_integer_grids_are_those_of_fractions(seed):
+    rng = np.random.default_rng(seed)
+    try:
+        tin = integer_tin(rng)
+    except ts.PointsError:  # all triangles were trimmed
+        tin = ts.triangulate([[0, 0, 1], [1, 0, 0], [0, 1, 2]])
+    found = ts.contour_bands(tin, interval=float(rng.choice([1.0, 0.5, 0.75])))
+    require_a_partition(tin, found)
+    bounds = zip(*(map(bound, found.columns[name]) for name in ("from", "to")), strict=True)
+    assert found.columns["area"] == pytest.approx(exact_areas(tin, bounds), rel=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_bands_of_survey_points_tile_the_surface(seed):
+    rng = np.random.default_rng(seed)
+    n = int(rng.integers(10, 800))
+    xy = np.array([500_000, 4_000_000]) + np.round(rng.uniform(0, 100, (n, 2)), 3)
+    tin = ts.triangulate(np.column_stack([xy, np.round(rng.uniform(300, 310, n), 2)]))
+    require_a_partition(tin, ts.contour_bands(tin, interval=0.5))
+
+
+def test_bands_of_explicit_levels_are_open_below_and_above():
+    tin = ts.triangulate([[0, 0, 0], [10, 0, 0], [10, 10, 20], [0, 10, 20]])
+    found = ts.contour_bands(tin, levels=[15, 5])
+    assert found.columns["area"] == pytest.approx([25, 50, 25])
+    assert np.array_equal(found.columns["from"], [np.nan, 5, 15], equal_nan=True)
+    assert np.array_equal(found.columns["to"], [5, 15, np.nan], equal_nan=True)
+
+
+def test_a_flat_surface_at_a_level_is_one_band_above_it():
+    tin = ts.triangulate([[0, 0, 5], [10, 0, 5], [10, 10, 5], [0, 10, 5]])
+    found = ts.contour_bands(tin, interval=1)
+    assert (found.columns["from"][0], found.columns["to"][0]) == (5, 6)
+    assert found.columns["area"].tolist() == [100]
+
+
+def test_islands_are_holes_of_the_band_around_them():
+    x, y = (axis.ravel() for axis in np.meshgrid(np.arange(7.0), np.arange(7.0)))
+    z = np.where((x == 3) & (y == 3), 9.0, 0.0)
+    tin = ts.triangulate(np.column_stack([x, y, z]))
+    low, _ = polygons_of(ts.contour_bands(tin, levels=[4.5]))
+    assert len(low.geoms) == 1
+    assert len(low.geoms[0].interiors) == 1
+
+
+def test_bands_do_not_depend_on_the_order_of_triangles():
+    rng = np.random.default_rng(3)
+    tin = integer_tin(rng)
+    expected = ts.contour_bands(tin, interval=0.5)
+    triangles = tin.triangles[rng.permutation(len(tin.triangles))]
+    found = ts.contour_bands(ts.TIN.from_triangles(tin.points, triangles), interval=0.5)
+    assert np.array_equal(found.coordinates, expected.coordinates)
+    for one, other in zip(found.offsets, expected.offsets, strict=True):
+        assert np.array_equal(one, other)
