@@ -85,7 +85,7 @@ def draw_mesh(axes: Any, tin: ts.TIN, corner: ts.Bounds) -> None:
     is_bad = quality(tin).min_angle < LEAST_ANGLE - 1e-9
     axes.add_collection(PolyCollection(xy[tin.triangles[is_bad]], facecolors=BAD))
     axes.add_collection(LineCollection(xy[tin.edges], colors=EDGES, linewidths=0.5))
-    axes.add_collection(LineCollection(xy[tin.lines.steps()], colors=LINES, linewidths=1.4))
+    axes.add_collection(LineCollection(xy[tin.lines.segments()], colors=LINES, linewidths=1.4))
     axes.set(xlim=FRAME[:2], ylim=FRAME[2:], aspect="equal", xticks=[], yticks=[])
     for spine in axes.spines.values():
         spine.set_color(EDGES)

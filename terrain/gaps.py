@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..tin.constraints.clipping import Surface, trimmed
+from ..tin.constraints.clipping import Surface, trim
 from ..tin.topology import NO_NEIGHBOR
 from .slope import slope
 
@@ -61,7 +61,7 @@ def describe_gaps(tin: TIN) -> list[str]:
     stays = np.ones(len(squares), np.bool_)
     if is_long.any():
         surface = Surface(tin.points, tin.triangles, tin.neighbors, tin.constrained)
-        stays = trimmed(surface, stays, limit, everywhere=False)
+        stays = trim(surface, stays, limit, everywhere=False)
     return [
         *_outer(squares[~stays], limit),
         *_inner(squares[is_long & stays], limit),

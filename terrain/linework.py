@@ -75,7 +75,7 @@ def line_edges(tin: TIN, *, guess: bool = True) -> LineEdges:
     """
     lines = tin.lines
     ranks = np.array([EDGE_KINDS.index(kind) for kind in lines.kinds], np.int8)
-    known = LineEdges(lines.steps(), ranks[lines.step_chains()])
+    known = LineEdges(lines.segments(), ranks[lines.segment_chains()])
     found = _constrained_edges(tin) if guess else LineEdges(known.pairs[:0], known.kinds[:0])
     pairs = np.concatenate([known.pairs, found.pairs])
     kinds = np.concatenate([known.kinds, found.kinds])

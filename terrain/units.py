@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..crs import METRE, Unit, assume_elevation_unit
+from ..crs import METRE, Unit, assume_elevation_unit, scale_elevations
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -114,16 +114,11 @@ def scales_of(crs: CRS | None, unit: Unit | None, northing: ArrayLike) -> Scales
         To the unit of eastings, in a geographic CRS to metres along the ellipsoid. Where a unit is
         not known it is taken to be the same as the other.
     """
-    if crs is None:
-        return Scales(1.0, 1.0, 1.0)
+    if crs is None or not crs.is_geographic:
+        return Scales(1.0, 1.0, scale_elevations(crs, unit))
     up = assume_elevation_unit(crs, unit)
     metres = None if up is None else up.metres
-    if crs.is_geographic:
-        return Scales(*_degree_lengths(crs, northing), metres or 1.0)
-    along = crs.horizontal_unit.metres
-    if up == crs.horizontal_unit or metres is None or along is None:
-        return Scales(1.0, 1.0, 1.0)
-    return Scales(1.0, 1.0, metres / along)
+    return Scales(*_degree_lengths(crs, northing), metres or 1.0)
 
 
 def _degree_lengths(

@@ -109,11 +109,11 @@ def grow(
     """
     triangles, neighbors, kept_row, n_distinct = _core.grow(points, method, threads, path)
     if len(triangles) == 0:
-        raise PointsError(_why_no_triangle(len(points), n_distinct))
+        raise PointsError(_explain_no_triangle(len(points), n_distinct))
     return Growth(triangles, neighbors, kept_row)
 
 
-def _why_no_triangle(n_rows: int, n_distinct: int) -> str:
+def _explain_no_triangle(n_rows: int, n_distinct: int) -> str:
     need = "a TIN needs at least three points that are not collinear"
     if n_distinct < 3:
         places = "one place" if n_distinct == 1 else "two places"

@@ -54,10 +54,10 @@ def triangulate(
         are left out, and named in the report.
     breaklines : sequence of Breakline or arrays
         Polylines that must be edges: (k, 3) arrays hard ones, (k, 2) arrays draped on the surface
-        of everything that has heights, with a vertex wherever they cross an edge of it.
+        of everything that has elevations, with a vertex wherever they cross an edge of it.
     boundary : sequence of (k, 2) or (k, 3) arrays, or polygons
         Rings: only the surface inside is kept; a ring within a ring cuts out an island. Draped if
-        without heights; what lies beyond the surface of the points is left out.
+        without elevations; what lies beyond the surface of the points is left out.
     holes : sequence of (k, 2) or (k, 3) arrays, or polygons
         Rings: the surface inside is cut away. Each ring is a region of its own; one with islands,
         which stay, is a polygon: of shapely or whatever has a ``__geo_interface__``, or a sequence
@@ -67,20 +67,20 @@ def triangulate(
         polygon's islands stay.
     water : sequence of Water
         Flat polygons: points and parts of breaklines inside are left out, all vertices on the ring
-        are put at its height.
+        are put at its elevation.
     max_edge : float, optional
         Drop triangles at edges longer than this that are no lines, CRS units.
     trim : {"perimeter", "everywhere"}
         Drop them from the outside inwards only, or wherever they are.
     crossing : {"split", "error"}
-        Where lines cross between their vertices, make a vertex with the height of the line of
+        Where lines cross between their vertices, make a vertex with the elevation of the line of
         higher priority, or of the first; of a line that crosses itself the lower one; or refuse.
-        Both heights are in the report.
+        Both elevations are in the report.
     conforming : bool
-        Split the steps of lines until every edge is Delaunay, constrained or not. Refused if that
-        takes more than 50 new vertices for each vertex, and 20,000 in all.
+        Split the segments of lines until every edge is Delaunay, constrained or not. Refused if
+        that takes more than 50 new vertices for each vertex, and 20,000 in all.
     duplicates : {"mean", "first", "last", "lowest", "highest", "error"}
-        Elevation of the vertex that stands for several rows at one place. A line with heights of
+        Elevation of the vertex that stands for several rows at one place. A line with elevations of
         its own counts more than the points.
     snap : float
         Merge points no further apart than this, CRS units, and bend lines onto points no further

@@ -84,12 +84,14 @@ def orientation(xy: Columns, a: NDArray[Any], b: NDArray[Any], c: NDArray[Any]) 
     """
     signs = np.empty(len(a), np.int8)
     for block in blocks(len(a)):
-        (ax, ay), (bx, by), (cx, cy) = (_places(xy, corner[block]) for corner in (a, b, c))
+        (ax, ay), (bx, by), (cx, cy) = (
+            _gather_coordinates(xy, corner[block]) for corner in (a, b, c)
+        )
         left = (ax - cx) * (by - cy)
         right = (ay - cy) * (bx - cx)
         bound = ORIENTATION_BOUND * (np.abs(left) + np.abs(right))
         terms = ((ax, cx), (ay, cy), (bx, cx), (by, cy))
-        signs[block] = _decided(left - right, bound, terms, _cross_sign)
+        signs[block] = _decide(left - right, bound, terms, _decide_cross)
     return signs
 
 
@@ -112,11 +114,11 @@ def in_circle(
     signs = np.empty(len(a), np.int8)
     for block in blocks(len(a)):
         (ax, ay), (bx, by), (cx, cy), (dx, dy) = (
-            _places(xy, corner[block]) for corner in (a, b, c, d)
+            _gather_coordinates(xy, corner[block]) for corner in (a, b, c, d)
         )
-        value, permanent = _in_circle_value(ax - dx, ay - dy, bx - dx, by - dy, cx - dx, cy - dy)
+        value, permanent = _evaluate_in_circle(ax - dx, ay - dy, bx - dx, by - dy, cx - dx, cy - dy)
         terms = ((ax, dx), (ay, dy), (bx, dx), (by, dy), (cx, dx), (cy, dy))
-        signs[block] = _decided(value, _IN_CIRCLE_BOUND * permanent, terms, _in_circle_sign)
+        signs[block] = _decide(value, _IN_CIRCLE_BOUND * permanent, terms, _decide_in_circle)
     return signs
 
 
@@ -127,14 +129,14 @@ def is_last(xy: Columns, p: NDArray[Any], q: NDArray[Any]) -> NDArray[np.bool_]:
     return after
 
 
-def _places(xy: Columns, vertices: NDArray[Any]) -> Columns:
+def _gather_coordinates(xy: Columns, vertices: NDArray[Any]) -> Columns:
     return xy[0].take(vertices), xy[1].take(vertices)
 
 
 # -------------------------------------------------------------------- doubles
 
 
-def _in_circle_value(
+def _evaluate_in_circle(
     adx: NDArray[np.float64],
     ady: NDArray[np.float64],
     bdx: NDArray[np.float64],
@@ -156,7 +158,7 @@ def _in_circle_value(
     return value, permanent
 
 
-def _decided(
+def _decide(
     value: NDArray[np.float64],
     bound: NDArray[np.float64],
     terms: tuple[tuple[NDArray[np.float64], NDArray[np.float64]], ...],
@@ -169,7 +171,7 @@ def _decided(
     signs = np.sign(value).astype(np.int8)
     open_rows = np.flatnonzero(np.abs(value) <= bound)
     if len(open_rows):
-        signs[open_rows] = _exactly(
+        signs[open_rows] = _decide_exactly(
             np.stack([minuend[open_rows] for minuend, _ in terms]),
             np.stack([subtrahend[open_rows] for _, subtrahend in terms]),
             exact_sign,
@@ -180,15 +182,15 @@ def _decided(
 # -------------------------------------------------------------------- limbs
 
 
-def _exactly(
+def _decide_exactly(
     minuends: NDArray[np.float64],
     subtrahends: NDArray[np.float64],
     exact_sign: Callable[[NDArray[np.int64]], NDArray[np.int8]],
 ) -> NDArray[np.int8]:
     """Decide rows on the integers that their (terms, rows) differences are multiples of."""
-    high, low = _exact_difference(minuends, subtrahends)
-    unit = np.minimum(_lowest_bit(high), _lowest_bit(low)).min(axis=0)
-    limbs = (_top_bit(high).max(axis=0) - unit) // _LIMB_BITS + 1
+    high, low = _subtract_exactly(minuends, subtrahends)
+    unit = np.minimum(_find_lowest_bit(high), _find_lowest_bit(low)).min(axis=0)
+    limbs = (_find_top_bit(high).max(axis=0) - unit) // _LIMB_BITS + 1
     limbs[~high.any(axis=0)] = 1
     signs = np.empty(len(unit), np.int8)
     for count in np.unique(limbs):
@@ -200,7 +202,7 @@ def _exactly(
     return signs
 
 
-def _exact_difference(
+def _subtract_exactly(
     a: NDArray[np.float64], b: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the rounded difference and what the rounding left out (Knuth's two-sum)."""
@@ -213,16 +215,16 @@ def _exact_difference(
 _NO_BIT = np.int64(1 << 20)
 
 
-def _top_bit(values: NDArray[np.float64]) -> NDArray[np.int64]:
+def _find_top_bit(values: NDArray[np.float64]) -> NDArray[np.int64]:
     """Return the exponent of the highest bit of each double."""
     return ((values.view(np.int64) >> _MANTISSA_BITS) & 0x7FF) - _EXPONENT_BIAS
 
 
-def _lowest_bit(values: NDArray[np.float64]) -> NDArray[np.int64]:
+def _find_lowest_bit(values: NDArray[np.float64]) -> NDArray[np.int64]:
     """Return the exponent of the lowest bit that is set in each double, a large one for 0."""
     mantissa = values.view(np.int64) & ((1 << _MANTISSA_BITS) - 1) | (1 << _MANTISSA_BITS)
-    place = _top_bit((mantissa & -mantissa).astype(np.float64)) - _MANTISSA_BITS
-    return np.where(values == 0.0, _NO_BIT, _top_bit(values) + place)
+    place = _find_top_bit((mantissa & -mantissa).astype(np.float64)) - _MANTISSA_BITS
+    return np.where(values == 0.0, _NO_BIT, _find_top_bit(values) + place)
 
 
 def _split(values: NDArray[np.float64], unit: NDArray[np.int64], count: int) -> NDArray[np.int64]:
@@ -240,24 +242,24 @@ def _split(values: NDArray[np.float64], unit: NDArray[np.int64], count: int) -> 
     return limbs
 
 
-def _cross_sign(numbers: NDArray[np.int64]) -> NDArray[np.int8]:
+def _decide_cross(numbers: NDArray[np.int64]) -> NDArray[np.int8]:
     acx, acy, bcx, bcy = numbers
-    return _sign(_multiply(acx, bcy) - _multiply(acy, bcx))
+    return _find_sign(_multiply(acx, bcy) - _multiply(acy, bcx))
 
 
-def _in_circle_sign(numbers: NDArray[np.int64]) -> NDArray[np.int8]:
+def _decide_in_circle(numbers: NDArray[np.int64]) -> NDArray[np.int8]:
     adx, ady, bdx, bdy, cdx, cdy = numbers
-    a_term = _multiply(_lift(adx, ady), _cross(bdx, bdy, cdx, cdy))
-    b_term = _multiply(_lift(bdx, bdy), _cross(cdx, cdy, adx, ady))
-    c_term = _multiply(_lift(cdx, cdy), _cross(adx, ady, bdx, bdy))
-    return _sign(a_term + b_term + c_term)
+    a_term = _multiply(_lift(adx, ady), _multiply_crosswise(bdx, bdy, cdx, cdy))
+    b_term = _multiply(_lift(bdx, bdy), _multiply_crosswise(cdx, cdy, adx, ady))
+    c_term = _multiply(_lift(cdx, cdy), _multiply_crosswise(adx, ady, bdx, bdy))
+    return _find_sign(a_term + b_term + c_term)
 
 
 def _lift(x: NDArray[np.int64], y: NDArray[np.int64]) -> NDArray[np.int64]:
     return _multiply(x, x) + _multiply(y, y)
 
 
-def _cross(
+def _multiply_crosswise(
     px: NDArray[np.int64],
     py: NDArray[np.int64],
     qx: NDArray[np.int64],
@@ -271,10 +273,10 @@ def _multiply(a: NDArray[np.int64], b: NDArray[np.int64]) -> NDArray[np.int64]:
     product = np.zeros((len(a) + len(b), a.shape[1]), np.int64)
     for place, limb in enumerate(a):
         product[place : place + len(b)] += limb * b
-    return _carried(product)
+    return _carry(product)
 
 
-def _carried(number: NDArray[np.int64]) -> NDArray[np.int64]:
+def _carry(number: NDArray[np.int64]) -> NDArray[np.int64]:
     """Bring all limbs but the highest into 0 to 2^28, in place; the highest bears the sign."""
     for lower, higher in pairwise(number):
         higher += lower >> _LIMB_BITS
@@ -282,6 +284,6 @@ def _carried(number: NDArray[np.int64]) -> NDArray[np.int64]:
     return number
 
 
-def _sign(number: NDArray[np.int64]) -> NDArray[np.int8]:
-    _carried(number)
+def _find_sign(number: NDArray[np.int64]) -> NDArray[np.int8]:
+    _carry(number)
     return np.where(number[-1] < 0, -1, number.any(axis=0)).astype(np.int8)

@@ -14,9 +14,16 @@ from .types import Frozen
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .editing.history import Edit
-
-__all__ = ["LEFT_OUT", "UNMENDED_WHY", "Crossings", "Merge", "Overruled", "Report", "Unmended"]
+__all__ = [
+    "LEFT_OUT",
+    "UNMENDED_WHY",
+    "Crossings",
+    "Edit",
+    "Merge",
+    "Overruled",
+    "Report",
+    "Unmended",
+]
 
 LEFT_OUT = (
     "erased",
@@ -30,9 +37,9 @@ LEFT_OUT = (
 """Why a row of points has no vertex; ``Report.left_out_why`` holds places in this list."""
 
 UNMENDED_WHY = (
-    "lines or the rim meet there under a small angle",
+    "lines or the boundary meet there under a small angle",
     "only far shorter edges would help",
-    "a line or the rim in the way has no room for a further vertex",
+    "a line or the boundary in the way has no room for a further vertex",
 )
 """Why a triangle stays as it is; ``Unmended.why`` holds places in this list."""
 
@@ -46,11 +53,11 @@ class Merge(NamedTuple):
         The vertex that stands for them.
     rows : tuple of int
         Their row numbers in the caller's input, ascending.
-    heights : tuple of float
+    elevations : tuple of float
         Their elevations, in the order of ``rows``.
     shifts : tuple of float
         How far each was moved in the plane, CRS units; 0 for an exact duplicate.
-    height : float
+    elevation : float
         Elevation that the vertex received.
 
     Examples
@@ -58,18 +65,66 @@ class Merge(NamedTuple):
     >>> import tinsmith as ts
     >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [0, 3, 8], [0, 0, 7]])
     >>> next(tin.report.merges())
-    Merge(vertex=0, rows=(0, 3), heights=(5.0, 7.0), shifts=(0.0, 0.0), height=6.0)
+    Merge(vertex=0, rows=(0, 3), elevations=(5.0, 7.0), shifts=(0.0, 0.0), elevation=6.0)
     """
 
     vertex: int
     rows: tuple[int, ...]
-    heights: tuple[float, ...]
+    elevations: tuple[float, ...]
     shifts: tuple[float, ...]
-    height: float
+    elevation: float
+
+    @property
+    def heights(self) -> tuple[float, ...]:
+        """The same as ``elevations``."""
+        return self.elevations
+
+    @property
+    def height(self) -> float:
+        """The same as ``elevation``."""
+        return self.elevation
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain Python values, ready for JSON."""
+        return {
+            "vertex": self.vertex,
+            "rows": self.rows,
+            "heights": self.elevations,
+            "shifts": self.shifts,
+            "height": self.elevation,
+        }
+
+
+class Edit(NamedTuple):
+    """One edit, as it can be written to a file and done again.
+
+    Attributes
+    ----------
+    operation : str
+        The name of a method of a TIN.
+    arguments : dict
+        Its arguments by name.
+    notes : tuple of str
+        Lines that it crosses, with both elevations.
+    """
+
+    operation: str
+    arguments: dict[str, Any]
+    notes: tuple[str, ...] = ()
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain Python values, ready for JSON; :func:`.apply_edits` takes them back."""
+        arguments = {name: _as_plain(value) for name, value in self.arguments.items()}
+        notes = {"notes": list(self.notes)} if self.notes else {}
+        return {"op": self.operation, **arguments, **notes}
+
+
+def _as_plain(value: Any) -> Any:
+    return value.tolist() if isinstance(value, np.ndarray | np.generic) else value
 
 
 class Crossings(NamedTuple):
-    """Places where lines cross between their vertices, and the heights of both there.
+    """Places where lines cross between their vertices, and the elevations of both there.
 
     Attributes
     ----------
@@ -78,17 +133,27 @@ class Crossings(NamedTuple):
     xy : (c, 2) float64 array
     lines : (c, 2) int32 array
         Numbers of the two lines, as ``Report.line_labels`` lists them.
-    heights : (c, 2) float64 array
-        Their own heights at the place.
-    taken : (c,) float64 array
-        The height that the vertex received.
+    elevations : (c, 2) float64 array
+        Their own elevations at the place.
+    vertex_elevations : (c,) float64 array
+        What the vertex received.
     """
 
     vertices: NDArray[np.int32]
     xy: NDArray[np.float64]
     lines: NDArray[np.int32]
-    heights: NDArray[np.float64]
-    taken: NDArray[np.float64]
+    elevations: NDArray[np.float64]
+    vertex_elevations: NDArray[np.float64]
+
+    @property
+    def heights(self) -> NDArray[np.float64]:
+        """The same as ``elevations``."""
+        return self.elevations
+
+    @property
+    def taken(self) -> NDArray[np.float64]:
+        """The same as ``vertex_elevations``."""
+        return self.vertex_elevations
 
     @classmethod
     def none(cls) -> Crossings:
@@ -98,24 +163,33 @@ class Crossings(NamedTuple):
 
 
 class Overruled(NamedTuple):
-    """Heights that gave way to another at the same vertex.
+    """Elevations that another one at the same vertex overruled.
 
     Attributes
     ----------
     vertices : (k,) int32 array
         -1 if it is no part of the surface.
     lines : (k,) int32 array
-        Whose height it was, as ``Report.line_labels`` lists them; -1 for the points there.
-    heights : (k,) float64 array
-        The height that gave way.
-    taken : (k,) float64 array
-        The height of the vertex.
+        Whose elevation it was, as ``Report.line_labels`` lists them; -1 for the points there.
+    elevations : (k,) float64 array
+        The elevation that was overruled.
+    vertex_elevations : (k,) float64 array
     """
 
     vertices: NDArray[np.int32]
     lines: NDArray[np.int32]
-    heights: NDArray[np.float64]
-    taken: NDArray[np.float64]
+    elevations: NDArray[np.float64]
+    vertex_elevations: NDArray[np.float64]
+
+    @property
+    def heights(self) -> NDArray[np.float64]:
+        """The same as ``elevations``."""
+        return self.elevations
+
+    @property
+    def taken(self) -> NDArray[np.float64]:
+        """The same as ``vertex_elevations``."""
+        return self.vertex_elevations
 
 
 class Unmended(NamedTuple):
@@ -161,15 +235,15 @@ class Unmended(NamedTuple):
         ]
 
 
-def _none_overruled() -> Overruled:
-    return Overruled(_no_rows(), _no_rows(), np.empty(0), np.empty(0))
+def _make_none_overruled() -> Overruled:
+    return Overruled(_make_no_rows(), _make_no_rows(), np.empty(0), np.empty(0))
 
 
-def _no_rows() -> NDArray[np.int32]:
+def _make_no_rows() -> NDArray[np.int32]:
     return np.empty(0, np.int32)
 
 
-def _no_numbers() -> NDArray[np.float64]:
+def _make_no_numbers() -> NDArray[np.float64]:
     return np.empty(0)
 
 
@@ -191,9 +265,9 @@ class Report(Frozen):
     merged_vertices : (g,) int32 array
     merged_offsets : (g + 1,) int32 array
     merged_rows : (k,) int32 array
-    merged_heights, merged_shifts : (k,) float64 arrays
+    merged_elevations, merged_shifts : (k,) float64 arrays
         Elevation and displacement in the plane of every merged row.
-    vertex_heights : (g,) float64 array
+    vertex_elevations : (g,) float64 array
         Elevations that the merged vertices received.
     left_out_rows : (k,) int32 array
         Rows without a vertex, ascending. Rows are called by their place in ``TIN.vertex_of``:
@@ -228,18 +302,18 @@ class Report(Frozen):
     n_triangles: int
     duplicates: str = "mean"
     snap: float = 0.0
-    merged_vertices: NDArray[np.int32] = field(default_factory=_no_rows)
+    merged_vertices: NDArray[np.int32] = field(default_factory=_make_no_rows)
     merged_offsets: NDArray[np.int32] = field(default_factory=lambda: np.zeros(1, np.int32))
-    merged_rows: NDArray[np.int32] = field(default_factory=_no_rows)
-    merged_heights: NDArray[np.float64] = field(default_factory=_no_numbers)
-    merged_shifts: NDArray[np.float64] = field(default_factory=_no_numbers)
-    vertex_heights: NDArray[np.float64] = field(default_factory=_no_numbers)
-    left_out_rows: NDArray[np.int32] = field(default_factory=_no_rows)
+    merged_rows: NDArray[np.int32] = field(default_factory=_make_no_rows)
+    merged_elevations: NDArray[np.float64] = field(default_factory=_make_no_numbers)
+    merged_shifts: NDArray[np.float64] = field(default_factory=_make_no_numbers)
+    vertex_elevations: NDArray[np.float64] = field(default_factory=_make_no_numbers)
+    left_out_rows: NDArray[np.int32] = field(default_factory=_make_no_rows)
     left_out_why: NDArray[np.int8] = field(default_factory=lambda: np.empty(0, np.int8))
     n_lines: int = 0
     line_labels: tuple[str, ...] = ()
     crossings: Crossings = field(default_factory=Crossings.none)
-    overruled: Overruled = field(default_factory=_none_overruled)
+    overruled: Overruled = field(default_factory=_make_none_overruled)
     skipped: Mapping[str, int] = field(default_factory=dict)
     notes: Sequence[str] = ()
     edits: Sequence[Edit] = ()
@@ -286,34 +360,47 @@ class Report(Frozen):
         """Return the report with the merges of another one, or with none."""
         names = [f.name for f in fields(self) if f.name.startswith("merged_")]
         account = Report(n_rows=0, n_vertices=0, n_triangles=0) if merges is None else merges
-        own = {name: getattr(account, name) for name in [*names, "vertex_heights"]}
+        own = {name: getattr(account, name) for name in [*names, "vertex_elevations"]}
         return replace(self, **own)
 
     def with_lines(self, labels: Sequence[str]) -> Report:
         """Return the report with all lines, when some that meet no others have been added."""
         return replace(self, n_lines=len(labels), line_labels=tuple(labels))
 
-    def met_by(self, label: str) -> list[str]:
+    @property
+    def merged_heights(self) -> NDArray[np.float64]:
+        """The same as ``merged_elevations``."""
+        return self.merged_elevations
+
+    @property
+    def vertex_heights(self) -> NDArray[np.float64]:
+        """The same as ``vertex_elevations``."""
+        return self.vertex_elevations
+
+    def describe_crossings(self, label: str) -> list[str]:
         """Return where a line crosses others, a sentence each."""
         own = [i for i, name in enumerate(self.line_labels) if name == label]
-        met = self.crossings
-        return [
-            self._crossing(row, own)
-            for row in np.flatnonzero(np.isin(met.lines, own).any(axis=1)).tolist()
-        ]
+        is_own = np.isin(self.crossings.lines, own).any(axis=1)
+        return [self._describe_crossing(row, own) for row in np.flatnonzero(is_own).tolist()]
 
-    def _crossing(self, row: int, own: list[int]) -> str:
-        met = self.crossings
-        mine = int(met.lines[row, 1] in own and met.lines[row, 0] not in own)
-        first, second = met.lines[row, [mine, 1 - mine]].tolist()
+    met_by = describe_crossings
+
+    def _describe_crossing(self, row: int, own: list[int]) -> str:
+        lines = self.crossings.lines[row]
+        mine = int(lines[1] in own and lines[0] not in own)
+        first, second = lines[[mine, 1 - mine]].tolist()
         other = "itself" if first == second else self.line_labels[second]
-        (x, y), heights = met.xy[row].tolist(), met.heights[row].tolist()
+        (x, y), elevations = (
+            self.crossings.xy[row].tolist(),
+            self.crossings.elevations[row].tolist(),
+        )
         return (
-            f"The breakline crosses {other} at x {x:.6f}, y {y:.6f}: its height there is "
-            f"{heights[mine]:g}, the other's {heights[1 - mine]:g}; {met.taken[row]:g} was taken."
+            f"The breakline crosses {other} at x {x:.6f}, y {y:.6f}: its elevation there is "
+            f"{elevations[mine]:g}, the other's {elevations[1 - mine]:g}; "
+            f"{self.crossings.vertex_elevations[row]:g} was taken."
         )
 
-    def renumbered(
+    def renumber(
         self, number: NDArray[np.int32], n_rows: int, n_vertices: int, n_triangles: int
     ) -> Report:
         """Return the report with vertex ``v`` of the lines' account called ``number[v]``."""
@@ -326,6 +413,8 @@ class Report(Frozen):
             crossings=crossings._replace(vertices=number[crossings.vertices]),
             overruled=overruled._replace(vertices=number[overruled.vertices]),
         )
+
+    renumbered = renumber
 
     def merges(self) -> Iterator[Merge]:
         """Walk the merges, one vertex at a time.
@@ -342,9 +431,9 @@ class Report(Frozen):
             yield Merge(
                 int(vertex),
                 tuple(self.merged_rows[span].tolist()),
-                tuple(self.merged_heights[span].tolist()),
+                tuple(self.merged_elevations[span].tolist()),
                 tuple(self.merged_shifts[span].tolist()),
-                float(self.vertex_heights[i]),
+                float(self.vertex_elevations[i]),
             )
 
     def to_dict(self) -> dict[str, Any]:
@@ -363,55 +452,48 @@ class Report(Frozen):
             "triangles": self.n_triangles,
             "duplicates": self.duplicates,
             "snap": self.snap,
-            "merges": [merge._asdict() for merge in self.merges()],
-            "left_out": self._left_out(),
+            "merges": [merge.to_dict() for merge in self.merges()],
+            "left_out": self._list_left_out(),
             "lines": self.n_lines,
-            "crossings": self._crossings(),
-            "overruled": self._overruled(),
+            "crossings": self._list_crossings(),
+            "overruled": self._list_overruled(),
             "skipped": dict(self.skipped),
             "notes": list(self.notes),
             "edits": [edit.to_dict() for edit in self.edits],
             "unmended": self.unmended.to_list(),
         }
 
-    def _left_out(self) -> dict[str, list[int]]:
+    def _list_left_out(self) -> dict[str, list[int]]:
         return {
             reason: self.left_out_rows[self.left_out_why == code].tolist()
             for code, reason in enumerate(LEFT_OUT)
             if (self.left_out_why == code).any()
         }
 
-    def _crossings(self) -> list[dict[str, Any]]:
-        met = self.crossings
+    def _list_crossings(self) -> list[dict[str, Any]]:
         return [
             {
                 "vertex": vertex,
                 "place": place,
                 "lines": [self.line_labels[line] for line in lines],
-                "heights": heights,
-                "height": taken,
+                "heights": elevations,
+                "height": elevation,
             }
-            for vertex, place, lines, heights, taken in zip(
-                met.vertices.tolist(),
-                met.xy.tolist(),
-                met.lines.tolist(),
-                met.heights.tolist(),
-                met.taken.tolist(),
-                strict=True,
+            for vertex, place, lines, elevations, elevation in zip(
+                *(array.tolist() for array in self.crossings), strict=True
             )
         ]
 
-    def _overruled(self) -> list[dict[str, Any]]:
-        gave_way = self.overruled
+    def _list_overruled(self) -> list[dict[str, Any]]:
         return [
             {
                 "vertex": vertex,
                 "of": "points" if line < 0 else self.line_labels[line],
-                "height": height,
-                "taken": taken,
+                "height": elevation,
+                "taken": vertex_elevation,
             }
-            for vertex, line, height, taken in zip(
-                *(array.tolist() for array in gave_way), strict=True
+            for vertex, line, elevation, vertex_elevation in zip(
+                *(array.tolist() for array in self.overruled), strict=True
             )
         ]
 

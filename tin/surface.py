@@ -45,7 +45,7 @@ _ARGUMENTS = (
 
 
 class TIN(Editable):
-    """A triangulated irregular network: one height for every place inside its hull.
+    """A triangulated irregular network: one elevation for every place inside its boundary.
 
     Built by :func:`tinsmith.triangulate`, or from existing triangles by
     :meth:`TIN.from_triangles`. All arrays are read-only; edits replace them by others.
@@ -271,14 +271,22 @@ class TIN(Editable):
         return self._current.triangulation.edges
 
     @property
-    def rings(self) -> list[NDArray[np.int32]]:
-        """Boundary rings as vertex numbers, the surface on the left; the outer one first."""
+    def boundary(self) -> list[NDArray[np.int32]]:
+        """Rings of vertices around the surface, which is on their left; an outer one first.
+
+        A surface of several parts, or with holes, has several.
+        """
         return list(self._current.triangulation.rings)
+
+    rings = boundary
 
     @property
     def hull(self) -> NDArray[np.int32]:
-        """Vertices of the outer boundary, counter-clockwise, each once."""
-        return self._current.triangulation.rings[0]
+        """Vertices on the convex hull, counter-clockwise, those within its edges too.
+
+        The same as the boundary only where the surface fills its hull.
+        """
+        return self._current.triangulation.hull
 
     @property
     def triangle_areas(self) -> NDArray[np.float64]:

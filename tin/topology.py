@@ -20,6 +20,8 @@ import numpy as np
 from ..errors import PointsError
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from numpy.typing import NDArray
 
 __all__ = [
@@ -32,6 +34,8 @@ __all__ = [
     "edges",
     "edges_at",
     "ends",
+    "find_offsets",
+    "find_owners",
     "find_triangles",
     "gather",
     "neighbors_of",
@@ -83,10 +87,12 @@ def edge_keys(pairs: NDArray[Any], n_vertices: int) -> NDArray[np.int64]:
         Vertices.
     n_vertices : int
     """
-    return _keys(pairs[..., 0].astype(np.int64), pairs[..., 1].astype(np.int64), n_vertices)
+    return _make_keys(pairs[..., 0].astype(np.int64), pairs[..., 1].astype(np.int64), n_vertices)
 
 
-def _keys(start: NDArray[np.int64], end: NDArray[np.int64], n_vertices: int) -> NDArray[np.int64]:
+def _make_keys(
+    start: NDArray[np.int64], end: NDArray[np.int64], n_vertices: int
+) -> NDArray[np.int64]:
     keys: NDArray[np.int64] = np.minimum(start, end) * n_vertices + np.maximum(start, end)
     return keys
 
@@ -110,7 +116,7 @@ def neighbors_of(triangles: NDArray[np.int32], n_vertices: int) -> NDArray[np.in
         If an edge is used by more than two triangles or twice in the same direction.
     """
     start, end = directed_edges(triangles)
-    keys = _keys(start, end, n_vertices).ravel()
+    keys = _make_keys(start, end, n_vertices).ravel()
     forward = (start < end).ravel()
     order = np.argsort(keys, kind="stable")
     sorted_keys = keys[order]
@@ -131,20 +137,20 @@ def _require_manifold(
 ) -> None:
     thrice = same[1:] & same[:-1]
     if thrice.any():
-        start, end = _edge_at(triangles, int(order[np.argmax(thrice)]))
+        start, end = _get_edge(triangles, int(order[np.argmax(thrice)]))
         raise PointsError(
             f"Edge {start}-{end} belongs to more than two triangles: a TIN allows two at most."
         )
     clash = same & (forward[order[1:]] == forward[order[:-1]])
     if clash.any():
-        start, end = _edge_at(triangles, int(order[np.argmax(clash)]))
+        start, end = _get_edge(triangles, int(order[np.argmax(clash)]))
         raise PointsError(
             f"The two triangles at edge {start}-{end} lie on the same side of it: "
             "triangles of a TIN must not overlap."
         )
 
 
-def _edge_at(triangles: NDArray[np.int32], slot: int) -> tuple[int, int]:
+def _get_edge(triangles: NDArray[np.int32], slot: int) -> tuple[int, int]:
     triangle, corner = divmod(slot, 3)
     return int(triangles[triangle, (corner + 1) % 3]), int(triangles[triangle, (corner + 2) % 3])
 
@@ -162,7 +168,7 @@ def boundary_rings(
     """Return the boundary as closed vertex rings (first vertex not repeated), interior on the left.
 
     At a vertex where two rings touch, they are kept apart by turning about the vertex through
-    the triangles inside, so that every ring is one walk along the surface's rim.
+    the triangles inside, so that every ring is one walk along the surface's boundary.
     """
     edges, offsets = boundary_walks(triangles, neighbors)
     start = triangles[edges // 3, (edges % 3 + 1) % 3]
@@ -183,7 +189,7 @@ def boundary_walks(
     """
     triangle, corner = np.nonzero(neighbors == NO_NEIGHBOR)
     edge = 3 * triangle + corner
-    following = np.searchsorted(edge, _next_on_rim(triangles, neighbors)).tolist()
+    following = np.searchsorted(edge, _find_next_on_boundary(triangles, neighbors)).tolist()
     is_left = [True] * len(following)
     order: list[int] = []
     offsets = [0]
@@ -199,8 +205,10 @@ def boundary_walks(
     return edge[np.array(order, np.int64)], np.array(offsets, np.int64)
 
 
-def _next_on_rim(triangles: NDArray[np.int32], neighbors: NDArray[np.int32]) -> NDArray[np.int64]:
-    """Return for every rim edge the next one, both as 3 * triangle + corner.
+def _find_next_on_boundary(
+    triangles: NDArray[np.int32], neighbors: NDArray[np.int32]
+) -> NDArray[np.int64]:
+    """Return for every boundary edge the next one, both as 3 * triangle + corner.
 
     It is found by turning about the end of the edge, through the triangles inside.
     """
@@ -248,7 +256,7 @@ def sort_half_edges(triangles: NDArray[np.int32], n_vertices: int) -> HalfEdges:
     return HalfEdges(
         keys=keys[order],
         triangles=(order // 3).astype(np.int32),
-        offsets=np.append(0, np.cumsum(counts)),
+        offsets=find_offsets(counts),
     )
 
 
@@ -257,9 +265,9 @@ def find_triangles(
 ) -> NDArray[np.int32]:
     """Return the triangle on the left of each edge, ``NO_NEIGHBOR`` if there is none."""
     wanted = start * (len(edges.offsets) - 1) + end
-    place = np.minimum(np.searchsorted(edges.keys, wanted), len(edges.keys) - 1)
-    found = edges.keys[place] == wanted
-    return np.where(found, edges.triangles[place], np.int32(NO_NEIGHBOR))
+    at = np.minimum(np.searchsorted(edges.keys, wanted), len(edges.keys) - 1)
+    found = edges.keys[at] == wanted
+    return np.where(found, edges.triangles[at], np.int32(NO_NEIGHBOR))
 
 
 def turn_about(
@@ -293,11 +301,29 @@ def turn_about(
     return np.array(around, np.int32), np.array(neighbors, np.int32)
 
 
+# ---------------------------------------------------------------- ragged arrays
+#
+#   offsets   0       2   2           5      part 0 has two items, part 1 none, part 2 three
+#   items     a   b   c   d   e
+#   owners    0   0   2   2   2
+
+
+def find_offsets(lengths: Iterable[int] | NDArray[Any]) -> NDArray[np.int64]:
+    """Return where each part of a ragged array begins, and the last one ends."""
+    lengths = lengths if isinstance(lengths, np.ndarray) else list(lengths)
+    return np.concatenate([[0], np.cumsum(lengths, dtype=np.int64)])
+
+
+def find_owners(offsets: NDArray[Any]) -> NDArray[np.int64]:
+    """Return for each item of a ragged array the part that it belongs to."""
+    return np.repeat(np.arange(len(offsets) - 1), np.diff(offsets))
+
+
 def gather(
-    offsets: NDArray[np.int64], rows: NDArray[np.int64]
+    offsets: NDArray[np.int64], parts: NDArray[np.int64]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return where the items of some rows of a ragged array stand, and the place of each's row."""
-    counts = offsets[rows + 1] - offsets[rows]
-    owner = np.repeat(np.arange(len(rows)), counts)
-    before = np.cumsum(counts) - counts
-    return np.arange(len(owner)) + (offsets[rows] - before)[owner], owner
+    """Return where the items of some parts of a ragged array stand, and whose of these each is."""
+    begins = offsets[parts]
+    chosen = find_offsets(offsets[parts + 1] - begins)
+    owner = find_owners(chosen)
+    return np.arange(len(owner)) + (begins - chosen[:-1])[owner], owner

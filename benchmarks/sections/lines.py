@@ -139,7 +139,7 @@ def _wanted(task: LineTask) -> _Wanted:
     assert (np.sort(place) == np.arange(len(place))).all()
     steps = place[task.steps]
     codes = np.unique(edge_codes(steps))
-    assert np.array_equal(np.unique(edge_codes(tin.lines.steps())), codes)
+    assert np.array_equal(np.unique(edge_codes(tin.lines.segments())), codes)
     triangle, corner = np.nonzero(tin.constrained)
     ends = [tin.triangles[triangle, (corner + k) % 3] for k in (1, 2)]
     assert np.array_equal(np.unique(edge_codes(np.stack(ends, axis=1))), codes)

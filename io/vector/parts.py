@@ -9,7 +9,7 @@ import numpy as np
 from ..._sentences import counted
 from ...crs import assume_elevation_unit
 from ...errors import ReadError
-from ...tin.constraints.polylines import offsets_of
+from ...tin.topology import find_offsets
 from ..reprojection.placement import place, settle_unit
 from ..reprojection.transformation import conversion_factor
 
@@ -95,7 +95,7 @@ def parts_of(
 
     lines = _lines_of(features)
     xyz = shapely.get_coordinates(lines.shapes, include_z=True)
-    bounds = offsets_of(shapely.get_num_coordinates(lines.shapes))
+    bounds = find_offsets(shapely.get_num_coordinates(lines.shapes))
     has_z = shapely.has_z(lines.shapes) & (not drape)
     _require_finite(xyz, np.repeat(has_z, np.diff(bounds)), bounds, lines.rows, features)
     said = list(features.notes) + crs_notes(features, wanted)

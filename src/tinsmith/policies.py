@@ -17,6 +17,7 @@ __all__ = [
     "FeatureKind",
     "LineKind",
     "LineRole",
+    "OutsidePolicy",
     "OverviewMethod",
     "SlopeUnit",
     "SurfacePart",
@@ -61,3 +62,5 @@ OverviewMethod: TypeAlias = Literal["average", "nearest", "none"]
 
 CurvatureKind: TypeAlias = Literal["profile", "plan", "tangential", "mean", "gaussian"]
 """In which direction a surface is curved."""
+OutsidePolicy: TypeAlias = Literal["error", "nan", "cut"]
+"""What becomes of parts of features where there is no surface."""

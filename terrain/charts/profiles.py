@@ -10,7 +10,7 @@ import numpy as np
 from ... import _optional
 from ...crs import CRS, Unit, assume_elevation_unit
 from ...errors import OptionError
-from ...tin.validation.options import is_finite_number, is_whole_number, shown
+from ...tin.validation.options import is_finite_number, is_whole_number
 from ..results import Table
 from ..rounding import format_number, round_down, ticks
 
@@ -159,10 +159,10 @@ def profile_picture(
 def _curves(table: Any, line: Any) -> tuple[list[_Curve], NDArray[np.float64]]:
     """Return the surfaces along one line, and the stations where breaklines are crossed."""
     if not isinstance(table, Table) or not {"line", "station"} <= set(table.columns):
-        raise OptionError("profile", shown(table), allowed="a table that profile returned")
+        raise OptionError("profile", table, allowed="a table that profile returned")
     if not is_whole_number(line) or not (table["line"] == line).any():
         allowed = f"a whole number from 0 to {int(table['line'].max())}"
-        raise OptionError("line", line if is_whole_number(line) else shown(line), allowed=allowed)
+        raise OptionError("line", line, allowed=allowed)
     own = table["line"] == line
     names = [name for name in table.columns if name.partition("_")[0] == "elevation"]
     stations = table["station"][own]
@@ -217,7 +217,7 @@ def _scale(curves: list[_Curve], ratio: float, wanted: float | None) -> _Scale:
 
 def _as_factor(value: Any) -> float:
     if not is_finite_number(value) or not float(value) > 0.0:
-        raise OptionError("exaggeration", shown(value), allowed="a finite number above 0")
+        raise OptionError("exaggeration", value, allowed="a finite number above 0")
     return float(value)
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...errors import PointsError
+from ...errors import OptionError, PointsError
 from ...tin.validation.threads import thread_count
 from .. import _kernel
 from ..results import Features, Table
@@ -117,17 +117,16 @@ class Difference:
         >>> ts.difference(flat, ramp).percentiles([10, 50])
         array([0.8, 4. ])
         """
-        wanted = np.asarray(shares, np.float64)
+        try:
+            wanted = np.asarray(shares, np.float64)
+        except (TypeError, ValueError):
+            wanted = np.full(1, np.nan)
         if wanted.ndim != 1 or not ((wanted >= 0) & (wanted <= 100)).all():
-            raise _bad_shares(shares)
+            raise OptionError("percentiles", shares, allowed="numbers from 0 to 100")
         return percentiles(Surface(self.tin.points, self.tin.triangles), wanted.tolist())
 
     def __repr__(self) -> str:
         return f"<Difference: {self.tin!r}>"
-
-
-def _bad_shares(shares: Any) -> PointsError:
-    return PointsError(f"Invalid percentiles {shares!r}: numbers from 0 to 100 are needed.")
 
 
 def _moments(sums: dict[str, float]) -> dict[str, float]:

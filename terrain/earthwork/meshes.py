@@ -205,7 +205,8 @@ def _alone_first(
 
 
 def _main_sign(signs: NDArray[np.int8]) -> NDArray[np.int64]:
-    return signs.sum(axis=1, dtype=np.int64)
+    total: NDArray[np.int64] = signs.sum(axis=1, dtype=np.int64)
+    return total
 
 
 def _zeros_on(

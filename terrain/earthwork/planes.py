@@ -9,7 +9,6 @@ import numpy as np
 
 from ...errors import OptionError
 from ...tin import TIN
-from ...tin.validation.options import shown
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -57,11 +56,11 @@ def as_plane(base: Any) -> Plane:
     try:
         given = np.asarray(base, np.float64)
     except (TypeError, ValueError):
-        raise OptionError("base", _Shown(base), allowed=_ALLOWED) from None
+        raise OptionError("base", base, allowed=_ALLOWED) from None
     if given.shape not in ((), (3, 3)) or isinstance(base, bool | str):
-        raise OptionError("base", _Shown(base), allowed=_ALLOWED)
+        raise OptionError("base", base, allowed=_ALLOWED)
     if not np.isfinite(given).all():
-        raise OptionError("base", _Shown(base), allowed="finite")
+        raise OptionError("base", base, allowed="finite")
     if given.shape == ():
         return Plane((0.0, 0.0, float(given)))
     return _through(given)
@@ -76,16 +75,6 @@ def _through(points: NDArray[np.float64]) -> Plane:
     north = (second[2] * first[0] - first[2] * second[0]) / doubled
     x, y, z = points[0].tolist()
     return Plane((x, y, z), float(east), float(north))
-
-
-class _Shown:
-    """A value whose repr is short enough for a sentence."""
-
-    def __init__(self, value: object) -> None:
-        self._text = shown(value)
-
-    def __repr__(self) -> str:
-        return self._text
 
 
 def level_surface(tin: TIN, base: Any) -> TIN:

@@ -10,7 +10,7 @@ import numpy as np
 from ...crs import CRS
 from ...errors import CrsError, LinesError, OptionError
 from ...tin import triangulate
-from ...tin.constraints.polygons import rings_of
+from ...tin.constraints.polygons import gather_rings_of_regions
 from ..results import Features
 from .cells import Pieces
 from .reference import Surface
@@ -126,7 +126,7 @@ def _of_features(features: Features) -> Iterator[tuple[str, Any]]:
 def _triangles(name: str, shape: Any) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Triangulate a polygon; inside is what an odd number of its rings holds."""
     what = f"region '{name}'"
-    rings = [ring[:, :2] for polygon in rings_of([shape], what) for ring in polygon]
+    rings = [ring[:, :2] for polygon in gather_rings_of_regions([shape], what) for ring in polygon]
     if not rings:
         raise LinesError(f"The {what} has no area.")
     points = np.concatenate([np.column_stack([ring, np.zeros(len(ring))]) for ring in rings])

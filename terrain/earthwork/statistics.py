@@ -52,10 +52,10 @@ def _elevation_at(surface: Surface, values: NDArray[np.float64], area: float) ->
     while high - low > 1:
         trial = np.unique(np.linspace(low, high, _FAN_OUT + 2).astype(np.int64)[1:-1])
         trial = trial[(trial > low) & (trial < high)]
-        reached = trial[_areas_below(surface, np.nextafter(values[trial], np.inf)) >= area]
-        missed = trial[len(trial) - len(reached) - 1 :: -1] if len(reached) < len(trial) else []
-        high = int(reached[0]) if len(reached) else high
-        low = int(missed[0]) if len(missed) else low
+        is_enough = _areas_below(surface, np.nextafter(values[trial], np.inf)) >= area
+        first = int(np.argmax(is_enough)) if is_enough.any() else len(trial)
+        low = int(trial[first - 1]) if first > 0 else low
+        high = int(trial[first]) if first < len(trial) else high
     return _between(surface, float(values[low]), float(values[high]), area)
 
 

@@ -132,7 +132,7 @@ def _as_levels(levels: Any, interval: Any, lowest: float, highest: float) -> NDA
     if last - first >= _MOST_LEVELS:
         allowed = f"larger: there would be {last - first + 1:,} levels, at most {_MOST_LEVELS:,}"
         raise OptionError("interval", interval, allowed=allowed)
-    return np.arange(first, last + 1) * step
+    return np.arange(first, last + 1, dtype=np.float64) * step
 
 
 def _given_levels(levels: Sequence[float]) -> NDArray[np.float64]:

@@ -24,7 +24,8 @@ NAMES = {-1: "cut", 0: "unchanged", 1: "fill"}
 def classes_of(mesh: Triangulation) -> NDArray[np.int8]:
     """Return +1 where triangles are filled, -1 where cut, 0 where nothing changes."""
     # No triangle has both signs, but for roundings, which the mean does not mind.
-    return np.sign(mesh.points[mesh.triangles, 2].sum(axis=1)).astype(np.int8)
+    classes: NDArray[np.int8] = np.sign(mesh.points[mesh.triangles, 2].sum(axis=1)).astype(np.int8)
+    return classes
 
 
 def zero_line(mesh: Triangulation, reference: Reference) -> Features:
@@ -141,7 +142,7 @@ def _polygons(
     cut = np.where(barrier, np.int32(topology.NO_NEIGHBOR), mesh.neighbors)
     rings = topology.boundary_rings(mesh.triangles, cut)
     owner = _owners(mesh, barrier, part, rings)
-    is_hole = [_doubled_area(mesh.points[ring, :2]) < 0 for ring in rings]
+    is_hole = np.array([_doubled_area(mesh.points[ring, :2]) < 0 for ring in rings])
     order = np.lexsort((is_hole, owner))
     closed = [np.append(rings[i], rings[i][0]).astype(np.int64) for i in order]
     return (

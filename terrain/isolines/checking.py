@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-import shapely
 
 from ...errors import OptionError
 from ...tin.predicates import orientation
@@ -38,6 +37,13 @@ class ContourCheck:
         Pairs of segments that meet in a vertex of the TIN at their level, as exact contours do.
     deviation : float
         Largest difference of the surface from the level along a line, in the unit of elevations.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> tin = ts.triangulate([[0, 0, 0], [4, 0, 4], [4, 4, 4], [0, 4, 0]])
+    >>> ts.check_contours(tin, ts.contours(tin, interval=1))
+    ContourCheck(contacts=0, lines=(), shared_vertices=0, deviation=0.0)
     """
 
     contacts: int
@@ -110,6 +116,8 @@ def _segments_of(lines: Features) -> _Segments:
 
 
 def _find_contacts(tin: TIN, segments: _Segments) -> tuple[int, int, tuple[tuple[int, int], ...]]:
+    import shapely
+
     shapes = _shapes(segments.start, segments.end)
     tree = shapely.STRtree(shapes)
     contacts, shared = 0, 0
@@ -131,6 +139,8 @@ def _find_contacts(tin: TIN, segments: _Segments) -> tuple[int, int, tuple[tuple
 
 
 def _shapes(start: NDArray[np.float64], end: NDArray[np.float64]) -> NDArray[np.object_]:
+    import shapely
+
     shapes: NDArray[np.object_] = shapely.linestrings(np.stack([start[:, :2], end[:, :2]], axis=1))
     return shapes
 
@@ -161,6 +171,8 @@ def _meet_in_vertex(segments: _Segments, a: int, b: int, vertices: set[tuple[flo
 
 
 def _largest_deviation(tin: TIN, segments: _Segments) -> float:
+    import shapely
+
     places = np.concatenate([segments.start, segments.end])
     off = np.abs(tin.interpolate(places[:, :2]) - places[:, 2])
     largest = float(np.nanmax(off)) if np.isfinite(off).any() else 0.0

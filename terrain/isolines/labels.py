@@ -139,7 +139,8 @@ class _Way:
         chords = np.linalg.norm(self._at(tried + window) - self._at(tried - window), axis=-1)
         order = np.lexsort((np.broadcast_to(np.abs(_TRIES), tried.shape), -chords.round(9)))
         best = tried[np.arange(count), order[:, 0]]
-        return np.clip(best, 0.0, self.length).tolist() if not self._is_closed else best.tolist()
+        places: list[float] = (best if self._is_closed else best.clip(0.0, self.length)).tolist()
+        return places
 
     def label_at(self, at: float, window: float, number: int) -> _Label:
         x, y = self._at(np.array([at]))[0]

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ...errors import LinesError
-from ...tin.constraints.polylines import owners_of
-from ...tin.topology import NO_NEIGHBOR
+from ...tin.topology import NO_NEIGHBOR, find_owners
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -125,4 +124,4 @@ def trace_breaks(tin: TIN, segments: Segments) -> Breaks:
     crossed[is_edge] = _EDGE
     crossed[is_edge & surface.constrained.ravel()[edges]] = _BREAKLINE
     crossed[is_edge & (surface.neighbors.ravel()[edges] == NO_NEIGHBOR)] = _BOUNDARY
-    return Breaks(owners_of(offsets), ratios, xy, elevations, crossed, triangles)
+    return Breaks(find_owners(offsets), ratios, xy, elevations, crossed, triangles)

@@ -8,7 +8,6 @@ import numpy as np
 
 from ...crs import scale_elevations
 from ...errors import OptionError, PointsError
-from ...tin.validation.options import shown
 from ...tin.validation.points import as_elevations
 from ..results import Features, Table
 from .geometries import as_features, require_same_crs
@@ -288,9 +287,7 @@ def _on_lines(ends: NDArray[np.float64], given: Any) -> NDArray[np.float64]:
     try:
         stations = np.atleast_1d(as_elevations(given))
     except PointsError:
-        raise OptionError(
-            "stations", shown(given), allowed="finite numbers, in CRS units"
-        ) from None
+        raise OptionError("stations", given, allowed="finite numbers, in CRS units") from None
     if len(stations) == 0:
         raise OptionError("stations", [], allowed="one number at least")
     is_on = (ends[:, :1] <= stations) & (stations <= ends[:, 1:])

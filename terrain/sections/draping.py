@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..._sentences import counted
-from ...errors import LinesError, OptionError
-from ...tin.constraints.polylines import offsets_of, owners_of
-from ...tin.validation.options import is_one_of, shown
+from ...errors import LinesError, OptionError, choice
+from ...policies import OutsidePolicy
+from ...tin.topology import find_offsets, find_owners
 from ..results import Features
 from .geometries import as_features, require_same_crs
 from .rows import cut_rows
@@ -24,12 +24,10 @@ if TYPE_CHECKING:
     from ...tin import TIN
     from .rows import Rows
 
-__all__ = ["Outside", "drape"]
-
-Outside = Literal["error", "nan", "cut"]
+__all__ = ["drape"]
 
 
-def drape(tin: TIN, features: Any, *, outside: Outside = "error") -> Features:
+def drape(tin: TIN, features: Any, *, outside: OutsidePolicy = "error") -> Features:
     """Lay points, lines or polygons on a surface.
 
     Parameters
@@ -77,8 +75,7 @@ def drape(tin: TIN, features: Any, *, outside: Outside = "error") -> Features:
            [2., 2., 4.],
            [3., 2., 5.]])
     """
-    if not is_one_of(outside, get_args(Outside)):
-        raise OptionError("outside", _plain(outside), allowed="error, nan or cut")
+    choice("outside", outside, OutsidePolicy)
     surfaces = as_surfaces([tin])
     given = as_features(features, "feature")
     if given.kind == "polygons" and outside == "cut":
@@ -102,11 +99,7 @@ def drape(tin: TIN, features: Any, *, outside: Outside = "error") -> Features:
     return _cut_runs(given, rows, lines) if outside == "cut" else _whole(given, rows, lines)
 
 
-def _plain(value: Any) -> Any:
-    return value if isinstance(value, str) else shown(value)
-
-
-def _drape_points(tin: TIN, given: Features, outside: Outside) -> Features:
+def _drape_points(tin: TIN, given: Features, outside: OutsidePolicy) -> Features:
     xy = np.ascontiguousarray(given.coordinates[:, :2]) + 0.0
     elevations = tin.interpolate(xy)
     is_outside = np.isnan(elevations)
@@ -121,7 +114,7 @@ def _drape_points(tin: TIN, given: Features, outside: Outside) -> Features:
 def _tell(
     given: Features,
     is_outside: NDArray[np.bool_],
-    outside: Outside,
+    outside: OutsidePolicy,
     rows: Rows,
     lines: NDArray[Any],
 ) -> Features:
@@ -134,7 +127,7 @@ def _tell(
 
 
 def _noted(
-    given: Features, is_outside: NDArray[np.bool_], outside: Outside, place: Any, what: str
+    given: Features, is_outside: NDArray[np.bool_], outside: OutsidePolicy, place: Any, what: str
 ) -> Features:
     count, first = int(is_outside.sum()), int(np.argmax(is_outside))
     all_of = counted(len(is_outside), what)
@@ -153,7 +146,7 @@ def _noted(
 
 def _whole(given: Features, rows: Rows, lines: NDArray[np.int64]) -> Features:
     xyz = np.column_stack([rows.places.xy, rows.elevations[:, 0]])
-    pieces = offsets_of(np.bincount(lines, minlength=len(given.offsets[0]) - 1))
+    pieces = find_offsets(np.bincount(lines, minlength=len(given.offsets[0]) - 1))
     return replace(given, coordinates=xyz, offsets=(pieces, *given.offsets[1:]))
 
 
@@ -161,7 +154,7 @@ def _cut_runs(given: Features, rows: Rows, lines: NDArray[np.int64]) -> Features
     runs = runs_of(rows)
     owner = lines[runs.first_rows]
     if given.is_multi:
-        owner = owners_of(given.offsets[1])[owner]
+        owner = find_owners(given.offsets[1])[owner]
     return _chosen(given, runs.coordinates, (runs.offsets,), owner)
 
 
@@ -182,7 +175,7 @@ def _chosen(
     return replace(
         given,
         coordinates=coordinates,
-        offsets=(*offsets, offsets_of(counts)) if has_parts else offsets,
+        offsets=(*offsets, find_offsets(counts)) if has_parts else offsets,
         columns={name: column[kept] for name, column in given.columns.items()},
         notes=(*given.notes, note) if lost else given.notes,
     )

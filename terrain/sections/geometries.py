@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ..._sentences import shown
 from ...crs import CRS
 from ...errors import CrsError, LinesError, PointsError
 from ...tin import Breakline
 from ...tin.constraints.breaklines import as_coords
-from ...tin.constraints.polylines import offsets_of
-from ...tin.validation.options import shown
+from ...tin.topology import find_offsets
 from ...tin.validation.points import require_exact_range
 from ..results import Features
 
@@ -211,9 +211,9 @@ def _gather(items: list[_Item], crs: CRS | None, what: str) -> Features:
     pieces = [piece for item in items for part in item.parts for piece in part]
     width = min(piece.shape[1] for piece in pieces)
     coordinates = np.concatenate([piece[:, :width] for piece in pieces])
-    of_items = offsets_of([len(item.parts) for item in items])
-    of_parts = offsets_of([len(part) for item in items for part in item.parts])
-    of_pieces = offsets_of([len(piece) for piece in pieces])
+    of_items = find_offsets([len(item.parts) for item in items])
+    of_parts = find_offsets([len(part) for item in items for part in item.parts])
+    of_pieces = find_offsets([len(piece) for piece in pieces])
     has_parts = any(len(item.parts) > 1 for item in items)
     levels = {"points": (), "lines": (of_pieces,), "polygons": (of_pieces, of_parts)}[kinds[0]]
     return Features(

@@ -9,7 +9,7 @@ import numpy as np
 from ..._sentences import counted
 from ...crs import scale_elevations
 from ...errors import LinesError, OptionError
-from ...tin.validation.options import is_finite_number, shown
+from ...tin.validation.options import is_finite_number
 from ..results import Table
 from .geometries import as_features, require_same_crs
 from .grades import measure_grades
@@ -176,7 +176,7 @@ def measure_rows(
     return Table(columns, units=units, name=name, notes=notes)
 
 
-def _name_stations(crossed: NDArray[np.object_]) -> NDArray[np.object_]:
+def _name_stations(crossed: NDArray[np.str_]) -> NDArray[np.str_]:
     """Say of rows where no surface has a break that they were asked for."""
     named = crossed.copy()
     named[(crossed == "").all(axis=1)] = "station"
@@ -227,7 +227,7 @@ def as_positive(option: str, value: Any) -> float:
     OptionError
     """
     if not is_finite_number(value) or not float(value) > 0.0:
-        raise OptionError(option, _plain(value), allowed="a finite number above 0, in CRS units")
+        raise OptionError(option, value, allowed="a finite number above 0, in CRS units")
     return float(value)
 
 
@@ -255,12 +255,8 @@ def require_number(option: str, value: Any) -> float:
     OptionError
     """
     if not is_finite_number(value):
-        raise OptionError(option, _plain(value), allowed="a finite number, in CRS units")
+        raise OptionError(option, value, allowed="a finite number, in CRS units")
     return float(value)
-
-
-def _plain(value: Any) -> Any:
-    return value if isinstance(value, int | float) else shown(value)
 
 
 def _at_interval(segments: Segments, interval: float) -> Places:

@@ -49,7 +49,7 @@ class Rows(NamedTuple):
         Whether the row is the last of its line.
     elevations : (n, k) float64 array
         Of each surface; NaN where it is not.
-    crossed : (n, k) object array of str
+    crossed : (n, k) array of str
         What each surface has there: a word of ``CROSSED``, "gap", or "" if nothing.
     triangles : (n, k) int32 array
         Of each surface, from here to the next row; -1 where there is none.
@@ -58,7 +58,7 @@ class Rows(NamedTuple):
     places: Places
     is_last: NDArray[np.bool_]
     elevations: NDArray[np.float64]
-    crossed: NDArray[np.object_]
+    crossed: NDArray[np.str_]
     triangles: NDArray[np.int32]
 
     @property
@@ -194,8 +194,8 @@ def _elevations(
     return found
 
 
-def _crossed(breaks: Breaks, own: NDArray[np.int64]) -> NDArray[np.object_]:
-    words = np.array([*CROSSED, ""], object)
+def _crossed(breaks: Breaks, own: NDArray[np.int64]) -> NDArray[np.str_]:
+    words = np.array([*CROSSED, ""])
     return words[np.where(own >= 0, breaks.crossed[own], -1)]
 
 
@@ -213,7 +213,7 @@ def _mark_gaps(rows: Rows, traced: Sequence[Breaks], before: NDArray[np.int64]) 
         0.5 * xy[at] + 0.5 * xy[at + 1],
     )
     elevations = [b.interpolate_after(before[at, k], middle.xy) for k, b in enumerate(traced)]
-    crossed = np.where(rows.is_gap[at], "gap", "").astype(object)
+    crossed = np.where(rows.is_gap[at], "gap", "")
     return Rows(
         Places(
             *(np.insert(a, at + 1, b, axis=0) for a, b in zip(rows.places, middle, strict=True))

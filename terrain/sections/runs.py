@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ...tin.constraints.polylines import offsets_of
+from ...tin.topology import find_offsets
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -41,4 +41,4 @@ def runs_of(rows: Rows, k: int = 0) -> Runs:
     is_first = ~comes_on[chosen]
     firsts = np.flatnonzero(is_first)
     xyz = np.column_stack([rows.places.xy[chosen], rows.elevations[chosen, k]])
-    return Runs(xyz, offsets_of(np.diff(np.append(firsts, len(chosen)))), chosen[firsts])
+    return Runs(xyz, find_offsets(np.diff(np.append(firsts, len(chosen)))), chosen[firsts])

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ...errors import LinesError
-from ...tin.constraints.polylines import owners_of
+from ...tin.topology import find_owners
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -80,7 +80,7 @@ def segments_of(
     A vertex that repeats the one before it is passed over. Stations are the sums of the lengths of
     the segments, added one after the other, each rounded.
     """
-    lines = owners_of(offsets)
+    lines = find_owners(offsets)
     is_step = (lines[1:] == lines[:-1]) & (xy[1:] != xy[:-1]).any(axis=1)
     at = np.flatnonzero(is_step)
     if len(np.unique(lines[at])) < len(offsets) - 1:

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from ..._sentences import shown
 from ...crs import CRS, Unit, assume_elevation_unit
 from ...errors import CrsError, OptionError
-from ...tin.validation.options import require_tin, shown
+from ...tin.validation.options import require_tin
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -16,7 +16,7 @@ SCRIPT = [
     {"op": "insert", "points": [[3, 3, 1]]},
     {"op": "remove", "vertices": [4]},
     {"op": "move", "vertex": 4, "point": [1, 3, 2]},
-    {"op": "set_z", "vertices": [0], "z": 50.0},
+    {"op": "set_elevation", "vertices": [0], "z": 50.0},
     {"op": "add_breakline", "coords": [[0.5, 0.5, 1], [3, 1, 2]]},
 ]
 

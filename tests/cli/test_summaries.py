@@ -110,7 +110,7 @@ def test_a_pyramid_in_words_and_numbers():
     tin = ts.triangulate(TETRA, crs=UTM)
     assert facts.tin_fields(tin) == [
         ("TIN", "5 vertices, 4 triangles"),
-        ("Edges", "8, 4 of them on the hull"),
+        ("Edges", "8, 4 of them on the boundary"),
         ("Extent", "4.000 m x 4.000 m"),
         ("", "easting 0.000 to 4.000"),
         ("", "northing 0.000 to 4.000"),

@@ -23,7 +23,7 @@ ARRAYS = ("points", "triangles", "neighbors", "constrained")
 CHAINS = ("vertices", "offsets", "kinds", "sources", "names")
 POLICIES = ("last", "first", "mean", "lowest", "highest")
 OPERATIONS = (
-    "insert", "insert_old", "remove", "remove", "move", "set_z", "flip", "add_breakline",
+    "insert", "insert_old", "remove", "remove", "move", "set_elevation", "flip", "add_breakline",
     "add_breakline", "remove_breakline", "undo", "copy", "fork",
 )  # fmt: skip
 DESERVED = (
@@ -208,7 +208,7 @@ def _forked(tin: ts.TIN, tracked: Tracked, edit: dict[str, Any]) -> tuple[ts.TIN
     other = _copied(tin, tracked, edit["by"])
     first = _step(other, tracked, {**edit, "op": edit["then"]})
     require_fresh(tin, tracked, tracked.build())
-    second = _step(tin, tracked, {**edit, "op": "set_z"})
+    second = _step(tin, tracked, {**edit, "op": "set_elevation"})
     require_fresh(first[0], first[1], first[1].build())
     return first if len(edit["at"]) == 1 else second
 
@@ -229,7 +229,13 @@ def _prepare(tin: ts.TIN, tracked: Tracked, edit: dict[str, Any]) -> Any:
     new = tracked.changed()
     vertices = list(dict.fromkeys(int(u * len(tin.points)) for u in edit["at"]))
     operation = edit["op"].removesuffix("_old")
-    if new.options.get("snap") and operation in ("remove", "move", "set_z", "flip", "insert"):
+    if new.options.get("snap") and operation in (
+        "remove",
+        "move",
+        "set_elevation",
+        "flip",
+        "insert",
+    ):
         return None if operation != "insert" else _insert_apart(tin, new, edit)
     if operation == "insert":
         points = [list(point) for point in edit["points"]]
@@ -246,9 +252,9 @@ def _prepare(tin: ts.TIN, tracked: Tracked, edit: dict[str, Any]) -> Any:
         number = int(edit["at"][0] * len(new.lines))
         del new.lines[number]
         return new, lambda one: one.remove_breakline(number)
-    return {"remove": _remove, "move": _move, "set_z": _set_z, "flip": _flip}[operation](
-        tin, new, vertices, edit
-    )
+    return {"remove": _remove, "move": _move, "set_elevation": _set_elevation, "flip": _flip}[
+        operation
+    ](tin, new, vertices, edit)
 
 
 def _insert_apart(tin: ts.TIN, new: Tracked, edit: dict[str, Any]) -> Any:
@@ -325,11 +331,11 @@ def _move(tin: ts.TIN, new: Tracked, vertices: list[int], edit: dict[str, Any]) 
     return new, lambda one: one.move(vertex, point)
 
 
-def _set_z(tin: ts.TIN, new: Tracked, vertices: list[int], edit: dict[str, Any]) -> Any:
+def _set_elevation(tin: ts.TIN, new: Tracked, vertices: list[int], edit: dict[str, Any]) -> Any:
     z = edit["points"][0][2]
     made = [vertex for vertex in sorted(vertices) if not _lift(tin, new, vertex, z)]
     new.rows += [[*tin.points[vertex, :2].tolist(), z] for vertex in made]
-    return new, lambda one: one.set_z(vertices, z)
+    return new, lambda one: one.set_elevation(vertices, z)
 
 
 def _flip(tin: ts.TIN, new: Tracked, vertices: list[int], edit: dict[str, Any]) -> Any:

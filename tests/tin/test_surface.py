@@ -111,6 +111,32 @@ def test_hull_keeps_collinear_points(xy):
     assert set(ring) == oracles.hull_points(xy)
 
 
+def test_hull_of_islands_is_convex_and_their_boundaries_are_rings():
+    """Two squares, apart and one of them notched: each has a ring, both have one hull."""
+    tin = TIN.from_triangles(
+        [[0, 0, 0], [2, 0, 0], [1, 1, 0], [2, 2, 0], [0, 2, 0], [5, 0, 0], [6, 0, 0], [6, 2, 0]],
+        [[0, 1, 2], [0, 2, 4], [2, 3, 4], [5, 6, 7]],
+    )
+    assert [sorted(ring.tolist()) for ring in tin.boundary] == [[0, 1, 2, 3, 4], [5, 6, 7]]
+    first = tin.hull.tolist().index(0)
+    assert np.roll(tin.hull, -first).tolist() == [0, 1, 5, 6, 7, 3, 4]
+    assert [ring.tolist() for ring in tin.rings] == [ring.tolist() for ring in tin.boundary]
+    assert tin.hull is tin.hull
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_hull_of_parts_of_a_grid_is_that_by_definition(seed):
+    rng = np.random.default_rng(seed)
+    whole = ts.triangulate([(x, y, 0) for x in range(5) for y in range(5)])
+    kept = rng.random(len(whole.triangles)) < 0.4
+    tin = TIN.from_triangles(whole.points, whole.triangles[kept])
+    used = np.unique(tin.triangles)
+    on_hull = oracles.hull_points(tin.points[used, :2].astype(int).tolist())
+    assert sorted(tin.hull.tolist()) == used[sorted(on_hull)].tolist()
+    x, y = tin.points[tin.hull, :2].T
+    assert (np.roll(x, -1) * y - x * np.roll(y, -1)).sum() < 0
+
+
 def test_edges_count_as_euler_says(tin):
     assert len(tin.edges) == len(tin.points) + len(tin.triangles) - 1
     assert tin.edges.shape[1] == 2

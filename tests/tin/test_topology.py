@@ -170,13 +170,13 @@ def test_rings_use_every_boundary_edge_once(count, seed, random):
     part = triangles[some]
     neighbors = neighbors_of(part, count)
     owner = directed(part)
-    rim = sorted(edge for edge in owner if edge[::-1] not in owner)
+    boundary = sorted(edge for edge in owner if edge[::-1] not in owner)
     walked = sorted(
         (int(start), int(end))
         for ring in boundary_rings(part, neighbors)
         for start, end in zip(ring, np.roll(ring, -1), strict=True)
     )
-    assert walked == rim
+    assert walked == boundary
 
 
 def test_edges_at_corners_lie_opposite_them():

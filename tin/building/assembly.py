@@ -12,9 +12,9 @@ from ..constraints.breaklines import Lines
 from ..constraints.clipping import BOUNDARY, EXTENT, HOLES, Surface, in_rings
 from ..constraints.constraint_set import LineSet
 from ..constraints.draping import drape
-from ..constraints.polylines import offsets_of
-from ..constraints.pslg import Clip, Pslg, lines_in
+from ..constraints.pslg import Clip, Pslg, find_lines_in
 from ..report import LEFT_OUT, Crossings, Overruled, Report
+from ..topology import find_offsets
 from ..validation.points import require_three
 from .constrained import ConstrainedTriangulation, triangulate_constrained
 from .duplicates import merge_rows
@@ -53,18 +53,18 @@ class Built(NamedTuple):
 
 def assemble(inputs: BuildInputs) -> Built:
     """Build all that a TIN holds."""
-    return _plain(inputs) if inputs.is_plain else _with_lines(inputs)
+    return _assemble_plain(inputs) if inputs.is_plain else _with_lines(inputs)
 
 
 # ------------------------------------------------------------------ points alone
 
 
-def _plain(inputs: BuildInputs) -> Built:
+def _assemble_plain(inputs: BuildInputs) -> Built:
     xyz, options = inputs.points, inputs.options
     require_three(len(xyz))  # edits may have removed the others
     kept_row = _kernel.snap(xyz, options.snap) if options.snap > 0 else None
     growth = _kernel.grow(
-        xyz if kept_row is None else _kept(xyz, kept_row), threads=options.threads
+        xyz if kept_row is None else _choose_kept(xyz, kept_row), threads=options.threads
     )
     merged = merge_rows(xyz, growth.kept_row if kept_row is None else kept_row, options.duplicates)
     fixed = np.zeros(growth.triangles.shape, np.bool_)
@@ -78,7 +78,7 @@ def _plain(inputs: BuildInputs) -> Built:
     )
 
 
-def _kept(xyz: NDArray[np.float64], kept_row: NDArray[np.int32]) -> NDArray[np.float64]:
+def _choose_kept(xyz: NDArray[np.float64], kept_row: NDArray[np.int32]) -> NDArray[np.float64]:
     kept: NDArray[np.float64] = xyz[kept_row == np.arange(len(xyz), dtype=np.int32)]
     return kept
 
@@ -101,41 +101,43 @@ def _report(
 
 
 class _Ground(NamedTuple):
-    """Lines that all have heights, and the rim where draped ones leave the surface."""
+    """Lines that all have elevations, and the boundary where draped ones leave the surface."""
 
     lines: LineSet
-    has_rim: bool
+    has_own_boundary: bool
     notes: list[str]
 
-    def without_rim(self) -> _Ground:
-        """Return the same lines without the parts of the rim."""
-        return self._replace(lines=self.lines.chosen(self.lines.sources >= 0), has_rim=False)
+    def drop_own_boundary(self) -> _Ground:
+        """Return the same lines without the parts of the boundary."""
+        return self._replace(
+            lines=self.lines.choose(self.lines.sources >= 0), has_own_boundary=False
+        )
 
 
 def _with_lines(inputs: BuildInputs) -> Built:
-    is_erased = _erased(inputs)
+    is_erased = _find_erased(inputs)
     rows = np.flatnonzero(~is_erased)
-    ground = _draped(rows, inputs)
-    made, pslg = _made(inputs, ground, rows)
-    has_rings = bool(inputs.boundary or inputs.extent or inputs.holes or inputs.has_rim)
-    if not has_rings and pslg.loses_vertices_at_rim(made.surface):
-        ground = ground.without_rim()
-        made, pslg = _made(inputs, ground, rows)
+    ground = _drape_lines(rows, inputs)
+    made, pslg = _triangulate_with_lines(inputs, ground, rows)
+    has_rings = bool(inputs.boundary or inputs.extent or inputs.holes or inputs.has_own_boundary)
+    if not has_rings and pslg.loses_vertices_at_own_boundary(made.surface):
+        ground = ground.drop_own_boundary()
+        made, pslg = _triangulate_with_lines(inputs, ground, rows)
     surface, number_of = pslg.surface(made.surface)
-    vertex_of = _numbered(pslg.vertex_of, number_of)
-    account = _account(inputs, made, number_of, is_erased, vertex_of, ground)
+    vertex_of = _renumber(pslg.vertex_of, number_of)
+    account = _gather_account(inputs, made, number_of, is_erased, vertex_of, ground)
     is_whole = surface is made.surface
     return Built(
         surface,
         vertex_of,
-        lines_in(pslg.polylines, pslg.constraints, number_of, surface, is_whole=is_whole),
+        find_lines_in(pslg.polylines, pslg.constraints, number_of, surface, is_whole=is_whole),
         _report(inputs, len(surface.points), len(surface.triangles), account),
         ground.lines.xy,
-        _numbered(made.line_vertices, number_of),
+        _renumber(made.line_vertices, number_of),
     )
 
 
-def _made(
+def _triangulate_with_lines(
     inputs: BuildInputs, ground: _Ground, rows: NDArray[np.int64]
 ) -> tuple[ConstrainedTriangulation, Pslg]:
     made = triangulate_constrained(
@@ -154,12 +156,12 @@ def _gather_pslg(
         points=made.surface.points,
         polylines=made.polylines,
         constraints=lines.table,
-        groups=_groups(inputs, lines),
+        groups=_find_groups(inputs, lines),
         clip=Clip(
             boundary=inputs.boundary,
             extent=inputs.extent,
             holes=inputs.holes,
-            has_rim=ground.has_rim or inputs.has_rim,
+            has_own_boundary=ground.has_own_boundary or inputs.has_own_boundary,
             max_edge=inputs.max_edge,
             is_trimmed_everywhere=inputs.trim == "everywhere",
         ),
@@ -167,7 +169,7 @@ def _gather_pslg(
     )
 
 
-def _groups(inputs: BuildInputs, lines: LineSet) -> NDArray[np.int64]:
+def _find_groups(inputs: BuildInputs, lines: LineSet) -> NDArray[np.int64]:
     """Return the group of each line among the rings; that of other lines says nothing."""
     of_ring = [
         *([BOUNDARY] * len(inputs.boundary)),
@@ -175,7 +177,7 @@ def _groups(inputs: BuildInputs, lines: LineSet) -> NDArray[np.int64]:
     ]
     of_hole = [HOLES + number for number, rings in enumerate(inputs.holes) for _ in rings]
     groups: dict[str, list[int]] = {"boundary": of_ring, "hole": of_hole}
-    if inputs.has_rim:  # of existing triangles, whose rings are edges of the rim
+    if inputs.has_own_boundary:  # of existing triangles, whose rings are edges of the boundary
         groups = {}
     found = [
         groups[kind][source] if kind in groups and source >= 0 else BOUNDARY
@@ -184,13 +186,13 @@ def _groups(inputs: BuildInputs, lines: LineSet) -> NDArray[np.int64]:
     return np.array(found, np.int64)
 
 
-def _numbered(vertices: NDArray[np.int32], number_of: NDArray[np.int32]) -> NDArray[np.int32]:
+def _renumber(vertices: NDArray[np.int32], number_of: NDArray[np.int32]) -> NDArray[np.int32]:
     """Renumber vertices of which some are -1, for none."""
     found: NDArray[np.int32] = np.append(number_of, np.int32(-1))[vertices]
     return found
 
 
-def _erased(inputs: BuildInputs) -> NDArray[np.bool_]:
+def _find_erased(inputs: BuildInputs) -> NDArray[np.bool_]:
     """Tell which rows are left out before anything is built: masked or erased ones."""
     is_erased = np.zeros(len(inputs.points), np.bool_)
     if inputs.is_masked is not None:
@@ -200,28 +202,28 @@ def _erased(inputs: BuildInputs) -> NDArray[np.bool_]:
     return is_erased
 
 
-def _draped(rows: NDArray[np.int64], inputs: BuildInputs) -> _Ground:
-    """Give all lines heights: draped ones from the surface of everything else."""
+def _drape_lines(rows: NDArray[np.int64], inputs: BuildInputs) -> _Ground:
+    """Give all lines elevations: draped ones from the surface of everything else."""
     lines = inputs.lines
     is_draped = lines.is_draped
     if not is_draped.any():
         return _Ground(lines, False, [])
-    base = triangulate_constrained(inputs.points, rows, lines.chosen(~is_draped), inputs.options)
-    laid = drape(base.surface, lines.chosen(is_draped), threads=inputs.options.threads)
+    base = triangulate_constrained(inputs.points, rows, lines.choose(~is_draped), inputs.options)
+    laid = drape(base.surface, lines.choose(is_draped), threads=inputs.options.threads)
     notes = []
     if laid.n_cut:
         notes.append(
             f"Of {counted(laid.n_cut, 'draped line')} the parts outside the surface "
             "of the points were left out."
         )
-    together = LineSet.joined([lines.chosen(~is_draped), laid.lines, laid.rim])
-    return _Ground(together, len(laid.rim.kinds) > 0, notes)
+    together = LineSet.join([lines.choose(~is_draped), laid.lines, laid.boundary])
+    return _Ground(together, len(laid.boundary.kinds) > 0, notes)
 
 
 # ----------------------------------------------------------------------- account
 
 
-def _account(
+def _gather_account(
     inputs: BuildInputs,
     made: ConstrainedTriangulation,
     number_of: NDArray[np.int32],
@@ -229,37 +231,35 @@ def _account(
     vertex_of: NDArray[np.int32],
     ground: _Ground,
 ) -> dict[str, Any]:
-    """Return the report's fields about merged rows, left-out rows and lines that met."""
-    final = _numbered(made.number_of, number_of)
-    account = _without_lost_merges(dict(made.merges), final)
+    """Return the report's fields about merged rows, left-out rows and lines that cross."""
+    final = _renumber(made.number_of, number_of)
+    account = _drop_lost_merges(dict(made.merges), final)
     left_out = np.flatnonzero(vertex_of < 0).astype(np.int32)
     labels = ground.lines.labels()
-    gave_way = made.overruled
+    overruled = made.overruled
     return account | {
         "left_out_rows": left_out,
-        "left_out_why": _reasons(inputs, left_out, is_erased, made),
+        "left_out_why": _find_reasons(inputs, left_out, is_erased, made),
         "n_lines": len(inputs.lines.kinds) - len(inputs.extent),
         "line_labels": tuple(labels),
-        "crossings": _crossings(made, final),
-        "overruled": Overruled(
-            _numbered(gave_way.vertices, final), gave_way.lines, gave_way.heights, gave_way.taken
-        ),
+        "crossings": _renumber_crossings(made, final),
+        "overruled": Overruled(_renumber(overruled.vertices, final), *overruled[1:]),
         "notes": (*inputs.notes, *ground.notes),
     }
 
 
-def _crossings(made: ConstrainedTriangulation, final: NDArray[np.int32]) -> Crossings:
+def _renumber_crossings(made: ConstrainedTriangulation, final: NDArray[np.int32]) -> Crossings:
     """Return the crossings by the numbers of the TIN, the earlier line in front."""
     found = made.noded.crossings
     order = np.argsort(found.lines, axis=1, kind="stable")
     return found._replace(
-        vertices=_numbered(found.vertices, final),
+        vertices=_renumber(found.vertices, final),
         lines=np.take_along_axis(found.lines, order, axis=1),
-        heights=np.take_along_axis(found.heights, order, axis=1),
+        elevations=np.take_along_axis(found.elevations, order, axis=1),
     )
 
 
-def _without_lost_merges(account: dict[str, Any], final: NDArray[np.int32]) -> dict[str, Any]:
+def _drop_lost_merges(account: dict[str, Any], final: NDArray[np.int32]) -> dict[str, Any]:
     """Return the merges at vertices that are left, numbered as in the TIN."""
     if not account:
         return account
@@ -269,13 +269,13 @@ def _without_lost_merges(account: dict[str, Any], final: NDArray[np.int32]) -> d
     rows = np.repeat(keep, counts)
     return {
         "merged_vertices": vertices[keep],
-        "merged_offsets": offsets_of(counts[keep]).astype(np.int32),
-        "vertex_heights": account["vertex_heights"][keep],
-        **{k: account[k][rows] for k in ("merged_rows", "merged_heights", "merged_shifts")},
+        "merged_offsets": find_offsets(counts[keep]).astype(np.int32),
+        "vertex_elevations": account["vertex_elevations"][keep],
+        **{k: account[k][rows] for k in ("merged_rows", "merged_elevations", "merged_shifts")},
     }
 
 
-def _reasons(
+def _find_reasons(
     inputs: BuildInputs,
     rows: NDArray[np.int32],
     is_erased: NDArray[np.bool_],

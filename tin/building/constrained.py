@@ -1,7 +1,7 @@
 """Points and lines become the constrained Delaunay triangulation of their convex hull.
 
 The main path: rows at one place become one vertex, lines are cut where they meet, the points are
-triangulated, and the steps of the lines are forced into the triangulation.
+triangulated, and the segments of the lines are forced into the triangulation.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ from .. import _kernel
 from ..constraints.clipping import Surface, in_rings
 from ..constraints.conforming import conform
 from ..constraints.constraint_set import ABOVE_ALL, BELOW_ALL, LineSet
-from ..constraints.noding import Noded, node, untouched
+from ..constraints.noding import Noded, accept_noded, node
 from ..constraints.polylines import Polylines
-from ..constraints.pslg import force, mesh_of, mesh_of_growth
+from ..constraints.pslg import build_mesh, build_mesh_of_growth, force
 from ..report import Overruled
 from ..topology import edge_keys
 from ..validation.points import require_three
@@ -53,7 +53,7 @@ class ConstrainedTriangulation(NamedTuple):
     merges : dict
         Fields of the report about merged rows.
     noded : Noded
-        Where lines met; its vertices are numbered as ``number_of`` says.
+        Where lines meet; its vertices are numbered as ``number_of`` says.
     overruled : Overruled
         Likewise.
     number_of : (v,) int32 array
@@ -87,7 +87,7 @@ def triangulate_constrained(
     *,
     conforming: bool = False,
 ) -> ConstrainedTriangulation:
-    """Triangulate rows of points, and lines; all lines have heights.
+    """Triangulate rows of points, and lines; all lines have elevations.
 
     Raises
     ------
@@ -99,19 +99,19 @@ def triangulate_constrained(
     xyz = points[rows]
     merged = _merge(xyz, rows, lines, options)
     mesh, noded = (
-        mesh_of_growth(merged.points, merged.growth),
-        untouched(merged.polylines, lines.heights),
+        build_mesh_of_growth(merged.points, merged.growth),
+        accept_noded(merged.polylines, lines.elevations),
     )
     is_simple = options.snap == 0.0 and not (lines.priorities == ABOVE_ALL).any()
     is_forced = is_simple and _is_forced(mesh, noded.polylines)
     if not is_forced:
-        noded = _noded(merged, lines, options)
+        noded = _node(merged, lines, options)
         if is_simple:  # edges were fixed in vain
-            mesh = mesh_of_growth(merged.points, merged.growth)
+            mesh = build_mesh_of_growth(merged.points, merged.growth)
         if len(noded.new_points):
             mesh.insert(np.ascontiguousarray(noded.new_points[:, :2]))
     points = np.concatenate([merged.points, noded.new_points])
-    overruled = _passed_by(points, noded, merged.overruled)
+    overruled = _add_touches(points, noded, merged.overruled)
     polylines, wet, overruled = _leave_out_water(points, noded.polylines, lines, overruled)
     if not is_forced:
         mesh.remove(np.flatnonzero(wet).astype(np.int32))
@@ -120,7 +120,7 @@ def triangulate_constrained(
     points, polylines = points[~wet], polylines.renumber(number_of)
     if conforming:
         if wet.any():  # numbers without gaps
-            mesh = mesh_of(points, polylines, threads=options.threads)
+            mesh = build_mesh(points, polylines, threads=options.threads)
         mesh, points, polylines = conform(
             mesh, points, polylines, lines.priorities, threads=options.threads
         )
@@ -138,16 +138,16 @@ def triangulate_constrained(
 
 
 def _is_forced(mesh: _kernel.Mesh, polylines: Polylines) -> bool:
-    """Fix the steps of lines as they are given; tell whether nothing was in the way of any."""
+    """Fix the segments of lines as they are given; tell whether nothing was in the way of any."""
     passed, blocked = mesh.force(polylines.segments())
     return not (len(passed) or len(blocked))
 
 
-def _noded(merged: _Merged, lines: LineSet, options: LineOptions) -> Noded:
+def _node(merged: _Merged, lines: LineSet, options: LineOptions) -> Noded:
     return node(
         np.ascontiguousarray(merged.points[:, :2]),
         merged.polylines,
-        lines.heights,
+        lines.elevations,
         lines.priorities,
         snap=options.snap,
         crossing=options.crossing,
@@ -162,10 +162,10 @@ def _noded(merged: _Merged, lines: LineSet, options: LineOptions) -> Noded:
 def _merge(
     xyz: NDArray[np.float64], rows_of: NDArray[np.int64], lines: LineSet, options: LineOptions
 ) -> _Merged:
-    """Make one vertex of all rows at one place; a line's height counts more than a point's."""
+    """Make one vertex of all rows at one place; a line's elevation counts more than a point's."""
     n = len(xyz)
     require_three(n + len(lines.xy))
-    rows = np.concatenate([xyz, np.column_stack([lines.xy, np.nan_to_num(lines.heights)])])
+    rows = np.concatenate([xyz, np.column_stack([lines.xy, np.nan_to_num(lines.elevations)])])
     place = _kernel.snap(rows, options.snap) if options.snap > 0 else None
     own = np.arange(len(rows), dtype=np.int32)
     growth = _kernel.grow(rows if place is None else rows[place == own], threads=options.threads)
@@ -175,7 +175,7 @@ def _merge(
     vertex_of = (np.cumsum(is_kept, dtype=np.int32) - np.int32(1))[place]
     points = rows[is_kept]
     merges = _merge_points(xyz, rows_of, vertex_of[:n], points, options.duplicates)
-    overruled = _line_heights(points, vertex_of, n, lines)
+    overruled = _set_line_elevations(points, vertex_of, n, lines)
     polylines = Polylines.whole(vertex_of[n:], lines.offsets)
     return _Merged(points, vertex_of, polylines, growth, merges, overruled)
 
@@ -187,7 +187,7 @@ def _merge_points(
     points: NDArray[np.float64],
     policy: DuplicatePolicy,
 ) -> dict[str, Any]:
-    """Give vertices the heights of their points; return the account of merged rows."""
+    """Give vertices the elevations of their points; return the account of merged rows."""
     n = len(xyz)
     first = np.full(len(points), n, np.int32)
     np.minimum.at(first, vertex_of, np.arange(n, dtype=np.int32))
@@ -205,41 +205,41 @@ def _merge_points(
     return account
 
 
-def _line_heights(
+def _set_line_elevations(
     points: NDArray[np.float64], vertex_of: NDArray[np.int32], n: int, lines: LineSet
 ) -> Overruled:
-    """Give vertices on lines the height of the line that counts most there, its lowest."""
+    """Give vertices on lines the elevation of the line that counts most there, its lowest."""
     vertices, line_of = vertex_of[n:], lines.line_of
     priority = lines.priorities[line_of]
     rank = np.where(priority == BELOW_ALL, 0, line_of)  # parts of draped lines have no order
-    order = np.lexsort((line_of, lines.heights, rank, -priority, vertices))
+    order = np.lexsort((line_of, lines.elevations, rank, -priority, vertices))
     is_first = np.append(True, np.diff(vertices[order]) > 0)[: len(order)]
     best = order[is_first]
     before = points[vertices[best], 2].copy()
     counts = (priority[best] > BELOW_ALL) | np.isnan(before)
-    points[vertices[best[counts]], 2] = lines.heights[best[counts]]
-    taken = points[vertices[best], 2]
-    gave_way = np.flatnonzero(~np.isnan(before) & (before != taken))
-    other = np.flatnonzero(lines.heights != points[vertices, 2])
+    points[vertices[best[counts]], 2] = lines.elevations[best[counts]]
+    elevation = points[vertices[best], 2]
+    is_overruled = np.flatnonzero(~np.isnan(before) & (before != elevation))
+    other = np.flatnonzero(lines.elevations != points[vertices, 2])
     return Overruled(
-        np.concatenate([vertices[best[gave_way]], vertices[other]]),
-        np.concatenate([np.full(len(gave_way), -1), line_of[other]]).astype(np.int32),
-        np.concatenate([before[gave_way], lines.heights[other]]),
-        np.concatenate([taken[gave_way], points[vertices[other], 2]]),
+        np.concatenate([vertices[best[is_overruled]], vertices[other]]),
+        np.concatenate([np.full(len(is_overruled), -1), line_of[other]]).astype(np.int32),
+        np.concatenate([before[is_overruled], lines.elevations[other]]),
+        np.concatenate([elevation[is_overruled], points[vertices[other], 2]]),
     )
 
 
-def _passed_by(points: NDArray[np.float64], noded: Noded, overruled: Overruled) -> Overruled:
-    """Add the heights of lines that run through a vertex of others, where they differ."""
-    met = noded.touches
-    taken = points[met.vertex, 2]
-    rounding = 8 * np.spacing(np.maximum(np.abs(taken), np.abs(met.height)))
-    other = np.abs(met.height - taken) > rounding
+def _add_touches(points: NDArray[np.float64], noded: Noded, overruled: Overruled) -> Overruled:
+    """Add the elevations of lines that run through a vertex of others, where they differ."""
+    touches = noded.touches
+    elevation = points[touches.vertex, 2]
+    rounding = 8 * np.spacing(np.maximum(np.abs(elevation), np.abs(touches.elevation)))
+    other = np.abs(touches.elevation - elevation) > rounding
     return Overruled(
-        np.append(overruled.vertices, met.vertex[other]),
-        np.append(overruled.lines, met.line[other]).astype(np.int32),
-        np.append(overruled.heights, met.height[other]),
-        np.append(overruled.taken, taken[other]),
+        np.append(overruled.vertices, touches.vertex[other]),
+        np.append(overruled.lines, touches.line[other]).astype(np.int32),
+        np.append(overruled.elevations, touches.elevation[other]),
+        np.append(overruled.vertex_elevations, elevation[other]),
     )
 
 
@@ -249,7 +249,7 @@ def _passed_by(points: NDArray[np.float64], noded: Noded, overruled: Overruled) 
 def _leave_out_water(
     points: NDArray[np.float64], polylines: Polylines, lines: LineSet, overruled: Overruled
 ) -> tuple[Polylines, NDArray[np.bool_], Overruled]:
-    """Put shores at the height of their water, and leave out what is in it.
+    """Put shores at the elevation of their water, and leave out what is in it.
 
     Parameters
     ----------
@@ -259,11 +259,11 @@ def _leave_out_water(
     Returns
     -------
     polylines : Polylines
-        Without the steps in water, but for those of boundaries and holes, which lie on it.
+        Without the segments in water, but for those of boundaries and holes, which lie on it.
     wet : (n,) bool array
         Which vertices are in water, and go.
     overruled : Overruled
-        With the heights that gave way to the water's.
+        With the elevations that the water overrules.
     """
     wet = np.zeros(len(points), np.bool_)
     if not (lines.priorities == ABOVE_ALL).any():
@@ -272,12 +272,12 @@ def _leave_out_water(
     given = polylines
     for line in np.flatnonzero(lines.priorities == ABOVE_ALL).tolist():
         shore = given.vertices[given.offsets[line] : given.offsets[line + 1]]
-        inside = _inside(points[:, :2], points[shore, :2])
-        steps, line_of = polylines.segments(), polylines.segment_lines()
-        in_water = inside[steps].any(axis=1) | _are_chords_within(points[:, :2], steps, shore)
-        stays = (line_of == line) | is_ring[line_of] | _runs_along(steps, shore, len(points))
-        held = np.unique(steps[in_water & is_ring[line_of]])
-        level = float(lines.heights[lines.offsets[line]])
+        inside = _find_inside(points[:, :2], points[shore, :2])
+        segments, line_of = polylines.segments(), polylines.segment_lines()
+        in_water = inside[segments].any(axis=1) | _are_chords_within(points[:, :2], segments, shore)
+        stays = (line_of == line) | is_ring[line_of] | _runs_along(segments, shore, len(points))
+        held = np.unique(segments[in_water & is_ring[line_of]])
+        level = float(lines.elevations[lines.offsets[line]])
         overruled = _set_level(points, np.union1d(shore, held), level, overruled)
         polylines = polylines.keep(~in_water | stays)
         inside[held] = False
@@ -295,25 +295,25 @@ def _set_level(
     return Overruled(
         np.append(overruled.vertices, wrong).astype(np.int32),
         np.append(overruled.lines, np.full(len(wrong), -1, np.int32)),
-        np.append(overruled.heights, before),
-        np.append(overruled.taken, np.full(len(wrong), level)),
+        np.append(overruled.elevations, before),
+        np.append(overruled.vertex_elevations, np.full(len(wrong), level)),
     )
 
 
 def _are_chords_within(
-    xy: NDArray[np.float64], steps: NDArray[np.int32], shore: NDArray[np.int32]
+    xy: NDArray[np.float64], segments: NDArray[np.int32], shore: NDArray[np.int32]
 ) -> NDArray[np.bool_]:
-    """Tell which steps go through water from shore to shore; noded, no others without ends in it.
+    """Tell which segments go through water from shore to shore; noded, all others end in it.
 
     Their middles, rounded, may lie on the wrong side of a shore that is near.
     """
     is_shore = np.zeros(len(xy), np.bool_)
     is_shore[shore] = True
-    is_chord = is_shore[steps].all(axis=1) & ~_runs_along(steps, shore, len(xy))
+    is_chord = is_shore[segments].all(axis=1) & ~_runs_along(segments, shore, len(xy))
     ring = np.ascontiguousarray(xy[shore])
-    for step in np.flatnonzero(is_chord).tolist():
-        start, end = xy[steps[step]]
-        is_chord[step] = _is_ring_around(ring, start, end)
+    for segment in np.flatnonzero(is_chord).tolist():
+        start, end = xy[segments[segment]]
+        is_chord[segment] = _is_ring_around(ring, start, end)
     return is_chord
 
 
@@ -329,14 +329,14 @@ def _is_ring_around(
         start ------- end -----|--->
                                |
     """
-    on_left = _orientation(start, end, ring) > 0
+    on_left = _orient(start, end, ring) > 0
     crosses = np.flatnonzero(on_left[:-1] != on_left[1:])
     is_down = on_left[crosses]
     left, right = (ring[crosses + np.where(is_down, k, 1 - k)] for k in (0, 1))
-    return bool(np.count_nonzero(_orientation(left, right, end) <= 0) % 2)
+    return bool(np.count_nonzero(_orient(left, right, end) <= 0) % 2)
 
 
-def _orientation(
+def _orient(
     a: NDArray[np.float64], b: NDArray[np.float64], c: NDArray[np.float64]
 ) -> NDArray[np.int8]:
     a, b, c = (np.ascontiguousarray(places) for places in np.broadcast_arrays(a, b, c))
@@ -344,13 +344,13 @@ def _orientation(
 
 
 def _runs_along(
-    steps: NDArray[np.int32], chain: NDArray[np.int32], n_vertices: int
+    segments: NDArray[np.int32], chain: NDArray[np.int32], n_vertices: int
 ) -> NDArray[np.bool_]:
     own = np.stack([chain[:-1], chain[1:]], axis=1)
-    return np.isin(edge_keys(steps, n_vertices), edge_keys(own, n_vertices))
+    return np.isin(edge_keys(segments, n_vertices), edge_keys(own, n_vertices))
 
 
-def _inside(xy: NDArray[np.float64], ring: NDArray[np.float64]) -> NDArray[np.bool_]:
+def _find_inside(xy: NDArray[np.float64], ring: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Tell which places lie strictly inside a ring whose first corner is repeated."""
     if len(ring) < 4:
         return np.zeros(len(xy), np.bool_)

@@ -38,7 +38,7 @@ def merge_rows(
     kept_row : (n,) int32 array or None
         For each row the row whose place it takes (its own for a kept one); None if all are kept.
     policy : DuplicatePolicy
-        How the elevation of a merged vertex is chosen. ``"mean"`` adds in order of height, so
+        How the elevation of a merged vertex is chosen. ``"mean"`` adds in order of elevation, so
         that it does not depend on the order of the rows.
     rows_of : (n,) int array, optional
         Their numbers in the caller's input, for the sentence of an error.
@@ -54,24 +54,24 @@ def merge_rows(
     is_kept = kept_row == np.arange(n, dtype=np.int32)
     vertex_at = np.cumsum(is_kept, dtype=np.int32) - np.int32(1)
     vertex_of = vertex_at[kept_row]
-    rows, offsets, vertices = _groups(vertex_of, kept_row, is_kept)
+    rows, offsets, vertices = _group_rows(vertex_of, kept_row, is_kept)
     if policy == "error" and len(rows):
         _refuse(xyz, rows, offsets, rows_of)
     points = xyz[is_kept]
-    heights = _chosen_heights(xyz[rows, 2], offsets, policy)
-    points[vertices, 2] = heights
+    elevations = _choose_elevations(xyz[rows, 2], offsets, policy)
+    points[vertices, 2] = elevations
     account = {
         "merged_vertices": vertices,
         "merged_offsets": offsets,
         "merged_rows": rows,
-        "merged_heights": xyz[rows, 2],
+        "merged_elevations": xyz[rows, 2],
         "merged_shifts": np.hypot(*(xyz[rows, :2] - xyz[kept_row[rows], :2]).T),
-        "vertex_heights": heights,
+        "vertex_elevations": elevations,
     }
     return Merged(points, vertex_of, account)
 
 
-def _groups(
+def _group_rows(
     vertex_of: NDArray[np.int32], kept_row: NDArray[np.int32], is_kept: NDArray[np.bool_]
 ) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]]:
     """Return rows of merged vertices, group after group and ascending within, with offsets."""
@@ -85,37 +85,37 @@ def _groups(
     return rows, offsets, vertices
 
 
-def _chosen_heights(
-    heights: NDArray[np.float64], offsets: NDArray[np.int32], policy: DuplicatePolicy
+def _choose_elevations(
+    elevations: NDArray[np.float64], offsets: NDArray[np.int32], policy: DuplicatePolicy
 ) -> NDArray[np.float64]:
     starts, ends = offsets[:-1], offsets[1:]
     if policy == "first":
-        return heights[starts]
+        return elevations[starts]
     if policy == "last":
-        return heights[ends - 1]
+        return elevations[ends - 1]
     if policy == "lowest":
-        return np.minimum.reduceat(heights, starts)
+        return np.minimum.reduceat(elevations, starts)
     if policy == "highest":
-        return np.maximum.reduceat(heights, starts)
-    return _mean_heights(heights, starts, ends - starts)
+        return np.maximum.reduceat(elevations, starts)
+    return _average_elevations(elevations, starts, ends - starts)
 
 
-def _mean_heights(
-    heights: NDArray[np.float64], starts: NDArray[np.int32], counts: NDArray[np.int32]
+def _average_elevations(
+    elevations: NDArray[np.float64], starts: NDArray[np.int32], counts: NDArray[np.int32]
 ) -> NDArray[np.float64]:
     """Average what lies above the lowest of each group, all made small enough not to overflow."""
     group = np.repeat(np.arange(len(counts)), counts)
-    ascending = heights[np.lexsort((heights, group))]
-    halvings = _needed_halvings(heights, counts)
+    ascending = elevations[np.lexsort((elevations, group))]
+    halvings = _count_halvings(elevations, counts)
     ascending = np.ldexp(ascending, -halvings)
     lowest = ascending[starts]
     excess = np.add.reduceat(ascending - lowest[group], starts) / counts
     return np.asarray(np.ldexp(lowest + excess, halvings), np.float64)
 
 
-def _needed_halvings(heights: NDArray[np.float64], counts: NDArray[np.int32]) -> int:
+def _count_halvings(elevations: NDArray[np.float64], counts: NDArray[np.int32]) -> int:
     """Return how often to halve so that differences and their sums stay finite."""
-    _, size = np.frexp(np.abs(heights).max(initial=0.0))
+    _, size = np.frexp(np.abs(elevations).max(initial=0.0))
     _, most = np.frexp(float(counts.max(initial=1)))
     return max(0, int(size) + int(most) + 1 - np.finfo(np.float64).maxexp)
 
@@ -130,11 +130,11 @@ def _refuse(
     group = rows[offsets[0] : offsets[1]]
     numbers = group if rows_of is None else rows_of[group]
     x, y, _ = xyz[group[0]].tolist()
-    heights = ", ".join(f"{z:g}" for z in xyz[group[:SHOWN], 2])
+    elevations = ", ".join(f"{z:g}" for z in xyz[group[:SHOWN], 2])
     shown = ", ".join(str(row) for row in numbers[:SHOWN])
     raise PointsError(
         f"{surplus} of {len(xyz)} rows repeat the place of another "
         f"(first: rows {shown} at x {x}, y {y} with "
-        f'elevations {heights}): duplicates="error" allows none.',
+        f'elevations {elevations}): duplicates="error" allows none.',
         rows=numbers[:SHOWN],
     )

@@ -53,8 +53,8 @@ class BuildInputs:
         The rings of each region: the outer one, then its islands.
     max_edge : float
         Infinity for none.
-    has_rim : bool
-        Whether some of the lines are edges of the rim of existing triangles.
+    has_own_boundary : bool
+        Whether some of the lines are edges of the boundary of existing triangles.
     """
 
     points: NDArray[np.float64]
@@ -70,7 +70,7 @@ class BuildInputs:
     options: LineOptions
     crs: CRS | None
     elevation_unit: Unit | None = None
-    has_rim: bool = False
+    has_own_boundary: bool = False
     skipped: Mapping[str, int] = field(default_factory=dict)
     notes: Sequence[str] = ()
 
@@ -83,7 +83,7 @@ class BuildInputs:
     @property
     def is_clipped(self) -> bool:
         """Whether only a part of the hull may be the surface."""
-        has_rings = bool(self.boundary or self.extent or self.holes or self.has_rim)
+        has_rings = bool(self.boundary or self.extent or self.holes or self.has_own_boundary)
         return has_rings or bool(np.isfinite(self.max_edge))
 
     def with_lines(self, lines: LineSet) -> BuildInputs:
@@ -96,9 +96,9 @@ class BuildInputs:
         """
         require_length(lines)
         _require_simple_rings(lines)
-        if self.has_rim:
+        if self.has_own_boundary:
             return replace(self, lines=lines)
-        rings = {kind: _rings_of(lines, kind) for kind in ("boundary", "hole")}
+        rings = {kind: _choose_rings(lines, kind) for kind in ("boundary", "hole")}
         corners = iter(rings["hole"])
         return replace(
             self,
@@ -109,7 +109,7 @@ class BuildInputs:
         )
 
 
-def _rings_of(lines: LineSet, kind: str) -> list[NDArray[np.float64]]:
+def _choose_rings(lines: LineSet, kind: str) -> list[NDArray[np.float64]]:
     """Return the rings of a kind, the first corner not repeated."""
     return [
         lines.xy[lines.offsets[line] : lines.offsets[line + 1] - 1]
@@ -146,7 +146,7 @@ def gather_inputs(
     _require_options(duplicates, snap, trim, crossing, max_edge)
     survey = points if isinstance(points, Survey) else None
     own = survey if survey is not None else Survey(points=np.empty((0, 3)))
-    system, unit = _reference(own, CRS.of(crs), Unit.of(z_unit))
+    system, unit = _settle_reference(own, CRS.of(crs), Unit.of(z_unit))
     xyz, is_masked = as_masked_points(
         points.points if isinstance(points, Survey) else points, threads=threads
     )
@@ -163,7 +163,7 @@ def gather_inputs(
     _require_simple_rings(lines)
     rings = gather_rings(outer, "boundary")
     if own.extent:
-        lines = LineSet.joined([lines, gather_extent(own.extent, len(rings))])
+        lines = LineSet.join([lines, gather_extent(own.extent, len(rings))])
     return BuildInputs(
         points=xyz,
         is_masked=is_masked,
@@ -179,11 +179,11 @@ def gather_inputs(
         crs=system,
         elevation_unit=unit,
         skipped=own.skipped,
-        notes=(*own.notes, *_notes_on_rings(outer, inner)),
+        notes=(*own.notes, *_describe_rings(outer, inner)),
     )
 
 
-def _notes_on_rings(boundary: Sequence[Any], holes: Sequence[Any]) -> list[str]:
+def _describe_rings(boundary: Sequence[Any], holes: Sequence[Any]) -> list[str]:
     """Tell where rings close with several elevations."""
     starts = [*starts_with_elevations(boundary, "boundary"), *starts_with_elevations(holes, "hole")]
     if not starts:
@@ -197,7 +197,9 @@ def _notes_on_rings(boundary: Sequence[Any], holes: Sequence[Any]) -> list[str]:
     ]
 
 
-def _reference(own: Survey, crs: CRS | None, unit: Unit | None) -> tuple[CRS | None, Unit | None]:
+def _settle_reference(
+    own: Survey, crs: CRS | None, unit: Unit | None
+) -> tuple[CRS | None, Unit | None]:
     """Return CRS and unit of elevations, which a caller may add to the survey's own, not change."""
     if crs is not None and own.crs is not None and not _adds_to(own.crs, crs):
         raise CrsError(

@@ -1,8 +1,8 @@
-"""The rim of a surface: its edges meet in vertices only, and the surface lies once beside them.
+"""The boundary of a surface: its edges meet in vertices only, the surface lies once beside them.
 
 A plane sweep [1]_ with exact signs. A vertical line moves from west to east over the vertices of
-the rim (leaning by an infinitesimal, so that of two above each other the lower one comes first);
-the edges that it meets are kept from below to above::
+the boundary (leaning by an infinitesimal, so that of two above each other the lower one comes
+first); the edges that it meets are kept from below to above::
 
       |  <--------  3   surface below
       |  --------->  2   surface above       Number 0 must have the surface above it, number 1
@@ -34,13 +34,13 @@ from ..predicates import ORIENTATION_BOUND
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Rim", "RimFault", "find_fault", "sides_of"]
+__all__ = ["Boundary", "BoundaryFault", "find_fault", "find_sides"]
 
-Place = tuple[float, float]
+Point = tuple[float, float]
 
 
-class Rim(NamedTuple):
-    """The directed edges of the rim, the surface on their left.
+class Boundary(NamedTuple):
+    """The directed edges of the boundary, the surface on their left.
 
     Attributes
     ----------
@@ -54,7 +54,7 @@ class Rim(NamedTuple):
     end: NDArray[np.int64]
 
 
-class RimFault(NamedTuple):
+class BoundaryFault(NamedTuple):
     """Where the sweep found a fault; what lies east of it was not looked at.
 
     Attributes
@@ -78,46 +78,46 @@ class _Edge(NamedTuple):
     is_below_surface: bool
 
 
-def find_fault(rim: Rim) -> RimFault | None:
-    """Find the westernmost place where the rim is not what it should be.
+def find_fault(boundary: Boundary) -> BoundaryFault | None:
+    """Find the westernmost place where the boundary is not what it should be.
 
     Time grows with the number k of edges as k log k: some 2 seconds for 100,000.
     """
-    sweep, starting = _Sweep(), _edges_from(rim)
-    x, y = rim.points[:, 0], rim.points[:, 1]
-    vertices = np.unique(rim.start)
+    sweep, starting = _Sweep(), _gather_edges(boundary)
+    x, y = boundary.points[:, 0], boundary.points[:, 1]
+    vertices = np.unique(boundary.start)
     for vertex in vertices[np.lexsort((y[vertices], x[vertices]))].tolist():
-        place = (float(x[vertex]), float(y[vertex]))
-        if place not in starting:
+        point = (float(x[vertex]), float(y[vertex]))
+        if point not in starting:
             continue  # another vertex stands there
-        is_meeting = sweep.pass_place(place, starting.pop(place))
+        is_meeting = sweep.pass_point(point, starting.pop(point))
         if is_meeting is not None:
-            return RimFault(vertex, is_meeting)
+            return BoundaryFault(vertex, is_meeting)
     return None
 
 
-def sides_of(rim: Rim, places: NDArray[np.float64]) -> NDArray[np.int8]:
-    """Tell where (k, 2) places lie: +1 strictly inside the surface, 0 on its rim, -1 outside.
+def find_sides(boundary: Boundary, points: NDArray[np.float64]) -> NDArray[np.int8]:
+    """Tell where (k, 2) places lie: +1 strictly inside the surface, 0 on its boundary, -1 outside.
 
-    The rim must be without faults.
+    The boundary must be without faults.
     """
-    sweep, starting = _Sweep(), _edges_from(rim)
-    corners = np.unique(rim.points[np.unique(rim.start), :2], axis=0)
-    xy = np.concatenate([places[:, :2], corners])
-    sides = np.zeros(len(places), np.int8)
+    sweep, starting = _Sweep(), _gather_edges(boundary)
+    corners = np.unique(boundary.points[np.unique(boundary.start), :2], axis=0)
+    xy = np.concatenate([points[:, :2], corners])
+    sides = np.zeros(len(points), np.int8)
     for number in np.lexsort((xy[:, 1], xy[:, 0])).tolist():
-        place = (float(xy[number, 0]), float(xy[number, 1]))
-        if number < len(places):
-            sides[number] = 0 if place in starting else sweep.side_of(place)
+        point = (float(xy[number, 0]), float(xy[number, 1]))
+        if number < len(points):
+            sides[number] = 0 if point in starting else sweep.side_of(point)
         else:
-            sweep.pass_place(place, starting[place])
+            sweep.pass_point(point, starting[point])
     return sides
 
 
-def _edges_from(rim: Rim) -> dict[Place, list[_Edge]]:
-    """Return the edges that start, seen from the west, at every place of the rim."""
-    a, b = rim.points[rim.start, :2].tolist(), rim.points[rim.end, :2].tolist()
-    edges: defaultdict[Place, list[_Edge]] = defaultdict(list)
+def _gather_edges(boundary: Boundary) -> dict[Point, list[_Edge]]:
+    """Return the edges that start, seen from the west, at every place of the boundary."""
+    a, b = boundary.points[boundary.start, :2].tolist(), boundary.points[boundary.end, :2].tolist()
+    edges: defaultdict[Point, list[_Edge]] = defaultdict(list)
     for (ax, ay), (bx, by) in zip(a, b, strict=True):
         if (ax, ay) < (bx, by):
             edges[ax, ay].append(_Edge(ax, ay, bx, by, is_below_surface=True))
@@ -134,20 +134,20 @@ class _Sweep:
     def __init__(self) -> None:
         self._met: list[_Edge] = []
 
-    def side_of(self, place: Place) -> int:
-        """Tell where a place lies that is no vertex of the rim: as :func:`sides_of`."""
-        low, high = self._through(place)
+    def side_of(self, point: Point) -> int:
+        """Tell where a place lies that is no vertex of the boundary: as :func:`find_sides`."""
+        low, high = self._find_edges_through(point)
         return 0 if high > low else 1 if low % 2 else -1
 
-    def pass_place(self, place: Place, starting: list[_Edge]) -> bool | None:
+    def pass_point(self, point: Point, starting: list[_Edge]) -> bool | None:
         """Exchange the edges that end at a place for those that start; None if all is well.
 
-        Otherwise whether it is a meeting, as in :class:`RimFault`.
+        Otherwise whether it is a meeting, as in :class:`BoundaryFault`.
         """
-        low, high = self._through(place)
-        if any(edge[2:4] != place for edge in self._met[low:high]):
+        low, high = self._find_edges_through(point)
+        if any(edge[2:4] != point for edge in self._met[low:high]):
             return True
-        starting = _from_below(starting)
+        starting = _sort_from_below(starting)
         self._met[low:high] = starting
         top = low + len(starting)
         neighbors = {(low - 1, low), (top - 1, top)} | {(i, i + 1) for i in range(low, top - 1)}
@@ -160,12 +160,12 @@ class _Sweep:
             is_even = not is_even
         return None
 
-    def _through(self, place: Place) -> tuple[int, int]:
+    def _find_edges_through(self, point: Point) -> tuple[int, int]:
         """Return the range of edges that hold the place; those before it lie below."""
-        x, y = place
-        low = bisect_left(self._met, 0, key=lambda edge: -_side(edge, x, y))
+        x, y = point
+        low = bisect_left(self._met, 0, key=lambda edge: -_compare(edge, x, y))
         high = low
-        while high < len(self._met) and _side(self._met[high], x, y) == 0:
+        while high < len(self._met) and _compare(self._met[high], x, y) == 0:
             high += 1
         return low, high
 
@@ -177,21 +177,21 @@ class _Sweep:
         if below[2:4] == above[2:4]:
             return below[:2] != above[:2]
         if below[2:4] < above[2:4]:
-            return _side(above, below.bx, below.by) < 0
-        return _side(below, above.bx, above.by) > 0
+            return _compare(above, below.bx, below.by) < 0
+        return _compare(below, above.bx, above.by) > 0
 
 
-def _from_below(edges: list[_Edge]) -> list[_Edge]:
+def _sort_from_below(edges: list[_Edge]) -> list[_Edge]:
     """Sort edges from one place by the angle under which they leave it."""
     return edges if len(edges) < 2 else sorted(edges, key=cmp_to_key(_turn))
 
 
 def _turn(edge: _Edge, other: _Edge) -> int:
     """Return -1 if the other edge leaves above, +1 below, 0 in the same direction."""
-    return -_side(edge, other.bx, other.by)
+    return -_compare(edge, other.bx, other.by)
 
 
-def _side(edge: _Edge, x: float, y: float) -> int:
+def _compare(edge: _Edge, x: float, y: float) -> int:
     """Return +1 if a place lies above the line of an edge, -1 below, 0 on it."""
     west, south, east, north, _ = edge
     left, right = (west - x) * (north - y), (south - y) * (east - x)

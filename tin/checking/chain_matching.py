@@ -21,7 +21,7 @@ __all__ = ["UNSEEN_CUTS", "Walk", "distance", "walk_along"]
 UNSEEN_CUTS = 16
 """Cuts that are allowed for in a part of a line that is left out."""
 
-Place = list[float]
+Point = list[float]
 Between = tuple[int, int, int]
 """Position of a vertex that is none of its line, and the rows of the line's before and after."""
 Passing = Literal["first", "nearest", "last", "beyond"]
@@ -40,7 +40,7 @@ class Walk(NamedTuple):
         before and after.
     gap_rows : list of int
         Rows of the line's vertices behind which a part is left out.
-    gap_places, gap_lines : lists of places and of int
+    gap_points, gap_lines : lists of points and of int
         Vertices left out and middles between them, and their lines.
     end_vertices, end_lines : lists of int
         Where chains begin or end, but not their line.
@@ -50,7 +50,7 @@ class Walk(NamedTuple):
 
     between: NDArray[np.int64]
     gap_rows: list[int]
-    gap_places: list[Place]
+    gap_points: list[Point]
     gap_lines: list[int]
     end_vertices: list[int]
     end_lines: list[int]
@@ -115,15 +115,15 @@ class _Walker:
     def __init__(
         self,
         vertices: list[int],
-        places: list[Place],
+        points: list[Point],
         given: LineSet,
         snap: float,
         unit: float,
     ) -> None:
         self._vertices = vertices
-        self._places = places
+        self._points = points
         self._xy = given.xy
-        self._given: list[Place] = given.xy.tolist()
+        self._given: list[Point] = given.xy.tolist()
         self._offsets: list[int] = given.offsets.tolist()
         self._snap = snap
         self._unit = unit
@@ -139,23 +139,23 @@ class _Walker:
 
     def follow(self, line: int, chains: list[range]) -> None:
         """Follow the chains of one line."""
-        rows = self._rows_of(line)
+        rows = self._find_rows(line)
         if not chains and self._is_point(rows):
             return
-        courses = self._courses_of(rows, chains)
+        courses = self._find_courses(rows, chains)
         if courses is None:
             self._gaps.lost.append(line)
             return
         at, here = 0, None
         for chain, course in zip(chains, courses, strict=True):
-            if here is not None or not self._is_at(self._places[chain[0]], rows[0]):
+            if here is not None or not self._is_at(self._points[chain[0]], rows[0]):
                 self._pass_gap(line, rows[at : course.begin + 1], here, chain[0])
             self._between += course.between
             at, here = course.end, chain[-1]
         if here is None or at < len(rows) - 1:
             self._pass_gap(line, rows[at:], here, None)
 
-    def _courses_of(self, rows: list[int], chains: list[range]) -> list[_Course] | None:
+    def _find_courses(self, rows: list[int], chains: list[range]) -> list[_Course] | None:
         """Find courses for all chains, as near to the line as cuts allow; None if there are none.
 
         What a chain begins behind, and which vertex within ``snap`` became one of the line's, may
@@ -164,7 +164,7 @@ class _Walker:
         """
         courses: list[_Course] = []
         tried: set[tuple[int, int]] = set()
-        waiting = [self._courses(rows, 0, None, chains[0])] if chains else []
+        waiting = [self._try_courses(rows, 0, None, chains[0])] if chains else []
         while waiting:
             n = len(waiting)
             course = next(waiting[-1], None)
@@ -176,10 +176,10 @@ class _Walker:
                 courses.append(course)
                 if n == len(chains):
                     return courses
-                waiting.append(self._courses(rows, course.end, chains[n - 1][-1], chains[n]))
+                waiting.append(self._try_courses(rows, course.end, chains[n - 1][-1], chains[n]))
         return None if chains else []
 
-    def _rows_of(self, line: int) -> list[int]:
+    def _find_rows(self, line: int) -> list[int]:
         """Return the rows of a line, without repeated places."""
         rows = range(self._offsets[line], self._offsets[line + 1])
         given = self._given
@@ -188,36 +188,40 @@ class _Walker:
     def _is_point(self, rows: list[int]) -> bool:
         """Tell if snapping may have made one place of a line."""
         first = self._given[rows[0]]
-        return all(_far(first, self._given[row]) <= 2 * self._snap for row in rows)
+        return all(_measure_distance(first, self._given[row]) <= 2 * self._snap for row in rows)
 
-    def _is_at(self, place: Place, row: int) -> bool:
+    def _is_at(self, point: Point, row: int) -> bool:
         given = self._given[row]
-        return place == given or (self._snap > 0 and _far(place, given) <= self._snap)
+        return point == given or (self._snap > 0 and _measure_distance(point, given) <= self._snap)
 
-    def _courses(
+    def _try_courses(
         self, rows: list[int], at: int, here: int | None, chain: range
     ) -> Iterator[_Course]:
         """Yield courses of a chain behind ``at``, the likeliest first."""
-        begins = self._entries(rows, at, here, chain)
+        begins = self._find_entries(rows, at, here, chain)
         likely = next(begins, None)
         if likely is None:
             return
-        course = self._run(rows, likely, chain, is_first=here is None)
+        course = self._walk_to_end(rows, likely, chain, is_first=here is None)
         if course.is_close:
             yield course
         ways = [(course.deviation, course.begin, course)]
         for begin in begins:
             for passing in _PASSINGS if self._snap > 0 else _PASSINGS[:1]:
-                course = self._run(rows, begin, chain, is_first=here is None, passing=passing)
+                course = self._walk_to_end(
+                    rows, begin, chain, is_first=here is None, passing=passing
+                )
                 ways.append((course.deviation, course.begin, course))
         ways = [way for way in ways if way[2].is_kept]
         yield from (course for *_, course in sorted(ways, key=itemgetter(0, 1)))
 
-    def _entries(self, rows: list[int], at: int, here: int | None, chain: range) -> Iterator[int]:
+    def _find_entries(
+        self, rows: list[int], at: int, here: int | None, chain: range
+    ) -> Iterator[int]:
         """Yield behind which vertices a chain may begin, the likeliest first, then all."""
         if here is None and self._begins_with(rows, chain):
             yield 0
-        off = self._offsets_from(rows, at, here, chain)
+        off = self._measure_offsets(rows, at, here, chain)
         best = off.min(initial=np.inf)
         allowed = (1 + UNSEEN_CUTS + len(chain)) * self._unit
         if best > allowed:
@@ -226,22 +230,22 @@ class _Walker:
         worst = np.zeros(len(fits))
         if len(fits) > 1:
             worst = np.array(
-                [self._run(rows, n, chain, is_first=False).deviation for n in fits.tolist()]
+                [self._walk_to_end(rows, n, chain, is_first=False).deviation for n in fits.tolist()]
             )
         yield int(fits[np.argmax(worst <= worst.min() + self._unit)])
         yield from (at + np.flatnonzero(off <= allowed)).tolist()
 
-    def _offsets_from(
+    def _measure_offsets(
         self, rows: list[int], at: int, here: int | None, chain: range
     ) -> NDArray[np.float64]:
         """Return how far from each segment a chain's first step is; inf if it goes back there."""
-        first, second = (np.array([self._places[position]]) for position in chain[:2])
+        first, second = (np.array([self._points[position]]) for position in chain[:2])
         a, b = self._xy[rows[at:-1]], self._xy[rows[at + 1 :]]
         off = np.maximum(distance(first, a, b), distance(second, a, b))
-        begin, end = _along(first, a, b), _along(second, a, b)
+        begin, end = _project(first, a, b), _project(second, a, b)
         off[end < begin - self._unit] = np.inf
         if here is not None and len(begin):  # not behind the end of the chain before; both may move
-            passed = _along(np.array(self._places[here]), a[:1], b[:1]) - 2 * self._unit
+            passed = _project(np.array(self._points[here]), a[:1], b[:1]) - 2 * self._unit
             off[:1][begin[:1] < passed] = np.inf
         return off
 
@@ -250,18 +254,18 @@ class _Walker:
     ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64]]:
         """Return how far vertices are off their line, and back of the one before; its rows."""
         positions, before, after = np.array(between, np.int64).reshape(-1, 3).T
-        places = np.array([self._places[position] for position in positions]).reshape(-1, 2)
+        points = np.array([self._points[position] for position in positions]).reshape(-1, 2)
         a, b = self._xy[before], self._xy[after]
         back = np.zeros(len(before))
-        back[1:] = np.where(np.diff(before) == 0, -np.diff(_along(places, a, b)), 0.0)
-        return distance(places, a, b), back, before
+        back[1:] = np.where(np.diff(before) == 0, -np.diff(_project(points, a, b)), 0.0)
+        return distance(points, a, b), back, before
 
     def _begins_with(self, rows: list[int], chain: range) -> bool:
         """Tell if a chain begins where its line does, and in the same direction."""
-        if not self._is_at(self._places[chain[0]], rows[0]):
+        if not self._is_at(self._points[chain[0]], rows[0]):
             return False
         (ax, ay), (bx, by) = self._given[rows[0]], self._given[rows[1]]
-        x, y = self._places[chain[1]]
+        x, y = self._points[chain[1]]
         across = (bx - ax) * (y - ay) - (by - ay) * (x - ax)
         is_ahead = (bx - ax) * (x - ax) + (by - ay) * (y - ay) > 0
         # m vertices between two of the line's are within m + 1 units (see check_given); the chain
@@ -270,7 +274,7 @@ class _Walker:
         allowed = len(chain) * self._unit
         return is_ahead and abs(across) <= allowed * hypot(bx - ax, by - ay)
 
-    def _run(
+    def _walk_to_end(
         self,
         rows: list[int],
         begin: int,
@@ -285,7 +289,7 @@ class _Walker:
         row = before - rows[begin]
         cuts = np.bincount(row, minlength=rows[end] - rows[begin] + 1)
         unseen = np.zeros_like(cuts)
-        if not (is_first and self._is_at(self._places[chain[0]], rows[0])):
+        if not (is_first and self._is_at(self._points[chain[0]], rows[0])):
             unseen[0] = UNSEEN_CUTS
         if end < len(rows) - 1:
             unseen[-1] = UNSEEN_CUTS
@@ -299,11 +303,11 @@ class _Walker:
         self, rows: list[int], at: int, chain: range, *, passing: Passing
     ) -> tuple[int, list[Between]]:
         """Return what a chain passes last of its line's own vertices, and what lies between."""
-        places, last = self._places, len(rows) - 1
-        is_passed = self._is_at(places[chain[0]], rows[at])
+        points, last = self._points, len(rows) - 1
+        is_passed = self._is_at(points[chain[0]], rows[at])
         between = []
         for position in chain:
-            while at < last and self._is_at(places[position], rows[at + 1]):
+            while at < last and self._is_at(points[position], rows[at + 1]):
                 if self._is_later(position, chain[-1], rows[at + 1], passing):
                     break
                 at, is_passed = at + 1, True
@@ -317,14 +321,16 @@ class _Walker:
         """Tell if one of the line's vertices is to be passed behind this one of the chain."""
         if position == end:
             return passing == "beyond"
-        given, after = self._given[row], self._places[position + 1]
+        given, after = self._given[row], self._points[position + 1]
         if passing == "nearest":
-            return _far(after, given) < _far(self._places[position], given)
+            return _measure_distance(after, given) < _measure_distance(
+                self._points[position], given
+            )
         return passing in ("last", "beyond") and self._is_at(after, row)
 
     def _pass_gap(self, line: int, rows: Sequence[int], here: int | None, then: int | None) -> None:
         """Note the part of a line from one chain to the next, or from or to its ends."""
-        ends = [self._places[position] for position in (here, then) if position is not None]
+        ends = [self._points[position] for position in (here, then) if position is not None]
         left_out = list(rows[here is not None :])
         while left_out and here is not None and self._is_at(ends[0], left_out[0]):
             del left_out[0]
@@ -336,12 +342,12 @@ class _Walker:
             return
         gaps = self._gaps
         gaps.gap_rows.extend(rows)
-        places = [
+        points = [
             *(self._given[row] for row in left_out),
             *([p[0] / 2 + q[0] / 2, p[1] / 2 + q[1] / 2] for p, q in pairwise(nodes)),
         ]
-        gaps.gap_places.extend(places)
-        gaps.gap_lines.extend([line] * len(places))
+        gaps.gap_points.extend(points)
+        gaps.gap_lines.extend([line] * len(points))
         for position in (here, then):
             if position is not None:
                 gaps.end_vertices.append(self._vertices[position])
@@ -351,11 +357,11 @@ class _Walker:
 # -------------------------------------------------------------------- measures
 
 
-def _far(p: Place, q: Place) -> float:
+def _measure_distance(p: Point, q: Point) -> float:
     return hypot(p[0] - q[0], p[1] - q[1])
 
 
-def _along(
+def _project(
     p: NDArray[np.float64], a: NDArray[np.float64], b: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Return how far along the segments a-b the feet of p are."""

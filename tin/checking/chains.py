@@ -1,4 +1,4 @@
-"""Levels 1 and 3 of a check: the chains of lines are sound, and all of their steps are edges."""
+"""Levels 1 and 3 of a check: the chains of lines are sound, and all of their segments are edges."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from ..surface import TIN
     from .findings import Findings
 
-__all__ = ["check_chains", "check_steps", "has_sound_chains"]
+__all__ = ["check_chains", "check_segments", "has_sound_chains"]
 
 
 def has_sound_chains(found: Findings) -> bool:
@@ -60,7 +60,7 @@ def _check_labels(tin: TIN, found: Findings) -> None:
 
 
 def _check_ranges(tin: TIN, found: Findings) -> None:
-    """Check that chains cover the vertices, in range, and that every step leads on."""
+    """Check that chains cover the vertices, in range, and that every segment leads on."""
     vertices, offsets, n = tin.lines.vertices, tin.lines.offsets.astype(np.int64), len(tin.points)
     if offsets[0] != 0 or offsets[-1] != len(vertices):
         found.fail(
@@ -83,32 +83,32 @@ def _check_ranges(tin: TIN, found: Findings) -> None:
         "(first: [entry|entries] {first}).",
     )
     if not (is_short.any() or is_wrong.any()):
-        start, end = tin.lines.steps().T
+        start, end = tin.lines.segments().T
         found.report(
             "chains",
             np.flatnonzero(start == end),
-            "{count} [step of chains stays at its|steps of chains stay at their] vertex "
-            "(first: [step|steps] {first}).",
+            "{count} [segment of chains stays at its|segments of chains stay at their] vertex "
+            "(first: [segment|segments] {first}).",
         )
 
 
-def check_steps(tin: TIN, found: Findings) -> None:
-    """Check that every step is a constrained edge, and every constrained inner edge a step."""
+def check_segments(tin: TIN, found: Findings) -> None:
+    """Check that segments are constrained edges, and constrained inner edges segments."""
     triangle, corner = np.nonzero(tin.constrained)
     edges = edge_keys(edges_at(tin.triangles, tin.constrained), len(tin.points))
-    steps = edge_keys(tin.lines.steps(), len(tin.points))
-    chain = tin.lines.step_chains()
+    segments = edge_keys(tin.lines.segments(), len(tin.points))
+    chain = tin.lines.segment_chains()
     found.report(
         "lines",
-        np.unique(chain[~np.isin(steps, edges)]),
-        "{count} [chain has|chains have] steps that are no constrained edges of the surface "
+        np.unique(chain[~np.isin(segments, edges)]),
+        "{count} [chain has|chains have] segments that are no constrained edges of the surface "
         "(first: [chain|chains] {first}).",
     )
     is_once = tin.neighbors[triangle, corner] > triangle
     tell = found.report if len(tin.lines) else found.note
     tell(
         "lines",
-        triangle[is_once][~np.isin(edges[is_once], steps)],
+        triangle[is_once][~np.isin(edges[is_once], segments)],
         "{count} [constrained edge|constrained edges] inside the surface [belongs|belong] to no "
         "line "
         "that is known (first: [triangle|triangles] {first}).",

@@ -2,21 +2,21 @@
 
 Why levels 1 to 3 together are a proof. Take a place on no edge and count the triangles over it. If
 all triangles are counter-clockwise (level 2) and every inner edge has two of them, which walk it in
-opposite directions (level 1), then the count is the number of times that the rim winds about the
-place: inner edges cancel out. Level 2 shows that this is 1 inside the rim and 0 outside, in one of
-two ways:
+opposite directions (level 1), then the count is the number of times that the boundary winds about
+the place: inner edges cancel out. Level 2 shows that this is 1 inside the boundary and 0 outside,
+in one of two ways:
 
-- The rim is one convex ring that turns round once.
-- Else a sweep shows that edges of the rim meet in vertices only, and that a line from below to
-  above goes in and out of the surface in turn (:mod:`.check_rim`). As the number is 0 below
+- The boundary is one convex ring that turns round once.
+- Else a sweep shows that edges of the boundary meet in vertices only, and that a line from below to
+  above goes in and out of the surface in turn (:mod:`.boundary_sweep`). As the number is 0 below
   everything, it is then 0 and 1 in turn.
 
-So the triangles tile what the rim encloses, with no gap or overlap. That areas add up follows;
+So the triangles tile what the boundary encloses, with no gap or overlap. That areas add up follows;
 their comparison is a test of the check itself, and no part of the proof.
 
 A triangulation of a convex region whose every edge passes the in-circle test (level 3) is Delaunay.
-If edges are constrained, those of a rim that is not convex included, and every other edge passes,
-it is the constrained Delaunay triangulation of the surface [1]_.
+If edges are constrained, those of a boundary that is not convex included, and every other edge
+passes, it is the constrained Delaunay triangulation of the surface [1]_.
 
 References
 ----------
@@ -34,12 +34,12 @@ from ..constraints.constraint_set import as_sequence, gather_lines
 from ..survey import Survey
 from ..validation.options import as_flag, is_whole_number, require_tin
 from ..validation.points import as_masked_points
-from .chains import check_chains, check_steps, has_sound_chains
+from .chains import check_chains, check_segments, has_sound_chains
 from .connections import check_arrays, check_connections
 from .delaunay import check_delaunay
 from .findings import Findings, Problem
 from .inputs import check_given_lines, check_rows
-from .shape import check_shape, has_sound_rim
+from .shape import check_shape, has_sound_boundary
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -123,8 +123,8 @@ class CheckResult:
         return {
             "ok": self.ok,
             "level": self.level,
-            "problems": [_plain(problem) for problem in self.problems],
-            "notes": [_plain(note) for note in self.notes],
+            "problems": [_as_plain(problem) for problem in self.problems],
+            "notes": [_as_plain(note) for note in self.notes],
             "counts": dict(self.counts),
         }
 
@@ -134,7 +134,7 @@ class CheckResult:
         return f"<CheckResult: level {self.level}, {verdict}>"
 
 
-def _plain(problem: Problem) -> dict[str, Any]:
+def _as_plain(problem: Problem) -> dict[str, Any]:
     return asdict(problem) | {"first": list(problem.first)}
 
 
@@ -157,8 +157,8 @@ def check(
         also, triangles are counter-clockwise, the Euler count fits, the boundary is one convex
         ring (collinear points allowed; a constrained boundary may have any shape), no part of the
         surface lies over another. 3: also, every edge that is not constrained is Delaunay, every
-        step of a line is a constrained edge and every constrained edge inside a step, and what is
-        given as ``points`` and ``breaklines`` is present.
+        segment of a line is a constrained edge and every constrained edge inside a segment, and
+        what is given as ``points`` and ``breaklines`` is present.
     points : Survey or (n, 3) array, optional
         The rows that the TIN was made of, to be found again at level 3 within the TIN's own
         ``report.snap``, and a survey's lines: as chains with the same vertices in the same order,
@@ -197,7 +197,7 @@ def check(
         raise OptionError("level", level, "1, 2 or 3")
     require_tin(tin)
     is_conforming = as_flag("conforming", conforming)
-    rows, lines = _rows_of(points), _lines_of(points, breaklines)
+    rows, lines = _as_rows(points), _as_lines(points, breaklines)
     found = Findings()
     if check_arrays(tin, found) and check_connections(tin, found):
         check_chains(tin, found)
@@ -213,13 +213,13 @@ def check(
     return CheckResult(level, tuple(found.problems), tuple(found.notes), found.counts)
 
 
-def _rows_of(points: Survey | ArrayLike | None) -> NDArray[np.float64] | None:
+def _as_rows(points: Survey | ArrayLike | None) -> NDArray[np.float64] | None:
     if points is None:
         return None
     return as_masked_points(points.points if isinstance(points, Survey) else points).values
 
 
-def _lines_of(
+def _as_lines(
     points: Survey | ArrayLike | None, breaklines: Sequence[Breakline | ArrayLike]
 ) -> LineSet:
     own = points.breaklines if isinstance(points, Survey) else ()
@@ -234,8 +234,8 @@ def _check_given(
 ) -> None:
     """Check lines and rows, as far as the surface is fit to be asked about them."""
     if has_sound_chains(found):
-        check_steps(tin, found)
-        if lines.kinds and has_sound_rim(found):
+        check_segments(tin, found)
+        if lines.kinds and has_sound_boundary(found):
             check_given_lines(tin, lines, found)
     if rows is not None:
         check_rows(tin, rows, found)

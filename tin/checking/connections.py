@@ -79,7 +79,7 @@ def _check_coordinates(points: NDArray[np.float64], found: Findings) -> None:
 
 def _check_ranges(tin: TIN, found: Findings) -> None:
     n_vertices, n_triangles = len(tin.points), len(tin.triangles)
-    is_left_out = _left_out(tin, found)
+    is_left_out = _check_left_out(tin, found)
     ranges = (
         ("triangles", "[triangle|triangles]", tin.triangles, 0, n_vertices),
         ("neighbors", "[triangle|triangles]", tin.neighbors, topology.NO_NEIGHBOR, n_triangles),
@@ -101,7 +101,7 @@ def _check_ranges(tin: TIN, found: Findings) -> None:
         )
 
 
-def _left_out(tin: TIN, found: Findings) -> NDArray[np.bool_]:
+def _check_left_out(tin: TIN, found: Findings) -> NDArray[np.bool_]:
     """Check the report's rows without a vertex; tell which they are."""
     rows, why = np.asarray(tin.report.left_out_rows), np.asarray(tin.report.left_out_why)
     is_left_out = np.zeros(len(tin.vertex_of), np.bool_)
@@ -139,7 +139,7 @@ def check_connections(tin: TIN, found: Findings) -> bool:
         "{count} [triangle uses|triangles use] a vertex twice "
         "(first: [triangle|triangles] {first}).",
     )
-    lonely, unequal = _one_sided(tin)
+    lonely, unequal = _find_one_sided(tin)
     found.report(
         "neighbors",
         np.flatnonzero(lonely),
@@ -167,7 +167,7 @@ def check_connections(tin: TIN, found: Findings) -> bool:
     return is_reliable
 
 
-def _one_sided(tin: TIN) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+def _find_one_sided(tin: TIN) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Find triangles with a neighbour that is not one in return, and with flags that differ."""
     count = len(tin.triangles)
     lonely, unequal = np.zeros(count, np.bool_), np.zeros(count, np.bool_)
@@ -175,14 +175,14 @@ def _one_sided(tin: TIN) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
         own = np.arange(block.start, block.stop)
         for corner in range(3):
             across = tin.neighbors[block, corner]
-            is_met, is_flagged = _seen_from_across(tin, own, across, corner)
+            is_met, is_flagged = _look_back(tin, own, across, corner)
             is_inner = across != topology.NO_NEIGHBOR
             lonely[block] |= is_inner & ~is_met
             unequal[block] |= is_inner & is_met & (is_flagged != tin.constrained[block, corner])
     return lonely, unequal
 
 
-def _seen_from_across(
+def _look_back(
     tin: TIN, own: NDArray[np.int64], across: NDArray[np.int32], corner: int
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Look back over the edge opposite ``corner``: tell if it is met, and if flagged, there."""
@@ -205,14 +205,16 @@ def _seen_from_across(
 def _count_edges(tin: TIN, found: Findings) -> None:
     """Count edges; two pairs of triangles at one edge show as an edge that comes twice."""
     first = np.arange(len(tin.triangles))[:, None]
-    is_rim = tin.neighbors == topology.NO_NEIGHBOR
-    edges = topology.edges_at(tin.triangles, is_rim | (tin.neighbors > first))
+    is_boundary = tin.neighbors == topology.NO_NEIGHBOR
+    edges = topology.edges_at(tin.triangles, is_boundary | (tin.neighbors > first))
     keys = topology.edge_keys(edges, len(tin.points))
     keys.sort()
     found.counts["edges"] = len(keys)
-    found.counts["boundary_edges"] = int(np.count_nonzero(is_rim))
-    inner = np.count_nonzero(tin.constrained & ~is_rim)
-    found.counts["constrained_edges"] = int(inner // 2 + np.count_nonzero(tin.constrained & is_rim))
+    found.counts["boundary_edges"] = int(np.count_nonzero(is_boundary))
+    inner = np.count_nonzero(tin.constrained & ~is_boundary)
+    found.counts["constrained_edges"] = int(
+        inner // 2 + np.count_nonzero(tin.constrained & is_boundary)
+    )
     found.report(
         "edge",
         np.unique(keys[1:][keys[1:] == keys[:-1]] // len(tin.points)),

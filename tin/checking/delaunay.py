@@ -24,7 +24,7 @@ def check_delaunay(tin: TIN, found: Findings, *, conforming: bool = False) -> No
     wrong, against_rule = [], []
     n_ties = 0
     for block in blocks(len(tin.triangles)):
-        triangle, *quad = _quads(tin, block, conforming)
+        triangle, *quad = _gather_quadrilaterals(tin, block, conforming)
         side = in_circle(xy, *quad)
         tied = np.flatnonzero(side == 0)
         n_ties += len(tied)
@@ -49,7 +49,9 @@ def check_delaunay(tin: TIN, found: Findings, *, conforming: bool = False) -> No
     found.counts["ties_against_rule"] = sum(len(triangles) for triangles in against_rule)
 
 
-def _quads(tin: TIN, block: slice, conforming: bool) -> tuple[NDArray[np.int64], ...]:
+def _gather_quadrilaterals(
+    tin: TIN, block: slice, conforming: bool
+) -> tuple[NDArray[np.int64], ...]:
     """Return triangle, its corners from the one opposite an inner edge, and the far corner.
 
     Every edge comes once, and only if both triangles are counter-clockwise does its sign mean

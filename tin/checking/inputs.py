@@ -10,7 +10,7 @@ vertices between two vertices of the line. Allowed are m + 1 units.
 
 Of a part of a line that is left out, outside the surface or in water, the number of cuts is not
 known: 16 more are allowed for, where that matters. It must lie outside the surface or in water, by
-its vertices and the middles between them, and the chain must end at the rim or at water.
+its vertices and the middles between them, and the chain must end at the boundary or at water.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..report import LEFT_OUT
-from .boundary_sweep import sides_of
+from .boundary_sweep import find_sides
 from .chain_matching import UNSEEN_CUTS, Walk, distance, walk_along
-from .shape import has_sound_rim, rim_of
+from .shape import find_boundary, has_sound_boundary
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -60,11 +60,11 @@ def check_rows(tin: TIN, rows: NDArray[np.float64], found: Findings) -> None:
         "{count} [row is not where its|rows are not where their] vertex is, "
         f"within snap {tin.report.snap:g} (first: [row|rows] {{first}}).",
     )
-    if not has_sound_rim(found):
+    if not has_sound_boundary(found):
         return
     codes = [LEFT_OUT.index(reason) for reason in _OUTSIDE]
     outside = tin.report.left_out_rows[np.isin(tin.report.left_out_why, codes)]
-    slack = (1 + UNSEEN_CUTS) * _unit(tin, rows)
+    slack = (1 + UNSEEN_CUTS) * _measure_unit(tin, rows)
     found.report(
         "rows",
         outside[_is_inside(tin, rows[outside, :2], slack)],
@@ -79,13 +79,13 @@ def check_given_lines(tin: TIN, given: LineSet, found: Findings) -> None:
     Parameters
     ----------
     tin : TIN
-        Chains and rim sound.
+        Chains and boundary sound.
     given : LineSet
-        Lines as the caller gave them, draped ones without heights. Chains of further lines are
+        Lines as the caller gave them, draped ones without elevations. Chains of further lines are
         not looked at.
     """
     xy, snap = tin.points[:, :2], tin.report.snap
-    unit = _unit(tin, given.xy)
+    unit = _measure_unit(tin, given.xy)
     walk = walk_along(xy, tin.lines, given, snap=snap * (1 + _ROUNDING), unit=unit)
     found.report(
         "lines",
@@ -99,7 +99,7 @@ def check_given_lines(tin: TIN, given: LineSet, found: Findings) -> None:
     _check_ends(tin, given, walk, slack, found)
 
 
-def _unit(tin: TIN, xy: NDArray[np.float64]) -> float:
+def _measure_unit(tin: TIN, xy: NDArray[np.float64]) -> float:
     """Return by how much one cut may move a line."""
     largest = max(np.abs(tin.points[:, :2]).max(), np.abs(xy[:, :2]).max(initial=0.0))
     return float(tin.report.snap + _UNITS_OF_ROUNDING * np.spacing(largest))
@@ -131,9 +131,9 @@ def _check_course(
 
 def _check_gaps(tin: TIN, given: LineSet, walk: Walk, slack: float, found: Findings) -> None:
     """Check that what is left out of lines lies outside the surface or in water."""
-    places = np.array(walk.gap_places, np.float64).reshape(-1, 2)
-    is_wrong = _is_inside(tin, places, slack)
-    is_wrong[is_wrong] = ~_is_in_water(places[is_wrong], given, slack)
+    points = np.array(walk.gap_points, np.float64).reshape(-1, 2)
+    is_wrong = _is_inside(tin, points, slack)
+    is_wrong[is_wrong] = ~_is_in_water(points[is_wrong], given, slack)
     found.report(
         "lines",
         np.unique(np.array(walk.gap_lines, np.int64)[is_wrong]),
@@ -143,14 +143,14 @@ def _check_gaps(tin: TIN, given: LineSet, walk: Walk, slack: float, found: Findi
 
 
 def _check_ends(tin: TIN, given: LineSet, walk: Walk, slack: float, found: Findings) -> None:
-    """Check that chains end with their line, at the rim or at water."""
+    """Check that chains end with their line, at the boundary or at water."""
     vertices = np.array(walk.end_vertices, np.int64)
     is_wet = np.repeat([kind == "water" for kind in tin.lines.kinds], np.diff(tin.lines.offsets))
     shore = tin.lines.vertices[is_wet.astype(np.bool_)]
-    loose = np.flatnonzero(~np.isin(vertices, np.append(rim_of(tin).start, shore)))
-    places = tin.points[vertices[loose], :2]
-    is_wrong = _is_inside(tin, places, slack)
-    is_wrong[is_wrong] = ~_is_in_water(places[is_wrong], given, slack)
+    loose = np.flatnonzero(~np.isin(vertices, np.append(find_boundary(tin).start, shore)))
+    points = tin.points[vertices[loose], :2]
+    is_wrong = _is_inside(tin, points, slack)
+    is_wrong[is_wrong] = ~_is_in_water(points[is_wrong], given, slack)
     found.report(
         "lines",
         np.unique(np.array(walk.end_lines, np.int64)[loose[is_wrong]]),
@@ -159,36 +159,36 @@ def _check_ends(tin: TIN, given: LineSet, walk: Walk, slack: float, found: Findi
     )
 
 
-def _is_inside(tin: TIN, places: NDArray[np.float64], slack: float) -> NDArray[np.bool_]:
-    """Tell which places lie inside the surface, further than ``slack`` from its rim."""
+def _is_inside(tin: TIN, points: NDArray[np.float64], slack: float) -> NDArray[np.bool_]:
+    """Tell which places lie inside the surface, further than ``slack`` from its boundary."""
     low, high = tin.points[:, :2].min(axis=0), tin.points[:, :2].max(axis=0)
-    candidates = np.flatnonzero(((places > low) & (places < high)).all(axis=1))
-    is_inside = np.zeros(len(places), np.bool_)
+    candidates = np.flatnonzero(((points > low) & (points < high)).all(axis=1))
+    is_inside = np.zeros(len(points), np.bool_)
     if len(candidates):
-        rim = rim_of(tin)
-        a, b = rim.points[rim.start, :2], rim.points[rim.end, :2]
-        for number in candidates[sides_of(rim, places[candidates]) > 0]:
-            is_inside[number] = distance(places[number], a, b).min() > slack
+        boundary = find_boundary(tin)
+        a, b = boundary.points[boundary.start, :2], boundary.points[boundary.end, :2]
+        for number in candidates[find_sides(boundary, points[candidates]) > 0]:
+            is_inside[number] = distance(points[number], a, b).min() > slack
     return is_inside
 
 
-def _is_in_water(places: NDArray[np.float64], given: LineSet, slack: float) -> NDArray[np.bool_]:
+def _is_in_water(points: NDArray[np.float64], given: LineSet, slack: float) -> NDArray[np.bool_]:
     """Tell which places lie in water, or within ``slack`` of its shore."""
     shores = [
         given.xy[given.offsets[line] : given.offsets[line + 1]]
         for line, kind in enumerate(given.kinds)
         if kind == "water"
     ]
-    in_water = [any(_is_in_ring(place, shore, slack) for shore in shores) for place in places]
+    in_water = [any(_is_in_ring(point, shore, slack) for shore in shores) for point in points]
     return np.array(in_water, np.bool_)
 
 
-def _is_in_ring(place: NDArray[np.float64], ring: NDArray[np.float64], slack: float) -> bool:
+def _is_in_ring(point: NDArray[np.float64], ring: NDArray[np.float64], slack: float) -> bool:
     """Tell if a place lies in a closed ring, or nearly."""
     a, b = ring[:-1], ring[1:]
-    if distance(place, a, b).min() <= slack:
+    if distance(point, a, b).min() <= slack:
         return True
-    spans = (a[:, 1] <= place[1]) != (b[:, 1] <= place[1])
+    spans = (a[:, 1] <= point[1]) != (b[:, 1] <= point[1])
     a, b = a[spans], b[spans]
-    crossing = a[:, 0] + (place[1] - a[:, 1]) * (b[:, 0] - a[:, 0]) / (b[:, 1] - a[:, 1])
-    return bool(np.count_nonzero(crossing > place[0]) % 2)
+    crossing = a[:, 0] + (point[1] - a[:, 1]) * (b[:, 0] - a[:, 0]) / (b[:, 1] - a[:, 1])
+    return bool(np.count_nonzero(crossing > point[0]) % 2)

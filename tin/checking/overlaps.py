@@ -14,8 +14,8 @@ import numpy as np
 from ..._sentences import inflect
 from ..predicates import Columns, columns, is_last, orientation
 from ..topology import NO_NEIGHBOR
-from .boundary_sweep import Rim, find_fault
-from .shape import rim_of
+from .boundary_sweep import Boundary, find_fault
+from .shape import find_boundary
 
 if TYPE_CHECKING:
     from ..surface import TIN
@@ -48,18 +48,22 @@ def describe_overlaps(tin: TIN) -> list[str]:
     >>> describe_overlaps(TIN.from_triangles(points, [[0, 1, 2], [3, 4, 5]]))[0]
     'Triangles overlap (westernmost place: near vertex 3); a check tells more.'
     """
-    return [*_overlaps(rim_of(tin), tin), *_unused(tin), *_one_sided(tin)]
+    return [
+        *_describe_overlaps(find_boundary(tin), tin),
+        *_describe_unused(tin),
+        *_describe_one_sided(tin),
+    ]
 
 
-def _overlaps(rim: Rim, tin: TIN) -> list[str]:
-    if _is_convex(columns(tin.points), rim):
+def _describe_overlaps(boundary: Boundary, tin: TIN) -> list[str]:
+    if _is_convex(columns(tin.points), boundary):
         return []
-    if len(rim.start) > _MOST_EDGES:
+    if len(boundary.start) > _MOST_EDGES:
         return [
-            f"The boundary has {len(rim.start):,} edges: whether triangles overlap was not looked "
-            "at; a check tells."
+            f"The boundary has {len(boundary.start):,} edges: whether triangles overlap was not "
+            "looked at; a check tells."
         ]
-    fault = find_fault(rim)
+    fault = find_fault(boundary)
     if fault is None:
         return []
     return [
@@ -67,19 +71,21 @@ def _overlaps(rim: Rim, tin: TIN) -> list[str]:
     ]
 
 
-def _is_convex(xy: Columns, rim: Rim) -> bool:
+def _is_convex(xy: Columns, boundary: Boundary) -> bool:
     """Whether the boundary is one ring that never turns right and goes round once."""
-    order = np.argsort(rim.start)
-    start = rim.start[order]
+    order = np.argsort(boundary.start)
+    start = boundary.start[order]
     if (start[1:] == start[:-1]).any():  # rings touch
         return False
-    following = order[np.searchsorted(start, rim.end)]
-    turns = orientation(xy, rim.start, rim.end, rim.end[following])
-    is_extreme = is_last(xy, rim.end, rim.start) & is_last(xy, rim.end, rim.end[following])
+    following = order[np.searchsorted(start, boundary.end)]
+    turns = orientation(xy, boundary.start, boundary.end, boundary.end[following])
+    is_extreme = is_last(xy, boundary.end, boundary.start) & is_last(
+        xy, boundary.end, boundary.end[following]
+    )
     return bool((turns >= 0).all() and np.count_nonzero(is_extreme) == 1)
 
 
-def _unused(tin: TIN) -> list[str]:
+def _describe_unused(tin: TIN) -> list[str]:
     is_used = np.zeros(len(tin.points), np.bool_)
     is_used[tin.triangles] = True
     count = len(is_used) - int(np.count_nonzero(is_used))
@@ -91,7 +97,7 @@ def _unused(tin: TIN) -> list[str]:
     return [f"{count:,} {inflect(sentence, count)}"]
 
 
-def _one_sided(tin: TIN) -> list[str]:
+def _describe_one_sided(tin: TIN) -> list[str]:
     triangle, corner = np.nonzero(tin.constrained)
     across = tin.neighbors[triangle, corner]
     inner = across != NO_NEIGHBOR

@@ -8,7 +8,7 @@ import numpy as np
 
 from .. import topology
 from ..predicates import Columns, columns, is_last, orientation
-from .boundary_sweep import Rim, find_fault
+from .boundary_sweep import Boundary, find_fault
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -16,13 +16,13 @@ if TYPE_CHECKING:
     from ..surface import TIN
     from .findings import Findings
 
-__all__ = ["check_shape", "has_sound_rim", "rim_of"]
+__all__ = ["check_shape", "find_boundary", "has_sound_boundary"]
 
 _UNIT_ROUNDOFF = 2.0**-53
 
 
 def check_shape(tin: TIN, found: Findings) -> None:
-    """Check turns, rim, overlaps, Euler count and areas."""
+    """Check turns, boundary, overlaps, Euler count and areas."""
     xy = columns(tin.points)
     clockwise = np.flatnonzero(orientation(xy, *tin.triangles.T) <= 0)
     found.report(
@@ -36,7 +36,7 @@ def check_shape(tin: TIN, found: Findings) -> None:
     if not rings:
         found.fail("boundary", "The surface has no boundary: it closes upon itself.")
         return
-    is_convex, is_free = _check_rim(tin, xy, rings, found)
+    is_convex, is_free = _check_boundary(tin, xy, rings, found)
     if not (is_convex or len(clockwise)):
         _check_overlaps(tin, found)
     if is_free and len(rings) > 1:
@@ -48,7 +48,7 @@ def check_shape(tin: TIN, found: Findings) -> None:
     _check_areas(tin, rings, found)
 
 
-def _check_rim(
+def _check_boundary(
     tin: TIN, xy: Columns, rings: list[NDArray[np.int32]], found: Findings
 ) -> tuple[bool, bool]:
     """Check that the boundary is convex where it is not constrained.
@@ -58,8 +58,8 @@ def _check_rim(
     here = np.concatenate(rings)
     before = np.concatenate([np.roll(ring, 1) for ring in rings])
     after = np.concatenate([np.roll(ring, -1) for ring in rings])
-    is_constrained = _flags_on_rim(tin, here, after)
-    came_constrained = _flags_on_rim(tin, before, here)
+    is_constrained = _get_boundary_flags(tin, here, after)
+    came_constrained = _get_boundary_flags(tin, before, here)
     is_reflex = orientation(xy, before, here, after) < 0
     is_allowed = is_constrained & came_constrained
     found.report(
@@ -74,22 +74,22 @@ def _check_rim(
     return len(rings) == 1 and not is_reflex.any(), not is_constrained.all()
 
 
-def has_sound_rim(found: Findings) -> bool:
+def has_sound_boundary(found: Findings) -> bool:
     """Tell whether a level 2 without faults says which places lie inside the surface."""
     faults = {"orientation", "boundary", "hull", "overlap"}
     return faults.isdisjoint(problem.kind for problem in found.problems)
 
 
-def rim_of(tin: TIN) -> Rim:
+def find_boundary(tin: TIN) -> Boundary:
     """Return the edges with a triangle on one side only."""
     triangle, corner = np.nonzero(tin.neighbors == topology.NO_NEIGHBOR)
     start, end = topology.ends(tin.triangles, triangle, corner)
-    return Rim(tin.points, start, end)
+    return Boundary(tin.points, start, end)
 
 
 def _check_overlaps(tin: TIN, found: Findings) -> None:
-    """Check that the rim meets itself in vertices only, with the surface on one side of it."""
-    fault = find_fault(rim_of(tin))
+    """Check that the boundary meets itself in vertices only, with the surface on one side of it."""
+    fault = find_fault(find_boundary(tin))
     if fault is not None:
         what = (
             "The boundary crosses or overlaps itself, or runs through a vertex of itself"
@@ -99,11 +99,13 @@ def _check_overlaps(tin: TIN, found: Findings) -> None:
         found.report("overlap", [fault.vertex], f"{what} (westernmost: near vertex {{first}}).")
 
 
-def _flags_on_rim(tin: TIN, start: NDArray[np.int32], end: NDArray[np.int32]) -> NDArray[np.bool_]:
+def _get_boundary_flags(
+    tin: TIN, start: NDArray[np.int32], end: NDArray[np.int32]
+) -> NDArray[np.bool_]:
     """Return whether the boundary edges from ``start`` to ``end`` are constrained."""
     triangle, corner = np.nonzero(tin.neighbors == topology.NO_NEIGHBOR)
-    rim_start, rim_end = topology.ends(tin.triangles, triangle, corner)
-    keys = rim_start * len(tin.points) + rim_end
+    boundary_start, boundary_end = topology.ends(tin.triangles, triangle, corner)
+    keys = boundary_start * len(tin.points) + boundary_end
     order = np.argsort(keys)
     wanted = start.astype(np.int64) * len(tin.points) + end
     slot = order[np.searchsorted(keys, wanted, sorter=order)]
@@ -119,8 +121,8 @@ def _check_euler(rings: list[NDArray[np.int32]], is_free: bool, found: Findings)
     """
     counts = found.counts
     unused = sum(problem.count for problem in found.problems if problem.kind == "unused")
-    rim = np.concatenate(rings)
-    touches = len(rim) - len(np.unique(rim))
+    boundary = np.concatenate(rings)
+    touches = len(boundary) - len(np.unique(boundary))
     vertices = counts["vertices"] - unused + touches
     total = vertices - counts["edges"] + counts["triangles"] + len(rings)
     if total < 2 or total % 2 or (is_free and total > 2):
@@ -134,10 +136,12 @@ def _check_euler(rings: list[NDArray[np.int32]], is_free: bool, found: Findings)
 def _check_areas(tin: TIN, rings: list[NDArray[np.int32]], found: Findings) -> None:
     """Compare the areas of all triangles with what the boundary encloses, rounding bounded."""
     corners = [tin.triangles[:, k] for k in range(3)]
-    inside, inside_error = _doubled_area(tin.points, *corners)
+    inside, inside_error = _measure_doubled_areas(tin.points, *corners)
     start = np.concatenate(rings)
     end = np.concatenate([np.roll(ring, -1) for ring in rings])
-    enclosed, enclosed_error = _doubled_area(tin.points, np.full_like(start, start[0]), start, end)
+    enclosed, enclosed_error = _measure_doubled_areas(
+        tin.points, np.full_like(start, start[0]), start, end
+    )
     if not abs(inside - enclosed) <= inside_error + enclosed_error:
         found.fail(
             "area",
@@ -146,7 +150,7 @@ def _check_areas(tin: TIN, rings: list[NDArray[np.int32]], found: Findings) -> N
         )
 
 
-def _doubled_area(
+def _measure_doubled_areas(
     points: NDArray[np.float64], a: NDArray[np.int32], b: NDArray[np.int32], c: NDArray[np.int32]
 ) -> tuple[float, float]:
     """Return twice the signed area of triangles, and a bound for its error.

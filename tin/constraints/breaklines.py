@@ -33,11 +33,11 @@ class Breakline:
     ----------
     coords : (k, 3) or (k, 2) float64 array
         Vertices, k >= 2, CRS units; first and last equal if it is closed. With two columns it is
-        draped: its heights are taken from the surface of everything that has heights.
+        draped: its elevations are taken from the surface of everything that has elevations.
     kind : {"hard", "soft"}
         A soft breakline shapes the surface, but is no break of slope.
     priority : int
-        Where breaklines cross, the height of the higher one counts; among equals, of the first.
+        Where breaklines cross, the elevation of the higher one counts; among equals, of the first.
     name : str
         For reports and pictures.
 
@@ -78,7 +78,7 @@ class Breakline:
 
     @property
     def is_draped(self) -> bool:
-        """Whether the heights come from the surface."""
+        """Whether the elevations come from the surface."""
         return int(self.coords.shape[1]) == 2
 
     def __repr__(self) -> str:
@@ -98,7 +98,7 @@ class Water:
     ring : (k, 2) float64 array
         Corners in order, the first not repeated, k >= 3, CRS units.
     z : float
-        Its constant height.
+        Its constant elevation.
     name : str
 
     Raises
@@ -131,7 +131,7 @@ def _no_numbers() -> NDArray[np.int32]:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Lines(Frozen):
-    """The lines in a TIN: chains of vertices, every step of which is an edge of the TIN.
+    """The lines in a TIN: chains of vertices, every segment of which is an edge of the TIN.
 
     Chain ``i`` is ``vertices[offsets[i]:offsets[i + 1]]``, in the direction of the line that it
     comes from; a closed one ends where it begins. A line of which parts are left out, outside the
@@ -163,13 +163,15 @@ class Lines(Frozen):
         """Walk the chains, as vertex numbers."""
         return iter(self._polylines)
 
-    def steps(self) -> NDArray[np.int32]:
-        """Return the edges that the chains walk, (s, 2) vertex pairs in order."""
+    def segments(self) -> NDArray[np.int32]:
+        """Return the edges along which the chains run, (s, 2) vertex pairs in order."""
         return self._polylines.segments()
 
-    def step_chains(self) -> NDArray[np.int64]:
-        """Return the chain of each of the steps."""
+    def segment_chains(self) -> NDArray[np.int64]:
+        """Return the chain of each of the segments."""
         return self._polylines.segment_owners()
+
+    steps, step_chains = segments, segment_chains  # their names at first
 
     @property
     def _polylines(self) -> Polylines:
@@ -192,9 +194,11 @@ class Lines(Frozen):
             names=(*self.names, line.name),
         )
 
-    def renumbered(self, number: NDArray[np.int32]) -> Lines:
+    def renumber(self, number: NDArray[np.int32]) -> Lines:
         """Return the same lines with vertex ``v`` called ``number[v]``."""
         return replace(self, vertices=number[self.vertices])
+
+    renumbered = renumber
 
     def __repr__(self) -> str:
         kinds = ", ".join(f"{self.kinds.count(kind)} {kind}" for kind in get_args(LineKind))
@@ -271,7 +275,7 @@ def as_ring(ring: ArrayLike, what: str) -> NDArray[np.float64]:
     return coords
 
 
-def elevations_at_start(ring: ArrayLike, what: str) -> NDArray[np.float64]:
+def find_elevations_at_start(ring: ArrayLike, what: str) -> NDArray[np.float64]:
     """Return the vertices where a ring closes, one for each elevation, ascending; none if flat."""
     coords = as_coords(ring, what, least=3)
     if coords.shape[1] == 2:

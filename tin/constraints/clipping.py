@@ -9,8 +9,7 @@ import numpy as np
 
 from ...errors import LinesError
 from .. import _kernel, topology
-from ..topology import edge_keys
-from .polylines import offsets_of
+from ..topology import edge_keys, find_offsets
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -19,13 +18,13 @@ __all__ = [
     "BOUNDARY",
     "EXTENT",
     "HOLES",
-    "RIM",
-    "RingSteps",
+    "OWN_BOUNDARY",
+    "RingSegments",
     "Surface",
-    "clipped",
+    "clip",
     "in_rings",
     "is_inside",
-    "trimmed",
+    "trim",
 ]
 
 
@@ -40,25 +39,25 @@ class Surface(NamedTuple):
 
 def in_rings(xy: NDArray[np.float64], rings: Sequence[NDArray[np.float64]]) -> NDArray[np.int8]:
     """Tell where places lie: +1 inside an odd number of rings, 0 on one, -1 outside."""
-    offsets = offsets_of(map(len, rings)).astype(np.int32)
+    offsets = find_offsets(map(len, rings)).astype(np.int32)
     corners = np.ascontiguousarray(np.concatenate([ring[:, :2] for ring in rings]))
     return _kernel.places_in_rings(np.ascontiguousarray(xy), corners, offsets)
 
 
-RIM = -1
-"""Group of the steps of a rim: the surface is on their left, and nothing on their right."""
+OWN_BOUNDARY = -1
+"""Group of the segments of a boundary that is there: the surface is on their left only."""
 
 BOUNDARY = 0
-"""Group of the steps of all boundary rings together."""
+"""Group of the segments of all boundary rings together."""
 
 EXTENT = 1
-"""Group of the steps of all rings together within which there is data."""
+"""Group of the segments of all rings together within which there is data."""
 
 HOLES = 2
-"""Group of the steps of the first hole, its islands included; hole ``k`` has ``HOLES + k``."""
+"""Group of the segments of the first hole, its islands included; hole ``k`` has ``HOLES + k``."""
 
 
-class RingSteps(NamedTuple):
+class RingSegments(NamedTuple):
     """Edges along rings, (k, 2) vertex pairs, and the group of each."""
 
     pairs: NDArray[np.int32]
@@ -67,7 +66,7 @@ class RingSteps(NamedTuple):
 
 def is_inside(
     surface: Surface,
-    steps: RingSteps,
+    segments: RingSegments,
     boundary: Sequence[NDArray[np.float64]],
     extent: Sequence[NDArray[np.float64]],
     holes: Sequence[Sequence[NDArray[np.float64]]],
@@ -78,21 +77,29 @@ def is_inside(
 
     The triangles between the rings are regions. Where the largest triangle of all lies is found by
     comparing its middle with the rings, which leaves no doubt. From there on every ring that is
-    crossed changes sides, so slivers between rings that nearly coincide are told exactly.
+    crossed changes sides, so slivers between rings that nearly coincide are told exactly::
+
+        +---------------- boundary ----+      bits: 1 for the boundary, 4, 8 ... for the holes
+        |        +--- hole ----+       |
+        |   1    |  5   +---+  |   1   |   0  across an edge the bits of its rings flip: the island
+        |        |      | 1 |  |       |      is a second ring of the hole, so inside it 4 is off
+        |        |      +---+  |       |
+        |        +-------------+       |      kept: all that is needed is on, no hole is
+        +------------------------------+
 
     Raises
     ------
     LinesError
         If a hole cuts nothing away.
     """
-    half = _half_edges(surface, steps)
-    region, largest = _regions(surface, half)
+    half = _gather_half_edges(surface, segments)
+    region, largest = _find_regions(surface, half)
     is_out = np.zeros(len(largest), np.bool_)
-    is_out[region[half.triangle[half.is_behind_rim]]] = True
-    toggles = _toggles(steps, len(surface.points))
-    place = _center(surface, largest)
+    is_out[region[half.triangle[half.is_behind_own_boundary]]] = True
+    toggles = _find_toggles(segments, len(surface.points))
+    point = _find_middles(surface, largest)
     side = _Sides(boundary, extent, holes)
-    bits = _spread(surface, region, half, toggles, is_out, largest, place, side)
+    bits = _spread_bits(surface, region, half, toggles, is_out, largest, point, side)
     keep = ~is_out & np.array([side.is_kept(own) for own in bits])
     _require_all_cut(bits, is_out, side)
     chosen: NDArray[np.bool_] = keep[region]
@@ -105,35 +112,37 @@ class _HalfEdges(NamedTuple):
     triangle: NDArray[np.int64]
     corner: NDArray[np.int64]
     key: NDArray[np.int64]
-    is_behind_rim: NDArray[np.bool_]
+    is_behind_own_boundary: NDArray[np.bool_]
 
 
-def _half_edges(surface: Surface, steps: RingSteps) -> _HalfEdges:
+def _gather_half_edges(surface: Surface, segments: RingSegments) -> _HalfEdges:
     n = len(surface.points)
     triangle, corner = np.nonzero(surface.constrained)
     start, end = topology.ends(surface.triangles, triangle, corner)
     key = edge_keys(np.stack([start, end], axis=1), n)
-    is_ring = np.isin(key, edge_keys(steps.pairs, n))
+    is_ring = np.isin(key, edge_keys(segments.pairs, n))
     triangle, corner, key = triangle[is_ring], corner[is_ring], key[is_ring]
-    rim = steps.pairs[steps.groups == RIM].astype(np.int64)
-    backwards = rim[:, 1] * n + rim[:, 0]
+    boundary = segments.pairs[segments.groups == OWN_BOUNDARY].astype(np.int64)
+    backwards = boundary[:, 1] * n + boundary[:, 0]
     is_behind = np.isin(start[is_ring] * n + end[is_ring], backwards)
     return _HalfEdges(triangle, corner, key, is_behind)
 
 
-def _regions(surface: Surface, half: _HalfEdges) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+def _find_regions(
+    surface: Surface, half: _HalfEdges
+) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
     barrier = np.zeros(surface.constrained.shape, np.bool_)
     barrier[half.triangle, half.corner] = True
     xy = np.ascontiguousarray(surface.points[:, :2])
     return _kernel.regions(xy, surface.triangles, surface.neighbors, barrier)
 
 
-def _toggles(steps: RingSteps, n_vertices: int) -> dict[int, int]:
+def _find_toggles(segments: RingSegments, n_vertices: int) -> dict[int, int]:
     """Return for each edge along rings the groups that lie on other sides of it, as bits."""
     toggles: dict[int, int] = {}
-    keys = edge_keys(steps.pairs, n_vertices).tolist()
-    for key, group in zip(keys, steps.groups.tolist(), strict=True):
-        toggles[key] = toggles.get(key, 0) ^ (0 if group == RIM else 1 << group)
+    keys = edge_keys(segments.pairs, n_vertices).tolist()
+    for key, group in zip(keys, segments.groups.tolist(), strict=True):
+        toggles[key] = toggles.get(key, 0) ^ (0 if group == OWN_BOUNDARY else 1 << group)
     return toggles
 
 
@@ -150,10 +159,10 @@ class _Sides:
         self._needed = sum(1 << group for group in (BOUNDARY, EXTENT) if self._groups[group])
         self.n_holes = len(holes)
 
-    def at(self, place: NDArray[np.float64]) -> int:
+    def at(self, point: NDArray[np.float64]) -> int:
         bits = 0
         for group, rings in self._groups.items():
-            if len(rings) and in_rings(place[None], rings)[0] > 0:
+            if len(rings) and in_rings(point[None], rings)[0] > 0:
                 bits |= 1 << group
         return bits
 
@@ -164,23 +173,23 @@ class _Sides:
         return self.is_within(bits) and bits >> HOLES == 0
 
 
-def _spread(
+def _spread_bits(
     surface: Surface,
     region: NDArray[np.int32],
     half: _HalfEdges,
     toggles: dict[int, int],
     is_out: NDArray[np.bool_],
     largest: NDArray[np.int32],
-    place: NDArray[np.float64],
+    point: NDArray[np.float64],
     side: _Sides,
 ) -> list[int]:
     """Return the bits of every region, from the largest one across the rings."""
-    beside = _beside(surface, region, half)
+    beside = _find_regions_beside(surface, region, half)
     bits: list[int | None] = [None] * len(largest)
-    for start in _by_size(surface, largest):
+    for start in _sort_by_size(surface, largest):
         if bits[start] is not None:
             continue
-        bits[start] = side.at(place[start])
+        bits[start] = side.at(point[start])
         pending = [start] if not is_out[start] else []
         while pending:
             here = pending.pop()
@@ -191,7 +200,7 @@ def _spread(
     return [own or 0 for own in bits]
 
 
-def _beside(
+def _find_regions_beside(
     surface: Surface, region: NDArray[np.int32], half: _HalfEdges
 ) -> dict[int, list[tuple[int, int]]]:
     """Return for each region those across a ring, with an edge between them."""
@@ -207,7 +216,7 @@ def _beside(
     return found
 
 
-def _by_size(surface: Surface, largest: NDArray[np.int32]) -> list[int]:
+def _sort_by_size(surface: Surface, largest: NDArray[np.int32]) -> list[int]:
     a, b, c = (surface.points[surface.triangles[largest, k], :2] for k in range(3))
     (x, y), (u, v) = (b - a).T, (c - a).T
     order: list[int] = np.argsort(-(x * v - y * u), kind="stable").tolist()
@@ -227,19 +236,25 @@ def _require_all_cut(bits: list[int], is_out: NDArray[np.bool_], side: _Sides) -
             )
 
 
-def _center(surface: Surface, triangles: NDArray[np.int32]) -> NDArray[np.float64]:
+def _find_middles(surface: Surface, triangles: NDArray[np.int32]) -> NDArray[np.float64]:
     a, b, c = (surface.points[surface.triangles[triangles, k], :2] for k in range(3))
     center: NDArray[np.float64] = a + ((b - a) + (c - a)) / 3.0
     return center
 
 
-def trimmed(
+def trim(
     surface: Surface, keep: NDArray[np.bool_], max_edge: float, *, everywhere: bool
 ) -> NDArray[np.bool_]:
     """Drop triangles at edges longer than ``max_edge`` that are no lines.
 
-    From the perimeter only the triangles go that lie at a long outer edge, as long as there are
-    any; everywhere all that have a long edge.
+    From the boundary only the triangles go that lie at a long outer edge, as long as there are
+    any; everywhere all that have a long edge::
+
+        a ------------------ b       a-b is outer and long: the triangle a-b-c goes. Then a-c is
+          `.   `.          .'        outer, and long too: a-c-d goes. c-d is short: what lies
+            `.    `.     .'          beyond it stays.
+              `.     `..'
+                d ---- c
     """
     a, b, c = (surface.points[surface.triangles[:, k], :2] for k in range(3))
     sides = np.stack([np.hypot(*(c - b).T), np.hypot(*(a - c).T), np.hypot(*(b - a).T)], axis=1)
@@ -260,10 +275,14 @@ def trimmed(
     return keep
 
 
-def clipped(surface: Surface, keep: NDArray[np.bool_]) -> tuple[Surface, NDArray[np.int32]]:
+def clip(surface: Surface, keep: NDArray[np.bool_]) -> tuple[Surface, NDArray[np.int32]]:
     """Return the kept triangles with the vertices that they use, and the new number of each vertex.
 
-    Vertices without a triangle have number -1. The new rim is constrained.
+    Vertices without a triangle have number -1. The new boundary is constrained::
+
+        triangle   0  1  2  3  4
+        keep       x     x  x         what is beside a kept triangle gets its number of now,
+        number     0  -  1  2  -      or none, and then the edge between them is constrained
     """
     number = np.cumsum(keep, dtype=np.int32) - np.int32(1)
     beside = surface.neighbors[keep]

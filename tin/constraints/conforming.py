@@ -28,7 +28,7 @@ from ...errors import LinesError
 from .. import _kernel
 from ..topology import edge_keys
 from .noding import node_again
-from .pslg import mesh_of
+from .pslg import build_mesh
 from .splitting import interpolate_linearly, is_before
 
 if TYPE_CHECKING:
@@ -78,18 +78,18 @@ def conform(
     """
     n_given, most = len(points), max(_LEAST_LIMIT, _NEW_PER_VERTEX * len(points))
     for _ in range(_MOST_ROUNDS):
-        bad = _segments_to_split(mesh, points)
+        bad = _find_segments_to_split(mesh, points)
         if not len(bad):
             return mesh, points, polylines
         if len(points) + len(bad) - n_given > most:
-            raise _hopeless(f"{most} new vertices", points, bad)
+            raise _explain_hopeless(f"{most} new vertices", points, bad)
         points, polylines, is_noded = _split(mesh, points, polylines, bad, n_given)
         if not is_noded:
             mesh, points, polylines = _node_again(mesh, points, polylines, priorities, threads)
-    raise _hopeless(f"{_MOST_ROUNDS} rounds of splitting", points, bad)
+    raise _explain_hopeless(f"{_MOST_ROUNDS} rounds of splitting", points, bad)
 
 
-def _hopeless(what: str, points: NDArray[np.float64], bad: NDArray[np.int32]) -> LinesError:
+def _explain_hopeless(what: str, points: NDArray[np.float64], bad: NDArray[np.int32]) -> LinesError:
     x, y, _ = points[bad[0, 0]].tolist()
     return LinesError(
         f"The lines are not conforming after {what}: {len(bad)} segments (first: at x {x!r}, "
@@ -97,7 +97,7 @@ def _hopeless(what: str, points: NDArray[np.float64], bad: NDArray[np.int32]) ->
     )
 
 
-def _segments_to_split(mesh: _kernel.Mesh, points: NDArray[np.float64]) -> NDArray[np.int32]:
+def _find_segments_to_split(mesh: _kernel.Mesh, points: NDArray[np.float64]) -> NDArray[np.int32]:
     """Return the segments that are not Delaunay, as pairs of ends, in order of their places."""
     ends = mesh.illegal_fixed_edges().reshape(-1, 2)
     start, end = points[ends[:, 0], :2], points[ends[:, 1], :2]
@@ -120,20 +120,20 @@ def _split(
     If not, a split point fell on a vertex or another segment, or something is in the way of the
     halves: only the new points and polylines are right then, not the mesh.
     """
-    middle = _split_points(points, bad, n_given)
+    middle = _place_split_points(points, bad, n_given)
     splits_before = mesh.fixed_splits
     mesh.release(bad)
     vertex = mesh.insert(np.ascontiguousarray(middle[:, :2]))
     is_noded = bool((vertex == len(points) + np.arange(len(middle))).all())
     points = np.concatenate([points, middle])
-    polylines = _with_middles(polylines, bad, vertex, len(points))
+    polylines = _insert_middles(polylines, bad, vertex, len(points))
     halves = np.concatenate([np.stack([bad[:, 0], vertex], 1), np.stack([vertex, bad[:, 1]], 1)])
     passed, blocked = mesh.force(np.ascontiguousarray(halves))
     is_noded &= mesh.fixed_splits == splits_before and not (len(passed) or len(blocked))
     return points, polylines, is_noded
 
 
-def _split_points(
+def _place_split_points(
     points: NDArray[np.float64], segments: NDArray[np.int32], n_given: int
 ) -> NDArray[np.float64]:
     start, end = points[segments[:, 0]], points[segments[:, 1]]
@@ -143,13 +143,13 @@ def _split_points(
     share = np.where(is_given[:, 0], shell, np.where(is_given[:, 1], 1 - shell, 0.5))
     share = np.where(is_given.all(axis=1), 0.5, share)
     middle = np.empty_like(start)
-    middle[:, :2] = _in_exact_range(start[:, :2] + share[:, None] * (end - start)[:, :2])
+    middle[:, :2] = _round_to_exact_range(start[:, :2] + share[:, None] * (end - start)[:, :2])
     middle[:, 2] = interpolate_linearly(start[:, 2], end[:, 2], share)
     _require_between(middle[:, :2], start[:, :2], end[:, :2])
     return middle
 
 
-def _in_exact_range(xy: NDArray[np.float64]) -> NDArray[np.float64]:
+def _round_to_exact_range(xy: NDArray[np.float64]) -> NDArray[np.float64]:
     """Round to 0 what is too small for the predicates."""
     smallest, _ = _kernel.EXACT_RANGE
     return np.where(np.abs(xy) < smallest, 0.0, xy)
@@ -167,7 +167,7 @@ def _require_between(
         )
 
 
-def _with_middles(
+def _insert_middles(
     polylines: Polylines, split: NDArray[np.int32], vertex: NDArray[np.int32], n: int
 ) -> Polylines:
     """Put a vertex between the ends of some segments, wherever a line takes them."""
@@ -192,4 +192,4 @@ def _node_again(
     points, polylines = points[alive], polylines.renumber(number_of)
     priority = priorities[polylines.lines]
     points, polylines = node_again(points, polylines, priority, threads=threads)
-    return mesh_of(points, polylines, threads=threads), points, polylines
+    return build_mesh(points, polylines, threads=threads), points, polylines

@@ -10,10 +10,10 @@ import numpy as np
 from ..._sentences import shown
 from ...errors import LinesError
 from .. import _kernel
+from ..topology import find_offsets, find_owners
 from .breaklines import Breakline, Water, as_ring
 from .constraint_table import ConstraintTable
-from .polygons import rings_of
-from .polylines import offsets_of, owners_of
+from .polygons import gather_rings_of_regions
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -37,7 +37,7 @@ ABOVE_ALL = np.inf
 """Priority of water: it stays flat whatever crosses it."""
 
 BELOW_ALL = -np.inf
-"""Priority of draped lines: they never change a height."""
+"""Priority of draped lines: they never change an elevation."""
 
 
 class LineSet(NamedTuple):
@@ -46,7 +46,7 @@ class LineSet(NamedTuple):
     Attributes
     ----------
     xy : (k, 2) float64 array
-    heights : (k,) float64 array
+    elevations : (k,) float64 array
         NaN for draped lines.
     offsets : (l + 1,) int64 array
     table : ConstraintTable
@@ -54,7 +54,7 @@ class LineSet(NamedTuple):
     """
 
     xy: NDArray[np.float64]
-    heights: NDArray[np.float64]
+    elevations: NDArray[np.float64]
     offsets: NDArray[np.int64]
     table: ConstraintTable
 
@@ -80,13 +80,13 @@ class LineSet(NamedTuple):
 
     @property
     def is_draped(self) -> NDArray[np.bool_]:
-        """Whether each line takes its heights from the surface."""
-        return np.isnan(self.heights[self.offsets[:-1]])
+        """Whether each line takes its elevations from the surface."""
+        return np.isnan(self.elevations[self.offsets[:-1]])
 
     @property
     def line_of(self) -> NDArray[np.int64]:
         """The line of each row."""
-        return owners_of(self.offsets)
+        return find_owners(self.offsets)
 
     def label(self, line: int) -> str:
         """Return what a line is called in sentences."""
@@ -102,22 +102,22 @@ class LineSet(NamedTuple):
         return label[0].upper() + label[1:]
 
     @classmethod
-    def joined(cls, sets: Sequence[LineSet]) -> LineSet:
+    def join(cls, sets: Sequence[LineSet]) -> LineSet:
         """Return the lines of several sets as one."""
         return cls(
             np.concatenate([part.xy for part in sets]),
-            np.concatenate([part.heights for part in sets]),
-            offsets_of(np.concatenate([np.diff(part.offsets) for part in sets])),
-            ConstraintTable.joined([part.table for part in sets]),
+            np.concatenate([part.elevations for part in sets]),
+            find_offsets(np.concatenate([np.diff(part.offsets) for part in sets])),
+            ConstraintTable.join([part.table for part in sets]),
         )
 
-    def chosen(self, is_chosen: NDArray[np.bool_]) -> LineSet:
+    def choose(self, is_chosen: NDArray[np.bool_]) -> LineSet:
         """Return some of the lines."""
         rows = is_chosen[self.line_of]
         return LineSet(
             self.xy[rows],
-            self.heights[rows],
-            offsets_of(np.diff(self.offsets)[is_chosen]),
+            self.elevations[rows],
+            find_offsets(np.diff(self.offsets)[is_chosen]),
             self.table.take(np.flatnonzero(is_chosen)),
         )
 
@@ -146,15 +146,15 @@ def gather_lines(
     """
     if not (len(breaklines) or len(boundary) or len(holes) or len(water)):
         return _NONE
-    found = None if boundary or holes or water else _arrays_alone(breaklines)
+    found = None if boundary or holes or water else _gather_arrays_alone(breaklines)
     if found is None:
-        found = _gathered(breaklines, boundary, holes, water)
+        found = _gather(breaklines, boundary, holes, water)
     _require_exact_range(found)
     require_length(found)
     return found
 
 
-def _arrays_alone(breaklines: Sequence[Any]) -> LineSet | None:
+def _gather_arrays_alone(breaklines: Sequence[Any]) -> LineSet | None:
     """Return sound (k, 3) arrays as hard breaklines, all at once; None for anything else."""
     if not (isinstance(breaklines, list | tuple) and all(map(_is_array_of_vertices, breaklines))):
         return None
@@ -166,7 +166,7 @@ def _arrays_alone(breaklines: Sequence[Any]) -> LineSet | None:
     return LineSet(
         np.ascontiguousarray(coords[:, :2]),
         coords[:, 2],
-        offsets_of(map(len, breaklines)),
+        find_offsets(map(len, breaklines)),
         ConstraintTable.of_kind("hard", np.arange(n, dtype=np.int32), np.zeros(n)),
     )
 
@@ -176,7 +176,7 @@ def _is_array_of_vertices(line: Any) -> bool:
     return is_array and line.ndim == 2 and line.shape[1] == 3 and len(line) >= 2
 
 
-def _gathered(
+def _gather(
     breaklines: Sequence[Breakline | ArrayLike],
     boundary: Sequence[Any],
     holes: Sequence[Any],
@@ -187,21 +187,21 @@ def _gathered(
         for line in as_sequence(breaklines, "breaklines")
     ]
     rings = [
-        *_rings(boundary, "boundary"),
-        *_rings(holes, "hole"),
+        *_gather_rings_of_kind(boundary, "boundary"),
+        *_gather_rings_of_kind(holes, "hole"),
     ]
     ponds = gather_water(water)
     coords = [
         *(line.coords for line in lines),
-        *(_closed(ring) for _, ring in rings),
-        *(_closed(_level(pond)) for pond in ponds),
+        *(_close(ring) for _, ring in rings),
+        *(_close(_make_level(pond)) for pond in ponds),
     ]
     kinds: list[LineKind] = [line.kind for line in lines]
     kinds += [kind for kind, _ in rings]
     kinds += ["water" for _ in ponds]
     table = ConstraintTable(
         kinds=tuple(kinds),
-        sources=_sources(kinds),
+        sources=_count_sources(kinds),
         priorities=np.array(
             [
                 *(BELOW_ALL if line.is_draped else line.priority for line in lines),
@@ -212,12 +212,12 @@ def _gathered(
         ),
         names=(*(line.name for line in lines), *("" for _ in rings), *(p.name for p in ponds)),
     )
-    return LineSet(*_stacked(coords), offsets_of(map(len, coords)), table)
+    return LineSet(*_stack(coords), find_offsets(map(len, coords)), table)
 
 
 def gather_extent(extent: Sequence[ArrayLike], n_boundary: int) -> LineSet:
     """Return the rings within which there is data as lines, numbered behind those given."""
-    rings = [_closed(as_ring(ring, f"extent ring {number}")) for number, ring in enumerate(extent)]
+    rings = [_close(as_ring(ring, f"extent ring {number}")) for number, ring in enumerate(extent)]
     n = len(rings)
     if n == 0:
         return _NONE
@@ -226,7 +226,7 @@ def gather_extent(extent: Sequence[ArrayLike], n_boundary: int) -> LineSet:
         np.arange(n_boundary, n_boundary + n, dtype=np.int32),
         np.where([ring.shape[1] == 2 for ring in rings], BELOW_ALL, 0.0),
     )
-    return LineSet(*_stacked(rings), offsets_of(map(len, rings)), table)
+    return LineSet(*_stack(rings), find_offsets(map(len, rings)), table)
 
 
 def gather_rings(rings: Sequence[Any], what: str) -> list[NDArray[np.float64]]:
@@ -236,7 +236,10 @@ def gather_rings(rings: Sequence[Any], what: str) -> list[NDArray[np.float64]]:
 
 def gather_regions(regions: Sequence[Any], what: str) -> list[list[NDArray[np.float64]]]:
     """Return the rings of each region: one, or those of a polygon with islands."""
-    return [[ring[:, :2] for ring in rings] for rings in rings_of(as_sequence(regions, what), what)]
+    return [
+        [ring[:, :2] for ring in rings]
+        for rings in gather_rings_of_regions(as_sequence(regions, what), what)
+    ]
 
 
 def gather_water(water: Sequence[Water]) -> list[Water]:
@@ -263,31 +266,33 @@ def as_sequence(lines: Any, what: str) -> list[Any]:
         ) from None
 
 
-def _rings(regions: Sequence[Any], kind: LineKind) -> list[tuple[LineKind, NDArray[np.float64]]]:
-    found = rings_of(as_sequence(regions, kind), kind)
+def _gather_rings_of_kind(
+    regions: Sequence[Any], kind: LineKind
+) -> list[tuple[LineKind, NDArray[np.float64]]]:
+    found = gather_rings_of_regions(as_sequence(regions, kind), kind)
     return [(kind, ring) for rings in found for ring in rings]
 
 
-def _level(pond: Water) -> NDArray[np.float64]:
+def _make_level(pond: Water) -> NDArray[np.float64]:
     return np.column_stack([pond.ring, np.full(len(pond.ring), pond.z)])
 
 
-def _closed(ring: NDArray[np.float64]) -> NDArray[np.float64]:
+def _close(ring: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.concatenate([ring, ring[:1]])
 
 
-def _stacked(coords: list[NDArray[np.float64]]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _stack(coords: list[NDArray[np.float64]]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     if not coords:
         return np.empty((0, 2)), np.empty(0)
     xy = np.concatenate([line[:, :2] for line in coords])
     draped = [len(line) if line.shape[1] == 2 else 0 for line in coords]
-    heights = np.concatenate(
+    elevations = np.concatenate(
         [np.full(n, np.nan) if n else line[:, 2] for n, line in zip(draped, coords, strict=True)]
     )
-    return np.ascontiguousarray(xy), heights
+    return np.ascontiguousarray(xy), elevations
 
 
-def _sources(kinds: Sequence[str]) -> NDArray[np.int32]:
+def _count_sources(kinds: Sequence[str]) -> NDArray[np.int32]:
     counts: dict[str, int] = {}
     numbers = []
     for kind in kinds:

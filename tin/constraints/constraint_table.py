@@ -41,7 +41,7 @@ class ConstraintTable(NamedTuple):
         return cls((kind,) * len(sources), sources, priorities, ("",) * len(sources))
 
     @classmethod
-    def joined(cls, tables: Sequence[ConstraintTable]) -> ConstraintTable:
+    def join(cls, tables: Sequence[ConstraintTable]) -> ConstraintTable:
         """Return the rows of several tables as one."""
         return cls(
             tuple(kind for table in tables for kind in table.kinds),

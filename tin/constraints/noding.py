@@ -7,7 +7,7 @@ Rounds, each a function of the set of segments, never of their order or directio
    its parts are looked at again. Parts only ever get shorter, so this comes to an end.
 2. Where segments cross, one vertex is made at each distinct place, its coordinates rounded once,
    or the vertex taken that is there already; both segments are split. Rounding bends them by a
-   unit in the last place, so step 1 follows, from now on for all vertices within such a unit
+   unit in the last place, so round 1 follows, from now on for all vertices within such a unit
    [1]_: else nearly parallel lines would cross again and again, between ever more vertices.
    Both are repeated until nothing crosses.
 
@@ -35,7 +35,7 @@ from .splitting import Splitting, drop_repeats
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Noded", "Touches", "node", "node_again", "untouched"]
+__all__ = ["Noded", "Touches", "accept_noded", "node", "node_again"]
 
 
 class Touches(NamedTuple):
@@ -45,17 +45,17 @@ class Touches(NamedTuple):
     ----------
     vertex, line : (t,) int32 arrays
         Sorted by vertex, then by line.
-    height : (t,) float64 array
-        The line's own height there; NaN if it has none.
+    elevation : (t,) float64 array
+        The line's own elevation there; NaN if it has none.
     """
 
     vertex: NDArray[np.int32]
     line: NDArray[np.int32]
-    height: NDArray[np.float64]
+    elevation: NDArray[np.float64]
 
 
 class Noded(NamedTuple):
-    """Lines whose steps hold no vertex but their ends and cross no other step.
+    """Lines whose segments hold no vertex but their ends and cross no other segment.
 
     Attributes
     ----------
@@ -77,7 +77,7 @@ class Noded(NamedTuple):
     touches: Touches
 
 
-def untouched(polylines: Polylines, elevations: NDArray[np.float64]) -> Noded:
+def accept_noded(polylines: Polylines, elevations: NDArray[np.float64]) -> Noded:
     """Return lines that meet nowhere, as :func:`node` would; repeated vertices are dropped."""
     none = np.empty(0, np.int32)
     return Noded(
@@ -110,9 +110,9 @@ def node(
     elevations : (k,) float64 array
         The line's own elevation at each of its vertices; NaN if it has none.
     priority : (l,) int array
-        At a vertex made by crossing lines, the height of the line with the highest priority is
+        At a vertex made by crossing lines, the elevation of the line with the highest priority is
         taken, among equals of the first line, and of one line its lowest; of a line without
-        heights only if no other has any.
+        elevations only if no other has any.
     snap : float
         A vertex within this distance bends a line onto itself, CRS units. Not one that is also
         within it of an end of the segment.
@@ -125,7 +125,7 @@ def node(
     Returns
     -------
     Noded
-        New points and steps are the same for any order and direction of the lines.
+        New points and segments are the same for any order and direction of the lines.
 
     Raises
     ------
@@ -151,9 +151,9 @@ def node(
         np.ascontiguousarray(xy, np.float64), polylines, elevations, float(snap), threads
     )
     work.split_everywhere(
-        None if crossing == "split" else lambda pairs: _crossing_error(work, pairs, names)
+        None if crossing == "split" else lambda pairs: _explain_crossing(work, pairs, names)
     )
-    return _account(work, np.asarray(priority))
+    return _number_and_account(work, np.asarray(priority))
 
 
 def node_again(
@@ -181,7 +181,7 @@ def node_again(
     xy = np.ascontiguousarray(points[:, :2])
     work = Splitting(xy, polylines, points[polylines.vertices, 2], 0.0, threads)
     work.split_everywhere()
-    noded = _account(work, priority)
+    noded = _number_and_account(work, priority)
     return np.concatenate([points, noded.new_points]), noded.polylines
 
 
@@ -189,22 +189,32 @@ def node_again(
 
 
 class _Visits(NamedTuple):
-    """Lines that come through vertices; twice along the same steps counts once."""
+    """Lines that come through vertices; twice along the same segments counts once."""
 
     vertex: NDArray[np.int32]
     line: NDArray[np.int32]
-    height: NDArray[np.float64]
+    elevation: NDArray[np.float64]
 
 
-def _visits(work: Splitting, at: NDArray[np.int64]) -> _Visits:
-    """Gather what passes the positions ``at``, in order of vertex, line and position."""
+def _gather_visits(work: Splitting, at: NDArray[np.int64]) -> _Visits:
+    """Gather what passes the positions ``at``, in order of vertex, line and position.
+
+    A line may come through a vertex several times. Twice between the same neighbours, forwards or
+    back, is one visit, with the lower of the elevations::
+
+            b
+            |            a line  a v b ... b v a ... c v d  comes through v three times,
+        c - v - d        which are two visits: a-v-b and c-v-d
+            |
+            a
+    """
     vertices, line = work.polylines.vertices, work.polylines.owners.astype(np.int32)
     same_before = np.append(False, line[1:] == line[:-1])
     before = np.where(same_before[at], vertices[at - 1], -1)
     same_after = np.append(same_before[1:], False)
     after = np.where(same_after[at], vertices[(at + 1) % len(vertices)], -1)
     keys = (np.maximum(before, after), np.minimum(before, after), line[at], vertices[at])
-    order = np.lexsort((work.elevations[at], *keys))  # of the same steps the lowest way counts
+    order = np.lexsort((work.elevations[at], *keys))  # the lowest counts
     is_first = np.ones(len(at), np.bool_)
     is_first[1:] = np.any([np.diff(key[order]) != 0 for key in keys], axis=0)
     at = np.sort(at[order[is_first]])
@@ -212,7 +222,7 @@ def _visits(work: Splitting, at: NDArray[np.int64]) -> _Visits:
     return _Visits(vertices[at], line[at], work.elevations[at])
 
 
-def _account(work: Splitting, priority: NDArray[Any]) -> Noded:
+def _number_and_account(work: Splitting, priority: NDArray[Any]) -> Noded:
     """Return everything, the new points numbered by place."""
     n_given = work.n_given
     made = work.xy[n_given:]
@@ -223,59 +233,68 @@ def _account(work: Splitting, priority: NDArray[Any]) -> Noded:
     work.xy = np.concatenate([work.xy[:n_given], made[order]])
     is_crossing = np.zeros(len(work.xy), np.bool_)
     is_crossing[number[work.crossing_vertices]] = True
-    crossings, winners = _crossings(work, is_crossing, priority)
+    crossings, winners = _gather_crossings(work, is_crossing, priority)
     is_new = winners.vertex >= n_given
     passed = ~work.is_given & (work.polylines.vertices < n_given)
     return Noded(
-        np.column_stack([made[order], winners.height[is_new]]),
+        np.column_stack([made[order], winners.elevation[is_new]]),
         work.polylines,
         work.elevations,
         crossings,
-        Touches(*_visits(work, np.flatnonzero(passed))),
+        Touches(*_gather_visits(work, np.flatnonzero(passed))),
     )
 
 
-def _crossings(
+def _gather_crossings(
     work: Splitting, is_crossing: NDArray[np.bool_], priority: NDArray[Any]
 ) -> tuple[Crossings, _Visits]:
-    """Return the crossings, and whose height counts at each vertex, by vertex."""
+    """Return the crossings, and whose elevation counts at each vertex, by vertex.
+
+    The visits are sorted by vertex, at each the one that counts in front::
+
+        vertex      7  7  7  9  9
+        line        2  0  3  1  4
+        is_winner   x        x
+        winner      0  0  0  3  3            the row of the winner at the same vertex
+        crossings   (2, 0) (2, 3) (1, 4)     a pair for each other visit, the winner in front
+    """
     at = np.flatnonzero(is_crossing[work.polylines.vertices])
-    vertex, line, height = _visits(work, at)
+    vertex, line, elevation = _gather_visits(work, at)
     part_of = work.polylines.lines[line]
     rank = np.where(np.isneginf(priority[line]), 0, part_of)  # draped lines have no order
-    best = np.lexsort((line, height, rank, -priority[line], np.isnan(height), vertex))
-    vertex, line, height = vertex[best], line[best], height[best]
+    best = np.lexsort((line, elevation, rank, -priority[line], np.isnan(elevation), vertex))
+    vertex, line, elevation = vertex[best], line[best], elevation[best]
     is_winner = np.ones(len(vertex), np.bool_)
     is_winner[1:] = np.diff(vertex) != 0
     winner = np.flatnonzero(is_winner)[np.cumsum(is_winner) - 1]
     other = np.flatnonzero(~is_winner)
     pair = np.stack([winner[other], other], axis=1)
     crossings = Crossings(
-        vertex[other], work.xy[vertex[other]], line[pair], height[pair], height[winner[other]]
+        vertex[other], work.xy[vertex[other]], line[pair], elevation[pair], elevation[winner[other]]
     )
-    return crossings, _Visits(vertex[is_winner], line[is_winner], height[is_winner])
+    return crossings, _Visits(vertex[is_winner], line[is_winner], elevation[is_winner])
 
 
-def _crossing_error(
+def _explain_crossing(
     work: Splitting, pairs: NDArray[np.int64], names: Sequence[str] | None
 ) -> LinesError:
     """Name the first crossing: by lines, then by place."""
-    places = work.places_of(pairs)
-    step = np.sort(work.steps.first_step[pairs], axis=1)
-    lines = work.polylines.owners[work.steps.start[step]]
-    first = np.lexsort((places[:, 1], places[:, 0], lines[:, 1], lines[:, 0]))[0]
+    points = work.find_crossing_points(pairs)
+    segment = np.sort(work.segments.first_segment[pairs], axis=1)
+    lines = work.polylines.owners[work.segments.start[segment]]
+    first = np.lexsort((points[:, 1], points[:, 0], lines[:, 1], lines[:, 0]))[0]
     a, b = lines[first].tolist()
-    x, y = places[first].tolist()
-    heights = work.elevations_at(step[first], places[[first, first]]).tolist()
+    x, y = points[first].tolist()
+    elevations = work.interpolate_elevations(segment[first], points[[first, first]]).tolist()
     label_a, label_b = (f"line {i}" if names is None else names[i] for i in (a, b))
     whom = "itself" if a == b else label_b
     return LinesError(
         f"{label_a[0].upper()}{label_a[1:]} crosses {whom} at ({x:.12g}, {y:.12g}), "
-        f"{_in_words(heights)}: crossing='split' makes a vertex there.",
+        f"{_describe_elevations(elevations)}: crossing='split' makes a vertex there.",
         lines=sorted({a, b}),
     )
 
 
-def _in_words(heights: list[float]) -> str:
-    first, second = ("no height" if np.isnan(z) else f"height {z:.10g}" for z in heights)
+def _describe_elevations(elevations: list[float]) -> str:
+    first, second = ("no elevation" if np.isnan(z) else f"elevation {z:.10g}" for z in elevations)
     return f"with {first} and {second}"

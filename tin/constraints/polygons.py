@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...errors import LinesError
-from .breaklines import as_ring, elevations_at_start
+from .breaklines import as_ring, find_elevations_at_start
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["rings_of", "starts_with_elevations"]
+__all__ = ["gather_rings_of_regions", "starts_with_elevations"]
 
 
-def rings_of(regions: Sequence[Any], what: str) -> list[list[NDArray[np.float64]]]:
+def gather_rings_of_regions(regions: Sequence[Any], what: str) -> list[list[NDArray[np.float64]]]:
     """Return the rings of regions, one list for each.
 
     Parameters
@@ -35,22 +35,22 @@ def rings_of(regions: Sequence[Any], what: str) -> list[list[NDArray[np.float64]
 
     Examples
     --------
-    >>> [len(rings) for rings in rings_of([[[0, 0], [1, 0], [0, 1]]], "hole")]
+    >>> [len(rings) for rings in gather_rings_of_regions([[[0, 0], [1, 0], [0, 1]]], "hole")]
     [1]
     """
-    return [[as_ring(*one) for one in rings] for rings in _labelled(regions, what)]
+    return [[as_ring(*one) for one in rings] for rings in _label_rings(regions, what)]
 
 
 def starts_with_elevations(
     regions: Sequence[Any], what: str
 ) -> list[tuple[str, NDArray[np.float64]]]:
     """Return the rings that close with several elevations: name, vertices with the lowest first."""
-    rings = [one for rings in _labelled(regions, what) for one in rings]
-    starts = [(label, elevations_at_start(ring, label)) for ring, label in rings]
+    rings = [one for rings in _label_rings(regions, what) for one in rings]
+    starts = [(label, find_elevations_at_start(ring, label)) for ring, label in rings]
     return [(label, start) for label, start in starts if len(start) > 1]
 
 
-def _labelled(regions: Sequence[Any], what: str) -> Iterator[list[tuple[Any, str]]]:
+def _label_rings(regions: Sequence[Any], what: str) -> Iterator[list[tuple[Any, str]]]:
     """Walk the regions, each a list of rings with their names."""
     number = 0
     for region in regions:
@@ -63,7 +63,7 @@ def _as_rings(region: Any, what: str) -> Iterator[Sequence[Any]]:
     """Walk the regions that something given as one holds, each as a sequence of rings."""
     interface = getattr(region, "__geo_interface__", None)
     if interface is not None:
-        yield from _of_geometry(interface, what)
+        yield from _walk_geometry(interface, what)
     elif _is_sequence_of_rings(region):
         if len(region) == 0:
             raise LinesError(f"Invalid {what}: a polygon without a ring.")
@@ -84,7 +84,7 @@ def _is_sequence_of_rings(region: Any) -> bool:
     return isinstance(first, Sequence | np.ndarray) and np.ndim(first) == 1
 
 
-def _of_geometry(given: Mapping[str, Any], what: str) -> Iterator[Sequence[Any]]:
+def _walk_geometry(given: Mapping[str, Any], what: str) -> Iterator[Sequence[Any]]:
     """Take collections apart; an object may be a feature or several."""
     pending = [given]
     while pending:

@@ -8,23 +8,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..topology import find_offsets, find_owners
+
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Iterator, Sequence
 
     from numpy.typing import NDArray
 
 __all__ = ["Polylines", "offsets_of", "owners_of"]
 
-
-def offsets_of(lengths: Iterable[int] | NDArray[Any]) -> NDArray[np.int64]:
-    """Return where each part of a ragged array begins, and the last one ends."""
-    lengths = lengths if isinstance(lengths, np.ndarray) else list(lengths)
-    return np.concatenate([[0], np.cumsum(lengths, dtype=np.int64)])
-
-
-def owners_of(offsets: NDArray[Any]) -> NDArray[np.int64]:
-    """Return for each row of a ragged array the part that it belongs to."""
-    return np.repeat(np.arange(len(offsets) - 1), np.diff(offsets))
+offsets_of, owners_of = find_offsets, find_owners  # their names at first
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +52,7 @@ class Polylines:
     def of_chains(cls, chains: Sequence[Sequence[int]]) -> Polylines:
         """Return one polyline for each chain of vertices."""
         vertices = np.array([v for chain in chains for v in chain], np.int32)
-        return cls.whole(vertices, offsets_of(map(len, chains)))
+        return cls.whole(vertices, find_offsets(map(len, chains)))
 
     def __len__(self) -> int:
         return len(self.lines)
@@ -77,7 +70,7 @@ class Polylines:
     @property
     def owners(self) -> NDArray[np.int64]:
         """The polyline of each position."""
-        return owners_of(self.offsets)
+        return find_owners(self.offsets)
 
     def starts(self) -> NDArray[np.int64]:
         """Return the position from which each segment goes."""
@@ -140,5 +133,5 @@ class Polylines:
         return replace(
             self,
             vertices=self.vertices[is_chosen],
-            offsets=offsets_of(is_chosen)[self.offsets].astype(np.int32),
+            offsets=find_offsets(is_chosen)[self.offsets].astype(np.int32),
         )

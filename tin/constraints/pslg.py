@@ -1,7 +1,7 @@
 """Planar straight-line graph (PSLG): vertices, segments of lines, what of the hull is the surface.
 
 It is what a TIN is a function of once rows are merged and lines cut where they meet. The
-triangulation of its vertices with its steps is unique, so any way to it gives the same TIN.
+triangulation of its vertices with its segments is unique, so any way to it gives the same TIN.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from ...errors import LinesError
 from .. import _kernel
 from ..topology import edge_keys, edges_at
 from .breaklines import Lines
-from .clipping import BOUNDARY, RIM, RingSteps, Surface, clipped, is_inside, trimmed
+from .clipping import BOUNDARY, OWN_BOUNDARY, RingSegments, Surface, clip, is_inside, trim
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from .constraint_table import ConstraintTable
     from .polylines import Polylines
 
-__all__ = ["Clip", "Pslg", "force", "lines_in", "mesh_of", "mesh_of_growth"]
+__all__ = ["Clip", "Pslg", "build_mesh", "build_mesh_of_growth", "find_lines_in", "force"]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -36,8 +36,8 @@ class Clip:
         Rings.
     holes : list of lists of (k, 2) float64 arrays
         The rings of each, the outer one and its islands.
-    has_rim : bool
-        Whether there are lines of the rim, beyond which there is no surface.
+    has_own_boundary : bool
+        Whether there are lines of a boundary that is there, beyond which is no surface.
     max_edge : float
         Infinity for none.
     is_trimmed_everywhere : bool
@@ -46,7 +46,7 @@ class Clip:
     boundary: list[NDArray[np.float64]] = field(default_factory=list)
     extent: list[NDArray[np.float64]] = field(default_factory=list)
     holes: list[list[NDArray[np.float64]]] = field(default_factory=list)
-    has_rim: bool = False
+    has_own_boundary: bool = False
     max_edge: float = np.inf
     is_trimmed_everywhere: bool = False
 
@@ -57,9 +57,9 @@ class Clip:
 
     @property
     def _has_rings(self) -> bool:
-        return bool(self.boundary or self.extent or self.holes or self.has_rim)
+        return bool(self.boundary or self.extent or self.holes or self.has_own_boundary)
 
-    def keeps(self, surface: Surface, ring_steps: RingSteps) -> NDArray[np.bool_]:
+    def keeps(self, surface: Surface, ring_segments: RingSegments) -> NDArray[np.bool_]:
         """Tell which triangles are kept.
 
         Raises
@@ -69,11 +69,11 @@ class Clip:
         """
         keep = np.ones(len(surface.triangles), np.bool_)
         if self._has_rings:
-            keep = is_inside(surface, ring_steps, self.boundary, self.extent, self.holes)
+            keep = is_inside(surface, ring_segments, self.boundary, self.extent, self.holes)
             _require_triangles(keep, "The boundary and the holes leave no triangle of the surface")
         if np.isfinite(self.max_edge):
             everywhere = self.is_trimmed_everywhere
-            keep = trimmed(surface, keep, self.max_edge, everywhere=everywhere)
+            keep = trim(surface, keep, self.max_edge, everywhere=everywhere)
             _require_triangles(keep, f"No triangle is left with max_edge {self.max_edge:g}")
         return keep
 
@@ -93,7 +93,7 @@ class Pslg:
         Distinct places.
     polylines : Polylines
     constraints : ConstraintTable
-        What their lines are; source -1 is an edge of the rim that was cut.
+        What their lines are; source -1 is an edge of the boundary that was cut.
     groups : (l,) int64 array
         Of each line whose side it changes, if it is a ring, as in :mod:`.clipping`.
     clip : Clip
@@ -112,43 +112,43 @@ class Pslg:
         """Cut the triangulated hull; return the surface and the new number of each vertex."""
         if self.clip.is_none:
             return hull, np.arange(len(hull.points), dtype=np.int32)
-        group = self._ring_groups()[self.polylines.segment_lines()]
-        is_ring = group >= (RIM if self.clip.has_rim else BOUNDARY)
-        rings = RingSteps(self.polylines.segments()[is_ring], group[is_ring])
+        group = self._find_ring_groups()[self.polylines.segment_lines()]
+        is_ring = group >= (OWN_BOUNDARY if self.clip.has_own_boundary else BOUNDARY)
+        rings = RingSegments(self.polylines.segments()[is_ring], group[is_ring])
         keep = self.clip.keeps(hull, rings)
         if keep.all():
             return hull, np.arange(len(hull.points), dtype=np.int32)
-        return clipped(hull, keep)
+        return clip(hull, keep)
 
-    def _ring_groups(self) -> NDArray[np.int64]:
-        """Return the group of each line, that of the rim too; below all if it is no ring."""
+    def _find_ring_groups(self) -> NDArray[np.int64]:
+        """Return the group of each line, that of the boundary too; below all if it is no ring."""
         table = self.constraints
-        groups = np.where(table.sources < 0, RIM, self.groups)
-        return np.where(table.is_kind("boundary", "hole"), groups, RIM - 1)
+        groups = np.where(table.sources < 0, OWN_BOUNDARY, self.groups)
+        return np.where(table.is_kind("boundary", "hole"), groups, OWN_BOUNDARY - 1)
 
-    def loses_vertices_at_rim(self, hull: Surface) -> bool:
-        """Tell whether vertices lie beyond the rim, which is so only if a rounding bent it.
+    def loses_vertices_at_own_boundary(self, hull: Surface) -> bool:
+        """Tell whether vertices lie beyond a boundary that is there: only if a rounding bent it.
 
-        Rings that end at the rim need it none the less, to have an inside.
+        Rings that end at the boundary need it none the less, to have an inside.
         """
-        if not self.clip.has_rim:
+        if not self.clip.has_own_boundary:
             return False
-        without = replace(self, clip=replace(self.clip, has_rim=False))
+        without = replace(self, clip=replace(self.clip, has_own_boundary=False))
         try:
             (_, within), (_, everywhere) = self.surface(hull), without.surface(hull)
-        except LinesError:  # nothing is left: the same without the rim, or it was its fault
+        except LinesError:  # nothing is left: the same without the boundary, or it was its fault
             return True
         return bool(((within < 0) & (everywhere >= 0)).any())
 
 
-def mesh_of(points: NDArray[np.float64], polylines: Polylines, *, threads: int) -> _kernel.Mesh:
-    """Triangulate distinct points, and fix the steps of lines that are cut where they meet."""
-    mesh = mesh_of_growth(points, _kernel.grow(points, threads=threads))
+def build_mesh(points: NDArray[np.float64], polylines: Polylines, *, threads: int) -> _kernel.Mesh:
+    """Triangulate distinct points, and fix the segments of lines that are cut where they meet."""
+    mesh = build_mesh_of_growth(points, _kernel.grow(points, threads=threads))
     force(mesh, polylines)
     return mesh
 
 
-def mesh_of_growth(points: NDArray[np.float64], growth: _kernel.Growth) -> _kernel.Mesh:
+def build_mesh_of_growth(points: NDArray[np.float64], growth: _kernel.Growth) -> _kernel.Mesh:
     """Return the triangulation of distinct points as a mesh, with no edge fixed."""
     return _kernel.Mesh(points, growth.triangles, growth.neighbors)
 
@@ -160,7 +160,7 @@ def force(mesh: _kernel.Mesh, polylines: Polylines) -> None:
         raise AssertionError("lines were not cut at all places where they meet")
 
 
-def lines_in(
+def find_lines_in(
     polylines: Polylines,
     constraints: ConstraintTable,
     number_of: NDArray[np.int32],
@@ -183,9 +183,9 @@ def lines_in(
     )
 
 
-def _are_edges(steps: NDArray[np.int32], surface: Surface) -> NDArray[np.bool_]:
+def _are_edges(segments: NDArray[np.int32], surface: Surface) -> NDArray[np.bool_]:
     n = len(surface.points)
     edges = edges_at(surface.triangles, surface.constrained)
-    is_edge = np.asarray((steps >= 0).all(axis=1), np.bool_)
-    is_edge[is_edge] = np.isin(edge_keys(steps[is_edge], n), edge_keys(edges, n))
+    is_edge = np.asarray((segments >= 0).all(axis=1), np.bool_)
+    is_edge[is_edge] = np.isin(edge_keys(segments[is_edge], n), edge_keys(edges, n))
     return is_edge

@@ -1,4 +1,4 @@
-"""Splitting: cut the steps of lines where they touch and cross, and keep what is known of them."""
+"""Splitting: cut the segments of lines where they touch and cross, and keep what is known."""
 
 from __future__ import annotations
 
@@ -14,49 +14,59 @@ from .polylines import Polylines
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Splitting", "Steps", "drop_repeats", "interpolate_linearly", "is_before"]
+__all__ = ["Segments", "Splitting", "drop_repeats", "interpolate_linearly", "is_before"]
 
 MOST_ROUNDS = 1000  # cascades of roundings end after a few
 
 
-class Steps(NamedTuple):
-    """Steps of all polylines, and the distinct segments that they walk.
+class Segments(NamedTuple):
+    """Segments of all polylines, and the distinct edges along which they run.
+
+    Two lines that share a part have four segments on three edges. What touches or crosses an edge
+    is found once, and splits all of its segments::
+
+        line 0    u ---> v ---> w             position   0  1  2   3  4  5
+        line 1           v <--- w <--- x      vertex     u  v  w   x  w  v
+
+        start     0    1    3    4            edges      u-v  v-w  w-x
+        edge      u-v  v-w  w-x  v-w
+        backward  no   no   yes  yes
 
     Attributes
     ----------
     start : (s,) int64 array
-        Position of the vertex from which each step goes.
-    segment : (s,) int64 array
-        The segment of each step.
+        Position from which each segment goes.
+    edge : (s,) int64 array
+        The edge of each segment, to which others may belong.
     is_backward : (s,) bool array
-        Whether it goes from the segment's second end to the first.
+        Whether it goes from the edge's second end to the first.
     keys : (m,) int64 array
-        Of the segments, ascending: both vertex numbers in one.
+        Of the edges, ascending: both vertex numbers in one.
     ends : (m, 2) int32 array
-        Vertices of each segment, the first by x, then y, in front.
-    first_step : (m,) int64 array
-        The first step along each segment.
+        Vertices of each edge, the first by x, then y, in front.
+    first_segment : (m,) int64 array
+        The first segment along each edge.
     """
 
     start: NDArray[np.int64]
-    segment: NDArray[np.int64]
+    edge: NDArray[np.int64]
     is_backward: NDArray[np.bool_]
     keys: NDArray[np.int64]
     ends: NDArray[np.int32]
-    first_step: NDArray[np.int64]
+    first_segment: NDArray[np.int64]
 
     @classmethod
-    def along(cls, polylines: Polylines, xy: NDArray[np.float64]) -> Steps:
+    def along(cls, polylines: Polylines, xy: NDArray[np.float64]) -> Segments:
         """Take the polylines apart."""
         start = polylines.starts()
         a, b = (polylines.vertices[at].astype(np.int64) for at in (start, start + 1))
-        keys, first_step, segment = np.unique(
-            _key_of(np.minimum(a, b), np.maximum(a, b)), return_index=True, return_inverse=True
+        keys, first_segment, edge = np.unique(
+            _make_keys(np.minimum(a, b), np.maximum(a, b)), return_index=True, return_inverse=True
         )
-        ends = np.stack(_numbers_of(keys), axis=1).astype(np.int32)
+        ends = np.stack(_split_keys(keys), axis=1).astype(np.int32)
         swapped = is_before(xy[ends[:, 1]], xy[ends[:, 0]])
         ends[swapped] = ends[swapped, ::-1]
-        return cls(start, segment, ends[segment, 0] != a, keys, ends, first_step)
+        return cls(start, edge, ends[edge, 0] != a, keys, ends, first_segment)
 
 
 def drop_repeats(
@@ -72,13 +82,13 @@ def drop_repeats(
     moves[first] = True
     starts = np.flatnonzero(moves)
     lowest = np.minimum.reduceat(elevations, starts) if len(starts) else elevations
-    ends = _closing_ends(polylines, elevations)
+    ends = _find_closing_ends(polylines, elevations)
     run = np.searchsorted(starts, ends, side="right") - 1
     lowest[run] = lowest[run].min(axis=0)
     return polylines.choose_positions(moves), lowest
 
 
-def _closing_ends(polylines: Polylines, elevations: NDArray[np.float64]) -> NDArray[np.int64]:
+def _find_closing_ends(polylines: Polylines, elevations: NDArray[np.float64]) -> NDArray[np.int64]:
     """Return where polylines begin and end that close with one elevation, (2, c).
 
     Others keep both of their elevations: a ramp may end above its begin.
@@ -89,13 +99,13 @@ def _closing_ends(polylines: Polylines, elevations: NDArray[np.float64]) -> NDAr
     return ends[:, (a == b) & (z_a == z_b)]
 
 
-def _key_of(first: NDArray[Any], second: NDArray[Any]) -> NDArray[np.int64]:
+def _make_keys(first: NDArray[Any], second: NDArray[Any]) -> NDArray[np.int64]:
     """Make one number of two below 2^31."""
     key: NDArray[np.int64] = (first.astype(np.int64) << 32) | second
     return key
 
 
-def _numbers_of(keys: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _split_keys(keys: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     return keys >> 32, keys & 0xFFFFFFFF
 
 
@@ -114,13 +124,13 @@ class Splitting:
     Attributes
     ----------
     xy : (n, 2) float64 array
-        Places of the vertices: of the given ones, then of those made where lines cross.
+        Coordinates of the vertices: of the given ones, then of those made where lines cross.
     polylines : Polylines
     elevations : (k,) float64 array
         The line's own at each position; NaN if it has none.
     is_given : (k,) bool array
         Whether the line names the vertex itself.
-    steps : Steps
+    segments : Segments
     crossing_vertices : (c,) int32 array
     """
 
@@ -136,24 +146,24 @@ class Splitting:
         self.n_given = len(self.xy)
         self.polylines, self.elevations = drop_repeats(polylines, elevations)
         self.is_given = np.ones(len(self.elevations), np.bool_)
-        self.steps = Steps.along(self.polylines, self.xy)
+        self.segments = Segments.along(self.polylines, self.xy)
         self.crossing_vertices = np.empty(0, np.int32)
         self._snap = snap
         self._threads = threads
-        self._is_rounded = False  # whether vertices within a rounding of a segment are on it
-        self._untouched = np.empty(0, np.int64)  # segments that the first vertices do not touch
+        self._is_rounded = False  # whether vertices within a rounding of an edge are on it
+        self._untouched = np.empty(0, np.int64)  # edges that the first vertices do not touch
         self._n_touched = 0  # the number of those vertices
-        self._uncrossed = np.empty(0, np.int64)  # segments that do not cross one another
+        self._uncrossed = np.empty(0, np.int64)  # edges that do not cross one another
 
     def split_everywhere(
         self, refuse: Callable[[NDArray[np.int64]], LinesError] | None = None
     ) -> None:
-        """Split steps where they touch and cross until nothing does.
+        """Split segments where they touch and cross until nothing does.
 
         Parameters
         ----------
         refuse : callable, optional
-            Makes the error of pairs of segments that cross, if they must not.
+            Makes the error of pairs of edges that cross, if they must not.
         """
         self.split_at_touches()
         for _ in range(MOST_ROUNDS):
@@ -164,34 +174,34 @@ class Splitting:
                 raise refuse(pairs)
             self.split_at_crossings(pairs)
             self.split_at_touches()
-        raise endless()
+        raise explain_endless()
 
     # ---------------------------------------------------------------- touches
 
     def split_at_touches(self) -> None:
-        """Split steps at the vertices on them until there is none."""
+        """Split segments at the vertices on them until there is none."""
         for _ in range(MOST_ROUNDS):
-            segment, vertex = self._find_touches()
+            edge, vertex = self._find_touches()
             bends = self._snap > 0 or self._is_rounded
-            if len(segment) and bends:
-                segment, vertex = self._shortening(segment, vertex)
-            if len(segment):
-                self._split(segment, vertex, bends=bends)
-            if len(segment) == 0 or not bends:  # exact splits leave no touches
-                self._untouched = self.steps.keys
+            if len(edge) and bends:
+                edge, vertex = self._keep_shortening(edge, vertex)
+            if len(edge):
+                self._split(edge, vertex, bends=bends)
+            if len(edge) == 0 or not bends:  # exact splits leave no touches
+                self._untouched = self.segments.keys
                 self._n_touched = len(self.xy)
                 return
-        raise endless()
+        raise explain_endless()
 
     def _find_touches(self) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
-        """Ask new segments about all vertices, known ones about new vertices."""
+        """Ask new edges about all vertices, known ones about new vertices."""
         if self._n_touched == 0:
             return self._find_contacts()
-        is_known = _is_in(self.steps.keys, self._untouched)
+        is_known = _is_in(self.segments.keys, self._untouched)
         found = []
         for asked, first in ((~is_known, 0), (is_known, self._n_touched)):
             numbers = np.flatnonzero(asked)
-            ends = self.steps.ends[numbers]
+            ends = self.segments.ends[numbers]
             if len(numbers) and first < len(self.xy):
                 pairs = _kernel.touches(
                     self.xy, ends, self._snap, first, self._is_rounded, self._threads
@@ -199,82 +209,89 @@ class Splitting:
                 found.append((numbers[pairs[:, 0]], pairs[:, 1]))
         if not found:
             return np.empty(0, np.int64), np.empty(0, np.int32)
-        segment, vertex = (np.concatenate(column) for column in zip(*found, strict=True))
-        return segment, vertex
+        edge, vertex = (np.concatenate(column) for column in zip(*found, strict=True))
+        return edge, vertex
 
     def _find_contacts(self) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
-        """Ask all segments about all, and note those that cross none."""
-        ends = self.steps.ends
+        """Ask all edges about all, and note those that cross none."""
+        ends = self.segments.ends
         crossings, touches = _kernel.contacts(self.xy, ends, self._snap, self._threads)
         crossed = np.zeros(len(ends), np.bool_)
         crossed[crossings.ravel()] = True
         touched = np.zeros(len(ends), np.bool_)
         touched[touches[:, 0]] = True
-        self._uncrossed = self.steps.keys[~crossed]
-        self._untouched = self.steps.keys[~touched]
+        self._uncrossed = self.segments.keys[~crossed]
+        self._untouched = self.segments.keys[~touched]
         self._n_touched = len(self.xy)
         return touches[:, 0].astype(np.int64), touches[:, 1]
 
-    def _shortening(
-        self, segment: NDArray[np.int64], vertex: NDArray[np.int32]
+    def _keep_shortening(
+        self, edge: NDArray[np.int64], vertex: NDArray[np.int32]
     ) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
-        """Keep all touches of a segment if that leaves shorter parts, else only the nearest."""
-        segment, vertex = self._in_order(segment, vertex, bends=True)
-        a, b, p = self._ends_and_places(segment, vertex)
-        is_first = np.append(True, np.diff(segment) != 0)
+        """Keep all touches of an edge if that leaves shorter parts, else only the nearest.
+
+        ::
+
+                   p                    a-p, p-q and q-b are all shorter than a-b: both are kept.
+            a ---------- q ---- b       If a part were not, only q would be, as it is the nearest
+                                        to the line, and a-q and q-b would be looked at again.
+        """
+        edge, vertex = self._sort_along(edge, vertex, bends=True)
+        a, b, p = self._get_ends_and_points(edge, vertex)
+        is_first = np.append(True, np.diff(edge) != 0)
         before = np.where(is_first[:, None], a, np.roll(p, 1, axis=0))
         after = np.where(np.roll(is_first, -1)[:, None], b, np.roll(p, -1, axis=0))
-        whole = _square(a, b)
-        grows = (_square(before, p) >= whole) | (_square(p, after) >= whole)
-        keep = ~np.isin(segment, segment[grows])
-        nearest = np.lexsort((p[:, 1], p[:, 0], np.abs(_cross(a, b, p)), segment))
-        keep[nearest[is_first]] = True  # both orders are by segment first
-        return segment[keep], vertex[keep]
+        whole = _measure_square(a, b)
+        grows = (_measure_square(before, p) >= whole) | (_measure_square(p, after) >= whole)
+        keep = ~np.isin(edge, edge[grows])
+        nearest = np.lexsort((p[:, 1], p[:, 0], np.abs(_measure_cross(a, b, p)), edge))
+        keep[nearest[is_first]] = True  # both orders are by edge first
+        return edge[keep], vertex[keep]
 
     # ---------------------------------------------------------------- crossings
 
     def find_crossings(self) -> NDArray[np.int64]:
-        """Return the pairs of distinct segments that cross, (c, 2)."""
-        is_known = _is_in(self.steps.keys, self._uncrossed)
+        """Return the pairs of distinct edges that cross, (c, 2)."""
+        is_known = _is_in(self.segments.keys, self._uncrossed)
         if is_known.all():
             return np.empty((0, 2), np.int64)
         order = np.argsort(~is_known, kind="stable")
         pairs = _kernel.crossings(
-            self.xy, self.steps.ends[order], int(is_known.sum()), self._threads
+            self.xy, self.segments.ends[order], int(is_known.sum()), self._threads
         )
         if len(pairs) == 0:
-            self._uncrossed = self.steps.keys
+            self._uncrossed = self.segments.keys
         crossing: NDArray[np.int64] = np.sort(order[pairs], axis=1)
         return crossing
 
     def split_at_crossings(self, pairs: NDArray[np.int64]) -> None:
-        """Split the segments of all pairs where they cross."""
-        vertex = np.repeat(self._vertices_at(self.places_of(pairs)), 2)
-        segment = pairs.ravel()
-        inside = (self.steps.ends[segment] != vertex[:, None]).all(axis=1)
-        split, at = _numbers_of(np.unique(_key_of(segment[inside], vertex[inside])))
+        """Split the edges of all pairs where they cross."""
+        vertex = np.repeat(self._find_or_make_vertices(self.find_crossing_points(pairs)), 2)
+        edge = pairs.ravel()
+        inside = (self.segments.ends[edge] != vertex[:, None]).all(axis=1)
+        split, at = _split_keys(np.unique(_make_keys(edge[inside], vertex[inside])))
         # Of every pair at least one is split: the others do not cross one another.
-        uncrossed = np.ones(len(self.steps.keys), np.bool_)
+        uncrossed = np.ones(len(self.segments.keys), np.bool_)
         uncrossed[split] = False
-        self._uncrossed = self.steps.keys[uncrossed]
+        self._uncrossed = self.segments.keys[uncrossed]
         self._split(split, at.astype(np.int32), bends=False)
         self._is_rounded = True
 
-    def places_of(self, pairs: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Return where the segments of each pair cross, (c, 2)."""
-        return _kernel.intersections(self.xy, self.steps.ends, pairs.astype(np.int32))
+    def find_crossing_points(self, pairs: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Return where the edges of each pair cross, (c, 2)."""
+        return _kernel.intersections(self.xy, self.segments.ends, pairs.astype(np.int32))
 
-    def _vertices_at(self, places: NDArray[np.float64]) -> NDArray[np.int32]:
+    def _find_or_make_vertices(self, points: NDArray[np.float64]) -> NDArray[np.int32]:
         """Find or make the vertex at each place."""
-        order = np.lexsort((places[:, 1], places[:, 0]))
-        is_first = np.append(True, (np.diff(places[order], axis=0) != 0).any(axis=1))
-        distinct = places[order[is_first]]
+        order = np.lexsort((points[:, 1], points[:, 0]))
+        is_first = np.append(True, (np.diff(points[order], axis=0) != 0).any(axis=1))
+        distinct = points[order[is_first]]
         vertices = _kernel.vertices_at(self.xy, distinct)
         is_new = vertices < 0
         vertices[is_new] = len(self.xy) + np.arange(is_new.sum(), dtype=np.int32)
         self.xy = np.concatenate([self.xy, distinct[is_new]])
         self.crossing_vertices = np.union1d(self.crossing_vertices, vertices)
-        number = np.empty(len(places), np.int32)
+        number = np.empty(len(points), np.int32)
         number[order] = vertices[np.cumsum(is_first) - 1]
         return number
 
@@ -282,61 +299,71 @@ class Splitting:
 
     def _split(
         self,
-        segment: NDArray[np.int64],
+        edge: NDArray[np.int64],
         vertex: NDArray[np.int32],
         *,
         bends: bool,
     ) -> None:
-        """Split every step along a segment at the vertices given with it."""
-        steps = self.steps
-        segment, vertex = self._in_order(segment, vertex, bends=bends)
-        count = np.bincount(segment, minlength=len(steps.keys))
+        """Split every segment along an edge at the vertices given with it.
+
+        The vertices of an edge are one run of rows, from its first end to its second; a segment
+        that goes backwards reads its run from the end::
+
+            row                 4  5  6             edge a-b is split at r, s, t
+            vertex              r  s  t
+
+            a -> r -> s -> t -> b   nth 0 1 2   row 4 5 6
+            b -> t -> s -> r -> a   nth 0 1 2   row 6 5 4     (is_backward)
+        """
+        segments = self.segments
+        edge, vertex = self._sort_along(edge, vertex, bends=bends)
+        count = np.bincount(edge, minlength=len(segments.keys))
         first = np.cumsum(count) - count
-        step = np.repeat(np.arange(len(steps.start)), count[steps.segment])
-        nth = np.arange(len(step)) - np.searchsorted(step, step)
-        on = steps.segment[step]
-        row = first[on] + np.where(steps.is_backward[step], count[on] - 1 - nth, nth)
-        at, vertex = steps.start[step], vertex[row]
-        elevations = self.elevations_at(step, self.xy[vertex])
+        segment = np.repeat(np.arange(len(segments.start)), count[segments.edge])
+        nth = np.arange(len(segment)) - np.searchsorted(segment, segment)
+        on = segments.edge[segment]
+        row = first[on] + np.where(segments.is_backward[segment], count[on] - 1 - nth, nth)
+        at, vertex = segments.start[segment], vertex[row]
+        elevations = self.interpolate_elevations(segment, self.xy[vertex])
         self.elevations = np.insert(self.elevations, at + 1, elevations)
         self.is_given = np.insert(self.is_given, at + 1, values=False)
         self.polylines = self.polylines.insert(at, vertex)
-        self.steps = Steps.along(self.polylines, self.xy)
+        self.segments = Segments.along(self.polylines, self.xy)
 
-    def _in_order(
-        self, segment: NDArray[np.int64], vertex: NDArray[np.int32], *, bends: bool
+    def _sort_along(
+        self, edge: NDArray[np.int64], vertex: NDArray[np.int32], *, bends: bool
     ) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
-        """Sort by segment, then from its first end to the second.
+        """Sort by edge, then from its first end to the second.
 
         Rounding is monotone: exact places and rounded crossings are in order by x and by y. Where
-        lines bend, the projection decides; of two places across an upright or level segment, which
+        lines bend, the projection decides; of two places across an upright or level edge, which
         are then equally far along it, the coordinates.
         """
-        a, b, p = self._ends_and_places(segment, vertex)
+        a, b, p = self._get_ends_and_points(edge, vertex)
         x, y = (np.sign(b - a) * p).T
-        keys = (*p.T, y, x, _projection(a, b, p)) if bends else (y, x)
-        order = np.lexsort((*keys, segment))
-        return segment[order], vertex[order]
+        keys = (*p.T, y, x, _project(a, b, p)) if bends else (y, x)
+        order = np.lexsort((*keys, edge))
+        return edge[order], vertex[order]
 
-    def _ends_and_places(
-        self, segment: NDArray[np.int64], vertex: NDArray[np.int32]
+    def _get_ends_and_points(
+        self, edge: NDArray[np.int64], vertex: NDArray[np.int32]
     ) -> tuple[NDArray[np.float64], ...]:
-        first, second = self.steps.ends[segment].T
+        first, second = self.segments.ends[edge].T
         return self.xy[first], self.xy[second], self.xy[vertex]
 
-    def elevations_at(
-        self, step: NDArray[np.int64], places: NDArray[np.float64]
+    def interpolate_elevations(
+        self, segment: NDArray[np.int64], points: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """Interpolate the elevations of steps at places on them; the same both ways."""
-        start, backward = self.steps.start[step], self.steps.is_backward[step]
-        first, second = self.steps.ends[self.steps.segment[step]].T
+        """Interpolate the elevations of segments at places on them; the same both ways."""
+        start, backward = self.segments.start[segment], self.segments.is_backward[segment]
+        first, second = self.segments.ends[self.segments.edge[segment]].T
         a, b = self.xy[first], self.xy[second]
         z_a = self.elevations[start + backward]
         z_b = self.elevations[start + ~backward]
-        return interpolate_linearly(z_a, z_b, _projection(a, b, places) / _square(a, b))
+        return interpolate_linearly(z_a, z_b, _project(a, b, points) / _measure_square(a, b))
 
 
-def endless() -> LinesError:
+def explain_endless() -> LinesError:
     """Return the error for lines that do not come to an end."""
     return LinesError(
         f"The lines still meet at new places after {MOST_ROUNDS} rounds of splitting: "
@@ -355,14 +382,14 @@ def interpolate_linearly(
     return np.clip(between, np.minimum(start, end), np.maximum(start, end))
 
 
-def _projection(
+def _project(
     a: NDArray[np.float64], b: NDArray[np.float64], p: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     along: NDArray[np.float64] = ((p - a) * (b - a)).sum(axis=1)
     return along
 
 
-def _cross(
+def _measure_cross(
     a: NDArray[np.float64], b: NDArray[np.float64], p: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     u, v = b - a, p - a
@@ -370,7 +397,7 @@ def _cross(
     return area
 
 
-def _square(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
+def _measure_square(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
     square: NDArray[np.float64] = ((b - a) ** 2).sum(axis=1)
     return square
 

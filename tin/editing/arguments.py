@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,31 +17,19 @@ if TYPE_CHECKING:
 
 __all__ = [
     "as_ends",
-    "as_heights",
-    "as_plain_dict",
     "as_point",
+    "as_vertex_elevations",
     "as_vertices",
-    "copied",
+    "copy_argument",
     "require_distinct",
 ]
 
 
-def copied(value: Any) -> Any:
+def copy_argument(value: Any) -> Any:
     """Return an argument so that the caller's further use of it changes nothing."""
     if isinstance(value, list):
-        return [copied(one) if isinstance(one, list) else one for one in value]
+        return [copy_argument(one) if isinstance(one, list) else one for one in value]
     return value.copy() if isinstance(value, np.ndarray) else value
-
-
-def as_plain_dict(operation: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
-    """Return an operation with its arguments as plain Python values, ready for JSON."""
-    return {"op": operation, **{name: _as_plain(value) for name, value in arguments.items()}}
-
-
-def _as_plain(value: Any) -> Any:
-    if isinstance(value, np.ndarray | np.generic):
-        return value.tolist()
-    return value
 
 
 def as_vertices(vertices: ArrayLike, count: int) -> NDArray[np.int64]:
@@ -96,15 +83,16 @@ def as_point(point: Any) -> NDArray[np.float64]:
         raise PointsError(
             f"There are {len(rows)} points: one, easting, northing, elevation, is needed."
         )
-    place: NDArray[np.float64] = rows[0]
-    return place
+    row: NDArray[np.float64] = rows[0]
+    return row
 
 
-def as_heights(z: ArrayLike, count: int) -> NDArray[np.float64]:
+def as_vertex_elevations(z: ArrayLike, count: int) -> NDArray[np.float64]:
     """Return one elevation for all of so many vertices, or one for each."""
-    heights = as_elevations(z) + 0.0  # no -0.0
-    if heights.ndim == 1 and len(heights) != count:
+    elevations = as_elevations(z) + 0.0  # no -0.0
+    if elevations.ndim == 1 and len(elevations) != count:
         raise PointsError(
-            f"{heights.size} heights for {count} vertices: one each, or one for all, is needed."
+            f"{elevations.size} elevations for {count} vertices: one each, or one for all, is "
+            "needed."
         )
-    return heights
+    return elevations

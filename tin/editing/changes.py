@@ -15,7 +15,7 @@ import numpy as np
 from ...errors import LinesError
 from ..constraints.breaklines import Breakline
 from ..constraints.constraint_set import ABOVE_ALL, LineSet, gather_lines
-from ..constraints.polylines import offsets_of
+from ..topology import find_offsets
 from ..types import Frozen
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ __all__ = [
     "PutVertices",
     "SetElevations",
     "count_breaklines",
-    "has_own_heights",
+    "has_own_elevations",
 ]
 
 NO_ROWS = np.empty(0, np.int64)
@@ -57,7 +57,7 @@ class Change(NamedTuple):
     ----------
     removed : (r,) int64 array
         Rows, by their lasting numbers.
-    moved, places : (k,) int64 array, (k, 3) float64 array
+    moved, points : (k,) int64 array, (k, 3) float64 array
         Rows, and where they are now.
     added : (a, 3) float64 array
         New rows.
@@ -67,7 +67,7 @@ class Change(NamedTuple):
 
     removed: NDArray[np.int64] = NO_ROWS
     moved: NDArray[np.int64] = NO_ROWS
-    places: NDArray[np.float64] = NO_XYZ
+    points: NDArray[np.float64] = NO_XYZ
     added: NDArray[np.float64] = NO_XYZ
     lines: tuple[LineChange, ...] = ()
 
@@ -118,7 +118,7 @@ class NumberedInputs(Frozen):
             points[end : end + len(change.added)] = change.added
             is_there[end : end + len(change.added)] = True
             end += len(change.added)
-            points[change.moved] = change.places
+            points[change.moved] = change.points
             is_there[change.removed] = False
             for line_change in change.lines:
                 lines = line_change.apply(lines)
@@ -142,10 +142,10 @@ def count_breaklines(lines: LineSet) -> int:
     return is_other.index(True) if any(is_other) else len(is_other)
 
 
-def has_own_heights(lines: LineSet) -> NDArray[np.bool_]:
-    """Tell which vertices of lines have heights that can change: not draped ones, nor water's."""
+def has_own_elevations(lines: LineSet) -> NDArray[np.bool_]:
+    """Tell which vertices of lines have elevations to change: not draped ones, nor water's."""
     is_level = (lines.priorities == ABOVE_ALL)[lines.line_of]
-    has_own: NDArray[np.bool_] = ~np.isnan(lines.heights) & ~is_level
+    has_own: NDArray[np.bool_] = ~np.isnan(lines.elevations) & ~is_level
     return has_own
 
 
@@ -157,9 +157,9 @@ class AddLine(NamedTuple):
     def apply(self, lines: LineSet) -> LineSet:
         """Return the changed lines."""
         is_breakline = np.arange(len(lines.kinds)) < count_breaklines(lines)
-        return _numbered(
-            [lines.chosen(is_breakline), gather_lines([self.breakline], (), (), ())],
-            lines.chosen(~is_breakline),
+        return _number_lines(
+            [lines.choose(is_breakline), gather_lines([self.breakline], (), (), ())],
+            lines.choose(~is_breakline),
         )
 
 
@@ -172,7 +172,7 @@ class DropLines(NamedTuple):
         """Return the changed lines."""
         stays = ~np.isin(np.arange(len(lines.kinds)), self.numbers)
         is_breakline = np.arange(len(lines.kinds)) < count_breaklines(lines)
-        return _numbered([lines.chosen(is_breakline & stays)], lines.chosen(~is_breakline))
+        return _number_lines([lines.choose(is_breakline & stays)], lines.choose(~is_breakline))
 
 
 class PutVertices(NamedTuple):
@@ -183,10 +183,10 @@ class PutVertices(NamedTuple):
 
     def apply(self, lines: LineSet) -> LineSet:
         """Return the changed lines."""
-        xy, heights = lines.xy.copy(), lines.heights.copy()
+        xy, elevations = lines.xy.copy(), lines.elevations.copy()
         xy[self.rows] = self.point[:2]
-        heights[self.rows[has_own_heights(lines)[self.rows]]] = self.point[2]
-        return lines._replace(xy=xy, heights=heights)
+        elevations[self.rows[has_own_elevations(lines)[self.rows]]] = self.point[2]
+        return lines._replace(xy=xy, elevations=elevations)
 
 
 class SetElevations(NamedTuple):
@@ -197,9 +197,9 @@ class SetElevations(NamedTuple):
 
     def apply(self, lines: LineSet) -> LineSet:
         """Return the changed lines."""
-        heights = lines.heights.copy()
-        heights[self.rows] = self.elevations
-        return lines._replace(heights=heights)
+        elevations = lines.elevations.copy()
+        elevations[self.rows] = self.elevations
+        return lines._replace(elevations=elevations)
 
 
 class DropVertices(NamedTuple):
@@ -227,14 +227,14 @@ class DropVertices(NamedTuple):
         rows = source[keep]
         return lines._replace(
             xy=lines.xy[rows],
-            heights=lines.heights[rows],
-            offsets=offsets_of(counts),
+            elevations=lines.elevations[rows],
+            offsets=find_offsets(counts),
         )
 
 
-def _numbered(breaklines: Iterable[LineSet], others: LineSet) -> LineSet:
+def _number_lines(breaklines: Iterable[LineSet], others: LineSet) -> LineSet:
     """Return all lines, the breaklines numbered from 0."""
-    together = LineSet.joined([*breaklines, others])
+    together = LineSet.join([*breaklines, others])
     sources = together.sources.copy()
     count = len(together.kinds) - len(others.kinds)
     sources[:count] = np.arange(count, dtype=np.int32)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from ...policies import BreaklineKind, CrossingPolicy, DuplicatePolicy
     from ..building.inputs import BuildInputs
-    from .history import Edit
+    from ..report import Edit
     from .session import Session
     from .version import Version
 
@@ -187,7 +187,7 @@ class Editable:
         LinesError
             If something else decides there, such as the level of water. Then nothing has changed.
         """
-        self._edit("set_z", vertices=vertices, z=z)
+        self._edit("set_elevation", vertices=vertices, z=z)
 
     set_z = set_elevation
 
@@ -228,9 +228,9 @@ class Editable:
         kind, priority, name
             As in :class:`.Breakline`.
         crossing : {"split", "error"}
-            Make a vertex where it crosses another line, with the height of the one of higher
-            priority or of the first, or refuse. ``edits[-1].notes`` tells both heights. A TIN that
-            was built with ``crossing="error"`` refuses in any case.
+            Make a vertex where it crosses another line, with the elevation of the one of higher
+            priority or of the first, or refuse. ``edits[-1].notes`` tells both elevations. A TIN
+            that was built with ``crossing="error"`` refuses in any case.
 
         Raises
         ------

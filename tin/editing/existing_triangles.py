@@ -1,7 +1,7 @@
 """Existing triangles as the build of inputs, so that they can be edited.
 
 The vertices are the rows. Lines, and flagged edges of no line as soft breaklines, are kept; where
-the rim is not convex, or a boundary, there is no surface beyond it.
+the boundary is not convex, or given by lines, there is no surface beyond it.
 """
 
 from __future__ import annotations
@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...errors import PointsError, TinsmithError
-from .. import _kernel, topology
+from .. import topology
 from ..building.assembly import assemble
 from ..building.constrained import LineOptions
 from ..building.inputs import BuildInputs
 from ..constraints.clipping import Surface
 from ..constraints.constraint_set import BELOW_ALL, LineSet
 from ..constraints.constraint_table import ConstraintTable
-from ..constraints.polylines import offsets_of
+from ..topology import find_offsets
 from ..triangulation import Triangulation
 from ..validation.points import as_points
 from ..validation.threads import thread_count
@@ -31,10 +31,10 @@ if TYPE_CHECKING:
     from .changes import NumberedInputs
     from .version import Version
 
-__all__ = ["inputs_of_triangles", "state_of_triangles"]
+__all__ = ["build_state_of_triangles", "gather_inputs_of_triangles"]
 
 
-def inputs_of_triangles(version: Version) -> BuildInputs:
+def gather_inputs_of_triangles(version: Version) -> BuildInputs:
     """Return what existing triangles are built of.
 
     Raises
@@ -43,25 +43,25 @@ def inputs_of_triangles(version: Version) -> BuildInputs:
         If a vertex is not finite.
     """
     surface, lines = version.triangulation, version.lines
-    chains = [(kind, name, chain) for kind, name, chain in _named_chains(version)]
+    chains = [(kind, name, chain) for kind, name, chain in _list_named_chains(version)]
     is_breakline = [kind in ("hard", "soft") for kind, _, _ in chains]
     ordered = [chain for chain, is_first in zip(chains, is_breakline, strict=True) if is_first]
-    ordered += [("soft", "", edge) for edge in _edges_of_no_line(version)]
+    ordered += [("soft", "", edge) for edge in _find_edges_of_no_line(version)]
     n_breaklines = len(ordered)
     ordered += [chain for chain, first in zip(chains, is_breakline, strict=True) if not first]
-    has_rim = not _is_whole(surface) or "boundary" in lines.kinds
-    rim = [np.append(ring, ring[:1]) for ring in surface.rings] if has_rim else []
+    has_own_boundary = not surface.fills_hull or "boundary" in lines.kinds
+    boundary = [np.append(ring, ring[:1]) for ring in surface.rings] if has_own_boundary else []
     sources = np.concatenate(
-        [np.arange(n_breaklines), np.zeros(len(ordered) - n_breaklines), np.full(len(rim), -1)]
+        [np.arange(n_breaklines), np.zeros(len(ordered) - n_breaklines), np.full(len(boundary), -1)]
     )
     return BuildInputs(
         points=as_points(surface.points),
         is_masked=None,
-        lines=_line_set(
+        lines=_make_line_set(
             surface.points,
-            [chain for _, _, chain in ordered] + rim,
-            [kind for kind, _, _ in ordered] + ["boundary"] * len(rim),
-            [name for _, name, _ in ordered] + [""] * len(rim),
+            [chain for _, _, chain in ordered] + boundary,
+            [kind for kind, _, _ in ordered] + ["boundary"] * len(boundary),
+            [name for _, name, _ in ordered] + [""] * len(boundary),
             sources.astype(np.int32),
         ),
         boundary=[],
@@ -73,16 +73,16 @@ def inputs_of_triangles(version: Version) -> BuildInputs:
         conforming=False,
         options=LineOptions(threads=thread_count(None, len(surface.points))),
         crs=None,
-        has_rim=has_rim,
+        has_own_boundary=has_own_boundary,
     )
 
 
-def _named_chains(version: Version) -> list[tuple[LineKind, str, NDArray[np.int32]]]:
+def _list_named_chains(version: Version) -> list[tuple[LineKind, str, NDArray[np.int32]]]:
     lines = version.lines
     return list(zip(lines.kinds, lines.names, lines.chains(), strict=True))
 
 
-def _line_set(
+def _make_line_set(
     points: NDArray[np.float64],
     chains: list[NDArray[np.int32]],
     kinds: list[LineKind],
@@ -94,33 +94,24 @@ def _line_set(
     return LineSet(
         np.ascontiguousarray(points[vertices, :2]),
         points[vertices, 2],
-        offsets_of(map(len, chains)),
+        find_offsets(map(len, chains)),
         ConstraintTable(tuple(kinds), sources, priorities, tuple(names)),
     )
 
 
-def _edges_of_no_line(version: Version) -> list[NDArray[np.int32]]:
-    """Return the flagged edges that no line takes; those of the rim count if there are no lines."""
+def _find_edges_of_no_line(version: Version) -> list[NDArray[np.int32]]:
+    """Return the flagged edges of no line; those of the boundary count if there are no lines."""
     surface, lines = version.triangulation, version.lines
     flagged = surface.constrained
     if len(lines):
         flagged = flagged & (surface.neighbors > topology.NO_NEIGHBOR)
     edges = np.unique(np.sort(topology.edges_at(surface.triangles, flagged), axis=1), axis=0)
     n = len(surface.points)
-    is_step = np.isin(topology.edge_keys(edges, n), topology.edge_keys(lines.steps(), n))
-    return list(edges[~is_step])
+    is_segment = np.isin(topology.edge_keys(edges, n), topology.edge_keys(lines.segments(), n))
+    return list(edges[~is_segment])
 
 
-def _is_whole(surface: Triangulation) -> bool:
-    """Tell whether the surface fills its convex hull."""
-    if len(surface.rings) != 1:
-        return False
-    ring = surface.points[surface.rings[0], :2]
-    a, b, c = (np.ascontiguousarray(np.roll(ring, -k, axis=0)) for k in range(3))
-    return bool((_kernel.orientation(a, b, c) >= 0).all())
-
-
-def state_of_triangles(version: Version, inputs: NumberedInputs) -> State:
+def build_state_of_triangles(version: Version, inputs: NumberedInputs) -> State:
     """Build existing triangles from their inputs.
 
     Raises
@@ -132,9 +123,9 @@ def state_of_triangles(version: Version, inputs: NumberedInputs) -> State:
     try:
         built = assemble(inputs.build_inputs)
     except TinsmithError:
-        raise _unfit() from None
+        raise _explain_unfit() from None
     if not _have_same_triangles(built.surface, given):
-        raise _unfit()
+        raise _explain_unfit()
     lines = built.lines
     return State(
         Triangulation(**built.surface._asdict()), built.vertex_of, lines, built.report, None
@@ -147,7 +138,7 @@ def _have_same_triangles(found: Surface, given: Triangulation) -> bool:
     return bool((_as_set(found.triangles) == _as_set(given.triangles)).all())
 
 
-def _unfit() -> PointsError:
+def _explain_unfit() -> PointsError:
     return PointsError(
         "The TIN cannot be edited: its triangles overlap, or are not the Delaunay triangulation of "
         "its points and lines that edits must keep; triangulate its points first."

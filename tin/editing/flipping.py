@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ..building.inputs import BuildInputs
     from .state import State
 
-__all__ = ["FLIP", "are_uncut", "flipped_edge", "require_inner"]
+__all__ = ["FLIP", "are_uncut", "make_flipped_edge", "require_inner"]
 
 FLIP = "flip"
 """Name of the soft breakline that keeps a flipped edge."""
@@ -36,7 +36,7 @@ def require_inner(beside: Sequence[int]) -> None:
         raise PointsError("Only an edge between two triangles can be flipped.")
 
 
-def flipped_edge(points: NDArray[np.float64]) -> Breakline:
+def make_flipped_edge(points: NDArray[np.float64]) -> Breakline:
     """Return the edge that comes in the place of another one.
 
     Parameters

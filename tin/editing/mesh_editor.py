@@ -17,7 +17,7 @@ from ..building.duplicates import merge_rows
 from ..report import Report
 from ..triangulation import Triangulation
 from .changes import AddLine, Change
-from .flipping import are_uncut, flipped_edge, require_inner
+from .flipping import are_uncut, make_flipped_edge, require_inner
 from .lazy_mesh import LiveMesh
 from .row_buffer import GrowingRows
 from .state import State
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from ..building.inputs import BuildInputs
     from .changes import NumberedInputs
 
-__all__ = ["Editor", "NotLocal", "is_local", "merged_elevation", "occupied"]
+__all__ = ["Editor", "NotLocal", "explain_occupied", "is_local", "merge_elevations"]
 
 _LARGE_BATCH = 10_000
 _LARGE_SHARE = 8
@@ -51,8 +51,10 @@ def is_local(build_inputs: BuildInputs) -> bool:
     lines, options = build_inputs.lines, build_inputs.options
     has_all_rows = not build_inputs.erase and build_inputs.is_masked is None
     is_simple = options.snap == 0.0 and has_all_rows and not build_inputs.conforming
-    has_own_heights = bool(np.isfinite(lines.priorities).all() and np.isfinite(lines.heights).all())
-    return is_simple and has_own_heights and not build_inputs.is_clipped
+    has_own_elevations = bool(
+        np.isfinite(lines.priorities).all() and np.isfinite(lines.elevations).all()
+    )
+    return is_simple and has_own_elevations and not build_inputs.is_clipped
 
 
 class _Counts(NamedTuple):
@@ -91,7 +93,7 @@ class Editor:
         self._points = GrowingRows(surface.points)
         self._removed: list[int] = []
         self._n_base = len(surface.points)
-        self._base_rows = _rows_by_vertex(state.vertex_of_row)
+        self._base_rows = _group_rows_by_vertex(state.vertex_of_row)
         self._n_rows = self._base_rows.n_vertices
         self._more_rows: dict[int, list[int]] = {}
         self._new_slots = GrowingRows(np.empty(0, np.int32))
@@ -111,7 +113,7 @@ class Editor:
     def _mesh(self) -> _kernel.Mesh:
         return self._live.mesh
 
-    def _counts(self) -> _Counts:
+    def _count(self) -> _Counts:
         rows = self._n_rows - bisect_left(self._removed, self._n_base)
         lines = self._n_base - self._n_rows
         return _Counts(rows, self._live.count - rows - lines, lines)
@@ -119,7 +121,7 @@ class Editor:
     def slots(self, vertices: NDArray[np.int64]) -> NDArray[np.int32]:
         """Return the slots of vertices, which must exist."""
         if self._n_rows < self._n_base:
-            rows, inserted, lines = self._counts()
+            rows, inserted, lines = self._count()
             back = np.where(vertices < rows + inserted, lines, -inserted)
             vertices = vertices + np.where(vertices < rows, 0, back)
         removed = self._removed
@@ -138,17 +140,17 @@ class Editor:
         else:
             gone = np.array(self._removed, np.int64)
             found = slots - np.searchsorted(gone, slots).astype(np.int32)
-        return self._reordered(found)
+        return self._reorder(found)
 
-    def _reordered(self, ranks: NDArray[np.int32]) -> NDArray[np.int32]:
+    def _reorder(self, ranks: NDArray[np.int32]) -> NDArray[np.int32]:
         """Return the numbers of vertices that are numbered by slot, without gaps."""
         if self._n_rows == self._n_base:
             return ranks
-        rows, inserted, lines = self._counts()
+        rows, inserted, lines = self._count()
         on = np.where(ranks < rows + lines, np.int32(inserted), np.int32(-lines))
         return ranks + np.where(ranks < rows, np.int32(0), on)
 
-    def _rows_at(self, slot: int) -> list[int]:
+    def _find_rows_at(self, slot: int) -> list[int]:
         more = self._more_rows.get(slot, [])
         return self._base_rows.at(slot) + more if slot < self._n_rows else more
 
@@ -167,14 +169,14 @@ class Editor:
         before = self._live
         first = before.slots
         is_large = self._is_large(len(xyz))
-        slots = self._grown_with(xyz) if is_large else self._inserted(xyz)
+        slots = self._grow_with(xyz) if is_large else self._insert_into_mesh(xyz)
         is_new = slots == np.arange(first, first + len(xyz), dtype=np.int32)
         try:
-            heights: dict[int, float] = {}
+            elevations: dict[int, float] = {}
             if not is_new.all():
                 self._require_in_order(slots, first)
                 old = np.flatnonzero(~is_new).tolist()
-                heights = self._merged_elevations(xyz, slots, old, policy)
+                elevations = self._merge_all_elevations(xyz, slots, old, policy)
             if self._has_lines:
                 self._require_clear(slots)
         except (PointsError, NotLocal):
@@ -184,9 +186,9 @@ class Editor:
                 self._take_back(slots[is_new])
                 self._keep_empty(xyz, first)
             raise
-        return slots, self._enter(xyz, slots, is_new, heights)
+        return slots, self._enter(xyz, slots, is_new, elevations)
 
-    def _inserted(self, xyz: NDArray[np.float64]) -> NDArray[np.int32]:
+    def _insert_into_mesh(self, xyz: NDArray[np.float64]) -> NDArray[np.int32]:
         return self._mesh.insert(np.ascontiguousarray(xyz[:, :2]))
 
     def _require_in_order(self, slots: NDArray[np.int32], first: int) -> None:
@@ -195,7 +197,7 @@ class Editor:
         if is_late.any() or self._is_strict:
             raise NotLocal
 
-    def _merged_elevations(
+    def _merge_all_elevations(
         self,
         xyz: NDArray[np.float64],
         slots: NDArray[np.int32],
@@ -203,14 +205,14 @@ class Editor:
         policy: DuplicatePolicy,
     ) -> dict[int, float]:
         """Return the elevations of vertices at which further rows come to stand."""
-        heights: dict[int, float] = {}
+        elevations: dict[int, float] = {}
         first = self._live.slots - len(xyz)
         for row in old:
             slot = int(slots[row])
             here = self._points.at(slot)[2] if slot < first else xyz[slot - first, 2]
-            here = heights.get(slot, float(here))
-            heights[slot] = merged_elevation(here, float(xyz[row, 2]), policy)
-        return heights
+            here = elevations.get(slot, float(here))
+            elevations[slot] = merge_elevations(here, float(xyz[row, 2]), policy)
+        return elevations
 
     def _require_clear(self, slots: NDArray[np.int32]) -> None:
         for slot in set(slots.tolist()):
@@ -240,32 +242,32 @@ class Editor:
         xyz: NDArray[np.float64],
         slots: NDArray[np.int32],
         is_new: NDArray[np.bool_],
-        heights: dict[int, float],
+        elevations: dict[int, float],
     ) -> Change:
         first = len(self._points)
         self._points.extend(xyz)
         row = self._n_first_rows + self._n_new
         moved = []
-        if heights:
+        if elevations:
             self._removed.extend((first + np.flatnonzero(~is_new)).tolist())
-            moved = [self._put_elevation(slot, height) for slot, height in heights.items()]
+            moved = [self._put_elevation(slot, elevation) for slot, elevation in elevations.items()]
         for number, slot in enumerate(slots.tolist(), row):
             self._more_rows.setdefault(slot, []).append(number)
         self._new_slots.extend(slots)
         self._n_new += len(xyz)
-        if not heights:
+        if not elevations:
             return Change(added=xyz)
         added = xyz.copy()
-        for slot, height in heights.items():
-            added[slots == slot, 2] = height
-        return _joined(moved)._replace(added=added)
+        for slot, elevation in elevations.items():
+            added[slots == slot, 2] = elevation
+        return _join_changes(moved)._replace(added=added)
 
     def _is_large(self, count: int) -> bool:
         """Tell whether growing all points anew is quicker than inserting so many."""
         is_worth_it = count > _LARGE_BATCH and count * _LARGE_SHARE > self._live.count
         return is_worth_it and not self._removed and not self._has_lines
 
-    def _grown_with(self, xyz: NDArray[np.float64]) -> NDArray[np.int32]:
+    def _grow_with(self, xyz: NDArray[np.float64]) -> NDArray[np.int32]:
         """Triangulate the points that are there and those that come; return slots of the latter.
 
         A slot is made for every row, as if each had been inserted, and stays empty where a vertex
@@ -305,7 +307,7 @@ class Editor:
                     "No triangle would be left: three vertices not in line must stay."
                 )
             gone.append(slot)
-        rows = [row for slot in gone for row in self._rows_at(slot)]
+        rows = [row for slot in gone for row in self._find_rows_at(slot)]
         for slot in gone:
             insort(self._removed, slot)
         return Change(removed=np.array(rows, np.int64))
@@ -328,7 +330,7 @@ class Editor:
         if (self._points.at(slot)[:2] != point[:2]).any():
             self._move_in_plane(slot, float(point[0]), float(point[1]))
         self._points.put(slot, point)
-        return self._moved(slot, point)
+        return self._move_rows(slot, point)
 
     def _move_in_plane(self, slot: int, x: float, y: float) -> None:
         if self._has_lines:
@@ -340,7 +342,7 @@ class Editor:
         found = self._mesh.put(slot, x, y)
         if found != slot:
             self._put_back([slot])
-            raise occupied(int(self.numbers(np.array([found], np.int32))[0]), x, y)
+            raise explain_occupied(int(self.numbers(np.array([found], np.int32))[0]), x, y)
         if self._has_lines:
             try:
                 self._require_free(slot)
@@ -349,28 +351,28 @@ class Editor:
                 self._put_back([slot])
                 raise
 
-    def set_z(self, slots: NDArray[np.int32], z: NDArray[np.float64]) -> Change:
+    def set_elevations(self, slots: NDArray[np.int32], z: NDArray[np.float64]) -> Change:
         """Give vertices, and the rows there, other elevations."""
         if self._has_lines and any(map(self._mesh.has_fixed_edge, slots.tolist())):
             raise NotLocal
-        heights = np.broadcast_to(z, len(slots)).tolist()
-        return _joined(
+        elevations = np.broadcast_to(z, len(slots)).tolist()
+        return _join_changes(
             [
-                self._put_elevation(slot, height)
-                for slot, height in zip(slots.tolist(), heights, strict=True)
+                self._put_elevation(slot, elevation)
+                for slot, elevation in zip(slots.tolist(), elevations, strict=True)
             ]
         )
 
-    def _put_elevation(self, slot: int, height: float) -> Change:
+    def _put_elevation(self, slot: int, elevation: float) -> Change:
         point = self._points.at(slot).copy()
-        point[2] = height
+        point[2] = elevation
         self._points.put(slot, point)
-        return self._moved(slot, point)
+        return self._move_rows(slot, point)
 
-    def _moved(self, slot: int, point: NDArray[np.float64]) -> Change:
-        rows = np.array(self._rows_at(slot), np.int64)
-        places = point[None] if len(rows) == 1 else np.tile(point, (len(rows), 1))
-        return Change(moved=rows, places=places)
+    def _move_rows(self, slot: int, point: NDArray[np.float64]) -> Change:
+        rows = np.array(self._find_rows_at(slot), np.int64)
+        points = point[None] if len(rows) == 1 else np.tile(point, (len(rows), 1))
+        return Change(moved=rows, points=points)
 
     def flip(self, a: int, b: int) -> Change:
         """Put the other diagonal of the two triangles at an edge in its place, as a soft line.
@@ -384,7 +386,7 @@ class Editor:
             raise NotLocal
         beside = self._mesh.corners_beside(a, b).tolist()
         require_inner(beside)
-        line = flipped_edge(self._points.take([a, b, *beside]))
+        line = make_flipped_edge(self._points.take([a, b, *beside]))
         self._mesh.force(np.array([beside], np.int32))
         self._lines, self._has_lines = self._lines.with_breakline(beside, line), True
         return Change(lines=(AddLine(line),))
@@ -394,31 +396,31 @@ class Editor:
     def state(self, inputs: NumberedInputs) -> State:
         """Return what the edits led to; ``inputs`` are those of now."""
         alive = self._live.alive()
-        number = self._reordered(np.cumsum(alive, dtype=np.int32) - np.int32(1))
+        number = self._reorder(np.cumsum(alive, dtype=np.int32) - np.int32(1))
         number = np.where(alive, number, np.int32(-1))
-        surface = self._triangulation(alive)
+        surface = self._make_triangulation(alive)
         slot_of_row = np.append(self._vertex_of_row, self._new_slots.values())
         vertex_of_row = np.append(number, np.int32(-1))[slot_of_row]
         lines, base = self._lines, self._report
         if self._has_lines:
-            lines = lines.renumbered(number)
-        report = base.renumbered(
+            lines = lines.renumber(number)
+        report = base.renumber(
             number, len(vertex_of_row), len(surface.points), len(surface.triangles)
         )
         report = report.with_removed(vertex_of_row).with_merges(
-            _merges(vertex_of_row, self._counts(), inputs)
+            _gather_merges(vertex_of_row, self._count(), inputs)
         )
         report = report.with_lines(inputs.build_inputs.lines.labels())
         return State(surface, vertex_of_row, lines, report, None)
 
-    def _triangulation(self, alive: NDArray[np.bool_]) -> Triangulation:
+    def _make_triangulation(self, alive: NDArray[np.bool_]) -> Triangulation:
         triangles, neighbors, constrained = self._live.arrays(self._threads)
         points = self._points.values()[alive]
-        rows, inserted, lines = self._counts()
+        rows, inserted, lines = self._count()
         if lines and inserted:
             between = rows + lines
             points = np.concatenate([points[:rows], points[between:], points[rows:between]])
-            triangles = self._reordered(np.arange(len(points), dtype=np.int32))[triangles]
+            triangles = self._reorder(np.arange(len(points), dtype=np.int32))[triangles]
         return Triangulation(
             points=points, triangles=triangles, neighbors=neighbors, constrained=constrained
         )
@@ -438,7 +440,7 @@ class _RowsByVertex(NamedTuple):
         return found
 
 
-def _rows_by_vertex(vertex_of_row: NDArray[np.int32]) -> _RowsByVertex:
+def _group_rows_by_vertex(vertex_of_row: NDArray[np.int32]) -> _RowsByVertex:
     count = int(vertex_of_row.max()) + 1 if len(vertex_of_row) else 0
     if count == len(vertex_of_row):
         return _RowsByVertex(count, None, None)
@@ -447,7 +449,7 @@ def _rows_by_vertex(vertex_of_row: NDArray[np.int32]) -> _RowsByVertex:
     return _RowsByVertex(count, order, offsets)
 
 
-def _merges(
+def _gather_merges(
     vertex_of_row: NDArray[np.int32], counts: _Counts, inputs: NumberedInputs
 ) -> Report | None:
     """Return the account of rows that share a vertex, as a build gives it; None for none."""
@@ -472,18 +474,18 @@ def _merges(
     )
 
 
-def _joined(changes: list[Change]) -> Change:
+def _join_changes(changes: list[Change]) -> Change:
     if len(changes) == 1:
         return changes[0]
     if not changes:
         return Change()
     return Change(
         moved=np.concatenate([change.moved for change in changes]),
-        places=np.concatenate([change.places for change in changes]),
+        points=np.concatenate([change.points for change in changes]),
     )
 
 
-def merged_elevation(old: float, new: float, policy: DuplicatePolicy) -> float:
+def merge_elevations(old: float, new: float, policy: DuplicatePolicy) -> float:
     """Return the elevation of a vertex at which a point is inserted.
 
     Raises
@@ -507,7 +509,7 @@ def merged_elevation(old: float, new: float, policy: DuplicatePolicy) -> float:
     }[policy]
 
 
-def occupied(vertex: int, x: float, y: float) -> PointsError:
+def explain_occupied(vertex: int, x: float, y: float) -> PointsError:
     """Return the error for a place at which a vertex stands already."""
     return PointsError(
         f"Vertex {vertex} stands at x {x:g}, y {y:g} already: two vertices need two places."

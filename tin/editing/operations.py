@@ -11,15 +11,15 @@ from ..._sentences import shown
 from ...errors import LinesError, choice
 from ...policies import CrossingPolicy, DuplicatePolicy
 from ..constraints.breaklines import Breakline
+from ..report import Edit
 from ..validation.options import is_whole_number
 from ..validation.points import as_points
 from .arguments import (
     as_ends,
-    as_heights,
-    as_plain_dict,
     as_point,
+    as_vertex_elevations,
     as_vertices,
-    copied,
+    copy_argument,
     require_distinct,
 )
 from .changes import (
@@ -32,10 +32,10 @@ from .changes import (
     PutVertices,
     SetElevations,
     count_breaklines,
-    has_own_heights,
+    has_own_elevations,
 )
-from .flipping import FLIP, flipped_edge, require_inner
-from .mesh_editor import Editor, merged_elevation, occupied
+from .flipping import FLIP, make_flipped_edge, require_inner
+from .mesh_editor import Editor, explain_occupied, merge_elevations
 from .state import State
 
 if TYPE_CHECKING:
@@ -108,11 +108,11 @@ class Operation:
 
     def arguments(self) -> dict[str, Any]:
         """Return copies of the arguments by name."""
-        return {name: copied(value) for name, value in vars(self).items()}
+        return {name: copy_argument(value) for name, value in vars(self).items()}
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain Python values, ready for JSON."""
-        return as_plain_dict(self.operation, self.arguments())
+        return Edit(self.operation, self.arguments()).to_dict()
 
 
 class MeshOperation(Operation):
@@ -146,9 +146,9 @@ class Insert(MeshOperation):
         state, inputs = tin.now(), tin.inputs()
         there = state.vertices_at(xyz[:, :2])
         own = np.where(there < 0, np.nan, state.triangulation.points[there, 2])
-        z = _merged_elevations(xyz, own, choice("duplicates", self.duplicates, DuplicatePolicy))
+        z = _merge_new_elevations(xyz, own, choice("duplicates", self.duplicates, DuplicatePolicy))
         at_vertex = there >= 0
-        change = _with_elevations(state, inputs, there[at_vertex], z[at_vertex])
+        change = _change_elevations(state, inputs, there[at_vertex], z[at_vertex])
         change = change._replace(added=np.column_stack([xyz[:, :2], z]))
         found = tin.build(inputs.after([change]))
         return Done(change, found, found.vertex_of_row[len(found.vertex_of_row) - len(xyz) :])
@@ -198,22 +198,22 @@ class Move(MeshOperation):
 
     def apply(self, tin: Edited) -> Done:
         """Build the TIN of the changed inputs."""
-        numbers, place = as_vertices([self.vertex], tin.count), as_point(self.point)
+        numbers, point = as_vertices([self.vertex], tin.count), as_point(self.point)
         state, inputs = tin.now(), tin.inputs()
-        (there,) = state.vertices_at(place[None, :2]).tolist()
+        (there,) = state.vertices_at(point[None, :2]).tolist()
         if there >= 0 and there != numbers[0]:
-            raise occupied(there, *place[:2].tolist())
+            raise explain_occupied(there, *point[:2].tolist())
         rows = np.flatnonzero(np.isin(state.vertex_of_row, numbers))
         of_lines = state.line_vertices(inputs)
         on_lines = np.flatnonzero(of_lines == numbers[0])
         _require_given(numbers, state.vertex_of_row[rows], of_lines[on_lines], "moved")
         change = Change(
             moved=rows,
-            places=np.tile(place, (len(rows), 1)),
-            lines=(PutVertices(on_lines, place),) if len(on_lines) else (),
+            points=np.tile(point, (len(rows), 1)),
+            lines=(PutVertices(on_lines, point),) if len(on_lines) else (),
         )
         found = tin.build(inputs.after([change]))
-        _require_elevations(found, place[None])
+        _require_elevations(found, point[None])
         return Done(change, found)
 
     def apply_to_mesh(self, editor: Editor) -> Done:
@@ -226,7 +226,7 @@ class Move(MeshOperation):
 class SetElevation(MeshOperation):
     """Vertices at other elevations."""
 
-    operation: ClassVar[str] = "set_z"
+    operation: ClassVar[str] = "set_elevation"
 
     vertices: ArrayLike
     z: ArrayLike
@@ -234,12 +234,12 @@ class SetElevation(MeshOperation):
     def apply(self, tin: Edited) -> Done:
         """Build the TIN of the changed inputs."""
         numbers = as_vertices(self.vertices, tin.count)
-        heights = np.broadcast_to(as_heights(self.z, len(numbers)), len(numbers))
+        elevations = np.broadcast_to(as_vertex_elevations(self.z, len(numbers)), len(numbers))
         state, inputs = tin.now(), tin.inputs()
-        change = _with_elevations(state, inputs, numbers, heights)
+        change = _change_elevations(state, inputs, numbers, elevations)
         made = numbers[~_has_own_elevation(state, inputs, numbers)]
         wanted = state.triangulation.points.copy()
-        wanted[numbers, 2] = heights
+        wanted[numbers, 2] = elevations
         change = change._replace(added=wanted[np.unique(made)])
         found = tin.build(inputs.after([change]))
         _require_elevations(found, wanted[np.unique(numbers)])
@@ -248,7 +248,9 @@ class SetElevation(MeshOperation):
     def apply_to_mesh(self, editor: Editor) -> Done:
         """Change the mesh, if no line is near."""
         numbers = as_vertices(self.vertices, editor.count)
-        return Done(editor.set_z(editor.slots(numbers), as_heights(self.z, len(numbers))))
+        return Done(
+            editor.set_elevations(editor.slots(numbers), as_vertex_elevations(self.z, len(numbers)))
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -264,7 +266,7 @@ class Flip(MeshOperation):
         """Build the TIN of the changed inputs."""
         first, second = as_ends(self.a, self.b, tin.count).tolist()
         state = tin.now()
-        change = Change(lines=(_flipped(state, first, second),))
+        change = Change(lines=(_flip_line(state, first, second),))
         return Done(change, tin.build(tin.inputs().after([change])))
 
     def apply_to_mesh(self, editor: Editor) -> Done:
@@ -293,12 +295,12 @@ class AddBreakline(Operation):
         inputs = tin.inputs().after([change])
         found = tin.build(inputs)
         number = count_breaklines(inputs.build_inputs.lines) - 1
-        met = found.report.met_by(inputs.build_inputs.lines.label(number))
-        if met and self.crossing == "error":
-            raise LinesError(f'{met[0][:-1]}: crossing="error" allows none.')
+        crossings = found.report.describe_crossings(inputs.build_inputs.lines.label(number))
+        if crossings and self.crossing == "error":
+            raise LinesError(f'{crossings[0][:-1]}: crossing="error" allows none.')
         if line.is_draped and not found.lines.has_breakline(number):
             raise LinesError("The draped line lies outside the surface.")
-        return Done(change, found, notes=tuple(met))
+        return Done(change, found, notes=tuple(crossings))
 
 
 @dataclass(frozen=True, eq=False)
@@ -325,8 +327,11 @@ OPERATIONS: dict[str, type[Operation]] = {
 }
 """The operations by the names of the methods of a TIN that do them."""
 
+FORMER_NAMES = {"set_z": SetElevation.operation}
+"""Names that edits may have in scripts of earlier versions."""
 
-def _flipped(state: State, a: int, b: int) -> LineChange:
+
+def _flip_line(state: State, a: int, b: int) -> LineChange:
     """Return the line to be added, or those to be dropped."""
     surface = state.triangulation
     holds = (surface.triangles == a).any(axis=1) & (surface.triangles == b).any(axis=1)
@@ -341,10 +346,10 @@ def _flipped(state: State, a: int, b: int) -> LineChange:
     runs = ((corners == a) & (np.roll(corners, -1, axis=1) == b)).any(axis=1)  # its left side
     corners = corners[np.argsort(~runs)]
     left, right = corners[(corners != a) & (corners != b)].tolist()
-    return AddLine(flipped_edge(surface.points[[a, b, left, right]]))
+    return AddLine(make_flipped_edge(surface.points[[a, b, left, right]]))
 
 
-def _merged_elevations(
+def _merge_new_elevations(
     xyz: NDArray[np.float64], own: NDArray[np.float64], policy: DuplicatePolicy
 ) -> NDArray[np.float64]:
     """Return the elevation that each new row has in the end, given those of vertices there."""
@@ -352,38 +357,38 @@ def _merged_elevations(
     _, place = np.unique(xyz[:, :2], axis=0, return_inverse=True)
     place = place.reshape(-1)
     is_alone = (np.bincount(place)[place] == 1) & np.isnan(own)
-    heights: dict[int, float] = {}
+    elevations: dict[int, float] = {}
     for row in np.flatnonzero(~is_alone).tolist():
-        here = heights.get(int(place[row]), float(own[row]))
-        heights[int(place[row])] = (
-            float(z[row]) if np.isnan(here) else merged_elevation(here, float(z[row]), policy)
+        here = elevations.get(int(place[row]), float(own[row]))
+        elevations[int(place[row])] = (
+            float(z[row]) if np.isnan(here) else merge_elevations(here, float(z[row]), policy)
         )
     for row in np.flatnonzero(~is_alone).tolist():
-        z[row] = heights[int(place[row])]
+        z[row] = elevations[int(place[row])]
     return z
 
 
-def _with_elevations(
-    state: State, inputs: NumberedInputs, vertices: NDArray[Any], heights: NDArray[np.float64]
+def _change_elevations(
+    state: State, inputs: NumberedInputs, vertices: NDArray[Any], elevations: NDArray[np.float64]
 ) -> Change:
     """Give the rows and the lines at vertices other elevations."""
-    height_of = np.full(len(state.triangulation.points) + 1, np.nan)  # the last is of no vertex
-    height_of[vertices] = heights
-    wanted = height_of[state.vertex_of_row]
+    elevation_of = np.full(len(state.triangulation.points) + 1, np.nan)  # the last is of no vertex
+    elevation_of[vertices] = elevations
+    wanted = elevation_of[state.vertex_of_row]
     rows = np.flatnonzero(~np.isnan(wanted))
-    places = inputs.build_inputs.points[np.searchsorted(inputs.rows, rows)]
-    places[:, 2] = wanted[rows]
-    of_lines = height_of[state.line_vertices(inputs)]
-    on_lines = np.flatnonzero(~np.isnan(of_lines) & has_own_heights(inputs.build_inputs.lines))
+    points = inputs.build_inputs.points[np.searchsorted(inputs.rows, rows)]
+    points[:, 2] = wanted[rows]
+    of_lines = elevation_of[state.line_vertices(inputs)]
+    on_lines = np.flatnonzero(~np.isnan(of_lines) & has_own_elevations(inputs.build_inputs.lines))
     lines = (SetElevations(on_lines, of_lines[on_lines]),) if len(on_lines) else ()
-    return Change(moved=rows, places=places, lines=lines)
+    return Change(moved=rows, points=points, lines=lines)
 
 
 def _has_own_elevation(
     state: State, inputs: NumberedInputs, vertices: NDArray[np.int64]
 ) -> NDArray[np.bool_]:
     """Tell which vertices stand for rows or for vertices of lines with elevations."""
-    of_lines = state.line_vertices(inputs)[~np.isnan(inputs.build_inputs.lines.heights)]
+    of_lines = state.line_vertices(inputs)[~np.isnan(inputs.build_inputs.lines.elevations)]
     return np.isin(vertices, np.append(state.vertex_of_row, of_lines))
 
 
@@ -413,6 +418,6 @@ def _require_elevations(found: State, wanted: NDArray[np.float64]) -> None:
 
 def _lines_along(lines: Lines, a: int, b: int) -> list[int]:
     """Return the chains that take an edge."""
-    steps = np.sort(lines.steps(), axis=1)
-    found: list[int] = lines.step_chains()[(steps == sorted((a, b))).all(axis=1)].tolist()
+    segments = np.sort(lines.segments(), axis=1)
+    found: list[int] = lines.segment_chains()[(segments == sorted((a, b))).all(axis=1)].tolist()
     return found

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from ...errors import PointsError, TinsmithError
+from ..report import Edit
 from ..validation.options import require_count
 from .changes import Change, NumberedInputs
-from .existing_triangles import inputs_of_triangles, state_of_triangles
-from .history import Edit
+from .existing_triangles import build_state_of_triangles, gather_inputs_of_triangles
 from .mesh_editor import Editor, NotLocal, is_local
 from .operations import OPERATIONS, Done, MeshOperation, Operation
 from .state import State, build_state
@@ -50,9 +50,9 @@ class Session:
         self._changes: list[Change] = []
         self._given: Version | None = None if build_inputs is not None else version
         if build_inputs is None:
-            build_inputs = inputs_of_triangles(version)
+            build_inputs = gather_inputs_of_triangles(version)
             self._begin = NumberedInputs.of(build_inputs)
-            self._state: State | None = state_of_triangles(version, self._begin)
+            self._state: State | None = build_state_of_triangles(version, self._begin)
         else:
             self._begin = NumberedInputs.of(build_inputs)
             self._state = State(

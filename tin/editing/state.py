@@ -74,10 +74,10 @@ def build_state(inputs: NumberedInputs) -> State:
     PointsError, LinesError
         As :func:`tinsmith.triangulate`.
     """
-    return _state_of(assemble(inputs.build_inputs), inputs)
+    return _make_state(assemble(inputs.build_inputs), inputs)
 
 
-def _state_of(built: Built, inputs: NumberedInputs) -> State:
+def _make_state(built: Built, inputs: NumberedInputs) -> State:
     vertex_of_row = np.full(inputs.n_rows, -1, np.int32)
     vertex_of_row[inputs.rows] = built.vertex_of
     is_snapped = inputs.build_inputs.options.snap > 0

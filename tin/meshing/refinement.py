@@ -1,6 +1,6 @@
 """Refine: a TIN becomes a mesh for finite elements, its triangles good and small enough.
 
-Where to put points is decided by the core; here their heights are found, and the TIN is built of
+Where to put points is decided by the core; here their elevations are found, and the TIN is built of
 all points and of the segments as they were split.
 """
 
@@ -18,7 +18,7 @@ from .. import _kernel, topology
 from ..constraints.clipping import BOUNDARY, Surface
 from ..constraints.constraint_table import ConstraintTable
 from ..constraints.polylines import Polylines
-from ..constraints.pslg import Clip, Pslg, lines_in, mesh_of_growth
+from ..constraints.pslg import Clip, Pslg, build_mesh_of_growth, find_lines_in
 from ..surface import TIN
 from ..validation.options import is_finite_number, is_whole_number, require_positive, require_tin
 from ..validation.threads import thread_count
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 __all__ = ["LARGEST_MIN_ANGLE", "refine"]
 
 _MOST_ATTEMPTS = 5
-"""The last one but one splits no edge of the rim where splitting some was not to be had."""
+"""The last one but one splits no edge of the boundary where splitting some was not to be had."""
 
 LARGEST_MIN_ANGLE = 33.0
 """Degrees; beyond about 34 refinement as good as never ends [1]_ in :func:`refine`."""
@@ -54,10 +54,11 @@ def refine(
     """Add points to a TIN until its triangles are good enough for finite elements.
 
     Delaunay refinement [1]_ [2]_ with off-centres [3]_: where a triangle has too small an angle, is
-    too large or has too long an edge, a point is put that mends it; edges of the rim and of lines
-    are split where they are in the way. All vertices stay, and so do rim and lines but for
-    rounding. New points lie on the surface of the TIN: on rim and lines at the height there, inside
-    at the interpolated one. The result is a function of the TIN's surface, whatever its numbering.
+    too large or has too long an edge, a point is put that mends it; edges of the boundary and of
+    lines are split where they are in the way. All vertices stay, and so do boundary and lines but
+    for rounding. New points lie on the surface of the TIN: on boundary and lines at the elevation
+    there, inside at the interpolated one. The result is a function of the TIN's surface, whatever
+    its numbering.
 
     Parameters
     ----------
@@ -66,8 +67,8 @@ def refine(
     min_angle : float
         Least angle of a triangle, degrees in the plane, from 0 (any) to 33. It is reached for sure
         up to 20.7 degrees if no lines meet under less than 60; beyond, nearly always up to 30.
-        Where lines or the rim meet under a small angle, triangles between them stay below it: the
-        one at the meeting, and those across, whose shortest edge joins the two.
+        Where lines or the boundary meet under a small angle, triangles between them stay below it:
+        the one at the meeting, and those across, whose shortest edge joins the two.
     max_area : float, optional
         Largest area of a triangle in the plane, CRS units squared.
     max_edge : float, optional
@@ -80,9 +81,9 @@ def refine(
     Returns
     -------
     TIN
-        Vertices of ``tin`` first, as they were; then those on rim and lines and those inside.
-        ``lines`` are those of ``tin`` with more vertices, and the rim as ``boundary`` if there was
-        none. ``report.unmended`` lists the triangles that miss what was asked for, and why;
+        Vertices of ``tin`` first, as they were; then those on boundary and lines and those inside.
+        ``lines`` are those of ``tin`` with more vertices, and the boundary as ``boundary`` if there
+        was none. ``report.unmended`` lists the triangles that miss what was asked for, and why;
         ``report.notes`` tells how many points came, and counts those triangles.
 
     Raises
@@ -132,10 +133,10 @@ def refine(
         if isinstance(refined, TIN):
             return refined
         in_the_way = refined if attempt < _MOST_ATTEMPTS - 2 else None
-        kept_whole = _more_kept_whole(tin, kept_whole, in_the_way)
+        kept_whole = _add_kept_whole(tin, kept_whole, in_the_way)
     raise PointsError(
-        "The TIN cannot be refined: parts of its rim or of its lines lie nearer to each other than "
-        "coordinates are rounded, or overlap."
+        "The TIN cannot be refined: parts of its boundary or of its lines lie nearer to each other "
+        "than coordinates are rounded, or overlap."
     )
 
 
@@ -160,20 +161,20 @@ def _require_limits(
 
 
 def _require_room(tin: TIN, max_area: float | None, max_vertices: int) -> None:
-    """Refuse at once what cannot be: a vertex has two triangles, but for those on the rim."""
+    """Refuse at once what cannot be: a vertex has two triangles, but for those on the boundary."""
     least = 0.0 if max_area is None else tin.area / max_area / 2.0
     if max(least, len(tin.points)) > max_vertices:
-        raise PointsError(_too_many(max_vertices))
+        raise PointsError(_explain_too_many(max_vertices))
 
 
-def _too_many(max_vertices: int) -> str:
+def _explain_too_many(max_vertices: int) -> str:
     return (
         f"The mesh would have more than {max_vertices:,} vertices: allow a larger max_area or "
         "max_edge, a smaller min_angle, or more by max_vertices."
     )
 
 
-# ----------------------------------------------------------------------- heights
+# ----------------------------------------------------------------------- elevations
 
 
 class _Splits(NamedTuple):
@@ -194,7 +195,7 @@ class _Splits(NamedTuple):
 
     @classmethod
     def of(cls, triples: NDArray[np.int32]) -> _Splits:
-        table = {_key(a, b): middle for a, b, middle in triples.tolist()}
+        table = {_make_key(a, b): middle for a, b, middle in triples.tolist()}
         return cls(triples[:, :2], triples[:, 2], table)
 
     def segments_of(self, vertices: NDArray[np.int64]) -> set[tuple[int, int]]:
@@ -202,7 +203,7 @@ class _Splits(NamedTuple):
         segment_of: dict[int, tuple[int, int]] = {}
         for (a, b), middle in zip(self.ends.tolist(), self.middle.tolist(), strict=True):
             # An end that was put there itself was put on the same segment.
-            whole = segment_of.get(a) or segment_of.get(b) or _key(a, b)
+            whole = segment_of.get(a) or segment_of.get(b) or _make_key(a, b)
             segment_of[middle] = whole
         return {segment_of[v] for v in vertices.tolist() if v in segment_of}
 
@@ -212,7 +213,7 @@ class _Splits(NamedTuple):
         for end in chain[1:]:
             ahead = [end]
             while ahead:
-                between = self.middle_of.get(_key(walked[-1], ahead[-1]))
+                between = self.middle_of.get(_make_key(walked[-1], ahead[-1]))
                 if between is None:
                     walked.append(ahead.pop())
                 else:
@@ -220,19 +221,19 @@ class _Splits(NamedTuple):
         return walked
 
 
-def _key(a: int, b: int) -> tuple[int, int]:
+def _make_key(a: int, b: int) -> tuple[int, int]:
     return (a, b) if a < b else (b, a)
 
 
-def _lifted(tin: TIN, xy: NDArray[np.float64], splits: _Splits) -> NDArray[np.float64]:
-    """Return the new points with heights: on segments from their ends, else from the surface."""
+def _lift(tin: TIN, xy: NDArray[np.float64], splits: _Splits) -> NDArray[np.float64]:
+    """Return the new points with elevations: on segments from their ends, else from the surface."""
     n = len(tin.points)
     is_on_segment = np.zeros(len(xy), np.bool_)
     is_on_segment[splits.middle - n] = True
     points = np.concatenate([tin.points, np.column_stack([xy, np.full(len(xy), np.nan)])])
-    points[n:][~is_on_segment, 2] = _on_surface(tin, xy[~is_on_segment])
+    points[n:][~is_on_segment, 2] = _interpolate(tin, xy[~is_on_segment])
     z = points[:, 2].tolist()
-    share = _shares(points, splits).tolist()
+    share = _measure_shares(points, splits).tolist()
     for (a, b), middle, part in zip(
         splits.ends.tolist(), splits.middle.tolist(), share, strict=True
     ):
@@ -242,30 +243,30 @@ def _lifted(tin: TIN, xy: NDArray[np.float64], splits: _Splits) -> NDArray[np.fl
     return lifted
 
 
-def _shares(points: NDArray[np.float64], splits: _Splits) -> NDArray[np.float64]:
+def _measure_shares(points: NDArray[np.float64], splits: _Splits) -> NDArray[np.float64]:
     start, end = points[splits.ends[:, 0], :2], points[splits.ends[:, 1], :2]
     whole, part = end - start, points[splits.middle, :2] - start
     shares: NDArray[np.float64] = (whole * part).sum(axis=1) / (whole * whole).sum(axis=1)
     return shares
 
 
-def _on_surface(tin: TIN, xy: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return heights; a place beside the rim by a rounding has that of the nearest edge there."""
+def _interpolate(tin: TIN, xy: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return elevations; beside the boundary by a rounding that of the nearest edge there."""
     z = tin.interpolate(xy)
     for row in np.flatnonzero(np.isnan(z)).tolist():
-        z[row] = _on_rim(tin, xy[row])
+        z[row] = _interpolate_on_boundary(tin, xy[row])
     return z
 
 
-def _on_rim(tin: TIN, place: NDArray[np.float64]) -> float:
-    start, end = (tin.points[ends] for ends in _rim_ends(tin))
+def _interpolate_on_boundary(tin: TIN, point: NDArray[np.float64]) -> float:
+    start, end = (tin.points[ends] for ends in _find_boundary_ends(tin))
     whole = end[:, :2] - start[:, :2]
-    share = ((place - start[:, :2]) * whole).sum(axis=1) / (whole * whole).sum(axis=1)
+    share = ((point - start[:, :2]) * whole).sum(axis=1) / (whole * whole).sum(axis=1)
     foot = start + np.clip(share, 0.0, 1.0)[:, None] * (end - start)
-    return float(foot[np.hypot(*(foot[:, :2] - place).T).argmin(), 2])
+    return float(foot[np.hypot(*(foot[:, :2] - point).T).argmin(), 2])
 
 
-def _rim_ends(tin: TIN) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _find_boundary_ends(tin: TIN) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     triangle, corner = np.nonzero(tin.neighbors == topology.NO_NEIGHBOR)
     return topology.ends(tin.triangles, triangle, corner)
 
@@ -307,7 +308,7 @@ def _find_points(tin: TIN, goal: _Goal, kept_whole: NDArray[np.int32]) -> _Found
         tin.points, tin.triangles, tin.neighbors, fixed, kept_whole, *goal
     )
     if is_too_many:
-        raise PointsError(_too_many(goal.most_vertices))
+        raise PointsError(_explain_too_many(goal.most_vertices))
     return _Found(xy, _Splits.of(splits.reshape(-1, 3)), left.reshape(-1, 4), n_triangles)
 
 
@@ -315,50 +316,50 @@ def _find_points(tin: TIN, goal: _Goal, kept_whole: NDArray[np.int32]) -> _Found
 
 
 def _build(tin: TIN, found: _Found, threads: int) -> TIN | set[tuple[int, int]]:
-    """Build the TIN of all points, with the rim and the lines as they were split.
+    """Build the TIN of all points, with the boundary and the lines as they were split.
 
-    The core sees the surface only. Vertices on the rim are rounded, and beyond it, across a gap as
-    narrow as that, there can be another part of the rim: then it returns the segments of ``tin``
-    that are in the way of each other when they are split.
+    The core sees the surface only. Vertices on the boundary are rounded, and beyond it, across a
+    gap as narrow as that, there can be another part of the boundary: then it returns the segments
+    of ``tin`` that are in the way of each other when they are split.
     """
-    points = np.concatenate([tin.points, _lifted(tin, found.xy, found.splits)])
+    points = np.concatenate([tin.points, _lift(tin, found.xy, found.splits)])
     pslg = _gather_pslg(tin, points, found.splits)
     growth = _kernel.grow(points, threads=threads)
     if growth.kept_row is not None:
         return found.splits.segments_of(np.flatnonzero(growth.kept_row != np.arange(len(points))))
-    mesh = mesh_of_growth(points, growth)
+    mesh = build_mesh_of_growth(points, growth)
     in_the_way = _force(mesh, pslg, found.splits)
     if in_the_way is not None:
         return in_the_way
     surface, number_of = pslg.surface(Surface(points, *mesh.arrays(threads)))
     if len(surface.points) != len(points) or len(surface.triangles) != found.n_triangles:
         return set()
-    return _refined(tin, pslg, surface, number_of, found)
+    return _make_refined(tin, pslg, surface, number_of, found)
 
 
 def _force(mesh: _kernel.Mesh, pslg: Pslg, splits: _Splits) -> set[tuple[int, int]] | None:
-    """Fix all steps of lines; return the segments in the way of that, None if there are none."""
-    steps = pslg.polylines.segments()
-    passed, blocked = mesh.force(steps)
+    """Fix all segments of lines; return the segments in the way of that, None if there are none."""
+    segments = pslg.polylines.segments()
+    passed, blocked = mesh.force(segments)
     if not (len(passed) or len(blocked)):
         return None
-    crossed = mesh.crossed(np.ascontiguousarray(steps[blocked]), only_fixed=True).reshape(-1, 3)
+    crossed = mesh.crossed(np.ascontiguousarray(segments[blocked]), only_fixed=True).reshape(-1, 3)
     through = passed.reshape(-1, 2)
-    ends = np.concatenate([steps[blocked], crossed[:, 1:], steps[through[:, 0]]])
+    ends = np.concatenate([segments[blocked], crossed[:, 1:], segments[through[:, 0]]])
     return splits.segments_of(np.concatenate([ends.ravel(), through[:, 1]]))
 
 
-def _more_kept_whole(
+def _add_kept_whole(
     tin: TIN, kept_whole: NDArray[np.int32], in_the_way: set[tuple[int, int]] | None
 ) -> NDArray[np.int32]:
-    """Add the segments in the way; or the whole rim, if none are known that are not kept yet."""
+    """Add the segments in the way; or the whole boundary, if no further ones are known."""
     news = (in_the_way or set()) - set(map(tuple, kept_whole.tolist()))
     if news:
         return np.concatenate([kept_whole, np.array(sorted(news), np.int32)])
-    return np.sort(np.stack(_rim_ends(tin), axis=1), axis=1).astype(np.int32)
+    return np.sort(np.stack(_find_boundary_ends(tin), axis=1), axis=1).astype(np.int32)
 
 
-def _refined(
+def _make_refined(
     tin: TIN, pslg: Pslg, surface: Surface, number_of: NDArray[np.int32], found: _Found
 ) -> TIN:
     return TIN(
@@ -368,7 +369,7 @@ def _refined(
         constrained=surface.constrained,
         vertex_of=tin.vertex_of,
         report=_report(tin, surface, found),
-        lines=lines_in(pslg.polylines, pslg.constraints, number_of, surface, is_whole=False),
+        lines=find_lines_in(pslg.polylines, pslg.constraints, number_of, surface, is_whole=False),
         crs=tin.crs,
         elevation_unit=tin.elevation_unit,
     )
@@ -389,14 +390,14 @@ def _report(tin: TIN, surface: Surface, found: _Found) -> Report:
 def _note(n_new: int, n_on_segments: int) -> str:
     return (
         f"Refinement added {counted(n_new, 'point')}, "
-        f"{n_on_segments:,} of them on the rim and on lines."
+        f"{n_on_segments:,} of them on the boundary and on lines."
     )
 
 
 def _gather_pslg(tin: TIN, points: NDArray[np.float64], splits: _Splits) -> Pslg:
     rings = [[*ring.tolist(), int(ring[0])] for ring in tin.rings]
     chains = [chain.tolist() for chain in tin.lines.chains()]
-    nameless = _without_line(tin)
+    nameless = _find_edges_without_line(tin)
     chains += nameless
     if "boundary" not in tin.lines.kinds:
         chains += rings
@@ -404,40 +405,40 @@ def _gather_pslg(tin: TIN, points: NDArray[np.float64], splits: _Splits) -> Pslg
     return Pslg(
         points=points,
         polylines=Polylines.of_chains([splits.along(chain) for chain in chains]),
-        constraints=_constraints(tin, len(nameless), len(rings)),
+        constraints=_gather_constraints(tin, len(nameless), len(rings)),
         groups=np.full(len(chains), BOUNDARY),
-        clip=Clip(has_rim=True),
+        clip=Clip(has_own_boundary=True),
         vertex_of=tin.vertex_of,
     )
 
 
-def _constraints(tin: TIN, n_nameless: int, n_rings: int) -> ConstraintTable:
-    """Return what the lines are: the TIN's own, edges of no line, and rings twice, as the rim."""
+def _gather_constraints(tin: TIN, n_nameless: int, n_rings: int) -> ConstraintTable:
+    """Return what the lines are: the TIN's own, edges of no line, rings twice, as boundary."""
     lines = tin.lines
     n_breaklines = sum(kind in ("hard", "soft") for kind in lines.kinds)
     outer = np.arange(0 if "boundary" in lines.kinds else n_rings)
     nameless = n_breaklines + np.arange(n_nameless)
-    return ConstraintTable.joined(
+    return ConstraintTable.join(
         [
             ConstraintTable(
                 lines.kinds, lines.sources.astype(np.int32), np.zeros(len(lines)), lines.names
             ),
-            _nameless("soft", nameless),
-            _nameless("boundary", outer),
-            _nameless("boundary", np.full(n_rings, -1)),
+            _make_nameless("soft", nameless),
+            _make_nameless("boundary", outer),
+            _make_nameless("boundary", np.full(n_rings, -1)),
         ]
     )
 
 
-def _nameless(kind: LineKind, sources: NDArray[np.int64]) -> ConstraintTable:
+def _make_nameless(kind: LineKind, sources: NDArray[np.int64]) -> ConstraintTable:
     return ConstraintTable.of_kind(kind, sources.astype(np.int32), np.zeros(len(sources)))
 
 
-def _without_line(tin: TIN) -> list[list[int]]:
-    """Return the constrained edges inside the surface that are no step of a line."""
+def _find_edges_without_line(tin: TIN) -> list[list[int]]:
+    """Return the constrained edges inside the surface that are no segment of a line."""
     is_inner = tin.constrained & (tin.neighbors > topology.NO_NEIGHBOR)
     edges = np.unique(np.sort(topology.edges_at(tin.triangles, is_inner), axis=1), axis=0)
     n = len(tin.points)
-    is_step = np.isin(topology.edge_keys(edges, n), topology.edge_keys(tin.lines.steps(), n))
-    found: list[list[int]] = edges[~is_step].tolist()
+    is_segment = np.isin(topology.edge_keys(edges, n), topology.edge_keys(tin.lines.segments(), n))
+    found: list[list[int]] = edges[~is_segment].tolist()
     return found

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from ..surface import TIN
 
-__all__ = ["Quality", "quality", "smallest_angles"]
+__all__ = ["Quality", "measure_smallest_angles", "quality"]
 
 _QUANTILES = {"min": 0.0, "q05": 0.05, "median": 0.5, "q95": 0.95, "max": 1.0}
 _SMALL_ANGLES = (1.0, 10.0, 20.0, 30.0)
@@ -62,7 +62,7 @@ class Quality:
     space: bool
 
     def __post_init__(self) -> None:
-        for array in self._columns().values():
+        for array in self._gather_columns().values():
             array.flags.writeable = False
 
     def __len__(self) -> int:
@@ -88,7 +88,9 @@ class Quality:
         >>> round(shapes.summary()["min_angle"]["min"], 2)
         36.87
         """
-        measures = {name: _quantiles(values) for name, values in self._columns().items()}
+        measures = {
+            name: _find_quantiles(values) for name, values in self._gather_columns().items()
+        }
         below = {f"{limit:g}": float(np.mean(self.min_angle < limit)) for limit in _SMALL_ANGLES}
         above = {f"{limit:g}": float(np.mean(self.max_angle > limit)) for limit in _LARGE_ANGLES}
         shares = {"min_angle_below": below, "max_angle_above": above}
@@ -104,9 +106,9 @@ class Quality:
         >>> shapes.to_dict()["circumradius"]
         [2.5]
         """
-        return {name: values.tolist() for name, values in self._columns().items()}
+        return {name: values.tolist() for name, values in self._gather_columns().items()}
 
-    def _columns(self) -> dict[str, NDArray[np.float64]]:
+    def _gather_columns(self) -> dict[str, NDArray[np.float64]]:
         return {
             "min_angle": self.min_angle,
             "max_angle": self.max_angle,
@@ -175,11 +177,11 @@ def quality(tin: TIN, *, space: bool = False) -> Quality:
     """
     require_tin(tin)
     in_space = as_flag("space", space)
-    corners = _corners_in_space(tin) if in_space else tin.points[:, :2][tin.triangles]
+    corners = _lift_corners(tin) if in_space else tin.points[:, :2][tin.triangles]
     edges = np.roll(corners, 1, axis=1) - np.roll(corners, -1, axis=1)
     lengths = np.sqrt(np.einsum("tkx,tkx->tk", edges, edges))
-    doubled = _doubled_areas(edges, lengths)
-    angles = _angles(edges, doubled)
+    doubled = _measure_doubled_areas(edges, lengths)
+    angles = _measure_angles(edges, doubled)
     shortest, longest = lengths.min(axis=1), lengths.max(axis=1)
     with np.errstate(divide="ignore"):
         aspect = longest * lengths.sum(axis=1) / (2 * np.sqrt(3) * doubled)
@@ -195,21 +197,25 @@ def quality(tin: TIN, *, space: bool = False) -> Quality:
     )
 
 
-def _corners_in_space(tin: TIN) -> NDArray[np.float64]:
+def _lift_corners(tin: TIN) -> NDArray[np.float64]:
     scale = (1.0, 1.0, scale_elevations(tin.crs, tin.elevation_unit))
     corners: NDArray[np.float64] = (tin.points * scale)[tin.triangles]
     return corners
 
 
-def smallest_angles(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+def measure_smallest_angles(corners: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the smallest angle of each triangle, degrees, from (m, 3, 2) corners."""
     edges = np.roll(corners, 1, axis=1) - np.roll(corners, -1, axis=1)
     lengths = np.sqrt(np.einsum("tkx,tkx->tk", edges, edges))
-    angles: NDArray[np.float64] = _angles(edges, _doubled_areas(edges, lengths)).min(axis=1)
+    angles: NDArray[np.float64] = _measure_angles(
+        edges, _measure_doubled_areas(edges, lengths)
+    ).min(axis=1)
     return angles
 
 
-def _doubled_areas(edges: NDArray[np.float64], lengths: NDArray[np.float64]) -> NDArray[np.float64]:
+def _measure_doubled_areas(
+    edges: NDArray[np.float64], lengths: NDArray[np.float64]
+) -> NDArray[np.float64]:
     """Return twice the area, from the two shorter edges: their product rounds least."""
     longest = np.argmax(lengths, axis=1)
     rows = np.arange(len(edges))
@@ -222,13 +228,15 @@ def _doubled_areas(edges: NDArray[np.float64], lengths: NDArray[np.float64]) -> 
     return np.asarray(np.sqrt(east**2 + north**2 + flat**2), np.float64)
 
 
-def _angles(edges: NDArray[np.float64], doubled: NDArray[np.float64]) -> NDArray[np.float64]:
+def _measure_angles(
+    edges: NDArray[np.float64], doubled: NDArray[np.float64]
+) -> NDArray[np.float64]:
     """Return the angle at each corner, degrees: the turn from one edge there to the other."""
     after, before = np.roll(edges, -1, axis=1), np.roll(edges, 1, axis=1)
     dots = -np.einsum("tkx,tkx->tk", after, before)
     return np.asarray(np.degrees(np.arctan2(doubled[:, None], dots)), np.float64)
 
 
-def _quantiles(values: NDArray[np.float64]) -> dict[str, float]:
+def _find_quantiles(values: NDArray[np.float64]) -> dict[str, float]:
     found = np.quantile(values, list(_QUANTILES.values()), method="inverted_cdf")
     return dict(zip(_QUANTILES, found.tolist(), strict=True))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..report import Unmended
-from .shape_quality import smallest_angles
+from .shape_quality import measure_smallest_angles
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -36,5 +36,5 @@ def find_unmended(
     why = [why_of.get(tuple(row), -1) for row in np.sort(triangles[near], axis=1).tolist()]
     codes = np.array(why, np.int8)
     found = near[codes >= 0]
-    angles = smallest_angles(points[triangles[found], :2])
+    angles = measure_smallest_angles(points[triangles[found], :2])
     return Unmended(found.astype(np.int32), codes[codes >= 0], angles)

@@ -18,7 +18,7 @@ from ..survey import Survey
 from ..validation.options import require_count
 from ..validation.points import as_points
 from .cover import cover
-from .faults import minimum_angles, overlapping, violating
+from .faults import find_overlapping, find_violating, measure_minimum_angles
 from .growth import Network, improved, original
 
 if TYPE_CHECKING:
@@ -248,32 +248,35 @@ def compare(points: Survey | ArrayLike, *, limit: int = MOST_POINTS) -> Comparis
             f"quadratic time: at most {limit:,} are allowed."
         )
     tin = triangulate(rows)
-    networks = [_judged(name, grow, rows, tin) for name, grow in _ALGORITHMS.items()]
+    networks = [_evaluate(name, grow, rows, tin) for name, grow in _ALGORITHMS.items()]
     return Comparison(
-        points=tin.points, hull=tin.hull, area=tin.area, outcomes=(*networks, _exact(rows, tin))
+        points=tin.points,
+        hull=tin.hull,
+        area=tin.area,
+        outcomes=(*networks, _evaluate_exact(rows, tin)),
     )
 
 
-def _judged(
+def _evaluate(
     name: str, grow: Callable[..., Network], rows: NDArray[np.float64], tin: TIN
 ) -> Outcome:
     run = partial(grow, rows, most_triangles=_MOST_TRIANGLES * len(tin.points))
-    network, seconds = _timed(run)
+    network, seconds = _time(run)
     return Outcome(
         name=name,
         triangles=network.triangles,
         unextended=network.unextended,
         is_stopped=network.is_stopped,
         seconds=seconds,
-        memory=_peak(run),
+        memory=_measure_peak(run),
         candidates=network.candidates,
         candidates_without_removal=network.candidates_without_removal,
         tests=network.tests,
-        **_faults(network.triangles, tin),
+        **_find_faults(network.triangles, tin),
     )
 
 
-def _exact(rows: NDArray[np.float64], tin: TIN) -> Outcome:
+def _evaluate_exact(rows: NDArray[np.float64], tin: TIN) -> Outcome:
     build = partial(triangulate, rows, threads=1)
     handed_over = (tin.points, tin.triangles, tin.neighbors, tin.constrained, tin.vertex_of)
     # The kernel compares every point that it looks at with the best circle so far.
@@ -283,33 +286,33 @@ def _exact(rows: NDArray[np.float64], tin: TIN) -> Outcome:
         triangles=tin.triangles,
         unextended=np.empty((0, 2), np.int32),
         is_stopped=False,
-        seconds=min(_timed(build)[1] for _ in range(_KERNEL_RUNS)),
+        seconds=min(_time(build)[1] for _ in range(_KERNEL_RUNS)),
         memory=sum(array.nbytes for array in handed_over),
         candidates=work,
         candidates_without_removal=None,
         tests=work,
-        **_faults(tin.triangles, tin),
+        **_find_faults(tin.triangles, tin),
     )
 
 
-def _faults(triangles: NDArray[np.int32], tin: TIN) -> dict[str, Any]:
+def _find_faults(triangles: NDArray[np.int32], tin: TIN) -> dict[str, Any]:
     areas = cover(tin.points, triangles, tin.hull)
     return {
-        "violating": violating(tin.points, triangles),
-        "overlapping": overlapping(tin.points, triangles),
+        "violating": find_violating(tin.points, triangles),
+        "overlapping": find_overlapping(tin.points, triangles),
         "overlap": areas.overlap,
         "gap": areas.gap,
-        "angles": minimum_angles(tin.points, triangles),
+        "angles": measure_minimum_angles(tin.points, triangles),
     }
 
 
-def _timed(run: Callable[[], Result]) -> tuple[Result, float]:
+def _time(run: Callable[[], Result]) -> tuple[Result, float]:
     started = perf_counter()
     result = run()
     return result, perf_counter() - started
 
 
-def _peak(run: Callable[[], object]) -> int:
+def _measure_peak(run: Callable[[], object]) -> int:
     """Return the bytes in use at most during a run, in a run of its own: tracing takes time."""
     was_tracing = tracemalloc.is_tracing()
     if not was_tracing:

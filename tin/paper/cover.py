@@ -49,23 +49,23 @@ def cover(
     Cover
         Exactly zero where there are none; otherwise exact but for rounding where no edges cross.
     """
-    edges, weights = _left_over(len(points), triangles, hull)
+    edges, weights = _find_left_over(len(points), triangles, hull)
     level = points[edges[:, 0], 1] == points[edges[:, 1], 1]
     edges, weights = edges[~level], weights[~level]
     xy = points[:, :2] - points[:, :2].min(axis=0)
-    south, north = _ends(xy, edges)
+    south, north = _sort_ends(xy, edges)
     # An edge that runs north has its triangle in the west: eastwards, the triangle ends there.
     step = np.where(xy[edges[:, 0], 1] < xy[edges[:, 1], 1], -weights, weights)
     overlap = gap = 0.0
-    for middle, height in _strips(np.concatenate([south[:, 1], north[:, 1]])):
+    for middle, height in _walk_strips(np.concatenate([south[:, 1], north[:, 1]])):
         crossed = (south[:, 1] < middle) & (middle < north[:, 1])
-        width = _widths(south[crossed], north[crossed], step[crossed], middle)
+        width = _measure_widths(south[crossed], north[crossed], step[crossed], middle)
         overlap += height * width.overlap
         gap += height * width.gap
     return Cover(overlap, gap)
 
 
-def _left_over(
+def _find_left_over(
     n: int, triangles: NDArray[np.int32], hull: NDArray[np.int32]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Return edges, smaller vertex first, and how often more they run forwards than backwards."""
@@ -79,7 +79,7 @@ def _left_over(
     return np.stack([keys // n, keys % n], axis=1), runs
 
 
-def _ends(
+def _sort_ends(
     xy: NDArray[np.float64], edges: NDArray[np.int64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the southern and the northern end of every edge."""
@@ -88,7 +88,7 @@ def _ends(
     return np.where(is_northward, first, second), np.where(is_northward, second, first)
 
 
-def _strips(y: NDArray[np.float64]) -> Iterator[tuple[float, float]]:
+def _walk_strips(y: NDArray[np.float64]) -> Iterator[tuple[float, float]]:
     """Yield middle and height of strips that no edge begins or ends in."""
     if len(y) == 0:
         return
@@ -99,7 +99,7 @@ def _strips(y: NDArray[np.float64]) -> Iterator[tuple[float, float]]:
             yield middle, high - low
 
 
-def _widths(
+def _measure_widths(
     south: NDArray[np.float64],
     north: NDArray[np.float64],
     step: NDArray[np.int64],

@@ -13,14 +13,14 @@ if TYPE_CHECKING:
 
     from ..predicates import Columns
 
-__all__ = ["minimum_angles", "overlapping", "violating"]
+__all__ = ["find_overlapping", "find_violating", "measure_minimum_angles"]
 
 _ROWS = 1 << 20  # point-in-circle tests at a time
 _BLOCK = 256  # triangles at a time
 _CHUNK = 32  # neighbours of each looked at before asking whether an overlap is found
 
 
-def violating(points: NDArray[np.float64], triangles: NDArray[np.int32]) -> NDArray[np.bool_]:
+def find_violating(points: NDArray[np.float64], triangles: NDArray[np.int32]) -> NDArray[np.bool_]:
     """Tell which triangles have a point strictly inside their circle; exactly.
 
     Parameters
@@ -40,28 +40,19 @@ def violating(points: NDArray[np.float64], triangles: NDArray[np.int32]) -> NDAr
     for start in range(0, len(triangles), at_once):
         block = triangles[start : start + at_once]
         which = np.repeat(np.arange(len(block)), len(points))
-        points_ = np.tile(everywhere, len(block))
-        other = (block[which] != points_[:, None]).all(axis=1)
-        which, points_ = which[other], points_[other]
+        candidates = np.tile(everywhere, len(block))
+        other = (block[which] != candidates[:, None]).all(axis=1)
+        which, candidates = which[other], candidates[other]
         a, b, c = block[which].T
-        inside = in_circle(xy, a, b, c, points_) > 0
+        inside = in_circle(xy, a, b, c, candidates) > 0
         found[start + which[inside]] = True
     return found
 
 
-def overlapping(points: NDArray[np.float64], triangles: NDArray[np.int32]) -> NDArray[np.bool_]:
-    """Tell which triangles share area with another one; exactly.
-
-    Parameters
-    ----------
-    points : (n, 3) float64 array
-    triangles : (m, 3) int32 array
-        Counter-clockwise.
-
-    Returns
-    -------
-    (m,) bool array
-    """
+def find_overlapping(
+    points: NDArray[np.float64], triangles: NDArray[np.int32]
+) -> NDArray[np.bool_]:
+    """Tell which triangles share area with another one, exactly: as :func:`find_violating`."""
     xy = columns(points)
     found = np.zeros(len(triangles), np.bool_)
     for start in range(0, len(triangles), _BLOCK):
@@ -116,7 +107,7 @@ def _is_apart(
     return apart
 
 
-def minimum_angles(
+def measure_minimum_angles(
     points: NDArray[np.float64], triangles: NDArray[np.int32]
 ) -> NDArray[np.float64]:
     """Return the smallest angle of every triangle, (m,) array in degrees."""

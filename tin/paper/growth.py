@@ -149,7 +149,7 @@ def original(
     >>> original([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8], [2, 1, 9]])
     <Network: 5 points, 4 triangles, 0 edges not extended>
     """
-    return _grown(as_points(points), widest_angle, removal=removal, most=most_triangles)
+    return _grow(as_points(points), widest_angle, removal=removal, most=most_triangles)
 
 
 def improved(
@@ -204,16 +204,16 @@ def improved(
     choice("empty", empty, EmptyCircle)
     choice("distance", distance, Distance)
     rule = _RULES[empty] if distance == "circle" else widest_angle_then_closest
-    return _grown(as_points(points), rule, removal=removal, most=most_triangles)
+    return _grow(as_points(points), rule, removal=removal, most=most_triangles)
 
 
-def _grown(rows: NDArray[np.float64], rule: Rule, *, removal: bool, most: int | None) -> Network:
+def _grow(rows: NDArray[np.float64], rule: Rule, *, removal: bool, most: int | None) -> Network:
     require_count("most_triangles", most, or_none=True)
-    points = _distinct(rows)
+    points = _drop_repeats(rows)
     lists = Lists(columns(points), removal=as_flag("removal", removal))
-    lists.enter(_first_triangle(lists.xy, len(rows)))
+    lists.enter(_find_first_triangle(lists.xy, len(rows)))
     is_stopped = False
-    for p1, p2 in _edges_to_extend(lists):
+    for p1, p2 in _walk_edges_to_extend(lists):
         is_stopped = most is not None and len(lists.triangles) >= most
         if is_stopped:
             break
@@ -221,7 +221,7 @@ def _grown(rows: NDArray[np.float64], rule: Rule, *, removal: bool, most: int | 
     return Network(
         points=points,
         triangles=np.array(lists.triangles, np.int32),
-        unextended=_unextended(lists),
+        unextended=_find_unextended(lists),
         is_stopped=is_stopped,
         searches=lists.searches,
         candidates=lists.candidates,
@@ -229,7 +229,7 @@ def _grown(rows: NDArray[np.float64], rule: Rule, *, removal: bool, most: int | 
     )
 
 
-def _edges_to_extend(lists: Lists) -> Iterator[Edge]:
+def _walk_edges_to_extend(lists: Lists) -> Iterator[Edge]:
     """First and second step: yield edges used once, of triangles that grow in number meanwhile."""
     for a, b, c in lists.triangles:
         for p1, p2 in ((a, b), (b, c), (c, a)):
@@ -245,13 +245,13 @@ def _extend(lists: Lists, rule: Rule, p1: int, p2: int) -> None:
         lists.enter((p2, p1, point))
 
 
-def _distinct(rows: NDArray[np.float64]) -> NDArray[np.float64]:
+def _drop_repeats(rows: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the first row at every place, in the order given."""
     _, first = np.unique(rows[:, :2], axis=0, return_index=True)
     return rows[np.sort(first)]
 
 
-def _first_triangle(xy: Columns, n_rows: int) -> Triangle:
+def _find_first_triangle(xy: Columns, n_rows: int) -> Triangle:
     if len(xy[0]) >= 2:
         p1 = int(np.lexsort((xy[1], xy[0]))[0])
         distance = np.hypot(xy[0] - xy[0][p1], xy[1] - xy[1][p1])
@@ -268,7 +268,7 @@ def _first_triangle(xy: Columns, n_rows: int) -> Triangle:
     )
 
 
-def _unextended(lists: Lists) -> NDArray[np.int32]:
+def _find_unextended(lists: Lists) -> NDArray[np.int32]:
     """Return the edges used once that are not on the hull."""
     everywhere = np.arange(len(lists.xy[0]))
     inner: list[Edge] = [

@@ -49,7 +49,7 @@ def widest_angle(xy: Columns, p1: int, p2: int, qualified: NDArray[np.int64]) ->
     Whether P sees the edge under a larger angle than P' is whether P lies in the circle through
     p1, p2 and P'. Cotangents in doubles propose, exact tests decide.
     """
-    widest = _widest(xy, p1, p2, qualified)
+    widest = _find_widest(xy, p1, p2, qualified)
     return Choice(int(widest[0]) if len(widest) else None, max(len(qualified) - 1, 0))
 
 
@@ -61,29 +61,29 @@ def widest_angle_then_closest(
     Points of one angle lie on one arc from p1 to p2. From either end up to its middle the distance
     to the edge grows, and so does that to its line: they order such points alike. Exact.
     """
-    widest = _widest(xy, p1, p2, qualified).tolist()
+    widest = _find_widest(xy, p1, p2, qualified).tolist()
     tests = max(len(qualified) - 1, 0)
     if len(widest) < 2:
         return Choice(widest[0] if widest else None, tests)
-    return Choice(min(widest, key=lambda p: _doubled_area(xy, p1, p2, p)), tests)
+    return Choice(min(widest, key=lambda p: _measure_doubled_area(xy, p1, p2, p)), tests)
 
 
-def _widest(xy: Columns, p1: int, p2: int, qualified: NDArray[np.int64]) -> NDArray[np.int64]:
+def _find_widest(xy: Columns, p1: int, p2: int, qualified: NDArray[np.int64]) -> NDArray[np.int64]:
     """Return the points that see p1-p2 under the largest angle, in the order of the list."""
     if len(qualified) == 0:
         return qualified
-    cotangent = _cotangents(xy, p1, p2, qualified)
+    cotangent = _measure_cotangents(xy, p1, p2, qualified)
     rivals = np.arange(len(qualified))
     while len(rivals):
         best = rivals[np.argmin(cotangent[rivals])]
-        side = _sides_of_circle(xy, p1, p2, int(qualified[best]), np.delete(qualified, best))
+        side = _compare_with_circle(xy, p1, p2, int(qualified[best]), np.delete(qualified, best))
         side = np.insert(side, best, 0)
         rivals = np.flatnonzero(side > 0)
     widest: NDArray[np.int64] = qualified[side == 0]
     return widest
 
 
-def _doubled_area(xy: Columns, *corners: int) -> Fraction:
+def _measure_doubled_area(xy: Columns, *corners: int) -> Fraction:
     """Return twice the area of a triangle: of several on one edge, the distances to its line."""
     (ax, bx, cx), (ay, by, cy) = (
         [Fraction(float(column[corner])) for corner in corners] for column in xy
@@ -98,7 +98,7 @@ def closest_in_circle(xy: Columns, p1: int, p2: int, qualified: NDArray[np.int64
     edge and to its line are the same. Of equals the first in the list is chosen; in doubles, as
     coordinates are given.
     """
-    (ax, ay), (bx, by) = _offsets(xy, p1, qualified), _offsets(xy, p2, qualified)
+    (ax, ay), (bx, by) = _measure_offsets(xy, p1, qualified), _measure_offsets(xy, p2, qualified)
     distance = np.abs(ax * by - ay * bx)
     is_in_circle = ax * bx + ay * by <= 0
     tests = len(qualified)
@@ -119,9 +119,11 @@ def closest_in_circle_or_widest_angle(
     return Choice(anywhere.point, in_circle.tests + anywhere.tests)
 
 
-def _cotangents(xy: Columns, p1: int, p2: int, points: NDArray[np.int64]) -> NDArray[np.float64]:
+def _measure_cotangents(
+    xy: Columns, p1: int, p2: int, points: NDArray[np.int64]
+) -> NDArray[np.float64]:
     """Cotangents of the angles under which points see p1-p2; a point nearly on it sees most."""
-    (ax, ay), (bx, by) = _offsets(xy, p1, points), _offsets(xy, p2, points)
+    (ax, ay), (bx, by) = _measure_offsets(xy, p1, points), _measure_offsets(xy, p2, points)
     cross = np.abs(ax * by - ay * bx)
     dot = ax * bx + ay * by
     flat = np.copysign(np.inf, dot)
@@ -129,12 +131,12 @@ def _cotangents(xy: Columns, p1: int, p2: int, points: NDArray[np.int64]) -> NDA
     return cotangent
 
 
-def _offsets(xy: Columns, origin: int, points: NDArray[np.int64]) -> Columns:
+def _measure_offsets(xy: Columns, origin: int, points: NDArray[np.int64]) -> Columns:
     x, y = xy
     return x[points] - x[origin], y[points] - y[origin]
 
 
-def _sides_of_circle(
+def _compare_with_circle(
     xy: Columns, p1: int, p2: int, p: int, points: NDArray[np.int64]
 ) -> NDArray[np.int8]:
     """Tell whether points see p1-p2 under a wider angle than P (+1), the same (0), a narrower."""

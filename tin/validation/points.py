@@ -89,16 +89,18 @@ def as_xy(xy: Any) -> NDArray[np.float64]:
         For another shape, values that are no numbers, infinity, or magnitudes outside the range
         in which the predicates are exact.
     """
-    places, is_masked = as_table(xy, "Places", least=2, most=2)
-    if places.shape == (0,):  # an empty list is no places
-        places = places.reshape(0, 2)
-    if places.ndim != 2 or places.shape[1] != 2:
-        raise PointsError(f"Places have shape {places.shape}: (k, 2) is needed, columns x, y.")
+    queries, is_masked = as_table(xy, "Query points", least=2, most=2)
+    if queries.shape == (0,):  # an empty list is no queries
+        queries = queries.reshape(0, 2)
+    if queries.ndim != 2 or queries.shape[1] != 2:
+        raise PointsError(
+            f"Query points have shape {queries.shape}: (k, 2) is needed, columns x, y."
+        )
     if is_masked is not None:
-        places = np.where(is_masked[:, None], np.nan, places)
-    places = np.ascontiguousarray(places, np.float64)
-    require_exact_range(places, "Places")
-    return places
+        queries = np.where(is_masked[:, None], np.nan, queries)
+    queries = np.ascontiguousarray(queries, np.float64)
+    require_exact_range(queries, "Query points")
+    return queries
 
 
 def as_elevations(values: Any) -> NDArray[np.float64]:

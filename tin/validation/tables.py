@@ -66,15 +66,15 @@ def as_table(given: Any, what: str, *, least: int = 3, most: int = 3) -> Table:
     """
     if _is_plain(given):
         return Table(_as_numbers(given, what))
-    given = _without_wrapping(given)
-    geometry = _points_of(getattr(given, "geometry", given), what)
-    names = _names_of(given)
+    given = _unwrap(given)
+    geometry = _read_points(getattr(given, "geometry", given), what)
+    names = _find_names(given)
     if geometry is not None:
-        return Table(_with_elevations(geometry, given, names or (), what, most))
+        return Table(_add_elevations(geometry, given, names or (), what, most))
     if names is None:
-        return _unnamed(given, what)
-    columns = _columns_by_name(given, names, what, least, most)
-    return _stacked(columns, what)
+        return _read_unnamed(given, what)
+    columns = _choose_columns_by_name(given, names, what, least, most)
+    return _stack(columns, what)
 
 
 def _is_plain(given: Any) -> bool:
@@ -92,14 +92,14 @@ def is_masked_array(given: Any) -> bool:
     return masked is not None and isinstance(given, masked.MaskedArray)
 
 
-def _without_wrapping(given: Any) -> Any:
+def _unwrap(given: Any) -> Any:
     """Return masked rows in a list as one masked array."""
     if isinstance(given, list | tuple) and any(map(is_masked_array, given)):
         return np.ma.array(given)
     return given
 
 
-def _unnamed(given: Any, what: str) -> Table:
+def _read_unnamed(given: Any, what: str) -> Table:
     if not is_masked_array(given):
         return Table(_as_numbers(given, what))
     mask = np.ma.getmaskarray(given)
@@ -129,7 +129,7 @@ def _has_text(array: NDArray[Any]) -> bool:
 # ------------------------------------------------------------------------- names
 
 
-def _names_of(given: Any) -> Sequence[Any] | None:
+def _find_names(given: Any) -> Sequence[Any] | None:
     """Return the names of columns, None if they have none but their numbers."""
     dtype = getattr(given, "dtype", None)
     if isinstance(dtype, np.dtype):
@@ -145,20 +145,20 @@ def _names_of(given: Any) -> Sequence[Any] | None:
     return None if names == list(range(len(names))) else names
 
 
-def _columns_by_name(
+def _choose_columns_by_name(
     given: Any, names: Sequence[Any], what: str, least: int, most: int
 ) -> list[Any]:
-    found = _roles(names, what)
+    found = _find_roles(names, what)
     for role in COORDINATES[:least]:
         if role not in found:
             raise PointsError(
-                f"{what} have columns {_listed(names)}, and none of them is called {role}: "
+                f"{what} have columns {_list_names(names)}, and none of them is called {role}: "
                 f"one of {', '.join(_NAMES[role])} is needed."
             )
     return [given[found[role]] for role in COORDINATES[:most] if role in found]
 
 
-def _roles(names: Sequence[Any], what: str) -> dict[str, Any]:
+def _find_roles(names: Sequence[Any], what: str) -> dict[str, Any]:
     """Return the name of the column of each coordinate."""
     found: dict[str, Any] = {}
     for name in names:
@@ -174,13 +174,13 @@ def _roles(names: Sequence[Any], what: str) -> dict[str, Any]:
     return found
 
 
-def _listed(names: Sequence[Any]) -> str:
+def _list_names(names: Sequence[Any]) -> str:
     more = ", ..." if len(names) > _SHOWN else ""
     return ", ".join(f"'{name}'" for name in names[:_SHOWN]) + more
 
 
-def _stacked(columns: list[Any], what: str) -> Table:
-    tables = [_unnamed(_without_missing(column), what) for column in columns]
+def _stack(columns: list[Any], what: str) -> Table:
+    tables = [_read_unnamed(_fill_missing(column), what) for column in columns]
     lengths = {table.values.shape for table in tables}
     if len(lengths) != 1 or tables[0].values.ndim != 1:
         raise PointsError(f"{what} have columns of different lengths, or of more than numbers.")
@@ -189,7 +189,7 @@ def _stacked(columns: list[Any], what: str) -> Table:
     return Table(values, np.logical_or.reduce(masks) if masks else None)
 
 
-def _without_missing(column: Any) -> Any:
+def _fill_missing(column: Any) -> Any:
     """Return a column of a data frame with NaN for what is missing."""
     if not hasattr(column, "isna"):
         return column
@@ -202,7 +202,7 @@ def _without_missing(column: Any) -> Any:
 # --------------------------------------------------------------------- geometries
 
 
-def _points_of(given: Any, what: str) -> NDArray[np.float64] | None:
+def _read_points(given: Any, what: str) -> NDArray[np.float64] | None:
     """Return the coordinates of shapely's points, (n, 3) with NaN for none; None of all else."""
     shapely = sys.modules.get("shapely")
     if shapely is None:  # then nobody has a geometry
@@ -225,16 +225,16 @@ def _is_row_of_objects(given: Any) -> bool:
     return is_one_dimensional and getattr(given, "dtype", None) != np.float64
 
 
-def _with_elevations(
+def _add_elevations(
     geometry: NDArray[np.float64], given: Any, names: Sequence[Any], what: str, most: int
 ) -> NDArray[np.float64]:
     """Return the columns asked for, elevations from a column if the geometries have none."""
     if most == 2:
         return geometry[:, :2]
-    column = _roles(names, what).get("elevation")
+    column = _find_roles(names, what).get("elevation")
     is_flat = bool(np.isnan(geometry[:, 2]).all())
     if column is not None:
-        own = _stacked([given[column]], what).values[:, 0]
+        own = _stack([given[column]], what).values[:, 0]
         if not (is_flat or np.array_equal(own, geometry[:, 2])):
             raise PointsError(
                 f"{what} have elevations in their geometries and others in column '{column}': "

@@ -17,8 +17,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from .. import _kernel, topology
-from ..constraints.polylines import offsets_of
-from ..topology import NO_NEIGHBOR
+from ..topology import NO_NEIGHBOR, find_offsets
 from .exact_corners import ExactPlane
 
 if TYPE_CHECKING:
@@ -27,7 +26,7 @@ if TYPE_CHECKING:
     from .._kernel import Growth
     from ..types import Bounds
 
-__all__ = ["Rings", "cells_in_box", "signed_areas"]
+__all__ = ["Rings", "cells_in_box", "measure_signed_areas"]
 
 _OUTSIDE = -1
 
@@ -51,7 +50,7 @@ class _Centres(NamedTuple):
     To the bit equal for triangles of one circle.
     """
 
-    places: NDArray[np.float64]
+    points: NDArray[np.float64]
     where: NDArray[np.int8]
 
 
@@ -84,9 +83,9 @@ def cells_in_box(xy: NDArray[np.float64], growth: Growth, box: Bounds) -> Rings:
         cell narrower than the rounding of coordinates can be empty.
     """
     plane = ExactPlane(xy, box)
-    edges = _half_edges(growth.triangles, growth.neighbors)
-    order = _turning_order(edges, len(xy), len(growth.triangles))
-    centres, is_cut = _centres_and_cut_cells(xy, growth.triangles, edges, box, plane)
+    edges = _gather_half_edges(growth.triangles, growth.neighbors)
+    order = _sort_around_vertices(edges, len(xy), len(growth.triangles))
+    centres, is_cut = _find_centres_and_cut_cells(xy, growth.triangles, edges, box, plane)
     cut = _cut_cells(plane, edges, order, is_cut)
     inner = order[~is_cut[edges.start[order]]]
     counts = np.bincount(edges.start[inner], minlength=len(xy))
@@ -95,15 +94,15 @@ def cells_in_box(xy: NDArray[np.float64], growth: Growth, box: Bounds) -> Rings:
     coords = np.empty((len(is_of_cut), 2))
     coords[is_of_cut] = cut.coords
     coords[~is_of_cut] = centres[edges.left[inner]]
-    return _with_area(_without_repeats(coords, np.repeat(np.arange(len(xy)), counts), len(xy)))
+    return _keep_with_area(_drop_repeats(coords, np.repeat(np.arange(len(xy)), counts), len(xy)))
 
 
-def signed_areas(rings: Rings) -> NDArray[np.float64]:
+def measure_signed_areas(rings: Rings) -> NDArray[np.float64]:
     """Return the area of each ring, positive counter-clockwise, 0 for an empty one."""
     count = np.diff(rings.offsets)
     ring = np.repeat(np.arange(len(count)), count)
     relative = rings.coords - rings.coords[rings.offsets[:-1][ring]]
-    following = relative[_following(rings.offsets)]
+    following = relative[_find_following(rings.offsets)]
     doubled = relative[:, 0] * following[:, 1] - relative[:, 1] * following[:, 0]
     return np.asarray(0.5 * np.bincount(ring, doubled, minlength=len(count)), np.float64)
 
@@ -111,25 +110,27 @@ def signed_areas(rings: Rings) -> NDArray[np.float64]:
 # ---------------------------------------------------------------- around a vertex
 
 
-def _half_edges(triangles: NDArray[np.int32], neighbors: NDArray[np.int32]) -> _HalfEdges:
+def _gather_half_edges(triangles: NDArray[np.int32], neighbors: NDArray[np.int32]) -> _HalfEdges:
     across = neighbors.ravel()
     n_inner = across.size
     start, end = topology.directed_edges(triangles)
-    rim = np.flatnonzero(across == NO_NEIGHBOR)
+    boundary = np.flatnonzero(across == NO_NEIGHBOR)
     met = np.flatnonzero(across != NO_NEIGHBOR)
     corner = np.argmax(neighbors[across[met]] == (met // 3)[:, None], axis=1)
-    twin = np.empty(n_inner + len(rim), np.int64)
+    twin = np.empty(n_inner + len(boundary), np.int64)
     twin[met] = 3 * across[met].astype(np.int64) + corner
-    twin[rim] = n_inner + np.arange(len(rim))
-    twin[n_inner:] = rim
+    twin[boundary] = n_inner + np.arange(len(boundary))
+    twin[n_inner:] = boundary
     return _HalfEdges(
-        start=np.concatenate([start.ravel(), end.ravel()[rim]]),
-        left=np.concatenate([np.arange(n_inner) // 3, np.full(len(rim), _OUTSIDE)]),
+        start=np.concatenate([start.ravel(), end.ravel()[boundary]]),
+        left=np.concatenate([np.arange(n_inner) // 3, np.full(len(boundary), _OUTSIDE)]),
         twin=twin,
     )
 
 
-def _turning_order(edges: _HalfEdges, n_vertices: int, n_triangles: int) -> NDArray[np.int64]:
+def _sort_around_vertices(
+    edges: _HalfEdges, n_vertices: int, n_triangles: int
+) -> NDArray[np.int64]:
     """Return the half-edges by start, and counter-clockwise around it; on the hull from the hull.
 
     How far each is from the last one is counted by doubling: as many rounds as the logarithm of
@@ -139,8 +140,8 @@ def _turning_order(edges: _HalfEdges, n_vertices: int, n_triangles: int) -> NDAr
     inner = number[: 3 * n_triangles]
     first = np.empty(n_vertices, np.int64)
     first[edges.start] = number
-    rim = edges.twin[len(inner) :]
-    first[edges.start[rim]] = rim
+    boundary = edges.twin[len(inner) :]
+    first[edges.start[boundary]] = boundary
     following = number.copy()
     following[inner] = edges.twin[inner + np.where(inner % 3 == 0, 2, -1)]
     following = np.where(following == first[edges.start], number, following)
@@ -168,7 +169,7 @@ _ROUNDING = 16 * np.finfo(np.float64).eps
 """Of a circumcentre in doubles, relative to its terms; amply above what they add up to."""
 
 
-def _centres_and_cut_cells(
+def _find_centres_and_cut_cells(
     xy: NDArray[np.float64],
     triangles: NDArray[np.int32],
     edges: _HalfEdges,
@@ -179,20 +180,20 @@ def _centres_and_cut_cells(
 
     Corners of cells that are cut are exact; so must be those that other cells share with them.
     """
-    first = _on_one_circle(xy, triangles, edges)
-    found = _circles(xy, triangles, box)
-    centres = _Centres(found.places[first], found.where[first])
+    first = _group_circles(xy, triangles, edges)
+    found = _find_circles(xy, triangles, box)
+    centres = _Centres(found.points[first], found.where[first])
     is_exact = centres.where == _DOUBTFUL
     _set_exactly(centres, first, is_exact, triangles, plane)
     is_cut = np.zeros(len(xy), np.bool_)
     is_cut[triangles[centres.where == _BEYOND]] = True
-    rim = np.arange(triangles.size, len(edges.start))
-    is_cut[edges.start[rim]] = is_cut[edges.start[edges.twin[rim]]] = True
+    boundary = np.arange(triangles.size, len(edges.start))
+    is_cut[edges.start[boundary]] = is_cut[edges.start[edges.twin[boundary]]] = True
     corners = is_cut[triangles].sum(axis=1)
     is_shared = np.bincount(first, (corners > 0) & (corners < 3), len(triangles)) > 0
     is_shared = is_shared[first] & ~is_exact & (centres.where == _INSIDE)
     _set_exactly(centres, first, is_shared, triangles, plane)
-    return centres.places, is_cut
+    return centres.points, is_cut
 
 
 def _set_exactly(
@@ -204,15 +205,15 @@ def _set_exactly(
 ) -> None:
     """Compute some circumcentres exactly, and where they lie; ``which`` holds whole circles."""
     for t in np.flatnonzero(which & (first == np.arange(len(first)))).tolist():
-        place = plane.centre(*triangles[t].tolist())
-        centres.where[t] = _BEYOND if place is None else _INSIDE
-        if place is not None:
-            centres.places[t] = place
-    centres.places[which] = centres.places[first[which]]
+        point = plane.centre(*triangles[t].tolist())
+        centres.where[t] = _BEYOND if point is None else _INSIDE
+        if point is not None:
+            centres.points[t] = point
+    centres.points[which] = centres.points[first[which]]
     centres.where[which] = centres.where[first[which]]
 
 
-def _circles(xy: NDArray[np.float64], triangles: NDArray[np.int32], box: Bounds) -> _Centres:
+def _find_circles(xy: NDArray[np.float64], triangles: NDArray[np.int32], box: Bounds) -> _Centres:
     """Return circumcentres, and what is sure of where they lie; doubtful if not known well.
 
     They are computed from the corner between the two shorter sides, where the rounding of the area
@@ -244,7 +245,7 @@ def _circles(xy: NDArray[np.float64], triangles: NDArray[np.int32], box: Bounds)
     return _Centres(np.stack([x, y], axis=1), where)
 
 
-def _on_one_circle(
+def _group_circles(
     xy: NDArray[np.float64], triangles: NDArray[np.int32], edges: _HalfEdges
 ) -> NDArray[np.int64]:
     """Return for each triangle the first one of those on the same circle, exactly."""
@@ -255,10 +256,10 @@ def _on_one_circle(
     opposite = triangles.ravel()[twin]
     a, b, c = (xy[triangles[once // 3, k]] for k in range(3))
     tied = _kernel.in_circle(a, b, c, xy[opposite]) == 0
-    return _first_of_group(once[tied] // 3, twin[tied] // 3, len(triangles))
+    return _find_first_of_group(once[tied] // 3, twin[tied] // 3, len(triangles))
 
 
-def _first_of_group(
+def _find_first_of_group(
     one: NDArray[np.int64], other: NDArray[np.int64], count: int
 ) -> NDArray[np.int64]:
     """Join pairs to groups, and return for each member the smallest of its group."""
@@ -297,13 +298,13 @@ def _cut_cells(
     for vertex, begin, end in zip(
         np.flatnonzero(is_cut).tolist(), [0, *ends[:-1]], ends, strict=True
     ):
-        ring = _without_spikes(plane.cell(vertex, neighbors[begin:end]))
+        ring = _drop_spikes(plane.cell(vertex, neighbors[begin:end]))
         coords += ring
         counts.append(len(ring))
     return _CutCells(np.array(coords, np.float64).reshape(-1, 2), counts)
 
 
-def _without_spikes(ring: list[tuple[float, float]]) -> list[tuple[float, float]]:
+def _drop_spikes(ring: list[tuple[float, float]]) -> list[tuple[float, float]]:
     """Drop corners that rounding made equal, and those to which a ring goes out and back again."""
     kept: list[tuple[float, float]] = []
     for corner in ring:
@@ -323,24 +324,24 @@ def _add_corner(ring: list[tuple[float, float]], corner: tuple[float, float]) ->
         ring.append(corner)
 
 
-def _without_repeats(coords: NDArray[np.float64], cell: NDArray[np.int64], n_cells: int) -> Rings:
+def _drop_repeats(coords: NDArray[np.float64], cell: NDArray[np.int64], n_cells: int) -> Rings:
     """Drop corners that equal the one after them."""
-    differs = (coords != coords[_following(_offsets(cell, n_cells))]).any(axis=1)
-    return Rings(coords[differs], _offsets(cell[differs], n_cells))
+    differs = (coords != coords[_find_following(_find_cell_offsets(cell, n_cells))]).any(axis=1)
+    return Rings(coords[differs], _find_cell_offsets(cell[differs], n_cells))
 
 
-def _with_area(rings: Rings) -> Rings:
+def _keep_with_area(rings: Rings) -> Rings:
     """Empty the rings of fewer than three corners: cells of the width of a rounding."""
     counts = np.diff(rings.offsets)
     left = np.where(counts >= 3, counts, 0)
-    return Rings(rings.coords[np.repeat(left > 0, counts)], offsets_of(left))
+    return Rings(rings.coords[np.repeat(left > 0, counts)], find_offsets(left))
 
 
-def _offsets(cell: NDArray[np.int64], n_cells: int) -> NDArray[np.int64]:
-    return offsets_of(np.bincount(cell, minlength=n_cells))
+def _find_cell_offsets(cell: NDArray[np.int64], n_cells: int) -> NDArray[np.int64]:
+    return find_offsets(np.bincount(cell, minlength=n_cells))
 
 
-def _following(offsets: NDArray[np.int64]) -> NDArray[np.int64]:
+def _find_following(offsets: NDArray[np.int64]) -> NDArray[np.int64]:
     """Return for each corner the number of the next one in its ring."""
     following = np.arange(1, offsets[-1] + 1)
     is_full = np.diff(offsets) > 0

@@ -12,11 +12,11 @@ from ..._sentences import counted
 from ...errors import LinesError, OptionError
 from .. import _kernel
 from ..constraints.breaklines import as_ring
-from ..constraints.polylines import offsets_of
+from ..topology import find_offsets
 from ..types import Bounds
 from ..validation.options import require_distance
 from ..validation.threads import thread_count
-from .cells import Rings, cells_in_box, signed_areas
+from .cells import Rings, cells_in_box, measure_signed_areas
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -71,7 +71,7 @@ class Voronoi:
     @cached_property
     def areas(self) -> NDArray[np.float64]:
         """Area of each cell, (n,) float64 array, CRS units squared; 0 outside the boundary."""
-        parts = signed_areas(Rings(self.coords, self.part_offsets))
+        parts = measure_signed_areas(Rings(self.coords, self.part_offsets))
         areas: NDArray[np.float64] = np.zeros(len(self))
         np.add.at(areas, self._cell_of_part, parts)
         areas.flags.writeable = False
@@ -100,7 +100,7 @@ class Voronoi:
         """
         import shapely
 
-        parts = _polygons(Rings(self.coords, self.part_offsets))
+        parts = _make_polygons(Rings(self.coords, self.part_offsets))
         whole = np.bincount(self._cell_of_part, minlength=len(self))
         cells = np.full(len(self), shapely.Polygon(), object)
         is_single = (whole == 1)[self._cell_of_part]
@@ -133,17 +133,17 @@ def divide_plane(
         raise OptionError("pad", pad, "None where a boundary is given: only bounds are padded")
     extent = Bounds.of(points)
     if boundary is None:
-        box = _padded(extent, pad)
-        return _diagram(_cells(points, box), _corners(box))
+        box = _pad(extent, pad)
+        return _make_diagram(_grow_cells(points, box), _list_corners(box))
     ring = _as_boundary(boundary)
-    box = _joined(extent, Bounds.of(ring))
-    cells = _cells(points, box)
+    box = _join(extent, Bounds.of(ring))
+    cells = _grow_cells(points, box)
     if isinstance(boundary, Bounds) and box == boundary:
-        return _diagram(cells, ring)
-    return _clipped(cells, ring)
+        return _make_diagram(cells, ring)
+    return _clip(cells, ring)
 
 
-def _diagram(cells: Rings, boundary: NDArray[np.float64]) -> Voronoi:
+def _make_diagram(cells: Rings, boundary: NDArray[np.float64]) -> Voronoi:
     """Return a diagram whose cells are all of one part, or empty."""
     filled = np.append(True, np.diff(cells.offsets) > 0)
     return Voronoi(
@@ -154,7 +154,7 @@ def _diagram(cells: Rings, boundary: NDArray[np.float64]) -> Voronoi:
     )
 
 
-def _cells(points: NDArray[np.float64], box: Bounds) -> Rings:
+def _grow_cells(points: NDArray[np.float64], box: Bounds) -> Rings:
     """Return a cell for each vertex; of several at one place the first has it."""
     growth = _kernel.grow(points, threads=thread_count(None, len(points)))
     xy = np.ascontiguousarray(points[:, :2])
@@ -164,13 +164,13 @@ def _cells(points: NDArray[np.float64], box: Bounds) -> Rings:
     cells = cells_in_box(np.ascontiguousarray(xy[is_kept]), growth, box)
     counts = np.zeros(len(xy), np.int64)
     counts[is_kept] = np.diff(cells.offsets)
-    return Rings(cells.coords, offsets_of(counts))
+    return Rings(cells.coords, find_offsets(counts))
 
 
 # ---------------------------------------------------------------- the boundary
 
 
-def _padded(extent: Bounds, pad: float | None) -> Bounds:
+def _pad(extent: Bounds, pad: float | None) -> Bounds:
     if pad is None:
         pad = _PAD_SHARE * max(extent.width, extent.height)
     else:
@@ -178,7 +178,7 @@ def _padded(extent: Bounds, pad: float | None) -> Bounds:
     return Bounds(extent.xmin - pad, extent.ymin - pad, extent.xmax + pad, extent.ymax + pad)
 
 
-def _joined(one: Bounds, other: Bounds) -> Bounds:
+def _join(one: Bounds, other: Bounds) -> Bounds:
     return Bounds(
         min(one.xmin, other.xmin),
         min(one.ymin, other.ymin),
@@ -187,7 +187,7 @@ def _joined(one: Bounds, other: Bounds) -> Bounds:
     )
 
 
-def _corners(box: Bounds) -> NDArray[np.float64]:
+def _list_corners(box: Bounds) -> NDArray[np.float64]:
     """Return the corners of a box, counter-clockwise."""
     return np.array(
         [
@@ -203,7 +203,7 @@ def _as_boundary(boundary: Bounds | ArrayLike) -> NDArray[np.float64]:
     """Return the ring of a boundary, counter-clockwise."""
     import shapely
 
-    given = _corners(boundary) if isinstance(boundary, Bounds) else boundary
+    given = _list_corners(boundary) if isinstance(boundary, Bounds) else boundary
     ring = as_ring(given, "the boundary")[:, :2].copy()
     region = shapely.Polygon(ring)
     if not shapely.is_valid(region):
@@ -214,30 +214,30 @@ def _as_boundary(boundary: Bounds | ArrayLike) -> NDArray[np.float64]:
     return ring if region.exterior.is_ccw else ring[::-1].copy()
 
 
-def _clipped(cells: Rings, ring: NDArray[np.float64]) -> Voronoi:
+def _clip(cells: Rings, ring: NDArray[np.float64]) -> Voronoi:
     """Return the parts of cells inside a ring; cells that it does not cut stay as they are."""
     import shapely
 
     region = shapely.Polygon(ring)
     shapely.prepare(region)
-    near = _near(cells, Bounds.of(ring))
-    shapes = _polygons(_only(cells, near))
+    near = _find_near(cells, Bounds.of(ring))
+    shapes = _make_polygons(_keep_only(cells, near))
     inside = shapely.covers(region, shapes)
-    parts, of = _parts_inside(region, shapes[~inside])
+    parts, of = _find_parts_inside(region, shapes[~inside])
     shapes = np.concatenate([shapes[inside], parts])
     owner = np.concatenate([near[inside], near[~inside][of]])
     order = np.argsort(owner, kind="stable")
-    rings = _rings(shapes[order])
+    rings = _get_rings(shapes[order])
     counts = np.bincount(owner, np.diff(rings.offsets)[np.argsort(order)], len(cells.offsets) - 1)
     return Voronoi(
         coords=rings.coords,
-        offsets=offsets_of(counts.astype(np.int64)),
+        offsets=find_offsets(counts.astype(np.int64)),
         part_offsets=rings.offsets,
         boundary=ring,
     )
 
 
-def _near(cells: Rings, box: Bounds) -> NDArray[np.int64]:
+def _find_near(cells: Rings, box: Bounds) -> NDArray[np.int64]:
     """Return the cells whose bounds meet a box."""
     filled = np.flatnonzero(np.diff(cells.offsets))
     if len(filled) == 0:
@@ -248,14 +248,14 @@ def _near(cells: Rings, box: Bounds) -> NDArray[np.int64]:
     return filled[meets.all(axis=1)]
 
 
-def _only(rings: Rings, which: NDArray[np.int64]) -> Rings:
+def _keep_only(rings: Rings, which: NDArray[np.int64]) -> Rings:
     """Return some of the rings; the others are empty."""
     counts = np.diff(rings.offsets)
     taken = np.bincount(which, minlength=len(counts)) * counts
-    return Rings(rings.coords[np.repeat(taken > 0, counts)], offsets_of(taken))
+    return Rings(rings.coords[np.repeat(taken > 0, counts)], find_offsets(taken))
 
 
-def _parts_inside(region: Any, shapes: NDArray[Any]) -> tuple[NDArray[Any], NDArray[np.int64]]:
+def _find_parts_inside(region: Any, shapes: NDArray[Any]) -> tuple[NDArray[Any], NDArray[np.int64]]:
     """Return the polygons in which shapes meet a region, and the shape that each is a part of."""
     import shapely
 
@@ -268,7 +268,7 @@ def _parts_inside(region: Any, shapes: NDArray[Any]) -> tuple[NDArray[Any], NDAr
     return parts[has_area], of[deeper][has_area]
 
 
-def _polygons(rings: Rings) -> NDArray[Any]:
+def _make_polygons(rings: Rings) -> NDArray[Any]:
     """Return the rings that are not empty as shapely polygons."""
     import shapely
 
@@ -278,15 +278,15 @@ def _polygons(rings: Rings) -> NDArray[Any]:
     return polygons
 
 
-def _rings(polygons: NDArray[Any]) -> Rings:
+def _get_rings(polygons: NDArray[Any]) -> Rings:
     """Return the outer rings of polygons, counter-clockwise, the first corner not repeated."""
     import shapely
 
     coords, ring = shapely.get_coordinates(polygons, return_index=True)
     is_last = np.append(ring[1:] != ring[:-1], True)[: len(ring)]
     coords, ring = coords[~is_last], ring[~is_last]
-    offsets = offsets_of(np.bincount(ring, minlength=len(polygons)))
-    clockwise = (signed_areas(Rings(coords, offsets)) < 0)[ring]
+    offsets = find_offsets(np.bincount(ring, minlength=len(polygons)))
+    clockwise = (measure_signed_areas(Rings(coords, offsets)) < 0)[ring]
     number = np.arange(len(coords))
     turned = np.where(clockwise, offsets[ring] + offsets[ring + 1] - 1 - number, number)
     return Rings(coords[turned], offsets)

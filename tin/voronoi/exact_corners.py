@@ -23,7 +23,7 @@ __all__ = ["ExactPlane", "HalfPlane"]
 
 _MANTISSA_BITS = 53
 
-Place = tuple[int, int]
+Point = tuple[int, int]
 Corner = tuple[int, int, int]
 
 
@@ -39,7 +39,7 @@ class HalfPlane(NamedTuple):
         x, y, w = corner
         return self.a * x + self.b * y < self.c * w
 
-    def corner_with(self, following: HalfPlane) -> Corner:
+    def meet(self, following: HalfPlane) -> Corner:
         """Return where the border meets that of the next half-plane counter-clockwise."""
         a, b, c = self
         d, e, f = following
@@ -63,20 +63,22 @@ class ExactPlane:
         lowest = min(int(self._exponents.min()), int(exponents.min()))
         self._shift = _MANTISSA_BITS - lowest
         self._lowest = lowest
-        self._places: dict[int, Place] = {}
+        self._points: dict[int, Point] = {}
         self._low, self._high = (
-            self._whole(*row) for row in zip(mantissas, exponents, strict=True)
+            self._scale_to_whole(*row) for row in zip(mantissas, exponents, strict=True)
         )
 
-    def place(self, vertex: int) -> Place:
+    def point(self, vertex: int) -> Point:
         """Return a vertex's coordinates in whole numbers."""
-        known = self._places.get(vertex)
+        known = self._points.get(vertex)
         if known is None:
-            known = self._whole(self._mantissas[vertex], self._exponents[vertex])
-            self._places[vertex] = known
+            known = self._scale_to_whole(self._mantissas[vertex], self._exponents[vertex])
+            self._points[vertex] = known
         return known
 
-    def _whole(self, mantissas: NDArray[np.float64], exponents: NDArray[np.int32]) -> Place:
+    def _scale_to_whole(
+        self, mantissas: NDArray[np.float64], exponents: NDArray[np.int32]
+    ) -> Point:
         x, y = (
             int(mantissa * 2**_MANTISSA_BITS) << (exponent - self._lowest if mantissa else 0)
             for mantissa, exponent in zip(mantissas.tolist(), exponents.tolist(), strict=True)
@@ -84,14 +86,12 @@ class ExactPlane:
         return x, y
 
     def centre(self, a: int, b: int, c: int) -> tuple[float, float] | None:
-        """Return the circumcentre of three vertices; None unless it is strictly inside the box."""
-        origin = self.place(a)
-        sides = (_bisector(origin, self.place(vertex)) for vertex in (b, c))
-        corner = next(sides).corner_with(next(sides))
-        if corner[2] < 0:
-            corner = (-corner[0], -corner[1], -corner[2])
-        is_inside = all(wall.holds(corner) for wall in self._walls(origin))
-        return self._rounded(origin, corner) if is_inside else None
+        """Return the circumcentre of a triangle, counter-clockwise; None if not within the box."""
+        origin = self.point(a)
+        sides = (_bisect(origin, self.point(vertex)) for vertex in (b, c))
+        corner = next(sides).meet(next(sides))
+        is_inside = all(wall.holds(corner) for wall in self._find_walls(origin))
+        return self._round(origin, corner) if is_inside else None
 
     def cell(self, vertex: int, neighbors: Iterable[int]) -> list[tuple[float, float]]:
         """Return the corners of a vertex's cell within the box, counter-clockwise.
@@ -102,12 +102,12 @@ class ExactPlane:
         neighbors : iterable of int
             Those of the Delaunay triangulation, counter-clockwise.
         """
-        origin = self.place(vertex)
-        sides = [_bisector(origin, self.place(other)) for other in neighbors]
-        corners = _corners_of_common_part(_by_direction(sides, self._walls(origin)))
-        return [self._rounded(origin, corner) for corner in corners]
+        origin = self.point(vertex)
+        sides = [_bisect(origin, self.point(other)) for other in neighbors]
+        corners = _intersect(_sort_by_direction(sides, self._find_walls(origin)))
+        return [self._round(origin, corner) for corner in corners]
 
-    def _walls(self, origin: Place) -> tuple[HalfPlane, ...]:
+    def _find_walls(self, origin: Point) -> tuple[HalfPlane, ...]:
         x, y = origin
         return (
             HalfPlane(1, 0, self._high[0] - x),
@@ -116,7 +116,7 @@ class ExactPlane:
             HalfPlane(0, -1, y - self._low[1]),
         )
 
-    def _rounded(self, origin: Place, corner: Corner) -> tuple[float, float]:
+    def _round(self, origin: Point, corner: Corner) -> tuple[float, float]:
         """Return the nearest doubles; dividing whole numbers rounds once, to nearest."""
         x, y, w = corner
         divisor, factor = w, 1
@@ -127,13 +127,13 @@ class ExactPlane:
         return (origin[0] * w + x) * factor / divisor, (origin[1] * w + y) * factor / divisor
 
 
-def _bisector(origin: Place, other: Place) -> HalfPlane:
+def _bisect(origin: Point, other: Point) -> HalfPlane:
     """Return the places nearer to the origin than to another, relative to the origin."""
     x, y = other[0] - origin[0], other[1] - origin[1]
     return HalfPlane(2 * x, 2 * y, x * x + y * y)
 
 
-def _corners_of_common_part(half_planes: list[HalfPlane]) -> list[Corner]:
+def _intersect(half_planes: list[HalfPlane]) -> list[Corner]:
     """Intersect half-planes that hold (0, 0) and have a bounded part of some area in common.
 
     They come sorted by direction. Each drops those before it that it makes needless, and then the
@@ -150,17 +150,17 @@ def _corners_of_common_part(half_planes: list[HalfPlane]) -> list[Corner]:
         while len(corners) > first and not new.holds(corners[first]):
             first += 1
         if kept:
-            corners.append(kept[-1].corner_with(new))
+            corners.append(kept[-1].meet(new))
         kept.append(new)
     while len(corners) > first + 1 and not kept[first].holds(corners[-1]):
         kept.pop()
         corners.pop()
     while len(corners) > first + 1 and not kept[-1].holds(corners[first]):
         first += 1
-    return [*corners[first:], kept[-1].corner_with(kept[first])]
+    return [*corners[first:], kept[-1].meet(kept[first])]
 
 
-def _by_direction(sides: list[HalfPlane], walls: Iterable[HalfPlane]) -> list[HalfPlane]:
+def _sort_by_direction(sides: list[HalfPlane], walls: Iterable[HalfPlane]) -> list[HalfPlane]:
     """Return all by direction, from west on; of a side and a wall in one direction the narrower.
 
     Parameters
@@ -169,19 +169,19 @@ def _by_direction(sides: list[HalfPlane], walls: Iterable[HalfPlane]) -> list[Ha
         Counter-clockwise, of different directions, the first one any.
     walls : iterable of HalfPlane
     """
-    octants = [_octant(side) for side in sides]
+    octants = [_find_octant(side) for side in sides]
     begin = next((k for k in range(1, len(sides)) if octants[k] < octants[k - 1]), 0)
     by_octant: list[list[HalfPlane]] = [[] for _ in range(8)]
     for k in range(begin - len(sides), begin):
         by_octant[octants[k]].append(sides[k])
     for wall in walls:
-        row = by_octant[_octant(wall)]
+        row = by_octant[_find_octant(wall)]
         if not row or wall.c * abs(row[0].a + row[0].b) < row[0].c:
             row[:] = [wall]
     return [one for row in by_octant for one in row]
 
 
-def _octant(one: HalfPlane) -> int:
+def _find_octant(one: HalfPlane) -> int:
     """Return 0 for west, 2 for south, 4 for east, 6 for north, and odd numbers between them."""
     a, b, _ = one
     if b == 0:

@@ -60,7 +60,7 @@ def test_policies_equal_a_dictionary(policy, rows):
 @given(rows_with_repeats)
 def test_report_names_every_merged_row(rows):
     tin = ts.triangulate(rows, duplicates="highest")
-    found = [(merge.vertex, merge.rows, merge.heights) for merge in tin.report.merges()]
+    found = [(merge.vertex, merge.rows, merge.elevations) for merge in tin.report.merges()]
     wanted = [
         (vertex, tuple(numbers), tuple(rows[number][2] for number in numbers))
         for vertex, numbers in enumerate(rows_by_place(rows).values())
@@ -69,7 +69,7 @@ def test_report_names_every_merged_row(rows):
     assert found == wanted
     for merge in tin.report.merges():
         assert set(merge.shifts) == {0.0}
-        assert merge.height == max(merge.heights) == tin.points[merge.vertex, 2]
+        assert merge.elevation == max(merge.elevations) == tin.points[merge.vertex, 2]
     assert tin.report.n_rows == len(rows)
     assert tin.report.n_vertices == len(tin.points)
     assert tin.report.n_triangles == len(tin.triangles)
@@ -83,7 +83,7 @@ def test_mean_does_not_depend_on_the_order_of_rows():
     for _ in range(30):
         tin = ts.triangulate(rng.permutation(rows))
         (merge,) = tin.report.merges()
-        found.add(merge.height)
+        found.add(merge.elevation)
     assert len(found) == 1
     assert math.isclose(found.pop(), math.fsum(repeated[:, 2]) / 40, rel_tol=1e-13)
 
@@ -335,3 +335,20 @@ def test_means_of_elevations_of_any_size_are_the_exact_ones_rounded(seed):
         found = Fraction(float(tin.points[tin.vertex_of[3 + np.argmax(place == one)], 2]))
         rounding = Fraction(float(np.spacing(np.abs(own).max() / 2)))
         assert abs(found - exact) <= 32 * rounding
+
+
+def test_merges_crossings_and_the_report_keep_their_first_names():
+    tin = ts.triangulate(
+        [*FOUR_CORNERS, FOUR_CORNERS[0]],
+        breaklines=[[[0.2, 0.1, 1], [0.8, 0.9, 2]], [[0.2, 0.9, 3], [0.8, 0.1, 4]]],
+    )
+    (merge,) = tin.report.merges()
+    assert (merge.heights, merge.height) == (merge.elevations, merge.elevation)
+    assert tin.report.merged_heights is tin.report.merged_elevations
+    assert tin.report.vertex_heights is tin.report.vertex_elevations
+    assert len(tin.report.crossings.taken) == 1
+    for record in (tin.report.crossings, tin.report.overruled):
+        assert record.heights is record.elevations
+        assert record.taken is record.vertex_elevations
+    label = tin.report.line_labels[0]
+    assert tin.report.met_by(label) == tin.report.describe_crossings(label) != []

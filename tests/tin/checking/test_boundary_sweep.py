@@ -12,22 +12,22 @@ from support.oracles import orientation, place
 
 import tinsmith as ts
 from tinsmith.tin import TIN, check
-from tinsmith.tin.checking.boundary_sweep import Rim, find_fault, sides_of
+from tinsmith.tin.checking.boundary_sweep import Boundary, find_fault, find_sides
 
 UTM = np.array([500_000.0, 4_000_000.0])
 SQUARE = np.array([[0, 0], [6, 0], [6, 6], [0, 6]], float)
 RIGHT = SQUARE / 3 + [6, 2]  # its side lies on the square's
 
 
-def rim_of(*rings):
-    """Closed rings as a rim; corners at one place are one vertex."""
+def boundary_of(*rings):
+    """Closed rings as a boundary; corners at one place are one vertex."""
     corners = np.concatenate([np.asarray(ring, float) for ring in rings])
     points, vertex_of = np.unique(corners, axis=0, return_inverse=True)
     vertex_of = vertex_of.reshape(-1)
     ends = np.cumsum([len(ring) for ring in rings])
     following = np.arange(1, len(corners) + 1)
     following[ends - 1] = np.append(0, ends[:-1])
-    return Rim(points, vertex_of, vertex_of[following])
+    return Boundary(points, vertex_of, vertex_of[following])
 
 
 # ------------------------------------------------------------------ second opinion
@@ -62,10 +62,10 @@ def winding(p, edges):
     return -count
 
 
-def is_sound(rim):
+def is_sound(boundary):
     """The definition: edges meet in vertices, and no surface lies on the right of any."""
-    places = [place(p) for p in rim.points.tolist()]
-    edges = [(places[i], places[j]) for i, j in zip(rim.start, rim.end, strict=True)]
+    places = [place(p) for p in boundary.points.tolist()]
+    edges = [(places[i], places[j]) for i, j in zip(boundary.start, boundary.end, strict=True)]
     if not meets_in_vertices_only(edges):
         return False
     tiny = Fraction(1, 10**6)
@@ -97,20 +97,20 @@ def test_any_rings_on_a_small_grid(size, origin):
     verdicts = []
     for _ in range(250):
         rings = [random_ring(rng, size) for _ in range(rng.integers(1, 4))]
-        rim = rim_of(*(ring + origin for ring in rings))
-        verdicts.append(find_fault(rim) is None)
-        assert verdicts[-1] == is_sound(rim_of(*rings))
+        boundary = boundary_of(*(ring + origin for ring in rings))
+        verdicts.append(find_fault(boundary) is None)
+        assert verdicts[-1] == is_sound(boundary_of(*rings))
         if verdicts[-1]:
-            require_sides(rim, rings, size, origin)
+            require_sides(boundary, rings, size, origin)
     assert 20 < sum(verdicts) < 230
 
 
-def require_sides(rim, rings, size, origin):
+def require_sides(boundary, rings, size, origin):
     x, y = np.meshgrid(np.arange(0, size + 1, 0.5), np.arange(-1, size + 2, 0.5))
     xy = np.column_stack([x.ravel(), y.ravel()])
     exact = [[place(p) for p in ring.tolist()] for ring in rings]
     wanted = [is_inside(place(p), exact) for p in xy.tolist()]
-    assert sides_of(rim, xy + origin).tolist() == wanted
+    assert find_sides(boundary, xy + origin).tolist() == wanted
 
 
 # ------------------------------------------------------------------ by name
@@ -118,11 +118,11 @@ def require_sides(rim, rings, size, origin):
 
 def test_rings_that_may_be():
     hole = SQUARE[::-1] / 3 + 2
-    assert find_fault(rim_of(SQUARE)) is None
-    assert find_fault(rim_of(SQUARE, hole)) is None
-    assert find_fault(rim_of(SQUARE, hole, SQUARE / 9 + 2.5)) is None  # an island in the hole
-    assert find_fault(rim_of(SQUARE, SQUARE + 6)) is None  # corners touch
-    assert find_fault(rim_of(SQUARE, [[0, 0], [1, 2], [2, 1]])) is None  # a hole at a corner
+    assert find_fault(boundary_of(SQUARE)) is None
+    assert find_fault(boundary_of(SQUARE, hole)) is None
+    assert find_fault(boundary_of(SQUARE, hole, SQUARE / 9 + 2.5)) is None  # an island in the hole
+    assert find_fault(boundary_of(SQUARE, SQUARE + 6)) is None  # corners touch
+    assert find_fault(boundary_of(SQUARE, [[0, 0], [1, 2], [2, 1]])) is None  # a hole at a corner
 
 
 @pytest.mark.parametrize(
@@ -141,17 +141,17 @@ def test_rings_that_may_be():
     ],
 )
 def test_rings_that_may_not(rings, is_meeting):
-    fault = find_fault(rim_of(*rings))
+    fault = find_fault(boundary_of(*rings))
     assert fault is not None
     assert fault.is_meeting == is_meeting
 
 
 def test_sides_of_nothing_and_of_corners():
-    rim = rim_of(SQUARE, SQUARE[::-1] / 3 + 2)
-    assert sides_of(rim, np.empty((0, 2))).tolist() == []
-    assert sides_of(rim, rim.points).tolist() == [0] * 8
+    boundary = boundary_of(SQUARE, SQUARE[::-1] / 3 + 2)
+    assert find_sides(boundary, np.empty((0, 2))).tolist() == []
+    assert find_sides(boundary, boundary.points).tolist() == [0] * 8
     xy = np.array([[1, 1], [3, 3], [3, 0], [2, 3], [6, 3], [7, 3], [-1, -1]], float)
-    assert sides_of(rim, xy).tolist() == [1, -1, 0, 0, 0, -1, -1]
+    assert find_sides(boundary, xy).tolist() == [1, -1, 0, 0, 0, -1, -1]
 
 
 def test_near_misses_are_told_apart():
@@ -163,7 +163,7 @@ def test_near_misses_are_told_apart():
     above[1] = np.nextafter(above[1], 1e9)
     feet = np.array([[1, -4], [2, -4]]) + UTM
     touching, apart, across = (
-        find_fault(rim_of(slant, [*feet, tip])) for tip in (corner, below, above)
+        find_fault(boundary_of(slant, [*feet, tip])) for tip in (corner, below, above)
     )
     assert touching.is_meeting
     assert across.is_meeting
@@ -179,17 +179,17 @@ def star(count):
 def test_long_teeth_on_all_sides():
     """Boxes about the edges overlap all over; the edges do not."""
     teeth = star(4_000)
-    assert find_fault(rim_of(teeth)) is None
+    assert find_fault(boundary_of(teeth)) is None
     broken = teeth.copy()
     broken[[101, 103]] = broken[[103, 101]]
-    assert find_fault(rim_of(broken)) is not None
+    assert find_fault(boundary_of(broken)) is not None
 
 
 # ------------------------------------------------------------------ within check
 
 
 def bound(points, triangles):
-    """A TIN whose rim is constrained all round."""
+    """A TIN whose boundary is constrained all round."""
     xyz = np.column_stack([np.asarray(points, float), np.zeros(len(points))])
     free = TIN.from_triangles(xyz, triangles)
     return TIN.from_triangles(xyz, triangles, constrained=free.neighbors < 0)
@@ -232,7 +232,7 @@ def test_pieces_that_cross_or_touch():
         assert kinds(result) == (set() if is_allowed else {"overlap"})
 
 
-def test_rim_of_a_clipped_surface_is_found_sound():
+def test_boundary_of_a_clipped_surface_is_found_sound():
     rng = np.random.default_rng(0)
     points = np.column_stack([rng.random((400, 2)) * 100, rng.random(400)])
     field = [[2, 2], [95, 10], [50, 40], [90, 90], [5, 95]]

@@ -12,7 +12,7 @@ from support import oracles
 
 import tinsmith as ts
 from tinsmith.tin import TIN, LinesError, check
-from tinsmith.tin.checking.chain_matching import _along, distance
+from tinsmith.tin.checking.chain_matching import _project, distance
 from tinsmith.tin.constraints.breaklines import Lines
 from tinsmith.tin.report import LEFT_OUT
 
@@ -301,7 +301,7 @@ def test_constrained_edges_without_any_lines_are_a_note(tin):
     result = check(replace(tin, lines=Lines()))
     assert result.ok
     assert [note.kind for note in result.notes] == ["lines"]
-    assert result.notes[0].count == len(tin.lines.steps())
+    assert result.notes[0].count == len(tin.lines.segments())
 
 
 # ------------------------------------------------------- lines that were given
@@ -478,7 +478,7 @@ def test_measures_along_and_from_segments():
     np.testing.assert_allclose(distance(p, a, b), exact, rtol=1e-9, atol=1e-12)
     on = a + rng.random((300, 1)) * (b - a)
     assert distance(on, a, b).max() < 1e-12
-    along = _along(p[20:], a[20:], b[20:])
+    along = _project(p[20:], a[20:], b[20:])
     way = (b - a)[20:] / np.hypot(*(b - a)[20:].T)[:, None]
     across = p[20:] - (a[20:] + along[:, None] * way)  # from its foot, at a right angle
     np.testing.assert_allclose((across * way).sum(axis=1), 0, atol=1e-9)

@@ -301,9 +301,9 @@ def test_closed_surface():
 def test_surface_that_covers_the_plane_twice():
     """A fan that turns twice about its hub: every triangle, edge and corner looks right."""
     angle = 2 * np.pi * np.arange(10) / 5
-    rim = np.column_stack([np.cos(angle), np.sin(angle), 0 * angle])
+    boundary = np.column_stack([np.cos(angle), np.sin(angle), 0 * angle])
     fan = TIN.from_triangles(
-        np.vstack([rim, [0.0, 0.0, 0.0]]), [[10, i, (i + 1) % 10] for i in range(10)]
+        np.vstack([boundary, [0.0, 0.0, 0.0]]), [[10, i, (i + 1) % 10] for i in range(10)]
     )
     result = check(fan, level=2)
     assert kinds(result) == {"hull"}

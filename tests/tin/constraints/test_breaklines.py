@@ -219,10 +219,12 @@ def test_draped_boundary_leaves_the_surface_as_it_was():
     np.testing.assert_allclose(tin.interpolate(inner), whole.interpolate(inner), atol=1e-5)
 
 
-def test_boundary_with_heights_is_the_rim():
+def test_boundary_with_heights_is_that_of_the_surface():
     ring = [[10, 10, 50], [90, 10, 51], [90, 90, 52], [10, 90, 53]]
     tin = ts.triangulate(terrain(), boundary=[ring])
-    assert {tuple(p) for p in tin.points[tin.hull].tolist()} >= {tuple(map(float, p)) for p in ring}
+    assert {tuple(p) for p in tin.points[tin.boundary[0]].tolist()} >= {
+        tuple(map(float, p)) for p in ring
+    }
 
 
 def test_several_boundaries_and_a_ring_within_a_ring():

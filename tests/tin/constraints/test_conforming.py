@@ -187,7 +187,7 @@ def test_check_asks_constrained_edges_too_if_they_are_to_conform():
 
 
 def test_draped_line_over_a_nearly_collinear_hull_loses_no_vertex():
-    """The rim, bent by a rounding, would leave a whole vertex outside."""
+    """The boundary, bent by a rounding, would leave a whole vertex outside."""
     lines = [
         [
             [23.100000000000005, 10799999.999999994, -4.0],

@@ -117,7 +117,7 @@ def test_line_without_heights_never_gives_one():
 def test_two_lines_without_heights_leave_it_open():
     result = noded(CROSS, TWO, [[NAN] * 2] * 2)
     assert np.isnan(result.new_points[0, 2])
-    assert np.isnan(result.crossings.taken).tolist() == [True]
+    assert np.isnan(result.crossings.vertex_elevations).tolist() == [True]
 
 
 def test_three_lines_through_one_place_share_a_vertex():
@@ -399,7 +399,7 @@ def test_lines_that_cross_beside_a_vertex_meet_in_it():
 
 def test_crossing_lines_are_named_with_place_and_heights():
     xy = np.array(CROSS) + UTM
-    sentence = r"^Line 0 crosses line 1 at \(500002, 4000002\), with height 4 and height 15: "
+    sentence = r"^Line 0 crosses line 1 at \(500002, 4000002\), with elevation 4 and elevation 15: "
     with pytest.raises(LinesError, match=sentence) as caught:
         noded(xy, TWO, [[0, 8], [10, 20]], crossing="error")
     assert caught.value.lines == (0, 1)
@@ -411,7 +411,7 @@ def test_the_first_crossing_is_named_by_its_lines():
     names = ["breakline 'a'", "", "the boundary"]
     with pytest.raises(LinesError, match=r"^Breakline 'a' crosses the boundary at \(5, 0\), ") as e:
         noded(xy, lines, [[NAN, NAN], [1, 1], [2, 2]], crossing="error", names=names)
-    assert "with no height and height 2" in str(e.value)
+    assert "with no elevation and elevation 2" in str(e.value)
 
 
 def test_line_that_crosses_itself_is_named():

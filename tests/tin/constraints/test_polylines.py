@@ -7,7 +7,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from tinsmith.tin.constraints.polylines import Polylines, offsets_of, owners_of
+from tinsmith.tin.constraints.polylines import Polylines
+from tinsmith.tin.topology import find_offsets, find_owners
 
 
 def random_chains(rng):
@@ -83,6 +84,6 @@ def test_numbers_and_positions_that_are_chosen():
 
 
 def test_offsets_and_owners_of_parts_of_which_some_are_empty():
-    assert offsets_of([2, 0, 3]).tolist() == [0, 2, 2, 5]
-    assert offsets_of([]).tolist() == [0]
-    assert owners_of(offsets_of([2, 0, 3])).tolist() == [0, 0, 2, 2, 2]
+    assert find_offsets([2, 0, 3]).tolist() == [0, 2, 2, 5]
+    assert find_offsets([]).tolist() == [0]
+    assert find_owners(find_offsets([2, 0, 3])).tolist() == [0, 0, 2, 2, 2]

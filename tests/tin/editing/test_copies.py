@@ -23,7 +23,7 @@ def with_line(tin):
 STATES = {
     "fresh": lambda tin: None,
     "asked": lambda tin: (tin.locate([[1, 1]]), tin.edges, tin.rings, tin.bounds),
-    "edited": lambda tin: tin.set_z(0, 5.5),
+    "edited": lambda tin: tin.set_elevation(0, 5.5),
     "edited and asked": lambda tin: (tin.insert([[1, 1, 1]]), tin.interpolate([[1, 1]])),
     "with a line": with_line,
 }
@@ -61,7 +61,7 @@ def test_a_copy_is_the_same_and_is_edited_on_its_own(prepare, copied):
     other.remove(0)
     assert state(tin) == before
     changed = state(other)
-    tin.set_z(1, 77.0)
+    tin.set_elevation(1, 77.0)
     tin.undo(len(tin.edits))
     assert state(other) == changed
     other.undo(len(other.edits))
@@ -100,7 +100,7 @@ def test_a_misspelt_attribute_is_refused():
 
 def test_a_tin_that_differs_in_one_argument():
     tin = square()
-    tin.set_z(0, 1.0)
+    tin.set_elevation(0, 1.0)
     for other in (tin.replace(crs="EPSG:4326"), dataclasses.replace(tin, crs="EPSG:4326")):
         assert other.crs == "EPSG:4326"
         np.testing.assert_array_equal(other.points, tin.points)

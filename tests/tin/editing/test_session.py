@@ -44,7 +44,7 @@ def arguments_for(operation, rng, kind, tin):
         return {"vertices": rng.choice(n, rng.integers(1, 3), replace=False)}
     if operation == "move":
         return {"vertex": int(rng.integers(n)), "point": kind(rng, 1)[0]}
-    if operation == "set_z":
+    if operation == "set_elevation":
         return {"vertices": int(rng.integers(n)), "z": float(rng.integers(9))}
     if operation == "flip":
         a, b = tin.edges[rng.integers(len(tin.edges))]
@@ -150,7 +150,7 @@ def test_vertices_behind_a_removed_one_move_up():
     np.testing.assert_array_equal(tin.points, points[[0, 2, 3]])
     assert tin.vertex_of.tolist() == [0, -1, 1, 2, -1]
     assert tin.report.to_dict()["left_out"] == {"removed by an edit": [1, 4]}
-    tin.set_z(1, 70.0)
+    tin.set_elevation(1, 70.0)
     assert tin.points[1].tolist() == [4, 4, 70]
     assert tin.insert([[4, 0, 1], [0, 0, 2]]).tolist() == [3, 0]
     assert tin.points[[0, 3], 2].tolist() == [2, 1]
@@ -323,7 +323,7 @@ def test_a_crossing_goes_with_its_lines():
     for edit in (lambda: tin.remove(made), lambda: tin.move(made, [1, 1, 1])):
         with pytest.raises(ts.LinesError, match="goes with them"):
             edit()
-    tin.set_z(made, 15.0)
+    tin.set_elevation(made, 15.0)
     require_same_tin(tin, ts.triangulate([*CORNERS, [2, 2, 15]], breaklines=CROSS))
     assert tin.vertex_of.tolist() == [0, 1, 2, 3, 4]
     tin.undo()
@@ -338,7 +338,7 @@ def test_a_moved_vertex_takes_its_line_along():
     tin.move(vertex, [4, 3, 12])
     moved = [[CROSS[0][0], [4, 3, 12]], CROSS[1]]
     require_same_tin(tin, ts.triangulate(CORNERS, breaklines=moved))
-    tin.set_z(vertex, 1.0)
+    tin.set_elevation(vertex, 1.0)
     moved[0][1] = [4, 3, 1]
     require_same_tin(tin, ts.triangulate(CORNERS, breaklines=moved))
 
@@ -371,13 +371,13 @@ def test_edits_away_from_lines_build_nothing_anew(monkeypatch):
     across = [[30, 2, 5], [30, 30, 6]]
     tin = ts.triangulate(points, breaklines=[line, across])
     far = np.flatnonzero(points[:, 1] > 60)
-    tin.set_z(int(far[0]), 0.5)
+    tin.set_elevation(int(far[0]), 0.5)
     with monkeypatch.context() as patched:
         patched.setattr("tinsmith.tin.editing.session.build_state", None)
         assert tin.insert([[70.5, 80.5, 3], points[far[1]]]).tolist() == [400, far[1]]
         tin.move(int(far[2]), [75.25, 85.5, 4])
         tin.remove([int(far[3]), int(far[4])])
-        tin.set_z(398, -1.0)
+        tin.set_elevation(398, -1.0)
     rows = np.vstack([points, [[70.5, 80.5, 3], points[far[1]]]])
     rows[far[0], 2] = 0.5
     rows[far[2]] = [75.25, 85.5, 4]
@@ -463,7 +463,7 @@ def test_the_log_keeps_what_was_given():
     tin = square()
     points, vertices = np.array([[3.0, 3.0, 1.0]]), [0]
     tin.insert(points)
-    tin.set_z(vertices, 3.0)
+    tin.set_elevation(vertices, 3.0)
     points[0, 0], vertices[0] = 99.0, 1
     assert tin.edits[0].to_dict() == {
         "op": "insert",
@@ -478,7 +478,7 @@ def test_water_keeps_its_level():
     tin = ts.triangulate(CORNERS, water=[pond])
     (vertex,) = np.flatnonzero((tin.points[:, :2] == [1, 1]).all(axis=1)).tolist()
     with pytest.raises(ts.LinesError, match="stays at elevation 2"):
-        tin.set_z(vertex, 5.0)
+        tin.set_elevation(vertex, 5.0)
     assert tin.edits == ()
 
 
@@ -514,7 +514,7 @@ def test_tin_that_is_not_delaunay_is_not_edited():
     )
     assert not ts.check(tin).ok
     with pytest.raises(ts.PointsError, match="Delaunay"):
-        tin.set_z(0, 3.0)
+        tin.set_elevation(0, 3.0)
 
 
 @pytest.mark.parametrize(
@@ -535,9 +535,9 @@ def test_tin_that_is_not_delaunay_is_not_edited():
         ("move", {"vertex": 0, "point": [2, 1, 0]}, "already"),
         ("move", {"vertex": 0, "point": [2, np.inf, 0]}, "finite"),
         ("move", {"vertex": 0, "point": [[1], [2, 3]]}, "no table of real numbers"),
-        ("set_z", {"vertices": 0, "z": 10**400}, "real numbers"),
-        ("set_z", {"vertices": [0, 1], "z": [1, 2, 3]}, "heights"),
-        ("set_z", {"vertices": 0, "z": np.nan}, "finite"),
+        ("set_elevation", {"vertices": 0, "z": 10**400}, "real numbers"),
+        ("set_elevation", {"vertices": [0, 1], "z": [1, 2, 3]}, "elevations"),
+        ("set_elevation", {"vertices": 0, "z": np.nan}, "finite"),
         ("flip", {"a": 0, "b": 0}, "two different ends"),
         ("flip", {"a": 0, "b": 1}, "between two triangles"),
         ("add_breakline", {"coords": [[1, 1, 1]]}, "shape"),
@@ -573,7 +573,10 @@ def test_the_last_line_cannot_go_when_no_points_are_left(options):
     [
         ([{"op": "explode"}], "Edit 0 has op 'explode'"),
         ([{"op": "remove", "vertex": 3}], r"Edit 0 \(remove\) has the wrong arguments"),
-        ([{"op": "set_z", "vertices": 0, "z": 1}, {"op": "remove", "vertices": 77}], "Edit 1"),
+        (
+            [{"op": "set_elevation", "vertices": 0, "z": 1}, {"op": "remove", "vertices": 77}],
+            "Edit 1",
+        ),
     ],
 )
 def test_bad_scripts_name_the_edit(script, sentence):
@@ -581,12 +584,22 @@ def test_bad_scripts_name_the_edit(script, sentence):
         apply_edits(square(), script)
 
 
+def test_edits_of_earlier_versions_are_done_by_their_names_of_now():
+    tin = square()
+    apply_edits(tin, [{"op": "set_z", "vertices": 0, "z": 7.5}])
+    assert tin.points[0, 2] == 7.5
+    assert tin.edits[0].to_dict() == {"op": "set_elevation", "vertices": 0, "z": 7.5}
+    with pytest.raises(ts.PointsError, match=r"Edit 0 has op \['set_z'\]: one of insert, "):
+        apply_edits(tin, [{"op": ["set_z"]}])
+
+
 def test_an_operation_and_its_edit_are_written_the_same():
     tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8]])
     tin.set_elevation([1, 2], np.array([3.0, 4.0]))
     (edit,) = tin.edits
     operation = OPERATIONS[edit.operation](**edit.arguments)
-    assert operation.to_dict() == edit.to_dict() == {"op": "set_z", "vertices": [1, 2], "z": [3, 4]}
+    written = {"op": "set_elevation", "vertices": [1, 2], "z": [3, 4]}
+    assert operation.to_dict() == edit.to_dict() == written
     assert tin.points[[1, 2], 2].tolist() == [3, 4]
 
 
@@ -648,18 +661,18 @@ def test_edits_after_one_that_failed_are_as_if_it_had_not_been(count, steps):
 
 
 def test_lines_come_and_go_in_existing_triangles_of_a_part_of_the_hull():
-    """Beyond their rim there is no surface, before and after an edit of lines."""
+    """Beyond their boundary there is no surface, before and after an edit of lines."""
     rng = np.random.default_rng(8)
     points = np.c_[rng.random((60, 2)) * 8, rng.random(60)]
     bay = [[0.5, 0.5], [7.5, 0.5], [7.5, 7.5], [4, 2], [0.5, 7.5]]
     made = ts.triangulate(points, boundary=[bay])
     tin = ts.TIN.from_triangles(made.points, made.triangles, constrained=made.constrained)
-    rim = {frozenset(made.points[ring, 0].tolist()) for ring in made.rings}
+    boundary = {frozenset(made.points[ring, 0].tolist()) for ring in made.rings}
     n_given = int(tin.lines.sources.max(initial=-1)) + 1
     tin.add_breakline([[1, 1.2, 5], [6.5, 1.1, 6]], name="kerb")
     ts.check(tin).raise_if_failed()
     assert tin.area == pytest.approx(made.area, rel=1e-12)
-    assert {frozenset(tin.points[ring, 0].tolist()) for ring in tin.rings} == rim
+    assert {frozenset(tin.points[ring, 0].tolist()) for ring in tin.rings} == boundary
     assert "kerb" in tin.lines.names
     number = int(tin.lines.sources[tin.lines.names.index("kerb")])
     assert number >= n_given

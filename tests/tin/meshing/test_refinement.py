@@ -11,7 +11,7 @@ from shapely.geometry import LineString, Point, Polygon
 from support import oracles
 
 import tinsmith as ts
-from tinsmith.tin.meshing.refinement import _on_surface, refine
+from tinsmith.tin.meshing.refinement import _interpolate, refine
 from tinsmith.tin.report import UNMENDED_WHY
 
 UTM = np.array([500_000.0, 4_000_000.0, 300.0])
@@ -536,7 +536,7 @@ def test_places_beside_the_rim_have_the_height_of_the_nearest_edge(make):
     middles = np.array([0.3 * a[:2] + 0.7 * b[:2] for a, b in ends])
     outward = np.array([[b[1] - a[1], a[0] - b[0]] for a, b in ends])
     places = np.concatenate([places, middles + 1e-7 * outward])
-    found = _on_surface(tin, places)
+    found = _interpolate(tin, places)
     within = tin.interpolate(places)
     for place, z, inside in zip(places, found, within, strict=True):
         if not np.isnan(inside):

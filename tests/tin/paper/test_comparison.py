@@ -14,7 +14,7 @@ from support import oracles
 import tinsmith as ts
 from tinsmith.tin import PointsError, compare, paper
 from tinsmith.tin.paper.cover import cover
-from tinsmith.tin.paper.faults import minimum_angles, overlapping, violating
+from tinsmith.tin.paper.faults import find_overlapping, find_violating, measure_minimum_angles
 
 SURVEY = Path(__file__).parents[3] / "sample_data" / "site_survey.csv"
 NAMES = ("original", "improved", "improved (open)", "improved (ties)", "exact")
@@ -101,11 +101,11 @@ def test_triangles_at_fault_are_those_of_the_definitions(n, seed):
     points = random_points(n, seed)
     triangles = paper.improved(points).triangles
     places = [oracles.place(point) for point in points]
-    for triangle, is_violating in zip(triangles, violating(points, triangles), strict=True):
+    for triangle, is_violating in zip(triangles, find_violating(points, triangles), strict=True):
         corners = [places[v] for v in triangle]
         assert is_violating == any(oracles.in_circle(*corners, place) > 0 for place in places)
     shapes = polygons(points, triangles)
-    for shape, is_overlapping in zip(shapes, overlapping(points, triangles), strict=True):
+    for shape, is_overlapping in zip(shapes, find_overlapping(points, triangles), strict=True):
         shared = shapely.area(shapely.intersection(shape, shapes))
         assert is_overlapping == (np.count_nonzero(shared > 1e-12) > 1)
 
@@ -114,7 +114,7 @@ def test_overlaps_are_found_among_very_many():
     """More triangles at one place than are looked at in one go, but for one that lies apart."""
     corners = [[0, 0, 0], [9, 0, 0], [0, 9, 0], [20, 0, 0], [29, 0, 0], [20, 9, 0]]
     heap = np.array([[0, 1, 2]] * 700 + [[3, 4, 5]], np.int32)
-    found = overlapping(np.array(corners, float), heap)
+    found = find_overlapping(np.array(corners, float), heap)
     assert found[:700].all()
     assert not found[700]
 
@@ -122,12 +122,12 @@ def test_overlaps_are_found_among_very_many():
 def test_touching_triangles_do_not_overlap():
     points = np.array([[0, 0, 0], [4, 0, 0], [0, 4, 0], [4, 4, 0], [2, 2, 0], [5, 5, 0]], float)
     heap = np.array([[0, 1, 2], [4, 1, 3], [2, 4, 3], [3, 5, 2]], np.int32)
-    assert not overlapping(points, heap).any()
+    assert not find_overlapping(points, heap).any()
 
 
 def test_minimum_angles_of_known_triangles():
     points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0.5, np.sqrt(0.75), 0], [9, 0.001, 0]])
-    angles = minimum_angles(points, np.array([[0, 1, 2], [0, 1, 3], [0, 1, 4]], np.int32))
+    angles = measure_minimum_angles(points, np.array([[0, 1, 2], [0, 1, 3], [0, 1, 4]], np.int32))
     assert angles == pytest.approx(
         [45, 60, np.degrees(np.arctan(0.001 / 8) - np.arctan(0.001 / 9))]
     )

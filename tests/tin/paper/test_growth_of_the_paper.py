@@ -16,7 +16,7 @@ from support import oracles
 
 import tinsmith as ts
 from tinsmith.tin import OptionError, PointsError, paper
-from tinsmith.tin.paper.rules import _cotangents, widest_angle, widest_angle_then_closest
+from tinsmith.tin.paper.rules import _measure_cotangents, widest_angle, widest_angle_then_closest
 
 BOTH = [paper.original, paper.improved]
 TIES = partial(paper.improved, distance="ties")
@@ -278,7 +278,7 @@ def test_of_equal_angles_the_closer_point_is_taken_whatever_the_order():
         assert widest_angle(xy, 0, 1, np.array([2, 3])).point == 2
 
 
-def test_of_equal_angles_the_first_is_taken_though_rounded_cotangents_differ():
+def test_of_equal_angles_the_first_is_taken_though_rounded_measure_cotangents_differ():
     circle = [
         (x, y) for x, y in itertools.product(range(-65, 66), repeat=2) if x * x + y * y == 4225
     ]
@@ -289,7 +289,7 @@ def test_of_equal_angles_the_first_is_taken_though_rounded_cotangents_differ():
         places = 3.0**17 * np.array([(-63, 16), (63, 16), *rng.permutation(left)])
         xy = places[:, 0].copy(), places[:, 1].copy()
         qualified = np.arange(2, len(places))
-        differ += int(np.argmin(_cotangents(xy, 0, 1, qualified))) != 0
+        differ += int(np.argmin(_measure_cotangents(xy, 0, 1, qualified))) != 0
         assert widest_angle(xy, 0, 1, qualified).point == 2
     assert differ > 10
 
@@ -432,10 +432,10 @@ def test_repr_is_one_line():
     assert repr(network) == "<Network: 3 points, 1 triangles, 0 edges not extended>"
 
 
-def test_cotangents_are_those_of_the_angles():
+def test_measure_cotangents_are_those_of_the_angles():
     rng = np.random.default_rng(9)
     xy = rng.uniform(-5, 5, (2, 80))
-    found = _cotangents(tuple(xy), 0, 1, np.arange(2, 80))
+    found = _measure_cotangents(tuple(xy), 0, 1, np.arange(2, 80))
     a, b = xy[:, [0]] - xy[:, 2:], xy[:, [1]] - xy[:, 2:]
     turn = np.arctan2(a[1], a[0]) - np.arctan2(b[1], b[0])
     angle = np.abs(np.remainder(turn + np.pi, 2 * np.pi) - np.pi)

@@ -25,6 +25,7 @@
 
 #include "../constraints/intersection_point.hpp"
 #include "../constraints/segments.hpp"
+#include "../predicates/double_double.hpp"
 #include "locator.hpp"
 
 namespace tinsmith {
@@ -317,31 +318,40 @@ class SegmentTrace {
       spot.elevation = locator_.elevation_at(spot.place, spot.triangle);
       return;
     }
-    if (spot.vertex != kNone) {
-      spot.place = point(spot.vertex);
-      spot.elevation = elevation(spot.vertex);
-    } else {
-      measure_crossing(spot);
-    }
-    spot.ratio = with_ratio(spot, [](const auto& part, const auto& whole) {
+    if (spot.vertex == kNone) return measure_crossing(spot);
+    spot.place = point(spot.vertex);
+    spot.elevation = elevation(spot.vertex);
+    spot.ratio = exact_ratio(spot);
+  }
+
+  double exact_ratio(const Spot& spot) const {
+    return with_ratio(spot, [](const auto& part, const auto& whole) {
       return detail::rounded_quotient(part, whole);
     });
   }
 
-  // The distances of the edge's ends from A-B divide the edge.
+  // The distances of the edge's ends from A-B divide the edge, those of A and B from the edge A-B.
   void measure_crossing(Spot& spot) const {
     const auto u = static_cast<std::int32_t>(spot.key >> 32);
     const auto v = static_cast<std::int32_t>(spot.key & UINT32_MAX);
     const Point p = point(u), q = point(v);
-    spot.place = intersection_point(a_, b_, p, q);
     const double low = elevation(u), high = elevation(v);
-    if (!is_exact(low) || !is_exact(high)) {
-      spot.elevation = locator_.elevation_at(spot.place, spot.triangle);
-      return;
+    const detail::AreaEstimate at_p(a_, b_, p), at_q(a_, b_, q);
+    Point& place = spot.place;
+    if (!detail::divide_between(at_p, at_q, q.x, p.x, place.x) ||
+        !detail::divide_between(at_p, at_q, q.y, p.y, place.y)) {
+      place = intersection_point(a_, b_, p, q);
     }
-    const auto at_p = detail::exact_twice_area(a_, b_, p);
-    const auto at_q = detail::exact_twice_area(a_, b_, q);
-    spot.elevation = detail::rounded_quotient(at_p * high - at_q * low, at_p - at_q);
+    if (!detail::divide_between({p, q, a_}, {p, q, b_}, 1.0, 0.0, spot.ratio)) {
+      spot.ratio = exact_ratio(spot);
+    }
+    if (!is_exact(low) || !is_exact(high)) {
+      spot.elevation = locator_.elevation_at(place, spot.triangle);
+    } else if (!detail::divide_between(at_p, at_q, high, low, spot.elevation)) {
+      const auto s = detail::exact_twice_area(a_, b_, p);
+      const auto t = detail::exact_twice_area(a_, b_, q);
+      spot.elevation = detail::rounded_quotient(s * high - t * low, s - t);
+    }
   }
 
   static bool is_exact(double elevation) {

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, get_args
 
 import click
 
+from ...policies import OutsidePolicy
 from ..options import (
     console_options,
     input_file,
@@ -33,7 +34,7 @@ __all__ = ["drape"]
 @output_files
 @click.option(
     "--outside",
-    type=click.Choice(("error", "nan", "cut")),
+    type=click.Choice(get_args(OutsidePolicy)),
     default="error",
     show_default=True,
     help="What lies outside the surface: refuse, keep without elevations, or leave out.",

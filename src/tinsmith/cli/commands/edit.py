@@ -57,7 +57,7 @@ def edit(
 ) -> None:
     """Change the TIN in FILE, or that of the points in it, by the edits in SCRIPT.
 
-    SCRIPT is a JSON list of edits, done in their order: insert, remove, move, set_z, flip,
+    SCRIPT is a JSON list of edits, done in their order: insert, remove, move, set_elevation, flip,
     add_breakline, remove_breakline. The report of an earlier run will do as well. Vertices are
     numbered as they are then: those behind a removed one move up. A breakline that is removed
     takes along the vertices that only it had.
@@ -71,7 +71,7 @@ def edit(
       [{"op": "insert", "points": [[752700.5, 4024250.0, 322.1]]},
        {"op": "remove", "vertices": [17]},
        {"op": "move", "vertex": 3, "point": [752771.2, 4024321.0, 329.1]},
-       {"op": "set_z", "vertices": [4, 5], "z": [320.0, 320.5]},
+       {"op": "set_elevation", "vertices": [4, 5], "z": [320.0, 320.5]},
        {"op": "add_breakline", "coords": [[752650, 4024200, 321], [752700, 4024300, 323]]}]
     """  # noqa: D301 - click reads the control character
     from ...tin.editing.history import apply_edits

@@ -17,7 +17,6 @@ from ..options import (
     triangulating_options,
 )
 from ..output.console import plain
-from ..output.failures import Failure
 from ..paths import INPUT, LINES, Named, title_of
 
 if TYPE_CHECKING:
@@ -25,14 +24,12 @@ if TYPE_CHECKING:
 
     from ...terrain import Features, Table
     from ...tin import TIN
-    from ..files import Output
     from ..options import Reading, Triangulating, Writing
-    from ..output.console import Console, Field
+    from ..output.console import Console
+    from ..surfaces import Products
 
 __all__ = ["profile"]
 
-_PICTURE = ".png"
-_TABLES = (".csv", ".tsv", ".txt", ".json")
 Pair = tuple[float, float]
 
 
@@ -49,20 +46,6 @@ class _Line:
         ends = (self.start is not None) + (self.end is not None)
         if (self.file is None) == (ends == 0) or ends == 1:
             raise click.UsageError("A line is needed: --line FILE, or --from X Y and --to X Y.")
-
-
-@dataclass(frozen=True, kw_only=True)
-class _Outputs:
-    """What to write: tables, lines in space, and pictures."""
-
-    tables: list[Output]
-    lines: list[Output]
-    pictures: list[Path]
-
-    @property
-    def paths(self) -> list[Path]:
-        """All of them."""
-        return [one.path for one in (*self.tables, *self.lines)] + self.pictures
 
 
 @click.command(short_help="Cut surfaces along a line: tables, cross sections, a picture.")
@@ -123,24 +106,29 @@ def profile(
       tinsmith profile sample_data/site_survey.csv --crs EPSG:32616 --codes
         --from 752690 4024225 --to 752850 4024330 -o profile.csv -o profile.png
     """  # noqa: D301 - click reads the control character
+    from ..output.line_summaries import mesh_counts
+    from ..surfaces import read_surfaces
+
     started = perf_counter()
     line = _Line(file=line_file, start=begin, end=end)
     line.require_one()
     chosen = _names(files, names)
     planned = _plan(outputs, files, line_file, how, writing, console, asked["sections"])
-    surfaces = _read_surfaces(files, chosen, reading, how, console)
+    surfaces = dict(zip(chosen, read_surfaces(files, reading, how, console), strict=True))
     notes: list[str] = []
     lines = _lines(line, next(iter(surfaces.values())), notes)
-    table, sections = _cut(surfaces, lines, bool(planned.lines), console, asked)
-    figure = _draw(table, surfaces, files, asked) if planned.pictures else None
-    _write(table, sections, figure, planned, console)
+    table, sections = _cut(surfaces, lines, planned.holds("Features"), console, asked)
+    figure = _draw(table, surfaces, files, asked) if planned.holds("picture") else None
+    planned.write("Table", table, console)
+    planned.write("Features", sections, console)
+    planned.draw(lambda: figure, console)
     notes += table.notes
     console.summarise(
         [
-            *[("Surface", f"{name}: {_counts(tin)}") for name, tin in surfaces.items()],
+            *[("Surface", f"{name}: {mesh_counts(tin)}") for name, tin in surfaces.items()],
             ("Rows", f"{len(table):,}"),
             *[("Note", note) for note in notes],
-            *_written(planned),
+            ("Written", planned.text),
             ("Time", f"{perf_counter() - started:.2f} s"),
         ]
     )
@@ -171,59 +159,19 @@ def _plan(
     writing: Writing,
     console: Console,
     sections: Pair | None,
-) -> _Outputs:
+) -> Products:
     """Choose what each output holds, before any work is done."""
     from ...io.vector.survey_lines import path_and_layer
-    from ..files import inputs_of, plan_outputs
-    from ..paths import require_separate
+    from ..surfaces import plan_products, surface_inputs
 
-    inputs = [Named(file, "the input") for file in files] + inputs_of(files[0], how)[1:]
+    inputs = surface_inputs(files, how)
     if line_file is not None:
         inputs.append(Named(path_and_layer(line_file)[0], "the file of --line"))
-    require_separate(inputs, [Named(path, "--output") for path in outputs])
-    pictures = [path for path in outputs if path.suffix.lower() == _PICTURE]
-    if pictures and sections is not None:
-        raise click.UsageError(f"'{pictures[0]}' shows a profile: it has no --sections.")
-    others = [path for path in outputs if path not in pictures]
-    is_table = {path: sections is None or _is_table(path, writing) for path in others}
-
-    def plan(kind: str, wanted: bool) -> list[Output]:
-        paths = [path for path in others if is_table[path] is wanted]
-        return plan_outputs(paths, writing, inputs=(), console=console, kinds=(kind,))
-
-    return _Outputs(tables=plan("Table", True), lines=plan("Features", False), pictures=pictures)
-
-
-def _is_table(path: Path, writing: Writing) -> bool:
-    name = writing.output_format
-    suffix = path.suffix if name is None else f".{name.strip().lstrip('.')}"
-    return suffix.lower() in _TABLES
-
-
-def _read_surfaces(
-    files: Sequence[Path],
-    names: Sequence[str],
-    reading: Reading,
-    how: Triangulating,
-    console: Console,
-) -> dict[str, TIN]:
-    """Read TINs; what shapes a TIN is for the one file that holds points."""
-    from ...tin import TIN
-    from ..files import read_input, triangulated, with_lines
-
-    found = [read_input(file, reading, console) for file in files]
-    surveys = [one for one in found if not isinstance(one, TIN)]
-    if how.shaping and len(surveys) != 1:
-        raise Failure(
-            f"{how.shaping[0]} needs one file of points, and there are {len(surveys)}: "
-            "'tinsmith build' makes TINs of the others first."
-        )
-    return {
-        name: one
-        if isinstance(one, TIN)
-        else triangulated(with_lines(one, how, console), how, console)
-        for name, one in zip(names, found, strict=True)
-    }
+    kinds = ("Table", "picture") if sections is None else ("Table", "Features", "picture")
+    planned = plan_products(outputs, writing, inputs=inputs, console=console, kinds=kinds)
+    if planned.pictures and sections is not None:
+        raise click.UsageError(f"'{planned.pictures[0]}' shows a profile: it has no --sections.")
+    return planned
 
 
 def _lines(line: _Line, tin: TIN, notes: list[str]) -> Any:
@@ -267,36 +215,8 @@ def _draw(
     return profile_picture(table, exaggeration=asked["exaggeration"], title=title, crs=crs)
 
 
-def _write(
-    table: Table, sections: Features | None, figure: Any, planned: _Outputs, console: Console
-) -> None:
-    from ..files import write_figure, write_outputs
-
-    write_outputs(table, planned.tables, console)
-    if sections is not None:
-        write_outputs(sections, planned.lines, console)
-    for path in planned.pictures:
-        with console.steps() as steps, steps.step("Drawing"):
-            write_figure(figure, path, dpi=150)
-
-
-def _counts(tin: TIN) -> str:
-    from ..output.line_summaries import mesh_counts
-
-    return mesh_counts(tin)
-
-
-def _written(planned: _Outputs) -> list[Field]:
-    from ..files import written_text
-    from ..output.summaries import file_size
-
-    texts = [written_text(group) for group in (planned.tables, planned.lines) if group]
-    texts += [f"{path} ({file_size(path)})" for path in planned.pictures]
-    return [("Written", "\n".join(texts))]
-
-
 def _facts(
-    files: Sequence[Path], table: Table, notes: Sequence[str], planned: _Outputs
+    files: Sequence[Path], table: Table, notes: Sequence[str], planned: Products
 ) -> dict[str, Any]:
     """Describe the table: its columns, and the least and largest of those that are measured."""
     measured = [name for name, values in table.columns.items() if values.dtype.kind == "f"]

@@ -34,23 +34,21 @@ _CUBIC_YARD = 27.0
 _FEET = ("ft³", "US ft³")
 
 
-def _optional_outputs() -> Any:
-    """Return the option of outputs, which this command can do without."""
-    return click.option(
-        "-o",
-        "--output",
-        "outputs",
-        metavar="FILE",
-        type=INPUT,
-        multiple=True,
-        help="Table (.csv, .json), parts that are cut and filled (.gpkg, .geojson, .shp, .fgb) or "
-        "map (.png) to write. May be given several times.",
-    )
+_optional_outputs = click.option(
+    "-o",
+    "--output",
+    "outputs",
+    metavar="FILE",
+    type=INPUT,
+    multiple=True,
+    help="Table (.csv, .json), parts that are cut and filled (.gpkg, .geojson, .shp, .fgb) or map "
+    "(.png) to write. May be given several times.",
+)
 
 
 @click.command(short_help="Measure cut and fill, or how much a pond holds.")
 @click.argument("files", metavar="GROUND [DESIGN]", nargs=-1, required=True, type=INPUT)
-@_optional_outputs()
+@_optional_outputs
 @click.option("--base", metavar="ELEVATION", type=float, help="Level in place of a design.")
 @click.option(
     "--regions", metavar="FILE", type=LINES, help="Vector file of polygons to measure in."

@@ -180,7 +180,7 @@ def tin_fields(tin: TIN) -> list[Field]:
     across, _ = units(tin)
     fields = [
         ("TIN", tin_counts(tin)),
-        ("Edges", f"{len(tin.edges):,}, {len(tin.hull):,} of them on the hull"),
+        ("Edges", f"{len(tin.edges):,}, {sum(map(len, tin.boundary)):,} of them on the boundary"),
         *extent_fields(tin),
     ]
     if facts["area"] is not None:
@@ -263,8 +263,8 @@ def merge_field(report: Report, survey: Survey) -> list[Field]:
         return []
     text = f"{counted(surplus, 'row')} at {counted(len(report.merged_vertices), 'place')}"
     starts = report.merged_offsets[:-1]
-    spread = np.maximum.reduceat(report.merged_heights, starts) - np.minimum.reduceat(
-        report.merged_heights, starts
+    spread = np.maximum.reduceat(report.merged_elevations, starts) - np.minimum.reduceat(
+        report.merged_elevations, starts
     )
     worst = int(spread.argmax())
     if spread[worst] == 0:
@@ -290,9 +290,9 @@ def _merges_from(report: Report, index: int) -> Any:
         merged_vertices=report.merged_vertices[index:],
         merged_offsets=report.merged_offsets[index:] - begin,
         merged_rows=report.merged_rows[begin:],
-        merged_heights=report.merged_heights[begin:],
+        merged_elevations=report.merged_elevations[begin:],
         merged_shifts=report.merged_shifts[begin:],
-        vertex_heights=report.vertex_heights[index:],
+        vertex_elevations=report.vertex_elevations[index:],
     ).merges()
 
 

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from . import _kernel, topology
-from .types import Bounds, Frozen, seal
-from .voronoi.nearest import NearestVertex
+from .. import _kernel, topology
+from ..types import Bounds, Frozen, seal
+from .nearest import NearestVertex
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -55,6 +55,27 @@ class Triangulation(Frozen):
         rings = topology.boundary_rings(self.triangles, self.neighbors)
         west = [self.points[ring, 0].min() for ring in rings]
         return tuple(seal(rings[i]) for i in np.argsort(west, kind="stable"))
+
+    @cached_property
+    def fills_hull(self) -> bool:
+        """Whether the surface is all of its convex hull."""
+        if len(self.rings) != 1:
+            return False
+        ring = self.points[self.rings[0], :2]
+        a, b, c = (np.ascontiguousarray(np.roll(ring, -k, axis=0)) for k in range(3))
+        return bool((_kernel.orientation(a, b, c) >= 0).all())
+
+    @cached_property
+    def hull(self) -> NDArray[np.int32]:
+        """Vertices on the convex hull, counter-clockwise, those within its edges too."""
+        if self.fills_hull:
+            return self.rings[0]
+        rows = np.unique(np.concatenate(self.rings))
+        growth = _kernel.grow(np.ascontiguousarray(self.points[rows]), threads=1)
+        if growth.kept_row is not None:
+            rows = rows[growth.kept_row == np.arange(len(rows))]
+        (ring,) = topology.boundary_rings(growth.triangles, growth.neighbors)
+        return seal(rows[ring])
 
     @cached_property
     def triangle_areas(self) -> NDArray[np.float64]:

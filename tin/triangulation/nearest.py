@@ -43,15 +43,15 @@ class NearestVertex:
         kept = np.arange(len(points), dtype=np.int32)
         if growth.kept_row is not None:
             kept = np.flatnonzero(growth.kept_row == kept).astype(np.int32)
-        places = np.ascontiguousarray(points[kept])
+        distinct = np.ascontiguousarray(points[kept])
         self._number = kept
-        self._xy = np.ascontiguousarray(places[:, :2])
+        self._xy = np.ascontiguousarray(distinct[:, :2])
         self._triangles = growth.triangles
-        self._locator = _kernel.Locator(places, growth.triangles, growth.neighbors)
+        self._locator = _kernel.Locator(distinct, growth.triangles, growth.neighbors)
         edges = topology.edges(growth.triangles, growth.neighbors).astype(np.int64)
         start, end = np.concatenate([edges, edges[:, ::-1]]).T
         self._neighbors = end[np.argsort(start)]
-        self._offsets = np.append(0, np.cumsum(np.bincount(start, minlength=len(kept))))
+        self._offsets = topology.find_offsets(np.bincount(start, minlength=len(kept)))
         self._hull = np.unique(
             topology.edges_at(growth.triangles, growth.neighbors == topology.NO_NEIGHBOR)
         )
@@ -61,35 +61,35 @@ class NearestVertex:
         found = np.full(len(xy), -1, np.int32)
         is_place = ~np.isnan(xy).any(axis=1)
         xy = np.ascontiguousarray(xy[is_place])
-        nearest = self._descend(xy, self._start(xy))
-        found[is_place] = self._number[self._smallest_of_tied(xy, nearest)]
+        nearest = self._descend(xy, self._find_start(xy))
+        found[is_place] = self._number[self._choose_smallest_of_tied(xy, nearest)]
         return found
 
-    def _start(self, xy: NDArray[np.float64]) -> NDArray[np.int64]:
+    def _find_start(self, xy: NDArray[np.float64]) -> NDArray[np.int64]:
         """Return a vertex near each place: a corner of its triangle, or of one near by."""
         start = np.zeros(len(xy), np.int64)
         triangle = self._locator.locate(xy)
         outside = np.flatnonzero(triangle < 0)
         if len(outside):
-            start[outside] = self._near_hull(xy[outside])
+            start[outside] = self._find_near_hull(xy[outside])
         inside = np.flatnonzero(triangle >= 0)
         corners = self._triangles[triangle[inside]]
-        away = self._squared(xy[inside, None], corners)
+        away = self._measure_squares(xy[inside, None], corners)
         start[inside] = corners[np.arange(len(inside)), np.argmin(away, axis=1)]
         return start
 
-    def _near_hull(self, xy: NDArray[np.float64]) -> NDArray[np.int64]:
+    def _find_near_hull(self, xy: NDArray[np.float64]) -> NDArray[np.int64]:
         """Return a vertex of the hull near each place outside: by one of the two coordinates."""
         hull = self._xy[self._hull]
         candidates = []
         for axis in (0, 1):
             order = np.argsort(hull[:, axis], kind="stable")
-            place = np.searchsorted(hull[order, axis], xy[:, axis])
+            at = np.searchsorted(hull[order, axis], xy[:, axis])
             candidates += [
-                self._hull[order[np.clip(place + k, 0, len(hull) - 1)]] for k in (-2, -1, 0, 1)
+                self._hull[order[np.clip(at + k, 0, len(hull) - 1)]] for k in (-2, -1, 0, 1)
             ]
         tried = np.stack(candidates, axis=1)
-        best = np.argmin(self._squared(xy[:, None], tried), axis=1)
+        best = np.argmin(self._measure_squares(xy[:, None], tried), axis=1)
         return np.asarray(tried[np.arange(len(xy)), best], np.int64)
 
     def _descend(self, xy: NDArray[np.float64], at: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -97,7 +97,7 @@ class NearestVertex:
         at = at.copy()
         active = np.arange(len(xy))
         while len(active):
-            moved = [self._step(xy, at, part) for part in self._portions(at, active)]
+            moved = [self._step(xy, at, part) for part in self._cut_into_portions(at, active)]
             active = np.concatenate(moved)
         return at
 
@@ -107,9 +107,9 @@ class NearestVertex:
         """Move some places' vertices to a nearer neighbour; return those that have moved."""
         item, owner = topology.gather(self._offsets, at[rows])
         neighbor, of = self._neighbors[item], rows[owner]
-        away = self._squared(xy[of], neighbor)
-        here = self._squared(xy[rows], at[rows])
-        first = np.append(0, np.cumsum(np.bincount(owner, minlength=len(rows)))[:-1])
+        away = self._measure_squares(xy[of], neighbor)
+        here = self._measure_squares(xy[rows], at[rows])
+        first = topology.find_offsets(np.bincount(owner, minlength=len(rows)))[:-1]
         least = np.minimum.reduceat(away, first)
         is_least = np.flatnonzero(away == least[owner])
         best = neighbor[is_least[np.searchsorted(owner[is_least], np.arange(len(rows)))]]
@@ -123,7 +123,7 @@ class NearestVertex:
         at[rows[is_nearer]] = best[is_nearer]
         return rows[is_nearer]
 
-    def _smallest_of_tied(
+    def _choose_smallest_of_tied(
         self, xy: NDArray[np.float64], nearest: NDArray[np.int64]
     ) -> NDArray[np.int64]:
         """Return the smallest of the vertices that are as near; they are joined by edges.
@@ -131,7 +131,7 @@ class NearestVertex:
         Places are taken once each: all the vertices tied at places of the plane are no more than
         the corners of all triangles.
         """
-        rows, _ = self._tied(xy, nearest, np.arange(len(xy)), nearest)
+        rows, _ = self._find_tied(xy, nearest, np.arange(len(xy)), nearest)
         if len(rows) == 0:
             return nearest
         rows = np.unique(rows)
@@ -139,24 +139,24 @@ class NearestVertex:
         _, first, which = np.unique(pairs, return_index=True, return_inverse=True)
         tied = rows[first]
         smallest = nearest.copy()
-        smallest[rows] = self._spread(xy[tied], nearest[tied])[which]
+        smallest[rows] = self._spread_ties(xy[tied], nearest[tied])[which]
         return smallest
 
-    def _spread(self, xy: NDArray[np.float64], begin: NDArray[np.int64]) -> NDArray[np.int64]:
+    def _spread_ties(self, xy: NDArray[np.float64], begin: NDArray[np.int64]) -> NDArray[np.int64]:
         """Return the smallest vertex that is reached from one through vertices as near."""
         smallest = begin.copy()
         count = len(self._xy)
         rows, reached = np.arange(len(xy)), begin
         known = rows * count + reached
         while len(rows):
-            rows, reached = self._tied(xy, begin, rows, reached)
+            rows, reached = self._find_tied(xy, begin, rows, reached)
             fresh = np.setdiff1d(rows * count + reached, known)
             known = np.union1d(known, fresh)
             rows, reached = fresh // count, fresh % count
             np.minimum.at(smallest, rows, reached)
         return smallest
 
-    def _tied(
+    def _find_tied(
         self,
         xy: NDArray[np.float64],
         nearest: NDArray[np.int64],
@@ -165,22 +165,27 @@ class NearestVertex:
     ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """Return the neighbours of vertices that are as near to a place as its nearest vertex."""
         found = []
-        for part in self._portions(at, np.arange(len(rows))):
+        for part in self._cut_into_portions(at, np.arange(len(rows))):
             item, owner = topology.gather(self._offsets, at[part])
             neighbor, of = self._neighbors[item], rows[part][owner]
-            away, least = self._squared(xy[of], neighbor), self._squared(xy[of], nearest[of])
+            away, least = (
+                self._measure_squares(xy[of], neighbor),
+                self._measure_squares(xy[of], nearest[of]),
+            )
             near = np.flatnonzero(away <= least * _ROUNDING)
             near = near[self._compare(xy[of[near]], neighbor[near], nearest[of[near]]) == 0]
             found.append((of[near], neighbor[near]))
-        return _joined(found)
+        return _join(found)
 
-    def _portions(self, at: NDArray[np.int64], rows: NDArray[np.int64]) -> list[NDArray[np.int64]]:
+    def _cut_into_portions(
+        self, at: NDArray[np.int64], rows: NDArray[np.int64]
+    ) -> list[NDArray[np.int64]]:
         """Cut rows into portions whose vertices have not too many neighbours together."""
         degrees = np.diff(self._offsets)[at[rows]]
         portion = np.cumsum(degrees) // _MOST_PAIRS
         return np.split(rows, np.flatnonzero(np.diff(portion)) + 1)
 
-    def _squared(
+    def _measure_squares(
         self, xy: NDArray[np.float64], vertex: NDArray[np.int64] | NDArray[np.int32]
     ) -> NDArray[np.float64]:
         east, north = np.moveaxis(self._xy[vertex] - xy, -1, 0)
@@ -192,7 +197,7 @@ class NearestVertex:
         return _kernel.compare_distances(np.ascontiguousarray(xy), self._xy[one], self._xy[other])
 
 
-def _joined(
+def _join(
     pairs: list[tuple[NDArray[np.int64], NDArray[np.int64]]],
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     first, second = zip(*pairs, strict=True)

@@ -1,0 +1,5 @@
+"""The triangles of a surface, and where things lie among them."""
+
+from .triangulation import Triangulation
+
+__all__ = ["Triangulation"]
