@@ -100,9 +100,7 @@ def hillshade(
            [181, 181]], dtype=uint8)
     """
     light = _as_light(azimuth, altitude)
-    factor = _as_number("exaggeration", exaggeration, 0.0, math.inf)
-    if factor == 0.0:
-        raise OptionError("exaggeration", exaggeration, allowed="a finite number above 0")
+    factor = _as_positive("exaggeration", exaggeration)
     cells = _as_grid(tin, spacing, grid)
     normals = normals_of(tin, "vertex" if smooth else "triangle")
     unit = _with_length_one(normals * (factor, factor, 1.0))
@@ -208,9 +206,7 @@ def _as_grid(tin: TIN, spacing: Any, grid: Any) -> Grid:
         bounds = Bounds.of(tin.points)
         side = max(bounds.width, bounds.height)
         usual = round_down(side / _USUAL_SIDE)
-        cell = usual if spacing is None else _as_number("spacing", spacing, 0.0, math.inf)
-        if cell == 0.0:
-            raise OptionError("spacing", spacing, allowed="a finite number above 0")
+        cell = usual if spacing is None else _as_positive("spacing", spacing)
         _require_few(bounds.width / cell + 1, bounds.height / cell + 1)
         grid = grid_over(bounds, cell)
     cells: Grid = grid
@@ -226,18 +222,25 @@ def _require_few(columns: float, rows: float) -> None:
 
 
 def _as_light(azimuth: Any, altitude: Any) -> Light:
-    turn = _as_number("azimuth", azimuth, -math.inf, math.inf)
-    return Light(turn, _as_number("altitude", altitude, 0.0, 90.0))
+    light = Light(_as_finite(azimuth), _as_finite(altitude))
+    if math.isnan(light.azimuth):
+        raise OptionError("azimuth", azimuth, allowed="a finite number of degrees")
+    if not 0.0 <= light.altitude <= 90.0:
+        raise OptionError("altitude", altitude, allowed="a number of degrees from 0 to 90")
+    return light
 
 
-def _as_number(option: str, value: Any, low: float, high: float) -> float:
-    try:
-        number = float(value)
-    except (TypeError, ValueError, OverflowError):
-        number = math.nan
-    if isinstance(value, bool) or not (math.isfinite(number) and low <= number <= high):
-        limits = "a finite number" if math.isinf(low) else f"a finite number, {low:g} or more"
-        if math.isfinite(high):
-            limits = f"a number from {low:g} to {high:g}"
-        raise OptionError(option, value, allowed=limits)
+def _as_positive(option: str, value: Any) -> float:
+    number = _as_finite(value)
+    if not number > 0.0:
+        raise OptionError(option, value, allowed="a finite number above 0")
     return number
+
+
+def _as_finite(value: Any) -> float:
+    """Return a number, NaN for what is none or not finite."""
+    try:
+        number = math.nan if isinstance(value, bool) else float(value)
+    except (TypeError, ValueError, OverflowError):
+        return math.nan
+    return number if math.isfinite(number) else math.nan
