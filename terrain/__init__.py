@@ -6,6 +6,7 @@ from .charts.contour_map import contour_map
 from .charts.earthwork import earthwork_map
 from .charts.histogram import histogram
 from .charts.profiles import profile_picture
+from .charts.relief import relief_map
 from .earthwork import Difference, difference, level_surface, stage_storage, volume
 from .isolines import ContourCheck, check_contours, contour_bands, contour_labels, contours
 from .lift import lift
@@ -43,6 +44,7 @@ __all__ = [
     "preview",
     "profile",
     "profile_picture",
+    "relief_map",
     "section_lines",
     "slope",
     "slope_classes",

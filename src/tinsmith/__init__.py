@@ -40,7 +40,14 @@ if TYPE_CHECKING:
         with_lines,
         write,
     )
-    from .terrain import comparison_picture, contour_map, earthwork_map, histogram, profile_picture
+    from .terrain import (
+        comparison_picture,
+        contour_map,
+        earthwork_map,
+        histogram,
+        profile_picture,
+        relief_map,
+    )
     from .terrain.earthwork import Difference, difference, stage_storage, volume
     from .terrain.isolines import (
         ContourCheck,
@@ -139,6 +146,7 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "lift",
                 "preview",
                 "profile_picture",
+                "relief_map",
                 "slope",
                 "stage_storage",
                 "volume",
@@ -250,6 +258,7 @@ __all__ = [
     "read_rings",
     "read_water",
     "refine",
+    "relief_map",
     "section_lines",
     "slope",
     "slope_classes",
