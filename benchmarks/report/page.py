@@ -12,7 +12,7 @@ from ..measure import OURS, Outcome, Result, is_installed
 from ..peers.answers import AS_MANY, EQUAL
 from ..peers.line_tools import ALL_LINE_TOOLS
 from ..peers.triangulators import CGAL, KERNEL
-from ..sections import edits, kernel, lines, locate, readers, writers
+from ..sections import answers, edits, kernel, lines, locate, readers, writers
 from ..sections import variants as ways
 from .goals import judged
 
@@ -374,5 +374,11 @@ SECTIONS: dict[str, Callable[[list[Result], str], str]] = {
     ),
     writers.SECTION: _others(
         "Writers", "triangles", "From the TIN to the file; every file is read back and compared.\n"
+    ),
+    answers.SECTION: _others(
+        "Answers from the surface",
+        "points",
+        "What is derived from a TIN, on one and the same TIN, answers compared. To prepare is\n"
+        "from the TIN to its index.\n",
     ),
 }

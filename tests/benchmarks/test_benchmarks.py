@@ -12,18 +12,18 @@ from support import oracles
 
 import tinsmith as ts
 from benchmarks.__main__ import main
-from benchmarks.cgal import CgalMissingError, build, harness
-from benchmarks.datasets.edits import BATCH, EDIT_TASKS, INSERT_ALL, WHAT, edit_task
-from benchmarks.datasets.lines import LINE_DATASETS, line_dataset
-from benchmarks.datasets.points import DATASETS, UTM_CORNER, dataset
+from benchmarks.cgal import CgalMissingError, build, build_harness
+from benchmarks.datasets.edits import BATCH, EDIT_TASKS, INSERT_ALL, WHAT, make_edit_task
+from benchmarks.datasets.lines import LINE_DATASETS, make_lines
+from benchmarks.datasets.points import DATASETS, UTM_CORNER, make_points
 from benchmarks.datasets.tasks import read_task, write_task
 from benchmarks.measure import OURS, Outcome, Result, alternate, is_installed
-from benchmarks.peers.answers import EQUAL, Verdict, ranked, verdict
+from benchmarks.peers.answers import EQUAL, Verdict, judge_answer, rank_triangles
 from benchmarks.peers.edit_tools import ALL_EDIT_TOOLS, BUILD, EDIT_TOOLS, OPENED, WITH_ARRAYS
 from benchmarks.peers.line_tools import ALL_LINE_TOOLS, CGAL_INDICES, LINE_TOOLS
 from benchmarks.peers.tool_process import ToolFailedError, ToolProcess
 from benchmarks.peers.triangulators import CGAL, KERNEL, TOOLS
-from benchmarks.report.goals import judged as goals_of
+from benchmarks.report.goals import judge_goals as goals_of
 from benchmarks.sections import edits, kernel, lines, locate, readers, writers
 
 N = 2_000
@@ -42,76 +42,76 @@ def distances(points):
 
 @pytest.mark.parametrize("name", DATASETS)
 def test_data_sets_are_large_distinct_and_repeatable(name):
-    points = dataset(name, N)
+    points = make_points(name, N)
     assert points.shape[1] == 3
     assert 0.98 * N <= len(points) <= N
     assert len(np.unique(points[:, :2], axis=0)) == len(points)
     assert np.abs(points[:, 0] - 500_000).max() < 100_000
     assert np.abs(points[:, 1] - 4_000_000).max() < 100_000
-    np.testing.assert_array_equal(points, dataset(name, N))
+    np.testing.assert_array_equal(points, make_points(name, N))
 
 
 @pytest.mark.parametrize("name", DATASETS)
 def test_tinsmith_is_right_on_every_data_set(name):
-    points = dataset(name, 600)
+    points = make_points(name, 600)
     tin = ts.triangulate(points)
     ts.check(tin, level=3, points=points).raise_if_failed()
     assert len(tin.triangles) == 2 * len(points) - 2 - oracles.hull_size(points)
 
 
 def test_raster_has_exact_spacing_and_runs_from_north_to_south():
-    x, y, _ = dataset("raster", N).T
+    x, y, _ = make_points("raster", N).T
     assert set(np.diff(np.unique(x))) == set(np.diff(np.unique(y))) == {30.0}
     assert (np.diff(y) <= 0).all()
 
 
 def test_decimal_raster_holds_the_doubles_nearest_to_decimals():
-    x, y, _ = dataset("decimal raster", N).T
+    x, y, _ = make_points("decimal raster", N).T
     np.testing.assert_array_equal(x, [float(f"{value:.1f}") for value in x])
     np.testing.assert_array_equal(y, [float(f"{value:.1f}") for value in y])
     assert len(set(np.diff(np.unique(x)))) > 1  # 0.1 is no binary number
 
 
 def test_scan_lines_are_rounded_to_cm_and_near_their_lines():
-    points = dataset("scan lines", N)
+    points = make_points("scan lines", N)
     np.testing.assert_array_equal(points[:, :2], np.round(points[:, :2], 2))
     across = points[:, 1] - np.round(points[:, 1])
     assert 0.0 < np.abs(across).max() <= 0.051
 
 
 def test_clusters_are_narrow_and_wide():
-    near = distances(dataset("clusters", N))
+    near = distances(make_points("clusters", N))
     assert near.min() < 0.02
     assert near.max() > 100.0
 
 
 @pytest.mark.parametrize(("name", "apart"), [("contour lines", 100.0), ("survey tracks", 200.0)])
 def test_lines_are_dense_along_and_sparse_across(name, apart):
-    points = dataset(name, 50_000)
+    points = make_points(name, 50_000)
     assert np.median(distances(points)) < apart / 2
 
 
 def test_rails_are_two_parallel_lines():
-    xy = dataset("rails", N)[:, :2] - UTM_CORNER
+    xy = make_points("rails", N)[:, :2] - UTM_CORNER
     first, second = np.split(xy, 2)
     np.testing.assert_allclose(np.hypot(*(second - first).T), 1.435, atol=1e-8)
     np.testing.assert_allclose(np.hypot(*np.diff(first, axis=0).T), 0.2, atol=1e-8)
 
 
 def test_circle_is_one_circle():
-    xy = dataset("circle", N)[:, :2] - UTM_CORNER
+    xy = make_points("circle", N)[:, :2] - UTM_CORNER
     np.testing.assert_allclose(np.hypot(*xy.T), 1000.0, atol=1e-8)
 
 
 def test_few_circles_are_seven():
-    xy = dataset("few circles", N)[:, :2]
+    xy = make_points("few circles", N)[:, :2]
     for ring in np.split(xy, 7):
         radius = np.hypot(*(ring - (ring.min(axis=0) + ring.max(axis=0)) / 2).T)
         assert np.ptp(radius) < 0.01 * radius.max()
 
 
 def test_dense_corner_holds_one_percent_in_one_metre():
-    xy = dataset("dense corner", N)[:, :2] - UTM_CORNER
+    xy = make_points("dense corner", N)[:, :2] - UTM_CORNER
     assert np.count_nonzero(((xy >= 1.0) & (xy <= 2.0)).all(axis=1)) == N // 100
 
 
@@ -120,11 +120,11 @@ def test_dense_corner_holds_one_percent_in_one_metre():
 
 @pytest.fixture(scope="module")
 def tin():
-    return ts.triangulate(dataset("uniform", 300))
+    return ts.triangulate(make_points("uniform", 300))
 
 
 def judged(tin, answer):
-    return verdict(tin, answer, ranked(tin.triangles))
+    return judge_answer(tin, answer, rank_triangles(tin.triangles))
 
 
 def test_verdict_accepts_any_order_of_triangles_and_corners(tin):
@@ -167,16 +167,16 @@ def flipped(tin):
 
 def test_verdict_tells_a_wrong_edge_from_a_broken_tie(tin):
     assert judged(tin, flipped(tin)) == Verdict(False, "1 edges not Delaunay")
-    grid = ts.triangulate(dataset("raster", 300))
+    grid = ts.triangulate(make_points("raster", 300))
     assert judged(grid, flipped(grid)) == Verdict(True, "Delaunay; 1 ties broken otherwise")
 
 
 def test_a_wrong_answer_of_an_exact_tool_is_a_failure():
     wrong = Verdict(False, "3 triangles missing")
-    assert kernel._accepted("SciPy", wrong) is wrong
+    assert kernel._accept("SciPy", wrong) is wrong
     for tool in (OURS, KERNEL, CGAL, "Triangle"):
         with pytest.raises(AssertionError, match="3 triangles missing"):
-            kernel._accepted(tool, wrong)
+            kernel._accept(tool, wrong)
 
 
 # ------------------------------------------------------------------------- kernel
@@ -185,7 +185,7 @@ def test_a_wrong_answer_of_an_exact_tool_is_a_failure():
 def test_every_tool_triangulates():
     outcome = kernel.run([("raster", 300)], repeats=2)
     found = {result.tool: result for result in outcome.results}
-    present = kernel.available_tools(kernel.ALL_TOOLS, Outcome())
+    present = kernel.find_tools(kernel.ALL_TOOLS, Outcome())
     assert list(found) == [*present, kernel.WORK]
     assert {OURS, KERNEL} <= set(present)
     assert found[OURS].note == found[KERNEL].note == EQUAL
@@ -198,7 +198,7 @@ def test_every_tool_triangulates():
 
 
 def test_a_tool_that_exceeds_the_limit_is_described(tmp_path):
-    points = dataset("uniform", 300)
+    points = make_points("uniform", 300)
     with ToolProcess(OURS, points, tmp_path, limit=0.0) as process:
         with pytest.raises(ToolFailedError, match="no answer within 0 s"):
             process.run()
@@ -217,15 +217,15 @@ def test_a_missing_cgal_is_said(monkeypatch, tmp_path):
     monkeypatch.setattr(build, "BUILT", tmp_path / "harness")
     monkeypatch.setattr(build.shutil, "which", lambda name: None)
     with pytest.raises(CgalMissingError, match=r"g\+\+ is not installed"):
-        harness()
+        build_harness()
     outcome = Outcome()
-    assert kernel.available_tools([OURS, CGAL], outcome) == [OURS]
+    assert kernel.find_tools([OURS, CGAL], outcome) == [OURS]
     assert outcome.skipped == ["CGAL: skipped, g++ is not installed."]
 
 
 def test_every_tool_is_either_here_or_named():
     outcome = Outcome()
-    present = kernel.available_tools(kernel.ALL_TOOLS, outcome)
+    present = kernel.find_tools(kernel.ALL_TOOLS, outcome)
     assert len(present) + len(outcome.skipped) == len(kernel.ALL_TOOLS) == len(TOOLS) + 1
 
 
@@ -236,7 +236,7 @@ def test_every_tool_is_either_here_or_named():
 def test_lines_do_not_cross_and_are_given_twice_the_same(name):
     import shapely
 
-    task = line_dataset(name, N)
+    task = make_lines(name, N)
     assert 0.95 * N <= len(task.vertices) <= 1.2 * N
     assert len(np.unique(task.vertices, axis=0)) == len(task.vertices)
     drawn = shapely.MultiLineString([line[:, :2] for line in task.breaklines()])
@@ -251,15 +251,15 @@ def test_lines_do_not_cross_and_are_given_twice_the_same(name):
 def test_nested_rings_lie_each_in_the_next():
     import shapely
 
-    rings = [shapely.Polygon(line) for line in line_dataset("nested rings", 20 * N).breaklines()]
+    rings = [shapely.Polygon(line) for line in make_lines("nested rings", 20 * N).breaklines()]
     assert len(rings) == 20 * N // 140
     assert all(b.contains_properly(a) for a, b in pairwise(rings))
-    heights = [line[0, 2] for line in line_dataset("nested rings", N).breaklines()]
+    heights = [line[0, 2] for line in make_lines("nested rings", N).breaklines()]
     assert (np.diff(heights) < 0).all()
 
 
 def test_steps_of_raster_lines_are_cut_where_points_are_on_them_exactly():
-    task = line_dataset("raster lines", N)
+    task = make_lines("raster lines", N)
     exact = [[Fraction(x), Fraction(y)] for x, y in task.vertices.tolist()]
     wanted = set()
     for start, end in task.segments.tolist():
@@ -274,7 +274,7 @@ def test_steps_of_raster_lines_are_cut_where_points_are_on_them_exactly():
 
 
 def test_tasks_survive_their_file(tmp_path):
-    for task in (line_dataset("hills", N), edit_task("mixed edits", 300)):
+    for task in (make_lines("hills", N), make_edit_task("mixed edits", 300)):
         write_task(task, tmp_path / "task.npz")
         for array, found in zip(task, read_task(type(task), tmp_path / "task.npz"), strict=True):
             np.testing.assert_array_equal(array, found)
@@ -282,7 +282,7 @@ def test_tasks_survive_their_file(tmp_path):
 
 def test_every_tool_holds_the_lines():
     outcome = lines.run(1_000, names=["raster lines", "nested rings"], repeats=1)
-    present = lines.available_tools(ALL_LINE_TOOLS, LINE_TOOLS, "constrained", Outcome())
+    present = lines.find_line_tools(ALL_LINE_TOOLS, LINE_TOOLS, "constrained", Outcome())
     assert [r.tool for r in outcome.results] == 2 * present
     assert {OURS} <= set(present)
     for result in outcome.results:
@@ -294,10 +294,10 @@ def test_verdict_names_edges_of_lines_that_are_missing():
     corners = [[0, 0, 0], [9, 0, 0], [9, 4, 0], [0, 5, 0]]
     tin = ts.triangulate(corners, breaklines=[[corners[0], corners[2]]])
     other = np.array([[0, 1, 3], [1, 2, 3]])
-    wanted, steps = ranked(tin.triangles), np.array([[2, 0]])
-    assert verdict(tin, tin.triangles, wanted, steps=steps) == Verdict(True, EQUAL)
+    wanted, steps = rank_triangles(tin.triangles), np.array([[2, 0]])
+    assert judge_answer(tin, tin.triangles, wanted, steps=steps) == Verdict(True, EQUAL)
     lost = Verdict(False, "1 edges of lines missing")
-    assert verdict(tin, other, wanted, steps=steps) == lost
+    assert judge_answer(tin, other, wanted, steps=steps) == lost
 
 
 def test_verdict_lets_an_edge_be_wrong_only_for_a_line():
@@ -306,16 +306,16 @@ def test_verdict_lets_an_edge_be_wrong_only_for_a_line():
     pair = [1, 3] if [0, 2] in np.sort(free.edges, axis=1).tolist() else [0, 2]
     a, b = (i for i in range(4) if i not in pair)
     crossed = np.array([[*pair, a], [*pair, b]])
-    wanted = ranked(free.triangles)
-    assert not verdict(free, crossed, wanted).is_right
-    assert verdict(free, crossed, wanted, steps=np.array([pair])).is_right
+    wanted = rank_triangles(free.triangles)
+    assert not judge_answer(free, crossed, wanted).is_right
+    assert judge_answer(free, crossed, wanted, steps=np.array([pair])).is_right
 
 
 # -------------------------------------------------------------------------- edits
 
 
 def test_points_after_edits_are_those_of_edits_one_by_one():
-    task = edit_task("mixed edits", 100)
+    task = make_edit_task("mixed edits", 100)
     points = task.points.tolist()
     assert set(task.script[:, 0]) == {0.0, 1.0, 2.0, 3.0}
     for what, number, vertex, *xyz in task.script.tolist():
@@ -332,14 +332,14 @@ def test_points_after_edits_are_those_of_edits_one_by_one():
 
 
 def test_batch_is_as_many_points_again():
-    task = edit_task(BATCH, 300)
+    task = make_edit_task(BATCH, 300)
     assert set(task.script[:, 0]) == {INSERT_ALL}
     assert len(task.afterwards()) == len(np.unique(task.afterwards()[:, :2], axis=0)) == 600
 
 
 def test_every_tool_edits():
     outcome = edits.run(400, repeats=1)
-    present = lines.available_tools(ALL_EDIT_TOOLS, EDIT_TOOLS, "edits", Outcome())
+    present = lines.find_line_tools(ALL_EDIT_TOOLS, EDIT_TOOLS, "edits", Outcome())
     assert {OURS, OPENED, WITH_ARRAYS, BUILD} <= set(present)
     assert {r.tool for r in outcome.results} == set(present)
     assert len({r.task for r in outcome.results}) == len(EDIT_TASKS) + 1
