@@ -32,7 +32,7 @@ LEAST_POINTS = 200
 
 def main(arguments: list[str] | None = None) -> None:
     """Measure what the command line asks for; write the report and say where it is."""
-    parser = _parser()
+    parser = _make_parser()
     given = parser.parse_args(arguments)
     if given.points is not None and given.points < LEAST_POINTS:
         parser.error(f"--points {given.points}: at least {LEAST_POINTS} are needed")
@@ -40,7 +40,7 @@ def main(arguments: list[str] | None = None) -> None:
     command = shlex.join(["python", "-m", "benchmarks", *said])
     outcome = Outcome()
     for section in given.sections or SECTIONS:
-        outcome.add(_measured(section, given))
+        outcome.add(_measure_section(section, given))
         written = write_report(outcome, describe(), command, given.output)
     for path in written:
         print(path)
@@ -48,7 +48,7 @@ def main(arguments: list[str] | None = None) -> None:
         print(line)
 
 
-def _parser() -> argparse.ArgumentParser:
+def _make_parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
     parser.add_argument(
         "sections",
@@ -103,10 +103,10 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _measured(section: str, given: argparse.Namespace) -> Outcome:
+def _measure_section(section: str, given: argparse.Namespace) -> Outcome:
     n = given.points or (1_000_000 if given.full else 100_000)
     if section == kernel.SECTION:
-        cases = kernel.default_cases(n, is_full=given.full)
+        cases = kernel.list_cases(n, is_full=given.full)
         chosen = [(name, size) for name, size in cases if not given.only or name in given.only]
         limit = given.limit or (40.0 if given.full else 5.0)
         return kernel.run(chosen, tools=given.tools, repeats=given.repeats, limit=limit)

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-__all__ = ["OURS", "Outcome", "Result", "alternate", "is_installed", "median"]
+__all__ = ["OURS", "Outcome", "Result", "alternate", "find_median", "is_installed"]
 
 OURS = "tinsmith"
 SLOW_SECONDS = 4.0
@@ -75,7 +75,7 @@ def is_installed(module: str) -> bool:
     return importlib.util.find_spec(module) is not None
 
 
-def median(runs: list[float]) -> float:
+def find_median(runs: list[float]) -> float:
     """Return the median, NaN of nothing."""
     return statistics.median(runs) if runs else math.nan
 

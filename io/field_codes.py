@@ -96,26 +96,33 @@ def lines_from_codes(survey: Survey, rules: Mapping[str, LineRole] | None = None
     >>> lines_from_codes(survey).breaklines
     [<Breakline: hard, 3 vertices, 'EP1'>]
     """
-    roles = _checked_rules(RULES if rules is None else rules)
-    found, notes = _runs(survey, roles)
-    runs = [run for run in found if len(run.rows) >= _least(run)]
-    notes += _short_notes(survey, [run for run in found if len(run.rows) < _least(run)])
-    ponds = [_water(survey, run) for run in runs if run.role == "water"]
+    roles = _require_rules(RULES if rules is None else rules)
+    found, notes = _follow_lines(survey, roles)
+    runs = [run for run in found if len(run.rows) >= _count_least(run)]
+    notes += _note_short_lines(survey, [run for run in found if len(run.rows) < _count_least(run)])
+    ponds = [_make_water(survey, run) for run in runs if run.role == "water"]
     return replace(
         survey,
         breaklines=[
             *survey.breaklines,
-            *(_breakline(survey, r) for r in _of(runs, "hard", "soft")),
+            *(_make_breakline(survey, r) for r in _select_roles(runs, "hard", "soft")),
         ],
-        boundary=[*survey.boundary, *(survey.points[r.rows] for r in _of(runs, "boundary"))],
-        holes=[*survey.holes, *(survey.points[r.rows] for r in _of(runs, "hole"))],
-        erase=[*survey.erase, *(survey.points[r.rows, :2] for r in _of(runs, "erase"))],
+        boundary=[
+            *survey.boundary,
+            *(survey.points[r.rows] for r in _select_roles(runs, "boundary")),
+        ],
+        holes=[*survey.holes, *(survey.points[r.rows] for r in _select_roles(runs, "hole"))],
+        erase=[*survey.erase, *(survey.points[r.rows, :2] for r in _select_roles(runs, "erase"))],
         water=[*survey.water, *ponds],
-        notes=[*survey.notes, *notes, *(_level_note(survey, r) for r in _of(runs, "water"))],
+        notes=[
+            *survey.notes,
+            *notes,
+            *(_note_water_level(survey, r) for r in _select_roles(runs, "water")),
+        ],
     )
 
 
-def _checked_rules(rules: Mapping[str, LineRole]) -> dict[str, LineRole]:
+def _require_rules(rules: Mapping[str, LineRole]) -> dict[str, LineRole]:
     for code, role in rules.items():
         if role not in get_args(LineRole):
             roles = ", ".join(get_args(LineRole))
@@ -123,14 +130,14 @@ def _checked_rules(rules: Mapping[str, LineRole]) -> dict[str, LineRole]:
     return {code.upper(): role for code, role in rules.items()}
 
 
-def _of(runs: Iterable[_Run], *roles: LineRole) -> list[_Run]:
+def _select_roles(runs: Iterable[_Run], *roles: LineRole) -> list[_Run]:
     return [run for run in runs if run.role in roles]
 
 
 # ------------------------------------------------------------------------- codes
 
 
-def _runs(survey: Survey, roles: Mapping[str, LineRole]) -> tuple[list[_Run], list[str]]:
+def _follow_lines(survey: Survey, roles: Mapping[str, LineRole]) -> tuple[list[_Run], list[str]]:
     """Follow every line through the points, in the order of the first point of each.
 
     Also say which marks are unknown.
@@ -138,7 +145,7 @@ def _runs(survey: Survey, roles: Mapping[str, LineRole]) -> tuple[list[_Run], li
     runs: list[_Run] = []
     running: dict[str, _Run] = {}
     unknown: list[tuple[int, str]] = []
-    for row, name, role, mark in _coded(survey, roles):
+    for row, name, role, mark in _iterate_coded(survey, roles):
         meaning = MARKS.get(mark.upper(), "") if mark else ""
         if mark and not meaning:
             unknown.append((row, mark))
@@ -153,7 +160,7 @@ def _runs(survey: Survey, roles: Mapping[str, LineRole]) -> tuple[list[_Run], li
     return runs, _mark_notes(survey, unknown)
 
 
-def _coded(
+def _iterate_coded(
     survey: Survey, roles: Mapping[str, LineRole]
 ) -> Iterator[tuple[int, str, LineRole, str]]:
     """Walk the points of lines: row, name of the line, role and mark."""
@@ -162,7 +169,7 @@ def _coded(
             "The points have no descriptions to read codes from: a column 'description' is needed."
         )
     descriptions = survey.attributes["description"].tolist()
-    for row in _in_order(survey).tolist():
+    for row in _order_by_number(survey).tolist():
         found = _CODE.match(str(descriptions[row] or ""))
         role = None if found is None else roles.get(found["code"].upper())
         if found is not None and role is not None:
@@ -171,7 +178,7 @@ def _coded(
             yield row, found["code"].upper() + found["number"], role, mark
 
 
-def _in_order(survey: Survey) -> NDArray[np.int64]:
+def _order_by_number(survey: Survey) -> NDArray[np.int64]:
     numbers = survey.attributes.get("number")
     if numbers is None or numbers.dtype.kind not in "iu":
         return np.arange(len(survey))
@@ -181,7 +188,7 @@ def _in_order(survey: Survey) -> NDArray[np.int64]:
 # --------------------------------------------------------------------- sentences
 
 
-def _point(survey: Survey, row: int) -> str:
+def _name_point(survey: Survey, row: int) -> str:
     numbers = survey.attributes.get("number")
     return f"row {row}" if numbers is None else f"point {numbers[row]}"
 
@@ -189,7 +196,7 @@ def _point(survey: Survey, row: int) -> str:
 def _mark_notes(survey: Survey, unknown: list[tuple[int, str]]) -> list[str]:
     if not unknown:
         return []
-    shown = ", ".join(f"'{mark}' at {_point(survey, row)}" for row, mark in unknown[:_SHOWN])
+    shown = ", ".join(f"'{mark}' at {_name_point(survey, row)}" for row, mark in unknown[:_SHOWN])
     more = " ..." if len(unknown) > _SHOWN else ""
     marks = "mark behind line codes is" if len(unknown) == 1 else "marks behind line codes are"
     return [
@@ -198,11 +205,11 @@ def _mark_notes(survey: Survey, unknown: list[tuple[int, str]]) -> list[str]:
     ]
 
 
-def _short_notes(survey: Survey, short: list[_Run]) -> list[str]:
+def _note_short_lines(survey: Survey, short: list[_Run]) -> list[str]:
     if not short:
         return []
     shown = ", ".join(
-        f"{run.name}: {', '.join(_point(survey, row) for row in run.rows)}"
+        f"{run.name}: {', '.join(_name_point(survey, row) for row in run.rows)}"
         for run in short[:_SHOWN]
     )
     more = " ..." if len(short) > _SHOWN else ""
@@ -212,11 +219,11 @@ def _short_notes(survey: Survey, short: list[_Run]) -> list[str]:
     ]
 
 
-def _least(run: _Run) -> int:
+def _count_least(run: _Run) -> int:
     return 3 if run.is_closed or run.role not in ("hard", "soft") else 2
 
 
-def _level_note(survey: Survey, run: _Run) -> str:
+def _note_water_level(survey: Survey, run: _Run) -> str:
     z = survey.points[run.rows, 2]
     return (
         f"Water {run.name} is level at {np.median(z):.3f}, the median of its {len(z)} points "
@@ -227,12 +234,12 @@ def _level_note(survey: Survey, run: _Run) -> str:
 # ------------------------------------------------------------------------- lines
 
 
-def _breakline(survey: Survey, run: _Run) -> Breakline:
+def _make_breakline(survey: Survey, run: _Run) -> Breakline:
     rows = [*run.rows, run.rows[0]] if run.is_closed else run.rows
     kind: BreaklineKind = "soft" if run.role == "soft" else "hard"
     return Breakline(survey.points[rows], kind=kind, name=run.name)
 
 
-def _water(survey: Survey, run: _Run) -> Water:
+def _make_water(survey: Survey, run: _Run) -> Water:
     points = survey.points[run.rows]
     return Water(points[:, :2], float(np.median(points[:, 2])), name=run.name)

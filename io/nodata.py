@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["SuspectElevation", "as_nodata", "describe_suspects", "find_suspect_elevations"]
+__all__ = ["SuspectElevation", "describe_suspects", "find_suspect_elevations", "parse_nodata"]
 
 _CUSTOMARY = (
     *(-9999.0, -99999.0, -999999.0, -999.0, -9999.9, -999.9, -99.0, -99.9, -32768.0, -32767.0),
@@ -32,7 +32,7 @@ _BEYOND = 50_000.0
 """No elevation of the earth is larger, in feet or in metres."""
 
 
-def as_nodata(nodata: float | Sequence[float] | None) -> NDArray[np.float64]:
+def parse_nodata(nodata: float | Sequence[float] | None) -> NDArray[np.float64]:
     """Return the elevations that a caller names as no data, (k,) array.
 
     Raises
@@ -84,7 +84,9 @@ def find_suspect_elevations(z: NDArray[np.float64]) -> list[SuspectElevation]:
     found: list[SuspectElevation] = []
     rest = z
     while len(found) < _MOST and len(rest):
-        suspect = next(filter(None, (_suspect(rest, end) for end in _ends(rest))), None)
+        suspect = next(
+            filter(None, (_find_suspect(rest, end) for end in _find_extremes(rest))), None
+        )
         if suspect is None:
             break
         found.append(suspect)
@@ -93,18 +95,18 @@ def find_suspect_elevations(z: NDArray[np.float64]) -> list[SuspectElevation]:
     return [replace(one, lowest=float(rest.min()), highest=float(rest.max())) for one in found]
 
 
-def _ends(z: NDArray[np.float64]) -> tuple[float, float]:
+def _find_extremes(z: NDArray[np.float64]) -> tuple[float, float]:
     """Return lowest and highest value, the one of larger size first."""
     low, high = float(z.min()), float(z.max())
     return (high, low) if abs(high) > abs(low) else (low, high)
 
 
-def _suspect(z: NDArray[np.float64], value: float) -> SuspectElevation | None:
+def _find_suspect(z: NDArray[np.float64], value: float) -> SuspectElevation | None:
     """Return the lowest or highest value if it may stand for no data."""
     # Fewer others make gap and range look no less suspicious: most values are cleared by some.
     for others in (z[:: max(1, len(z) // _SOME)], z):
         others = others[others != value]
-        if len(others) and not _is_apart(value, others, len(z) - len(others)):
+        if len(others) and not _is_far_from(value, others, len(z) - len(others)):
             return None
     if len(others) == 0:
         return None
@@ -114,7 +116,7 @@ def _suspect(z: NDArray[np.float64], value: float) -> SuspectElevation | None:
     return SuspectElevation(value, count, float(others.min()), float(others.max()))
 
 
-def _is_apart(value: float, others: NDArray[np.float64], count: int) -> bool:
+def _is_far_from(value: float, others: NDArray[np.float64], count: int) -> bool:
     low, high = float(others.min()), float(others.max())
     size = max(abs(low), abs(high))
     half_gap = low / 2 - value / 2 if value < low else value / 2 - high / 2

@@ -12,15 +12,15 @@ from ..errors import CrsError, FormatError, MissingExtraError, ReadError, Tinsmi
 from ..tin import Survey
 from . import signatures
 from .isolated.local_files import require_local
-from .isolated.spooling import as_sentence, ordinary_file, spooled
+from .isolated.spooling import describe_system_error, open_ordinary_file, spool
 from .raster.virtual import is_virtual
 from .registry import (
     Format,
+    choose_format,
     find_format,
-    fitting_format,
-    format_of_suffix,
+    find_format_of_suffix,
+    find_suffixes,
     known_formats,
-    known_suffixes,
     list_suffixes,
     load_function,
     require_options,
@@ -93,13 +93,13 @@ def read(
     """
     require_local(path)
     file = Path(path)
-    declared = _declared(crs, z_unit)
-    with ordinary_file(file) as local:
+    declared = _collect_declared(crs, z_unit)
+    with open_ordinary_file(file) as local:
         found = _read_file(local, format, declared, options)
-    return found if local == file else _renamed(found, local, file)
+    return found if local == file else _restore_source(found, local, file)
 
 
-def _declared(crs: CrsLike | None, z_unit: UnitLike | None) -> dict[str, Any]:
+def _collect_declared(crs: CrsLike | None, z_unit: UnitLike | None) -> dict[str, Any]:
     """Return what the caller says of the coordinates, as options of a reader."""
     unit = Unit.of(z_unit)
     return {"crs": CRS.of(crs)} | ({} if unit is None else {"z_unit": unit})
@@ -123,21 +123,21 @@ def read_stream(
         What reports and errors call it.
     """
     source = Path(name)
-    declared = _declared(crs, z_unit)
-    with spooled(stream, source) as local:
-        return _renamed(_read_file(local, format, declared, options), local, source)
+    declared = _collect_declared(crs, z_unit)
+    with spool(stream, source) as local:
+        return _restore_source(_read_file(local, format, declared, options), local, source)
 
 
 def _read_file(
     file: Path, name: str | None, declared: Mapping[str, Any], options: Mapping[str, Any]
 ) -> Survey | TIN:
-    head = _head(file)
+    head = _read_head(file)
     chosen = detect(file, head) if name is None else find_format(name)
     if chosen.read is None:
         raise FormatError(
             f"'{file}' is {chosen.description}, a format that is written, not read: "
             f"{list_suffixes('read')} can be read.",
-            known=known_suffixes("read"),
+            known=find_suffixes("read"),
         )
     reader = load_function(chosen.read)
     of_file = {name: declared[name] for name in declared if name != "crs"} | dict(options)
@@ -145,15 +145,15 @@ def _read_file(
     try:
         survey: Survey | TIN = reader(file, crs=declared["crs"], **of_file)
     except CrsError as error:
-        raise _of_file(error, file) from error
+        raise _name_file(error, file) from error
     except OSError as error:  # a file that vanishes, a disk that fails
         if isinstance(error, TinsmithError):
             raise
-        raise as_sentence(file, error) from error
+        raise describe_system_error(file, error) from error
     return survey
 
 
-def _renamed(found: Survey | TIN, copy: Path, file: Path) -> Survey | TIN:
+def _restore_source(found: Survey | TIN, copy: Path, file: Path) -> Survey | TIN:
     """Return what was read from a copy as if it had been read from the file."""
     if not isinstance(found, Survey):
         return found
@@ -161,7 +161,7 @@ def _renamed(found: Survey | TIN, copy: Path, file: Path) -> Survey | TIN:
     return replace(found, source=file.name, notes=notes)
 
 
-def _of_file(error: CrsError, file: Path) -> CrsError:
+def _name_file(error: CrsError, file: Path) -> CrsError:
     """Return an error of a CRS with the name of the file that it stands in."""
     sentence = str(error) if str(file) in str(error) else f"'{file}': {error}"
     return CrsError(printable(sentence), crs=error.crs)
@@ -197,22 +197,22 @@ def detect(path: Path, head: bytes) -> Format:
     if is_virtual(path):
         return find_format("raster")
     _require_not_foreign(path, head)
-    by_suffix = fitting_format(path.suffix.lower(), "read")
+    by_suffix = choose_format(path.suffix.lower(), "read")
     if by_suffix is not None and (by_suffix.sniff is None or not _is_table(head)):
         return by_suffix
     if by_suffix is not None:
         return find_format("delimited")
-    if _is_binary(head) and _gdal_recognises(path):
+    if _is_binary(head) and _is_gdal_raster(path):
         return find_format("raster")
-    return format_of_suffix(path, "read")
+    return find_format_of_suffix(path, "read")
 
 
 def _require_not_foreign(path: Path, head: bytes) -> None:
-    kind = signatures.foreign_kind(head)
+    kind = signatures.find_foreign_kind(head)
     if kind is not None:
         raise FormatError(
             f"'{path}' is {kind}, which cannot be read: {list_suffixes('read')} can.",
-            known=known_suffixes("read"),
+            known=find_suffixes("read"),
         )
 
 
@@ -227,16 +227,16 @@ def _is_table(head: bytes) -> bool:
     return looks_like_table(head)
 
 
-def _gdal_recognises(path: Path) -> bool:
-    from .raster.dem import recognises
+def _is_gdal_raster(path: Path) -> bool:
+    from .raster.dem import is_raster
 
     try:
-        return recognises(path)
+        return is_raster(path)
     except MissingExtraError:
         return False
 
 
-def _head(path: Path) -> bytes:
+def _read_head(path: Path) -> bytes:
     """Return the first bytes of a file that is there, permitted and not empty."""
     try:
         if path.is_dir():
@@ -246,7 +246,7 @@ def _head(path: Path) -> bytes:
     except ReadError:
         raise
     except OSError as error:
-        raise as_sentence(path, error) from error
+        raise describe_system_error(path, error) from error
     except ValueError as error:
         raise ReadError(f"Cannot read {str(path)!r}: {error}.", path=path) from error
     if not head:

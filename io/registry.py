@@ -22,12 +22,12 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Format",
+    "choose_format",
     "find_format",
+    "find_format_of_suffix",
+    "find_suffixes",
     "find_writer",
-    "fitting_format",
-    "format_of_suffix",
     "known_formats",
-    "known_suffixes",
     "list_suffixes",
     "load_function",
     "require_options",
@@ -95,7 +95,7 @@ class Format:
         ('kind', 'projected')
         """
         target = getattr(self, action)
-        return () if target is None else _options(load_function(target))
+        return () if target is None else _find_options(load_function(target))
 
 
 _DELIMITED = Format(
@@ -242,14 +242,14 @@ def known_formats() -> tuple[Format, ...]:
     """
     formats = list(_BUILT_IN)
     for entry in sorted(entry_points(group=_ENTRY_POINTS), key=lambda entry: entry.name):
-        added = _from_plug_in(entry.name, entry.load)
+        added = _load_plug_in(entry.name, entry.load)
         if any(added.name == one.name for one in formats):
             raise FormatError(f"Plug-in '{entry.name}' takes the name '{added.name}', in use.")
         formats.append(added)
     return tuple(formats)
 
 
-def _from_plug_in(name: str, load: Callable[[], object]) -> Format:
+def _load_plug_in(name: str, load: Callable[[], object]) -> Format:
     try:
         added = load()
     except Exception as error:
@@ -281,16 +281,16 @@ def find_format(name: str) -> Format:
     raise FormatError(f"Unknown format '{name}': one of {', '.join(names)}.", known=names)
 
 
-def fitting_format(suffix: str, action: str) -> Format | None:
+def choose_format(suffix: str, action: str) -> Format | None:
     """Return the format of a suffix, one that can do the action first."""
     fitting = [one for one in known_formats() if suffix in one.suffixes]
     able = [one for one in fitting if getattr(one, action) is not None]
     return next(iter(able + fitting), None)
 
 
-def format_of_suffix(path: Path, action: str) -> Format:
+def find_format_of_suffix(path: Path, action: str) -> Format:
     """Return the format of a file's suffix; refuse an unknown one."""
-    found = fitting_format(path.suffix.lower(), action)
+    found = choose_format(path.suffix.lower(), action)
     if found is not None:
         return found
     suffix = f"has the unknown suffix '{path.suffix}'" if path.suffix else "has no suffix"
@@ -298,7 +298,7 @@ def format_of_suffix(path: Path, action: str) -> Format:
         f"'{path}' {suffix}: {list_suffixes(action)} can be "
         f"{'read' if action == 'read' else 'written'}; "
         "the option format names one whatever the suffix.",
-        known=known_suffixes(action),
+        known=find_suffixes(action),
     )
 
 
@@ -318,7 +318,7 @@ def find_writer(path: Path, name: str | None, kinds: Sequence[str]) -> Format:
     FormatError
         If there is no such format, it cannot be written, or it holds other things.
     """
-    known = format_of_suffix(path, "write") if name is None else find_format(name)
+    known = find_format_of_suffix(path, "write") if name is None else find_format(name)
     fitting = [one for one in known_formats() if one.write is not None and {*kinds} & {*one.writes}]
     wanted = path.suffix.lower() if name is None else _as_suffix(name)
     named = [one for one in fitting if name is not None and one.name == name.strip().lower()]
@@ -345,7 +345,7 @@ def _listed(kinds: Sequence[str]) -> str:
     return " or ".join(_ONE.get(kind, kind) for kind in kinds)
 
 
-def known_suffixes(action: str) -> tuple[str, ...]:
+def find_suffixes(action: str) -> tuple[str, ...]:
     """Return the suffixes that can be read, or written."""
     suffixes = (
         suffix
@@ -358,7 +358,7 @@ def known_suffixes(action: str) -> tuple[str, ...]:
 
 def list_suffixes(action: str) -> str:
     """List the suffixes that can be read, or written, for a sentence."""
-    return ", ".join(known_suffixes(action))
+    return ", ".join(find_suffixes(action))
 
 
 def load_function(target: str) -> Callable[..., Any]:
@@ -368,7 +368,7 @@ def load_function(target: str) -> Callable[..., Any]:
     return loaded
 
 
-def _options(function: Callable[..., Any]) -> tuple[str, ...]:
+def _find_options(function: Callable[..., Any]) -> tuple[str, ...]:
     parameters = inspect.signature(function).parameters.values()
     return tuple(
         one.name
@@ -381,7 +381,7 @@ def require_options(
     chosen: Format, action: str, function: Callable[..., Any], options: Mapping[str, object]
 ) -> None:
     """Refuse options that a reader or writer does not have."""
-    allowed = _options(function)
+    allowed = _find_options(function)
     accepted = {*allowed, "progress", "z_unit"} & set(inspect.signature(function).parameters)
     unknown = [name for name in options if name not in accepted]
     if not unknown:

@@ -6,7 +6,8 @@ import re
 
 __all__ = [
     "HEAD_BYTES",
-    "foreign_kind",
+    "find_foreign_kind",
+    "find_reference_kind",
     "is_geojson",
     "is_gmsh",
     "is_obj",
@@ -14,7 +15,6 @@ __all__ = [
     "is_raster",
     "is_stl",
     "is_vtk_xml",
-    "reference_kind",
 ]
 
 HEAD_BYTES = 65536
@@ -116,22 +116,22 @@ def is_geojson(head: bytes) -> bool:
     )
 
 
-def foreign_kind(head: bytes) -> str | None:
+def find_foreign_kind(head: bytes) -> str | None:
     """Name a kind of file that no format here reads, for a sentence; None if none is recognised."""
     for start, kind in _FOREIGN_STARTS.items():
         if head.startswith(start):
             return kind
-    content = _after_prologue(head)
+    content = _skip_prologue(head)
     return next((kind for pattern, kind in _FOREIGN_TEXTS if pattern.match(content)), None)
 
 
-def reference_kind(head: bytes) -> str | None:
+def find_reference_kind(head: bytes) -> str | None:
     """Name a text that tells where data are instead of holding them; None if it is no such."""
-    content = _after_prologue(head)
+    content = _skip_prologue(head)
     return next((kind for pattern, kind in _REFERENCES if pattern.match(content)), None)
 
 
-def _after_prologue(head: bytes) -> bytes:
+def _skip_prologue(head: bytes) -> bytes:
     """Skip the byte order mark, the declaration and the comments before the content of a text."""
     rest = head.removeprefix(b"\xef\xbb\xbf").lstrip()
     while found := next((mark for mark in _PROLOGUE if rest.startswith(mark[0])), None):

@@ -54,22 +54,22 @@ def describe_gaps(tin: TIN) -> list[str]:
     >>> describe_gaps(triangulate(square))
     []
     """
-    squares = _squared_lengths(tin)
+    squares = _square_lengths(tin)
     some = squares[:: max(1, len(squares) // _SAMPLE)]
-    limit = _rounded(_FAR * float(np.sqrt(np.percentile(some, _USUAL))))
+    limit = _round_up(_FAR * float(np.sqrt(np.percentile(some, _USUAL))))
     is_long = ((squares > limit**2) & ~tin.constrained).any(axis=1)
     stays = np.ones(len(squares), np.bool_)
     if is_long.any():
         surface = Surface(tin.points, tin.triangles, tin.neighbors, tin.constrained)
         stays = trim(surface, stays, limit, everywhere=False)
     return [
-        *_outer(squares[~stays], limit),
-        *_inner(squares[is_long & stays], limit),
-        *_slivers(tin, squares, stays),
+        *_describe_outer(squares[~stays], limit),
+        *_describe_inner(squares[is_long & stays], limit),
+        *_describe_slivers(tin, squares, stays),
     ]
 
 
-def _squared_lengths(tin: TIN) -> NDArray[np.float64]:
+def _square_lengths(tin: TIN) -> NDArray[np.float64]:
     """Return the squares of the lengths of the edges opposite the corners, (m, 3), in the plane."""
     x, y = (np.ascontiguousarray(axis) for axis in tin.points[:, :2].T)
     squares = np.empty(tin.triangles.shape)
@@ -79,37 +79,41 @@ def _squared_lengths(tin: TIN) -> NDArray[np.float64]:
     return squares
 
 
-def _rounded(length: float) -> float:
+def _round_up(length: float) -> float:
     """Round up to two digits."""
     unit = 10.0 ** (np.floor(np.log10(length)) - 1)
     return float(f"{np.ceil(length / unit) * unit:.6g}")
 
 
-def _outer(squares: NDArray[np.float64], limit: float) -> list[str]:
+def _describe_outer(squares: NDArray[np.float64], limit: float) -> list[str]:
     if len(squares) == 0:
         return []
     return [
-        f"{_triangles(len(squares))} at the perimeter with edges of up to "
+        f"{_count_triangles(len(squares))} at the perimeter with edges of up to "
         f"{np.sqrt(squares.max()):.6g} units, far longer than usual: max_edge={limit:g} trims "
         "them."
     ]
 
 
-def _inner(squares: NDArray[np.float64], limit: float) -> list[str]:
+def _describe_inner(squares: NDArray[np.float64], limit: float) -> list[str]:
     if len(squares) == 0:
         return []
     return [
-        f"{_triangles(len(squares))} inside with edges of up to {np.sqrt(squares.max()):.6g} "
+        f"{_count_triangles(len(squares))} inside with edges of up to {np.sqrt(squares.max()):.6g} "
         f"units, as over a void: max_edge={limit:g} with trim='everywhere' leaves them out."
     ]
 
 
-def _slivers(tin: TIN, squares: NDArray[np.float64], stays: NDArray[np.bool_]) -> list[str]:
+def _describe_slivers(
+    tin: TIN, squares: NDArray[np.float64], stays: NDArray[np.bool_]
+) -> list[str]:
     """Tell of triangles along the hull that are far steeper than the ground."""
     is_outer = (tin.neighbors == NO_NEIGHBOR) & ~tin.constrained
     outer = np.flatnonzero(is_outer.any(axis=1) & stays)
-    usual = np.percentile(_gradients(tin, slice(None, None, max(1, len(stays) // _SAMPLE))), 90)
-    slivers = outer[_gradients(tin, outer) > _STEEPER * usual]
+    usual = np.percentile(
+        _compute_gradients(tin, slice(None, None, max(1, len(stays) // _SAMPLE))), 90
+    )
+    slivers = outer[_compute_gradients(tin, outer) > _STEEPER * usual]
     if len(slivers):
         degrees = slope(tin)
         slivers = slivers[degrees[slivers] > _STEEP]
@@ -117,12 +121,12 @@ def _slivers(tin: TIN, squares: NDArray[np.float64], stays: NDArray[np.bool_]) -
         return []
     shortest = float(np.sqrt(squares[slivers].max(axis=1).min()))
     return [
-        f"{_triangles(len(slivers))} along the hull as steep as {degrees[slivers].max():.1f} "
+        f"{_count_triangles(len(slivers))} along the hull as steep as {degrees[slivers].max():.1f} "
         f"degrees, where the ground is not: a max_edge below {shortest:.4g} trims them."
     ]
 
 
-def _gradients(tin: TIN, chosen: Any) -> NDArray[np.float64]:
+def _compute_gradients(tin: TIN, chosen: Any) -> NDArray[np.float64]:
     """Return the gradients of some triangles, in whatever units there are."""
     a, b, c = (tin.points[tin.triangles[chosen, k]] for k in range(3))
     east, north, up = np.cross(b - a, c - a).T
@@ -130,5 +134,5 @@ def _gradients(tin: TIN, chosen: Any) -> NDArray[np.float64]:
     return gradients
 
 
-def _triangles(count: int) -> str:
+def _count_triangles(count: int) -> str:
     return f"There {'is 1 triangle' if count == 1 else f'are {count:,} triangles'}"

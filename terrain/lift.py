@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from ..tin import TIN
 
-__all__ = ["default_origin", "lift"]
+__all__ = ["choose_origin", "lift"]
 
 
 def lift(
@@ -36,7 +36,7 @@ def lift(
     tin : TIN
         In a projected CRS.
     origin : (3,) array, CRS units, optional
-        Easting, northing and elevation that become (0, 0, 0); default :func:`default_origin`.
+        Easting, northing and elevation that become (0, 0, 0); default :func:`choose_origin`.
     exaggeration : float, optional
         Factor on heights above the origin, above 0; default 1, true to scale.
 
@@ -68,8 +68,8 @@ def lift(
     [500000.0, 4000000.0, 80.0]
     """
     pv = _optional.load("pyvista", "Lifting a TIN into 3D")
-    shift = default_origin(tin) if origin is None else _as_origin(origin)
-    factor = as_exaggeration(exaggeration)
+    shift = choose_origin(tin) if origin is None else _parse_origin(origin)
+    factor = parse_exaggeration(exaggeration)
     scale = scale_elevations(tin.crs, tin.elevation_unit)
     mesh: pyvista.PolyData = pv.PolyData.from_regular_faces(
         (tin.points - shift) * (1.0, 1.0, scale * factor), np.array(tin.triangles)
@@ -87,7 +87,7 @@ def lift(
     return mesh
 
 
-def default_origin(tin: TIN) -> NDArray[np.float64]:
+def choose_origin(tin: TIN) -> NDArray[np.float64]:
     """Return the middle of a TIN, rounded to a tenth of its extent or finer.
 
     Parameters
@@ -102,12 +102,12 @@ def default_origin(tin: TIN) -> NDArray[np.float64]:
     """
     low, high = tin.points.min(axis=0), tin.points.max(axis=0)
     extents = (max(high[0] - low[0], high[1] - low[1]), high[2] - low[2])
-    steps = [_power_of_ten_below(extent) for extent in (extents[0], extents[0], extents[1])]
+    steps = [_round_down_to_power(extent) for extent in (extents[0], extents[0], extents[1])]
     origin: NDArray[np.float64] = np.round((low + high) / 2 / steps) * steps
     return origin
 
 
-def as_exaggeration(exaggeration: float) -> float:
+def parse_exaggeration(exaggeration: float) -> float:
     """Return a vertical exaggeration as a float, or raise OptionError."""
     factor = float(exaggeration)
     if not (math.isfinite(factor) and factor > 0):
@@ -115,11 +115,11 @@ def as_exaggeration(exaggeration: float) -> float:
     return factor
 
 
-def _power_of_ten_below(extent: float) -> float:
+def _round_down_to_power(extent: float) -> float:
     return 10.0 ** math.floor(math.log10(extent)) if extent > 0 else 1.0
 
 
-def _as_origin(origin: ArrayLike) -> NDArray[np.float64]:
+def _parse_origin(origin: ArrayLike) -> NDArray[np.float64]:
     shift = np.array(origin, np.float64)
     if shift.shape != (3,) or not np.isfinite(shift).all():
         raise OptionError("origin", origin, "three finite numbers: easting, northing, elevation")

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from ..tin import TIN
 
-__all__ = ["EDGE_KINDS", "LineEdges", "add_lines", "line_edges"]
+__all__ = ["EDGE_KINDS", "LineEdges", "add_lines", "find_line_edges"]
 
 EDGE_KINDS = ("soft", "hard", "hole", "boundary", "water")
 """Kinds of lines; where several share an edge it is of the last in this list."""
@@ -59,7 +59,7 @@ class LineEdges(NamedTuple):
     kinds: NDArray[np.int8]
 
 
-def line_edges(tin: TIN, *, guess: bool = True) -> LineEdges:
+def find_line_edges(tin: TIN, *, guess: bool = True) -> LineEdges:
     """Return the edges of all lines of a TIN.
 
     Parameters
@@ -76,7 +76,7 @@ def line_edges(tin: TIN, *, guess: bool = True) -> LineEdges:
     lines = tin.lines
     ranks = np.array([EDGE_KINDS.index(kind) for kind in lines.kinds], np.int8)
     known = LineEdges(lines.segments(), ranks[lines.segment_chains()])
-    found = _constrained_edges(tin) if guess else LineEdges(known.pairs[:0], known.kinds[:0])
+    found = _find_constrained_edges(tin) if guess else LineEdges(known.pairs[:0], known.kinds[:0])
     pairs = np.concatenate([known.pairs, found.pairs])
     kinds = np.concatenate([known.kinds, found.kinds])
     is_guess = np.arange(len(pairs)) >= len(known.pairs)
@@ -87,7 +87,7 @@ def line_edges(tin: TIN, *, guess: bool = True) -> LineEdges:
     return LineEdges(pairs[chosen], kinds[chosen])
 
 
-def _constrained_edges(tin: TIN) -> LineEdges:
+def _find_constrained_edges(tin: TIN) -> LineEdges:
     pairs = edges_at(tin.triangles, tin.constrained)
     on_rim = tin.neighbors[tin.constrained] < 0
     ranks = EDGE_KINDS.index("hard"), EDGE_KINDS.index("boundary")
@@ -116,7 +116,7 @@ def add_lines(
     list of pyvista.Actor
         One for each kind there is.
     """
-    found = line_edges(tin)
+    found = find_line_edges(tin)
     actors = []
     for rank, kind in enumerate(EDGE_KINDS):
         pen, pairs = _PENS[kind], found.pairs[found.kinds == rank]
@@ -125,12 +125,12 @@ def add_lines(
         ends = points[pairs]
         if pen.is_dashed:
             extent = float(np.ptp(points[:, :2], axis=0).max())
-            ends = dashes(ends, pairs, _DASH_SHARE * extent)
-        actors.append(_drawn(plotter, ends, pen, factor))
+            ends = cut_into_dashes(ends, pairs, _DASH_SHARE * extent)
+        actors.append(_draw_edges(plotter, ends, pen, factor))
     return actors
 
 
-def dashes(
+def cut_into_dashes(
     ends: NDArray[np.float64], pairs: NDArray[np.int32], length: float
 ) -> NDArray[np.float64]:
     """Cut edges into dashes that run on from one edge to the next of the same line.
@@ -164,7 +164,7 @@ def dashes(
     return made
 
 
-def _drawn(plotter: Any, ends: NDArray[np.float64], pen: _Pen, factor: float) -> Any:
+def _draw_edges(plotter: Any, ends: NDArray[np.float64], pen: _Pen, factor: float) -> Any:
     pv = _optional.load("pyvista", _PURPOSE)
 
     count = len(ends)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-__all__ = ["format_number", "round_down", "ticks"]
+__all__ = ["choose_ticks", "format_number", "round_down"]
 
 
 def round_down(value: float, *, leads: tuple[float, ...] = (1.0, 2.0, 5.0)) -> float:
@@ -20,12 +20,12 @@ def round_down(value: float, *, leads: tuple[float, ...] = (1.0, 2.0, 5.0)) -> f
     return max(fitting, default=leads[-1] * power / 10)
 
 
-def ticks(low: float, high: float, *, count: int) -> list[float]:
+def choose_ticks(low: float, high: float, *, count: int) -> list[float]:
     """Return round values within [low, high], about ``count`` of them.
 
     Examples
     --------
-    >>> ticks(212.4, 268.1, count=5)
+    >>> choose_ticks(212.4, 268.1, count=5)
     [220.0, 230.0, 240.0, 250.0, 260.0]
     """
     if not high > low:

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..errors import choice
 from ..policies import SlopeUnit, SurfacePart
-from .units import scales_of
+from .units import find_scales
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -18,13 +18,13 @@ if TYPE_CHECKING:
     from ..tin import TIN
 
 __all__ = [
-    "areas",
     "aspect",
-    "normals",
-    "normals_of",
-    "ring_area",
+    "compute_normals",
+    "measure_areas",
+    "measure_ring_area",
+    "measure_slopes",
     "slope",
-    "slope_of",
+    "sum_normals",
 ]
 
 _SLIVER = 2.0**-20
@@ -71,10 +71,10 @@ def slope(
     (array([45.]), array([100., 100., 100.]))
     """
     choice("unit", unit, SlopeUnit)
-    return slope_of(normals_of(tin, per), unit)
+    return measure_slopes(sum_normals(tin, per), unit)
 
 
-def slope_of(upward: NDArray[np.float64], unit: SlopeUnit) -> NDArray[np.float64]:
+def measure_slopes(upward: NDArray[np.float64], unit: SlopeUnit) -> NDArray[np.float64]:
     """Return the slope of planes with some upward normals, (k, 3), NaN where there is none."""
     east, north, up = upward.T
     run = np.hypot(east, north)
@@ -114,7 +114,7 @@ def aspect(tin: TIN, *, per: SurfacePart = "triangle") -> NDArray[np.float64]:
     >>> aspect(tin)
     array([270.])
     """
-    east, north, _ = normals_of(tin, per).T
+    east, north, _ = sum_normals(tin, per).T
     azimuth: NDArray[np.float64] = np.degrees(np.arctan2(east, north)) % 360.0
     # A hair west of north rounds up to the full circle, which is north.
     azimuth[azimuth == 360.0] = 0.0
@@ -122,7 +122,7 @@ def aspect(tin: TIN, *, per: SurfacePart = "triangle") -> NDArray[np.float64]:
     return azimuth
 
 
-def areas(tin: TIN) -> NDArray[np.float64]:
+def measure_areas(tin: TIN) -> NDArray[np.float64]:
     """Measure the area of each triangle in the plane on the ground.
 
     Parameters
@@ -134,12 +134,14 @@ def areas(tin: TIN) -> NDArray[np.float64]:
     (m,) float64 array
         In square metres; in CRS units squared where those are not known.
     """
-    measured: NDArray[np.float64] = tin.triangle_areas * area_scale(tin.crs, _middle_northings(tin))
+    measured: NDArray[np.float64] = tin.triangle_areas * find_area_scale(
+        tin.crs, _average_northings(tin)
+    )
     return measured
 
 
-def ring_area(crs: CRS | None, ring: NDArray[np.float64]) -> float:
-    """Measure the area inside a ring in the plane on the ground, as :func:`areas` does.
+def measure_ring_area(crs: CRS | None, ring: NDArray[np.float64]) -> float:
+    """Measure the area inside a ring in the plane on the ground, as :func:`measure_areas` does.
 
     Parameters
     ----------
@@ -155,17 +157,17 @@ def ring_area(crs: CRS | None, ring: NDArray[np.float64]) -> float:
     x, y = (ring[:, :2] - ring[0, :2]).T
     steps = x * np.roll(y, -1) - np.roll(x, -1) * y
     middle = (ring[:, 1] + np.roll(ring[:, 1], -1) + ring[0, 1]) / 3
-    return float((steps * area_scale(crs, middle)).sum()) / 2
+    return float((steps * find_area_scale(crs, middle)).sum()) / 2
 
 
-def area_scale(crs: CRS | None, northing: ArrayLike) -> Any:
+def find_area_scale(crs: CRS | None, northing: ArrayLike) -> Any:
     """Return the factor from areas in CRS units squared to square metres, at each northing."""
-    scales = scales_of(crs, None, northing)
+    scales = find_scales(crs, None, northing)
     metres = None if crs is None else crs.horizontal_unit.metres
     return scales.east * scales.north * (metres or 1.0) ** 2
 
 
-def normals(tin: TIN) -> NDArray[np.float64]:
+def compute_normals(tin: TIN) -> NDArray[np.float64]:
     """Return the upward normal of each triangle, its length twice the triangle's area in space.
 
     Parameters
@@ -189,7 +191,7 @@ def normals(tin: TIN) -> NDArray[np.float64]:
         exact = _exact_normal(*tin.points[tin.triangles[row]])
         for component, value in zip(components, exact, strict=True):
             component[row] = value
-    east, north, up = scales_of(tin.crs, tin.elevation_unit, _middle_northings(tin))
+    east, north, up = find_scales(tin.crs, tin.elevation_unit, _average_northings(tin))
     factors = (north * up, east * up, east * north)
     return np.stack(
         [component * factor for component, factor in zip(components, factors, strict=True)], axis=1
@@ -207,7 +209,7 @@ def _exact_normal(*corners: NDArray[np.float64]) -> list[float]:
     return [float(u[i] * v[j] - u[j] * v[i]) for i, j in turns]
 
 
-def normals_of(tin: TIN, per: SurfacePart) -> NDArray[np.float64]:
+def sum_normals(tin: TIN, per: SurfacePart) -> NDArray[np.float64]:
     """Return the upward normals of triangles, or their sums at each vertex, (n, 3).
 
     Raises
@@ -216,7 +218,7 @@ def normals_of(tin: TIN, per: SurfacePart) -> NDArray[np.float64]:
         For another place.
     """
     choice("per", per, SurfacePart)
-    upward = normals(tin)
+    upward = compute_normals(tin)
     if per == "triangle":
         return upward
     corners, count = tin.triangles.ravel(), len(tin.points)
@@ -224,6 +226,6 @@ def normals_of(tin: TIN, per: SurfacePart) -> NDArray[np.float64]:
     return np.stack(sums, axis=1)
 
 
-def _middle_northings(tin: TIN) -> NDArray[np.float64]:
+def _average_northings(tin: TIN) -> NDArray[np.float64]:
     middle: NDArray[np.float64] = tin.points[:, 1][tin.triangles].mean(axis=1)
     return middle

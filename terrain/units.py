@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from ..crs import CRS
     from ..tin import TIN
 
-__all__ = ["Ground", "Scales", "ground_of", "scales_of"]
+__all__ = ["Ground", "Scales", "find_ground", "find_scales"]
 
 NOT_KNOWN = Unit("unit", "", None)
 
@@ -66,7 +66,7 @@ class Ground:
         return f"{symbol} assumed" if symbol and self.is_assumed else symbol
 
 
-def ground_of(tin: TIN) -> Ground:
+def find_ground(tin: TIN) -> Ground:
     """Read the units of a TIN from its CRS and its unit of elevations.
 
     Parameters
@@ -81,23 +81,23 @@ def ground_of(tin: TIN) -> Ground:
     """
     crs = tin.crs
     up = assume_elevation_unit(crs, tin.elevation_unit) or NOT_KNOWN
-    scales = scales_of(crs, tin.elevation_unit, tin.bounds.center[1])
+    scales = find_scales(crs, tin.elevation_unit, tin.bounds.center[1])
     return Ground(
         "CRS unknown" if crs is None else crs.caption,
-        _drawn_unit(crs),
+        _choose_drawn_unit(crs),
         up,
         tin.elevation_unit is None,
         (float(scales.east), float(scales.north), scales.up),
     )
 
 
-def _drawn_unit(crs: CRS | None) -> Unit:
+def _choose_drawn_unit(crs: CRS | None) -> Unit:
     if crs is None:
         return NOT_KNOWN
     return METRE if crs.is_geographic else crs.horizontal_unit
 
 
-def scales_of(crs: CRS | None, unit: Unit | None, northing: ArrayLike) -> Scales:
+def find_scales(crs: CRS | None, unit: Unit | None, northing: ArrayLike) -> Scales:
     """Return the factors that make all three coordinates lengths of one unit.
 
     Parameters
@@ -118,10 +118,10 @@ def scales_of(crs: CRS | None, unit: Unit | None, northing: ArrayLike) -> Scales
         return Scales(1.0, 1.0, scale_elevations(crs, unit))
     up = assume_elevation_unit(crs, unit)
     metres = None if up is None else up.metres
-    return Scales(*_degree_lengths(crs, northing), metres or 1.0)
+    return Scales(*_measure_degrees(crs, northing), metres or 1.0)
 
 
-def _degree_lengths(
+def _measure_degrees(
     crs: CRS, latitude: ArrayLike
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return metres per CRS unit along a parallel and along a meridian."""

@@ -57,6 +57,17 @@ def test_a_planted_failure_is_found_minimised_and_replayed(tmp_path):
     assert fuzz(*planted, *only, find["number"]).returncode == 1
 
 
+def test_the_other_cases_at_the_place_of_a_find_are_noted(tmp_path):
+    done, (find,), _ = run_planted(tmp_path, "fails", "--cases", 60)
+    row = next(line for line in done.stdout.splitlines() if line.startswith("fails"))
+    assert len(find["others"]) == int(row.split()[3]) - 1 > 0
+    assert f"also in fails, cases {find['others'][0]}" in done.stdout
+    planted = ("--module", "support.planted_campaigns", "--campaign", "fails")
+    for number in (find["number"], *find["others"][:2]):
+        only = fuzz(*planted, "--folder", tmp_path / "again", "--only", number)
+        assert f"case {number}: {find['where']}" in only.stdout
+
+
 def test_a_find_that_is_mended_replays_as_sound(tmp_path):
     find = {"campaign": "fails", "seed": 1, "number": 0, "case": {"numbers": [3], "word": ""}}
     (tmp_path / "find.json").write_text(json.dumps(find))

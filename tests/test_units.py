@@ -16,7 +16,7 @@ import tinsmith as ts
 from tinsmith import TIN, OptionError, Survey, Unit
 from tinsmith.cli import main
 from tinsmith.crs import FOOT, METRE, US_SURVEY_FOOT
-from tinsmith.terrain.units import ground_of
+from tinsmith.terrain.units import find_ground
 
 CORNER = np.array([742_000.0, 4_030_000.0, 300.0])
 TRIANGLES = [[0, 1, 2]]
@@ -80,7 +80,7 @@ def slope_of_lifted_shape(tin, folder):
 
 
 def slope_of_scene(tin, folder):
-    return angle_to_the_plane(tin.points * ground_of(tin).scale)
+    return angle_to_the_plane(tin.points * find_ground(tin).scale)
 
 
 def slope_of_areas(tin, folder):
@@ -537,7 +537,7 @@ def test_lines_on_the_command_line_declare_their_unit(kerb, summit, tmp_path):
 
 
 def test_the_legend_says_what_is_known_of_the_unit():
-    captions = {name: ground_of(steep(name)).elevation_caption for name in GROUNDS}
+    captions = {name: find_ground(steep(name)).elevation_caption for name in GROUNDS}
     assert captions["metres"] == "m"
     assert captions["metres, not told"] == "m assumed"
     assert captions["US survey feet, not told"] == "US ft assumed"

@@ -11,7 +11,7 @@ import numpy as np
 import tinsmith as ts
 from tinsmith.tin import TIN
 
-from ..measure import OURS, Outcome, Result, alternate, median
+from ..measure import OURS, Outcome, Result, alternate, find_median
 
 __all__ = ["run"]
 
@@ -59,7 +59,7 @@ def _measure(task: str, tin: TIN, tools: dict[str, Tool], repeats: int, outcome:
         atol = ROUNDING * (1.0 if task == SLOPES else SIZE)
         np.testing.assert_allclose(answers[name], answers[OURS], rtol=0, atol=atol)
         seconds = tuple(runs[name])
-        outcome.results.append(Result(SECTION, task, name, count, median(runs[name]), seconds))
+        outcome.results.append(Result(SECTION, task, name, count, find_median(runs[name]), seconds))
 
 
 def _call(answer: Callable[[TIN], Any], tin: TIN) -> Callable[[], Any]:

@@ -1,5 +1,5 @@
 """CGAL's harness in C++, compiled when it is needed."""
 
-from .build import CgalMissingError, harness
+from .build import CgalMissingError, build_harness
 
-__all__ = ["CgalMissingError", "harness"]
+__all__ = ["CgalMissingError", "build_harness"]

@@ -11,7 +11,7 @@ import shutil
 import subprocess
 from pathlib import Path
 
-__all__ = ["CgalMissingError", "harness"]
+__all__ = ["CgalMissingError", "build_harness"]
 
 HERE = Path(__file__).parent
 SHARED = (HERE / "serve.hpp", Path(__file__))
@@ -23,7 +23,7 @@ class CgalMissingError(Exception):
     """There is no compiler, or it does not find CGAL."""
 
 
-def harness(name: str = "delaunay") -> Path:
+def build_harness(name: str = "delaunay") -> Path:
     """Return an executable, compiled anew if its source or flags have changed.
 
     Parameters
@@ -45,11 +45,11 @@ def harness(name: str = "delaunay") -> Path:
         raise CgalMissingError("g++ is not installed")
     if not _finds_cgal(compiler):
         raise CgalMissingError("its headers are not installed (Debian: libcgal-dev)")
-    _compile(compiler, source, built)
+    _compile_harness(compiler, source, built)
     return built
 
 
-def _compile(compiler: str, source: Path, built: Path) -> None:
+def _compile_harness(compiler: str, source: Path, built: Path) -> None:
     built.parent.mkdir(parents=True, exist_ok=True)
     fresh = built.with_suffix(f".{os.getpid()}")
     command = [compiler, *FLAGS, str(source), "-lmpfr", "-lgmp", "-o", str(fresh)]

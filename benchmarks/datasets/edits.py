@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .points import SEED, dataset
+from .points import SEED, make_points
 
 __all__ = [
     "BATCH",
@@ -16,8 +16,8 @@ __all__ = [
     "INSERT_ALL",
     "WHAT",
     "EditTask",
-    "edit_task",
-    "labelled",
+    "label_task",
+    "make_edit_task",
 ]
 
 Floats = NDArray[np.float64]
@@ -67,12 +67,12 @@ class EditTask(NamedTuple):
         return np.concatenate([left, self.script[is_new, 3:]])
 
 
-def labelled(name: str, n: int) -> str:
+def label_task(name: str, n: int) -> str:
     """Return what results of a task are called."""
     return f"{name}, TIN of {n:,} points"
 
 
-def edit_task(name: str, n: int) -> EditTask:
+def make_edit_task(name: str, n: int) -> EditTask:
     """Make a task on a TIN of ``n`` uniform points.
 
     Parameters
@@ -82,17 +82,17 @@ def edit_task(name: str, n: int) -> EditTask:
     n : int
     """
     rng = np.random.default_rng(SEED + 1)
-    points = dataset("uniform", n)
+    points = make_points("uniform", n)
     if name == BATCH:
         what = np.full(n, INSERT_ALL)
         number = np.arange(n)
     else:
         what = rng.choice(EDIT_TASKS[name], min(EDITS, n // 4))
         number = rng.choice(n, len(what), replace=False)
-    return EditTask(points, _script(points, what, number, rng))
+    return EditTask(points, _make_script(points, what, number, rng))
 
 
-def _script(
+def _make_script(
     points: Floats, what: NDArray[np.int64], number: NDArray[np.int64], rng: np.random.Generator
 ) -> Floats:
     corner, side = points[:, :2].min(axis=0), np.ptp(points[:, :2], axis=0)
@@ -101,11 +101,11 @@ def _script(
     xyz[is_new, :2] = corner + side * rng.random((int(is_new.sum()), 2))
     is_lifted = what == WHAT.index("set_z")
     xyz[is_lifted, :2] = points[number[is_lifted], :2]
-    vertex = number - _removed_before(what, number)
+    vertex = number - _count_removed_before(what, number)
     return np.column_stack([what, number, vertex, xyz])
 
 
-def _removed_before(what: NDArray[np.int64], number: NDArray[np.int64]) -> NDArray[np.int64]:
+def _count_removed_before(what: NDArray[np.int64], number: NDArray[np.int64]) -> NDArray[np.int64]:
     """Count the smaller numbers that are removed by then: those behind them have moved up."""
     removals = np.flatnonzero(what == WHAT.index("remove"))
     is_earlier = removals < np.arange(len(what))[:, None]

@@ -12,9 +12,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .points import SEED, UTM_CORNER, dataset, with_heights
+from .points import SEED, UTM_CORNER, lift_to_ground, make_points
 
-__all__ = ["LEAST_POINTS", "LINE_DATASETS", "LineTask", "line_dataset"]
+__all__ = ["LEAST_POINTS", "LINE_DATASETS", "LineTask", "make_lines"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -66,7 +66,7 @@ class LineTask(NamedTuple):
         return np.split(self.coords, self.offsets[1:-1])
 
 
-def line_dataset(name: str, n: int) -> LineTask:
+def make_lines(name: str, n: int) -> LineTask:
     """Make a data set.
 
     Parameters
@@ -82,72 +82,72 @@ def line_dataset(name: str, n: int) -> LineTask:
 # ------------------------------------------------------------------- the data sets
 
 
-def short_lines(n: int, rng: np.random.Generator) -> LineTask:
+def make_short_lines(n: int, rng: np.random.Generator) -> LineTask:
     """Uniform points, and n / 10 segments in lines of ten, a few point spacings each."""
     side = np.sqrt(n)
-    corners, is_upright = _strips(int(side // BLOCK))
+    corners, is_upright = _place_strips(int(side // BLOCK))
     along = np.arange(STEPS + 1) + rng.uniform(0.1, 0.9, (len(corners), STEPS + 1))
     across = rng.uniform(0.05, 0.95, along.shape) * STRIP
-    xy = _placed(along * (BLOCK / (STEPS + 1)), across, corners, is_upright)
-    return _apart(dataset("uniform", n), xy + UTM_CORNER)
+    xy = _put_into_strips(along * (BLOCK / (STEPS + 1)), across, corners, is_upright)
+    return _make_separate_task(make_points("uniform", n), xy + UTM_CORNER)
 
 
-def nested_rings(n: int, rng: np.random.Generator) -> LineTask:
+def make_nested_rings(n: int, rng: np.random.Generator) -> LineTask:
     """Contour rings, n / 140, of one hill, each inside the next, and no other points."""
-    return _rings_only([_hill(n // RING_CORNERS, TIGHT, rng)])
+    return _make_ring_task([_make_hill(n // RING_CORNERS, TIGHT, rng)])
 
 
-def hills(n: int, rng: np.random.Generator) -> LineTask:
+def make_hills(n: int, rng: np.random.Generator) -> LineTask:
     """Contour rings, n / 140, 70 on each of many hills, and no other points."""
     count = max(1, n // RING_CORNERS // RINGS_OF_HILL)
     per_hill = n // RING_CORNERS // count
-    found = [_hill(per_hill, WIDE, rng) for _ in range(count)]
+    found = [_make_hill(per_hill, WIDE, rng) for _ in range(count)]
     width = 2.2 * max(np.abs(rings).max() for rings in found)
     columns = round(np.sqrt(count))
     places = [width * np.array(divmod(i, columns)) for i in range(count)]
-    return _rings_only([rings + place for rings, place in zip(found, places, strict=True)])
+    return _make_ring_task([rings + place for rings, place in zip(found, places, strict=True)])
 
 
-def raster_lines(n: int, rng: np.random.Generator) -> LineTask:
+def make_raster_lines(n: int, rng: np.random.Generator) -> LineTask:
     """0.1 m raster as read from text, and n / 10 segments between its points.
 
     Many segments run over further points: along a row or column exactly, aslant nearly.
     """
-    points = dataset("decimal raster", n)
+    points = make_points("decimal raster", n)
     columns = round(np.sqrt(n))
     rows = n // columns
-    corners, is_upright = _strips(min(columns, rows) // BLOCK)
+    corners, is_upright = _place_strips(min(columns, rows) // BLOCK)
     along = np.cumsum(rng.integers(1, 4, (len(corners), STEPS + 1)), axis=1)
     along = np.minimum(along, BLOCK - 1 - STEPS + np.arange(STEPS + 1)) - 1
     across = rng.integers(0, STRIP, along.shape)
-    x, y = _placed(along, across, corners, is_upright).T.astype(np.int64)
+    x, y = _put_into_strips(along, across, corners, is_upright).T.astype(np.int64)
     numbers = ((rows - 1 - y) * columns + x).T
-    segments = _links(numbers)
+    segments = _link_neighbors(numbers)
     return LineTask(
         points,
         points[numbers.ravel()],
-        _offsets(numbers),
+        _find_offsets(numbers),
         np.ascontiguousarray(points[:, :2]),
         segments,
         _cut_at_lattice(points[:, :2], segments, columns),
     )
 
 
-def long_lines(n: int, rng: np.random.Generator) -> LineTask:
+def make_long_lines(n: int, rng: np.random.Generator) -> LineTask:
     """Uniform points, and 300 (of a million) straight lines from side to side, nearly parallel."""
     side = np.sqrt(n)
     count = round(0.3 * side)
     y = (np.arange(count)[:, None] + rng.uniform(0.1, 0.9, (count, 2))) * (side / count)
     x = np.broadcast_to([0.0, side], y.shape)
-    return _apart(dataset("uniform", n), np.stack([x, y], axis=2) + UTM_CORNER)
+    return _make_separate_task(make_points("uniform", n), np.stack([x, y], axis=2) + UTM_CORNER)
 
 
 LINE_DATASETS: dict[str, Callable[[int, np.random.Generator], LineTask]] = {
-    "short lines": short_lines,
-    "nested rings": nested_rings,
-    "hills": hills,
-    "raster lines": raster_lines,
-    "long lines": long_lines,
+    "short lines": make_short_lines,
+    "nested rings": make_nested_rings,
+    "hills": make_hills,
+    "raster lines": make_raster_lines,
+    "long lines": make_long_lines,
 }
 """The generators by name."""
 
@@ -155,7 +155,7 @@ LINE_DATASETS: dict[str, Callable[[int, np.random.Generator], LineTask]] = {
 # -------------------------------------------------------------------------- parts
 
 
-def _strips(blocks: int) -> tuple[Floats, NDArray[np.bool_]]:
+def _place_strips(blocks: int) -> tuple[Floats, NDArray[np.bool_]]:
     """Lower left corners of strips, lying in every other block and upright in the others."""
     per_block = BLOCK // STRIP
     number = np.arange(blocks * blocks * per_block)
@@ -168,7 +168,7 @@ def _strips(blocks: int) -> tuple[Floats, NDArray[np.bool_]]:
     return np.column_stack([x, y]).astype(np.float64), is_upright
 
 
-def _placed(
+def _put_into_strips(
     along: NDArray[np.generic],
     across: NDArray[np.generic],
     corners: Floats,
@@ -180,7 +180,7 @@ def _placed(
     return turned + corners[:, None]
 
 
-def _hill(count: int, growth: float, rng: np.random.Generator) -> Floats:
+def _make_hill(count: int, growth: float, rng: np.random.Generator) -> Floats:
     """Rings about the origin, (count, corners, 2), the innermost first, radius from 10 m."""
     radius = 10.0 * growth ** np.arange(count)[:, None]
     corner = np.arange(RING_CORNERS) + rng.uniform(-0.3, 0.3, (count, RING_CORNERS))
@@ -189,7 +189,7 @@ def _hill(count: int, growth: float, rng: np.random.Generator) -> Floats:
     return np.stack([np.cos(angle), np.sin(angle)], axis=2) * (radius * bulge)[:, :, None]
 
 
-def _rings_only(hills: list[Floats]) -> LineTask:
+def _make_ring_task(hills: list[Floats]) -> LineTask:
     """Make a data set of rings whose heights fall evenly from the middle of each hill."""
     xy = np.concatenate(hills) + UTM_CORNER
     fall = np.concatenate([np.arange(len(rings)) for rings in hills])
@@ -197,31 +197,31 @@ def _rings_only(hills: list[Floats]) -> LineTask:
     corners = np.concatenate([xy, z[:, :, None]], axis=2)
     closed = np.concatenate([corners, corners[:, :1]], axis=1)
     numbers = np.arange(xy.shape[0] * xy.shape[1]).reshape(xy.shape[:2])
-    segments = _links(np.concatenate([numbers, numbers[:, :1]], axis=1))
+    segments = _link_neighbors(np.concatenate([numbers, numbers[:, :1]], axis=1))
     return LineTask(
         np.empty((0, 3)),
         closed.reshape(-1, 3),
-        _offsets(closed),
+        _find_offsets(closed),
         xy.reshape(-1, 2),
         segments,
         segments,
     )
 
 
-def _apart(points: Floats, xy: Floats) -> LineTask:
+def _make_separate_task(points: Floats, xy: Floats) -> LineTask:
     """Make a data set of points and lines that share no place; lines are (l, k, 2)."""
-    coords = with_heights(xy.reshape(-1, 2))
-    segments = _links(len(points) + np.arange(len(coords)).reshape(xy.shape[:2]))
+    coords = lift_to_ground(xy.reshape(-1, 2))
+    segments = _link_neighbors(len(points) + np.arange(len(coords)).reshape(xy.shape[:2]))
     vertices = np.concatenate([points[:, :2], coords[:, :2]])
-    return LineTask(points, coords, _offsets(xy), vertices, segments, segments)
+    return LineTask(points, coords, _find_offsets(xy), vertices, segments, segments)
 
 
-def _links(numbers: Ints) -> Ints:
+def _link_neighbors(numbers: Ints) -> Ints:
     """Pairs of neighbours in lines of vertex numbers, (l, k) to (l * (k - 1), 2)."""
     return np.stack([numbers[:, :-1].ravel(), numbers[:, 1:].ravel()], axis=1)
 
 
-def _offsets(lines: NDArray[np.generic]) -> Ints:
+def _find_offsets(lines: NDArray[np.generic]) -> Ints:
     return np.arange(len(lines) + 1, dtype=np.int64) * lines.shape[1]
 
 
@@ -235,13 +235,13 @@ def _cut_at_lattice(xy: Floats, segments: Ints, columns: int) -> Ints:
     for part in range(1, int(parts.max())):
         is_inner = part < parts
         inner = start + np.where(is_inner, part * (end - start) // parts, 0)
-        is_on = is_inner & _is_between(xy, start, inner, end)
+        is_on = is_inner & _find_between(xy, start, inner, end)
         done.append(np.stack([last[is_on], inner[is_on]], axis=1))
         last[is_on] = inner[is_on]
     return np.concatenate([*done, np.stack([last, end], axis=1)])
 
 
-def _is_between(xy: Floats, start: Ints, inner: Ints, end: Ints) -> NDArray[np.bool_]:
+def _find_between(xy: Floats, start: Ints, inner: Ints, end: Ints) -> NDArray[np.bool_]:
     """Whether lattice points between two others are on the straight line, in whole numbers."""
     whole = np.ldexp(xy, SHIFTED_BITS).astype(np.int64)
     ux, uy = (whole[inner] - whole[start]).T.astype(object)

@@ -15,11 +15,11 @@ __all__ = [
     "AS_MANY",
     "EQUAL",
     "Verdict",
-    "counted",
-    "edge_codes",
-    "numbered",
-    "ranked",
-    "verdict",
+    "encode_edges",
+    "judge_answer",
+    "make_counting_judge",
+    "number_corners",
+    "rank_triangles",
 ]
 
 Floats = NDArray[np.float64]
@@ -44,7 +44,7 @@ class Verdict(NamedTuple):
     text: str
 
 
-def verdict(
+def judge_answer(
     tin: TIN, answer: NDArray[Any], wanted: Triangles, *, steps: Triangles | None = None
 ) -> Verdict:
     """Judge an answer.
@@ -60,30 +60,30 @@ def verdict(
     steps : (s, 2) int array, optional
         Vertices of ``tin`` that lines join.
     """
-    triangles = answer.astype(np.int64) if answer.ndim == 2 else numbered(answer, tin.points)
+    triangles = answer.astype(np.int64) if answer.ndim == 2 else number_corners(answer, tin.points)
     if triangles.size and triangles.min() < 0:
         return Verdict(False, "has points that were not given")
     missing = len(wanted) - len(triangles)
     lost = len(tin.points) - len(np.unique(triangles))
     if missing or lost:
-        return Verdict(False, _loss(missing, len(wanted), lost, len(tin.points)))
-    if np.array_equal(ranked(triangles), wanted):
+        return Verdict(False, _describe_loss(missing, len(wanted), lost, len(tin.points)))
+    if np.array_equal(rank_triangles(triangles), wanted):
         return Verdict(True, EQUAL)
-    return _by_itself(tin, triangles, np.empty((0, 2), np.int64) if steps is None else steps)
+    return _judge_alone(tin, triangles, np.empty((0, 2), np.int64) if steps is None else steps)
 
 
-def counted(tin: TIN) -> Callable[[NDArray[Any]], Verdict]:
+def make_counting_judge(tin: TIN) -> Callable[[NDArray[Any]], Verdict]:
     """Return a judge that only counts the triangles: for sets too large to compare."""
 
     def judge(answer: NDArray[Any]) -> Verdict:
         missing = len(tin.triangles) - len(answer)
-        text = _loss(missing, len(tin.triangles), 0, len(tin.points))
+        text = _describe_loss(missing, len(tin.triangles), 0, len(tin.points))
         return Verdict(missing == 0, text or AS_MANY)
 
     return judge
 
 
-def _loss(missing: int, n_triangles: int, lost: int, n_points: int) -> str:
+def _describe_loss(missing: int, n_triangles: int, lost: int, n_points: int) -> str:
     parts = []
     if lost:
         parts.append(f"{lost:,} points lost ({lost / n_points:.1%})")
@@ -93,9 +93,9 @@ def _loss(missing: int, n_triangles: int, lost: int, n_points: int) -> str:
     return ", ".join(parts)
 
 
-def _by_itself(tin: TIN, triangles: Triangles, steps: Triangles) -> Verdict:
-    lines = np.unique(edge_codes(steps))
-    edges = edge_codes(np.stack([triangles[:, [1, 2, 0]], triangles[:, [2, 0, 1]]], axis=2))
+def _judge_alone(tin: TIN, triangles: Triangles, steps: Triangles) -> Verdict:
+    lines = np.unique(encode_edges(steps))
+    edges = encode_edges(np.stack([triangles[:, [1, 2, 0]], triangles[:, [2, 0, 1]]], axis=2))
     lost = len(lines) - np.count_nonzero(np.isin(lines, edges))
     if lost:
         return Verdict(False, f"{lost:,} edges of lines missing")
@@ -107,37 +107,37 @@ def _by_itself(tin: TIN, triangles: Triangles, steps: Triangles) -> Verdict:
     if result.ok:
         ties = result.counts["ties_against_rule"]
         return Verdict(True, f"Delaunay; {ties:,} ties broken otherwise")
-    return Verdict(False, "; ".join(_problem(problem) for problem in result.problems))
+    return Verdict(False, "; ".join(_name_problem(problem) for problem in result.problems))
 
 
-def _problem(problem: Problem) -> str:
+def _name_problem(problem: Problem) -> str:
     if problem.kind == "delaunay":
         return f"{problem.count:,} edges not Delaunay"
     return problem.sentence.rstrip(".")
 
 
-def edge_codes(ends: NDArray[Any]) -> NDArray[np.int64]:
+def encode_edges(ends: NDArray[Any]) -> NDArray[np.int64]:
     """Return one number for each pair of vertex numbers, the same for both directions."""
     low, high = np.min(ends, axis=-1).astype(np.int64), np.max(ends, axis=-1)
     return low << 32 | high
 
 
-def ranked(triangles: NDArray[Any]) -> Triangles:
+def rank_triangles(triangles: NDArray[Any]) -> Triangles:
     """Return triangles as sorted vertex numbers, one code each, in ascending order."""
     corners = np.sort(triangles.astype(np.int64), axis=1)
     return corners[np.lexsort(corners.T[::-1])]
 
 
-def numbered(corners: Floats, points: Floats) -> Triangles:
+def number_corners(corners: Floats, points: Floats) -> Triangles:
     """Find the vertex number of each corner by its coordinates, -1 where there is no such point."""
     order = np.lexsort((points[:, 1], points[:, 0]))
-    known = _as_keys(points[order, :2])
-    asked = _as_keys(corners.reshape(-1, 2))
+    known = _make_keys(points[order, :2])
+    asked = _make_keys(corners.reshape(-1, 2))
     place = np.minimum(np.searchsorted(known, asked), len(known) - 1)
     found = np.where(known[place] == asked, order[place], -1)
     return found.reshape(-1, 3)
 
 
-def _as_keys(xy: Floats) -> NDArray[np.complex128]:
+def _make_keys(xy: Floats) -> NDArray[np.complex128]:
     """Pairs as one value that sorts by x, then y."""
     return np.ascontiguousarray(xy, np.float64).view(np.complex128)[:, 0]

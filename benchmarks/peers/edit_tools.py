@@ -31,7 +31,7 @@ class _State(NamedTuple):
 # ---------------------------------------------------------------------- tinsmith
 
 
-def _calls(task: EditTask) -> list[tuple[str, tuple[Any, ...]]]:
+def _list_calls(task: EditTask) -> list[tuple[str, tuple[Any, ...]]]:
     """Return the edits as names of methods and their arguments."""
     is_batch = task.script[:, 0] == INSERT_ALL
     calls: list[tuple[str, tuple[Any, ...]]] = [("insert", (task.script[is_batch, 3:],))]
@@ -49,48 +49,48 @@ def _calls(task: EditTask) -> list[tuple[str, tuple[Any, ...]]]:
     return calls
 
 
-def _prepared(task: EditTask) -> tuple[EditTask, list[tuple[str, tuple[Any, ...]]]]:
+def _prepare_task(task: EditTask) -> tuple[EditTask, list[tuple[str, tuple[Any, ...]]]]:
     if hasattr(os, "sched_setaffinity"):  # a batch would take every core
         os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
-    return task, _calls(task)
+    return task, _list_calls(task)
 
 
-def _triangulated(given: Any) -> _State:
+def _triangulate_first(given: Any) -> _State:
     from tinsmith import triangulate
 
     task, calls = given
     return _State(triangulate(task.points, threads=1), calls)
 
 
-def _opened(given: Any) -> _State:
-    state = _triangulated(given)
+def _open_session(given: Any) -> _State:
+    state = _triangulate_first(given)
     state.made.set_z(0, state.made.points[0, 2])
     return state
 
 
-def _edited(state: _State) -> Any:
+def _edit_one_by_one(state: _State) -> Any:
     for name, arguments in state.calls:
         getattr(state.made, name)(*arguments)
     return state.made
 
 
-def _edited_with_arrays(state: _State) -> Any:
-    tin = _edited(state)
+def _edit_and_read(state: _State) -> Any:
+    tin = _edit_one_by_one(state)
     assert len(tin.neighbors) == len(tin.triangles)
     return tin
 
 
-def _built(given: Any) -> Any:
+def _build_result(given: Any) -> Any:
     from tinsmith import triangulate
 
     task, _ = given
     return triangulate(task.script[:, 3:], threads=1)
 
 
-def _ours(run: Any, renew: Any = _triangulated) -> Tool:
+def _make_own_edit_tool(run: Any, renew: Any = _triangulate_first) -> Tool:
     return Tool(
         module="tinsmith",
-        prepare=_prepared,
+        prepare=_prepare_task,
         renew=renew,
         run=run,
         triangles=lambda tin: tin.points[tin.triangles],
@@ -101,9 +101,9 @@ def _ours(run: Any, renew: Any = _triangulated) -> Tool:
 # --------------------------------------------------------------------- startinpy
 
 
-def _startinpy_input(task: EditTask) -> tuple[NDArray[np.float64], list[Any], Any]:
+def _sort_for_startinpy(task: EditTask) -> tuple[NDArray[np.float64], list[Any], Any]:
     """Sort points along a curve: in random order startinpy takes half a minute a million."""
-    order = np.argsort(_morton(task.points[:, :2]))
+    order = np.argsort(_encode_morton(task.points[:, :2]))
     ids = np.empty(len(order), np.int64)
     ids[order] = np.arange(1, len(order) + 1)  # 0 is its vertex at infinity
     is_batch = task.script[:, 0] == INSERT_ALL
@@ -112,10 +112,10 @@ def _startinpy_input(task: EditTask) -> tuple[NDArray[np.float64], list[Any], An
         (WHAT[int(what)], int(ids[int(number)]), xyz)
         for what, number, _, *xyz in task.script[~is_batch].tolist()
     ]
-    return task.points[order], edits, batch[np.argsort(_morton(batch[:, :2]))]
+    return task.points[order], edits, batch[np.argsort(_encode_morton(batch[:, :2]))]
 
 
-def _morton(xy: NDArray[np.float64]) -> NDArray[np.uint64]:
+def _encode_morton(xy: NDArray[np.float64]) -> NDArray[np.uint64]:
     """Place along a Z-shaped curve through a square about the places."""
     if len(xy) == 0:
         return np.empty(0, np.uint64)
@@ -130,7 +130,7 @@ def _morton(xy: NDArray[np.float64]) -> NDArray[np.uint64]:
     return code
 
 
-def _startinpy_new(given: Any) -> Any:
+def _rebuild_with_startinpy(given: Any) -> Any:
     import startinpy
 
     points, edits, batch = given
@@ -141,7 +141,7 @@ def _startinpy_new(given: Any) -> Any:
     return made, edits, batch
 
 
-def _startinpy(state: Any) -> Any:
+def _edit_with_startinpy(state: Any) -> Any:
     made, edits, batch = state
     if len(batch):
         made.jump_and_walk = False  # the batch is sorted
@@ -157,15 +157,15 @@ def _startinpy(state: Any) -> Any:
 
 
 EDIT_TOOLS: dict[str, Tool] = {
-    OURS: _ours(_edited),
-    OPENED: _ours(_edited, _opened),
-    WITH_ARRAYS: _ours(_edited_with_arrays),
-    BUILD: _ours(_built, lambda given: given),
+    OURS: _make_own_edit_tool(_edit_one_by_one),
+    OPENED: _make_own_edit_tool(_edit_one_by_one, _open_session),
+    WITH_ARRAYS: _make_own_edit_tool(_edit_and_read),
+    BUILD: _make_own_edit_tool(_build_result, lambda given: given),
     "startinpy": Tool(
         module="startinpy",
-        prepare=_startinpy_input,
-        renew=_startinpy_new,
-        run=_startinpy,
+        prepare=_sort_for_startinpy,
+        renew=_rebuild_with_startinpy,
+        run=_edit_with_startinpy,
         triangles=lambda made: made.points[made.triangles.astype(np.int64)],
     ),
 }

@@ -6,7 +6,7 @@ from functools import partial
 from typing import Any
 
 from ..datasets.lines import LineTask
-from .triangulators import ALL_CORES, CGAL, Tool, tin_bytes
+from .triangulators import ALL_CORES, CGAL, Tool, count_tin_bytes
 
 __all__ = ["ALL_LINE_TOOLS", "CGAL_INDICES", "LINE_TOOLS"]
 
@@ -14,45 +14,45 @@ CGAL_INDICES = "CGAL, by indices"
 """``insert_constraints(points, segments)``; CGAL alone is ``insert_constraint`` by handles."""
 
 
-def _given(task: LineTask) -> Any:
+def _pass_task(task: LineTask) -> Any:
     return task.points, task.breaklines()
 
 
-def _triangulate(given: Any, threads: int | None = 1) -> Any:
+def _triangulate_lines(given: Any, threads: int | None = 1) -> Any:
     from tinsmith import triangulate
 
     points, breaklines = given
     return triangulate(points, breaklines=breaklines, threads=threads)
 
 
-def _triangle_input(task: LineTask) -> dict[str, Any]:
+def _prepare_pslg(task: LineTask) -> dict[str, Any]:
     return {"vertices": task.vertices, "segments": task.segments}
 
 
-def _triangle(graph: dict[str, Any]) -> Any:
+def _triangulate_lines_with_triangle(graph: dict[str, Any]) -> Any:
     import triangle
 
     return triangle.triangulate(graph, "pcQz")  # c: out to the convex hull
 
 
-def _ours(threads: int | None) -> Tool:
+def _make_own_line_tool(threads: int | None) -> Tool:
     return Tool(
         module="tinsmith",
-        prepare=_given,
-        run=partial(_triangulate, threads=threads),
+        prepare=_pass_task,
+        run=partial(_triangulate_lines, threads=threads),
         triangles=lambda tin: tin.points[tin.triangles, :2],
-        output_bytes=tin_bytes,
+        output_bytes=count_tin_bytes,
         is_exact=True,
     )
 
 
 LINE_TOOLS: dict[str, Tool] = {
-    "tinsmith": _ours(1),
-    ALL_CORES: _ours(None),
+    "tinsmith": _make_own_line_tool(1),
+    ALL_CORES: _make_own_line_tool(None),
     "Triangle": Tool(
         module="triangle",
-        prepare=_triangle_input,
-        run=_triangle,
+        prepare=_prepare_pslg,
+        run=_triangulate_lines_with_triangle,
         triangles=lambda made: made["vertices"][made["triangles"]],
     ),
 }

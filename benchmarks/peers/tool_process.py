@@ -14,10 +14,10 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from ..cgal import harness
+from ..cgal import build_harness
 from .triangulators import is_cgal
 
-__all__ = ["ToolFailedError", "ToolProcess", "worker_command"]
+__all__ = ["ToolFailedError", "ToolProcess", "make_worker_command"]
 
 ROOT = Path(__file__).parents[2]
 START_SECONDS = 120.0
@@ -25,7 +25,7 @@ LEAST_TIMED_SECONDS = 0.02
 """Runs shorter than this are repeated within one timing."""
 
 
-def worker_command(kind: str, name: str, path: Path) -> list[str]:
+def make_worker_command(kind: str, name: str, path: Path) -> list[str]:
     """Return the command for a tool that Python can call, on a task of some kind in a file."""
     return [sys.executable, "-m", "benchmarks.peers.worker", kind, name, str(path)]
 
@@ -71,11 +71,11 @@ class ToolProcess:
             plane = folder / "points.bin"
             if not plane.exists():
                 task[:, :2].tofile(plane)
-            return [str(harness()), str(plane)]
+            return [str(build_harness()), str(plane)]
         table = folder / "points.npy"
         if not table.exists():
             np.save(table, task)
-        return worker_command("points", name, table)
+        return make_worker_command("points", name, table)
 
     def __enter__(self) -> Self:
         return self

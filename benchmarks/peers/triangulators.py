@@ -21,8 +21,8 @@ __all__ = [
     "KERNEL_ALL_CORES",
     "TOOLS",
     "Tool",
+    "count_tin_bytes",
     "is_cgal",
-    "tin_bytes",
 ]
 
 Floats = NDArray[np.float64]
@@ -72,60 +72,60 @@ def is_cgal(tool: str) -> bool:
     return tool.startswith(CGAL)
 
 
-def _as_given(points: Floats) -> Floats:
+def _pass_points(points: Floats) -> Floats:
     return points
 
 
-def _plane(points: Floats) -> Floats:
+def _drop_elevations(points: Floats) -> Floats:
     return np.ascontiguousarray(points[:, :2])
 
 
 # ---------------------------------------------------------------------- tinsmith
 
 
-def _triangulate(points: Floats, threads: int | None = 1) -> Any:
+def _triangulate_points(points: Floats, threads: int | None = 1) -> Any:
     from tinsmith import triangulate
 
     return triangulate(points, threads=threads)
 
 
-def _grow(points: Floats, threads: int | None = 1) -> Any:
+def _grow_only(points: Floats, threads: int | None = 1) -> Any:
     from tinsmith.tin import _kernel
     from tinsmith.tin.validation.threads import thread_count
 
     return _kernel.grow(points, threads=thread_count(threads, len(points)))
 
 
-def tin_bytes(tin: Any) -> int:
+def count_tin_bytes(tin: Any) -> int:
     """Return the bytes of a TIN's arrays."""
     arrays = (tin.points, tin.triangles, tin.neighbors, tin.constrained, tin.vertex_of)
     return sum(array.nbytes for array in arrays)
 
 
-def _growth_bytes(growth: Any) -> int:
+def _count_growth_bytes(growth: Any) -> int:
     return int(growth.triangles.nbytes + growth.neighbors.nbytes)
 
 
 # ------------------------------------------------------------------------- peers
 
 
-def _triangle_input(points: Floats) -> dict[str, Floats]:
-    return {"vertices": _plane(points)}
+def _prepare_vertices(points: Floats) -> dict[str, Floats]:
+    return {"vertices": _drop_elevations(points)}
 
 
-def _triangle(vertices: dict[str, Floats]) -> Any:
+def _triangulate_with_triangle(vertices: dict[str, Floats]) -> Any:
     import triangle
 
     return triangle.triangulate(vertices, "Qz")
 
 
-def _scipy(xy: Floats) -> Any:
+def _triangulate_with_scipy(xy: Floats) -> Any:
     from scipy.spatial import Delaunay
 
     return Delaunay(xy)
 
 
-def _startinpy(points: Floats) -> Any:
+def _triangulate_with_startinpy(points: Floats) -> Any:
     import startinpy
 
     made = startinpy.DT()
@@ -134,32 +134,32 @@ def _startinpy(points: Floats) -> Any:
     return made
 
 
-def _startinpy_triangles(made: Any) -> NDArray[Any]:
+def _read_startinpy_triangles(made: Any) -> NDArray[Any]:
     return np.asarray(made.points[:, :2][made.triangles.astype(np.int64)])
 
 
-def _geos_input(points: Floats) -> Any:
+def _make_multipoint(points: Floats) -> Any:
     import shapely
 
     return shapely.multipoints(points[:, :2])
 
 
-def _geos(multipoint: Any) -> Any:
+def _triangulate_with_geos(multipoint: Any) -> Any:
     import shapely
 
     return shapely.delaunay_triangles(multipoint)
 
 
-def _geos_triangles(collection: Any) -> NDArray[Any]:
+def _read_geos_triangles(collection: Any) -> NDArray[Any]:
     import shapely
 
     return np.asarray(shapely.get_coordinates(collection).reshape(-1, 4, 2)[:, :3])
 
 
-def _ours(run: Callable[[Floats], Any], output_bytes: Callable[[Any], int]) -> Tool:
+def _make_own_tool(run: Callable[[Floats], Any], output_bytes: Callable[[Any], int]) -> Tool:
     return Tool(
         module="tinsmith",
-        prepare=_as_given,
+        prepare=_pass_points,
         run=run,
         triangles=lambda made: made.triangles,
         output_bytes=output_bytes,
@@ -169,24 +169,35 @@ def _ours(run: Callable[[Floats], Any], output_bytes: Callable[[Any], int]) -> T
 
 
 TOOLS: dict[str, Tool] = {
-    "tinsmith": _ours(_triangulate, tin_bytes),
-    KERNEL: _ours(_grow, _growth_bytes),
-    ALL_CORES: _ours(partial(_triangulate, threads=None), tin_bytes),
-    KERNEL_ALL_CORES: _ours(partial(_grow, threads=None), _growth_bytes),
+    "tinsmith": _make_own_tool(_triangulate_points, count_tin_bytes),
+    KERNEL: _make_own_tool(_grow_only, _count_growth_bytes),
+    ALL_CORES: _make_own_tool(partial(_triangulate_points, threads=None), count_tin_bytes),
+    KERNEL_ALL_CORES: _make_own_tool(partial(_grow_only, threads=None), _count_growth_bytes),
     "Triangle": Tool(
         module="triangle",
-        prepare=_triangle_input,
-        run=_triangle,
+        prepare=_prepare_vertices,
+        run=_triangulate_with_triangle,
         triangles=lambda made: made["triangles"],
         largest=10_000_000,
         is_exact=True,
     ),
     "SciPy": Tool(
-        module="scipy", prepare=_plane, run=_scipy, triangles=lambda made: made.simplices
+        module="scipy",
+        prepare=_drop_elevations,
+        run=_triangulate_with_scipy,
+        triangles=lambda made: made.simplices,
     ),
     "startinpy": Tool(
-        module="startinpy", prepare=_as_given, run=_startinpy, triangles=_startinpy_triangles
+        module="startinpy",
+        prepare=_pass_points,
+        run=_triangulate_with_startinpy,
+        triangles=_read_startinpy_triangles,
     ),
-    "GEOS": Tool(module="shapely", prepare=_geos_input, run=_geos, triangles=_geos_triangles),
+    "GEOS": Tool(
+        module="shapely",
+        prepare=_make_multipoint,
+        run=_triangulate_with_geos,
+        triangles=_read_geos_triangles,
+    ),
 }
 """The tools that Python can call, by name; CGAL has a harness of its own."""

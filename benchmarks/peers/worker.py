@@ -17,8 +17,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..datasets.edits import EditTask, edit_task
-from ..datasets.lines import LEAST_POINTS, LineTask, line_dataset
+from ..datasets.edits import EditTask, make_edit_task
+from ..datasets.lines import LEAST_POINTS, LineTask, make_lines
 from ..datasets.tasks import read_task
 from .edit_tools import EDIT_TOOLS
 from .line_tools import LINE_TOOLS
@@ -38,15 +38,17 @@ class Kind(NamedTuple):
 KINDS = {
     "points": Kind(TOOLS, np.load, lambda: np.random.default_rng(0).random((WARM_UP_POINTS, 3))),
     "lines": Kind(
-        LINE_TOOLS, partial(read_task, LineTask), partial(line_dataset, "short lines", LEAST_POINTS)
+        LINE_TOOLS, partial(read_task, LineTask), partial(make_lines, "short lines", LEAST_POINTS)
     ),
     "edits": Kind(
-        EDIT_TOOLS, partial(read_task, EditTask), partial(edit_task, "mixed edits", WARM_UP_POINTS)
+        EDIT_TOOLS,
+        partial(read_task, EditTask),
+        partial(make_edit_task, "mixed edits", WARM_UP_POINTS),
     ),
 }
 
 
-def main() -> None:
+def serve_tasks() -> None:
     """Serve until stdin ends."""
     answers = os.fdopen(os.dup(1), "w")
     os.dup2(2, 1)  # whatever a library prints must not mix with the answers
@@ -60,14 +62,14 @@ def main() -> None:
         command, argument = line.split(maxsplit=1)
         if command == "run":
             made = None
-            made, seconds = _mean_seconds(tool, given, int(argument))
+            made, seconds = _measure_mean_seconds(tool, given, int(argument))
             _say(answers, {"seconds": seconds, "output_bytes": tool.output_bytes(made)})
         else:
             np.save(argument.strip(), tool.triangles(made))
             _say(answers, {"saved": True})
 
 
-def _mean_seconds(tool: Tool, given: Any, count: int) -> tuple[Any, float]:
+def _measure_mean_seconds(tool: Tool, given: Any, count: int) -> tuple[Any, float]:
     total = 0.0
     made = None
     for _ in range(count):
@@ -85,4 +87,4 @@ def _say(answers: Any, values: dict[str, Any]) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    serve_tasks()

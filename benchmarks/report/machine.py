@@ -29,19 +29,19 @@ CGAL_VERSION = Path("/usr/include/CGAL/version.h")
 
 def describe() -> dict[str, str]:
     """Return cores, system and versions by name."""
-    facts = {
+    versions = {
         "machine": f"{os.cpu_count()}-core {platform.machine()}, {platform.system()}",
         "Python": platform.python_version(),
     }
     for package in PACKAGES:
         try:
-            facts[package] = version(package)
+            versions[package] = version(package)
         except PackageNotFoundError:
             continue
-    return facts | _library_versions()
+    return versions | _find_library_versions()
 
 
-def _library_versions() -> dict[str, str]:
+def _find_library_versions() -> dict[str, str]:
     found = {}
     if CGAL_VERSION.exists():
         lines = CGAL_VERSION.read_text().splitlines()

@@ -14,7 +14,7 @@ from ..peers.line_tools import ALL_LINE_TOOLS
 from ..peers.triangulators import CGAL, KERNEL
 from ..sections import answers, edits, kernel, lines, locate, readers, writers
 from ..sections import variants as ways
-from .goals import judged
+from .goals import judge_goals
 
 __all__ = ["write_report"]
 
@@ -66,45 +66,51 @@ def write_report(
     """
     folder.mkdir(parents=True, exist_ok=True)
     page, data = folder / f"{NAME}.md", folder / f"{NAME}.json"
-    plots = _plots(outcome)
-    page.write_text(_page(outcome, machine, command, plots), encoding="utf-8")
-    data.write_text(_as_json(outcome, machine, command), encoding="utf-8")
+    plots = _name_plots(outcome)
+    page.write_text(_format_page(outcome, machine, command, plots), encoding="utf-8")
+    data.write_text(_format_outcome(outcome, machine, command), encoding="utf-8")
     written = [page, data]
     for section, name in plots.items():
         from .plot import draw
 
-        written.append(draw(_of(outcome.results, section), folder / name))
+        written.append(draw(_select_section(outcome.results, section), folder / name))
     return written
 
 
-def _plots(outcome: Outcome) -> dict[str, str]:
+def _name_plots(outcome: Outcome) -> dict[str, str]:
     """Return the names of the plots to draw, by section."""
-    drawn = {section: name for section, name in PLOTS.items() if _of(outcome.results, section)}
+    drawn = {
+        section: name
+        for section, name in PLOTS.items()
+        if _select_section(outcome.results, section)
+    }
     if drawn and not is_installed("matplotlib"):
         outcome.skip({"plot": "matplotlib is not installed"})
         return {}
     return drawn
 
 
-def _as_json(outcome: Outcome, machine: dict[str, str], command: str) -> str:
+def _format_outcome(outcome: Outcome, machine: dict[str, str], command: str) -> str:
     content = {
         "command": command,
         "machine": machine,
-        "results": [_without_nan(asdict(result)) for result in outcome.results],
+        "results": [_drop_nan(asdict(result)) for result in outcome.results],
         "skipped": outcome.skipped,
     }
     return json.dumps(content, indent=1, allow_nan=False) + "\n"
 
 
-def _without_nan(values: dict[str, object]) -> dict[str, object]:
+def _drop_nan(values: dict[str, object]) -> dict[str, object]:
     return {k: None if isinstance(v, float) and math.isnan(v) else v for k, v in values.items()}
 
 
-def _page(outcome: Outcome, machine: dict[str, str], command: str, plots: dict[str, str]) -> str:
+def _format_page(
+    outcome: Outcome, machine: dict[str, str], command: str, plots: dict[str, str]
+) -> str:
     versions = ", ".join(f"{k} {v}" for k, v in machine.items() if k != "machine")
     parts = [INTRODUCTION, f"Machine: {machine['machine']}. {versions}.\n"]
     for section, render in SECTIONS.items():
-        results = _of(outcome.results, section)
+        results = _select_section(outcome.results, section)
         if results:
             parts.append(render(results, plots.get(section, "")))
     if outcome.skipped:
@@ -113,20 +119,20 @@ def _page(outcome: Outcome, machine: dict[str, str], command: str, plots: dict[s
     return "\n".join(parts)
 
 
-def _of(results: Iterable[Result], section: str) -> list[Result]:
+def _select_section(results: Iterable[Result], section: str) -> list[Result]:
     return [result for result in results if result.section == section]
 
 
 TEXT_COLUMNS = ("data set, points", "task", "tool", "remark", "goal", "data set")
 
 
-def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+def _format_table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """Return a table, text to the left, numbers to the right."""
     rule = ["---" if name in TEXT_COLUMNS else "---:" for name in head]
     return "\n".join(f"| {' | '.join(row)} |" for row in (head, rule, *rows)) + "\n"
 
 
-def _seconds(seconds: float) -> str:
+def _format_seconds(seconds: float) -> str:
     if math.isnan(seconds):
         return "-"
     if seconds < 0.0995:
@@ -134,7 +140,7 @@ def _seconds(seconds: float) -> str:
     return f"{seconds:.1f} s" if seconds >= 9.95 else f"{seconds:.2f} s"
 
 
-def _ratio(seconds: float, ours: float) -> str:
+def _format_speed_ratio(seconds: float, ours: float) -> str:
     ratio = seconds / ours
     return f"{ratio:.0f}" if ratio >= 9.95 else f"{ratio:.2f}"
 
@@ -161,13 +167,13 @@ class _KernelRow:
             return "- †"
         mark = " †" if _is_wrong(result) else ""
         if tool == OURS or OURS not in self.by_tool:
-            return f"{_seconds(result.seconds)}{mark}"
-        return f"{_seconds(result.seconds)} ({self.ratio(tool, OURS)}){mark}"
+            return f"{_format_seconds(result.seconds)}{mark}"
+        return f"{_format_seconds(result.seconds)} ({self.ratio(tool, OURS)}){mark}"
 
     def ratio(self, tool: str, to: str) -> str:
         if tool not in self.by_tool or to not in self.by_tool:
             return ""
-        return _ratio(self.by_tool[tool].seconds, self.by_tool[to].seconds)
+        return _format_speed_ratio(self.by_tool[tool].seconds, self.by_tool[to].seconds)
 
     def extra(self, tool: str, name: str, form: str = ",.0f") -> str:
         result = self.by_tool.get(tool)
@@ -179,27 +185,27 @@ def _is_wrong(result: Result) -> bool:
     return not result.extra["is_right"]
 
 
-def _kernel_rows(results: list[Result]) -> list[_KernelRow]:
+def _make_kernel_rows(results: list[Result]) -> list[_KernelRow]:
     groups: dict[tuple[str, int], list[Result]] = {}
     for result in results:
         groups.setdefault((result.task, result.count), []).append(result)
     return [_KernelRow(group) for group in groups.values()]
 
 
-def _kernel(results: list[Result], plot: str) -> str:
-    rows = _kernel_rows(results)
+def _format_kernel_part(results: list[Result], plot: str) -> str:
+    rows = _make_kernel_rows(results)
     tools = [tool for tool in kernel.ALL_TOOLS if any(tool in row.by_tool for row in rows)]
     parts = ["## Triangulation\n", KERNEL_NOTES]
-    parts += _picture(plot)
-    parts.append(_times(rows, tools))
-    parts += goals_part(results)
-    parts += ["### What the others lose, and how ties fall\n", _remarks(rows)]
-    parts += ["### Memory\n", MEMORY_NOTES, _memory(rows, tools)]
-    parts += ["### Work\n", WORK_NOTES, _work(rows)]
+    parts += _format_plot(plot)
+    parts.append(_format_times(rows, tools))
+    parts += format_goals(results)
+    parts += ["### What the others lose, and how ties fall\n", _format_remarks(rows)]
+    parts += ["### Memory\n", MEMORY_NOTES, _format_memory(rows, tools)]
+    parts += ["### Work\n", WORK_NOTES, _format_work(rows)]
     return "\n".join(parts)
 
 
-def _picture(plot: str) -> list[str]:
+def _format_plot(plot: str) -> list[str]:
     return [f"![Time per point of every tool on every data set]({plot})\n"] if plot else []
 
 
@@ -209,25 +215,25 @@ figures of this page. Each ratio is the least favourable of its data sets.
 """
 
 
-def goals_part(results: list[Result]) -> list[str]:
+def format_goals(results: list[Result]) -> list[str]:
     """Return the page's part about goals; nothing where no goal can be judged."""
-    lines = judged(results)
+    lines = judge_goals(results)
     if not lines:
         return []
     head = ["goal", "data set", "required", "aim", "reached", ""]
-    return ["### Required and reached\n", GOALS_NOTES, _table(head, lines)]
+    return ["### Required and reached\n", GOALS_NOTES, _format_table(head, lines)]
 
 
-def _times(rows: list[_KernelRow], tools: list[str]) -> str:
+def _format_times(rows: list[_KernelRow], tools: list[str]) -> str:
     is_beside = {KERNEL, CGAL} <= set(tools)
     head = ["data set, points", *tools] + ["CGAL / kernel"] * is_beside
     body = [
         [row.label, *map(row.cell, tools)] + [row.ratio(CGAL, KERNEL)] * is_beside for row in rows
     ]
-    return _table(head, body)
+    return _format_table(head, body)
 
 
-def _remarks(rows: list[_KernelRow]) -> str:
+def _format_remarks(rows: list[_KernelRow]) -> str:
     """One line a tool and remark, for the answers that are not equal to ours."""
     rows_of: dict[str, list[str]] = {}
     for row in rows:
@@ -248,7 +254,7 @@ arrays returned (of the whole call 82 bytes per point, of the kernel 48).
 """
 
 
-def _memory(rows: list[_KernelRow], tools: list[str]) -> str:
+def _format_memory(rows: list[_KernelRow], tools: list[str]) -> str:
     ours = [tool for tool in kernel.OUR_TOOLS if tool in tools]
     head = ["data set, points", *tools, *(f"{tool}, beyond input and output" for tool in ours)]
     body = [
@@ -260,7 +266,9 @@ def _memory(rows: list[_KernelRow], tools: list[str]) -> str:
         for row in rows
         if row.count >= LEAST_FOR_MEMORY
     ]
-    return _table(head, body) if body else f"Too few points: {LEAST_FOR_MEMORY:,} are needed.\n"
+    return (
+        _format_table(head, body) if body else f"Too few points: {LEAST_FOR_MEMORY:,} are needed.\n"
+    )
 
 
 WORK_NOTES = """\
@@ -272,9 +280,9 @@ machine; `count_work` in `tin/_kernel.py` tells them of any points.
 WORK_COUNTS = ("searches", "full_searches", "candidates", "cell_rows", "exact_decisions")
 
 
-def _work(rows: list[_KernelRow]) -> str:
+def _format_work(rows: list[_KernelRow]) -> str:
     head = ["data set, points", *(name.replace("_", " ") for name in WORK_COUNTS)]
-    return _table(
+    return _format_table(
         head,
         [[row.label, *(row.extra(kernel.WORK, c, ".3f") for c in WORK_COUNTS)] for row in rows],
     )
@@ -299,41 +307,43 @@ As for triangulation without lines. Every tool is given what it needs before.
 """
 
 
-def _lines(results: list[Result], plot: str) -> str:
-    rows = _kernel_rows(results)
+def _format_lines_part(results: list[Result], plot: str) -> str:
+    rows = _make_kernel_rows(results)
     tools = [tool for tool in ALL_LINE_TOOLS if any(tool in row.by_tool for row in rows)]
-    parts = ["## Triangulation with breaklines\n", LINES_NOTES, *_picture(plot)]
-    parts += [_times(rows, tools), *goals_part(results)]
-    parts += ["### Answers with lines that differ from ours\n", _remarks(rows)]
-    parts += ["### Memory with lines\n", LINES_MEMORY_NOTES, _memory(rows, tools)]
+    parts = ["## Triangulation with breaklines\n", LINES_NOTES, *_format_plot(plot)]
+    parts += [_format_times(rows, tools), *format_goals(results)]
+    parts += ["### Answers with lines that differ from ours\n", _format_remarks(rows)]
+    parts += ["### Memory with lines\n", LINES_MEMORY_NOTES, _format_memory(rows, tools)]
     return "\n".join(parts)
 
 
 # ------------------------------------------------------------------ other sections
 
 
-def _others(title: str, unit: str, notes: str) -> Callable[[list[Result], bool], str]:
+def _make_part_formatter(title: str, unit: str, notes: str) -> Callable[[list[Result], bool], str]:
     def render(results: list[Result], plot: str) -> str:
         del plot
         ours = {result.task: result for result in results if result.tool == OURS}
         head = ["task", "tool", unit, "seconds", "times tinsmith", "remark"]
-        rows = [_other_row(result, ours[result.task]) for result in results]
-        return "\n".join([f"## {title}\n", notes, _table(head, rows), *goals_part(results)])
+        rows = [_make_other_row(result, ours[result.task]) for result in results]
+        return "\n".join(
+            [f"## {title}\n", notes, _format_table(head, rows), *format_goals(results)]
+        )
 
     return render
 
 
-def _other_row(result: Result, ours: Result) -> list[str]:
+def _make_other_row(result: Result, ours: Result) -> list[str]:
     remark = result.note
     if "prepare_seconds" in result.extra:
-        remark = f"{_seconds(result.extra['prepare_seconds'])} to prepare"
+        remark = f"{_format_seconds(result.extra['prepare_seconds'])} to prepare"
     rate, our_rate = result.seconds / result.count, ours.seconds / ours.count
     return [
         result.task,
         result.tool,
         f"{result.count:,}",
-        _seconds(result.seconds),
-        _ratio(rate, our_rate),
+        _format_seconds(result.seconds),
+        _format_speed_ratio(rate, our_rate),
         remark,
     ]
 
@@ -348,34 +358,34 @@ startinpy is a removal and an insertion; its points are sorted along a curve fir
 """
 
 SECTIONS: dict[str, Callable[[list[Result], str], str]] = {
-    kernel.SECTION: _kernel,
-    ways.SECTION: _others(
+    kernel.SECTION: _format_kernel_part,
+    ways.SECTION: _make_part_formatter(
         "The kernel's own ways",
         "points",
         "Vector instructions, the two methods between which the kernel chooses, and small inputs;\n"
         "all in one process and in turn, each with the same arrays as the others.\n",
     ),
-    lines.SECTION: _lines,
-    edits.SECTION: _others(
+    lines.SECTION: _format_lines_part,
+    edits.SECTION: _make_part_formatter(
         "Edits",
         "edits",
         EDITS_NOTES,
     ),
-    locate.SECTION: _others(
+    locate.SECTION: _make_part_formatter(
         "Queries",
         "places",
         "Random places on a TIN of uniform points, near the origin of coordinates so that SciPy\n"
         "can take part; ratios are per place. To prepare is from points to the first answer.\n",
     ),
-    readers.SECTION: _others(
+    readers.SECTION: _make_part_formatter(
         "Readers",
         "rows",
         "One file of each kind, in the cache of the system; equal numbers read.\n",
     ),
-    writers.SECTION: _others(
+    writers.SECTION: _make_part_formatter(
         "Writers", "triangles", "From the TIN to the file; every file is read back and compared.\n"
     ),
-    answers.SECTION: _others(
+    answers.SECTION: _make_part_formatter(
         "Answers from the surface",
         "points",
         "What is derived from a TIN, on one and the same TIN, answers compared. To prepare is\n"

@@ -56,31 +56,33 @@ def draw(results: list[Result], path: Path) -> Path:
     import matplotlib.pyplot as plt
 
     shown = [r for r in results if r.tool != kernel.WORK and not math.isnan(r.seconds)]
-    labels = list(dict.fromkeys(_label(result) for result in shown))
+    labels = list(dict.fromkeys(_name_size(result) for result in shown))
     figure, axes = plt.subplots(figsize=(9.0, 1.6 + 0.36 * len(labels)), layout="constrained")
     for tool, style in STYLES.items():
         # The legend's marker is drawn apart: all answers of a tool may be pale.
-        axes.scatter([], [], label=tool if _of(shown, tool) else None, linewidths=1.4, **style)
+        axes.scatter(
+            [], [], label=tool if _select_tool(shown, tool) else None, linewidths=1.4, **style
+        )
         for is_right, strength in ((True, 1.0), (False, PALE)):
-            mine = [r for r in _of(shown, tool) if r.extra["is_right"] == is_right]
+            mine = [r for r in _select_tool(shown, tool) if r.extra["is_right"] == is_right]
             times = [result.seconds / result.count * 1e6 for result in mine]
-            rows = [labels.index(_label(result)) for result in mine]
+            rows = [labels.index(_name_size(result)) for result in mine]
             axes.scatter(times, rows, alpha=strength, linewidths=1.4, **style)
-    _dress(axes, labels, TITLES[results[0].section])
+    _finish_axes(axes, labels, TITLES[results[0].section])
     figure.savefig(path, dpi=150, metadata={"Software": None})
     plt.close(figure)
     return path
 
 
-def _of(results: list[Result], tool: str) -> list[Result]:
+def _select_tool(results: list[Result], tool: str) -> list[Result]:
     return [result for result in results if result.tool == tool]
 
 
-def _label(result: Result) -> str:
+def _name_size(result: Result) -> str:
     return f"{result.task}, {result.count:,}"
 
 
-def _dress(axes: Any, labels: list[str], title: str) -> None:
+def _finish_axes(axes: Any, labels: list[str], title: str) -> None:
     from matplotlib.ticker import LogFormatter
 
     axes.set_xscale("log")

@@ -18,16 +18,16 @@ import numpy as np
 import tinsmith as ts
 from tinsmith.tin import TIN
 
-from ..cgal import harness
-from ..datasets.edits import BATCH, EDIT_TASKS, EditTask, edit_task, labelled
+from ..cgal import build_harness
+from ..datasets.edits import BATCH, EDIT_TASKS, EditTask, label_task, make_edit_task
 from ..datasets.tasks import write_task
-from ..measure import Outcome, Result, median
-from ..peers.answers import Verdict, numbered, ranked, verdict
+from ..measure import Outcome, Result, find_median
+from ..peers.answers import Verdict, judge_answer, number_corners, rank_triangles
 from ..peers.edit_tools import ALL_EDIT_TOOLS, BUILD, EDIT_TOOLS, OPENED
-from ..peers.tool_process import ToolProcess, worker_command
+from ..peers.tool_process import ToolProcess, make_worker_command
 from ..peers.triangulators import CGAL, is_cgal
-from .kernel import in_turn
-from .lines import available_tools
+from .kernel import run_in_turn
+from .lines import find_line_tools
 
 __all__ = ["SECTION", "run"]
 
@@ -56,11 +56,11 @@ def run(
         If the answer of an exact tool is wrong.
     """
     outcome = Outcome()
-    present = available_tools(tools, EDIT_TOOLS, "edits", outcome)
+    present = find_line_tools(tools, EDIT_TOOLS, "edits", outcome)
     for name in (*EDIT_TASKS, BATCH):
         print(f"edits: {name}, {n:,} points", file=sys.stderr, flush=True)
         fitting = [tool for tool in present if _takes_part(tool, name)]
-        outcome.results += _measure(name, edit_task(name, n), fitting, repeats, limit)
+        outcome.results += _measure_edits(name, make_edit_task(name, n), fitting, repeats, limit)
     return outcome
 
 
@@ -81,14 +81,14 @@ class EditProcess(ToolProcess):
             arrays = folder / "task.npz"
             if not arrays.exists():
                 write_task(task, arrays)
-            return worker_command("edits", name, arrays)
+            return make_worker_command("edits", name, arrays)
         plane, script = folder / "points.bin", folder / "script.bin"
         task.points[:, :2].tofile(plane)
         task.script[:, CGAL_COLUMNS].tofile(script)
-        return [str(harness("edits")), str(plane), str(script)]
+        return [str(build_harness("edits")), str(plane), str(script)]
 
 
-def _measure(
+def _measure_edits(
     name: str, task: EditTask, tools: list[str], repeats: int, limit: float
 ) -> Iterator[Result]:
     tin = ts.triangulate(task.afterwards())
@@ -98,23 +98,23 @@ def _measure(
             tool: stack.enter_context(EditProcess(tool, task, Path(folder), limit))
             for tool in tools
         }
-        failures = in_turn(processes, repeats)
+        failures = run_in_turn(processes, repeats)
         verdicts = {
             tool: Verdict(False, failures[tool])
             if tool in failures
-            else _judged(tool, process, tin, task)
+            else _judge_edits(tool, process, tin, task)
             for tool, process in processes.items()
         }
     for tool, process in processes.items():
-        label = labelled(name, len(task.points))
-        yield _result(label, tool, len(task.script), process, verdicts[tool])
+        label = label_task(name, len(task.points))
+        yield _make_result(label, tool, len(task.script), process, verdicts[tool])
 
 
-def _judged(tool: str, process: ToolProcess, tin: TIN, task: EditTask) -> Verdict:
+def _judge_edits(tool: str, process: ToolProcess, tin: TIN, task: EditTask) -> Verdict:
     wanted = ts.triangulate(task.script[:, 3:]) if tool == BUILD else tin
     answer = process.triangles()
-    numbers = numbered(np.ascontiguousarray(answer[:, :, :2]), wanted.points)
-    found = verdict(wanted, numbers, ranked(wanted.triangles))
+    numbers = number_corners(np.ascontiguousarray(answer[:, :, :2]), wanted.points)
+    found = judge_answer(wanted, numbers, rank_triangles(wanted.triangles))
     if found.is_right and answer.shape[2] == 3:
         wrong = np.count_nonzero(wanted.points[numbers, 2] != answer[:, :, 2])
         found = Verdict(False, f"{wrong:,} heights of corners wrong") if wrong else found
@@ -123,7 +123,7 @@ def _judged(tool: str, process: ToolProcess, tin: TIN, task: EditTask) -> Verdic
     return found
 
 
-def _result(task: str, tool: str, count: int, process: ToolProcess, found: Verdict) -> Result:
+def _make_result(task: str, tool: str, count: int, process: ToolProcess, found: Verdict) -> Result:
     extra: dict[str, Any] = {"is_right": found.is_right}
     runs = tuple(process.seconds)
-    return Result(SECTION, task, tool, count, median(process.seconds), runs, found.text, extra)
+    return Result(SECTION, task, tool, count, find_median(process.seconds), runs, found.text, extra)

@@ -21,10 +21,10 @@ from numpy.typing import NDArray
 import tinsmith as ts
 from tinsmith.tin import _kernel
 
-from ..cgal import CgalMissingError, harness
-from ..datasets.points import DATASETS, dataset
-from ..measure import OURS, SLOW_SECONDS, Outcome, Result, median
-from ..peers.answers import Verdict, counted, ranked, verdict
+from ..cgal import CgalMissingError, build_harness
+from ..datasets.points import DATASETS, make_points
+from ..measure import OURS, SLOW_SECONDS, Outcome, Result, find_median
+from ..peers.answers import Verdict, judge_answer, make_counting_judge, rank_triangles
 from ..peers.tool_process import ToolFailedError, ToolProcess
 from ..peers.triangulators import ALL_CORES, CGAL, KERNEL, KERNEL_ALL_CORES, TOOLS
 
@@ -33,11 +33,11 @@ __all__ = [
     "OUR_TOOLS",
     "SECTION",
     "WORK",
-    "available_tools",
-    "default_cases",
-    "in_turn",
-    "result_of",
+    "find_tools",
+    "list_cases",
+    "make_result",
     "run",
+    "run_in_turn",
 ]
 
 SECTION = "kernel"
@@ -84,45 +84,45 @@ def run(
         If our answer, or that of an exact peer, is wrong.
     """
     outcome = Outcome()
-    present = available_tools(tools, outcome)
+    present = find_tools(tools, outcome)
     for name, n in cases:
         print(f"kernel: {name}, {n:,} points", file=sys.stderr, flush=True)
-        outcome.results += _measure(Case(name, n), present, repeats, limit)
+        outcome.results += _measure_case(Case(name, n), present, repeats, limit)
     return outcome
 
 
-def available_tools(tools: Sequence[str], outcome: Outcome) -> list[str]:
+def find_tools(tools: Sequence[str], outcome: Outcome) -> list[str]:
     """Return the tools that are here; note the others."""
     present = outcome.present({tool: TOOLS[tool].module for tool in tools if tool != CGAL})
     if CGAL in tools:
         try:
-            harness()
+            build_harness()
             present.append(CGAL)
         except CgalMissingError as error:
             outcome.skip({CGAL: str(error)})
     return [tool for tool in tools if tool in present]
 
 
-def _measure(case: Case, tools: list[str], repeats: int, limit: float) -> Iterator[Result]:
-    points = dataset(case.name, case.n)
-    fitting = [tool for tool in tools if len(points) <= _largest(tool)]
+def _measure_case(case: Case, tools: list[str], repeats: int, limit: float) -> Iterator[Result]:
+    points = make_points(case.name, case.n)
+    fitting = [tool for tool in tools if len(points) <= _find_largest(tool)]
     with tempfile.TemporaryDirectory() as folder, ExitStack() as stack:
         processes = {
             tool: stack.enter_context(ToolProcess(tool, points, Path(folder), limit))
             for tool in fitting
         }
-        failures = in_turn(processes, repeats)
-        verdicts = _judged(points, processes, failures)
+        failures = run_in_turn(processes, repeats)
+        verdicts = _judge_all(points, processes, failures)
     for tool, process in processes.items():
-        yield result_of(SECTION, case.name, tool, len(points), process, verdicts[tool])
-    yield _work(case, points)
+        yield make_result(SECTION, case.name, tool, len(points), process, verdicts[tool])
+    yield _measure_work(case, points)
 
 
-def _largest(tool: str) -> int:
+def _find_largest(tool: str) -> int:
     return TOOLS[tool].largest if tool in TOOLS else TOOLS[OURS].largest
 
 
-def in_turn(processes: Mapping[str, ToolProcess], repeats: int) -> dict[str, str]:
+def run_in_turn(processes: Mapping[str, ToolProcess], repeats: int) -> dict[str, str]:
     """Run A B C A B C; return what went wrong by tool."""
     failures: dict[str, str] = {}
     for turn in range(repeats):
@@ -136,7 +136,7 @@ def in_turn(processes: Mapping[str, ToolProcess], repeats: int) -> dict[str, str
     return failures
 
 
-def result_of(
+def make_result(
     section: str, task: str, tool: str, count: int, process: ToolProcess, found: Verdict
 ) -> Result:
     """Return seconds, memory and answer of a tool that has had its turns."""
@@ -147,10 +147,10 @@ def result_of(
             beyond = process.growth - process.output_bytes
             extra["beyond_output_bytes_per_point"] = beyond / count
     runs = tuple(process.seconds)
-    return Result(section, task, tool, count, median(process.seconds), runs, found.text, extra)
+    return Result(section, task, tool, count, find_median(process.seconds), runs, found.text, extra)
 
 
-def _work(case: Case, points: Floats) -> Result:
+def _measure_work(case: Case, points: Floats) -> Result:
     counts = _kernel.count_work(points)
     per_triangle = {
         name: count / counts["triangles"] for name, count in counts.items() if name != "triangles"
@@ -161,7 +161,7 @@ def _work(case: Case, points: Floats) -> Result:
 # ----------------------------------------------------------------------- answers
 
 
-def _judged(
+def _judge_all(
     points: Floats, processes: dict[str, ToolProcess], failures: dict[str, str]
 ) -> dict[str, Verdict]:
     """Return what is to be said of each tool's answer."""
@@ -170,22 +170,26 @@ def _judged(
     ts.check(tin, level=level, points=points).raise_if_failed()
     assert len(tin.points) == len(points)
     assert len(tin.triangles) == 2 * len(points) - 2 - len(tin.hull)
-    judge = partial(verdict, tin, wanted=ranked(tin.triangles)) if level == 3 else counted(tin)
+    judge = (
+        partial(judge_answer, tin, wanted=rank_triangles(tin.triangles))
+        if level == 3
+        else make_counting_judge(tin)
+    )
     return {
         tool: Verdict(False, failures[tool])
         if tool in failures
-        else _accepted(tool, judge(process.triangles()))
+        else _accept(tool, judge(process.triangles()))
         for tool, process in processes.items()
     }
 
 
-def _accepted(tool: str, found: Verdict) -> Verdict:
+def _accept(tool: str, found: Verdict) -> Verdict:
     is_exact = tool == CGAL or TOOLS[tool].is_exact
     assert found.is_right or not is_exact, f"{tool}: {found.text}"
     return found
 
 
-def default_cases(n: int, *, is_full: bool = False) -> list[tuple[str, int]]:
+def list_cases(n: int, *, is_full: bool = False) -> list[tuple[str, int]]:
     """Return every data set at ``n`` points, and uniform points at smaller sizes (and larger)."""
     smaller = [("uniform", size) for size in (1_000, 10_000, 100_000) if size < n]
     larger = [("uniform", 10_000_000)] if is_full else []

@@ -20,16 +20,16 @@ import tinsmith as ts
 from tinsmith.tin import TIN
 
 from ..cgal import CgalMissingError, harness
-from ..datasets.lines import LEAST_POINTS, LINE_DATASETS, LineTask, line_dataset
+from ..datasets.lines import LEAST_POINTS, LINE_DATASETS, LineTask, make_lines
 from ..datasets.tasks import write_task
 from ..measure import Outcome, Result
-from ..peers.answers import Verdict, edge_codes, numbered, ranked, verdict
+from ..peers.answers import Verdict, encode_edges, judge_answer, number_corners, rank_triangles
 from ..peers.line_tools import ALL_LINE_TOOLS, CGAL_INDICES, LINE_TOOLS
-from ..peers.tool_process import ToolFailedError, ToolProcess, worker_command
+from ..peers.tool_process import ToolFailedError, ToolProcess, make_worker_command
 from ..peers.triangulators import is_cgal
-from .kernel import in_turn, result_of
+from .kernel import make_result, run_in_turn
 
-__all__ = ["SECTION", "available_tools", "run"]
+__all__ = ["SECTION", "find_line_tools", "run"]
 
 SECTION = "lines"
 
@@ -62,15 +62,15 @@ def run(
         If our answer, or that of an exact peer, is wrong.
     """
     outcome = Outcome()
-    present = available_tools(tools, LINE_TOOLS, "constrained", outcome)
+    present = find_line_tools(tools, LINE_TOOLS, "constrained", outcome)
     for name in names:
         print(f"lines: {name}, {n:,} points", file=sys.stderr, flush=True)
-        task = line_dataset(name, max(n, LEAST_POINTS))
-        outcome.results += _measure(name, task, present, repeats, limit)
+        task = make_lines(name, max(n, LEAST_POINTS))
+        outcome.results += _measure_lines(name, task, present, repeats, limit)
     return outcome
 
 
-def available_tools(
+def find_line_tools(
     tools: Sequence[str], modules: Mapping[str, Any], program: str, outcome: Outcome
 ) -> list[str]:
     """Return the tools that are here, CGAL by one of its programs; note the others."""
@@ -93,7 +93,7 @@ class LineProcess(ToolProcess):
             arrays = folder / "task.npz"
             if not arrays.exists():
                 write_task(task, arrays)
-            return worker_command("lines", name, arrays)
+            return make_worker_command("lines", name, arrays)
         plane, segments = folder / "points.bin", folder / "segments.bin"
         task.vertices.tofile(plane)
         task.segments.tofile(segments)
@@ -101,24 +101,24 @@ class LineProcess(ToolProcess):
         return [str(harness("constrained")), str(plane), str(segments), way]
 
 
-def _measure(
+def _measure_lines(
     name: str, task: LineTask, tools: list[str], repeats: int, limit: float
 ) -> Iterator[Result]:
-    wanted = _wanted(task)
+    wanted = _prepare_wanted(task)
     with tempfile.TemporaryDirectory() as folder, ExitStack() as stack:
         processes = {
             tool: stack.enter_context(LineProcess(tool, task, Path(folder), limit))
             for tool in tools
         }
-        failures = in_turn(processes, repeats)
+        failures = run_in_turn(processes, repeats)
         verdicts = {
             tool: Verdict(False, failures[tool])
             if tool in failures
-            else _judged(tool, process, wanted)
+            else _judge_lines(tool, process, wanted)
             for tool, process in processes.items()
         }
     for tool, process in processes.items():
-        yield result_of(SECTION, name, tool, len(task.vertices), process, verdicts[tool])
+        yield make_result(SECTION, name, tool, len(task.vertices), process, verdicts[tool])
 
 
 # ------------------------------------------------------------------------ answers
@@ -130,28 +130,28 @@ class _Wanted(NamedTuple):
     steps: NDArray[np.int64]
 
 
-def _wanted(task: LineTask) -> _Wanted:
+def _prepare_wanted(task: LineTask) -> _Wanted:
     """Return our answer, proved, and the edges that lines must be, as its vertices."""
     tin = ts.triangulate(task.points, breaklines=task.breaklines())
     ts.check(tin, level=3, points=task.points).raise_if_failed()
     assert len(tin.points) == len(task.vertices)
-    place = numbered(np.stack([task.vertices] * 3, axis=1), tin.points)[:, 0]
+    place = number_corners(np.stack([task.vertices] * 3, axis=1), tin.points)[:, 0]
     assert (np.sort(place) == np.arange(len(place))).all()
     steps = place[task.steps]
-    codes = np.unique(edge_codes(steps))
-    assert np.array_equal(np.unique(edge_codes(tin.lines.segments())), codes)
+    codes = np.unique(encode_edges(steps))
+    assert np.array_equal(np.unique(encode_edges(tin.lines.segments())), codes)
     triangle, corner = np.nonzero(tin.constrained)
     ends = [tin.triangles[triangle, (corner + k) % 3] for k in (1, 2)]
-    assert np.array_equal(np.unique(edge_codes(np.stack(ends, axis=1))), codes)
-    return _Wanted(tin, ranked(tin.triangles), steps)
+    assert np.array_equal(np.unique(encode_edges(np.stack(ends, axis=1))), codes)
+    return _Wanted(tin, rank_triangles(tin.triangles), steps)
 
 
-def _judged(tool: str, process: ToolProcess, wanted: _Wanted) -> Verdict:
+def _judge_lines(tool: str, process: ToolProcess, wanted: _Wanted) -> Verdict:
     try:
         answer = process.triangles()
     except ToolFailedError as error:
         return Verdict(False, str(error))
-    found = verdict(wanted.tin, answer, wanted.triangles, steps=wanted.steps)
+    found = judge_answer(wanted.tin, answer, wanted.triangles, steps=wanted.steps)
     is_exact = is_cgal(tool) or LINE_TOOLS[tool].is_exact
     assert found.is_right or not is_exact, f"{tool}: {found.text}"
     return found

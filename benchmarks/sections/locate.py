@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 import tinsmith as ts
 from tinsmith.tin import TIN
 
-from ..measure import OURS, Outcome, Result, alternate, median
+from ..measure import OURS, Outcome, Result, alternate, find_median
 
 __all__ = ["SECTION", "run"]
 
@@ -56,26 +56,30 @@ def run(n_points: int = 50_000, n_queries: int = 50_000, *, repeats: int = 3) ->
     present = outcome.present(MODULES)
     for task, tools in TASKS.items():
         print(f"locate: {task}, {n_queries:,} places", file=sys.stderr, flush=True)
-        outcome.results += _measure(task, [t for t in tools if t.name in present], tin, xy, repeats)
+        outcome.results += _measure_queries(
+            task, [t for t in tools if t.name in present], tin, xy, repeats
+        )
     return outcome
 
 
-def _measure(task: str, tools: list[Tool], tin: TIN, xy: Floats, repeats: int) -> list[Result]:
-    prepared = {tool.name: _prepared(tool, tin) for tool in tools}
+def _measure_queries(
+    task: str, tools: list[Tool], tin: TIN, xy: Floats, repeats: int
+) -> list[Result]:
+    prepared = {tool.name: _prepare_tool(tool, tin) for tool in tools}
     asked = {tool.name: xy[: tool.most] for tool in tools}
-    calls = {name: _call(answer, asked[name]) for name, (answer, _) in prepared.items()}
+    calls = {name: _prepare_query(answer, asked[name]) for name, (answer, _) in prepared.items()}
     answers, runs = alternate(calls, repeats)
     results = []
     for name, (_, prepare_seconds) in prepared.items():
         count = len(asked[name])
         np.testing.assert_allclose(answers[name], answers[OURS][:count], rtol=0, atol=1e-6)
         extra = {"prepare_seconds": prepare_seconds}
-        seconds = median(runs[name])
+        seconds = find_median(runs[name])
         results.append(Result(SECTION, task, name, count, seconds, tuple(runs[name]), "", extra))
     return results
 
 
-def _prepared(tool: Tool, tin: TIN) -> tuple[Answer, float]:
+def _prepare_tool(tool: Tool, tin: TIN) -> tuple[Answer, float]:
     """Return what answers, and the seconds until it has answered once."""
     begin = time.perf_counter()
     answer = tool.prepare(tin)
@@ -83,19 +87,19 @@ def _prepared(tool: Tool, tin: TIN) -> tuple[Answer, float]:
     return answer, time.perf_counter() - begin
 
 
-def _call(answer: Answer, xy: Floats) -> Callable[[], NDArray[Any]]:
+def _prepare_query(answer: Answer, xy: Floats) -> Callable[[], NDArray[Any]]:
     return lambda: answer(xy)
 
 
-def _tinsmith_locate(tin: TIN) -> Answer:
+def _locate_with_tinsmith(tin: TIN) -> Answer:
     return ts.triangulate(tin.points).locate
 
 
-def _tinsmith_interpolate(tin: TIN) -> Answer:
+def _interpolate_with_tinsmith(tin: TIN) -> Answer:
     return ts.triangulate(tin.points).interpolate
 
 
-def _scipy(tin: TIN) -> Answer:
+def _interpolate_with_scipy(tin: TIN) -> Answer:
     from scipy.interpolate import LinearNDInterpolator
     from scipy.spatial import Delaunay
 
@@ -103,7 +107,7 @@ def _scipy(tin: TIN) -> Answer:
     return answer
 
 
-def _matplotlib(tin: TIN) -> Answer:
+def _locate_with_matplotlib(tin: TIN) -> Answer:
     import matplotlib.tri
 
     made = matplotlib.tri.Triangulation(tin.points[:, 0], tin.points[:, 1], tin.triangles)
@@ -111,16 +115,16 @@ def _matplotlib(tin: TIN) -> Answer:
     return lambda xy: finder(xy[:, 0], xy[:, 1])
 
 
-def _startinpy(tin: TIN) -> Answer:
+def _interpolate_with_startinpy(tin: TIN) -> Answer:
     import startinpy
 
     surface = startinpy.DT()
     surface.snap_tolerance = 1e-9
-    surface.insert(_in_strips(tin.points))
+    surface.insert(_order_in_strips(tin.points))
     return lambda xy: np.asarray(surface.interpolate({"method": "TIN"}, xy))
 
 
-def _in_strips(points: Floats) -> Floats:
+def _order_in_strips(points: Floats) -> Floats:
     """To and fro in strips: inserted at random, a million points take half a minute."""
     strip = (points[:, 1] / SIZE * np.sqrt(len(points) / 2)).astype(np.int64)
     eastwards = np.where(strip % 2 == 0, points[:, 0], -points[:, 0])
@@ -128,11 +132,11 @@ def _in_strips(points: Floats) -> Floats:
 
 
 TASKS = {
-    "locate": [Tool(OURS, _tinsmith_locate), Tool("matplotlib", _matplotlib)],
+    "locate": [Tool(OURS, _locate_with_tinsmith), Tool("matplotlib", _locate_with_matplotlib)],
     "interpolate": [
-        Tool(OURS, _tinsmith_interpolate),
-        Tool("SciPy", _scipy),
-        Tool("startinpy", _startinpy, MOST_SLOW_QUERIES),
+        Tool(OURS, _interpolate_with_tinsmith),
+        Tool("SciPy", _interpolate_with_scipy),
+        Tool("startinpy", _interpolate_with_startinpy, MOST_SLOW_QUERIES),
     ],
 }
 """Who answers what."""

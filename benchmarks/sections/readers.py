@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 import tinsmith as ts
 from tinsmith.tin import TIN
 
-from ..datasets.points import dataset
-from ..measure import OURS, Outcome, Result, alternate, is_installed, median
+from ..datasets.points import make_points
+from ..measure import OURS, Outcome, Result, alternate, find_median, is_installed
 from ..peers.meshes import MESH_PEERS
 
 __all__ = ["SECTION", "run"]
@@ -51,13 +51,13 @@ def run(n: int, *, repeats: int = 3) -> Outcome:
     outcome = Outcome()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        for task in (_survey, _raster, _mesh):
+        for task in (_measure_survey, _measure_raster, _measure_mesh):
             print(f"readers: {task.__name__[1:]}, {n:,}", file=sys.stderr, flush=True)
             task(folder, n, repeats, outcome)
     return outcome
 
 
-def _measure(
+def _measure_readers(
     task: str,
     path: Path,
     count: int,
@@ -73,7 +73,7 @@ def _measure(
     """
     present = outcome.present({tool: peer.module for tool, peer in peers.items()})
     calls: dict[str, Callable[[], Any]] = {OURS: lambda: ts.read(path, **options)}
-    calls |= {tool: _call(peers[tool], path) for tool in present}
+    calls |= {tool: _prepare_reading(peers[tool], path) for tool in present}
     for call in calls.values():
         call()  # imports, file cache
     answers, runs = alternate(calls, repeats)
@@ -81,32 +81,34 @@ def _measure(
         if tool in present:
             require(answers[OURS], answers[tool], tool)
         note = peers[tool].note if tool in peers else OUR_NOTES[task]
-        seconds = median(runs[tool])
+        seconds = find_median(runs[tool])
         outcome.results.append(Result(SECTION, task, tool, count, seconds, tuple(runs[tool]), note))
 
 
-def _call(peer: Reader, path: Path) -> Callable[[], Any]:
+def _prepare_reading(peer: Reader, path: Path) -> Callable[[], Any]:
     return lambda: peer.read(path)
 
 
 # ------------------------------------------------------------------------ survey
 
 
-def _survey(folder: Path, n: int, repeats: int, outcome: Outcome) -> None:
-    points = np.round(dataset("uniform", n), 3)
+def _measure_survey(folder: Path, n: int, repeats: int, outcome: Outcome) -> None:
+    points = np.round(make_points("uniform", n), 3)
     path = folder / "survey.csv"
     _write_pnezd(points, path)
     peers = {
-        "pandas.read_csv": Reader("pandas", _by_pandas, "last digit may be off; all five columns"),
-        "numpy.loadtxt": Reader("numpy", _by_numpy, "the three coordinates only"),
+        "pandas.read_csv": Reader(
+            "pandas", _read_with_pandas, "last digit may be off; all five columns"
+        ),
+        "numpy.loadtxt": Reader("numpy", _read_with_numpy, "the three coordinates only"),
     }
 
     def require(ours: Any, theirs: Any, tool: str) -> None:
         np.testing.assert_array_equal(ours.points, points)
         tolerance = 1e-15 if tool == "pandas.read_csv" else 0.0
-        np.testing.assert_allclose(_northing_first(ours.points), theirs, rtol=tolerance, atol=0)
+        np.testing.assert_allclose(_swap_axes(ours.points), theirs, rtol=tolerance, atol=0)
 
-    _measure(SURVEY, path, n, peers, repeats, outcome, require, columns="PNEZD")
+    _measure_readers(SURVEY, path, n, peers, repeats, outcome, require, columns="PNEZD")
 
 
 def _write_pnezd(points: Floats, path: Path) -> None:
@@ -118,38 +120,40 @@ def _write_pnezd(points: Floats, path: Path) -> None:
         )
 
 
-def _northing_first(points: Floats) -> Floats:
+def _swap_axes(points: Floats) -> Floats:
     return points[:, [1, 0, 2]]
 
 
-def _by_pandas(path: Path) -> Floats:
+def _read_with_pandas(path: Path) -> Floats:
     import pandas as pd
 
     return np.asarray(pd.read_csv(path, header=None).iloc[:, 1:4], np.float64)
 
 
-def _by_numpy(path: Path) -> Floats:
+def _read_with_numpy(path: Path) -> Floats:
     return np.loadtxt(path, delimiter=",", usecols=(1, 2, 3))
 
 
 # ------------------------------------------------------------------------ raster
 
 
-def _raster(folder: Path, n: int, repeats: int, outcome: Outcome) -> None:
+def _measure_raster(folder: Path, n: int, repeats: int, outcome: Outcome) -> None:
     if not is_installed("rasterio"):
         outcome.skipped.append("GeoTIFF: skipped, rasterio is not installed.")
         return
-    points = dataset("raster", n)
+    points = make_points("raster", n)
     heights = points[:, 2].astype(np.float32)
     path = folder / "heights.tif"
     _write_geotiff(points, heights, path)
-    peers = {"rasterio": Reader("rasterio", _by_rasterio, "the band alone, no points, no mask")}
+    peers = {
+        "rasterio": Reader("rasterio", _read_with_rasterio, "the band alone, no points, no mask")
+    }
 
     def require(ours: Any, theirs: Any, _: str) -> None:
         np.testing.assert_array_equal(ours.points, np.column_stack([points[:, :2], heights]))
         np.testing.assert_array_equal(ours.points[:, 2], theirs.ravel())
 
-    _measure(RASTER, path, len(points), peers, repeats, outcome, require)
+    _measure_readers(RASTER, path, len(points), peers, repeats, outcome, require)
 
 
 def _write_geotiff(points: Floats, heights: NDArray[np.float32], path: Path) -> None:
@@ -172,7 +176,7 @@ def _write_geotiff(points: Floats, heights: NDArray[np.float32], path: Path) -> 
         file.write(heights.reshape(-1, columns), 1)
 
 
-def _by_rasterio(path: Path) -> NDArray[np.float32]:
+def _read_with_rasterio(path: Path) -> NDArray[np.float32]:
     import rasterio
 
     with rasterio.open(path) as file:
@@ -182,8 +186,8 @@ def _by_rasterio(path: Path) -> NDArray[np.float32]:
 # -------------------------------------------------------------------------- mesh
 
 
-def _mesh(folder: Path, n: int, repeats: int, outcome: Outcome) -> None:
-    tin = ts.triangulate(dataset("uniform", n), crs=CRS)
+def _measure_mesh(folder: Path, n: int, repeats: int, outcome: Outcome) -> None:
+    tin = ts.triangulate(make_points("uniform", n), crs=CRS)
     path = ts.write(tin, folder / "surface.ply")
     peers = {
         tool: Reader(peer.module, peer.read, "coordinates become float32" * bool(peer.read_step))
@@ -197,4 +201,4 @@ def _mesh(folder: Path, n: int, repeats: int, outcome: Outcome) -> None:
         np.testing.assert_allclose(theirs[0], ours.points, rtol=0, atol=step)
         np.testing.assert_array_equal(theirs[1], ours.triangles)
 
-    _measure(MESH, path, n, peers, repeats, outcome, require)
+    _measure_readers(MESH, path, n, peers, repeats, outcome, require)

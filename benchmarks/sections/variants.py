@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 import tinsmith as ts
 from tinsmith.tin import _kernel
 
-from ..datasets.points import DATASETS, dataset
-from ..measure import OURS, Outcome, Result, alternate, median
+from ..datasets.points import DATASETS, make_points
+from ..measure import OURS, Outcome, Result, alternate, find_median
 
 __all__ = ["SECTION", "TWO_THREADS", "run"]
 
@@ -34,52 +34,58 @@ def run(n: int, *, repeats: int = 5) -> Outcome:
     """Measure vector paths, threads (at ``n`` points), methods (up to 100,000), small inputs."""
     outcome = Outcome()
     for name in ("uniform", "raster"):
-        outcome.results += _vector_paths(name, n, repeats)
-    outcome.results += _threads("uniform", n, repeats)
+        outcome.results += _measure_vector_paths(name, n, repeats)
+    outcome.results += _measure_threads("uniform", n, repeats)
     for name in DATASETS:
-        outcome.results += _methods(name, min(n, LARGEST_GROWN), repeats)
+        outcome.results += _measure_methods(name, min(n, LARGEST_GROWN), repeats)
     for size in SMALL_SIZES:
-        outcome.results += _small(size)
+        outcome.results += _measure_small(size)
     outcome.results += _import(repeats)
     return outcome
 
 
-def _vector_paths(name: str, n: int, repeats: int) -> Iterator[Result]:
-    points = dataset(name, n)
+def _measure_vector_paths(name: str, n: int, repeats: int) -> Iterator[Result]:
+    points = make_points(name, n)
     *slower, used = _kernel.VECTOR_PATHS
     ways = {OURS: partial(_kernel.grow, points)}
     ways |= {f"path {path}": partial(_kernel.grow, points, path=path) for path in slower}
     note = {OURS: f"path {used}, the one it takes here"}
-    return _results(f"{name}, vector instructions", len(points), ways, repeats, note)
+    return _measure_variants(f"{name}, vector instructions", len(points), ways, repeats, note)
 
 
-def _threads(name: str, n: int, repeats: int) -> Iterator[Result]:
-    points = dataset(name, n)
+def _measure_threads(name: str, n: int, repeats: int) -> Iterator[Result]:
+    points = make_points(name, n)
     ways = {OURS: partial(_kernel.grow, points, threads=1)}
     ways |= {TWO_THREADS: partial(_kernel.grow, points, threads=2)}
-    return _results(f"{name}, threads", len(points), ways, 3 * repeats, {OURS: "one thread"})
+    return _measure_variants(
+        f"{name}, threads", len(points), ways, 3 * repeats, {OURS: "one thread"}
+    )
 
 
-def _methods(name: str, n: int, repeats: int) -> Iterator[Result]:
-    points = dataset(name, n)
+def _measure_methods(name: str, n: int, repeats: int) -> Iterator[Result]:
+    points = make_points(name, n)
     methods = {"insertion": _kernel.Method.INSERTION, "growth": _kernel.Method.GROWTH}
     if name in QUADRATIC:
         del methods["growth"]
     ways = {OURS: partial(_kernel.grow, points)}
     ways |= {x: partial(_kernel.grow, points, method=method) for x, method in methods.items()}
-    return _results(f"{name}, methods", len(points), ways, repeats, {OURS: "as it chooses"})
+    return _measure_variants(
+        f"{name}, methods", len(points), ways, repeats, {OURS: "as it chooses"}
+    )
 
 
-def _small(size: int) -> Iterator[Result]:
-    points = dataset("uniform", max(size, 200))[:size]
+def _measure_small(size: int) -> Iterator[Result]:
+    points = make_points("uniform", max(size, 200))[:size]
     ways: dict[str, Callable[[], Any]] = {
         OURS: partial(ts.triangulate, points),
         "kernel": partial(_kernel.grow, points),
     }
-    return _results(f"uniform, {size:,} points", size, ways, SMALL_CALLS, {OURS: "whole call"})
+    return _measure_variants(
+        f"uniform, {size:,} points", size, ways, SMALL_CALLS, {OURS: "whole call"}
+    )
 
 
-def _results(
+def _measure_variants(
     task: str,
     count: int,
     ways: dict[str, Callable[[], Any]],
@@ -90,7 +96,7 @@ def _results(
     for way, answer in answers.items():
         _require_equal(answer, answers[OURS])
         yield Result(
-            SECTION, task, way, count, median(runs[way]), tuple(runs[way]), notes.get(way, "")
+            SECTION, task, way, count, find_median(runs[way]), tuple(runs[way]), notes.get(way, "")
         )
 
 
@@ -103,11 +109,11 @@ def _require_equal(found: Any, wanted: Any) -> None:
 def _import(repeats: int) -> Iterator[Result]:
     task = "import in a fresh process"
     for way, statement in ((OURS, "import tinsmith"), ("Python and numpy alone", "import numpy")):
-        runs = [_process_seconds(statement) for _ in range(repeats)]
-        yield Result(SECTION, task, way, 1, median(runs), tuple(runs))
+        runs = [_measure_process(statement) for _ in range(repeats)]
+        yield Result(SECTION, task, way, 1, find_median(runs), tuple(runs))
 
 
-def _process_seconds(statement: str) -> float:
+def _measure_process(statement: str) -> float:
     begin = time.perf_counter()
     subprocess.run([sys.executable, "-c", statement], check=True)
     return time.perf_counter() - begin

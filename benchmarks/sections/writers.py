@@ -20,8 +20,8 @@ from tinsmith.io import transform_points
 from tinsmith.terrain.slope import aspect, slope
 from tinsmith.tin import TIN
 
-from ..datasets.points import dataset
-from ..measure import OURS, Outcome, Result, alternate, median
+from ..datasets.points import make_points
+from ..measure import OURS, Outcome, Result, alternate, find_median
 from ..peers.meshes import MESH_PEERS
 
 __all__ = ["SECTION", "run"]
@@ -56,16 +56,16 @@ def run(n_triangles: int, *, repeats: int = 3) -> Outcome:
         If a peer's file holds something else than ours.
     """
     outcome = Outcome()
-    points = dataset("uniform", n_triangles // 2)
+    points = make_points("uniform", n_triangles // 2)
     tin = ts.triangulate(points, crs=CRS)
     with tempfile.TemporaryDirectory() as name:
-        for task in (_geojson, _ply):
+        for task in (_measure_geojson, _measure_ply):
             print(f"writers: {task.__name__[1:]}, {n_triangles:,}", file=sys.stderr, flush=True)
             task(Path(name), tin, repeats, outcome)
     return outcome
 
 
-def _measure(
+def _measure_writers(
     task: str,
     suffix: str,
     folder: Path,
@@ -79,11 +79,11 @@ def _measure(
     paths = {tool: folder / f"{tool.replace(' ', '_')}{suffix}" for tool in (OURS, *present)}
     _warm_up(folder / f"small{suffix}", [peers[tool] for tool in present])
     calls: dict[str, Callable[[], Any]] = {OURS: lambda: ts.write(tin, paths[OURS])}
-    calls |= {tool: _call(peers[tool], tin, paths[tool]) for tool in present}
+    calls |= {tool: _prepare_writing(peers[tool], tin, paths[tool]) for tool in present}
     _, runs = alternate(calls, repeats)
     for tool in calls:
         note = peers[tool].note if tool in peers else ""
-        count, seconds = len(tin.triangles), median(runs[tool])
+        count, seconds = len(tin.triangles), find_median(runs[tool])
         size = {"bytes": paths[tool].stat().st_size}
         outcome.results.append(
             Result(SECTION, task, tool, count, seconds, tuple(runs[tool]), note, size)
@@ -93,13 +93,13 @@ def _measure(
 
 def _warm_up(path: Path, peers: list[Writer]) -> None:
     """Let everybody import what they need."""
-    tin = ts.triangulate(dataset("uniform", 200), crs=CRS)
+    tin = ts.triangulate(make_points("uniform", 200), crs=CRS)
     ts.write(tin, path)
     for peer in peers:
         peer.write(tin, path)
 
 
-def _call(peer: Writer, tin: TIN, path: Path) -> Callable[[], Any]:
+def _prepare_writing(peer: Writer, tin: TIN, path: Path) -> Callable[[], Any]:
     return lambda: peer.write(tin, path)
 
 
@@ -113,22 +113,22 @@ class Feature(NamedTuple):
     properties: dict[str, float | int | None]
 
 
-def _geojson(folder: Path, tin: TIN, repeats: int, outcome: Outcome) -> None:
+def _measure_geojson(folder: Path, tin: TIN, repeats: int, outcome: Outcome) -> None:
     peers = {
         "pyogrio (GDAL)": Writer(
-            "pyogrio", _by_pyogrio, "36.146000007 becomes 36.146", step=DIGIT_STEP
+            "pyogrio", _write_with_pyogrio, "36.146000007 becomes 36.146", step=DIGIT_STEP
         ),
-        "json.dump": Writer("json", _by_json),
+        "json.dump": Writer("json", _write_with_json),
     }
     task = "triangles, GeoJSON (RFC 7946)"
-    paths = _measure(task, ".geojson", folder, tin, peers, repeats, outcome)
-    ours = _parsed(paths.pop(OURS))
+    paths = _measure_writers(task, ".geojson", folder, tin, peers, repeats, outcome)
+    ours = _parse_features(paths.pop(OURS))
     assert len(ours[0]) == len(tin.triangles)
     for tool, path in paths.items():
-        _require_same(ours, _parsed(path), peers[tool].step)
+        _require_same(ours, _parse_features(path), peers[tool].step)
 
 
-def _parsed(path: Path) -> tuple[Floats, Floats]:
+def _parse_features(path: Path) -> tuple[Floats, Floats]:
     """Return rings, (m, 4, 3), and properties, (m, 4), of a file, with its bytes dropped."""
     with path.open("rb") as file:
         features = json.load(file)["features"]
@@ -145,13 +145,13 @@ def _require_same(ours: tuple[Floats, Floats], theirs: tuple[Floats, Floats], st
     np.testing.assert_allclose(ours[1], theirs[1], rtol=1e-6, atol=1e-3)
 
 
-def _by_pyogrio(tin: TIN, path: Path) -> None:
+def _write_with_pyogrio(tin: TIN, path: Path) -> None:
     import pyogrio.raw
     import shapely
 
     places = transform_points(tin.points, CRS, WGS84)
     polygons = shapely.polygons(places[tin.triangles][:, [0, 1, 2, 0]])
-    properties = _properties(tin)
+    properties = _collect_properties(tin)
     pyogrio.raw.write(
         path,
         shapely.to_wkb(polygons),
@@ -164,7 +164,7 @@ def _by_pyogrio(tin: TIN, path: Path) -> None:
     )
 
 
-def _properties(tin: TIN) -> dict[str, NDArray[Any]]:
+def _collect_properties(tin: TIN) -> dict[str, NDArray[Any]]:
     return {
         "id": np.arange(len(tin.triangles), dtype=np.int32),
         "slope": slope(tin),
@@ -173,17 +173,17 @@ def _properties(tin: TIN) -> dict[str, NDArray[Any]]:
     }
 
 
-def _by_json(tin: TIN, path: Path) -> None:
+def _write_with_json(tin: TIN, path: Path) -> None:
     with path.open("w", encoding="ascii") as file:
-        content = {"type": "FeatureCollection", "features": list(_features(tin))}
+        content = {"type": "FeatureCollection", "features": list(_iterate_features(tin))}
         json.dump(content, file, allow_nan=False)
 
 
-def _features(tin: TIN) -> Iterator[dict[str, Any]]:
+def _iterate_features(tin: TIN) -> Iterator[dict[str, Any]]:
     places = transform_points(tin.points, CRS, WGS84)
     places = np.column_stack([places[:, :2].round(9), places[:, 2].round(6)])
     rings = places[tin.triangles][:, [0, 1, 2, 0]].tolist()
-    properties = {name: values.tolist() for name, values in _properties(tin).items()}
+    properties = {name: values.tolist() for name, values in _collect_properties(tin).items()}
     for ring, *values in zip(rings, *properties.values(), strict=True):
         yield {
             "type": "Feature",
@@ -195,12 +195,12 @@ def _features(tin: TIN) -> Iterator[dict[str, Any]]:
 # --------------------------------------------------------------------------- PLY
 
 
-def _ply(folder: Path, tin: TIN, repeats: int, outcome: Outcome) -> None:
+def _measure_ply(folder: Path, tin: TIN, repeats: int, outcome: Outcome) -> None:
     peers = {
         tool: Writer(peer.module, peer.write, "coordinates become float32" * bool(peer.write_step))
         for tool, peer in MESH_PEERS.items()
     }
-    paths = _measure("surface, binary PLY", ".ply", folder, tin, peers, repeats, outcome)
+    paths = _measure_writers("surface, binary PLY", ".ply", folder, tin, peers, repeats, outcome)
     written = ts.read(paths.pop(OURS))
     np.testing.assert_array_equal(written.points, tin.points)
     np.testing.assert_array_equal(written.triangles, tin.triangles)

@@ -8,14 +8,14 @@ from functools import lru_cache
 
 __all__ = [
     "BLANKS",
-    "as_grouped",
-    "as_number",
     "is_grouped",
     "is_missing",
     "is_number",
     "is_number_like",
     "is_padded",
     "may_group_or_divide",
+    "parse_grouped",
+    "parse_number",
     "proves_groups",
     "split_line",
 ]
@@ -102,16 +102,16 @@ def is_padded(cell: str) -> bool:
     return len(cell) > 1 and cell[0] == "0" and cell.isdecimal()
 
 
-def as_number(cell: str, decimal: str) -> float:
+def parse_number(cell: str, decimal: str) -> float:
     """Return the nearest float64 of a cell, NaN if it is no number."""
     text = cell.strip()
     return float(text.replace(decimal, ".")) if is_number(text, decimal) else float("nan")
 
 
-def as_grouped(cell: str, decimal: str) -> float:
+def parse_grouped(cell: str, decimal: str) -> float:
     """Return the nearest float64 of a number with thousands separators, NaN if it is none."""
     text = cell.strip()
     if not is_grouped(text, decimal):
         return float("nan")
     digits = "".join(letter for letter in text if letter.isdecimal() or letter in "+-" + decimal)
-    return as_number(digits, decimal)
+    return parse_number(digits, decimal)

@@ -17,13 +17,13 @@ if TYPE_CHECKING:
 __all__ = [
     "COORDINATES",
     "Columns",
-    "columns_by_header",
-    "columns_by_word",
+    "find_columns_by_header",
+    "find_columns_by_word",
+    "find_role",
+    "find_unit_word",
+    "list_meanings",
     "list_names",
-    "meanings",
-    "numbered",
-    "role_of",
-    "unit_of",
+    "name_columns",
 ]
 
 COORDINATES = ("easting", "northing", "elevation")
@@ -132,7 +132,7 @@ class Columns:
         place = f"column {column + 1}"
         return place if name in ("", place) else f"{place} ('{shorten(name)}')"
 
-    def permuted(self, order: Sequence[int]) -> Columns:
+    def permute(self, order: Sequence[int]) -> Columns:
         """Return the same with the columns of the coordinates exchanged.
 
         Parameters
@@ -168,7 +168,7 @@ def list_names(names: Sequence[str]) -> str:
     return f"{shown}, ..." if len(names) > _SHOWN_NAMES else shown
 
 
-def numbered(names: Sequence[str], count: int) -> tuple[str, ...]:
+def name_columns(names: Sequence[str], count: int) -> tuple[str, ...]:
     """Return ``count`` names, those that are missing or empty as "column 4", none twice."""
     unique: list[str] = []
     for i in range(count):
@@ -179,12 +179,12 @@ def numbered(names: Sequence[str], count: int) -> tuple[str, ...]:
     return tuple(unique)
 
 
-def role_of(name: str) -> str | None:
+def find_role(name: str) -> str | None:
     """Return what a column of this name means, None if the name says nothing.
 
     Examples
     --------
-    >>> role_of("Easting [m]"), role_of("Höhe"), role_of("intensity")
+    >>> find_role("Easting [m]"), find_role("Höhe"), find_role("intensity")
     ('easting', 'elevation', None)
     """
     rank = _rank(name)
@@ -198,7 +198,7 @@ def _rank(name: str) -> tuple[str, bool, int] | None:
 
 @lru_cache(maxsize=1024)  # the same cells are asked for every layout
 def _rank_of(name: str) -> tuple[str, bool, int] | None:
-    plain = _plain(name)
+    plain = _simplify_name(name)
     for in_degrees, synonyms in ((False, _NAMES), (True, _DEGREES)):
         for role, known in synonyms.items():
             if plain in known:
@@ -206,7 +206,7 @@ def _rank_of(name: str) -> tuple[str, bool, int] | None:
     return None
 
 
-def _plain(name: str) -> str:
+def _simplify_name(name: str) -> str:
     """Strip unit, accents, case and punctuation of a name."""
     bare = _UNIT.sub("", name.strip())
     if bare.strip() == "#":
@@ -215,13 +215,15 @@ def _plain(name: str) -> str:
     return re.sub(r"[^a-z0-9]", "", letters.replace("ß", "ss"))
 
 
-def unit_of(name: str) -> str | None:
+def find_unit_word(name: str) -> str | None:
     """Return the unit of length that a header cell names, as it is written; None if none.
 
     Examples
     --------
-    >>> unit_of("Elevation (USft)"), unit_of("elev_ft"), unit_of("Height (NAVD88)")
-    ('USft', 'ft', None)
+    >>> find_unit_word("Elevation (USft)"), find_unit_word("elev_ft")
+    ('USft', 'ft')
+    >>> find_unit_word("Height (NAVD88)") is None
+    True
     """
     if len(name) > _LONGEST_NAME:
         return None
@@ -232,7 +234,7 @@ def unit_of(name: str) -> str | None:
     return None
 
 
-def columns_by_header(
+def find_columns_by_header(
     header: Sequence[str], units: Sequence[str] = (), *, strict: bool = True
 ) -> Columns | None:
     """Find the columns by the names in the header; None if a coordinate is not among them.
@@ -250,39 +252,43 @@ def columns_by_header(
     ReadError
         If (``strict``) two columns have the same name for a coordinate.
     """
-    found = _columns_by_role(header)
-    pair, in_degrees, notes = _best_pair(header, found)
+    found = _group_by_role(header)
+    pair, in_degrees, notes = _choose_pair(header, found)
     roles = {role: columns[0] for role, columns in found.items() if role in _ROLES}
     roles |= pair
     if not set(COORDINATES) <= roles.keys():
         return None
     _give_number(header, roles)
     for role in COORDINATES if strict else ():
-        same = [name for name in header if _plain(name) == _plain(header[roles[role]])]
+        same = [
+            name for name in header if _simplify_name(name) == _simplify_name(header[roles[role]])
+        ]
         if len(same) > 1:
             raise ReadError(
                 f"the header has {len(same)} columns named '{shorten(same[0])}' for the {role}: "
                 "say with the option columns which is meant."
             )
-    notes += _elevation_notes(header, found["elevation"])
-    named = _units(header, units, roles)
-    return Columns(numbered(header, len(header)), roles, in_degrees, named, tuple(notes))
+    notes += _note_other_elevations(header, found["elevation"])
+    named = _find_unit_words(header, units, roles)
+    return Columns(name_columns(header, len(header)), roles, in_degrees, named, tuple(notes))
 
 
-def _units(header: Sequence[str], units: Sequence[str], roles: Mapping[str, int]) -> dict[str, str]:
+def _find_unit_words(
+    header: Sequence[str], units: Sequence[str], roles: Mapping[str, int]
+) -> dict[str, str]:
     """Return the words for the units of the coordinates, in the header or the line below it."""
     found: dict[str, str] = {}
     for role in COORDINATES:
         column = roles[role]
         name = header[column] if column < len(header) else ""
         below = units[column].strip(" ()[]") if column < len(units) else ""
-        word = unit_of(name) or unit_of(f"({below})")
+        word = find_unit_word(name) or find_unit_word(f"({below})")
         if word is not None:
             found[role] = word
     return found
 
 
-def _columns_by_role(header: Sequence[str]) -> dict[str, list[int]]:
+def _group_by_role(header: Sequence[str]) -> dict[str, list[int]]:
     """Return the columns of each role, those first whose names say most clearly what they are."""
     ranked: dict[str, list[tuple[int, int]]] = {}
     for column, name in enumerate(header):
@@ -295,10 +301,10 @@ def _columns_by_role(header: Sequence[str]) -> dict[str, list[int]]:
 
 def _is_xy(name: str) -> bool:
     """Whether a name of an easting or northing is one with X or Y."""
-    return any(letter in _plain(name) for letter in "xy")
+    return any(letter in _simplify_name(name) for letter in "xy")
 
 
-def _best_pair(
+def _choose_pair(
     header: Sequence[str], found: Mapping[str, Sequence[int]]
 ) -> tuple[dict[str, int], bool, list[str]]:
     """Return the columns of easting and northing, whether in degrees, and what was assumed.
@@ -307,7 +313,9 @@ def _best_pair(
     """
     eastings, northings = found.get("easting", []), found.get("northing", [])
     pairs = [(e, n) for e in eastings for n in northings if _is_xy(header[e]) == _is_xy(header[n])]
-    pairs = pairs or [(e, n) for e in eastings for n in northings if _plain(header[n]) != "n"]
+    pairs = pairs or [
+        (e, n) for e in eastings for n in northings if _simplify_name(header[n]) != "n"
+    ]
     if not pairs:
         if not found.keys() >= {"lon", "lat"}:
             return {}, False, []
@@ -330,13 +338,13 @@ def _best_pair(
 
 def _give_number(header: Sequence[str], roles: dict[str, int]) -> None:
     """Take a column N beside X and Y for the number of the point."""
-    column = next((i for i, name in enumerate(header) if _plain(name) == "n"), None)
+    column = next((i for i, name in enumerate(header) if _simplify_name(name) == "n"), None)
     if column is not None and column != roles["northing"] and "number" not in roles:
         roles["number"] = column
 
 
-def _elevation_notes(header: Sequence[str], columns: Sequence[int]) -> list[str]:
-    if len({_plain(header[column]) for column in columns}) < 2:
+def _note_other_elevations(header: Sequence[str], columns: Sequence[int]) -> list[str]:
+    if len({_simplify_name(header[column]) for column in columns}) < 2:
         return []
     others = ", ".join(f"'{shorten(header[column])}'" for column in columns[1:])
     return [
@@ -344,7 +352,7 @@ def _elevation_notes(header: Sequence[str], columns: Sequence[int]) -> list[str]
     ]
 
 
-def columns_by_word(
+def find_columns_by_word(
     word: str | Sequence[str] | Mapping[str, str | int],
     header: Sequence[str],
     count: int,
@@ -369,26 +377,30 @@ def columns_by_word(
         If the word names no such column, a role twice, or not all three coordinates.
     """
     if isinstance(word, Mapping):
-        roles = {_checked_role(role): _column(which, header, count) for role, which in word.items()}
-        _complete(roles, word)
+        roles = {
+            _require_role(role): _find_column(which, header, count) for role, which in word.items()
+        }
+        _require_coordinates(roles, word)
         _require_distinct(roles, word)
-        names = numbered(header, count)
-        notes = _contradictions(header, roles)
+        names = name_columns(header, count)
+        notes = _describe_contradictions(header, roles)
         in_degrees = _are_degrees(names, roles)
-        return Columns(names, roles, in_degrees, _units(header, units, roles), notes)
-    given = meanings(word)
+        return Columns(names, roles, in_degrees, _find_unit_words(header, units, roles), notes)
+    given = list_meanings(word)
     named = [meaning for meaning in given if meaning in _ROLES]
     twice = next((one for one in named if named.count(one) > 1), None)
     if twice:
         raise OptionError("columns", word, f"a layout that does not name the {twice} twice")
-    roles = _complete({one: i for i, one in enumerate(given) if one in _ROLES}, word)
+    roles = _require_coordinates({one: i for i, one in enumerate(given) if one in _ROLES}, word)
     if len(given) > count:
         allowed = f"a layout of the {count} columns of the file, not of {len(given)} columns"
         raise OptionError("columns", word, allowed)
-    names = tuple(_own_name(given, header, i) for i in range(count))
-    notes = _contradictions(header, roles)
-    in_degrees = _are_degrees(names, roles) or _are_degrees(_as_names(word), roles)
-    return Columns(numbered(names, count), roles, in_degrees, _units(names, units, roles), notes)
+    names = tuple(_choose_name(given, header, i) for i in range(count))
+    notes = _describe_contradictions(header, roles)
+    in_degrees = _are_degrees(names, roles) or _are_degrees(_list_given_names(word), roles)
+    return Columns(
+        name_columns(names, count), roles, in_degrees, _find_unit_words(names, units, roles), notes
+    )
 
 
 def _are_degrees(names: Sequence[str], roles: Mapping[str, int]) -> bool:
@@ -408,49 +420,49 @@ def _require_distinct(roles: Mapping[str, int], word: object) -> None:
             raise OptionError("columns", word, allowed)
 
 
-def _contradictions(header: Sequence[str], roles: Mapping[str, int]) -> tuple[str, ...]:
+def _describe_contradictions(header: Sequence[str], roles: Mapping[str, int]) -> tuple[str, ...]:
     """Say where the caller takes a column for another coordinate than its name says."""
     wrong = [
         f"'{shorten(header[column])}' as the {role}"
         for role, column in roles.items()
-        if column < len(header) and role_of(header[column]) in set(_ROLES) - {role}
+        if column < len(header) and find_role(header[column]) in set(_ROLES) - {role}
     ]
-    return (f"The option columns takes {_listed(wrong)}, against the header.",) if wrong else ()
+    return (f"The option columns takes {_join_words(wrong)}, against the header.",) if wrong else ()
 
 
-def _own_name(given: Sequence[str], header: Sequence[str], column: int) -> str:
+def _choose_name(given: Sequence[str], header: Sequence[str], column: int) -> str:
     """Prefer the name in the file, then the caller's."""
     if column < len(header):
         return header[column]
     return given[column] if column < len(given) else ""
 
 
-def meanings(word: str | Sequence[str]) -> list[str]:
+def list_meanings(word: str | Sequence[str]) -> list[str]:
     """Return the role, or else the name, that letters or names give each column."""
     if isinstance(word, str) and _is_letters(word):
         return [_LETTERS[letter] for letter in word.upper()]
-    return [role_of(name) or name.strip() for name in _as_names(word)]
+    return [find_role(name) or name.strip() for name in _list_given_names(word)]
 
 
 def _is_letters(word: str) -> bool:
     return "," not in word and all(letter in _LETTERS for letter in word.upper())
 
 
-def _as_names(word: str | Sequence[str]) -> list[str]:
+def _list_given_names(word: str | Sequence[str]) -> list[str]:
     """Return the names in the order of the columns; letters are none."""
     if isinstance(word, str):
         return [] if _is_letters(word) else word.split(",")
     return list(word)
 
 
-def _checked_role(role: str) -> str:
-    known = role if role in _ROLES else role_of(role)
+def _require_role(role: str) -> str:
+    known = role if role in _ROLES else find_role(role)
     if known is None:
         raise OptionError("columns", role, _ROLES)
     return known
 
 
-def _column(which: str | int, header: Sequence[str], count: int) -> int:
+def _find_column(which: str | int, header: Sequence[str], count: int) -> int:
     if isinstance(which, int):
         if not 1 <= which <= count:
             raise OptionError("columns", which, f"a column from 1 to {count}")
@@ -464,18 +476,18 @@ def _column(which: str | int, header: Sequence[str], count: int) -> int:
     raise OptionError("columns", which, allowed)
 
 
-def _complete(roles: dict[str, int], word: object) -> dict[str, int]:
+def _require_coordinates(roles: dict[str, int], word: object) -> dict[str, int]:
     missing = [role for role in COORDINATES if role not in roles]
     if missing:
         raise OptionError(
             "columns",
             word,
             "letters (P number, N northing, E easting, Z elevation, D description, X easting, "
-            f"Y northing, - other) or names that say which column is the {_listed(missing)}",
+            f"Y northing, - other) or names that say which column is the {_join_words(missing)}",
         )
     return roles
 
 
-def _listed(words: Iterable[str]) -> str:
+def _join_words(words: Iterable[str]) -> str:
     *first, last = words
     return f"{', '.join(first)} and {last}" if first else last

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...errors import ReadError
-from .columns import Columns, columns_by_word
+from .columns import Columns, find_columns_by_word
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -24,10 +24,10 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Column",
-    "columns_by_content",
+    "are_plausible_elevations",
+    "find_columns_by_content",
     "is_too_steep",
-    "plausible_elevations",
-    "relief_and_extent",
+    "measure_relief_and_extent",
     "require_no_split_decimals",
 ]
 
@@ -98,7 +98,7 @@ class _Candidate:
         return points[np.isfinite(points).all(axis=1)]
 
 
-def columns_by_content(
+def find_columns_by_content(
     columns: Sequence[Column],
     area: AreaOfUse | None,
     *,
@@ -128,27 +128,27 @@ def columns_by_content(
     ReadError
         If no layout fits, or more than one.
     """
-    candidates = _candidates(columns)
+    candidates = _propose_layouts(columns)
     may_differ = len({one.start for one in candidates}) > 1
     for candidate in candidates:
-        candidate.objections.extend(_objections(candidate, columns))
+        candidate.objections.extend(_find_objections(candidate, columns))
         if may_differ:
-            candidate.objections.extend(_differences(candidate, columns))
-    candidates = _placed(candidates, columns, area)
+            candidate.objections.extend(_compare_columns(candidate, columns))
+    candidates = _mark_outside(candidates, columns, area)
     left = [one for one in candidates if one.is_plausible]
-    chosen, reason = _customary(left, columns, is_scan=is_scan, is_announced=is_announced)
+    chosen, reason = _choose_customary(left, columns, is_scan=is_scan, is_announced=is_announced)
     if len(left) == 1:
-        chosen, reason = left[0], _reason(candidates, area)
+        chosen, reason = left[0], _explain_choice(candidates, area)
     if chosen is None:
-        raise ReadError(_refusal(candidates, left, area))
-    found = columns_by_word(chosen.word, [], len(columns))
+        raise ReadError(_describe_refusal(candidates, left, area))
+    found = find_columns_by_word(chosen.word, [], len(columns))
     return found, f"No header: the columns are taken as {found.layout} ({chosen.word}){reason}."
 
 
 # ------------------------------------------------------------------ candidates
 
 
-def _candidates(columns: Sequence[Column]) -> list[_Candidate]:
+def _propose_layouts(columns: Sequence[Column]) -> list[_Candidate]:
     """Return the customary layouts that columns of numbers and text could have."""
     is_text = [column.is_text for column in columns]
     if len(columns) < 3 or len(columns) - sum(is_text) < 3:
@@ -158,9 +158,9 @@ def _candidates(columns: Sequence[Column]) -> list[_Candidate]:
         )
     found: list[_Candidate] = []
     if len(columns) > 3 and not any(is_text[1:4]) and _may_number(columns[0]):
-        found += _both_orders(columns, 1)
+        found += _propose_both_orders(columns, 1)
     if not any(is_text[:3]):
-        found += _both_orders(columns, 0)
+        found += _propose_both_orders(columns, 0)
     if not found:
         raise ReadError(
             "it has no header, and its columns are not those of a known layout: say with the "
@@ -174,7 +174,7 @@ def _may_number(column: Column) -> bool:
     return column.is_text or column.is_whole or column.is_padded
 
 
-def _both_orders(columns: Sequence[Column], start: int) -> Iterator[_Candidate]:
+def _propose_both_orders(columns: Sequence[Column], start: int) -> Iterator[_Candidate]:
     first = "" if start == 0 else "P"
     if start == 1 and columns[0].is_text and columns[0].distinct_share < _DISTINCT_SHARE:
         first = "D"  # a few words again and again are codes
@@ -189,29 +189,29 @@ def _both_orders(columns: Sequence[Column], start: int) -> Iterator[_Candidate]:
 # ------------------------------------------------------------------ objections
 
 
-def _objections(candidate: _Candidate, columns: Sequence[Column]) -> Iterator[str]:
+def _find_objections(candidate: _Candidate, columns: Sequence[Column]) -> Iterator[str]:
     """Say what speaks against a layout, CRS aside."""
     points = candidate.coordinates(columns)
     used = columns[candidate.start : candidate.start + 3]
-    if len(points) and not plausible_elevations(points[:, 2]):
+    if len(points) and not are_plausible_elevations(points[:, 2]):
         low, high = np.percentile(points[:, 2], [5, 95], method="nearest")
         yield f"would have elevations of {low:,.0f} to {high:,.0f}"
     if any(column.is_padded for column in used):
         yield "would have coordinates with leading zeros"
     if candidate.start == 0:
-        yield from _signs_of_numbers(columns)
+        yield from _find_signs_of_numbers(columns)
 
 
-def _differences(candidate: _Candidate, columns: Sequence[Column]) -> Iterator[str]:
+def _compare_columns(candidate: _Candidate, columns: Sequence[Column]) -> Iterator[str]:
     """Say what speaks against other columns; where only axes may be exchanged it tells nothing."""
     if any(one.text_share > _ODD_SHARE for one in columns[candidate.start : candidate.start + 3]):
         yield "would have coordinates that are no numbers"
-    relief, extent = relief_and_extent(candidate.coordinates(columns))
+    relief, extent = measure_relief_and_extent(candidate.coordinates(columns))
     if is_too_steep(relief, extent):
         yield f"would rise by {relief:,.6g} within an extent of {extent:,.6g}"
 
 
-def _signs_of_numbers(columns: Sequence[Column]) -> Iterator[str]:
+def _find_signs_of_numbers(columns: Sequence[Column]) -> Iterator[str]:
     """Say what makes the first column one of point numbers, rather than of coordinates."""
     first, second = columns[0], columns[1]
     if not first.is_whole or len(first.values) < _FEW_ROWS:
@@ -223,7 +223,7 @@ def _signs_of_numbers(columns: Sequence[Column]) -> Iterator[str]:
         yield "would have whole numbers in one coordinate and decimals in the other"
 
 
-def plausible_elevations(z: NDArray[np.float64]) -> bool:
+def are_plausible_elevations(z: NDArray[np.float64]) -> bool:
     """Whether at least half of some elevations are such as the earth has, in metres or feet."""
     return bool(2 * ((z >= _LOWEST) & (z <= _HIGHEST)).sum() >= len(z))
 
@@ -233,7 +233,7 @@ def is_too_steep(relief: float, extent: float) -> bool:
     return relief > _STEEPEST * extent > 0.0
 
 
-def relief_and_extent(points: NDArray[np.float64]) -> tuple[float, float]:
+def measure_relief_and_extent(points: NDArray[np.float64]) -> tuple[float, float]:
     """Return relief and extent, outliers aside."""
     if len(points) == 0:
         return 0.0, 0.0
@@ -243,7 +243,7 @@ def relief_and_extent(points: NDArray[np.float64]) -> tuple[float, float]:
         return float(span[2]), float(np.hypot(span[0], span[1]))
 
 
-def _placed(
+def _mark_outside(
     candidates: Sequence[_Candidate], columns: Sequence[Column], area: AreaOfUse | None
 ) -> list[_Candidate]:
     """Find out which candidates lie outside the area of use; if all do, it tells nothing."""
@@ -261,7 +261,7 @@ def _placed(
 # ------------------------------------------------------------------ the choice
 
 
-def _customary(
+def _choose_customary(
     left: Sequence[_Candidate], columns: Sequence[Column], *, is_scan: bool, is_announced: bool
 ) -> tuple[_Candidate | None, str]:
     """Return x, y, z where that is the convention: files that say so, and numbers alone."""
@@ -277,35 +277,35 @@ def _customary(
     return (None, "") if has_other else (xyz, ", the convention for columns of numbers alone")
 
 
-def _reason(candidates: Iterable[_Candidate], area: AreaOfUse | None) -> str:
+def _explain_choice(candidates: Iterable[_Candidate], area: AreaOfUse | None) -> str:
     """Say what speaks against the candidates that were not taken."""
     reasons: dict[str, list[str]] = {}
     for one in candidates:
         if not one.is_plausible:
-            reasons.setdefault(_objection(one, area), []).append(one.word)
-    clauses = [f"{_listed(words)} {why}" for why, words in reasons.items()]
-    return f", since {_listed(clauses)}"
+            reasons.setdefault(_name_objection(one, area), []).append(one.word)
+    clauses = [f"{_join_choices(words)} {why}" for why, words in reasons.items()]
+    return f", since {_join_choices(clauses)}"
 
 
-def _listed(words: Sequence[str]) -> str:
+def _join_choices(words: Sequence[str]) -> str:
     """Join words with commas and an "and"."""
     return " and ".join(filter(None, (", ".join(words[:-1]), words[-1])))
 
 
-def _objection(one: _Candidate, area: AreaOfUse | None) -> str:
+def _name_objection(one: _Candidate, area: AreaOfUse | None) -> str:
     if one.is_outside and area is not None:
         return f"would lie outside the area of use of {area.label}"
     return one.objections[0]
 
 
-def _refusal(
+def _describe_refusal(
     candidates: Sequence[_Candidate], left: Sequence[_Candidate], area: AreaOfUse | None
 ) -> str:
     """Say which layouts are plausible, or why none is, and what would settle it."""
     named = left or candidates
     settled = " or ".join(f"columns='{one.word}'" for one in named)
     if not left:
-        faults = "; ".join(f"{one.word} {_objection(one, area)}" for one in candidates)
+        faults = "; ".join(f"{one.word} {_name_objection(one, area)}" for one in candidates)
         return f"it has no header, and no customary layout fits: {faults}. Say which by {settled}."
     first = " (its first column may be point numbers)" if {one.start for one in left} > {0} else ""
     may_tell = "; the CRS of the points may tell, too" if area is None else ""

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...errors import CrsError
 from ..nodata import describe_suspects, find_suspect_elevations
-from .content import is_too_steep, plausible_elevations, relief_and_extent
+from .content import are_plausible_elevations, is_too_steep, measure_relief_and_extent
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -69,7 +69,7 @@ def require_in_area(
             f"northing {y:.10g}), outside its area of use: check that they are no local "
             "coordinates, and no degrees."
         ]
-    outside = area.outside(points[:, :2])
+    outside = area.find_outside(points[:, :2])
     if len(outside) == 0:
         return []
     if 2 * len(outside) > len(points):
@@ -82,7 +82,7 @@ def require_in_area(
     exchanged = f"; {_count(int(fits.sum()))} inside if exchanged" if fits.any() else ""
     return [
         f"{_count(len(outside), len(points))} outside the area of use of {area.label} "
-        f"({_lines(rows[outside])}){exchanged}."
+        f"({_name_lines(rows[outside])}){exchanged}."
     ]
 
 
@@ -98,8 +98,8 @@ def _require_no_exchange(
     orders = sorted(permutations(range(3)), key=lambda order: order != (1, 0, 2))
     for order in orders:
         moved = points[:, list(order)]
-        if plausible_elevations(moved[:, 2]) and area.covers_most(moved[:, :2]):
-            right = columns.permuted(order)
+        if are_plausible_elevations(moved[:, 2]) and area.covers_most(moved[:, :2]):
+            right = columns.permute(order)
             places = (
                 f"{role} in {right.label(right.roles[role])}"
                 for role in ("easting", "northing", "elevation")
@@ -121,13 +121,13 @@ def find_odd_elevations(points: NDArray[np.float64]) -> list[str]:
     z = points[:, 2]
     notes = describe_suspects(find_suspect_elevations(z))
     some = points[:: max(1, len(points) // _SOME)]
-    if not plausible_elevations(some[:, 2]):
+    if not are_plausible_elevations(some[:, 2]):
         low, high = np.percentile(some[:, 2], [5, 95], method="nearest")
         notes.append(
             f"Most elevations lie between {low:,.6g} and {high:,.6g}, where no ground is: check "
             "the columns."
         )
-    relief, extent = relief_and_extent(some)
+    relief, extent = measure_relief_and_extent(some)
     if len(points) >= _FEW_POINTS and not notes and is_too_steep(relief, extent):
         notes.append(
             f"The points rise by {relief:,.6g} within an extent of {extent:,.6g}: check the "
@@ -159,21 +159,22 @@ def find_repeated_numbers(numbers: NDArray[Any] | None, rows: NDArray[np.int64])
     for row in np.flatnonzero(is_repeated).tolist():
         places.setdefault(numbers[row], []).append(row)
     shown = "; ".join(
-        f"{_number(one)} in {_lines(rows[at])}" for one, at in list(places.items())[:_SHOWN]
+        f"{_format_value(one)} in {_name_lines(rows[at])}"
+        for one, at in list(places.items())[:_SHOWN]
     )
     more = "; ..." if len(places) > _SHOWN else ""
     verb = "number occurs" if len(places) == 1 else "numbers occur"
     return [f"{len(places):,} point {verb} more than once: {shown}{more}."]
 
 
-def _number(value: Any) -> str:
+def _format_value(value: Any) -> str:
     return f"{value:g}" if isinstance(value, float) else str(value)
 
 
 def describe_left_out(why: str, lines: Sequence[int]) -> str:
     """Say which points have been left out, and why; ``lines`` count from 1."""
     points = "point is" if len(lines) == 1 else "points are"
-    return f"{len(lines):,} {points} left out, {why}: {_lines(np.asarray(lines) - 1)}."
+    return f"{len(lines):,} {points} left out, {why}: {_name_lines(np.asarray(lines) - 1)}."
 
 
 def describe_faults(faults: Sequence[Fault]) -> str:
@@ -184,7 +185,7 @@ def describe_faults(faults: Sequence[Fault]) -> str:
     return f"{len(faults):,} bad {rows} left out ({shown}{more})."
 
 
-def _lines(rows: NDArray[np.int64]) -> str:
+def _name_lines(rows: NDArray[np.int64]) -> str:
     """Name lines, counted from 1."""
     numbers = [f"{row + 1}" for row in rows[:_SHOWN].tolist()]
     more = ", ..." if len(rows) > _SHOWN else ""

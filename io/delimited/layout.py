@@ -14,21 +14,21 @@ from ...errors import ReadError
 from .cells import BLANKS, is_number, is_number_like, is_padded, split_line
 from .columns import (
     Columns,
-    columns_by_header,
-    columns_by_word,
+    find_columns_by_header,
+    find_columns_by_word,
+    find_role,
+    find_unit_word,
+    list_meanings,
     list_names,
-    meanings,
-    role_of,
-    unit_of,
 )
 from .content import require_no_split_decimals
 from .lines import COMMENT_PREFIXES
 from .marks import (
     DecimalMark,
-    as_decimal,
-    as_delimiter,
-    decimal_of,
-    delimiter_of,
+    find_decimal_mark,
+    find_delimiter,
+    parse_decimal_mark,
+    parse_delimiter,
     require_one_kind_of_comma,
 )
 
@@ -153,7 +153,7 @@ def find_layout(
     path : Path
         For sentences.
     columns : str, sequence of str, or mapping of str to str or int, optional
-        See :func:`columns_by_word`.
+        See :func:`find_columns_by_word`.
     delimiter, decimal, comment : str, optional
         As the caller knows them; found by looking otherwise.
 
@@ -174,12 +174,12 @@ def find_layout(
     4. Columns are found by the caller's word, else by the header; their content is judged when all
        of it has been read.
     """
-    wishes = _Wishes(columns, as_delimiter(delimiter), as_decimal(decimal), comment)
-    data, skipped = _data_lines(lines, wishes)
+    wishes = _Wishes(columns, parse_delimiter(delimiter), parse_decimal_mark(decimal), comment)
+    data, skipped = _select_data_lines(lines, wishes)
     if len(data) == 0:
         raise ReadError(f"'{path}' holds no points: only blank and comment lines.", path=path)
-    sample = lines.texts(_sampled(data))
-    found = wishes.delimiter or delimiter_of(sample)
+    sample = lines.decode_lines(_sample_lines(data))
+    found = wishes.delimiter or find_delimiter(sample)
     if found is None and all(text.lstrip().startswith(COMMENT_PREFIXES) for text in sample):
         raise ReadError(f"'{path}' holds no points: only blank and comment lines.", path=path)
     if found is None:
@@ -188,19 +188,19 @@ def find_layout(
             f" gives three columns of numbers; its first line is '{sample[0][:60]}'.",
             path=path,
         )
-    data, skipped = _without_fillers(lines, data, skipped, found, wishes)
-    rows = lines.texts(_sampled(data))
+    data, skipped = _drop_fillers(lines, data, skipped, found, wishes)
+    rows = lines.decode_lines(_sample_lines(data))
     cells = [split_line(text, found) for text in rows]
     try:
         if found == "," and wishes.delimiter is None:
             require_one_kind_of_comma(rows)
-        mark = _decimal_mark(lines, data, cells, found, wishes)
-        return _table_layout(lines, data, skipped, cells, (found, mark), wishes, path)
+        mark = _choose_decimal_mark(lines, data, cells, found, wishes)
+        return _lay_out_table(lines, data, skipped, cells, (found, mark), wishes, path)
     except ReadError as error:
         raise ReadError(f"'{path}': {error}", path=path, lines=error.lines) from None
 
 
-def _decimal_mark(
+def _choose_decimal_mark(
     lines: TextLines,
     data: NDArray[np.int64],
     cells: list[list[str]],
@@ -210,14 +210,14 @@ def _decimal_mark(
     """Return the mark that the caller names, else that of the lines looked at, else of any."""
     if wishes.decimal is not None:
         return DecimalMark(wishes.decimal)
-    found = decimal_of(cells, delimiter)
+    found = find_decimal_mark(cells, delimiter)
     if found is None and delimiter != ",":
-        decimals = lines.texts(_sampled(lines.with_decimals(data)))
-        found = decimal_of([split_line(text, delimiter) for text in decimals], delimiter)
+        decimals = lines.decode_lines(_sample_lines(lines.find_with_decimals(data)))
+        found = find_decimal_mark([split_line(text, delimiter) for text in decimals], delimiter)
     return found or DecimalMark(".")
 
 
-def _table_layout(
+def _lay_out_table(
     lines: TextLines,
     data: NDArray[np.int64],
     skipped: Counter[str],
@@ -227,10 +227,10 @@ def _table_layout(
     path: Path,
 ) -> Layout:
     delimiter, (decimal, note) = marks
-    count, has_text_tail = _column_count(cells, delimiter, decimal, wishes)
+    count, has_text_tail = _count_columns(cells, delimiter, decimal, wishes)
     if count > _MOST_COLUMNS:
         raise ReadError(f"its rows have {count:,} columns; at most {_MOST_COLUMNS:,} are read.")
-    top = _top(cells[:_TOP_LINES], count, decimal)
+    top = _find_top(cells[:_TOP_LINES], count, decimal)
     rows = data[top.n_lines :]
     if len(rows) == 0:
         raise ReadError("there is no row of numbers below the header.")
@@ -240,8 +240,8 @@ def _table_layout(
             f"{counted(len(rows), 'row')} {'follows' if len(rows) == 1 else 'follow'}: "
             "the file may be truncated."
         )
-    body = _even_rows(cells[top.n_lines :], count, has_text_tail=has_text_tail)
-    columns = _told_columns(lines, top, int(rows[0]), (delimiter, count), body, wishes)
+    body = _select_even_rows(cells[top.n_lines :], count, has_text_tail=has_text_tail)
+    columns = _find_named_columns(lines, top, int(rows[0]), (delimiter, count), body, wishes)
     kinds = _Kinds.of(body, count, decimal)
     is_described = columns is not None and columns.roles.get("description") == count - 1
     return Layout(
@@ -253,7 +253,7 @@ def _table_layout(
         rows=rows,
         has_text_tail=has_text_tail or is_described or count - 1 in kinds.mostly_text,
         may_lack_tail=count - 1 not in kinds.has_numbers,
-        text_columns=_text_columns(columns, kinds),
+        text_columns=_find_text_columns(columns, kinds),
         mostly_text=kinds.mostly_text,
         padded=kinds.padded,
         divided=kinds.divided,
@@ -264,7 +264,7 @@ def _table_layout(
     )
 
 
-def _even_rows(
+def _select_even_rows(
     rows: Sequence[Sequence[str]], count: int, *, has_text_tail: bool
 ) -> list[Sequence[str]]:
     """Return the rows that have the right number of cells, a text at the end as one cell."""
@@ -275,7 +275,7 @@ def _even_rows(
     ]
 
 
-def _told_columns(
+def _find_named_columns(
     lines: TextLines,
     top: _Top,
     first_row: int,
@@ -285,10 +285,10 @@ def _told_columns(
 ) -> Columns | None:
     """Return what the caller or a header says of the columns; None if nobody does."""
     delimiter, count = shape
-    header = top.header or _header_in_comment(lines, first_row, delimiter, count)
-    named = _fitted_header(header, count, body, wishes)
+    header = top.header or _find_header_in_comment(lines, first_row, delimiter, count)
+    named = _fit_header(header, count, body, wishes)
     if named or wishes.columns is not None:
-        return _columns_by_name(named, top.units, count, wishes)
+        return _find_columns_by_name(named, top.units, count, wishes)
     if wishes.decimal is None:
         require_no_split_decimals(body, delimiter)
     return None
@@ -297,7 +297,7 @@ def _told_columns(
 # ------------------------------------------------------------------ lines
 
 
-def _data_lines(lines: TextLines, wishes: _Wishes) -> tuple[NDArray[np.int64], Counter[str]]:
+def _select_data_lines(lines: TextLines, wishes: _Wishes) -> tuple[NDArray[np.int64], Counter[str]]:
     """Set blank and comment lines aside; ``;`` is judged when the delimiter is known."""
     is_blank = lines.is_blank
     is_comment = np.zeros(len(lines), np.bool_)
@@ -313,7 +313,7 @@ def _data_lines(lines: TextLines, wishes: _Wishes) -> tuple[NDArray[np.int64], C
     return data, Counter(counts)
 
 
-def _without_fillers(
+def _drop_fillers(
     lines: TextLines,
     data: NDArray[np.int64],
     skipped: Counter[str],
@@ -323,7 +323,7 @@ def _without_fillers(
     """Set aside rows of nothing but delimiters, and comments that start with a semicolon."""
     if delimiter != BLANKS:
         starters = data[lines.starts_with(delimiter)[data]]
-        fillers = [i for i in starters if not lines.text(i).strip(f"{delimiter} \t")]
+        fillers = [i for i in starters if not lines.decode_line(i).strip(f"{delimiter} \t")]
         data = np.delete(data, np.searchsorted(data, np.array(fillers, np.int64)))
         skipped = skipped + Counter({"blank lines": len(fillers)})
     if wishes.comment is None and delimiter != ";":
@@ -334,7 +334,7 @@ def _without_fillers(
     return data, skipped
 
 
-def _sampled(data: NDArray[np.int64]) -> list[int]:
+def _sample_lines(data: NDArray[np.int64]) -> list[int]:
     top, rest = data[:_TOP_LINES], data[_TOP_LINES:]
     spread = rest[:: max(1, len(rest) // _SPREAD_LINES)]
     return [*top.tolist(), *spread.tolist()]
@@ -343,36 +343,36 @@ def _sampled(data: NDArray[np.int64]) -> list[int]:
 # ------------------------------------------------------------------ rows
 
 
-def _column_count(
+def _count_columns(
     rows: Sequence[Sequence[str]], delimiter: str, decimal: str, wishes: _Wishes
 ) -> tuple[int, bool]:
     """Return the number of columns, and whether the last is text that may hold the delimiter."""
     body = [row for row in rows if sum(is_number(cell, decimal) for cell in row) >= 2] or rows
     counts = Counter(map(len, body))
     count = counts.most_common(1)[0][0]
-    told = _told_count(rows, wishes)
+    told = _count_named_columns(rows, wishes)
     if told and (delimiter == BLANKS or told <= count):
         return told, True
-    tails = Counter(_text_tail(row, decimal) for row in body)
+    tails = Counter(_find_text_tail(row, decimal) for row in body)
     tail = tails.most_common(1)[0][0]
     if tail is None or (delimiter != BLANKS and len(counts) == 1):
         return count, False
     return (tail + 1, True) if delimiter == BLANKS or tail + 1 <= count else (count, False)
 
 
-def _told_count(rows: Sequence[Sequence[str]], wishes: _Wishes) -> int | None:
+def _count_named_columns(rows: Sequence[Sequence[str]], wishes: _Wishes) -> int | None:
     """Return the number of columns if caller or header say that the last is a description."""
     if wishes.columns is not None and not isinstance(wishes.columns, Mapping):
-        given = meanings(wishes.columns)
+        given = list_meanings(wishes.columns)
         return len(given) if given[-1:] == ["description"] else None
     for row in rows[:_TOP_LINES]:
-        known = columns_by_header(row, strict=False)
+        known = find_columns_by_header(row, strict=False)
         if known is not None and known.roles.get("description") == len(row) - 1:
             return len(row)
     return None
 
 
-def _text_tail(row: Sequence[str], decimal: str) -> int | None:
+def _find_text_tail(row: Sequence[str], decimal: str) -> int | None:
     """Return where, behind the coordinates, nothing but text follows."""
     texts = [not is_number_like(cell, decimal) for cell in row]
     first = next((i for i in range(3, len(row)) if texts[i]), None)
@@ -384,18 +384,18 @@ def _resumes(texts: Sequence[bool], first: int) -> bool:
     return len(texts) - first > 2 and not any(texts[first + 1 :])
 
 
-def _top(rows: Sequence[Sequence[str]], count: int, decimal: str) -> _Top:
+def _find_top(rows: Sequence[Sequence[str]], count: int, decimal: str) -> _Top:
     """Walk down to the first row of the table."""
     top = _Top()
     is_known = False
     for row in rows:
-        kind = _kind(row, count, decimal, is_known)
+        kind = _classify_line(row, count, decimal, is_known)
         if kind == "row":
             break
         if kind == "point count":
             top.announced = int(row[0])
         if kind == "header lines" and not is_known:
-            is_known = columns_by_header(row, strict=False) is not None
+            is_known = find_columns_by_header(row, strict=False) is not None
             top.header = list(row)
         elif kind == "header lines":
             top.units = list(row)
@@ -404,16 +404,16 @@ def _top(rows: Sequence[Sequence[str]], count: int, decimal: str) -> _Top:
     return top
 
 
-def _kind(row: Sequence[str], count: int, decimal: str, is_header_known: bool) -> str:
+def _classify_line(row: Sequence[str], count: int, decimal: str, is_header_known: bool) -> str:
     """Tell what a line above the first row is, or that it is the first row."""
     numbers = sum(is_number(cell, decimal) for cell in row)
     if is_header_known:
         is_units = all(
-            cell.strip("()[]").lower() in _UNIT_WORDS or unit_of(f"({cell.strip('()[]')})")
+            cell.strip("()[]").lower() in _UNIT_WORDS or find_unit_word(f"({cell.strip('()[]')})")
             for cell in row
         )
         return "header lines" if is_units and numbers == 0 else "row"
-    if columns_by_header(row, strict=False) is not None:
+    if find_columns_by_header(row, strict=False) is not None:
         return "header lines"
     if len(row) == 1 and count > 1 and row[0].isdecimal():
         return "point count"
@@ -426,17 +426,17 @@ def _kind(row: Sequence[str], count: int, decimal: str, is_header_known: bool) -
     return "row"
 
 
-def _header_in_comment(
+def _find_header_in_comment(
     lines: TextLines, first_row: int, delimiter: str, count: int
 ) -> list[str] | None:
     """Return the names in the comment line right above the table, if it is a header."""
     if first_row == 0:
         return None
-    above = lines.text(first_row - 1).strip()
+    above = lines.decode_line(first_row - 1).strip()
     for prefix in ("", *COMMENT_PREFIXES):
         if above.startswith(prefix):
             names = split_line(above.removeprefix(prefix), delimiter)
-            if len(names) == count and columns_by_header(names, strict=False) is not None:
+            if len(names) == count and find_columns_by_header(names, strict=False) is not None:
                 return names
     return None
 
@@ -444,7 +444,7 @@ def _header_in_comment(
 # ------------------------------------------------------------------ columns
 
 
-def _fitted_header(
+def _fit_header(
     header: list[str] | None, count: int, body: Sequence[Sequence[str]], wishes: _Wishes
 ) -> list[str]:
     """Return one name a column; a delimiter at the end of rows or header makes no column."""
@@ -462,15 +462,15 @@ def _fitted_header(
     )
 
 
-def _columns_by_name(
+def _find_columns_by_name(
     header: list[str], units: Sequence[str], count: int, wishes: _Wishes
 ) -> Columns:
     """Find the columns by the caller's word, else by the header."""
     if wishes.columns is not None:
-        return columns_by_word(wishes.columns, header, count, units)
-    columns = columns_by_header(header, units)
+        return find_columns_by_word(wishes.columns, header, count, units)
+    columns = find_columns_by_header(header, units)
     if columns is None:
-        found = [f"{role_of(name)} '{name}'" for name in header[:_TOP_LINES] if role_of(name)]
+        found = [f"{find_role(name)} '{name}'" for name in header[:_TOP_LINES] if find_role(name)]
         raise ReadError(
             f"the header ({list_names(header)}) does not name easting, northing and elevation "
             f"(known: {', '.join(found) or 'none of it'}): say with the option columns which "
@@ -511,7 +511,7 @@ class _Kinds:
         )
 
 
-def _text_columns(columns: Columns | None, kinds: _Kinds) -> frozenset[int]:
+def _find_text_columns(columns: Columns | None, kinds: _Kinds) -> frozenset[int]:
     """Return description, point numbers with leading zeros, and other columns of text."""
     text = kinds.has_text | kinds.padded
     if columns is None:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["COMMENT_PREFIXES", "TextLines", "decoded", "read_lines"]
+__all__ = ["COMMENT_PREFIXES", "TextLines", "decode_head", "read_lines"]
 
 COMMENT_PREFIXES = ("#", "//", ";", "!", "%")
 
@@ -71,13 +71,13 @@ class TextLines:
         """The bytes as numbers."""
         return np.frombuffer(self.data, np.uint8)
 
-    def text(self, line: int) -> str:
+    def decode_line(self, line: int) -> str:
         """Return one line; ``line`` counts from 0."""
         return self.data[self.starts[line] : self.ends[line]].decode()
 
-    def texts(self, lines: Iterable[int]) -> list[str]:
+    def decode_lines(self, lines: Iterable[int]) -> list[str]:
         """Return some lines."""
-        return [self.text(line) for line in lines]
+        return [self.decode_line(line) for line in lines]
 
     @cached_property
     def firsts(self) -> NDArray[np.int64]:
@@ -118,7 +118,7 @@ class TextLines:
             fits[lines[is_inside]] = self.codes[at[is_inside]] == other
         return fits
 
-    def with_decimals(self, lines: NDArray[np.int64]) -> NDArray[np.int64]:
+    def find_with_decimals(self, lines: NDArray[np.int64]) -> NDArray[np.int64]:
         """Return those of the chosen lines in which a comma or a point stands between digits."""
         codes = self.codes
         is_digit = (codes >= ord("0")) & (codes <= ord("9"))
@@ -126,7 +126,7 @@ class TextLines:
         places = np.flatnonzero(is_mark & is_digit[:-2] & is_digit[2:]) + 1
         return np.intersect1d(np.searchsorted(self.starts, places, side="right") - 1, lines)
 
-    def joined(self, lines: NDArray[np.int64]) -> bytes:
+    def join(self, lines: NDArray[np.int64]) -> bytes:
         """Return the chosen lines (ascending numbers) as one text."""
         if len(lines) == 0:
             return b""
@@ -156,7 +156,7 @@ def read_lines(path: Path, *, encoding: str | None = None) -> TextLines:
         data = path.read_bytes()
     except OSError as error:
         raise ReadError(f"Cannot read '{path}': {error.strerror or error}.", path=path) from error
-    text = _as_utf8(data, encoding, path)
+    text = _convert_to_utf8(data, encoding, path)
     if b"\x00" in text:
         raise ReadError(f"'{path}' holds binary data, not delimited text.", path=path)
     lines = TextLines.of(text.rstrip(b"\x1a"))
@@ -177,9 +177,9 @@ def _require_short(lines: TextLines, path: Path) -> None:
         )
 
 
-def decoded(head: bytes) -> str | None:
+def decode_head(head: bytes) -> str | None:
     """Return the first bytes of a file as text, None if they are none; a cut line is dropped."""
-    encoding, skipped = _encoding(head)
+    encoding, skipped = _detect_encoding(head)
     text = head[skipped:].decode(encoding, errors="replace")
     if "\x00" in text:
         return None
@@ -187,13 +187,13 @@ def decoded(head: bytes) -> str | None:
     return whole if line_end else text
 
 
-def _as_utf8(data: bytes, encoding: str | None, path: Path) -> bytes:
-    found, skipped = _encoding(data)
+def _convert_to_utf8(data: bytes, encoding: str | None, path: Path) -> bytes:
+    found, skipped = _detect_encoding(data)
     try:
         if encoding is not None:
             return data.decode(encoding).lstrip("\ufeff").encode()
         if found == "utf-8":
-            return _checked_utf8(data[skipped:] if skipped else data)
+            return _require_utf8(data[skipped:] if skipped else data)
         return data[skipped:].decode(found).encode()
     except LookupError as error:
         raise ReadError(f"Unknown encoding '{encoding}' for '{path}'.", path=path) from error
@@ -205,17 +205,17 @@ def _as_utf8(data: bytes, encoding: str | None, path: Path) -> bytes:
         ) from error
 
 
-def _checked_utf8(data: bytes) -> bytes:
+def _require_utf8(data: bytes) -> bytes:
     if data.isascii():
         return data
     try:
         data.decode()
     except UnicodeDecodeError:
-        return _western(data).encode()
+        return _decode_western(data).encode()
     return data
 
 
-def _western(data: bytes) -> str:
+def _decode_western(data: bytes) -> str:
     """Decode Windows-1252, where it has no letter Latin-1, which takes every byte."""
     try:
         return data.decode("cp1252")
@@ -223,7 +223,7 @@ def _western(data: bytes) -> str:
         return data.decode("latin-1")
 
 
-def _encoding(data: bytes) -> tuple[str, int]:
+def _detect_encoding(data: bytes) -> tuple[str, int]:
     """Return the encoding by the first bytes, and how many of them are the mark of it."""
     for bom, encoding in _BOMS:
         if data.startswith(bom):

@@ -9,19 +9,19 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from ...errors import OptionError, ReadError
 from .cells import BLANKS, is_grouped, is_number, is_number_like, may_group_or_divide, split_line
-from .columns import columns_by_header
-from .lines import COMMENT_PREFIXES, decoded
+from .columns import find_columns_by_header
+from .lines import COMMENT_PREFIXES, decode_head
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
 __all__ = [
     "DecimalMark",
-    "as_decimal",
-    "as_delimiter",
-    "decimal_of",
-    "delimiter_of",
+    "find_decimal_mark",
+    "find_delimiter",
     "looks_like_table",
+    "parse_decimal_mark",
+    "parse_delimiter",
     "require_one_kind_of_comma",
 ]
 
@@ -43,19 +43,19 @@ _SPOKEN = {
 
 def looks_like_table(head: bytes) -> bool:
     """Whether the first bytes of a file are delimited rows with three numbers or more."""
-    text = decoded(head)
+    text = decode_head(head)
     if text is None:
         return False
     stripped = (line.strip() for line in text.split("\n")[:_TOP_LINES])
     sample = [line for line in stripped if line and not line.startswith(COMMENT_PREFIXES)]
-    delimiter = delimiter_of(sample) if sample else None
+    delimiter = find_delimiter(sample) if sample else None
     if delimiter is None:
         return False
     numbers = [_count_numbers(split_line(line, delimiter), delimiter) for line in sample]
     return 2 * sum(number >= 3 for number in numbers) >= len(numbers)
 
 
-def as_delimiter(word: str | None) -> str | None:
+def parse_delimiter(word: str | None) -> str | None:
     """Return the delimiter that the caller names; None stays None.
 
     Raises
@@ -73,7 +73,7 @@ def as_delimiter(word: str | None) -> str | None:
     return delimiter
 
 
-def as_decimal(word: str | None) -> str | None:
+def parse_decimal_mark(word: str | None) -> str | None:
     """Return the decimal mark that the caller names; None stays None.
 
     Raises
@@ -103,9 +103,9 @@ def _clings(cell: str) -> bool:
     return cell.startswith(_VISIBLE) or cell.endswith(_VISIBLE)
 
 
-def delimiter_of(sample: Sequence[str]) -> str | None:
+def find_delimiter(sample: Sequence[str]) -> str | None:
     """Choose the delimiter that gives the most numbers and the most even rows."""
-    scores = {delimiter: _delimiter_score(sample, delimiter) for delimiter in _DELIMITERS}
+    scores = {delimiter: _score_delimiter(sample, delimiter) for delimiter in _DELIMITERS}
     best = max(scores, key=scores.__getitem__)
     return best if scores[best] > (0, 0.0, 0) else None
 
@@ -133,13 +133,15 @@ def _is_grouped_by_commas(cell: str) -> bool:
     return "," in cell and is_grouped(cell, ".")
 
 
-def _delimiter_score(sample: Sequence[str], delimiter: str) -> tuple[int, float, int]:
+def _score_delimiter(sample: Sequence[str], delimiter: str) -> tuple[int, float, int]:
     """Return how many numbers a line has, the share of lines that are even, and their cells."""
     rows = [split_line(line, delimiter) for line in sample]
     counts = [_count_numbers(row, delimiter) for row in rows]
     numbers = max(
         median_high(counts),
-        max(3 * (columns_by_header(row, strict=False) is not None) for row in rows[:_TOP_LINES]),
+        max(
+            3 * (find_columns_by_header(row, strict=False) is not None) for row in rows[:_TOP_LINES]
+        ),
     )
     if numbers < 2 or max(map(len, rows)) < 3:
         return 0, 0.0, 0
@@ -158,7 +160,7 @@ class DecimalMark(NamedTuple):
     note: str = ""
 
 
-def decimal_of(rows: Iterable[Sequence[str]], delimiter: str) -> DecimalMark | None:
+def find_decimal_mark(rows: Iterable[Sequence[str]], delimiter: str) -> DecimalMark | None:
     """Choose the decimal mark by the cells of some rows; None if no cell has one.
 
     Raises

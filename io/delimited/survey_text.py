@@ -13,12 +13,12 @@ from ..._sentences import counted
 from ...crs import CRS, Unit
 from ...errors import OptionError, ReadError, WriteError
 from ...tin import TIN, Survey
-from ..nodata import as_nodata
+from ..nodata import parse_nodata
 from ..reprojection.area_of_use import AreaOfUse
 from ..reprojection.placement import place, settle_unit
 from ..reprojection.transformation import is_geographic
-from .columns import unit_of
-from .content import columns_by_content
+from .columns import find_unit_word
+from .content import find_columns_by_content
 from .findings import (
     describe_faults,
     describe_left_out,
@@ -28,7 +28,7 @@ from .findings import (
 )
 from .layout import find_layout
 from .lines import read_lines
-from .table import describe_columns, faults_error, read_cells, read_table
+from .table import describe_columns, describe_faults_of_rows, read_cells, read_table
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -124,7 +124,7 @@ def read(
     A number is the float64 nearest to its text. One million rows take about half a second
     on one core, two seconds where quotes stand inside cells or descriptions hold blanks.
     """
-    left_out = as_nodata(nodata)
+    left_out = parse_nodata(nodata)
     declared = CRS.of(source_crs)
     lines = read_lines(path, encoding=encoding)
     layout = find_layout(
@@ -132,14 +132,14 @@ def read(
     )
     cells = read_cells(lines, layout, path)
     if cells.faults and not skip_bad:
-        raise faults_error(cells.faults, len(layout.rows), lines, layout, path)
+        raise describe_faults_of_rows(cells.faults, len(layout.rows), lines, layout, path)
     target = CRS.of(crs)
-    source = _source(layout, declared, target)
+    source = _find_source_crs(layout, declared, target)
     area = AreaOfUse.of(source, target)
-    meaning, notes = _columns(cells, layout, area, path)
+    meaning, notes = _find_columns(cells, layout, area, path)
     table = read_table(cells, layout, meaning, lines)
     _require_few_faults(table.faults, lines, layout, path, skip_bad=skip_bad)
-    told = _accounted(table, left_out, path)
+    told = _account_for_rows(table, left_out, path)
     notes = [
         *layout.notes,
         *notes,
@@ -148,7 +148,7 @@ def read(
         *find_odd_elevations(told.points),
         *find_repeated_numbers(told.attributes.get("number"), told.rows),
     ]
-    unit = settle_unit(Unit.of(z_unit), _unit_of_header(layout), path)
+    unit = settle_unit(Unit.of(z_unit), _find_header_unit(layout), path)
     placed = place(told.points, source=source, target=target, path=path, unit=unit)
     return Survey(
         points=placed.points,
@@ -162,7 +162,7 @@ def read(
     )
 
 
-def _unit_of_header(layout: Layout) -> Unit | None:
+def _find_header_unit(layout: Layout) -> Unit | None:
     """Return the unit of elevations that the header names; a word that is no length tells none."""
     try:
         return Unit.of(layout.elevation_unit)
@@ -170,7 +170,7 @@ def _unit_of_header(layout: Layout) -> Unit | None:
         return None
 
 
-def _source(layout: Layout, source_crs: CRS | None, crs: CRS | None) -> CRS | None:
+def _find_source_crs(layout: Layout, source_crs: CRS | None, crs: CRS | None) -> CRS | None:
     """Return the CRS of the coordinates in the file, None if it is the one declared."""
     in_degrees = layout.columns is not None and layout.columns.is_degrees
     return (
@@ -180,7 +180,7 @@ def _source(layout: Layout, source_crs: CRS | None, crs: CRS | None) -> CRS | No
     )
 
 
-def _columns(
+def _find_columns(
     cells: Cells, layout: Layout, area: AreaOfUse | None, path: Path
 ) -> tuple[Columns, list[str]]:
     """Return what the columns mean, by word or header, else by what is in them."""
@@ -188,7 +188,7 @@ def _columns(
         return layout.columns, []
     try:
         columns = describe_columns(cells, layout)
-        found, note = columns_by_content(
+        found, note = find_columns_by_content(
             columns, area, is_scan=layout.is_scan, is_announced=layout.is_announced
         )
     except ReadError as error:
@@ -204,7 +204,7 @@ def _require_few_faults(
 ) -> None:
     """Refuse bad rows that are not to be skipped, or are most of the rows."""
     if faults and (not skip_bad or 2 * len(faults) > len(layout.rows)):
-        raise faults_error(faults, len(layout.rows), lines, layout, path)
+        raise describe_faults_of_rows(faults, len(layout.rows), lines, layout, path)
 
 
 class _Accounted(NamedTuple):
@@ -217,7 +217,7 @@ class _Accounted(NamedTuple):
     notes: list[str]
 
 
-def _accounted(table: Table, nodata: NDArray[np.float64], path: Path) -> _Accounted:
+def _account_for_rows(table: Table, nodata: NDArray[np.float64], path: Path) -> _Accounted:
     """Leave out points without an elevation, and say what became of every row."""
     z = table.points[:, 2]
     is_flat = np.isnan(z)
@@ -284,25 +284,27 @@ def write(
     elevations, ``elevation (ft)``, if it is known.
     """
     is_bare = path.suffix.lower() in _BARE_SUFFIXES
-    table = _columns_to_write(obj, columns, is_bare, path)
+    table = _choose_written_columns(obj, columns, is_bare, path)
     separator = delimiter or _SUFFIX_DELIMITERS.get(path.suffix.lower(), ",")
     if len(separator) != 1 or separator in '"\n\r.' or separator.isalnum():
         raise WriteError(f"Cannot write '{path}': '{delimiter}' is no delimiter.", path=path)
-    names = [] if (is_bare if header is None else not header) else [_header(table, obj)]
+    names = (
+        [] if (is_bare if header is None else not header) else [_name_written_columns(table, obj)]
+    )
     with replacing(path, binary=False) as file:
         writer = csv.writer(file, delimiter=separator, lineterminator="\n")
-        writer.writerows(chain(names, _rows(list(table.values()), progress)))
+        writer.writerows(chain(names, _iterate_rows(list(table.values()), progress)))
 
 
-def _header(table: Mapping[str, NDArray[Any]], obj: TIN | Survey) -> list[str]:
+def _name_written_columns(table: Mapping[str, NDArray[Any]], obj: TIN | Survey) -> list[str]:
     """Return the names of the columns, that of elevations with their unit if readers know it."""
     unit = obj.elevation_unit
     named = None if unit is None else f"elevation ({unit.symbol})"
-    is_read = named is not None and unit_of(named) is not None
+    is_read = named is not None and find_unit_word(named) is not None
     return [str(named) if name == "elevation" and is_read else name for name in table]
 
 
-def _columns_to_write(
+def _choose_written_columns(
     obj: TIN | Survey, letters: str | None, is_bare: bool, path: Path
 ) -> dict[str, NDArray[Any]]:
     attributes = dict(obj.attributes) if isinstance(obj, Survey) else {}
@@ -317,10 +319,10 @@ def _columns_to_write(
         return {"number": number, **surveyed, "description": description, **others}
     if letters is None:
         return coordinates if is_bare else {**coordinates, **attributes}
-    return _by_letters(letters, {**attributes, **coordinates}, path)
+    return _choose_by_letters(letters, {**attributes, **coordinates}, path)
 
 
-def _by_letters(
+def _choose_by_letters(
     letters: str, available: dict[str, NDArray[Any]], path: Path
 ) -> dict[str, NDArray[Any]]:
     roles = {"P": "number", "N": "northing", "Y": "northing", "E": "easting", "X": "easting"}
@@ -348,7 +350,7 @@ def _require_no_lines(survey: Survey, path: Path) -> None:
         )
 
 
-def _rows(
+def _iterate_rows(
     columns: Sequence[NDArray[Any]], progress: Callable[[float], None] | None
 ) -> Iterator[tuple[Any, ...]]:
     """Walk the rows as Python values; a float's text is the shortest that reads back the same."""

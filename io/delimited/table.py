@@ -18,11 +18,11 @@ from ..._sentences import counted, inflect
 from ...errors import ReadError
 from .cells import (
     BLANKS,
-    as_grouped,
-    as_number,
     is_grouped,
     is_missing,
     is_number,
+    parse_grouped,
+    parse_number,
     proves_groups,
     split_line,
 )
@@ -45,7 +45,7 @@ __all__ = [
     "Fault",
     "Table",
     "describe_columns",
-    "faults_error",
+    "describe_faults_of_rows",
     "read_cells",
     "read_table",
 ]
@@ -116,17 +116,21 @@ def read_cells(lines: TextLines, layout: Layout, path: Path) -> Cells:
     one by one, by the rules of Python's csv module, on the way. Every number is the float64
     nearest to its text.
     """
-    data = lines.joined(layout.rows)
+    data = lines.join(layout.rows)
     if _is_regular(data, layout):
-        return Cells(_parsed(data, layout.delimiter, layout, len(layout.rows), path), layout.rows)
-    data, rows, faults = _rewritten(lines, layout)
+        return Cells(
+            _parse_with_pandas(data, layout.delimiter, layout, len(layout.rows), path), layout.rows
+        )
+    data, rows, faults = _rewrite_rows(lines, layout)
     if len(rows) == 0:
-        raise faults_error(faults, len(layout.rows), lines, layout, path)
-    frame = _parsed(data, _REWRITTEN_DELIMITER, layout, len(rows), path)
+        raise describe_faults_of_rows(faults, len(layout.rows), lines, layout, path)
+    frame = _parse_with_pandas(data, _REWRITTEN_DELIMITER, layout, len(rows), path)
     return Cells(frame, rows, tuple(faults))
 
 
-def _parsed(data: bytes, delimiter: str, layout: Layout, n_rows: int, path: Path) -> pd.DataFrame:
+def _parse_with_pandas(
+    data: bytes, delimiter: str, layout: Layout, n_rows: int, path: Path
+) -> pd.DataFrame:
     import pandas as pd
 
     numbers = [i for i in range(layout.count) if i not in layout.text_columns]
@@ -158,7 +162,7 @@ def _parsed(data: bytes, delimiter: str, layout: Layout, n_rows: int, path: Path
     return frame
 
 
-def faults_error(
+def describe_faults_of_rows(
     faults: Sequence[Fault], n_rows: int, lines: TextLines, layout: Layout, path: Path
 ) -> ReadError:
     """Return the error that counts the rows at fault, and shows the first of the first kind."""
@@ -203,7 +207,7 @@ def _is_regular(data: bytes, layout: Layout) -> bool:
         quotes = np.flatnonzero(codes == _QUOTE)
         if not _are_plain(quotes, codes, ord(layout.delimiter), ends):
             return False
-        places = _outside(places, quotes)
+        places = _drop_quoted(places, quotes)
     return _has_even(places, starts, ends, layout.count - 1)
 
 
@@ -244,7 +248,7 @@ def _are_plain(
     return bool(np.isin(beside, [delimiter, _QUOTE, _LINE_FEED]).all())
 
 
-def _outside(places: NDArray[np.int64], quotes: NDArray[np.int64]) -> NDArray[np.int64]:
+def _drop_quoted(places: NDArray[np.int64], quotes: NDArray[np.int64]) -> NDArray[np.int64]:
     """Return the places (ascending) that do not lie between an opening and its closing quote."""
     first = np.searchsorted(places, quotes[0::2])
     counts = np.searchsorted(places, quotes[1::2]) - first
@@ -253,19 +257,19 @@ def _outside(places: NDArray[np.int64], quotes: NDArray[np.int64]) -> NDArray[np
     return np.delete(places, np.repeat(first - running + counts, counts) + np.arange(total))
 
 
-def _rewritten(lines: TextLines, layout: Layout) -> tuple[bytes, NDArray[np.int64], list[Fault]]:
+def _rewrite_rows(lines: TextLines, layout: Layout) -> tuple[bytes, NDArray[np.int64], list[Fault]]:
     """Write the rows anew with plain quotes; leave those out that have not the right cells."""
     text = StringIO(newline="")
     writer = csv.writer(text, delimiter=_REWRITTEN_DELIMITER, lineterminator="\n")
     kept: list[int] = []
     faults: list[Fault] = []
     last = -1 if lines.is_whole else len(lines) - 1
-    for line, raw, cells in _rows(lines, layout):
+    for line, raw, cells in _iterate_cells(lines, layout):
         if isinstance(cells, str):
             faults.append(Fault(line, "quote", cells))
             continue
         if layout.has_text_tail:
-            cells = _with_tail(cells, raw, layout, line == last)
+            cells = _join_tail(cells, raw, layout, line == last)
         if len(cells) == layout.count:
             writer.writerow(cells)
             kept.append(line)
@@ -274,20 +278,20 @@ def _rewritten(lines: TextLines, layout: Layout) -> tuple[bytes, NDArray[np.int6
     return text.getvalue().encode(), np.array(kept, np.int64), faults
 
 
-def _rows(lines: TextLines, layout: Layout) -> Iterator[tuple[int, str, list[str] | str]]:
+def _iterate_cells(lines: TextLines, layout: Layout) -> Iterator[tuple[int, str, list[str] | str]]:
     """Walk the rows: line number (from 0), its text, and its cells or what is wrong with them."""
     for start in range(0, len(layout.rows), _QUOTED_ROWS):
         rows = layout.rows[start : start + _QUOTED_ROWS]
-        text = lines.joined(rows).decode()
+        text = lines.join(rows).decode()
         if layout.delimiter == BLANKS:
             texts = [line.strip(" ") for line in text.replace("\t", " ").split("\n")]
         else:
             texts = text.split("\n")
-        split = _split(texts, layout.delimiter)
+        split = _split_by_csv(texts, layout.delimiter)
         yield from zip(rows.tolist(), texts, split, strict=True)
 
 
-def _split(texts: Sequence[str], delimiter: str) -> Iterator[list[str] | str]:
+def _split_by_csv(texts: Sequence[str], delimiter: str) -> Iterator[list[str] | str]:
     """Split texts by the rules of CSV; begin anew behind one that is at fault."""
     done = 0
     while done < len(texts):
@@ -309,7 +313,7 @@ def _split(texts: Sequence[str], delimiter: str) -> Iterator[list[str] | str]:
         done += number
 
 
-def _with_tail(cells: list[str], raw: str, layout: Layout, is_cut: bool) -> list[str]:
+def _join_tail(cells: list[str], raw: str, layout: Layout, is_cut: bool) -> list[str]:
     """Join the cells of a text that holds the delimiter; a row that is whole may have none."""
     count = layout.count
     if len(cells) == count - 1 and not is_cut and layout.may_lack_tail:
@@ -347,25 +351,25 @@ class _Numbers(NamedTuple):
     n_grouped: int = 0
 
 
-def _numbers(column: pd.Series[Any], layout: Layout, *, has_groups: bool) -> _Numbers:
+def _parse_numbers(column: pd.Series[Any], layout: Layout, *, has_groups: bool) -> _Numbers:
     """Read the numbers of a column, those with thousands separators where these are proved."""
     if column.dtype.kind in "fiu":
         values = column.to_numpy(np.float64)
         return _Numbers(values, np.isnan(values))
     if column.dtype.kind == "b":
         return _Numbers(np.full(len(column), np.nan), np.zeros(len(column), np.bool_))
-    cells = _texts(column)
+    cells = _strip_texts(column)
     decimal = layout.decimal
-    values = np.fromiter((as_number(cell, decimal) for cell in cells), np.float64, len(cells))
+    values = np.fromiter((parse_number(cell, decimal) for cell in cells), np.float64, len(cells))
     odd = np.flatnonzero(np.isnan(values)).tolist()
     missing = np.zeros(len(cells), np.bool_)
     missing[[i for i in odd if is_missing(cells[i])]] = True
     grouped = [i for i in odd if has_groups and is_grouped(cells[i], decimal)]
-    values[grouped] = [as_grouped(cells[i], decimal) for i in grouped]
+    values[grouped] = [parse_grouped(cells[i], decimal) for i in grouped]
     return _Numbers(values, missing, len(grouped))
 
 
-def _texts(column: pd.Series[Any]) -> list[str]:
+def _strip_texts(column: pd.Series[Any]) -> list[str]:
     return [cell.strip() for cell in column.fillna("").astype(str)]
 
 
@@ -381,7 +385,7 @@ def _has_groups(frame: pd.DataFrame, columns: Iterable[int], layout: Layout) -> 
         proves_groups(cell, mark) or (mark in cell and is_number(cell, mark))
         for i in columns
         if frame[i].dtype.kind not in "fiub"
-        for cell in _texts(frame[i])
+        for cell in _strip_texts(frame[i])
     )
 
 
@@ -390,34 +394,35 @@ def describe_columns(cells: Cells, layout: Layout) -> list[Column]:
     numeric = [i for i in range(layout.count) if i not in layout.mostly_text]
     has_groups = _has_groups(cells.frame, numeric, layout)
     return [
-        _described(cells.frame[i], i, layout, has_groups=has_groups) for i in range(layout.count)
+        _describe_column(cells.frame[i], i, layout, has_groups=has_groups)
+        for i in range(layout.count)
     ]
 
 
-def _described(column: pd.Series[Any], i: int, layout: Layout, *, has_groups: bool) -> Column:
+def _describe_column(column: pd.Series[Any], i: int, layout: Layout, *, has_groups: bool) -> Column:
     if i in layout.mostly_text:
         distinct = column.nunique() / len(column)
         return Column(np.full(len(column), np.nan), is_text=True, distinct_share=distinct)
-    numbers = _numbers(column, layout, has_groups=has_groups)
+    numbers = _parse_numbers(column, layout, has_groups=has_groups)
     values = numbers.values
     is_there = ~np.isnan(values)
     known = values if is_there.all() else values[is_there]
-    is_whole = i not in layout.divided and len(known) > 0 and _are_whole(known)
+    is_whole = i not in layout.divided and len(known) > 0 and _are_counts(known)
     return Column(
         values,
         is_whole=is_whole,
         is_padded=i in layout.padded,
         text_share=float((~is_there & ~numbers.is_missing).mean()),
-        distinct_share=_distinct_share(known) if is_whole else 1.0,
+        distinct_share=_measure_distinct_share(known) if is_whole else 1.0,
     )
 
 
-def _are_whole(values: NDArray[np.float64]) -> bool:
+def _are_counts(values: NDArray[np.float64]) -> bool:
     with np.errstate(invalid="ignore"):
         return bool((values >= 0).all() and (np.floor(values) == values).all())
 
 
-def _distinct_share(values: NDArray[np.float64]) -> float:
+def _measure_distinct_share(values: NDArray[np.float64]) -> float:
     if len(values) < 2 or (np.diff(values) > 0).all():
         return 1.0
     return len(np.unique(values)) / len(values)
@@ -440,7 +445,7 @@ def read_table(cells: Cells, layout: Layout, columns: Columns, lines: TextLines)
     """
     has_groups = _has_groups(cells.frame, columns.coordinates, layout)
     numbers = [
-        _numbers(cells.frame[column], layout, has_groups=has_groups)
+        _parse_numbers(cells.frame[column], layout, has_groups=has_groups)
         for column in columns.coordinates
     ]
     points = np.column_stack([one.values for one in numbers])
@@ -448,13 +453,13 @@ def read_table(cells: Cells, layout: Layout, columns: Columns, lines: TextLines)
     is_bad[:, 2] &= ~numbers[2].is_missing
     bad = np.flatnonzero(is_bad.any(axis=1))
     faults = [
-        Fault(int(cells.rows[row]), "number", _fault(lines, layout, columns, line, k))
+        Fault(int(cells.rows[row]), "number", _describe_fault(lines, layout, columns, line, k))
         for row, line, k in zip(
             bad, cells.rows[bad].tolist(), is_bad[bad].argmax(axis=1).tolist(), strict=True
         )
     ]
     good = np.delete(np.arange(len(points)), bad) if len(bad) else slice(None)
-    attributes = _attributes(cells.frame, columns)
+    attributes = _collect_attributes(cells.frame, columns)
     return Table(
         points[good],
         {name: values[good] for name, values in attributes.items()},
@@ -464,10 +469,10 @@ def read_table(cells: Cells, layout: Layout, columns: Columns, lines: TextLines)
     )
 
 
-def _fault(lines: TextLines, layout: Layout, columns: Columns, line: int, k: int) -> str:
+def _describe_fault(lines: TextLines, layout: Layout, columns: Columns, line: int, k: int) -> str:
     """Say which cell of a row is at fault, and what is in it."""
     column = columns.coordinates[k]
-    cell = split_line(lines.text(line), layout.delimiter)[column]
+    cell = split_line(lines.decode_line(line), layout.delimiter)[column]
     value = f"is '{cell[:40]}'" if cell else "is empty"
     return f"{COORDINATES[k]} in {columns.label(column)} {value}"
 
@@ -475,21 +480,21 @@ def _fault(lines: TextLines, layout: Layout, columns: Columns, line: int, k: int
 # ------------------------------------------------------------------ attributes
 
 
-def _attributes(frame: pd.DataFrame, columns: Columns) -> dict[str, NDArray[Any]]:
+def _collect_attributes(frame: pd.DataFrame, columns: Columns) -> dict[str, NDArray[Any]]:
     """Return the columns that are no coordinates, by role or name; empty unnamed ones are left."""
     roles = {column: role for role, column in columns.roles.items()}
     attributes: dict[str, NDArray[Any]] = {}
     for column, name in enumerate(columns.names):
         if roles.get(column) in COORDINATES:
             continue
-        values = _values(frame[column])
+        values = _choose_values(frame[column])
         if name == f"column {column + 1}" and _is_empty(values):
             continue
         attributes[roles.get(column, name)] = values
     return attributes
 
 
-def _values(column: pd.Series[Any]) -> NDArray[Any]:
+def _choose_values(column: pd.Series[Any]) -> NDArray[Any]:
     """Return numbers as they are, anything else as text, an empty cell as an empty text."""
     if column.dtype.kind in "fiub":
         return column.to_numpy()

@@ -19,7 +19,14 @@ if TYPE_CHECKING:
 
     from ...crs import Unit
 
-__all__ = ["Located", "Places", "crs_places", "require_one_piece", "texts", "wgs84_places"]
+__all__ = [
+    "Located",
+    "Places",
+    "format_positions",
+    "keep_in_crs",
+    "project_to_wgs84",
+    "require_one_piece",
+]
 
 DEGREE_DECIMALS = 9  # a tenth of a millimetre on the ground
 ELEVATION_DECIMALS = 6  # a micrometre
@@ -60,7 +67,7 @@ class Places(NamedTuple):
     members: tuple[tuple[str, str], ...] = ()
 
 
-def wgs84_places(surface: Located) -> Places:
+def project_to_wgs84(surface: Located) -> Places:
     """Move points to WGS 84 longitude, latitude and elevation in metres, rounded.
 
     Parameters
@@ -90,10 +97,10 @@ def wgs84_places(surface: Located) -> Places:
     _require_on_earth(moved, points, crs)
     moved[:, :2] = np.round(moved[:, :2], DEGREE_DECIMALS)
     moved[:, 2] = np.round(moved[:, 2], ELEVATION_DECIMALS)
-    return Places(moved + 0.0, members=_assumption(surface))
+    return Places(moved + 0.0, members=_note_assumed_unit(surface))
 
 
-def _assumption(surface: Located) -> tuple[tuple[str, str], ...]:
+def _note_assumed_unit(surface: Located) -> tuple[tuple[str, str], ...]:
     """Tell which unit elevations were taken to have, where they were converted from it."""
     usual = None if surface.crs is None else surface.crs.usual_elevation_unit
     if surface.elevation_unit is not None or usual is None or usual == METRE:
@@ -102,7 +109,7 @@ def _assumption(surface: Located) -> tuple[tuple[str, str], ...]:
     return (("elevations", text),)
 
 
-def crs_places(surface: Located) -> Places:
+def keep_in_crs(surface: Located) -> Places:
     """Keep points as they are, and name their CRS by the rule of 2008 (``null``: unknown)."""
     unit = surface.elevation_unit
     members = () if unit is None else (("elevation_unit", unit.name),)
@@ -117,7 +124,7 @@ def crs_places(surface: Located) -> Places:
     )
 
 
-def texts(xyz: NDArray[np.float64]) -> NDArray[np.object_]:
+def format_positions(xyz: NDArray[np.float64]) -> NDArray[np.object_]:
     """Return each position as JSON text, in the fewest digits that give the same double back.
 
     Parameters
@@ -150,7 +157,7 @@ def require_one_piece(longitudes: NDArray[np.float64], path: Path) -> None:
     wide = np.ptp(longitudes, axis=1) > _HALF_TURN
     if wide.any():
         raise WriteError(
-            f"Cannot write '{path}': {_crossing(int(wide.sum()))} a pole, "
+            f"Cannot write '{path}': {_describe_crossing(int(wide.sum()))} a pole, "
             "which longitude and latitude cannot show in one piece; keep the coordinates "
             "of the CRS with projected=True.",
             path=path,
@@ -171,6 +178,6 @@ def _require_on_earth(moved: NDArray[np.float64], points: NDArray[np.float64], c
         )
 
 
-def _crossing(count: int) -> str:
+def _describe_crossing(count: int) -> str:
     cross, hold = ("crosses", "holds") if count == 1 else ("cross", "hold")
     return f"{counted(count, 'triangle')} {cross} the antimeridian or {hold}"

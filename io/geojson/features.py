@@ -11,7 +11,7 @@ import numpy as np
 from ..._atomic import replacing
 from ...errors import WriteError
 from ...terrain.results.columns import unit_text
-from .coordinates import crs_places, texts, wgs84_places
+from .coordinates import format_positions, keep_in_crs, project_to_wgs84
 from .values import json_texts, properties_template
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ _HALF_TURN = 180.0
 
 
 class _Located(NamedTuple):
-    """Coordinates with what they are measured in, as :func:`wgs84_places` takes them."""
+    """Coordinates with what they are measured in, as :func:`project_to_wgs84` takes them."""
 
     points: NDArray[np.float64]
     crs: CRS | None
@@ -72,7 +72,7 @@ def write_features(
     counter-clockwise.
     """
     located = _located(features)
-    places = (crs_places if projected else wgs84_places)(located)
+    places = (keep_in_crs if projected else project_to_wgs84)(located)
     if places.crs_member is None:
         _require_one_side(places.xyz, features, path)
     geometries = _geometries(features, places)
@@ -135,10 +135,10 @@ def _feature(properties: str, geometry: str) -> str:
 def _texts(features: Features, places: Places) -> NDArray[np.object_]:
     """Return each position, with two numbers where its elevation is not known."""
     if not features.has_elevations:
-        return texts(places.xyz[:, :2])
-    written = texts(places.xyz)
+        return format_positions(places.xyz[:, :2])
+    written = format_positions(places.xyz)
     gaps = np.isnan(features.coordinates[:, 2])
-    written[gaps] = texts(places.xyz[gaps, :2])
+    written[gaps] = format_positions(places.xyz[gaps, :2])
     return written
 
 

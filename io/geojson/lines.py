@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...errors import FormatError
-from ...terrain.linework import EDGE_KINDS, line_edges
+from ...terrain.linework import EDGE_KINDS, find_line_edges
 from ...tin.topology import edge_keys, edges_at
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from ...tin import TIN
 
-__all__ = ["edge_words", "line_features", "line_vertices", "require_lines"]
+__all__ = ["format_edge_properties", "format_lines", "list_line_vertices", "require_lines"]
 
 _LINE = (
     '{"type":"Feature","properties":{"id":%d,"kind":%s,"name":%s,"source":%s},'
@@ -25,7 +25,7 @@ _LINE = (
 )
 
 
-def edge_words(tin: TIN, flags: NDArray[np.bool_]) -> NDArray[np.object_]:
+def format_edge_properties(tin: TIN, flags: NDArray[np.bool_]) -> NDArray[np.object_]:
     """Return the properties of each edge, as JSON, opposite each corner: (m, 3) array.
 
     Parameters
@@ -36,16 +36,16 @@ def edge_words(tin: TIN, flags: NDArray[np.bool_]) -> NDArray[np.object_]:
     """
     kinds = np.full(flags.shape, -1, np.int8)
     if len(tin.lines):
-        kinds[flags] = _kinds_of(tin, edges_at(tin.triangles, flags))
+        kinds[flags] = _find_edge_kinds(tin, edges_at(tin.triangles, flags))
     texts = ['"constrained":false,"kind":null', '"constrained":true,"kind":null']
     texts += [f'"constrained":true,"kind":"{kind}"' for kind in EDGE_KINDS]
     words: NDArray[np.object_] = np.array(texts, object)[np.where(kinds >= 0, kinds + 2, flags)]
     return words
 
 
-def _kinds_of(tin: TIN, pairs: NDArray[np.int32]) -> NDArray[np.int8]:
+def _find_edge_kinds(tin: TIN, pairs: NDArray[np.int32]) -> NDArray[np.int8]:
     """Return the kind of each edge, a place in ``EDGE_KINDS``; -1 where no line is known."""
-    known = line_edges(tin, guess=False)
+    known = find_line_edges(tin, guess=False)
     keys = edge_keys(known.pairs, len(tin.points))
     order = np.argsort(keys)
     wanted = edge_keys(pairs, len(tin.points))
@@ -69,15 +69,15 @@ def require_lines(tin: TIN) -> None:
         )
 
 
-def line_vertices(tin: TIN) -> list[NDArray[np.int32]]:
+def list_line_vertices(tin: TIN) -> list[NDArray[np.int32]]:
     """Return the chains of a TIN; where none are known, its constrained edges one by one."""
-    return list(tin.lines.chains()) if len(tin.lines) else list(line_edges(tin).pairs)
+    return list(tin.lines.chains()) if len(tin.lines) else list(find_line_edges(tin).pairs)
 
 
-def line_features(tin: TIN, positions: NDArray[np.object_]) -> Iterator[str]:
+def format_lines(tin: TIN, positions: NDArray[np.object_]) -> Iterator[str]:
     """Give a feature for each line, given the positions of the vertices as JSON."""
     lines = tin.lines
-    for number, vertices in enumerate(line_vertices(tin)):
+    for number, vertices in enumerate(list_line_vertices(tin)):
         properties: tuple[Any, ...] = ("null", '""', "null")
         if len(lines):
             kind, name = json.dumps(lines.kinds[number]), json.dumps(lines.names[number])

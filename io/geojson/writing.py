@@ -12,12 +12,12 @@ from ..._sentences import counted
 from ...errors import FormatError, WriteError, choice
 from ...policies import FeatureKind
 from ...terrain.results import Features
-from ...terrain.slope import areas, aspect, ring_area, slope
+from ...terrain.slope import aspect, measure_areas, measure_ring_area, slope
 from ...tin import Survey
 from ..mesh.common import require_writable
-from .coordinates import Places, crs_places, require_one_piece, texts, wgs84_places
+from .coordinates import Places, format_positions, keep_in_crs, project_to_wgs84, require_one_piece
 from .features import write_features
-from .lines import edge_words, line_features, line_vertices, require_lines
+from .lines import format_edge_properties, format_lines, list_line_vertices, require_lines
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -103,24 +103,24 @@ def write(
         write_features(surface, path, projected=projected, progress=progress)
         return
     surface = require_writable(surface, path)
-    chosen = _checked_kind(surface, kind)
+    chosen = _require_kind(surface, kind)
     if chosen == "lines" and not isinstance(surface, Survey):
         require_lines(surface)
-    _require_finite(surface.points, path)
-    place = crs_places if projected else wgs84_places
+    _require_finite_points(surface.points, path)
+    place = keep_in_crs if projected else project_to_wgs84
     places = place(surface)
     if isinstance(surface, Survey) or chosen == "points":
         used, total = places.xyz, len(surface.points)
-        features = _points(surface, places)
+        features = _format_points(surface, places)
     else:
         corners = places.xyz[surface.triangles, 0]
         if places.crs_member is None:
             require_one_piece(corners, path)
-        used = places.xyz[_used_vertices(surface, chosen)]
+        used = places.xyz[_find_used_vertices(surface, chosen)]
         total = len(surface.triangles)
         features = _SURFACE_FEATURES[chosen](surface, places)
     with replacing(path, binary=False) as file:
-        file.write(_head(places, used))
+        file.write(_format_head(places, used))
         separator = "\n"
         for done, batch in features:
             file.write(separator + batch)
@@ -135,7 +135,7 @@ def _require_no_kind(kind: str | None) -> None:
         raise FormatError(f"Invalid kind '{kind}': features are written as they are, without one.")
 
 
-def _checked_kind(surface: TIN | Survey, kind: str | None) -> str:
+def _require_kind(surface: TIN | Survey, kind: str | None) -> str:
     is_survey = isinstance(surface, Survey)
     if kind is None:
         return "points" if is_survey else "triangles"
@@ -147,7 +147,7 @@ def _checked_kind(surface: TIN | Survey, kind: str | None) -> str:
     return kind
 
 
-def _require_finite(points: NDArray[np.float64], path: Path) -> None:
+def _require_finite_points(points: NDArray[np.float64], path: Path) -> None:
     wrong = ~np.isfinite(points).all(axis=1)
     if wrong.any():
         row, count = int(np.argmax(wrong)), int(wrong.sum())
@@ -159,7 +159,7 @@ def _require_finite(points: NDArray[np.float64], path: Path) -> None:
         )
 
 
-def _head(places: Places, used: NDArray[np.float64]) -> str:
+def _format_head(places: Places, used: NDArray[np.float64]) -> str:
     lines = ['"type":"FeatureCollection"']
     if places.crs_member is not None:
         lines.append(f'"crs":{places.crs_member}')
@@ -170,13 +170,13 @@ def _head(places: Places, used: NDArray[np.float64]) -> str:
     return "{" + ",\n".join(lines) + ',\n"features":['
 
 
-def _used_vertices(tin: TIN, kind: str) -> NDArray[np.bool_]:
+def _find_used_vertices(tin: TIN, kind: str) -> NDArray[np.bool_]:
     used = np.zeros(len(tin.points), np.bool_)
-    used[np.concatenate(line_vertices(tin)) if kind == "lines" else tin.triangles] = True
+    used[np.concatenate(list_line_vertices(tin)) if kind == "lines" else tin.triangles] = True
     return used
 
 
-def _batches(count: int) -> Iterator[tuple[int, slice]]:
+def _iterate_slices(count: int) -> Iterator[tuple[int, slice]]:
     """Cut a count into slices, each with the number done after it."""
     for start in range(0, count, _BATCH):
         stop = min(start + _BATCH, count)
@@ -194,19 +194,19 @@ class _Measures(NamedTuple):
     area: NDArray[np.float64]
 
 
-def _measures(tin: TIN) -> _Measures:
+def _measure_triangles(tin: TIN) -> _Measures:
     # As written, a hair west of north must not become the full circle.
     falls = np.round(aspect(tin), 4) % 360.0
-    return _Measures(slope(tin), falls, areas(tin))
+    return _Measures(slope(tin), falls, measure_areas(tin))
 
 
-def _triangles(tin: TIN, places: Places) -> Iterator[tuple[int, str]]:
-    positions = texts(places.xyz)
-    measures = _measures(tin)
-    for done, part in _batches(len(tin.triangles)):
+def _format_triangles(tin: TIN, places: Places) -> Iterator[tuple[int, str]]:
+    positions = format_positions(places.xyz)
+    measures = _measure_triangles(tin)
+    for done, part in _iterate_slices(len(tin.triangles)):
         triangles = tin.triangles[part]
         if places.crs_member is None:  # else the coordinates, and so the order, are the TIN's own
-            triangles = _counter_clockwise(triangles, places.xyz)
+            triangles = _turn_counter_clockwise(triangles, places.xyz)
         first, second, third = triangles.T
         start = positions[first].tolist()
         rows = zip(
@@ -224,7 +224,9 @@ def _triangles(tin: TIN, places: Places) -> Iterator[tuple[int, str]]:
         yield done, ",\n".join(map(_TRIANGLE.__mod__, rows)).replace(":nan", ":null")
 
 
-def _counter_clockwise(triangles: NDArray[np.int32], xyz: NDArray[np.float64]) -> NDArray[np.int32]:
+def _turn_counter_clockwise(
+    triangles: NDArray[np.int32], xyz: NDArray[np.float64]
+) -> NDArray[np.int32]:
     """Turn the triangles that the written coordinates show clockwise."""
     a, b, c = (xyz[triangles[:, k], :2] for k in range(3))
     ab, ac = b - a, c - a
@@ -235,13 +237,13 @@ def _counter_clockwise(triangles: NDArray[np.int32], xyz: NDArray[np.float64]) -
 # ------------------------------------------------------------------------------ edges
 
 
-def _edges(tin: TIN, places: Places) -> Iterator[tuple[int, str]]:
-    positions = texts(places.xyz)
-    words = edge_words(tin, _flags_from_both_sides(tin))
+def _format_edges(tin: TIN, places: Places) -> Iterator[tuple[int, str]]:
+    positions = format_positions(places.xyz)
+    words = format_edge_properties(tin, _gather_edge_flags(tin))
     across = np.arange(len(tin.triangles), dtype=np.int32)[:, None]
     once = (tin.neighbors < 0) | (tin.neighbors > across)
     written = 0
-    for done, part in _batches(len(tin.triangles)):
+    for done, part in _iterate_slices(len(tin.triangles)):
         here = once[part]
         starts = positions[tin.triangles[part][:, [1, 2, 0]][here]]
         ends = positions[tin.triangles[part][:, [2, 0, 1]][here]]
@@ -252,7 +254,7 @@ def _edges(tin: TIN, places: Places) -> Iterator[tuple[int, str]]:
         written += len(starts)
 
 
-def _flags_from_both_sides(tin: TIN) -> NDArray[np.bool_]:
+def _gather_edge_flags(tin: TIN) -> NDArray[np.bool_]:
     """Return the flags of the edges, each edge flagged if either of its triangles says so."""
     flags = tin.constrained.copy()
     triangle, corner = np.nonzero(tin.constrained & (tin.neighbors >= 0))
@@ -262,31 +264,31 @@ def _flags_from_both_sides(tin: TIN) -> NDArray[np.bool_]:
     return flags
 
 
-def _lines(tin: TIN, places: Places) -> Iterator[tuple[int, str]]:
-    yield len(tin.triangles), ",\n".join(line_features(tin, texts(places.xyz)))
+def _format_lines(tin: TIN, places: Places) -> Iterator[tuple[int, str]]:
+    yield len(tin.triangles), ",\n".join(format_lines(tin, format_positions(places.xyz)))
 
 
 # ------------------------------------------------------------------------------- hull
 
 
-def _hull(tin: TIN, places: Places) -> Iterator[tuple[int, str]]:
-    positions = texts(places.xyz)
+def _format_hull(tin: TIN, places: Places) -> Iterator[tuple[int, str]]:
+    positions = format_positions(places.xyz)
     features = []
-    for number, rings in enumerate(_outlines(tin)):
-        area = sum(ring_area(tin.crs, tin.points[ring]) for ring in rings)
-        turned = [_turned(ring, places.xyz, k == 0) for k, ring in enumerate(rings)]
+    for number, rings in enumerate(_group_rings(tin)):
+        area = sum(measure_ring_area(tin.crs, tin.points[ring]) for ring in rings)
+        turned = [_close_ring(ring, places.xyz, k == 0) for k, ring in enumerate(rings)]
         written = ",".join(f"[{','.join(positions[ring])}]" for ring in turned)
         features.append(_HULL % (number, area, written))
     yield len(tin.triangles), ",\n".join(features)
 
 
-def _outlines(tin: TIN) -> list[list[NDArray[np.int32]]]:
+def _group_rings(tin: TIN) -> list[list[NDArray[np.int32]]]:
     """Group the boundary rings: an outer ring followed by its holes."""
     from shapely import Polygon
 
-    outer = [ring for ring in tin.rings if _signed_area(tin.points[ring]) > 0]
-    holes = [ring for ring in tin.rings if _signed_area(tin.points[ring]) <= 0]
-    outer.sort(key=lambda ring: _signed_area(tin.points[ring]))
+    outer = [ring for ring in tin.rings if _measure_signed_area(tin.points[ring]) > 0]
+    holes = [ring for ring in tin.rings if _measure_signed_area(tin.points[ring]) <= 0]
+    outer.sort(key=lambda ring: _measure_signed_area(tin.points[ring]))
     groups = [[ring] for ring in outer]
     shapes = [Polygon(tin.points[ring, :2]) for ring in outer] if holes else []
     for hole in holes:
@@ -296,37 +298,37 @@ def _outlines(tin: TIN) -> list[list[NDArray[np.int32]]]:
     return groups[::-1]
 
 
-def _signed_area(ring: NDArray[np.float64]) -> float:
+def _measure_signed_area(ring: NDArray[np.float64]) -> float:
     """Area in the plane, positive counter-clockwise."""
     x, y = (ring[:, :2] - ring[0, :2]).T
     return float(np.dot(x, np.roll(y, -1)) - np.dot(np.roll(x, -1), y)) / 2
 
 
-def _turned(
+def _close_ring(
     ring: NDArray[np.int32], xyz: NDArray[np.float64], counter_clockwise: bool
 ) -> NDArray[np.int32]:
     closed = np.append(ring, ring[0])
-    return closed if (_signed_area(xyz[ring]) > 0) == counter_clockwise else closed[::-1]
+    return closed if (_measure_signed_area(xyz[ring]) > 0) == counter_clockwise else closed[::-1]
 
 
 # ----------------------------------------------------------------------------- points
 
 
-def _points(surface: TIN | Survey, places: Places) -> Iterator[tuple[int, str]]:
+def _format_points(surface: TIN | Survey, places: Places) -> Iterator[tuple[int, str]]:
     attributes = surface.attributes if isinstance(surface, Survey) else {}
     names = [json.dumps(str(name)) for name in attributes if name != "id"]
     columns = [np.asarray(column) for name, column in attributes.items() if name != "id"]
     ids = np.asarray(attributes.get("id", np.arange(len(places.xyz))))
     properties = "{" + ",".join(f"{name.replace('%', '%%')}:%s" for name in ['"id"', *names]) + "}"
-    for done, part in _batches(len(places.xyz)):
+    for done, part in _iterate_slices(len(places.xyz)):
         values = zip(
-            *(map(_json, column[part].tolist()) for column in (ids, *columns)), strict=True
+            *(map(_format_json, column[part].tolist()) for column in (ids, *columns)), strict=True
         )
-        rows = zip(map(properties.__mod__, values), texts(places.xyz[part]), strict=True)
+        rows = zip(map(properties.__mod__, values), format_positions(places.xyz[part]), strict=True)
         yield done, ",\n".join(map(_POINT.__mod__, rows))
 
 
-def _json(value: Any) -> str:
+def _format_json(value: Any) -> str:
     """Return a value of an attribute as JSON; what JSON has no word for becomes text or null."""
     if value is None or value != value:  # NaN and NaT
         return "null"
@@ -336,8 +338,8 @@ def _json(value: Any) -> str:
 
 
 _SURFACE_FEATURES: dict[str, Callable[[TIN, Places], Iterator[tuple[int, str]]]] = {
-    "triangles": _triangles,
-    "edges": _edges,
-    "lines": _lines,
-    "hull": _hull,
+    "triangles": _format_triangles,
+    "edges": _format_edges,
+    "lines": _format_lines,
+    "hull": _format_hull,
 }

@@ -56,12 +56,12 @@ def receive(stream: IO[bytes], *, most_bytes: int) -> Answer:
     BrokenMessageError
         If the stream ends, or its content is no message.
     """
-    (length,) = _LENGTH.unpack(_bytes(stream, _LENGTH.size))
+    (length,) = _LENGTH.unpack(_receive_bytes(stream, _LENGTH.size))
     if length > most_bytes:
         raise BrokenMessageError
     try:
-        head = json.loads(bytes(_bytes(stream, length)))
-        announced = {str(name): _empty(*how) for name, how in head["arrays"].items()}
+        head = json.loads(bytes(_receive_bytes(stream, length)))
+        announced = {str(name): _reserve_array(*how) for name, how in head["arrays"].items()}
         value = head["value"]
     except (KeyError, TypeError, ValueError, AttributeError, RecursionError) as error:
         raise BrokenMessageError from error
@@ -73,7 +73,7 @@ def receive(stream: IO[bytes], *, most_bytes: int) -> Answer:
     return Answer(value, announced)
 
 
-def _empty(type_name: str, shape: list[int]) -> np.ndarray[Any, Any]:
+def _reserve_array(type_name: str, shape: list[int]) -> np.ndarray[Any, Any]:
     """Reserve an array; the system gives it memory when it is filled."""
     plain = _PLAIN_TYPE.fullmatch(type_name) is not None
     if not plain or len(shape) > _LONGEST_AXES or any(type(n) is not int or n < 0 for n in shape):
@@ -84,7 +84,7 @@ def _empty(type_name: str, shape: list[int]) -> np.ndarray[Any, Any]:
         raise BrokenMessageError from error
 
 
-def _bytes(stream: IO[bytes], length: int) -> memoryview:
+def _receive_bytes(stream: IO[bytes], length: int) -> memoryview:
     content = memoryview(bytearray(length))
     _fill(stream, content)
     return content

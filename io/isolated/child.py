@@ -17,13 +17,13 @@ from typing import IO, Any
 from .answers import Answer, BrokenMessageError, Refusal, receive, send
 from .limits import Limits
 
-__all__ = ["main"]
+__all__ = ["serve_requests"]
 
 _LONGEST_REQUEST = 1 << 24
 _MARGIN_SECONDS = 5.0
 
 
-def main() -> None:
+def serve_requests() -> None:
     """Answer requests until there are no more."""
     requests = os.fdopen(os.dup(0), "rb", buffering=0)
     answers = os.fdopen(os.dup(1), "wb", buffering=0)
@@ -67,17 +67,17 @@ def _serve(request: dict[str, Any], answers: Any) -> None:
         if prepare is not None:
             prepare()
     except Exception as error:
-        send(answers, Answer({"kind": "fault", "text": _told(error)}, {}))
+        send(answers, Answer({"kind": "fault", "text": _describe_error(error)}, {}))
         return
     send(answers, Answer({"kind": "ready"}, {}))
-    _read(function, request, answers)
+    _answer_request(function, request, answers)
 
 
-def _read(function: Any, request: dict[str, Any], answers: Any) -> None:
+def _answer_request(function: Any, request: dict[str, Any], answers: Any) -> None:
     limits = Limits(*request["limits"])
     try:
         _limit_memory(limits.memory)
-        for part in _parts(function, request["arguments"], limits):
+        for part in _iterate_parts(function, request["arguments"], limits):
             send(answers, Answer({"kind": "part", "value": part.value}, part.arrays))
         last = {"kind": "end"}
     except Refusal as refusal:
@@ -87,12 +87,12 @@ def _read(function: Any, request: dict[str, Any], answers: Any) -> None:
     except BrokenPipeError:
         raise
     except Exception as error:
-        last = {"kind": "fault", "text": _told(error)}
+        last = {"kind": "fault", "text": _describe_error(error)}
     faulthandler.cancel_dump_traceback_later()
     send(answers, Answer(last, {}))
 
 
-def _parts(function: Any, arguments: dict[str, Any], limits: Limits) -> Iterator[Answer]:
+def _iterate_parts(function: Any, arguments: dict[str, Any], limits: Limits) -> Iterator[Answer]:
     """Yield the parts of the answer, each within the limit of time."""
     _limit_time(limits)
     found = function(**arguments)
@@ -126,5 +126,5 @@ def _limit_memory(n_bytes: int) -> None:
         resource.setrlimit(resource.RLIMIT_AS, (wanted, most))
 
 
-def _told(error: Exception) -> str:
+def _describe_error(error: Exception) -> str:
     return str(error) or type(error).__name__

@@ -48,11 +48,11 @@ def can_fork() -> bool:
         and sys.platform == "linux"
         and threading.current_thread() is threading.main_thread()
         and not _NATIVE & sys.modules.keys()
-        and _bytes_in_use() < _LARGEST_PARENT
+        and _measure_memory() < _LARGEST_PARENT
     )
 
 
-def _bytes_in_use() -> int:
+def _measure_memory() -> int:
     pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
     return pages * os.sysconf("SC_PAGE_SIZE")
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-__all__ = ["RASTER_DRIVERS", "REFERRING_DRIVERS", "VECTOR_DRIVERS", "environment"]
+__all__ = ["RASTER_DRIVERS", "REFERRING_DRIVERS", "VECTOR_DRIVERS", "make_environment"]
 
 RASTER_DRIVERS = (
     *("GTiff", "HFA", "AAIGrid", "GRASSASCIIGrid", "ISG", "GSAG", "GSBG", "GS7BG", "NWT_GRD"),
@@ -56,7 +56,7 @@ _ENVIRONMENT = {
 }
 
 
-def environment(*, allowed: Iterable[str] = ()) -> dict[str, str]:
+def make_environment(*, allowed: Iterable[str] = ()) -> dict[str, str]:
     """Return the variables of a child that reads with GDAL.
 
     Parameters

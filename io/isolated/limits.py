@@ -12,7 +12,7 @@ __all__ = [
     "START_SECONDS",
     "WAITING_FACTOR",
     "Limits",
-    "limits_for",
+    "choose_limits",
 ]
 
 LEAST_SECONDS = 5.0
@@ -57,12 +57,12 @@ class Limits(NamedTuple):
         return self.seconds * WAITING_FACTOR
 
 
-def limits_for(n_bytes: int) -> Limits:
+def choose_limits(n_bytes: int) -> Limits:
     """Return what a file of so many bytes gets.
 
     Examples
     --------
-    >>> limits_for(5_000_000).seconds
+    >>> choose_limits(5_000_000).seconds
     10.0
     """
     return Limits(

@@ -14,13 +14,13 @@ from ...errors import ReadError, TinsmithError
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["as_sentence", "ordinary_file", "spooled"]
+__all__ = ["describe_system_error", "open_ordinary_file", "spool"]
 
 _CHUNK = 1 << 20
 
 
 @contextmanager
-def ordinary_file(path: Path) -> Iterator[Path]:
+def open_ordinary_file(path: Path) -> Iterator[Path]:
     """Yield a file that can be opened several times: ``path`` itself, or a copy of what it sends.
 
     Parameters
@@ -41,14 +41,14 @@ def ordinary_file(path: Path) -> Iterator[Path]:
     if not _is_pipe(path):
         yield path
         return
-    with _faults(path):
+    with _translate_errors(path):
         stream = path.open("rb")
-    with stream, spooled(stream, path) as copy:
+    with stream, spool(stream, path) as copy:
         yield copy
 
 
 @contextmanager
-def spooled(stream: IO[bytes], path: Path) -> Iterator[Path]:
+def spool(stream: IO[bytes], path: Path) -> Iterator[Path]:
     """Copy a stream to a temporary file of the same suffix, and yield that.
 
     Parameters
@@ -65,7 +65,7 @@ def spooled(stream: IO[bytes], path: Path) -> Iterator[Path]:
     """
     with tempfile.TemporaryDirectory(prefix="tinsmith-") as folder:
         copy = Path(folder) / f"piped{path.suffix or '.txt'}"
-        with _faults(path), copy.open("wb") as file:
+        with _translate_errors(path), copy.open("wb") as file:
             shutil.copyfileobj(stream, file, _CHUNK)
         try:
             yield copy
@@ -74,7 +74,7 @@ def spooled(stream: IO[bytes], path: Path) -> Iterator[Path]:
             raise
 
 
-def as_sentence(path: Path, error: OSError) -> ReadError:
+def describe_system_error(path: Path, error: OSError) -> ReadError:
     """Return the error of the system as one of the toolkit."""
     if isinstance(error, FileNotFoundError):
         return ReadError(f"There is no file '{path}'.", path=path)
@@ -96,11 +96,11 @@ def _is_pipe(path: Path) -> bool:
 
 
 @contextmanager
-def _faults(path: Path) -> Iterator[None]:
+def _translate_errors(path: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        raise as_sentence(path, error) from error
+        raise describe_system_error(path, error) from error
 
 
 def _rename(error: TinsmithError, copy: Path, path: Path) -> None:

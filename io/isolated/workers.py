@@ -21,13 +21,13 @@ from typing import Any
 from ...errors import ReadError
 from .answers import Answer, BrokenMessageError, receive, send
 from .forking import Fork, can_fork
-from .limits import START_SECONDS, Limits, limits_for
+from .limits import START_SECONDS, Limits, choose_limits
 
 __all__ = ["run_isolated", "stream_isolated"]
 
 _START = (
     "import json, sys; sys.path[:] = json.loads(sys.argv[1]);"
-    "from tinsmith.io.isolated.child import main; main()"
+    "from tinsmith.io.isolated.child import serve_requests; serve_requests()"
 )
 _SOUND_ENDS = frozenset({"end", "refusal", "fault"})
 """Answers after which a child may read a further file."""
@@ -72,7 +72,9 @@ def stream_isolated(
 
     Parameters and errors are those of :func:`run_isolated`; the limit of time is for each part.
     """
-    allowed = limits_for(path.stat().st_size if path.is_file() else 0) if limits is None else limits
+    allowed = (
+        choose_limits(path.stat().st_size if path.is_file() else 0) if limits is None else limits
+    )
     worker = _POOL.take(function.partition(":")[0])
     parts = worker.ask({"function": function, "arguments": dict(arguments)}, path, allowed)
     try:
@@ -91,7 +93,7 @@ class _Worker:
         self.module = module
         self.is_sound = True
         self._timed_out = False
-        self._process = _forked(module) if can_fork() else _started(module)
+        self._process = _fork_worker(module) if can_fork() else _start_worker(module)
 
     def ask(
         self, request: dict[str, Any], path: Path, limits: Limits
@@ -103,7 +105,7 @@ class _Worker:
             send(self._process.stdin, Answer({**request, "limits": list(limits)}, {}))
         seconds = START_SECONDS
         while True:
-            answer = self._next(seconds, path, limits)
+            answer = self._receive_next(seconds, path, limits)
             kind = answer.value.get("kind")
             if kind in _SOUND_ENDS:
                 self.is_sound = True
@@ -112,10 +114,10 @@ class _Worker:
             if kind == "part":
                 yield Answer(answer.value["value"], answer.arrays)
             elif kind != "ready":
-                raise _error(answer.value, path, limits)
+                raise _describe_answer(answer.value, path, limits)
             seconds = limits.waiting_seconds
 
-    def _next(self, seconds: float, path: Path, limits: Limits) -> Answer:
+    def _receive_next(self, seconds: float, path: Path, limits: Limits) -> Answer:
         watchdog = threading.Timer(seconds, self._time_out)
         watchdog.daemon = True
         watchdog.start()
@@ -124,7 +126,7 @@ class _Worker:
             return receive(self._process.stdout, most_bytes=limits.memory)
         except BrokenMessageError:
             self.end()
-            raise _death(self._process.returncode, self._timed_out, path, limits) from None
+            raise _describe_death(self._process.returncode, self._timed_out, path, limits) from None
         finally:
             watchdog.cancel()
 
@@ -202,25 +204,25 @@ if hasattr(os, "register_at_fork"):
 # ---------------------------------------------------------------------- starting a child
 
 
-def _forked(module: str) -> Fork:
-    from .child import main
+def _fork_worker(module: str) -> Fork:
+    from .child import serve_requests
 
-    return Fork(main, _environment(module))
+    return Fork(serve_requests, _choose_environment(module))
 
 
-def _started(module: str) -> subprocess.Popen[bytes]:
+def _start_worker(module: str) -> subprocess.Popen[bytes]:
     return subprocess.Popen(
-        [_interpreter(), "-P", "-c", _START, _search_path()],
+        [_find_interpreter(), "-P", "-c", _START, _search_path()],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
         bufsize=0,
-        env={**os.environ, **_environment(module)},
+        env={**os.environ, **_choose_environment(module)},
         start_new_session=True,  # Ctrl-C is for the program, which then ends the child
     )
 
 
-def _interpreter() -> str:
+def _find_interpreter() -> str:
     """Return the path of Python; a program that embeds it is not one."""
     places = [Path(sys.executable or "."), Path(sys.exec_prefix, "bin", "python3")]
     places += [Path(sys.exec_prefix, "python.exe"), Path(sys.exec_prefix, "Scripts", "python.exe")]
@@ -237,7 +239,7 @@ def _search_path() -> str:
     return json.dumps([str(Path(place).absolute()) for place in sys.path if place])
 
 
-def _environment(module: str) -> dict[str, str]:
+def _choose_environment(module: str) -> dict[str, str]:
     """Return the variables that a module wants to be set before its library is loaded."""
     from importlib import import_module
 
@@ -248,11 +250,11 @@ def _environment(module: str) -> dict[str, str]:
 # ---------------------------------------------------------------------------- sentences
 
 
-def _error(answer: dict[str, Any], path: Path, limits: Limits) -> ReadError:
+def _describe_answer(answer: dict[str, Any], path: Path, limits: Limits) -> ReadError:
     if answer.get("kind") == "refusal":
         return ReadError(_ODD_LETTERS.sub(" ", str(answer.get("text"))), path=path)
     if answer.get("kind") == "memory":
-        return _greedy(path, limits)
+        return _describe_lack_of_memory(path, limits)
     words = " ".join(_ODD_LETTERS.sub(" ", str(answer.get("text"))).split())
     reason = words[:_LONGEST_REASON].rstrip(" .")
     return ReadError(
@@ -260,7 +262,7 @@ def _error(answer: dict[str, Any], path: Path, limits: Limits) -> ReadError:
     )
 
 
-def _death(code: int | None, timed_out: bool, path: Path, limits: Limits) -> ReadError:
+def _describe_death(code: int | None, timed_out: bool, path: Path, limits: Limits) -> ReadError:
     too_long = timed_out or code == -getattr(signal, "SIGXCPU", 0)
     if too_long:
         return ReadError(
@@ -270,14 +272,14 @@ def _death(code: int | None, timed_out: bool, path: Path, limits: Limits) -> Rea
             path=path,
         )
     if code == -getattr(signal, "SIGKILL", 0):
-        return _greedy(path, limits)
+        return _describe_lack_of_memory(path, limits)
     return ReadError(
         f"'{path}' cannot be read, it is damaged: the library that reads this format crashed.",
         path=path,
     )
 
 
-def _greedy(path: Path, limits: Limits) -> ReadError:
+def _describe_lack_of_memory(path: Path, limits: Limits) -> ReadError:
     return ReadError(
         f"'{path}' cannot be read, it may be damaged: it asks for more than "
         f"{limits.memory / (1 << 30):.1f} GiB of memory, the limit for a file of this size.",

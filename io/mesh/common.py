@@ -24,14 +24,14 @@ __all__ = [
     "Fans",
     "Reference",
     "choose_reference",
-    "fans",
-    "file_content",
-    "one_line",
+    "cut_into_fans",
+    "format_crs",
+    "format_unit",
+    "make_survey",
+    "make_tin",
+    "read_content",
     "require_tin",
     "require_writable",
-    "survey_of",
-    "tin_of",
-    "unit_text",
 ]
 
 
@@ -49,7 +49,7 @@ class Fans(NamedTuple):
     polygon: NDArray[np.int64]
 
 
-def file_content(path: Path) -> bytes:
+def read_content(path: Path) -> bytes:
     """Return the bytes of a file, or raise a ReadError that says why not."""
     try:
         return path.read_bytes()
@@ -77,7 +77,7 @@ def require_tin(surface: object, path: Path, *, format_name: str) -> TIN:
     )
 
 
-def one_line(crs: CRS) -> str:
+def format_crs(crs: CRS) -> str:
     """Return the text of a CRS without line breaks, for a comment."""
     return " ".join(part.strip() for part in str(crs).splitlines())
 
@@ -108,7 +108,7 @@ def choose_reference(
     ReadError
         If the file names a unit that is none.
     """
-    declared, own = CRS.of(crs), _found_crs(found_crs, crs is not None)
+    declared, own = CRS.of(crs), _find_crs(found_crs, crs is not None)
     if declared is not None and own is not None and not own.is_same(declared):
         raise CrsError(
             f"'{path}' is in {own.label}, and {declared.label} is another CRS: a TIN is not "
@@ -117,12 +117,12 @@ def choose_reference(
             crs=crs,
         )
     system = declared if own is None else own
-    known = _found_unit(found_unit, path)
+    known = _find_unit(found_unit, path)
     vertical = None if system is None else system.vertical_unit
     return Reference(system, settle_unit(Unit.of(z_unit), known or vertical, path))
 
 
-def _found_crs(text: str | None, is_declared: bool) -> CRS | None:
+def _find_crs(text: str | None, is_declared: bool) -> CRS | None:
     """Look the CRS of a file up; one that is unknown does no harm if the caller names another."""
     try:
         return CRS.of(text or None)
@@ -132,19 +132,19 @@ def _found_crs(text: str | None, is_declared: bool) -> CRS | None:
         raise
 
 
-def unit_text(surface: TIN | Survey) -> str:
+def format_unit(surface: TIN | Survey) -> str:
     """Return the name of the unit of elevations for a file; "" if it is not known."""
     return "" if surface.elevation_unit is None else surface.elevation_unit.text
 
 
-def _found_unit(text: str | None, path: Path) -> Unit | None:
+def _find_unit(text: str | None, path: Path) -> Unit | None:
     try:
         return Unit.of(text or None)
     except OptionError:
         raise ReadError(f"'{path}': '{text}' is no unit of elevations.", path=path) from None
 
 
-def tin_of(
+def make_tin(
     points: NDArray[Any],
     triangles: NDArray[Any],
     path: Path,
@@ -172,10 +172,10 @@ def tin_of(
     except PointsError as error:
         raise ReadError(f"'{path}' holds no TIN. {error}", path=path) from error
     notes = describe_overlaps(tin)
-    return _with_notes(tin, notes) if notes else tin
+    return _add_notes(tin, notes) if notes else tin
 
 
-def _with_notes(tin: TIN, notes: list[str]) -> TIN:
+def _add_notes(tin: TIN, notes: list[str]) -> TIN:
     return TIN(
         points=tin.points,
         triangles=tin.triangles,
@@ -188,7 +188,7 @@ def _with_notes(tin: TIN, notes: list[str]) -> TIN:
     )
 
 
-def survey_of(
+def make_survey(
     points: NDArray[np.float64],
     path: Path,
     *,
@@ -221,7 +221,7 @@ def survey_of(
     )
 
 
-def fans(
+def cut_into_fans(
     corners: NDArray[np.int64], offsets: NDArray[np.int64], points: NDArray[np.float64], path: Path
 ) -> Fans:
     """Cut polygons into triangles about their first corner, quadrilaterals along an inner diagonal.
@@ -257,7 +257,7 @@ def fans(
         )
     if (lengths == 3).all():
         return Fans(corners.reshape(-1, 3), np.arange(len(lengths)))
-    corners = _quads_from_inner_diagonal(corners, offsets, points)
+    corners = _turn_to_inner_diagonal(corners, offsets, points)
     polygon = np.repeat(np.arange(len(lengths)), lengths - 2)
     within = np.arange(len(polygon)) - np.repeat(
         np.cumsum(lengths - 2) - (lengths - 2), lengths - 2
@@ -267,7 +267,7 @@ def fans(
     return Fans(np.stack(triangles, axis=1), polygon)
 
 
-def _quads_from_inner_diagonal(
+def _turn_to_inner_diagonal(
     corners: NDArray[np.int64], offsets: NDArray[np.int64], points: NDArray[np.float64]
 ) -> NDArray[np.int64]:
     """Begin a quadrilateral one corner later where its first diagonal runs outside of it."""
@@ -276,11 +276,11 @@ def _quads_from_inner_diagonal(
     quads = corners[slots]
     a, b, c, d = (points[quads[:, k], :2] for k in range(4))
     with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused later
-        outside = _cross(b - a, c - a) * _cross(c - a, d - a) < 0
+        outside = _cross_in_plane(b - a, c - a) * _cross_in_plane(c - a, d - a) < 0
     corners = corners.copy()
     corners[slots[outside]] = np.roll(quads[outside], -1, axis=1)
     return corners
 
 
-def _cross(u: NDArray[np.float64], v: NDArray[np.float64]) -> NDArray[np.float64]:
+def _cross_in_plane(u: NDArray[np.float64], v: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])

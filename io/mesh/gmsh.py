@@ -18,7 +18,7 @@ from ... import _optional
 from ..._atomic import replacing_path
 from ...tin.topology import NO_NEIGHBOR, directed_edges, edge_keys, ends
 from ..isolated import run_isolated
-from .common import choose_reference, file_content, require_tin, survey_of, tin_of
+from .common import choose_reference, make_survey, make_tin, read_content, require_tin
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -75,18 +75,18 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     """
     _optional.require("meshio", "Reading Gmsh files")
     if not path.is_file():
-        file_content(path)  # says why it cannot be read
+        read_content(path)  # says why it cannot be read
     where = {"path": os.path.abspath(path), "shown": str(path)}  # noqa: PTH100 - links stay
-    arrays = run_isolated(f"{__package__}.gmsh_child:mesh", where, path=path).arrays
+    arrays = run_isolated(f"{__package__}.gmsh_child:read_mesh", where, path=path).arrays
     points, triangles = arrays["points"], arrays["triangles"]
     reference = choose_reference(crs, z_unit, path)
     if len(triangles) == 0:
-        return survey_of(points, path, reference=reference)
-    flags = _flags(triangles, arrays["lines"], len(points))
-    return tin_of(points, triangles, path, constrained=flags, reference=reference)
+        return make_survey(points, path, reference=reference)
+    flags = _flag_edges(triangles, arrays["lines"], len(points))
+    return make_tin(points, triangles, path, constrained=flags, reference=reference)
 
 
-def _flags(
+def _flag_edges(
     triangles: NDArray[np.int32], lines: NDArray[np.int32], n_points: int
 ) -> NDArray[np.bool_]:
     edges = np.stack(directed_edges(triangles), axis=-1)
@@ -114,7 +114,7 @@ def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None 
     """
     tin = require_tin(surface, path, format_name="Gmsh")
     meshio = _optional.load("meshio", "Writing Gmsh files")
-    edges = _edges(tin)
+    edges = _gather_edges(tin)
     number_of = {name: i for i, name in enumerate(dict.fromkeys([SURFACE, *edges.names]), start=1)}
     numbers = [np.array([number_of[name] for name in edges.names], np.int32),
                np.full(len(tin.triangles), number_of[SURFACE], np.int32)]  # fmt: skip
@@ -133,7 +133,7 @@ def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None 
         progress(1.0)
 
 
-def _edges(tin: TIN) -> _Edges:
+def _gather_edges(tin: TIN) -> _Edges:
     """Gather edges by group, the rim first: an element has one group only."""
     triangle, corner = np.nonzero(tin.neighbors == NO_NEIGHBOR)
     groups = [(np.stack(ends(tin.triangles, triangle, corner), axis=1), BOUNDARY)]

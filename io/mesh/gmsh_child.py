@@ -14,7 +14,7 @@ from ..isolated import Answer, Refusal
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["mesh", "prepare"]
+__all__ = ["prepare", "read_mesh"]
 
 
 def prepare() -> None:
@@ -22,7 +22,7 @@ def prepare() -> None:
     import_module("meshio")
 
 
-def mesh(path: str, shown: str) -> Answer:
+def read_mesh(path: str, shown: str) -> Answer:
     """Return the ``points``, ``triangles`` and ``lines`` of a file.
 
     Parameters
@@ -31,11 +31,11 @@ def mesh(path: str, shown: str) -> Answer:
     shown : str
         The path as the user wrote it, for sentences.
     """
-    found = _read(path, shown)
+    found = _read_with_meshio(path, shown)
     points = np.asarray(found.points, np.float64)
     if points.ndim != 2 or points.shape[1] != 3:
         raise Refusal(f"'{shown}' is a damaged Gmsh file: its points have not three coordinates.")
-    cells = {"triangles": _cells(found, "triangle", 3), "lines": _cells(found, "line", 2)}
+    cells = {"triangles": _find_cells(found, "triangle", 3), "lines": _find_cells(found, "line", 2)}
     for name, numbers in cells.items():
         wrong = (numbers < 0) | (numbers >= len(points))
         if wrong.any():
@@ -47,7 +47,7 @@ def mesh(path: str, shown: str) -> Answer:
     return Answer(None, {"points": points, **cells})
 
 
-def _read(path: str, shown: str) -> Any:
+def _read_with_meshio(path: str, shown: str) -> Any:
     meshio = import_module("meshio")
     said = StringIO()
     try:
@@ -64,6 +64,6 @@ def _read(path: str, shown: str) -> Any:
     return found
 
 
-def _cells(found: Any, kind: str, size: int) -> NDArray[np.int64]:
+def _find_cells(found: Any, kind: str, size: int) -> NDArray[np.int64]:
     blocks = [np.asarray(block.data, np.int64) for block in found.cells if block.type == kind]
     return np.concatenate([np.empty((0, size), np.int64), *blocks])

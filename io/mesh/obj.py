@@ -16,13 +16,13 @@ from ..._atomic import replacing
 from ...errors import ReadError
 from .common import (
     choose_reference,
-    fans,
-    file_content,
-    one_line,
+    cut_into_fans,
+    format_crs,
+    format_unit,
+    make_survey,
+    make_tin,
+    read_content,
     require_tin,
-    survey_of,
-    tin_of,
-    unit_text,
 )
 
 if TYPE_CHECKING:
@@ -72,25 +72,25 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     OptionError
         If the unit is unknown, or the file names another.
     """
-    lines = _lines(file_content(path))
+    lines = _split_lines(read_content(path))
     vertex_lines = [i for i, line in enumerate(lines) if line[:2] in ("v ", "v\t")]
     face_lines = [i for i, line in enumerate(lines) if line[:2] in ("f ", "f\t")]
-    points = _points(lines, vertex_lines, path)
+    points = _parse_points(lines, vertex_lines, path)
     reference = choose_reference(
         crs,
         z_unit,
         path,
-        found_crs=_comment(lines, "crs"),
-        found_unit=_comment(lines, "elevation unit"),
+        found_crs=_find_comment(lines, "crs"),
+        found_unit=_find_comment(lines, "elevation unit"),
     )
     if not face_lines:
-        return survey_of(points, path, reference=reference)
-    corners, offsets = _faces(lines, vertex_lines, face_lines, path)
-    triangles = fans(corners, offsets, points, path).triangles
-    return tin_of(points, triangles, path, reference=reference)
+        return make_survey(points, path, reference=reference)
+    corners, offsets = _parse_faces(lines, vertex_lines, face_lines, path)
+    triangles = cut_into_fans(corners, offsets, points, path).triangles
+    return make_tin(points, triangles, path, reference=reference)
 
 
-def _lines(content: bytes) -> list[str]:
+def _split_lines(content: bytes) -> list[str]:
     """Cut into stripped lines; one that a backslash continues is followed by empty ones."""
     text = content.decode("utf-8", errors="replace")
     lines = [line.strip() for line in text.split("\n")]
@@ -102,7 +102,7 @@ def _lines(content: bytes) -> list[str]:
     return lines
 
 
-def _comment(lines: Sequence[str], name: str) -> str | None:
+def _find_comment(lines: Sequence[str], name: str) -> str | None:
     """Return what is named so among the comments at the top."""
     for line in lines:
         if line.strip() and not line.startswith("#"):
@@ -112,14 +112,16 @@ def _comment(lines: Sequence[str], name: str) -> str | None:
     return None
 
 
-def _points(lines: Sequence[str], vertex_lines: Sequence[int], path: Path) -> NDArray[np.float64]:
-    plain = _plain_numbers([lines[i] for i in vertex_lines], np.float64)
+def _parse_points(
+    lines: Sequence[str], vertex_lines: Sequence[int], path: Path
+) -> NDArray[np.float64]:
+    plain = _parse_plain_rows([lines[i] for i in vertex_lines], np.float64)
     if plain is not None:
         return plain
     rows = [lines[i].split()[1:4] for i in vertex_lines]
     for i, row in zip(vertex_lines, rows, strict=True):
         if len(row) < 3:
-            raise _fault(lines, i, "a vertex needs x, y and z", path)
+            raise _describe_line_fault(lines, i, "a vertex needs x, y and z", path)
     try:
         return np.array(rows, np.float64).reshape(-1, 3)
     except ValueError:
@@ -128,7 +130,7 @@ def _points(lines: Sequence[str], vertex_lines: Sequence[int], path: Path) -> ND
         raise
 
 
-def _plain_numbers(rows: Sequence[str], dtype: type[np.generic]) -> NDArray[Any] | None:
+def _parse_plain_rows(rows: Sequence[str], dtype: type[np.generic]) -> NDArray[Any] | None:
     """Return the numbers of rows like ``v 1 2 3`` at once; None where a row is anything else."""
     if any(row.count(" ") != 3 for row in rows):
         return None
@@ -145,14 +147,14 @@ def _require_numbers(words: Sequence[str], lines: Sequence[str], i: int, path: P
     try:
         np.array(words, np.float64)
     except ValueError:
-        raise _fault(lines, i, "a coordinate is no number", path) from None
+        raise _describe_line_fault(lines, i, "a coordinate is no number", path) from None
 
 
-def _faces(
+def _parse_faces(
     lines: Sequence[str], vertex_lines: Sequence[int], face_lines: Sequence[int], path: Path
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Return the vertex numbers, from 0 on, of all faces, and the offsets of each."""
-    plain = _plain_numbers([lines[i] for i in face_lines], np.int64)
+    plain = _parse_plain_rows([lines[i] for i in face_lines], np.int64)
     if plain is not None and plain.min() > 0 and plain.max() < _CLAMPED:
         return plain.ravel() - 1, np.arange(0, plain.size + 1, 3)
     corners: list[int] = []
@@ -160,27 +162,27 @@ def _faces(
     before = np.searchsorted(vertex_lines, face_lines).tolist()
     for i, n_before in zip(face_lines, before, strict=True):
         for word in lines[i].split()[1:]:
-            corners.append(_vertex_number(word, n_before, lines, i, path))
+            corners.append(_parse_vertex_number(word, n_before, lines, i, path))
         offsets.append(len(corners))
     return np.array(corners, np.int64), np.array(offsets, np.int64)
 
 
-def _vertex_number(word: str, n_before: int, lines: Sequence[str], i: int, path: Path) -> int:
+def _parse_vertex_number(word: str, n_before: int, lines: Sequence[str], i: int, path: Path) -> int:
     """Turn ``7``, ``7/1``, ``7//2`` or ``-1`` (the vertex just before) into a number from 0 on."""
     shown = word if len(word) <= _SHOWN_LETTERS else f"{word[:_SHOWN_LETTERS]}..."
     found = _VERTEX_NUMBER.match(word)
     if found is None:
-        raise _fault(lines, i, f"'{shown}' names no vertex", path)
+        raise _describe_line_fault(lines, i, f"'{shown}' names no vertex", path)
     digits = found[2].lstrip("0")
     if len(digits) > _MOST_DIGITS:
-        raise _fault(lines, i, f"'{shown}' names no vertex: the file has fewer", path)
+        raise _describe_line_fault(lines, i, f"'{shown}' names no vertex: the file has fewer", path)
     number = int(digits or "0")
     if number == 0 or (found[1] == "-" and number > n_before):
-        raise _fault(lines, i, f"'{shown}' names no vertex: they count from 1", path)
+        raise _describe_line_fault(lines, i, f"'{shown}' names no vertex: they count from 1", path)
     return n_before - number if found[1] == "-" else number - 1
 
 
-def _fault(lines: Sequence[str], i: int, what: str, path: Path) -> ReadError:
+def _describe_line_fault(lines: Sequence[str], i: int, what: str, path: Path) -> ReadError:
     shown = lines[i].strip()[:_SHOWN_LETTERS]
     return ReadError(f"'{path}', line {i + 1}: {what} ('{shown}').", path=path, lines=[i + 1])
 
@@ -206,18 +208,18 @@ def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None 
     total = len(tin.points) + len(tin.triangles)
     with replacing(path, binary=False) as file:
         if tin.crs is not None:
-            file.write(f"# crs: {one_line(tin.crs)}\n")
-        if unit := unit_text(tin):
+            file.write(f"# crs: {format_crs(tin.crs)}\n")
+        if unit := format_unit(tin):
             file.write(f"# elevation unit: {unit}\n")
         done = 0
-        for count, batch in _batches(tin):
+        for count, batch in _iterate_batches(tin):
             file.write(batch)
             done += count
             if progress is not None:
                 progress(done / total)
 
 
-def _batches(tin: TIN) -> Iterator[tuple[int, str]]:
+def _iterate_batches(tin: TIN) -> Iterator[tuple[int, str]]:
     for start in range(0, len(tin.points), _BATCH):
         rows = tin.points[start : start + _BATCH]
         yield len(rows), ("v %r %r %r\n" * len(rows)) % tuple(rows.ravel().tolist())

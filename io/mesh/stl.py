@@ -17,7 +17,7 @@ import numpy as np
 
 from ..._atomic import replacing
 from ...errors import ReadError, WriteError
-from .common import choose_reference, file_content, require_tin, tin_of, unit_text
+from .common import choose_reference, format_unit, make_tin, read_content, require_tin
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -61,9 +61,9 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     OptionError
         If the unit is unknown, or the file names another.
     """
-    content = file_content(path)
-    facets = _facets(content, path)
-    origin, found_crs, found_unit = _recorded(content[:_HEADER_BYTES])
+    content = read_content(path)
+    facets = _find_facets(content, path)
+    origin, found_crs, found_unit = _read_record(content[:_HEADER_BYTES])
     if not np.isfinite(origin).all():
         raise ReadError(
             f"'{path}' records the origin {origin.tolist()}: three finite numbers are needed.",
@@ -71,12 +71,12 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
         )
     reference = choose_reference(crs, z_unit, path, found_crs=found_crs, found_unit=found_unit)
     with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused
-        points, triangles = _merged(facets["corners"].reshape(-1, 3))
+        points, triangles = _merge_corners(facets["corners"].reshape(-1, 3))
         places = points + origin
-    return tin_of(places, triangles, path, reference=reference)
+    return make_tin(places, triangles, path, reference=reference)
 
 
-def _facets(content: bytes, path: Path) -> NDArray[Any]:
+def _find_facets(content: bytes, path: Path) -> NDArray[Any]:
     body = _HEADER_BYTES + 4
     count = int.from_bytes(content[_HEADER_BYTES:body], "little")
     room = (len(content) - body) // _FACET.itemsize
@@ -99,7 +99,7 @@ def _facets(content: bytes, path: Path) -> NDArray[Any]:
     )
 
 
-def _recorded(header: bytes) -> tuple[NDArray[np.float64], str | None, str | None]:
+def _read_record(header: bytes) -> tuple[NDArray[np.float64], str | None, str | None]:
     """Return origin, CRS and unit that our own header records; a foreign one records none."""
     found = _RECORD.fullmatch(header.rstrip(b"\0 ").decode("ascii", errors="replace"))
     if found is None:
@@ -111,7 +111,7 @@ def _recorded(header: bytes) -> tuple[NDArray[np.float64], str | None, str | Non
     return origin, found[4], found[5]
 
 
-def _merged(corners: NDArray[np.float32]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def _merge_corners(corners: NDArray[np.float32]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Return the distinct places in the order in which they first occur, and their numbers."""
     from pandas import factorize
 
@@ -151,26 +151,26 @@ def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None 
     if np.ptp(tin.points, axis=0).max() > np.finfo(np.float32).max / 4:
         raise WriteError(f"Cannot write '{path}': the TIN is too large for float32.", path=path)
     with replacing(path) as file:
-        file.write(_header(origin, tin))
+        file.write(_format_record(origin, tin))
         file.write(len(tin.triangles).to_bytes(4, "little"))
         for start in range(0, len(tin.triangles), _BATCH):
             part = tin.triangles[start : start + _BATCH]
-            file.write(_facet_rows(tin.points[part] - origin).data)
+            file.write(_pack_facets(tin.points[part] - origin).data)
             if progress is not None:
                 progress(min(1.0, (start + len(part)) / len(tin.triangles)))
 
 
-def _header(origin: NDArray[np.float64], tin: TIN) -> bytes:
+def _format_record(origin: NDArray[np.float64], tin: TIN) -> bytes:
     """Record the origin, and CRS and unit of elevations as far as there is room for them."""
     record = "origin {!r} {!r} {!r}".format(*(origin + 0.0).tolist())
-    for name, text in (("crs", str(tin.crs or "")), ("z", "".join(unit_text(tin).split()))):
+    for name, text in (("crs", str(tin.crs or "")), ("z", "".join(format_unit(tin).split()))):
         longer = f"{record} {name} {text}"
         if text and not set(text) & set(" \n\t") and len(longer.encode()) <= _HEADER_BYTES:
             record = longer
     return record.encode().ljust(_HEADER_BYTES, b" ")
 
 
-def _facet_rows(corners: NDArray[np.float64]) -> NDArray[Any]:
+def _pack_facets(corners: NDArray[np.float64]) -> NDArray[Any]:
     """Return STL rows for (m, 3 corners, 3) coordinates."""
     rows = np.zeros(len(corners), _FACET)
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

@@ -21,15 +21,15 @@ from ...terrain.slope import aspect, slope
 from ..isolated import run_isolated
 from .common import (
     choose_reference,
-    fans,
-    file_content,
-    one_line,
+    cut_into_fans,
+    format_crs,
+    format_unit,
+    make_survey,
+    make_tin,
+    read_content,
     require_tin,
-    survey_of,
-    tin_of,
-    unit_text,
 )
-from .vtk_child import errors_caught, vtk_class
+from .vtk_child import catch_errors, load_vtk_class
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -79,22 +79,22 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     OptionError
         If the unit is unknown, or the file names another.
     """
-    value, arrays = _found(path)
-    points = _true_points(arrays)
+    value, arrays = _read_in_child(path)
+    points = _restore_points(arrays)
     reference = choose_reference(
         crs, z_unit, path, found_crs=value["crs"], found_unit=value["elevation_unit"]
     )
     cells = arrays["cells"]
     if len(cells) == 0:
         attributes = {name: arrays[f"attribute {k}"] for k, name in enumerate(value["attributes"])}
-        return survey_of(points, path, attributes=attributes, reference=reference)
-    made = fans(arrays["corners"], arrays["offsets"], points, path)
+        return make_survey(points, path, attributes=attributes, reference=reference)
+    made = cut_into_fans(arrays["corners"], arrays["offsets"], points, path)
     flags = arrays.get("flags") if len(cells) == len(made.triangles) else None
     is_flagged = None if flags is None else flags != 0
-    return tin_of(points, made.triangles, path, constrained=is_flagged, reference=reference)
+    return make_tin(points, made.triangles, path, constrained=is_flagged, reference=reference)
 
 
-def _true_points(arrays: Mapping[str, NDArray[Any]]) -> NDArray[np.float64]:
+def _restore_points(arrays: Mapping[str, NDArray[Any]]) -> NDArray[np.float64]:
     """Take an exaggeration out of the elevations, and add the origin."""
     points = arrays["points"]
     origin = arrays.get("origin")
@@ -106,10 +106,10 @@ def _true_points(arrays: Mapping[str, NDArray[Any]]) -> NDArray[np.float64]:
         return points if origin is None else points + origin
 
 
-def _found(path: Path) -> Answer:
+def _read_in_child(path: Path) -> Answer:
     """Let a child read the file, once its beginning and end are those of a whole one."""
     _optional.require("pyvista", "Reading VTK files")
-    content = file_content(path)
+    content = read_content(path)
     if b"</VTKFile>" not in content[-200:]:
         raise ReadError(f"'{path}' is no whole VTK XML file: '</VTKFile>' is missing.", path=path)
     _require_likely_counts(content, path)
@@ -120,7 +120,7 @@ def _found(path: Path) -> Answer:
             f"'{path}' is a VTK file {found}: PolyData and UnstructuredGrid can be read.", path=path
         )
     return run_isolated(
-        f"{__package__}.vtk_child:mesh",
+        f"{__package__}.vtk_child:read_mesh",
         {"path": os.path.abspath(path), "shown": str(path), "kind": kind[1].decode()},  # noqa: PTH100
         path=path,
     )
@@ -160,17 +160,17 @@ def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None 
     """
     tin = require_tin(surface, path, format_name="VTK")
     pv = _optional.load("pyvista", "Writing VTK files")
-    mesh, class_name = _poly_data(tin, pv), "vtkXMLPolyDataWriter"
+    mesh, class_name = _make_poly_data(tin, pv), "vtkXMLPolyDataWriter"
     if path.suffix.lower() == ".vtu":
         mesh, class_name = mesh.cast_to_unstructured_grid(), "vtkXMLUnstructuredGridWriter"
-    writer = vtk_class(class_name)()
+    writer = load_vtk_class(class_name)()
     writer.SetInputData(mesh)
     writer.SetHeaderTypeToUInt64()  # arrays beyond 4 GB
     writer.SetByteOrderToLittleEndian()
     writer.SetCompressionLevel(1)  # twice as fast as the default, and 3 % larger
     with replacing_path(path) as beside:
         writer.SetFileName(str(beside))
-        with errors_caught(pv) as errors:
+        with catch_errors(pv) as errors:
             written = writer.Write()
         if not written or writer.GetErrorCode() or errors:
             raise WriteError(
@@ -182,12 +182,12 @@ def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None 
         progress(1.0)
 
 
-def _poly_data(tin: TIN, pv: Any) -> Any:
+def _make_poly_data(tin: TIN, pv: Any) -> Any:
     mesh = pv.PolyData.from_regular_faces(tin.points.copy(), tin.triangles.astype(np.int64))
     mesh.cell_data["slope"] = slope(tin)
     mesh.cell_data["aspect"] = aspect(tin)
     mesh.cell_data["constrained"] = tin.constrained.astype(np.uint8)
-    mesh.field_data["crs"] = ["" if tin.crs is None else one_line(tin.crs)]
-    mesh.field_data["elevation_unit"] = [unit_text(tin)]
+    mesh.field_data["crs"] = ["" if tin.crs is None else format_crs(tin.crs)]
+    mesh.field_data["elevation_unit"] = [format_unit(tin)]
     mesh.field_data["origin"] = np.zeros(3)
     return mesh

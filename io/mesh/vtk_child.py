@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["errors_caught", "mesh", "prepare", "vtk_class"]
+__all__ = ["catch_errors", "load_vtk_class", "prepare", "read_mesh"]
 
 _NO_FACES = frozenset({0, 1, 2, 3, 4})  # empty cell, vertices, lines
 _FACES = frozenset({5, 7, 9})  # triangle, polygon, quadrilateral
@@ -27,7 +27,7 @@ def prepare() -> None:
     import_module("vtkmodules.vtkIOXML")
 
 
-def mesh(path: str, shown: str, *, kind: str) -> Answer:
+def read_mesh(path: str, shown: str, *, kind: str) -> Answer:
     """Return the points and faces of a file.
 
     Parameters
@@ -46,32 +46,32 @@ def mesh(path: str, shown: str, *, kind: str) -> Answer:
         them ``flags`` of the faces' edges, ``origin``, ``exaggeration`` and ``elevation_scale``.
     """
     pv = import_module("pyvista")
-    reader = vtk_class(f"vtkXML{kind}Reader")()
+    reader = load_vtk_class(f"vtkXML{kind}Reader")()
     reader.SetFileName(path)
-    with errors_caught(pv) as errors:
+    with catch_errors(pv) as errors:
         reader.Update()
     if errors or reader.GetErrorCode():
         raise Refusal(f"'{shown}' is a damaged VTK XML file.")
     found = pv.wrap(reader.GetOutput())
-    faces = _faces_of_poly_data(found, shown) if kind == "PolyData" else _faces_of(found, shown)
-    attributes = _attributes(found)
+    faces = _read_poly_data(found, shown) if kind == "PolyData" else _read_faces(found, shown)
+    attributes = _read_point_attributes(found)
     arrays: dict[str, NDArray[Any]] = {
         "points": np.array(found.points, np.float64).reshape(-1, 3),
         **faces,
     }
     arrays |= {f"attribute {k}": values for k, values in enumerate(attributes.values())}
-    arrays |= _number_fields(found) | _flags(found, faces["cells"])
-    texts = {name: _text_field(found, name) for name in ("crs", "elevation_unit")}
+    arrays |= _read_number_fields(found) | _read_edge_flags(found, faces["cells"])
+    texts = {name: _read_text_field(found, name) for name in ("crs", "elevation_unit")}
     return Answer({**texts, "attributes": list(attributes)}, arrays)
 
 
-def vtk_class(name: str) -> Any:
+def load_vtk_class(name: str) -> Any:
     """Return a class of VTK's readers and writers of XML files."""
     return getattr(import_module("vtkmodules.vtkIOXML"), name)
 
 
 @contextmanager
-def errors_caught(pv: Any) -> Iterator[list[Any]]:
+def catch_errors(pv: Any) -> Iterator[list[Any]]:
     """Collect what VTK would print to the terminal."""
     from vtkmodules.vtkCommonCore import vtkLogger
 
@@ -86,13 +86,13 @@ def errors_caught(pv: Any) -> Iterator[list[Any]]:
         vtkLogger.SetStderrVerbosity(before)
 
 
-def _whole(array: Any) -> NDArray[np.int64]:
+def _convert_to_integers(array: Any) -> NDArray[np.int64]:
     """Return a VTK array of numbers of points or cells."""
     numbers: NDArray[np.int64] = import_module("pyvista").convert_array(array).astype(np.int64)
     return numbers
 
 
-def _number_fields(found: Any) -> dict[str, NDArray[np.float64]]:
+def _read_number_fields(found: Any) -> dict[str, NDArray[np.float64]]:
     """Return the fields that tell where the coordinates are, as far as they are sound."""
     fields = {}
     for name, size in (("origin", 3), ("exaggeration", 1), ("elevation_scale", 1)):
@@ -102,14 +102,14 @@ def _number_fields(found: Any) -> dict[str, NDArray[np.float64]]:
     return fields
 
 
-def _text_field(found: Any, name: str) -> str | None:
+def _read_text_field(found: Any, name: str) -> str | None:
     if name not in found.field_data:
         return None
     values = np.asarray(found.field_data[name]).ravel()
     return (str(values[0]).strip() or None) if len(values) else None
 
 
-def _faces_of_poly_data(found: Any, shown: str) -> dict[str, NDArray[np.int64]]:
+def _read_poly_data(found: Any, shown: str) -> dict[str, NDArray[np.int64]]:
     if found.n_strips:
         raise Refusal(f"'{shown}' holds triangle strips, which are not read.")
     polys = found.GetPolys()
@@ -118,12 +118,12 @@ def _faces_of_poly_data(found: Any, shown: str) -> dict[str, NDArray[np.int64]]:
     if len(cells) == 0:
         corners, offsets = np.empty(0, np.int64), np.zeros(1, np.int64)
     else:
-        corners = _whole(polys.GetConnectivityArray())
-        offsets = _whole(polys.GetOffsetsArray())
+        corners = _convert_to_integers(polys.GetConnectivityArray())
+        offsets = _convert_to_integers(polys.GetOffsetsArray())
     return {"corners": corners, "offsets": offsets, "cells": cells}
 
 
-def _faces_of(found: Any, shown: str) -> dict[str, NDArray[np.int64]]:
+def _read_faces(found: Any, shown: str) -> dict[str, NDArray[np.int64]]:
     types = np.asarray(found.celltypes)
     odd = ~np.isin(types, list(_NO_FACES | _FACES))
     if odd.any():
@@ -135,16 +135,16 @@ def _faces_of(found: Any, shown: str) -> dict[str, NDArray[np.int64]]:
             "read."
         )
     cells = np.flatnonzero(np.isin(types, list(_FACES)))
-    every = _whole(found.GetCells().GetOffsetsArray())
+    every = _convert_to_integers(found.GetCells().GetOffsetsArray())
     starts, lengths = every[cells], np.diff(every)[cells]
     offsets = np.zeros(len(cells) + 1, np.int64)
     np.cumsum(lengths, out=offsets[1:])
     slots = np.repeat(starts - offsets[:-1], lengths) + np.arange(offsets[-1])
-    corners = _whole(found.GetCells().GetConnectivityArray())[slots]
+    corners = _convert_to_integers(found.GetCells().GetConnectivityArray())[slots]
     return {"corners": corners, "offsets": offsets, "cells": cells}
 
 
-def _flags(found: Any, cells: NDArray[np.int64]) -> dict[str, NDArray[np.uint8]]:
+def _read_edge_flags(found: Any, cells: NDArray[np.int64]) -> dict[str, NDArray[np.uint8]]:
     """Return the edge flags of the faces if the file has them."""
     if "constrained" not in found.cell_data:
         return {}
@@ -154,6 +154,6 @@ def _flags(found: Any, cells: NDArray[np.int64]) -> dict[str, NDArray[np.uint8]]
     return {"flags": (flags[cells] != 0).astype(np.uint8)}
 
 
-def _attributes(found: Any) -> dict[str, NDArray[Any]]:
+def _read_point_attributes(found: Any) -> dict[str, NDArray[Any]]:
     arrays = {str(name): np.array(values) for name, values in found.point_data.items()}
     return {name: a for name, a in arrays.items() if a.ndim == 1 and a.dtype.kind in "biuf"}

@@ -15,11 +15,11 @@ from ..._sentences import counted
 from ...crs import CRS, Unit
 from ...errors import OptionError, ReadError
 from ...tin import Bounds, Survey
-from ..isolated import Limits, limits_for, run_isolated, stream_isolated
-from ..nodata import as_nodata, describe_suspects, find_suspect_elevations
+from ..isolated import Limits, choose_limits, run_isolated, stream_isolated
+from ..nodata import describe_suspects, find_suspect_elevations, parse_nodata
 from ..reprojection.placement import place, settle_unit
 from .virtual import is_virtual, require_plain_sources
-from .voids import rings_around
+from .voids import trace_rings
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from ...crs import CrsLike, UnitLike
 
-__all__ = ["read", "recognises"]
+__all__ = ["is_raster", "read"]
 
 _STRIP_CELLS = 4_000_000
 """Cells read at a time, so that memory holds little but the points."""
@@ -57,7 +57,7 @@ class _Cells:
     def columns(self) -> NDArray[np.int64]:
         return np.arange(self.column, self.column + self.width, self.stride)
 
-    def rows(self, start: int, stop: int) -> NDArray[np.int64]:
+    def find_rows(self, start: int, stop: int) -> NDArray[np.int64]:
         """Return the rows wanted among ``start`` to ``stop``."""
         first = start + (self.row - start) % self.stride
         return np.arange(first, stop, self.stride)
@@ -122,23 +122,23 @@ def read(
     Scale and offset of the band are applied. The raster is read in strips; memory is 48 bytes
     for each valid cell at most, and a strip.
     """
-    dataset = _header(path)
-    number = _band(dataset, band, path)
-    _require_elevations(dataset, number, band is not None, path)
+    dataset = _read_header(path)
+    number = _choose_band(dataset, band, path)
+    _require_elevation_band(dataset, number, band is not None, path)
     target, source = CRS.of(crs), CRS.of(dataset.crs)
-    unit, said = _elevation_unit(dataset, number, source, Unit.of(z_unit))
-    cells = _cells(dataset, window, stride, path)
-    marks = as_nodata(nodata)
-    _require_room(cells, path)
-    place(_middle(dataset), source=source, target=target, path=path)
-    points, valid, n_nodata = _points(dataset, number, cells, marks)
+    unit, said = _find_elevation_unit(dataset, number, source, Unit.of(z_unit))
+    cells = _choose_cells(dataset, window, stride, path)
+    marks = parse_nodata(nodata)
+    _require_few_cells(cells, path)
+    place(_find_middle(dataset), source=source, target=target, path=path)
+    points, valid, n_nodata = _read_points(dataset, number, cells, marks)
     if len(points) == 0:
         raise ReadError(
             f"'{path}': of {counted(n_nodata, 'cell')} of band {number}, none has an elevation but "
             "nodata.",
             path=path,
         )
-    _require_finite(points, number, path)
+    _require_finite_centres(points, number, path)
     notes = describe_suspects(find_suspect_elevations(points[:, 2]), "cell")
     placed = place(points, source=source, target=target, path=path, unit=unit)
     survey = Survey(
@@ -149,12 +149,12 @@ def read(
         skipped={"nodata cells": n_nodata} if n_nodata else {},
         notes=[*said, *notes, *placed.notes],
     )
-    return survey if fill or valid.all() else _with_voids(survey, valid)
+    return survey if fill or valid.all() else _add_void_rings(survey, valid)
 
 
-def _with_voids(survey: Survey, valid: NDArray[np.bool_]) -> Survey:
+def _add_void_rings(survey: Survey, valid: NDArray[np.bool_]) -> Survey:
     """Return the survey with the rings at which its surface ends."""
-    rings = rings_around(valid)
+    rings = trace_rings(valid)
     if not rings:
         raise ReadError(
             f"'{survey.source}': no three cells side by side have an elevation, so there is no "
@@ -168,7 +168,7 @@ def _with_voids(survey: Survey, valid: NDArray[np.bool_]) -> Survey:
     return replace(survey, extent=extent, notes=[*survey.notes, note])
 
 
-def recognises(path: Path) -> bool:
+def is_raster(path: Path) -> bool:
     """Whether GDAL takes a file for a raster.
 
     Raises
@@ -177,7 +177,7 @@ def recognises(path: Path) -> bool:
         If rasterio is not installed.
     """
     try:
-        _header(path)
+        _read_header(path)
     except ReadError:
         return False
     return True
@@ -203,7 +203,7 @@ class _Affine(NamedTuple):
             column * self.d + row * self.e + self.f,
         )
 
-    def inverse(self) -> _Affine:
+    def invert(self) -> _Affine:
         """Return the transform from easting and northing to columns and rows."""
         a, b, c, d, e, f = self
         area = a * e - b * d
@@ -246,31 +246,33 @@ class _Header:
         return float(x.min()), float(y.min()), float(x.max()), float(y.max())
 
 
-def _header(path: Path) -> _Header:
+def _read_header(path: Path) -> _Header:
     """Let a child open a raster, and return what it says of itself."""
     _optional.require("rasterio", "Reading a raster")
-    limits = limits_for(_bytes_of(path))
-    found = run_isolated(f"{_reader(path)}:header", _where(path), path=path, limits=limits).value
+    limits = choose_limits(_measure_files(path))
+    found = run_isolated(
+        f"{_choose_reader(path)}:read_header", _name_for_gdal(path), path=path, limits=limits
+    ).value
     transform = _Affine(*found.pop("transform"))
     return _Header(path=path, transform=transform, limits=limits, **found)
 
 
-def _reader(path: Path) -> str:
+def _choose_reader(path: Path) -> str:
     return f"{__package__}.virtual_child" if is_virtual(path) else f"{__package__}.gdal_child"
 
 
-def _where(path: Path) -> dict[str, Any]:
+def _name_for_gdal(path: Path) -> dict[str, Any]:
     """Return what names the file to GDAL: an absolute path is never a scheme or a prefix."""
     return {"path": os.path.abspath(path), "is_virtual": is_virtual(path)}  # noqa: PTH100 - links stay
 
 
-def _bytes_of(path: Path) -> int:
+def _measure_files(path: Path) -> int:
     """Return the bytes of a raster, those of the sources of a virtual one included."""
     sources = require_plain_sources(path) if is_virtual(path) else []
     return sum(one.stat().st_size for one in [path, *sources] if one.is_file())
 
 
-def _band(dataset: _Header, band: int | None, path: Path) -> int:
+def _choose_band(dataset: _Header, band: int | None, path: Path) -> int:
     if dataset.count == 0:
         parts = ", ".join(dataset.subdatasets[:5])
         raise ReadError(
@@ -287,7 +289,7 @@ def _band(dataset: _Header, band: int | None, path: Path) -> int:
     return int(number)
 
 
-def _require_elevations(dataset: _Header, band: int, is_told: bool, path: Path) -> None:
+def _require_elevation_band(dataset: _Header, band: int, is_told: bool, path: Path) -> None:
     """Refuse pictures, complex numbers and rasters whose place is unknown."""
     meaning = dataset.colours[band - 1]
     if meaning in _COLOURS and not is_told:
@@ -298,10 +300,10 @@ def _require_elevations(dataset: _Header, band: int, is_told: bool, path: Path) 
         )
     if dataset.dtypes[band - 1].startswith("complex"):
         raise ReadError(f"'{path}': band {band} holds complex numbers, no elevations.", path=path)
-    _require_place(dataset, path)
+    _require_position(dataset, path)
 
 
-def _require_place(dataset: _Header, path: Path) -> None:
+def _require_position(dataset: _Header, path: Path) -> None:
     """Refuse a raster whose cells have no place, or one that is no area."""
     if dataset.transform == _NOWHERE:
         raise ReadError(
@@ -321,7 +323,7 @@ def _require_place(dataset: _Header, path: Path) -> None:
         )
 
 
-def _elevation_unit(
+def _find_elevation_unit(
     dataset: _Header, band: int, source: CRS | None, declared: Unit | None
 ) -> tuple[Unit | None, list[str]]:
     """Return the unit that band, vertical axis or caller give, and a note on one not understood."""
@@ -343,7 +345,7 @@ def _elevation_unit(
     )
 
 
-def _middle(dataset: _Header) -> NDArray[np.float64]:
+def _find_middle(dataset: _Header) -> NDArray[np.float64]:
     x, y = dataset.transform.apply(dataset.width / 2, dataset.height / 2)
     return np.array([[x, y, 0.0]])
 
@@ -351,7 +353,7 @@ def _middle(dataset: _Header) -> NDArray[np.float64]:
 # ------------------------------------------------------------------ which cells
 
 
-def _cells(
+def _choose_cells(
     dataset: _Header, window: Sequence[int] | Bounds | None, stride: int, path: Path
 ) -> _Cells:
     bounds = None
@@ -359,9 +361,9 @@ def _cells(
         part = (0, 0, dataset.width, dataset.height)
     elif isinstance(window, Bounds):
         bounds = window
-        part = _part_of_bounds(dataset, bounds, path)
+        part = _cut_bounds(dataset, bounds, path)
     else:
-        part = _part_of_window(dataset, window, path)
+        part = _cut_window(dataset, window, path)
     smaller = min(part[2:])
     if not isinstance(stride, Integral) or not (1 <= stride < smaller or stride == 1):
         raise OptionError(
@@ -373,9 +375,7 @@ def _cells(
     return _Cells(*part, int(stride), bounds)
 
 
-def _part_of_window(
-    dataset: _Header, window: Sequence[int], path: Path
-) -> tuple[int, int, int, int]:
+def _cut_window(dataset: _Header, window: Sequence[int], path: Path) -> tuple[int, int, int, int]:
     size = f"the raster has {counted(dataset.width, 'column')} and {counted(dataset.height, 'row')}"
     try:
         numbers = tuple(window)
@@ -394,14 +394,14 @@ def _part_of_window(
     return column, row, width, height
 
 
-def _part_of_bounds(dataset: _Header, bounds: Bounds, path: Path) -> tuple[int, int, int, int]:
+def _cut_bounds(dataset: _Header, bounds: Bounds, path: Path) -> tuple[int, int, int, int]:
     """Return the cells of the smallest upright window that covers the bounds."""
     limits = (bounds.xmin, bounds.ymin, bounds.xmax, bounds.ymax)
     if not all(isinstance(one, Real) and np.isfinite(one) for one in limits):
         raise OptionError("window", limits, "four finite numbers")
     x = np.array([bounds.xmin, bounds.xmin, bounds.xmax, bounds.xmax])
     y = np.array([bounds.ymin, bounds.ymax, bounds.ymin, bounds.ymax])
-    columns, rows = dataset.transform.inverse().apply(x, y)
+    columns, rows = dataset.transform.invert().apply(x, y)
     column, row = max(0, int(np.floor(columns.min()))), max(0, int(np.floor(rows.min())))
     right = min(dataset.width, int(np.ceil(columns.max())))
     bottom = min(dataset.height, int(np.ceil(rows.max())))
@@ -416,10 +416,10 @@ def _part_of_bounds(dataset: _Header, bounds: Bounds, path: Path) -> tuple[int, 
     return column, row, right - column, bottom - row
 
 
-def _require_room(cells: _Cells, path: Path) -> None:
+def _require_few_cells(cells: _Cells, path: Path) -> None:
     """Refuse more cells than can be read, before memory is asked for."""
     count = -(-cells.width // cells.stride) * -(-cells.height // cells.stride)
-    memory = _free_memory()
+    memory = _measure_free_memory()
     most = min(LARGEST_RASTER, memory // BYTES_PER_CELL)
     if count > most:
         raise ReadError(
@@ -430,7 +430,7 @@ def _require_room(cells: _Cells, path: Path) -> None:
         )
 
 
-def _free_memory() -> int:
+def _measure_free_memory() -> int:
     """Return the bytes of memory that are available, where the system tells."""
     try:
         with Path("/proc/meminfo").open(encoding="ascii") as file:
@@ -443,24 +443,24 @@ def _free_memory() -> int:
 # ------------------------------------------------------------------ points
 
 
-def _points(
+def _read_points(
     dataset: _Header, band: int, cells: _Cells, marks: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.bool_], int]:
     """Return the points of valid cells, which cells are valid, and how many have no elevation."""
-    strips = _strips_of_rows(dataset, cells)
+    strips = _cut_into_strips(dataset, cells)
     window = {"band": band, "column": cells.column, "width": cells.width, "stride": cells.stride}
     ends = [[int(rows[0]), int(rows[-1])] for rows in strips]
     found: list[NDArray[np.float64]] = []
     kept: list[NDArray[np.bool_]] = []
     n_nodata = 0
     with stream_isolated(
-        f"{_reader(dataset.path)}:strips",
-        {**_where(dataset.path), **window, "rows": ends},
+        f"{_choose_reader(dataset.path)}:read_strips",
+        {**_name_for_gdal(dataset.path), **window, "rows": ends},
         path=dataset.path,
         limits=dataset.limits,
     ) as answers:
         for rows, answer in zip(strips, answers, strict=False):
-            points, keep, missing = _strip(dataset, band, cells, rows, answer.arrays, marks)
+            points, keep, missing = _read_strip(dataset, band, cells, rows, answer.arrays, marks)
             found.append(points)
             kept.append(keep)
             n_nodata += missing
@@ -469,23 +469,23 @@ def _points(
     return np.concatenate(found), np.concatenate(kept), n_nodata
 
 
-def _strips_of_rows(dataset: _Header, cells: _Cells) -> list[NDArray[np.int64]]:
+def _cut_into_strips(dataset: _Header, cells: _Cells) -> list[NDArray[np.int64]]:
     """Cut the rows wanted into strips."""
-    height = _strip_height(dataset, cells)
+    height = _choose_strip_height(dataset, cells)
     end = cells.row + cells.height
     strips = [
-        cells.rows(start, min(start + height, end)) for start in range(cells.row, end, height)
+        cells.find_rows(start, min(start + height, end)) for start in range(cells.row, end, height)
     ]
     return [rows for rows in strips if len(rows)]
 
 
-def _strip_height(dataset: _Header, cells: _Cells) -> int:
+def _choose_strip_height(dataset: _Header, cells: _Cells) -> int:
     """Return a number of rows that are whole blocks of the file, of some million cells."""
     block = max(1, dataset.block_height)
     return max(1, _STRIP_CELLS // (block * cells.width)) * block
 
 
-def _strip(
+def _read_strip(
     dataset: _Header,
     band: int,
     cells: _Cells,
@@ -494,8 +494,8 @@ def _strip(
     marks: NDArray[np.float64],
 ) -> tuple[NDArray[np.float64], NDArray[np.bool_], int]:
     values, has_value = arrays["values"], arrays["valid"] != 0
-    x, y = _centres(dataset, cells.columns, rows)
-    wanted = _within(cells.bounds, x, y)
+    x, y = _compute_centres(dataset, cells.columns, rows)
+    wanted = _find_within(cells.bounds, x, y)
     keep = has_value & wanted
     elevation = values[keep].astype(np.float64)
     scale, offset = dataset.scales[band - 1], dataset.offsets[band - 1]
@@ -509,7 +509,7 @@ def _strip(
     return points, keep, int(np.count_nonzero(wanted & ~keep))
 
 
-def _require_finite(points: NDArray[np.float64], band: int, path: Path) -> None:
+def _require_finite_centres(points: NDArray[np.float64], band: int, path: Path) -> None:
     wrong = ~np.isfinite(points[:, 2])
     if wrong.any():
         count, first = int(wrong.sum()), points[int(np.argmax(wrong))].tolist()
@@ -521,7 +521,7 @@ def _require_finite(points: NDArray[np.float64], band: int, path: Path) -> None:
         )
 
 
-def _centres(
+def _compute_centres(
     dataset: _Header, columns: NDArray[np.int64], rows: NDArray[np.int64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return easting and northing of the cell centres, (rows, columns) arrays."""
@@ -529,7 +529,7 @@ def _centres(
     return x, y
 
 
-def _within(
+def _find_within(
     bounds: Bounds | None, x: NDArray[np.float64], y: NDArray[np.float64]
 ) -> NDArray[np.bool_]:
     if bounds is None:

@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 
 from ..isolated import Answer
-from ..isolated.gdal import RASTER_DRIVERS, REFERRING_DRIVERS, environment
+from ..isolated.gdal import RASTER_DRIVERS, REFERRING_DRIVERS, make_environment
 
-__all__ = ["ENVIRONMENT", "header", "prepare", "strips"]
+__all__ = ["ENVIRONMENT", "prepare", "read_header", "read_strips"]
 
-ENVIRONMENT = environment()
+ENVIRONMENT = make_environment()
 
 
 def prepare() -> None:
@@ -31,9 +31,9 @@ def _require_plain_drivers(unwanted: set[str]) -> None:
         raise RuntimeError(f"the GDAL driver {min(loaded)} cannot be switched off")
 
 
-def header(path: str, *, is_virtual: bool = False) -> Answer:
+def read_header(path: str, *, is_virtual: bool = False) -> Answer:
     """Return what a raster says of itself; keys as the attributes of a rasterio dataset."""
-    with _opened(path, is_virtual) as dataset:
+    with _open_raster(path, is_virtual) as dataset:
         value = {
             "count": dataset.count,
             "subdatasets": list(dataset.subdatasets[:5]),
@@ -52,7 +52,7 @@ def header(path: str, *, is_virtual: bool = False) -> Answer:
     return Answer(value, {})
 
 
-def strips(
+def read_strips(
     path: str,
     *,
     band: int,
@@ -78,15 +78,15 @@ def strips(
     """
     from rasterio.windows import Window
 
-    with _opened(path, is_virtual) as dataset:
+    with _open_raster(path, is_virtual) as dataset:
         for first, last in rows:
             window = Window(column, first, width, last - first + 1)
             values = dataset.read(band, window=window)[::stride, ::stride]
-            valid = _valid(dataset, band, window, values, stride)
+            valid = _find_valid(dataset, band, window, values, stride)
             yield Answer(None, {"values": values, "valid": valid.astype(np.uint8)})
 
 
-def _valid(dataset: Any, band: int, window: Any, values: Any, stride: int) -> Any:
+def _find_valid(dataset: Any, band: int, window: Any, values: Any, stride: int) -> Any:
     valid = dataset.read_masks(band, window=window)[::stride, ::stride] != 0
     if values.dtype.kind == "f":
         valid &= np.isfinite(values)
@@ -97,7 +97,7 @@ def _valid(dataset: Any, band: int, window: Any, values: Any, stride: int) -> An
 
 
 @contextmanager
-def _opened(path: str, is_virtual: bool) -> Iterator[Any]:
+def _open_raster(path: str, is_virtual: bool) -> Iterator[Any]:
     """Open a raster; of what GDAL says of a fault, its own words are passed on."""
     import rasterio
     from rasterio.errors import NotGeoreferencedWarning, RasterioError
@@ -105,13 +105,13 @@ def _opened(path: str, is_virtual: bool) -> Iterator[Any]:
     try:
         with warnings.catch_warnings(), rasterio.Env():
             warnings.simplefilter("ignore", NotGeoreferencedWarning)
-            with rasterio.DatasetReader(path, driver=_drivers(is_virtual)) as dataset:
+            with rasterio.DatasetReader(path, driver=_list_drivers(is_virtual)) as dataset:
                 yield dataset
     except RasterioError as error:
         raise RuntimeError(str(error.__cause__ or error)) from error
 
 
-def _drivers(is_virtual: bool) -> list[str]:
+def _list_drivers(is_virtual: bool) -> list[str]:
     import rasterio
 
     with rasterio.Env() as env:

@@ -58,27 +58,27 @@ def require_plain_sources(path: Path) -> list[Path]:
         If the file is no VRT of a plain mosaic, or names something else than plain files in its
         folder or below.
     """
-    root = _parsed(path)
+    root = _parse_text(path)
     for element in root.iter():
         _require_mosaic(element, path)
     names = [
         (one.text or "", one.get("relativeToVRT") == "1") for one in root.iter("SourceFilename")
     ]
-    sources = [_source(name, relative, path) for name, relative in dict.fromkeys(names)]
+    sources = [_find_source(name, relative, path) for name, relative in dict.fromkeys(names)]
     for file in [path, *sources]:
         _require_nothing_beside(file, path)
     return sources
 
 
-def _parsed(path: Path) -> ET.Element:
+def _parse_text(path: Path) -> ET.Element:
     try:
         if path.stat().st_size > LARGEST_TEXT:
-            raise _refusal(path, f"is larger than {LARGEST_TEXT:,} bytes")
+            raise _describe_refused_mosaic(path, f"is larger than {LARGEST_TEXT:,} bytes")
         content = path.read_bytes()
     except OSError as error:
         raise ReadError(f"Cannot read '{path}': {error.strerror or error}.", path=path) from error
     if b"<!DOCTYPE" in content or b"<!ENTITY" in content:
-        raise _refusal(path, "declares entities")
+        raise _describe_refused_mosaic(path, "declares entities")
     try:
         root = ET.fromstring(content)
     except (ET.ParseError, ValueError, LookupError) as error:
@@ -92,14 +92,16 @@ def _parsed(path: Path) -> ET.Element:
 
 def _require_mosaic(element: ET.Element, path: Path) -> None:
     if element.tag not in _MOSAIC:
-        raise _refusal(path, f"has the element '{str(element.tag)[:60]}'")
+        raise _describe_refused_mosaic(path, f"has the element '{str(element.tag)[:60]}'")
     if element.get("subClass") not in _CLASSES:
-        raise _refusal(path, f"is of the class '{str(element.get('subClass'))[:60]}'")
+        raise _describe_refused_mosaic(
+            path, f"is of the class '{str(element.get('subClass'))[:60]}'"
+        )
     if element.tag == "MDI" and element.get("key") == "OVERVIEW_FILE":
-        raise _refusal(path, "names a file of overviews")
+        raise _describe_refused_mosaic(path, "names a file of overviews")
 
 
-def _source(name: str, is_relative: bool, path: Path) -> Path:
+def _find_source(name: str, is_relative: bool, path: Path) -> Path:
     """Return the file that a source names."""
     folder = path.absolute().parent
     try:
@@ -107,40 +109,46 @@ def _source(name: str, is_relative: bool, path: Path) -> Path:
         inside = file.resolve().is_relative_to(folder.resolve())
         is_file = inside and file.is_file()
     except (OSError, ValueError):
-        raise _refusal(path, f"names '{name[:200]}', no path of a file") from None
+        raise _describe_refused_mosaic(path, f"names '{name[:200]}', no path of a file") from None
     if not inside:
-        raise _refusal(path, f"names '{name[:200]}', which is not in its folder or below")
+        raise _describe_refused_mosaic(
+            path, f"names '{name[:200]}', which is not in its folder or below"
+        )
     if not is_file:
         raise ReadError(
             f"'{path}' is made of '{name[:200]}', and there is no such file.", path=path
         )
-    if is_virtual(file) or _head(file).lstrip().startswith((b"<", b"{", b"\xef\xbb\xbf<")):
-        raise _refusal(path, f"names '{name[:200]}', which is itself a text of references")
+    if is_virtual(file) or _read_start(file).lstrip().startswith((b"<", b"{", b"\xef\xbb\xbf<")):
+        raise _describe_refused_mosaic(
+            path, f"names '{name[:200]}', which is itself a text of references"
+        )
     return file
 
 
 def _require_nothing_beside(file: Path, path: Path) -> None:
     """Refuse files beside a raster (overviews, masks, metadata) that name other files."""
-    for beside in _files_beside(file):
-        head = _head(beside)
+    for beside in _find_files_beside(file):
+        head = _read_start(beside)
         is_text = beside.suffix != ".xml" and head.lstrip().startswith(b"<")
         if is_text or any(reference in head for reference in _REFERENCES):
-            raise _refusal(path, f"has the file '{beside.name}' beside it, which names other files")
+            raise _describe_refused_mosaic(
+                path, f"has the file '{beside.name}' beside it, which names other files"
+            )
 
 
-def _files_beside(file: Path) -> Iterator[Path]:
+def _find_files_beside(file: Path) -> Iterator[Path]:
     for ending in _BESIDE:
         for beside in (Path(f"{file}{ending}"), file.with_suffix(ending)):
             if beside.is_file():
                 yield beside
 
 
-def _head(file: Path) -> bytes:
+def _read_start(file: Path) -> bytes:
     with file.open("rb") as opened:
         return opened.read(_HEAD)
 
 
-def _refusal(path: Path, what: str) -> ReadError:
+def _describe_refused_mosaic(path: Path, what: str) -> ReadError:
     return ReadError(
         f"'{path}' {what}: a virtual raster is read if it is a mosaic of plain rasters in its own "
         "folder or below; make a GeoTIFF of any other.",

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from ..isolated.gdal import REFERRING_DRIVERS, environment
-from .gdal_child import _require_plain_drivers, header, strips
+from ..isolated.gdal import REFERRING_DRIVERS, make_environment
+from .gdal_child import _require_plain_drivers, read_header, read_strips
 
-__all__ = ["ENVIRONMENT", "header", "prepare", "strips"]
+__all__ = ["ENVIRONMENT", "prepare", "read_header", "read_strips"]
 
-ENVIRONMENT = environment(allowed=["VRT"])
+ENVIRONMENT = make_environment(allowed=["VRT"])
 
 
 def prepare() -> None:

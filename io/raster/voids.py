@@ -15,10 +15,10 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["rings_around"]
+__all__ = ["trace_rings"]
 
 
-def rings_around(valid: NDArray[np.bool_]) -> list[NDArray[np.int64]]:
+def trace_rings(valid: NDArray[np.bool_]) -> list[NDArray[np.int64]]:
     """Return the rings around the cells that have elevations.
 
     Parameters
@@ -33,15 +33,15 @@ def rings_around(valid: NDArray[np.bool_]) -> list[NDArray[np.int64]]:
 
     Examples
     --------
-    >>> [ring.tolist() for ring in rings_around(np.array([[True, True], [True, False]]))]
+    >>> [ring.tolist() for ring in trace_rings(np.array([[True, True], [True, False]]))]
     [[0, 2, 1]]
     """
-    start, end = _border(valid)
+    start, end = _find_border(valid)
     number = np.cumsum(valid.ravel()) - 1
-    return [number[ring] for ring in _cycles(start, end)]
+    return [number[ring] for ring in _trace_cycles(start, end)]
 
 
-def _border(valid: NDArray[np.bool_]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _find_border(valid: NDArray[np.bool_]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Return the directed edges between cells that have surface on their left only."""
     cells = np.arange(valid.size).reshape(valid.shape)
     a, b = cells[:-1, :-1], cells[:-1, 1:]  # northwest, northeast
@@ -52,10 +52,10 @@ def _border(valid: NDArray[np.bool_]) -> tuple[NDArray[np.int64], NDArray[np.int
     north, south = is_part & has["a"] & has["b"], is_part & has["d"] & has["c"]
     west, east = is_part & has["a"] & has["d"], is_part & has["b"] & has["c"]
     edges = [
-        (d, c, south & ~_moved(north, rows=-1)),
-        (b, a, north & ~_moved(south, rows=1)),
-        (a, d, west & ~_moved(east, columns=1)),
-        (c, b, east & ~_moved(west, columns=-1)),
+        (d, c, south & ~_shift_flags(north, rows=-1)),
+        (b, a, north & ~_shift_flags(south, rows=1)),
+        (a, d, west & ~_shift_flags(east, columns=1)),
+        (c, b, east & ~_shift_flags(west, columns=-1)),
     ]
     for missing, (one, other) in {"a": (b, d), "b": (c, a), "c": (d, b), "d": (a, c)}.items():
         edges.append((one, other, is_part & ~has[missing]))
@@ -64,7 +64,7 @@ def _border(valid: NDArray[np.bool_]) -> tuple[NDArray[np.int64], NDArray[np.int
     return start, end
 
 
-def _moved(flags: NDArray[np.bool_], *, rows: int = 0, columns: int = 0) -> NDArray[np.bool_]:
+def _shift_flags(flags: NDArray[np.bool_], *, rows: int = 0, columns: int = 0) -> NDArray[np.bool_]:
     """Return the flags of the squares one further up, down, left or right; False beyond."""
     moved = np.zeros_like(flags)
     if rows == 1:
@@ -78,7 +78,7 @@ def _moved(flags: NDArray[np.bool_], *, rows: int = 0, columns: int = 0) -> NDAr
     return moved
 
 
-def _cycles(start: NDArray[np.int64], end: NDArray[np.int64]) -> Iterator[NDArray[np.int64]]:
+def _trace_cycles(start: NDArray[np.int64], end: NDArray[np.int64]) -> Iterator[NDArray[np.int64]]:
     """Walk directed edges, as many into a cell as out of it, as cycles without a cell twice."""
     order = np.argsort(start, kind="stable")
     ends = end[order].tolist()
@@ -88,10 +88,10 @@ def _cycles(start: NDArray[np.int64], end: NDArray[np.int64]) -> Iterator[NDArra
     following = {cell: ends[low:high] for cell, (low, high) in slots.items()}
     for begin in cells.tolist():
         while following[begin]:
-            yield from _cycles_from(begin, following)
+            yield from _trace_cycles_from(begin, following)
 
 
-def _cycles_from(begin: int, following: dict[int, list[int]]) -> Iterator[NDArray[np.int64]]:
+def _trace_cycles_from(begin: int, following: dict[int, list[int]]) -> Iterator[NDArray[np.int64]]:
     """Follow edges from a cell until there are none, cutting off a cycle at each cell met again."""
     path, place_of = [begin], {begin: 0}
     while following[path[-1]]:

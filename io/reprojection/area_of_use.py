@@ -46,14 +46,14 @@ class AreaOfUse:
         if declared is None:
             return None
         targets = {crs: None for crs in (declared, target) if crs is not None}
-        known = tuple(crs for crs in targets if _area(crs) is not None)
+        known = tuple(crs for crs in targets if _find_area(crs) is not None)
         return cls(declared, known) if known else None
 
     @property
     def label(self) -> str:
         """The CRSs and the narrowest of their areas in degrees, for a sentence."""
         names = " and ".join(crs.label for crs in self.targets)
-        area = min((_area(crs) for crs in self.targets), key=_width)
+        area = min((_find_area(crs) for crs in self.targets), key=_measure_width)
         return (
             f"{names} (longitude {area.west:g} to {area.east:g}, "
             f"latitude {area.south:g} to {area.north:g})"
@@ -71,10 +71,10 @@ class AreaOfUse:
         margin : float
             Degrees.
         """
-        longitude, latitude = _degrees(self.source, xy)
+        longitude, latitude = _convert_to_degrees(self.source, xy)
         inside: NDArray[np.bool_] = np.isfinite(longitude) & np.isfinite(latitude)
         for crs in self.targets:
-            inside &= _lies_in(_area(crs), longitude, latitude, margin)
+            inside &= _lies_in(_find_area(crs), longitude, latitude, margin)
         return inside
 
     def covers_most(self, xy: NDArray[np.float64]) -> bool:
@@ -88,16 +88,16 @@ class AreaOfUse:
             return False
         if np.abs(xy).max() * self.source.horizontal_unit.metres > _ORIGIN_METRES:
             return False
-        return not self.covers(xy[_outermost(xy)], margin=0.0).any()
+        return not self.covers(xy[_find_outermost(xy)], margin=0.0).any()
 
-    def outside(self, xy: NDArray[np.float64]) -> NDArray[np.int64]:
+    def find_outside(self, xy: NDArray[np.float64]) -> NDArray[np.int64]:
         """Return the rows that lie outside; all are looked at only if the outermost do not fit."""
-        if len(xy) == 0 or self.covers(xy[_outermost(xy)]).all():
+        if len(xy) == 0 or self.covers(xy[_find_outermost(xy)]).all():
             return np.empty(0, np.int64)
         return np.flatnonzero(~self.covers(xy))
 
 
-def _outermost(xy: NDArray[np.float64]) -> list[int]:
+def _find_outermost(xy: NDArray[np.float64]) -> list[int]:
     """Return the rows of the corners of the octagon around the points, and some between."""
     x, y = xy.T
     with np.errstate(over="ignore", invalid="ignore"):
@@ -106,19 +106,19 @@ def _outermost(xy: NDArray[np.float64]) -> list[int]:
     return [*corners, *range(0, len(xy), max(1, len(xy) // _SPREAD))]
 
 
-def _degrees(source: CRS, xy: NDArray[np.float64]) -> tuple[NDArray[Any], NDArray[Any]]:
+def _convert_to_degrees(source: CRS, xy: NDArray[np.float64]) -> tuple[NDArray[Any], NDArray[Any]]:
     """Return longitude from Greenwich and latitude, infinite where there is no image.
 
     They are those of the CRS's own datum, which are found fast and near enough for a margin of
     degrees.
     """
-    to_angles, degrees, meridian = _to_angles(source)
+    to_angles, degrees, meridian = _make_angle_transformer(source)
     longitude, latitude = to_angles.transform(xy[:, 0], xy[:, 1])
     return np.asarray(longitude) * degrees + meridian, np.asarray(latitude) * degrees
 
 
 @lru_cache(maxsize=8)
-def _to_angles(source: CRS) -> tuple[pyproj.Transformer, float, float]:
+def _make_angle_transformer(source: CRS) -> tuple[pyproj.Transformer, float, float]:
     """Return what makes longitude and latitude, the degrees of their unit, and the meridian."""
     import pyproj
 
@@ -134,7 +134,7 @@ def _to_angles(source: CRS) -> tuple[pyproj.Transformer, float, float]:
     return transformer, degrees, meridian
 
 
-def _area(crs: CRS) -> Any:
+def _find_area(crs: CRS) -> Any:
     """Return the area of use of a CRS, of its horizontal part if only that has one, or None."""
     known = crs.to_pyproj()
     if known.area_of_use is None and known.is_compound:
@@ -142,7 +142,7 @@ def _area(crs: CRS) -> Any:
     return known.area_of_use
 
 
-def _width(area: pyproj.aoi.AreaOfUse) -> float:
+def _measure_width(area: pyproj.aoi.AreaOfUse) -> float:
     return (float(area.east - area.west) % 360.0 or 360.0) * float(area.north - area.south)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...crs import require_same_unit
 from ...errors import CrsError, ReadError
-from .transformation import convert_elevations, fitting_utm, reproject, transform_points
+from .transformation import convert_elevations, find_utm_zone, reproject, transform_points
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -74,7 +74,7 @@ def place(
     if wanted is not None and wanted.is_geographic:
         _refuse_degrees(points, wanted, source or wanted, path)
     if source is None or wanted is None or source.is_same(wanted):
-        return _stay(points, wanted, unit)
+        return _keep_in_place(points, wanted, unit)
     try:
         moved, known, note = reproject(points, source, wanted, unit=unit)
     except CrsError as error:
@@ -82,7 +82,7 @@ def place(
     return Placed(moved, wanted, known, () if note is None else (note,))
 
 
-def _stay(points: NDArray[np.float64], crs: CRS | None, unit: Unit | None) -> Placed:
+def _keep_in_place(points: NDArray[np.float64], crs: CRS | None, unit: Unit | None) -> Placed:
     """Leave points where they are; elevations take the unit of the CRS's vertical axis."""
     vertical = None if crs is None else crs.vertical_unit
     if vertical is None or unit is None or unit == vertical:
@@ -105,7 +105,7 @@ def settle_unit(declared: Unit | None, found: Unit | None, path: Path) -> Unit |
 
 
 def _refuse_degrees(points: NDArray[np.float64], wanted: CRS, source: CRS, path: Path) -> NoReturn:
-    suggestion = _suggestion(points, source)
+    suggestion = _suggest_zone(points, source)
     fitting = f"crs='{suggestion}'" if suggestion else "the option crs"
     raise ReadError(
         f"'{path}': {wanted.label} measures in degrees, and a TIN needs a projected CRS: "
@@ -114,7 +114,7 @@ def _refuse_degrees(points: NDArray[np.float64], wanted: CRS, source: CRS, path:
     )
 
 
-def _suggestion(points: NDArray[np.float64], source: CRS) -> str | None:
+def _suggest_zone(points: NDArray[np.float64], source: CRS) -> str | None:
     """Return the UTM zone of the middle of the points."""
     if len(points) == 0:
         return None
@@ -123,4 +123,4 @@ def _suggestion(points: NDArray[np.float64], source: CRS) -> str | None:
         longitude, latitude, _ = transform_points(middle[None, :], source, _WGS84)[0]
     except CrsError:
         return None
-    return fitting_utm(float(longitude), float(latitude))
+    return find_utm_zone(float(longitude), float(latitude))

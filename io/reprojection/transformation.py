@@ -22,9 +22,9 @@ __all__ = [
     "METRE",
     "LengthUnit",
     "Reprojected",
-    "conversion_factor",
     "convert_elevations",
-    "fitting_utm",
+    "find_conversion_factor",
+    "find_utm_zone",
     "is_geographic",
     "length_unit",
     "reproject",
@@ -141,15 +141,15 @@ def reproject(
     had = assume_elevation_unit(source, known)
     wanted = target.vertical_unit or wanted or target.usual_elevation_unit or had
     if source.vertical_unit is not None and target.vertical_unit is not None:
-        points = _with_elevations(points, known, source.vertical_unit)
+        points = _scale_elevations(points, known, source.vertical_unit)
         moved = _transform(points, source, target)
     else:
         # In the plane alone: PROJ would let the elevation, whatever its unit, move the place.
         xy = _transform(points[:, :2], source.horizontal, target.horizontal)
         moved = np.column_stack([xy, points[:, 2]])
-        moved = _with_elevations(moved, had, wanted)
+        moved = _scale_elevations(moved, had, wanted)
     is_known = known is not None or target.vertical_unit is not None
-    note = _note(source, target, known, wanted)
+    note = _note_conversion(source, target, known, wanted)
     return Reprojected(np.ascontiguousarray(moved), wanted if is_known else None, note)
 
 
@@ -157,17 +157,17 @@ def convert_elevations(
     points: NDArray[np.float64], unit: Unit | None, wanted: Unit | None
 ) -> NDArray[np.float64]:
     """Return points with elevations in another unit; as they are where either is not known."""
-    return _with_elevations(np.asarray(points, np.float64), unit, wanted)
+    return _scale_elevations(np.asarray(points, np.float64), unit, wanted)
 
 
-def _with_elevations(
+def _scale_elevations(
     points: NDArray[np.float64], unit: Unit | None, wanted: Unit | None
 ) -> NDArray[np.float64]:
-    factor = conversion_factor(unit, wanted)
+    factor = find_conversion_factor(unit, wanted)
     return points if factor == 1.0 else points * (1.0, 1.0, factor)
 
 
-def conversion_factor(unit: Unit | None, wanted: Unit | None) -> float:
+def find_conversion_factor(unit: Unit | None, wanted: Unit | None) -> float:
     """Return how many of the wanted unit are in one unit; 1 where either is not known."""
     if unit is None or wanted is None or unit == wanted:
         return 1.0
@@ -176,7 +176,9 @@ def conversion_factor(unit: Unit | None, wanted: Unit | None) -> float:
     return unit.metres / wanted.metres
 
 
-def _note(source: CRS, target: CRS, known: Unit | None, wanted: Unit | None) -> str | None:
+def _note_conversion(
+    source: CRS, target: CRS, known: Unit | None, wanted: Unit | None
+) -> str | None:
     had = assume_elevation_unit(source, known)
     if had is None or wanted is None or had == wanted:
         return None
@@ -220,12 +222,12 @@ def _require_images(
         )
 
 
-def fitting_utm(longitude: float, latitude: float) -> str:
+def find_utm_zone(longitude: float, latitude: float) -> str:
     """Return the code of the WGS 84 UTM zone (near the poles: UPS) that holds a place.
 
     Examples
     --------
-    >>> fitting_utm(-84.2, 36.4)
+    >>> find_utm_zone(-84.2, 36.4)
     'EPSG:32616'
     """
     if latitude >= 84.0:

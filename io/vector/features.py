@@ -12,10 +12,10 @@ from ... import _optional
 from ..._sentences import counted
 from ...crs import CRS
 from ...errors import CrsError, ReadError
-from ..isolated import limits_for, run_isolated
+from ..isolated import choose_limits, run_isolated
 from ..isolated.local_files import require_local
-from ..isolated.spooling import as_sentence, ordinary_file
-from ..signatures import HEAD_BYTES, reference_kind
+from ..isolated.spooling import describe_system_error, open_ordinary_file
+from ..signatures import HEAD_BYTES, find_reference_kind
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -78,7 +78,7 @@ def read_features(path: Path, *, layer: str | None = None, where: str | None = N
         If the file or layer is missing, damaged, empty, or no vector file.
     """
     require_local(path)
-    with ordinary_file(path) as local:
+    with open_ordinary_file(path) as local:
         features = _read_layer(local, layer, where)
     if local == path:
         return features
@@ -91,33 +91,37 @@ def _read_layer(path: Path, layer: str | None, where: str | None) -> Features:
     _require_whole_file(path)
     where_it_is = {"path": os.path.abspath(path), "shown": str(path)}  # noqa: PTH100 - links stay
     value, arrays = run_isolated(
-        f"{__package__}.gdal_child:features",
+        f"{__package__}.gdal_child:read_features",
         {**where_it_is, "layer": layer, "where": where},
         path=path,
-        limits=limits_for(_bytes_of(path)),
+        limits=choose_limits(_measure_folder(path)),
     )
     if len(arrays["numbers"]) == 0:
-        raise ReadError(f"'{path}' has no features{_where_text(value['layer'], where)}.", path=path)
-    return _with_geometry(
+        raise ReadError(
+            f"'{path}' has no features{_describe_part(value['layer'], where)}.", path=path
+        )
+    return _drop_without_geometry(
         Features(
             path,
             arrays["numbers"],
-            _shapes(arrays, path),
-            _columns(value, arrays),
-            _crs_of(value["crs"], path),
+            _parse_shapes(arrays, path),
+            _decode_columns(value, arrays),
+            _find_file_crs(value["crs"], path),
             (),
         )
     )
 
 
-def _crs_of(text: str | None, path: Path) -> CRS | None:
+def _find_file_crs(text: str | None, path: Path) -> CRS | None:
     try:
         return CRS.of(text)
     except CrsError as error:
         raise CrsError(f"'{path}': {error}", crs=text) from error
 
 
-def _columns(value: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
+def _decode_columns(
+    value: dict[str, Any], arrays: dict[str, NDArray[Any]]
+) -> dict[str, NDArray[Any]]:
     """Return the columns by their names in lower case."""
     columns = {}
     for k, name in enumerate(value["names"]):
@@ -127,7 +131,7 @@ def _columns(value: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> dict[str
     return columns
 
 
-def _bytes_of(path: Path) -> int:
+def _measure_folder(path: Path) -> int:
     """Return the bytes of a file, or of all files of a format that is a folder."""
     if not path.is_dir():
         return path.stat().st_size
@@ -147,10 +151,10 @@ def _require_whole_file(path: Path) -> None:
     except ReadError:
         raise
     except OSError as error:
-        raise as_sentence(path, error) from error
+        raise describe_system_error(path, error) from error
     if size == 0:
         raise ReadError(f"'{path}' is empty: there are no lines in it.", path=path)
-    kind = reference_kind(head)
+    kind = find_reference_kind(head)
     if kind is not None:
         raise ReadError(f"'{path}' is {kind}: only files of lines themselves are read.", path=path)
     if head.startswith(_SHAPEFILE) and len(head) >= 28:
@@ -161,11 +165,11 @@ def _require_whole_file(path: Path) -> None:
             )
 
 
-def _where_text(layer: str, where: str | None) -> str:
+def _describe_part(layer: str, where: str | None) -> str:
     return f" in layer '{layer}'" if where is None else f" where {where}"
 
 
-def _shapes(arrays: dict[str, NDArray[Any]], path: Path) -> NDArray[np.object_]:
+def _parse_shapes(arrays: dict[str, NDArray[Any]], path: Path) -> NDArray[np.object_]:
     import shapely
 
     wkb, lengths = arrays["wkb"].tobytes(), arrays["lengths"]
@@ -184,7 +188,7 @@ def _shapes(arrays: dict[str, NDArray[Any]], path: Path) -> NDArray[np.object_]:
     return shapes
 
 
-def _with_geometry(features: Features) -> Features:
+def _drop_without_geometry(features: Features) -> Features:
     """Leave out the features that have no geometry, and note them."""
     import shapely
 

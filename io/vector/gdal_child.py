@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 
 from ..isolated import Answer, Refusal
-from ..isolated.gdal import REFERRING_DRIVERS, VECTOR_DRIVERS, environment
+from ..isolated.gdal import REFERRING_DRIVERS, VECTOR_DRIVERS, make_environment
 
-__all__ = ["ENVIRONMENT", "features", "prepare"]
+__all__ = ["ENVIRONMENT", "prepare", "read_features"]
 
-ENVIRONMENT = environment()
+ENVIRONMENT = make_environment()
 
 _GDAL_SOURCE = re.compile(r"^\S+\.cpp, \d+: ")
 
@@ -34,7 +34,7 @@ def prepare() -> None:
         raise RuntimeError(f"the GDAL driver {min(loaded)} cannot be switched off")
 
 
-def features(path: str, shown: str, *, layer: str | None, where: str | None) -> Answer:
+def read_features(path: str, shown: str, *, layer: str | None, where: str | None) -> Answer:
     """Return the features of one layer.
 
     Parameters
@@ -57,23 +57,27 @@ def features(path: str, shown: str, *, layer: str | None, where: str | None) -> 
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            chosen = _chosen_layer(path, shown, layer)
+            chosen = _choose_layer(path, shown, layer)
             meta, numbers, geometries, values = raw.read(
                 path, layer=chosen, where=where, return_fids=True
             )
     except (RuntimeError, ValueError, IndexError) as error:
         if isinstance(error, DataSourceError) and "not recognized" in str(error):
             raise Refusal(f"'{shown}' is no vector file that GDAL knows.") from error
-        raise RuntimeError(_reason(error)) from error
-    arrays = {"numbers": np.asarray(numbers, np.int64), **_geometries(geometries)}
-    arrays |= {f"column {k}": column for k, column in enumerate(values) if _is_plain(column)}
-    texts = {str(k): _texts(column) for k, column in enumerate(values) if not _is_plain(column)}
+        raise RuntimeError(_shorten_reason(error)) from error
+    arrays = {"numbers": np.asarray(numbers, np.int64), **_pack_geometries(geometries)}
+    arrays |= {f"column {k}": column for k, column in enumerate(values) if _is_numeric(column)}
+    texts = {
+        str(k): _convert_to_texts(column)
+        for k, column in enumerate(values)
+        if not _is_numeric(column)
+    }
     names = [str(name) for name in meta["fields"]]
     value = {"layer": chosen, "crs": meta["crs"], "names": names, "texts": texts}
     return Answer(value, arrays)
 
 
-def _chosen_layer(path: str, shown: str, layer: str | None) -> str:
+def _choose_layer(path: str, shown: str, layer: str | None) -> str:
     import pyogrio
 
     layers = [str(name) for name, kind in pyogrio.list_layers(path) if kind is not None]
@@ -91,12 +95,12 @@ def _chosen_layer(path: str, shown: str, layer: str | None) -> str:
     return layers[0] if layer is None else layer
 
 
-def _reason(error: Exception) -> str:
+def _shorten_reason(error: Exception) -> str:
     text = " ".join(str(error).split("; ")[-1].split())
     return _GDAL_SOURCE.sub("", text).rstrip(".") or type(error).__name__
 
 
-def _geometries(geometries: Any) -> dict[str, Any]:
+def _pack_geometries(geometries: Any) -> dict[str, Any]:
     lengths = [-1 if one is None else len(one) for one in geometries]
     wkb = b"".join(one for one in geometries if one is not None)
     return {
@@ -105,10 +109,10 @@ def _geometries(geometries: Any) -> dict[str, Any]:
     }
 
 
-def _is_plain(column: Any) -> bool:
+def _is_numeric(column: Any) -> bool:
     return np.asarray(column).dtype.kind in "biuf"
 
 
-def _texts(column: Any) -> list[str | None]:
+def _convert_to_texts(column: Any) -> list[str | None]:
     """Return values as text: dates, lists and bytes have no other use here."""
     return [None if value is None or value != value else str(value) for value in column.tolist()]

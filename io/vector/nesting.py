@@ -14,10 +14,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["nesting_notes"]
+__all__ = ["note_nesting"]
 
 
-def nesting_notes(polygons: Sequence[Sequence[NDArray[np.float64]]], path: Path) -> list[str]:
+def note_nesting(polygons: Sequence[Sequence[NDArray[np.float64]]], path: Path) -> list[str]:
     """Tell of polygons that lie within others, where they cut the surface away.
 
     Parameters
@@ -53,14 +53,14 @@ def nesting_notes(polygons: Sequence[Sequence[NDArray[np.float64]]], path: Path)
             f"and {b}, counted from 0): unite them, or cut one along the other.",
             path=path,
         )
-    return _notes(int(is_within.sum()), path)
+    return _describe_nesting(int(is_within.sum()), path)
 
 
 _ROUNDING = 1e-9
 """Neighbours whose common border was rounded share slivers, of this part of their area at most."""
 
 
-def _notes(count: int, path: Path) -> list[str]:
+def _describe_nesting(count: int, path: Path) -> list[str]:
     if count == 0:
         return []
     what = "1 polygon lies" if count == 1 else f"{count} polygons lie"

@@ -11,7 +11,7 @@ from ...crs import assume_elevation_unit
 from ...errors import ReadError
 from ...tin.topology import find_offsets
 from ..reprojection.placement import place, settle_unit
-from ..reprojection.transformation import conversion_factor
+from ..reprojection.transformation import find_conversion_factor
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -19,7 +19,14 @@ if TYPE_CHECKING:
     from ...crs import CRS, Unit
     from .features import Features
 
-__all__ = ["Part", "Wanted", "crs_notes", "elevation_factor", "move_to_crs", "parts_of"]
+__all__ = [
+    "Part",
+    "Wanted",
+    "crs_notes",
+    "find_elevation_factor",
+    "move_to_crs",
+    "split_into_parts",
+]
 
 _POLYGON = 3
 
@@ -69,7 +76,7 @@ class _Lines(NamedTuple):
     rings: NDArray[np.int64]
 
 
-def parts_of(
+def split_into_parts(
     features: Features, wanted: Wanted, *, drape: bool, notes: list[str] | None
 ) -> list[Part]:
     """Return the lines and rings of all features, in their order.
@@ -93,14 +100,14 @@ def parts_of(
     """
     import shapely
 
-    lines = _lines_of(features)
+    lines = _split_geometries(features)
     xyz = shapely.get_coordinates(lines.shapes, include_z=True)
     bounds = find_offsets(shapely.get_num_coordinates(lines.shapes))
     has_z = shapely.has_z(lines.shapes) & (not drape)
-    _require_finite(xyz, np.repeat(has_z, np.diff(bounds)), bounds, lines.rows, features)
+    _require_finite_vertices(xyz, np.repeat(has_z, np.diff(bounds)), bounds, lines.rows, features)
     said = list(features.notes) + crs_notes(features, wanted)
     if has_z.any():
-        xyz[:, 2] *= elevation_factor(features, wanted, notes=said)
+        xyz[:, 2] *= find_elevation_factor(features, wanted, notes=said)
     if notes is not None:
         notes.extend(said)
     xyz[:, :2] = move_to_crs(xyz[:, :2], features, wanted.crs)
@@ -118,7 +125,7 @@ def parts_of(
     ]
 
 
-def _lines_of(features: Features) -> _Lines:
+def _split_geometries(features: Features) -> _Lines:
     """Take collections and polygons apart."""
     import shapely
 
@@ -149,7 +156,7 @@ def _require_lines(types: NDArray[np.int32], rows: NDArray[np.int64], features: 
         )
 
 
-def _require_finite(
+def _require_finite_vertices(
     xyz: NDArray[np.float64],
     has_z: NDArray[np.bool_],
     bounds: NDArray[np.int64],
@@ -162,7 +169,7 @@ def _require_finite(
     first = int(np.argmax(wrong))
     line = int(np.searchsorted(bounds, first, side="right")) - 1
     raise ReadError(
-        f"'{features.path}' has {_not_finite(int(wrong.sum()))} (first: vertex "
+        f"'{features.path}' has {_describe_not_finite(int(wrong.sum()))} (first: vertex "
         f"{first - int(bounds[line])} of feature {features.numbers[rows[line]]}, "
         f"{xyz[first].tolist()}): every coordinate must be a finite number.",
         path=features.path,
@@ -183,11 +190,11 @@ def move_to_crs(
         If they cannot be brought into the CRS.
     """
     level = np.column_stack([xy, np.zeros(len(xy))])
-    source, target = _flat(features.crs), _flat(crs)
+    source, target = _drop_vertical_axis(features.crs), _drop_vertical_axis(crs)
     return place(level, source=source, target=target, path=features.path).points[:, :2]
 
 
-def _flat(crs: CRS | None) -> CRS | None:
+def _drop_vertical_axis(crs: CRS | None) -> CRS | None:
     """Return the horizontal part of a CRS, so that no vertical datum plays a part."""
     return None if crs is None else crs.horizontal
 
@@ -205,7 +212,7 @@ def crs_notes(features: Features, wanted: Wanted) -> list[str]:
 # ------------------------------------------------------------------------- units
 
 
-def elevation_factor(features: Features, wanted: Wanted, *, notes: list[str]) -> float:
+def find_elevation_factor(features: Features, wanted: Wanted, *, notes: list[str]) -> float:
     """Return the factor from a file's elevations to those of the points; their datum stays.
 
     Parameters
@@ -231,11 +238,11 @@ def elevation_factor(features: Features, wanted: Wanted, *, notes: list[str]) ->
         return 1.0
     from_unit = assume_elevation_unit(source, theirs)
     to_unit = assume_elevation_unit(wanted.crs, ours) or from_unit
-    factor = conversion_factor(from_unit, to_unit)
+    factor = find_conversion_factor(from_unit, to_unit)
     if factor != 1.0 and from_unit is not None and to_unit is not None:
         if theirs is None and ours is not None:
             _refuse_unknown(features, from_unit, ours)
-        notes.append(_conversion(features, theirs, ours, (from_unit, to_unit)))
+        notes.append(_describe_conversion(features, theirs, ours, (from_unit, to_unit)))
     return factor
 
 
@@ -248,7 +255,7 @@ def _refuse_unknown(features: Features, usual: Unit, ours: Unit) -> NoReturn:
     )
 
 
-def _conversion(
+def _describe_conversion(
     features: Features, theirs: Unit | None, ours: Unit | None, units: tuple[Unit, Unit]
 ) -> str:
     """Say which elevations were converted, and what was assumed for it."""
@@ -263,6 +270,6 @@ def _conversion(
     return f"{text}{reason}."
 
 
-def _not_finite(count: int) -> str:
+def _describe_not_finite(count: int) -> str:
     vertices = counted(count, "vertex", "vertices")
     return f"{vertices} that {'is' if count == 1 else 'are'} not finite"

@@ -17,7 +17,7 @@ from ...policies import BreaklineKind
 from ...tin import Breakline, Water
 from ...tin.constraints.breaklines import as_ring
 from .features import Features, read_features
-from .parts import Part, Wanted, elevation_factor, parts_of
+from .parts import Part, Wanted, find_elevation_factor, split_into_parts
 
 if TYPE_CHECKING:
     import os
@@ -92,9 +92,11 @@ def read_lines(
         If a unit is unknown, or not that of the file's CRS.
     """
     features = read_features(Path(path), layer=layer, where=where)
-    parts = parts_of(features, _wanted(crs, elevation_unit, z_unit), drape=drape, notes=notes)
-    kinds = _kinds(features) if kind is None else [kind] * len(features.numbers)
-    priorities, names = _priorities(features), _texts(features, "name")
+    parts = split_into_parts(
+        features, _parse_wanted(crs, elevation_unit, z_unit), drape=drape, notes=notes
+    )
+    kinds = _parse_kinds(features) if kind is None else [kind] * len(features.numbers)
+    priorities, names = _parse_priorities(features), _find_texts(features, "name")
     return [
         Breakline(
             part.coords, kind=kinds[part.row], priority=priorities[part.row], name=names[part.row]
@@ -134,8 +136,10 @@ def read_rings(
         If a ring has fewer than three corners.
     """
     features = read_features(Path(path), layer=layer, where=where)
-    parts = parts_of(features, _wanted(crs, elevation_unit, z_unit), drape=drape, notes=notes)
-    return [_ring(part, features) for part in parts]
+    parts = split_into_parts(
+        features, _parse_wanted(crs, elevation_unit, z_unit), drape=drape, notes=notes
+    )
+    return [_require_ring(part, features) for part in parts]
 
 
 def read_polygons(
@@ -168,11 +172,11 @@ def read_polygons(
     """
     features = read_features(Path(path), layer=layer, where=where)
     polygons: list[list[NDArray[np.float64]]] = []
-    wanted = _wanted(crs, elevation_unit, z_unit)
-    for part in parts_of(features, wanted, drape=drape, notes=notes):
+    wanted = _parse_wanted(crs, elevation_unit, z_unit)
+    for part in split_into_parts(features, wanted, drape=drape, notes=notes):
         if part.ring == 0:
             polygons.append([])
-        polygons[-1].append(_ring(part, features))
+        polygons[-1].append(_require_ring(part, features))
     return polygons
 
 
@@ -208,8 +212,8 @@ def read_water(
         As :func:`read_rings`; ReadError also if a height is missing, or a polygon has islands.
     """
     features = read_features(Path(path), layer=layer, where=where)
-    wanted = _wanted(crs, elevation_unit, z_unit)
-    parts = parts_of(features, wanted, drape=False, notes=notes)
+    wanted = _parse_wanted(crs, elevation_unit, z_unit)
+    parts = split_into_parts(features, wanted, drape=False, notes=notes)
     island = next((part for part in parts if part.ring > 0), None)
     if island is not None:
         raise ReadError(
@@ -217,15 +221,15 @@ def read_water(
             "cut the polygon in two along the island.",
             path=features.path,
         )
-    rings = [_ring(part, features) for part in parts]
-    names, levels = _texts(features, "name"), _levels(features, wanted, z)
+    rings = [_require_ring(part, features) for part in parts]
+    names, levels = _find_texts(features, "name"), _find_levels(features, wanted, z)
     return [
-        Water(ring, _level(ring, levels, part.row, features), name=names[part.row])
+        Water(ring, _require_level(ring, levels, part.row, features), name=names[part.row])
         for ring, part in zip(rings, parts, strict=True)
     ]
 
 
-def _ring(part: Part, features: Features) -> NDArray[np.float64]:
+def _require_ring(part: Part, features: Features) -> NDArray[np.float64]:
     if not part.is_closed:
         raise ReadError(
             f"{features.label(part.row)} is an open line: a polygon or a closed line is needed.",
@@ -234,7 +238,7 @@ def _ring(part: Part, features: Features) -> NDArray[np.float64]:
     return as_ring(part.coords, f"the ring of feature {features.numbers[part.row]}")
 
 
-def _wanted(
+def _parse_wanted(
     crs: CrsLike | None, elevation_unit: UnitLike | None, z_unit: UnitLike | None
 ) -> Wanted:
     return Wanted(CRS.of(crs), Unit.of(elevation_unit), Unit.of(z_unit))
@@ -243,14 +247,14 @@ def _wanted(
 # ----------------------------------------------------------------------- columns
 
 
-def _kinds(features: Features) -> list[BreaklineKind]:
+def _parse_kinds(features: Features) -> list[BreaklineKind]:
     allowed: dict[str, BreaklineKind] = {kind: kind for kind in get_args(BreaklineKind)}
     kinds = []
-    for row, text in enumerate(_texts(features, "kind")):
+    for row, text in enumerate(_find_texts(features, "kind")):
         chosen = allowed.get(text.lower() or "hard")
         if chosen is None:
             raise ReadError(
-                f"{features.label(row)} has the kind '{_shown(text)}': "
+                f"{features.label(row)} has the kind '{_shorten_text(text)}': "
                 f"{' or '.join(allowed)}, or none, is allowed.",
                 path=features.path,
             )
@@ -258,21 +262,21 @@ def _kinds(features: Features) -> list[BreaklineKind]:
     return kinds
 
 
-def _priorities(features: Features) -> list[int]:
+def _parse_priorities(features: Features) -> list[int]:
     priorities = []
-    for row, text in enumerate(_texts(features, "priority")):
-        value = _number(text or "0")
+    for row, text in enumerate(_find_texts(features, "priority")):
+        value = _parse_finite(text or "0")
         if value is None or value != round(value) or abs(value) > LARGEST_PRIORITY:
             raise ReadError(
-                f"{features.label(row)} has the priority '{_shown(text)}': a whole number from "
-                f"-{LARGEST_PRIORITY} to {LARGEST_PRIORITY} is needed.",
+                f"{features.label(row)} has the priority '{_shorten_text(text)}': a whole number "
+                f"from -{LARGEST_PRIORITY} to {LARGEST_PRIORITY} is needed.",
                 path=features.path,
             )
         priorities.append(int(value))
     return priorities
 
 
-def _texts(features: Features, name: str) -> list[str]:
+def _find_texts(features: Features, name: str) -> list[str]:
     """Return a column as text, empty where there is no value or no such column."""
     column = features.columns.get(name)
     if column is None:
@@ -280,7 +284,7 @@ def _texts(features: Features, name: str) -> list[str]:
     return ["" if _is_missing(value) else str(value).strip() for value in column.tolist()]
 
 
-def _shown(text: str) -> str:
+def _shorten_text(text: str) -> str:
     return text if len(text) <= _SHOWN_LETTERS else f"{text[:_SHOWN_LETTERS]}..."
 
 
@@ -288,7 +292,7 @@ def _is_missing(value: object) -> bool:
     return value is None or value != value
 
 
-def _number(text: str) -> float | None:
+def _parse_finite(text: str) -> float | None:
     try:
         value = float(text)
     except ValueError:
@@ -296,7 +300,7 @@ def _number(text: str) -> float | None:
     return value if np.isfinite(value) else None
 
 
-def _levels(features: Features, wanted: Wanted, z: float | str | None) -> list[float | None]:
+def _find_levels(features: Features, wanted: Wanted, z: float | str | None) -> list[float | None]:
     """Return the height of each feature, None where the corners must tell; columns converted."""
     if z is not None and not isinstance(z, str):
         return [float(z)] * len(features.numbers)
@@ -307,14 +311,14 @@ def _levels(features: Features, wanted: Wanted, z: float | str | None) -> list[f
             path=features.path,
         )
     names = [z.lower()] if z is not None else [n for n in _WATER_COLUMNS if n in features.columns]
-    found = [_number(text) for text in _texts(features, names[0] if names else "")]
+    found = [_parse_finite(text) for text in _find_texts(features, names[0] if names else "")]
     if all(level is None for level in found):
         return found
-    factor = elevation_factor(features, wanted, notes=[])
+    factor = find_elevation_factor(features, wanted, notes=[])
     return [None if level is None else level * factor for level in found]
 
 
-def _level(
+def _require_level(
     ring: NDArray[np.float64], levels: list[float | None], row: int, features: Features
 ) -> float:
     level = levels[row]

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...errors import ReadError
 from ...tin import Bounds, Breakline, Water
-from .nesting import nesting_notes
+from .nesting import note_nesting
 from .reading import read_lines, read_polygons, read_water
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     Source = str | os.PathLike[str]
 
-__all__ = ["path_and_layer", "with_lines"]
+__all__ = ["split_layer", "with_lines"]
 
 _FAR = 10.0
 """Lines further from the points than this many diagonals of their extent are somewhere else."""
@@ -87,11 +87,11 @@ def with_lines(
     def read(reader: Callable[..., list[Any]], sources: Iterable[Source], **how: Any) -> list[Any]:
         found = []
         for source in sources:
-            path, layer = path_and_layer(source)
+            path, layer = split_layer(source)
             lines = reader(path, layer=layer, notes=notes, **units, **how)
-            _require_near(survey, [xy for line in lines for xy in _coords_of(line)], path)
+            _require_near(survey, [xy for line in lines for xy in _list_coords(line)], path)
             if reader is read_polygons and sources is boundary:
-                notes.extend(nesting_notes(lines, path))
+                notes.extend(note_nesting(lines, path))
             found += lines
         return found
 
@@ -103,19 +103,21 @@ def with_lines(
             *read(read_lines, soft_breaklines, kind="soft", drape=drape),
         ],
         boundary=[*survey.boundary, *chain(*read(read_polygons, boundary, drape=drape))],
-        holes=[*survey.holes, *map(_plain, read(read_polygons, holes, drape=drape))],
-        erase=[*survey.erase, *map(_plain, read(read_polygons, erase, drape=True))],
+        holes=[*survey.holes, *map(_unwrap_ring, read(read_polygons, holes, drape=drape))],
+        erase=[*survey.erase, *map(_unwrap_ring, read(read_polygons, erase, drape=True))],
         water=[*survey.water, *read(read_water, water, z=water_z)],
         notes=notes,
     )
 
 
-def _plain(rings: list[NDArray[np.float64]]) -> NDArray[np.float64] | list[NDArray[np.float64]]:
+def _unwrap_ring(
+    rings: list[NDArray[np.float64]],
+) -> NDArray[np.float64] | list[NDArray[np.float64]]:
     """Return a polygon without islands as its ring."""
     return rings[0] if len(rings) == 1 else rings
 
 
-def path_and_layer(source: Source) -> tuple[Path, str | None]:
+def split_layer(source: Source) -> tuple[Path, str | None]:
     """Split a layer's name off a path, unless a file of the whole name exists."""
     path = Path(source)
     before, colon, layer = str(source).rpartition(":")
@@ -124,7 +126,7 @@ def path_and_layer(source: Source) -> tuple[Path, str | None]:
     return path, None
 
 
-def _coords_of(line: Breakline | Water | list[NDArray[np.float64]]) -> list[NDArray[np.float64]]:
+def _list_coords(line: Breakline | Water | list[NDArray[np.float64]]) -> list[NDArray[np.float64]]:
     if isinstance(line, list):
         return line
     return [line.coords if isinstance(line, Breakline) else line.ring]
@@ -146,11 +148,11 @@ def _require_near(survey: Survey, coords: Sequence[NDArray[np.float64]], path: P
     )
     if apart > reach:
         raise ReadError(
-            f"'{path}': its lines are nowhere near the points (lines: {_extent(theirs)}; points: "
-            f"{_extent(ours)}): check the CRS of both.",
+            f"'{path}': its lines are nowhere near the points (lines: {_format_extent(theirs)}; "
+            f"points: {_format_extent(ours)}): check the CRS of both.",
             path=path,
         )
 
 
-def _extent(box: Bounds) -> str:
+def _format_extent(box: Bounds) -> str:
     return f"x {box.xmin:.10g} to {box.xmax:.10g}, y {box.ymin:.10g} to {box.ymax:.10g}"

@@ -76,13 +76,13 @@ def comparison_picture(comparison: Comparison, *, title: str | None = None) -> A
     *grid, last = figure.subplots(2, _COLUMNS).ravel()
     last.remove()
     for axes, outcome in zip(grid, comparison.outcomes, strict=True):
-        _draw(axes, xy, comparison.hull, outcome)
-        axes.set_title(_caption(outcome, comparison.expected), fontsize=11, color=_INK)
+        _draw_outcome(axes, xy, comparison.hull, outcome)
+        axes.set_title(_describe_outcome(outcome, comparison.expected), fontsize=11, color=_INK)
     _add_legend(figure)
     return figure
 
 
-def _caption(outcome: Outcome, expected: int) -> str:
+def _describe_outcome(outcome: Outcome, expected: int) -> str:
     count = len(outcome.triangles)
     stopped = ", stopped" if outcome.is_stopped else ""
     first = f"{outcome.name}: {count:,} of {expected:,} triangles{stopped}"
@@ -90,7 +90,9 @@ def _caption(outcome: Outcome, expected: int) -> str:
     return f"{first}\n{violating:,} with a point in the circle, {overlapping:,} overlapping"
 
 
-def _draw(axes: Any, xy: NDArray[np.float64], hull: NDArray[np.int32], outcome: Outcome) -> None:
+def _draw_outcome(
+    axes: Any, xy: NDArray[np.float64], hull: NDArray[np.int32], outcome: Outcome
+) -> None:
     is_crowded = len(xy) > _CROWD
     line = 0.35 if is_crowded else 0.8
     axes.fill(*xy[hull].T, facecolor=_GAP, edgecolor=_INK, linewidth=line, zorder=1)
@@ -101,10 +103,10 @@ def _draw(axes: Any, xy: NDArray[np.float64], hull: NDArray[np.int32], outcome: 
     ):
         corners = xy[outcome.triangles[chosen]]
         axes.add_collection(
-            _collections().PolyCollection(corners, facecolors=color, alpha=alpha, linewidths=0)
+            _load_collections().PolyCollection(corners, facecolors=color, alpha=alpha, linewidths=0)
         )
-    axes.add_collection(_lines(xy, _edges(outcome.triangles), _EDGE, line))
-    axes.add_collection(_lines(xy, outcome.unextended, _UNEXTENDED, 3 * line))
+    axes.add_collection(_make_line_collection(xy, _find_edges(outcome.triangles), _EDGE, line))
+    axes.add_collection(_make_line_collection(xy, outcome.unextended, _UNEXTENDED, 3 * line))
     if not is_crowded:
         axes.plot(*xy.T, ".", color=_INK, markersize=4, zorder=4)
     axes.set_aspect("equal")
@@ -112,17 +114,19 @@ def _draw(axes: Any, xy: NDArray[np.float64], hull: NDArray[np.int32], outcome: 
     axes.set_axis_off()
 
 
-def _edges(triangles: NDArray[np.int32]) -> NDArray[np.int32]:
+def _find_edges(triangles: NDArray[np.int32]) -> NDArray[np.int32]:
     """Return every edge once, (k, 2) array."""
     both = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     return np.unique(np.sort(both, axis=1), axis=0)
 
 
-def _lines(xy: NDArray[np.float64], edges: NDArray[np.int32], color: str, width: float) -> Any:
-    return _collections().LineCollection(xy[edges], colors=color, linewidths=width, zorder=3)
+def _make_line_collection(
+    xy: NDArray[np.float64], edges: NDArray[np.int32], color: str, width: float
+) -> Any:
+    return _load_collections().LineCollection(xy[edges], colors=color, linewidths=width, zorder=3)
 
 
-def _collections() -> Any:
+def _load_collections() -> Any:
     from matplotlib import collections
 
     return collections

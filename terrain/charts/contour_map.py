@@ -9,10 +9,10 @@ import numpy as np
 
 from ... import _optional
 from ..isolines.labels import contour_labels
-from ..preview.tints import tints
-from ..rounding import ticks
-from ..slope import normals
-from ..units import ground_of
+from ..preview.tints import interpolate_tints
+from ..rounding import choose_ticks
+from ..slope import compute_normals
+from ..units import find_ground
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -77,7 +77,7 @@ def contour_map(
     >>> figure.axes[0].get_ylabel()
     'northing'
     """
-    ground = ground_of(tin)
+    ground = find_ground(tin)
     figure, axes = _frame(tin, ground, title)
     _draw_shade(axes, tin)
     if bands is not None and len(bands):
@@ -108,8 +108,8 @@ def _frame(tin: TIN, ground: Ground, title: str | None) -> tuple[Any, Any]:
     axes.set_xlabel(f"easting{unit}\n{ground.crs_name}", color=_INK, parse_math=False)
     axes.set_ylabel(f"northing{unit}", color=_INK)
     axes.ticklabel_format(style="plain", useOffset=False)
-    axes.set_xticks(ticks(bounds.xmin, bounds.xmax, count=5))
-    axes.set_yticks(ticks(bounds.ymin, bounds.ymax, count=5))
+    axes.set_xticks(choose_ticks(bounds.xmin, bounds.xmax, count=5))
+    axes.set_yticks(choose_ticks(bounds.ymin, bounds.ymax, count=5))
     axes.tick_params(colors=_INK, labelsize=8)
     axes.grid(color="#9aa0a6", linewidth=0.4, alpha=0.5)
     return figure, axes
@@ -166,7 +166,7 @@ def _draw_shade(axes: Any, tin: TIN) -> None:
 
 def _vertex_shades(tin: TIN) -> NDArray[np.float64]:
     """Return how bright the surface is at each vertex: the cosine of the angle to the light."""
-    upward = np.repeat(normals(tin), 3, axis=0)
+    upward = np.repeat(compute_normals(tin), 3, axis=0)
     corners = tin.triangles.ravel()
     count = len(tin.points)
     sums = np.stack([np.bincount(corners, axis, count) for axis in upward.T], axis=1)
@@ -213,7 +213,7 @@ def _draw_labels(axes: Any, labels: Features) -> None:
 def _draw_bands(figure: Any, axes: Any, bands: Features, ground: Ground) -> None:
     colors = _optional.load("matplotlib.colors", _PURPOSE)
     patches = _optional.load("matplotlib.patches", _PURPOSE)
-    ramp = tints(max(len(bands), 2)) / 255.0
+    ramp = interpolate_tints(max(len(bands), 2)) / 255.0
     for path, color in zip(_band_paths(bands), ramp, strict=False):
         axes.add_patch(
             patches.PathPatch(path, facecolor=color, edgecolor="none", alpha=_BAND_VEIL, zorder=1)

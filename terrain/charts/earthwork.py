@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ... import _optional
-from ..rounding import round_down, ticks
-from ..slope import normals
-from ..units import ground_of
+from ..rounding import choose_ticks, round_down
+from ..slope import compute_normals
+from ..units import find_ground
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -71,7 +71,7 @@ def earthwork_map(
     'northing'
     """
     tin = difference.tin
-    scale = ground_of(tin)
+    scale = find_ground(tin)
     figure, axes = _frame(tin, scale, title)
     limits = axes.get_xlim(), axes.get_ylim()
     if ground is not None:
@@ -101,8 +101,8 @@ def _frame(tin: TIN, scale: Ground, title: str | None) -> tuple[Any, Any]:
     axes.set_xlabel(f"easting{unit}\n{scale.crs_name}", color=_INK, parse_math=False)
     axes.set_ylabel(f"northing{unit}", color=_INK)
     axes.ticklabel_format(style="plain", useOffset=False)
-    axes.set_xticks(ticks(bounds.xmin - pad, bounds.xmax + pad, count=5))
-    axes.set_yticks(ticks(bounds.ymin - pad, bounds.ymax + pad, count=5))
+    axes.set_xticks(choose_ticks(bounds.xmin - pad, bounds.xmax + pad, count=5))
+    axes.set_yticks(choose_ticks(bounds.ymin - pad, bounds.ymax + pad, count=5))
     axes.tick_params(colors=_INK, labelsize=8)
     return figure, axes
 
@@ -142,7 +142,7 @@ def _places(tin: TIN, axes: Any) -> tuple[tuple[float, ...], NDArray[np.float64]
 
 def _draw_ground(axes: Any, ground: TIN) -> None:
     """Draw the ground shaded, paler than what matters."""
-    upward = normals(ground)
+    upward = compute_normals(ground)
     lengths = np.maximum(np.linalg.norm(upward, axis=1), np.finfo(float).tiny)
     shade = np.clip(upward @ _LIGHT / lengths, 0.0, 1.0)
     extent, places, shape = _places(ground, axes)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ... import _optional
-from ..rounding import ticks
+from ..rounding import choose_ticks
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -89,30 +89,34 @@ def histogram(quality: Quality, *, title: str | None = None, unit: str = "") -> 
     where = "in space" if quality.space else "in the plane"
     figure.supxlabel(f"{len(quality):,} triangles, measured {where}", fontsize=10, color=_INK)
     grid = figure.subplots(2, 2)
-    for axes, panel in zip(grid.ravel(), _panels(quality, unit), strict=True):
-        _draw(axes, panel)
+    for axes, panel in zip(grid.ravel(), _choose_panels(quality, unit), strict=True):
+        _draw_panel(axes, panel)
     return figure
 
 
-def _panels(quality: Quality, unit: str) -> list[_Panel]:
+def _choose_panels(quality: Quality, unit: str) -> list[_Panel]:
     small, large = quality.min_angle, quality.max_angle
     lengths = quality.edge_lengths.ravel()
     return [
-        _angle_panel("Smallest angle", small, (0, 60), _share(small < 20, "below 20°")),
-        _angle_panel("Largest angle", large, (60, 180), _share(large > 120, "above 120°")),
-        _log_panel("Aspect ratio", quality.aspect_ratio, "", low=1.0),
-        _log_panel("Edge length", lengths, f" {unit}" if unit else ""),
+        _make_angle_panel(
+            "Smallest angle", small, (0, 60), _describe_share(small < 20, "below 20°")
+        ),
+        _make_angle_panel(
+            "Largest angle", large, (60, 180), _describe_share(large > 120, "above 120°")
+        ),
+        _make_log_panel("Aspect ratio", quality.aspect_ratio, "", low=1.0),
+        _make_log_panel("Edge length", lengths, f" {unit}" if unit else ""),
     ]
 
 
-def _angle_panel(
+def _make_angle_panel(
     title: str, values: NDArray[np.float64], span: tuple[float, float], note: str
 ) -> _Panel:
     edges = np.linspace(*span, _BARS + 1)
     return _Panel(title, np.clip(values, *span), "°", edges, note)
 
 
-def _log_panel(
+def _make_log_panel(
     title: str, values: NDArray[np.float64], unit: str, *, low: float | None = None
 ) -> _Panel:
     """Return a panel whose bars are equally wide on a logarithmic axis."""
@@ -131,21 +135,21 @@ def _log_panel(
     return _Panel(title, values, unit, edges, note, is_log=True)
 
 
-def _share(chosen: NDArray[np.bool_], what: str) -> str:
+def _describe_share(chosen: NDArray[np.bool_], what: str) -> str:
     return f"{100 * np.mean(chosen):.1f} % {what}"
 
 
 # ---------------------------------------------------------------- drawing
 
 
-def _draw(axes: Any, panel: _Panel) -> None:
+def _draw_panel(axes: Any, panel: _Panel) -> None:
     counts, edges = np.histogram(panel.values, panel.edges)
     axes.stairs(100 * counts / len(panel.values), edges, fill=True, color=_BAR)
     axes.set_title(panel.title, loc="left", fontsize=12, color=_INK)
-    low, high = _number(panel.values.min()), _number(panel.values.max())
+    low, high = _format_number(panel.values.min()), _format_number(panel.values.max())
     spread = f"{low} to {high}{panel.unit}" + (f", {panel.note}" if panel.note else "")
     axes.set_title(spread, loc="right", fontsize=9, color=_INK)
-    _dress(axes, panel)
+    _label_axes(axes, panel)
     _mark_median(axes, panel)
 
 
@@ -156,7 +160,7 @@ def _mark_median(axes: Any, panel: _Panel) -> None:
     axes.axvline(middle, color=_MEDIAN, linewidth=1.5)
     is_left = np.searchsorted(panel.edges, middle) < len(panel.edges) / 2
     axes.annotate(
-        f"median {_number(middle)}{panel.unit}",
+        f"median {_format_number(middle)}{panel.unit}",
         (middle, 1.0),
         xycoords=("data", "axes fraction"),
         xytext=(5 if is_left else -5, -10),
@@ -167,12 +171,12 @@ def _mark_median(axes: Any, panel: _Panel) -> None:
     )
 
 
-def _dress(axes: Any, panel: _Panel) -> None:
+def _label_axes(axes: Any, panel: _Panel) -> None:
     low, high = panel.edges[0], panel.edges[-1]
-    places = ticks(low, high, count=6)
+    places = choose_ticks(low, high, count=6)
     if panel.is_log:
         axes.set_xscale("log")
-        places = _log_ticks(low, high) or places
+        places = _choose_log_ticks(low, high) or places
         axes.minorticks_off()
     axes.set_xticks(places, [f"{place:g}{panel.unit}" for place in places])
     axes.set_xlim(low, high)
@@ -184,11 +188,11 @@ def _dress(axes: Any, panel: _Panel) -> None:
     axes.spines[["top", "right"]].set_visible(False)
 
 
-def _number(value: float) -> str:
+def _format_number(value: float) -> str:
     return f"{value:,.0f}" if 1000 <= value < 1e9 else f"{value:.3g}"
 
 
-def _log_ticks(low: float, high: float) -> list[float]:
+def _choose_log_ticks(low: float, high: float) -> list[float]:
     """Return 1, 2, 5 times powers of ten within [low, high], or powers alone; none if too few."""
     powers = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
     leads = (1, 2, 5) if len(powers) <= 4 else (1,)

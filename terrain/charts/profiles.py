@@ -12,7 +12,7 @@ from ...crs import CRS, Unit, assume_elevation_unit
 from ...errors import OptionError
 from ...tin.validation.options import is_finite_number, is_whole_number
 from ..results import Table
-from ..rounding import format_number, round_down, ticks
+from ..rounding import choose_ticks, format_number, round_down
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -291,7 +291,7 @@ def _with_neighbors(side: NDArray[np.bool_]) -> NDArray[np.bool_]:
 def _dress(axes: Any, scale: _Scale, label: str) -> None:
     axes.set_xlim(*scale.stations)
     axes.set_ylim(*scale.elevations)
-    places = ticks(*scale.elevations, count=max(3, round(scale.height * 2)))
+    places = choose_ticks(*scale.elevations, count=max(3, round(scale.height * 2)))
     step = places[1] - places[0] if len(places) > 1 else 1.0
     axes.set_yticks(places, [format_number(place, step=step) for place in places])
     axes.set_ylabel(label, color=_INK)
@@ -305,7 +305,7 @@ def _dress(axes: Any, scale: _Scale, label: str) -> None:
 
 def _band_lines(curves: list[_Curve], scale: _Scale, station: str) -> list[_BandLine]:
     """Return what stands below the surfaces: stations, elevations, of two their difference."""
-    places = ticks(*scale.stations, count=_LABELS) or [scale.stations[0]]
+    places = choose_ticks(*scale.stations, count=_LABELS) or [scale.stations[0]]
     step = places[1] - places[0] if len(places) > 1 else 1.0
     at = np.array(places)
     lines = [_BandLine(station, [format_number(place, step=step) for place in places], _INK)]
@@ -321,7 +321,7 @@ def _band_lines(curves: list[_Curve], scale: _Scale, station: str) -> list[_Band
 
 def _fill_band(band: Any, lines: list[_BandLine], scale: _Scale) -> None:
     """Write figures below the surfaces, a column at each round station."""
-    places = ticks(*scale.stations, count=_LABELS) or [scale.stations[0]]
+    places = choose_ticks(*scale.stations, count=_LABELS) or [scale.stations[0]]
     band.set_xticks(places)
     band.set_ylim(len(lines), 0)
     band.set_yticks([])

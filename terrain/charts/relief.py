@@ -9,8 +9,8 @@ import numpy as np
 
 from ... import _optional
 from ..relief.shading import hillshade
-from ..rounding import ticks
-from ..units import ground_of
+from ..rounding import choose_ticks
+from ..units import find_ground
 
 if TYPE_CHECKING:
     from ...tin import TIN
@@ -81,7 +81,7 @@ def _usual_shade(tin: TIN) -> Raster:
 
 def _frame(tin: TIN, title: str) -> tuple[Any, Any]:
     """Return a figure with empty axes, true to scale."""
-    ground, bounds = ground_of(tin), tin.bounds
+    ground, bounds = find_ground(tin), tin.bounds
     east, north, _ = ground.scale
     tall = float(np.clip(bounds.height * north / (bounds.width * east), 0.4, 1.5))
     figure = _optional.load("matplotlib.figure", _PURPOSE).Figure(
@@ -98,8 +98,8 @@ def _frame(tin: TIN, title: str) -> tuple[Any, Any]:
     axes.set_xlabel(f"easting{unit}\n{ground.crs_name}", color=_INK, parse_math=False)
     axes.set_ylabel(f"northing{unit}", color=_INK)
     axes.ticklabel_format(style="plain", useOffset=False)
-    axes.set_xticks(ticks(bounds.xmin, bounds.xmax, count=5))
-    axes.set_yticks(ticks(bounds.ymin, bounds.ymax, count=5))
+    axes.set_xticks(choose_ticks(bounds.xmin, bounds.xmax, count=5))
+    axes.set_yticks(choose_ticks(bounds.ymin, bounds.ymax, count=5))
     axes.tick_params(colors=_INK, labelsize=8)
     return figure, axes
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ...crs import METRE, Unit
-from ..units import scales_of
+from ..units import find_scales
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -53,7 +53,7 @@ def measure_lengths(
     run, rise = np.diff(coordinates[:, 0]), np.diff(coordinates[:, 1])
     if crs is not None and crs.is_geographic:
         middle = 0.5 * (coordinates[1:, 1] + coordinates[:-1, 1])
-        scales = scales_of(crs, None, middle)
+        scales = find_scales(crs, None, middle)
         run, rise = run * scales.east, rise * scales.north
     spans = np.hypot(run, rise, out=run)
     spans[offsets[1:-1] - 1] = 0.0  # from one line to the next
@@ -84,7 +84,7 @@ def measure_ring_areas(
     doubled[offsets[1:] - 1] = 0.0
     if crs is not None and crs.is_geographic:
         north = coordinates[:, 1]
-        scales = scales_of(crs, None, (north + np.append(north[1:], 0.0) + origin[:, 1]) / 3)
+        scales = find_scales(crs, None, (north + np.append(north[1:], 0.0) + origin[:, 1]) / 3)
         doubled *= scales.east * scales.north
     return 0.5 * sum_parts(doubled, offsets[:-1])
 

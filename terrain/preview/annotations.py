@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...tin import Bounds
-from ..rounding import format_number, round_down, ticks
-from .camera import View, ground_axes, pixels_per_unit
-from .tints import tints
+from ..rounding import choose_ticks, format_number, round_down
+from .camera import View, measure_pixels_per_unit, project_ground_axes
+from .tints import interpolate_tints
 
 if TYPE_CHECKING:
     from ...crs import Unit
@@ -88,7 +88,7 @@ def annotate(overlay: Overlay, sheet: Sheet, caption: Caption, camera: Any) -> N
     _draw_margins(overlay, sheet)
     _draw_title(overlay, sheet, caption)
     _draw_north_arrow(overlay, camera)
-    _draw_scale_bar(overlay, caption.unit, pixels_per_unit(camera, sheet.height))
+    _draw_scale_bar(overlay, caption.unit, measure_pixels_per_unit(camera, sheet.height))
     _draw_notes(overlay, caption.exaggeration, View.of(camera))
     _draw_legend(overlay, sheet, caption)
 
@@ -121,8 +121,8 @@ def scale_bar_length(unit: Unit, pixels: float) -> tuple[float, float, str]:
 def _draw_margins(overlay: Overlay, sheet: Sheet) -> None:
     """Keep the paper behind the words free, however far a user zooms into the terrain."""
     frame = sheet.frame
-    overlay.rectangle((0.0, 0.0), (sheet.width, frame.ymin - 8.0), PAPER)
-    overlay.rectangle((0.0, frame.ymax + 8.0), (sheet.width, sheet.height - frame.ymax), PAPER)
+    overlay.draw_rectangle((0.0, 0.0), (sheet.width, frame.ymin - 8.0), PAPER)
+    overlay.draw_rectangle((0.0, frame.ymax + 8.0), (sheet.width, sheet.height - frame.ymax), PAPER)
 
 
 def _draw_title(overlay: Overlay, sheet: Sheet, caption: Caption) -> None:
@@ -131,61 +131,61 @@ def _draw_title(overlay: Overlay, sheet: Sheet, caption: Caption) -> None:
         (caption.title, 62.0, 30.0, True, INK),
         (caption.subtitle, 92.0, 17.0, False, GREY),
     ):
-        fitting = _elided(overlay, words, room, size=size, bold=bold)
-        overlay.text((MARGIN, sheet.height - drop), fitting, color, size=size, bold=bold)
+        fitting = _elide(overlay, words, room, size=size, bold=bold)
+        overlay.draw_text((MARGIN, sheet.height - drop), fitting, color, size=size, bold=bold)
 
 
-def _elided(overlay: Overlay, words: str, room: float, *, size: float, bold: bool) -> str:
+def _elide(overlay: Overlay, words: str, room: float, *, size: float, bold: bool) -> str:
     """Cut words that are too long for the room, and show that they are cut."""
-    if overlay.text_width(words, size=size, bold=bold) <= room:
+    if overlay.measure_text(words, size=size, bold=bold) <= room:
         return words
-    while words and overlay.text_width(words + "...", size=size, bold=bold) > room:
+    while words and overlay.measure_text(words + "...", size=size, bold=bold) > room:
         words = words[:-1]
     return words.rstrip() + "..."
 
 
 def _draw_north_arrow(overlay: Overlay, camera: Any) -> None:
     """Draw a compass that lies on the ground, foreshortened like the ground itself."""
-    axes = ground_axes(camera) * _COMPASS_RADIUS
+    axes = project_ground_axes(camera) * _COMPASS_RADIUS
     center = np.array([MARGIN + _COMPASS_RADIUS, 66.0])
     turn = np.linspace(0.0, 2 * np.pi, 49)
-    overlay.line(np.column_stack([np.sin(turn), np.cos(turn)]) @ axes + center, GREY)
+    overlay.draw_line(np.column_stack([np.sin(turn), np.cos(turn)]) @ axes + center, GREY)
     needle = np.array([(0.0, 1.25), (-0.42, -0.7), (0.0, -0.4), (0.42, -0.7)]) @ axes + center
     tip, left, notch, right = needle
-    overlay.polygon([tip, left, notch], INK)
-    overlay.polygon([tip, notch, right], PAPER)
-    overlay.line([tip, left, notch, right, tip, notch], INK, width=1.2)
+    overlay.draw_polygon([tip, left, notch], INK)
+    overlay.draw_polygon([tip, notch, right], PAPER)
+    overlay.draw_line([tip, left, notch, right, tip, notch], INK, width=1.2)
     north = axes[1] / max(float(np.linalg.norm(axes[1])), 1e-9)
     x, y = tip + 12.0 * north
-    overlay.text((x, y - 6.0), "N", INK, size=17, bold=True, align="center")
+    overlay.draw_text((x, y - 6.0), "N", INK, size=17, bold=True, align="center")
 
 
 def _draw_scale_bar(overlay: Overlay, unit: Unit, pixels: float) -> None:
     length, shown, symbol = scale_bar_length(unit, pixels)
     left, bottom, height, width = _BAR_LEFT, 62.0, 7.0, length * pixels
     for part, color in enumerate((INK, PAPER, INK, PAPER)):
-        overlay.rectangle((left + part * width / 4, bottom), (width / 4, height), color)
+        overlay.draw_rectangle((left + part * width / 4, bottom), (width / 4, height), color)
     outline = [(0, 0), (width, 0), (width, height), (0, height), (0, 0)]
-    overlay.line(np.add(outline, (left, bottom)), INK, width=1.2)
+    overlay.draw_line(np.add(outline, (left, bottom)), INK, width=1.2)
     for fraction in (0.0, 0.5, 1.0):
         words = format_number(fraction * shown, step=shown / 2) if fraction else "0"
         if fraction == 1.0:
             words = format_number(shown, step=shown)
         place = (left + fraction * width, bottom + 14.0)
-        overlay.text(place, words, INK, size=15, align="center")
+        overlay.draw_text(place, words, INK, size=15, align="center")
         if fraction == 1.0:
-            half = overlay.text_width(words, size=15) / 2
-            overlay.text((place[0] + half + 5.0, place[1]), symbol, INK, size=15)
-    overlay.text((left, 38.0), "true from left to right", GREY, size=14)
+            half = overlay.measure_text(words, size=15) / 2
+            overlay.draw_text((place[0] + half + 5.0, place[1]), symbol, INK, size=15)
+    overlay.draw_text((left, 38.0), "true from left to right", GREY, size=14)
 
 
 def _draw_notes(overlay: Overlay, exaggeration: float, view: View) -> None:
     left = _BAR_LEFT + _BAR_WIDTH + 100.0
-    overlay.text((left, 62.0), _exaggeration_words(exaggeration, view), INK, size=17)
-    overlay.text((left, 38.0), view.caption, GREY, size=14)
+    overlay.draw_text((left, 62.0), _describe_exaggeration(exaggeration, view), INK, size=17)
+    overlay.draw_text((left, 38.0), view.caption, GREY, size=14)
 
 
-def _exaggeration_words(factor: float, view: View) -> str:
+def _describe_exaggeration(factor: float, view: View) -> str:
     """Say how much heights are exaggerated; from above only the hillshade shows it."""
     what = "Hillshade with vertical" if view.is_map else "Vertical"
     true = " (true to scale)" if factor == 1 else ""
@@ -196,11 +196,11 @@ def _draw_legend(overlay: Overlay, sheet: Sheet, caption: Caption) -> None:
     left, bottom, height = sheet.width - MARGIN - _LEGEND_WIDTH, 62.0, 14.0
     unit = caption.elevation_caption
     name = f"Elevation ({unit})" if unit else "Elevation (unit not known)"
-    overlay.text((left, bottom + height + 8.0), name, INK, size=15)
-    colors = tints(100).tolist()
+    overlay.draw_text((left, bottom + height + 8.0), name, INK, size=15)
+    colors = interpolate_tints(100).tolist()
     step = _LEGEND_WIDTH / len(colors)
     for k, (red, green, blue) in enumerate(colors):
-        overlay.rectangle((left + k * step, bottom), (step + 0.5, height), (red, green, blue))
+        overlay.draw_rectangle((left + k * step, bottom), (step + 0.5, height), (red, green, blue))
     _draw_legend_ticks(overlay, caption.elevations, (left, bottom))
 
 
@@ -208,16 +208,16 @@ def _draw_legend_ticks(
     overlay: Overlay, elevations: tuple[float, float], corner: tuple[float, float]
 ) -> None:
     (low, high), (left, bottom) = elevations, corner
-    inner = ticks(low, high, count=5)
+    inner = choose_ticks(low, high, count=5)
     step = (inner[1] - inner[0]) if len(inner) > 1 else max(high - low, 1.0)
     used: list[tuple[float, float]] = []
     ends = [(value, INK) for value in (low, high)]
     for value, color in [*ends, *((value, GREY) for value in inner)]:
         words = format_number(value, step=step / 10 if color == INK else step)
         x = left + _LEGEND_WIDTH * ((value - low) / (high - low) if high > low else 0.5)
-        half = overlay.text_width(words, size=13) / 2 + 6.0
+        half = overlay.measure_text(words, size=13) / 2 + 6.0
         if any(x - half < stop and start < x + half for start, stop in used):
             continue
         used.append((x - half, x + half))
-        overlay.line([(x, bottom), (x, bottom - 5.0)], color, width=1.0)
-        overlay.text((x, bottom - 19.0), words, color, size=13, align="center")
+        overlay.draw_line([(x, bottom), (x, bottom - 5.0)], color, width=1.0)
+        overlay.draw_text((x, bottom - 19.0), words, color, size=13, align="center")

@@ -13,7 +13,7 @@ from ...tin import Bounds
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["VIEWS", "View", "aim", "ground_axes", "pixels_per_unit"]
+__all__ = ["VIEWS", "View", "aim", "measure_pixels_per_unit", "project_ground_axes"]
 
 _OVERHEAD = 89.5
 """Height of the viewer, degrees, from which on a view is a map."""
@@ -56,7 +56,7 @@ class View:
     @classmethod
     def of(cls, camera: Any) -> View:
         """Return the direction from which a camera looks now."""
-        _, up, toward = _axes(camera)
+        _, up, toward = _read_axes(camera)
         height = math.degrees(math.asin(min(1.0, max(-1.0, toward[2]))))
         # From straight above, the foot of the picture is where the viewer stands.
         east, north = -up[:2] if height > _OVERHEAD else toward[:2]
@@ -133,17 +133,17 @@ def aim(
     camera.up = up
 
 
-def pixels_per_unit(camera: Any, height: float) -> float:
+def measure_pixels_per_unit(camera: Any, height: float) -> float:
     """Return how many pixels a length of 1 takes across a picture of this height in pixels."""
     return float(height / 2 / camera.parallel_scale)
 
 
-def ground_axes(camera: Any) -> NDArray[np.float64]:
+def project_ground_axes(camera: Any) -> NDArray[np.float64]:
     """Return where east and north point in the picture, (2, 2) rows, foreshortened."""
-    return _axes(camera)[:2, :2].T
+    return _read_axes(camera)[:2, :2].T
 
 
-def _axes(camera: Any) -> NDArray[np.float64]:
+def _read_axes(camera: Any) -> NDArray[np.float64]:
     """Return a camera's unit vectors to the right, up and towards the viewer, (3, 3) rows."""
     toward = np.subtract(camera.position, camera.focal_point)
     toward /= np.linalg.norm(toward)

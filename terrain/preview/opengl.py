@@ -38,7 +38,7 @@ def require_opengl() -> None:
     RenderError
         If not; the sentence says what to install.
     """
-    if not _window_class():
+    if not _find_window_class():
         raise RenderError(
             "This machine cannot draw: OpenGL is missing or does not work. "
             "Install it (Debian and Ubuntu: apt install libegl1 libgl1-mesa-dri)."
@@ -54,7 +54,7 @@ def require_window() -> None:
         If there is no display, or no OpenGL.
     """
     require_opengl()
-    headless = any(name in _window_class() for name in _OFF_SCREEN_WINDOWS)
+    headless = any(name in _find_window_class() for name in _OFF_SCREEN_WINDOWS)
     if headless or (sys.platform.startswith("linux") and not os.environ.get("DISPLAY")):
         raise RenderError(
             "There is no display to open a window on: name a picture file as output instead."
@@ -62,7 +62,7 @@ def require_window() -> None:
 
 
 @cache
-def _window_class() -> str:
+def _find_window_class() -> str:
     """Return the name of VTK's window class that works here, "" if none does."""
     try:
         probe = subprocess.run(

@@ -48,26 +48,26 @@ class Overlay:
             self._renderer.RemoveViewProp(actor)
         self._actors.clear()
 
-    def polygon(self, corners: ArrayLike, color: Color) -> None:
+    def draw_polygon(self, corners: ArrayLike, color: Color) -> None:
         """Fill a polygon, (k, 2) corners."""
         mesh = self._mesh(corners)
         mesh.faces = [mesh.n_points, *range(mesh.n_points)]
         self._add(mesh, color)
 
-    def line(self, places: ArrayLike, color: Color, *, width: float = 1.0) -> None:
+    def draw_line(self, places: ArrayLike, color: Color, *, width: float = 1.0) -> None:
         """Draw a polyline through (k, 2) places."""
         mesh = self._mesh(places)
         mesh.lines = [mesh.n_points, *range(mesh.n_points)]
         self._add(mesh, color, width=width)
 
-    def rectangle(
+    def draw_rectangle(
         self, corner: tuple[float, float], size: tuple[float, float], color: Color
     ) -> None:
         """Fill a rectangle, given its lower left corner."""
         (x, y), (w, h) = corner, size
-        self.polygon([(x, y), (x + w, y), (x + w, y + h), (x, y + h)], color)
+        self.draw_polygon([(x, y), (x + w, y), (x + w, y + h), (x, y + h)], color)
 
-    def text(
+    def draw_text(
         self,
         place: tuple[float, float],
         words: str,
@@ -89,7 +89,7 @@ class Overlay:
         actor.SetPosition(place[0] * self.factor, place[1] * self.factor)
         self._keep(actor)
 
-    def text_width(self, words: str, *, size: float, bold: bool = False) -> float:
+    def measure_text(self, words: str, *, size: float, bold: bool = False) -> float:
         """Return how wide a line would be, design pixels."""
         from vtkmodules.vtkRenderingCore import vtkTextProperty
         from vtkmodules.vtkRenderingFreeType import vtkMathTextFreeTypeTextRenderer
@@ -100,7 +100,7 @@ class Overlay:
         return (box[1] - box[0] + 1) / self.factor
 
     def _set_font(self, style: Any, words: str, *, size: float, bold: bool) -> None:
-        wide = _wide_font(bold=bold) if max(words, default="") > _LAST_LATIN else None
+        wide = _find_wide_font(bold=bold) if max(words, default="") > _LAST_LATIN else None
         if wide is None:
             style.SetFontFamilyToArial()
         else:
@@ -134,7 +134,7 @@ class Overlay:
 
 
 @cache
-def _wide_font(*, bold: bool) -> Path | None:
+def _find_wide_font(*, bold: bool) -> Path | None:
     """Find DejaVu Sans, which has more alphabets: matplotlib ships it, and pyvista needs that."""
     spec = find_spec("matplotlib")
     if spec is None or spec.origin is None:

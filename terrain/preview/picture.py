@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, Any
 from ... import _optional
 from ...errors import OptionError, RenderError
 from ...tin import Bounds
-from ..lift import as_exaggeration
+from ..lift import parse_exaggeration
 from ..linework import add_lines
-from ..units import ground_of
+from ..units import find_ground
 from . import opengl
 from .annotations import Caption, Sheet, annotate
-from .camera import VIEWS, View, aim, ground_axes, pixels_per_unit
+from .camera import VIEWS, View, aim, measure_pixels_per_unit, project_ground_axes
 from .overlay import Overlay
-from .scene import add_lights, add_terrain, choose_exaggeration, fade_edges, scene_points
+from .scene import add_lights, add_terrain, choose_exaggeration, fade_edges, place_vertices
 
 if TYPE_CHECKING:
     import os
@@ -102,20 +102,20 @@ def preview(
     lowest to the highest elevation; perceived lightness rises evenly with elevation. The same TIN
     and options give the same bytes on the same machine.
     """
-    path = None if output is None else _as_picture_path(output)
+    path = None if output is None else _require_picture_path(output)
     _check_options(size, view)
-    factor = None if exaggeration is None else as_exaggeration(exaggeration)
+    factor = None if exaggeration is None else parse_exaggeration(exaggeration)
     _optional.load("pyvista", _PURPOSE)
     (opengl.require_window if path is None else opengl.require_opengl)()
-    ground = ground_of(tin)
+    ground = find_ground(tin)
     factor = choose_exaggeration(tin, ground) if factor is None else factor
-    caption = _caption(tin, ground, factor, title or "Terrain surface")
+    caption = _make_caption(tin, ground, factor, title or "Terrain surface")
     stage = _Stage(tin, ground, factor, edges, lines, size, caption, VIEWS[view])
-    with _plain_vtk():
+    with _keep_vtk_plain():
         if path is None:
             _Show(stage, size, off_screen=False).open_window()
         else:
-            _write(path, _drawn(stage))
+            _write(path, _render(stage))
     return path
 
 
@@ -151,12 +151,12 @@ class _Show:
             off_screen=off_screen, window_size=list(window), lighting="none"
         )
         self.plotter.set_background("white")
-        points = scene_points(stage.tin, stage.ground, stage.exaggeration)
+        points = place_vertices(stage.tin, stage.ground, stage.exaggeration)
         self._surface, seen = add_terrain(self.plotter, stage.tin, points, edges=stage.edges)
         add_lights(self.plotter)
         self._overlay = Overlay(self.plotter.renderer)
         self._drawn_for: tuple[object, ...] = ()
-        sheet, factor = _layout(window)
+        sheet, factor = _fit_sheet(window)
         if stage.lines:
             add_lines(self.plotter, stage.tin, points, factor=factor)
         frame = Bounds(*(factor * side for side in astuple(sheet.frame)))
@@ -167,12 +167,12 @@ class _Show:
     def update(self, *_: object) -> None:
         """Make the annotations true for the present camera and window, if these have changed."""
         camera, (width, height) = self.plotter.camera, self.plotter.window_size
-        state = (width, height, camera.parallel_scale, ground_axes(camera).tobytes())
+        state = (width, height, camera.parallel_scale, project_ground_axes(camera).tobytes())
         if state == self._drawn_for:
             return
         self._drawn_for = state
-        sheet, self._overlay.factor = _layout((width, height))
-        pixels = pixels_per_unit(camera, sheet.height)
+        sheet, self._overlay.factor = _fit_sheet((width, height))
+        pixels = measure_pixels_per_unit(camera, sheet.height)
         fade_edges(self._surface, self.stage.tin, self.stage.ground, pixels)
         annotate(self._overlay, sheet, self.stage.caption, camera)
 
@@ -185,7 +185,7 @@ class _Show:
         self.plotter.show(title=self.stage.caption.title)
 
 
-def _drawn(stage: _Stage) -> Image:
+def _render(stage: _Stage) -> Image:
     """Draw off screen, larger than asked, and average down: smooth edges for lines and words."""
     from PIL.Image import fromarray
 
@@ -199,13 +199,13 @@ def _drawn(stage: _Stage) -> Image:
     return fromarray(pixels).reduce(_SUPERSAMPLING)
 
 
-def _layout(window: tuple[int, int]) -> tuple[Sheet, float]:
+def _fit_sheet(window: tuple[int, int]) -> tuple[Sheet, float]:
     """Return the sheet that fills a window, and the window pixels for one design pixel."""
     factor = min(full / design for full, design in zip(window, _DESIGN_SIZE, strict=True))
     return Sheet(window[0] / factor, window[1] / factor), factor
 
 
-def _caption(tin: TIN, ground: Ground, factor: float, title: str) -> Caption:
+def _make_caption(tin: TIN, ground: Ground, factor: float, title: str) -> Caption:
     counts = f"{len(tin.points):,} points, {len(tin.triangles):,} triangles"
     low, high = float(tin.points[:, 2].min()), float(tin.points[:, 2].max())
     return Caption(
@@ -227,7 +227,7 @@ def _check_options(size: tuple[int, int], view: str) -> None:
         raise OptionError("size", size, f"width and height, {low} to {high} pixels each")
 
 
-def _as_picture_path(output: str | os.PathLike[str]) -> Path:
+def _require_picture_path(output: str | os.PathLike[str]) -> Path:
     path = Path(output)
     if path.suffix.lower() not in PICTURE_SUFFIXES:
         raise RenderError(
@@ -252,7 +252,7 @@ def _write(path: Path, picture: Image) -> None:
 
 
 @contextmanager
-def _plain_vtk() -> Iterator[None]:
+def _keep_vtk_plain() -> Iterator[None]:
     """Keep VTK from reading mathematics into titles, and from warning that there is no display."""
     from vtkmodules.vtkCommonCore import vtkLogger
     from vtkmodules.vtkRenderingFreeType import vtkMathTextFreeTypeTextRenderer

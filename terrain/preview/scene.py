@@ -9,8 +9,8 @@ import numpy as np
 
 from ... import _optional
 from ...tin.topology import edges_at
-from ..lift import default_origin
-from .tints import tints
+from ..lift import choose_origin
+from .tints import interpolate_tints
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ...tin import TIN
     from ..units import Ground
 
-__all__ = ["add_lights", "add_terrain", "choose_exaggeration", "fade_edges", "scene_points"]
+__all__ = ["add_lights", "add_terrain", "choose_exaggeration", "fade_edges", "place_vertices"]
 
 _PURPOSE = "A preview"
 
@@ -66,10 +66,10 @@ def choose_exaggeration(tin: TIN, ground: Ground) -> float:
     return next((factor for factor in _EXAGGERATIONS if factor >= wanted), _EXAGGERATIONS[-1])
 
 
-def scene_points(tin: TIN, ground: Ground, exaggeration: float) -> NDArray[np.float64]:
+def place_vertices(tin: TIN, ground: Ground, exaggeration: float) -> NDArray[np.float64]:
     """Return the vertices as drawn: true to scale on the ground, near the origin."""
     east, north, height = ground.scale
-    return (tin.points - default_origin(tin)) * (east, north, height * exaggeration)
+    return (tin.points - choose_origin(tin)) * (east, north, height * exaggeration)
 
 
 def add_terrain(
@@ -97,11 +97,13 @@ def add_terrain(
 
     surface = pv.PolyData.from_regular_faces(points, np.array(tin.triangles))
     surface.point_data["elevation"] = tin.points[:, 2].copy()
-    surface.point_data.active_normals = _vertex_normals(points, tin.triangles)
-    actor = plotter.add_mesh(surface, **_tinting(pv, tin), **_lighting(), show_scalar_bar=False)
+    surface.point_data.active_normals = _average_normals(points, tin.triangles)
+    actor = plotter.add_mesh(
+        surface, **_choose_tints(pv, tin), **_choose_lighting(), show_scalar_bar=False
+    )
     actor.prop.interpolation = "Phong"
-    block = _block(pv, tin, points)
-    plotter.add_mesh(block, color=_BLOCK_COLOR, culling="back", **_lighting(_BLOCK_AMBIENT))
+    block = _make_block(pv, tin, points)
+    plotter.add_mesh(block, color=_BLOCK_COLOR, culling="back", **_choose_lighting(_BLOCK_AMBIENT))
     if edges:
         actor.prop.show_edges = True
         actor.prop.edge_color = _EDGE_COLOR
@@ -140,20 +142,20 @@ def add_lights(plotter: Any) -> None:
         plotter.add_light(sun)
 
 
-def _lighting(ambient: float = _AMBIENT) -> dict[str, float]:
+def _choose_lighting(ambient: float = _AMBIENT) -> dict[str, float]:
     diffuse = (1.0 - ambient) / (1.0 - _AMBIENT)
     return {"ambient": ambient, "diffuse": diffuse, "specular": 0.0}
 
 
-def _tinting(pv: Any, tin: TIN) -> dict[str, Any]:
+def _choose_tints(pv: Any, tin: TIN) -> dict[str, Any]:
     low, high = float(tin.points[:, 2].min()), float(tin.points[:, 2].max())
     if low == high:
         low, high = low - 0.5, high + 0.5
-    colors = np.column_stack([tints(), np.full(256, 255, np.uint8)])
+    colors = np.column_stack([interpolate_tints(), np.full(256, 255, np.uint8)])
     return {"scalars": "elevation", "cmap": pv.LookupTable(values=colors, scalar_range=(low, high))}
 
 
-def _vertex_normals(
+def _average_normals(
     points: NDArray[np.float64], triangles: NDArray[np.int32]
 ) -> NDArray[np.float32]:
     """Average the unit normals of the triangles at each vertex, weighted by area in the plane.
@@ -171,7 +173,7 @@ def _vertex_normals(
     return (normals / np.where(lengths > 0, lengths, 1.0)).astype(np.float32)
 
 
-def _block(pv: Any, tin: TIN, points: NDArray[np.float64]) -> Any:
+def _make_block(pv: Any, tin: TIN, points: NDArray[np.float64]) -> Any:
     """Return the walls from the boundary down to a level base."""
     start, stop = edges_at(tin.triangles, tin.neighbors < 0).T
     extent = float(np.ptp(points[:, :2], axis=0).max())

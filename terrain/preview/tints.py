@@ -9,7 +9,7 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["lightness", "tints"]
+__all__ = ["compute_lightness", "interpolate_tints"]
 
 # Rungs of the ramp from low to high: hue (degrees) and chroma in Oklch. Moss green, sage,
 # straw, sand, limestone: no blue, which a reader takes for water, and no rainbow.
@@ -35,7 +35,7 @@ _CONES_TO_LINEAR = np.array(
 )
 
 
-def tints(count: int = 256) -> NDArray[np.uint8]:
+def interpolate_tints(count: int = 256) -> NDArray[np.uint8]:
     """Return the ramp of hypsometric tints, low to high.
 
     Parameters
@@ -56,10 +56,10 @@ def tints(count: int = 256) -> NDArray[np.uint8]:
     light = np.interp(position, (0.0, 1.0), _LIGHTNESS)
     lab = np.column_stack([light, chroma * np.cos(hue), chroma * np.sin(hue)])
     linear = (lab @ _OKLAB_TO_CONES.T) ** 3 @ _CONES_TO_LINEAR.T
-    return np.round(255 * _gamma(np.clip(linear, 0.0, 1.0))).astype(np.uint8)
+    return np.round(255 * _encode_gamma(np.clip(linear, 0.0, 1.0))).astype(np.uint8)
 
 
-def lightness(colors: NDArray[np.uint8]) -> NDArray[np.float64]:
+def compute_lightness(colors: NDArray[np.uint8]) -> NDArray[np.float64]:
     """Return the perceived lightness (Oklab L, 0 black to 1 white) of (k, 3) sRGB colours."""
     encoded = colors / 255.0
     linear = np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
@@ -68,6 +68,6 @@ def lightness(colors: NDArray[np.uint8]) -> NDArray[np.float64]:
     return light
 
 
-def _gamma(linear: NDArray[np.float64]) -> NDArray[np.float64]:
+def _encode_gamma(linear: NDArray[np.float64]) -> NDArray[np.float64]:
     """Encode linear light as sRGB."""
     return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)

@@ -10,7 +10,7 @@ import numpy as np
 from ...errors import OptionError, choice
 from ...policies import SlopeUnit
 from ..results import Features, Table
-from ..slope import areas, aspect, slope
+from ..slope import aspect, measure_areas, slope
 from .colors import compass_colors, ramp_colors
 from .dissolving import dissolve
 from .statistics import area_unit, slope_symbol, unit_notes
@@ -177,7 +177,7 @@ def _as_features(
     tin: TIN, classes: NDArray[Any], legend: _Legend, symbol: str, name: str
 ) -> Features:
     found = dissolve(tin, classes.astype(np.int64))
-    ground = areas(tin)
+    ground = measure_areas(tin)
     measured = np.bincount(classes, ground, len(legend.labels))[found.classes]
     columns = {
         "class": found.classes,

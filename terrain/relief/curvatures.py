@@ -9,7 +9,7 @@ import numpy as np
 from ...errors import choice
 from ...policies import CurvatureKind, SurfacePart
 from ...tin.topology import gather
-from ..units import scales_of
+from ..units import find_scales
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -112,7 +112,7 @@ def _fit(
     """Fit a quadratic surface through each of some vertices to those within two edges."""
     owner, other = _within_two_edges(rows, offsets, neighbors, len(tin.points))
     center = tin.points[rows]
-    scales = scales_of(tin.crs, tin.elevation_unit, center[:, 1])
+    scales = find_scales(tin.crs, tin.elevation_unit, center[:, 1])
     factors = np.empty((len(rows), 3))
     for axis, factor in enumerate(scales):
         factors[:, axis] = factor

@@ -12,7 +12,7 @@ from ...tin.types import Bounds, Grid
 from ..results import Raster
 from ..results.gridded import cell_centers
 from ..rounding import round_down
-from ..slope import normals_of
+from ..slope import sum_normals
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -102,7 +102,7 @@ def hillshade(
     light = _as_light(azimuth, altitude)
     factor = _as_positive("exaggeration", exaggeration)
     cells = _as_grid(tin, spacing, grid)
-    normals = normals_of(tin, "vertex" if smooth else "triangle")
+    normals = sum_normals(tin, "vertex" if smooth else "triangle")
     unit = _with_length_one(normals * (factor, factor, 1.0))
     band = np.zeros(cells.shape, np.uint8)
     east, north = cell_centers(cells)

@@ -9,7 +9,7 @@ import numpy as np
 from ...errors import OptionError, choice
 from ...policies import SlopeUnit
 from ..results import Table
-from ..slope import areas, slope
+from ..slope import measure_areas, slope
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -56,7 +56,7 @@ def slope_statistics(
     """
     choice("unit", unit, SlopeUnit)
     shares = _as_percentiles(percentiles)
-    values, weights = slope(tin, unit=unit), areas(tin)
+    values, weights = slope(tin, unit=unit), measure_areas(tin)
     mean = float(np.average(values, weights=weights))
     deviation = float(np.sqrt(np.average((values - mean) ** 2, weights=weights)))
     measured = {
@@ -106,7 +106,7 @@ def _as_percentiles(percentiles: ArrayLike) -> NDArray[np.float64]:
 
 
 def area_unit(crs: CRS | None) -> str | None:
-    """Return the symbol of the unit of :func:`areas`; None if it is not known."""
+    """Return the symbol of the unit of :func:`measure_areas`; None if it is not known."""
     if crs is None:
         return None
     return "m²" if crs.is_geographic or crs.horizontal_unit.metres is not None else None

@@ -12,7 +12,7 @@ from click.testing import CliRunner
 
 import tinsmith as ts
 from tinsmith.cli import group, main
-from tinsmith.cli.output.summaries import file_size
+from tinsmith.cli.output.summaries import describe_file_size
 from tinsmith.policies import CrossingPolicy, DuplicatePolicy, FeatureKind, TrimPolicy
 
 SAMPLES = Path(__file__).parents[2] / "sample_data"
@@ -356,10 +356,10 @@ class Entry:
 def plug_in(monkeypatch):
     def install(*entries):
         monkeypatch.setattr(group, "entry_points", lambda group: entries)
-        group._plug_ins.cache_clear()
+        group._find_plug_ins.cache_clear()
 
     yield install
-    group._plug_ins.cache_clear()
+    group._find_plug_ins.cache_clear()
 
 
 def test_plug_in_adds_a_command(plug_in):
@@ -397,10 +397,10 @@ def test_mean_slope_is_weighted_by_area(tmp_path):
 
 
 def test_json_knows_no_infinity_and_no_numpy():
-    from tinsmith.cli.output.console import plain
+    from tinsmith.cli.output.console import format_json
 
     given = {"a": float("inf"), "b": [float("nan"), np.float64("-inf")], "c": np.int32(3)}
-    assert json.loads(plain(given)) == {"a": None, "b": [None, None], "c": 3}
+    assert json.loads(format_json(given)) == {"a": None, "b": [None, None], "c": 3}
 
 
 def test_every_row_that_was_left_out_is_in_report_and_json(tmp_path):
@@ -436,4 +436,4 @@ def test_sizes_of_files_for_people(tmp_path, size, words):
     path = tmp_path / "sparse"
     with path.open("wb") as file:
         file.truncate(size)
-    assert file_size(path) == words
+    assert describe_file_size(path) == words

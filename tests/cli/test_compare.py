@@ -13,7 +13,7 @@ from click.testing import CliRunner
 
 import tinsmith as ts
 from tinsmith.cli import main
-from tinsmith.cli.commands.compare import _sampled
+from tinsmith.cli.commands.compare import _sample_points
 from tinsmith.terrain import comparison_picture
 from tinsmith.terrain.charts.comparison import _GAP, _SOUND, _VIOLATING
 
@@ -75,7 +75,7 @@ def test_sample_is_the_same_every_time_and_part_of_the_points():
 def test_sampled_points_keep_their_order():
     points = ts.read(SURVEY).points
     rows = {tuple(point): row for row, point in enumerate(points.tolist())}
-    taken = [rows[tuple(point)] for point in _sampled(points, 200).tolist()]
+    taken = [rows[tuple(point)] for point in _sample_points(points, 200).tolist()]
     assert taken == sorted(set(taken))
     assert len(taken) == 200
 
@@ -159,10 +159,10 @@ def test_tin_is_refused(tmp_path):
 
 
 def test_a_sample_keeps_the_order_of_the_points():
-    from tinsmith.cli.commands.compare import _sampled
+    from tinsmith.cli.commands.compare import _sample_points
 
     points = np.random.default_rng(2).random((50, 3))
-    sample = _sampled(points, 20)
+    sample = _sample_points(points, 20)
     rows = [int(np.flatnonzero((points == one).all(axis=1))[0]) for one in sample]
     assert rows == sorted(set(rows))
     assert len(rows) == 20

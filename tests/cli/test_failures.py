@@ -464,7 +464,7 @@ def test_a_signal_inside_a_finalizer_is_not_lost(number):
     # Python drops what is raised there: the program would go on as if nobody had stopped it.
     program = f"""
 import signal, time
-from tinsmith.cli.output.streams import Terminated, signals_as_exceptions
+from tinsmith.cli.output.streams import Terminated, raise_for_signals
 
 class Finalized:
     def __del__(self):
@@ -474,7 +474,7 @@ signal.signal(signal.SIGTERM, signal.SIG_DFL)
 signal.signal(signal.SIGHUP, signal.SIG_DFL)
 signal.signal(signal.SIGINT, signal.default_int_handler)
 try:
-    with signals_as_exceptions():
+    with raise_for_signals():
         Finalized()
         time.sleep(20)
 except (Terminated, KeyboardInterrupt) as error:
@@ -488,13 +488,13 @@ except (Terminated, KeyboardInterrupt) as error:
 
 def test_another_exception_in_a_finalizer_is_told_as_usual():
     program = """
-from tinsmith.cli.output.streams import signals_as_exceptions
+from tinsmith.cli.output.streams import raise_for_signals
 
 class Finalized:
     def __del__(self):
         raise ValueError("told")
 
-with signals_as_exceptions():
+with raise_for_signals():
     Finalized()
 """
     run = subprocess.run(
@@ -625,7 +625,7 @@ def test_progress_shows_the_fraction_done(monkeypatch):
     from tinsmith.cli.output import progress as steps
 
     bar = Progress(console=Console(file=StringIO()))
-    monkeypatch.setattr(steps, "_progress_bar", lambda: bar)
+    monkeypatch.setattr(steps, "_make_progress_bar", lambda: bar)
     monkeypatch.setattr(steps, "_is_terminal", lambda: True)
     with steps.Steps() as shown, shown.step("Growing") as progress:
         seen = []

@@ -133,7 +133,7 @@ def test_a_crossing_is_told_with_both_heights_or_refused(points, files, tmp_path
     lines = ("--breaklines", files["breaklines"], "--breaklines", other)
     arguments = ("build", points, "--crs", UTM, *lines, "-o", tmp_path / "a.ply")
     words = " ".join(run(*arguments).stderr.split())
-    assert "at 1 place, heights differ most by 1.000 at x" in words
+    assert "at 1 place, elevations differ most by 1.000 at x" in words
     assert "breakline 0 'kerb' at 301.000, breakline 1 'wall' at 302.000, taken 301.000" in words
     (crossing,) = facts(*arguments)["report"]["crossings"]
     assert (crossing["heights"], crossing["height"]) == ([301.0, 302.0], 301.0)

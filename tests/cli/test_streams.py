@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from tinsmith.cli.output import console, progress, streams
-from tinsmith.cli.output.console import Console, plain
+from tinsmith.cli.output.console import Console, format_json
 from tinsmith.cli.output.failures import Failure
 
 # --------------------------------------------------------------------------- letters
@@ -57,12 +57,12 @@ def test_facts_are_strict_json():
         "numbers": (np.int32(5), np.float32(0.5), True, None, 2.5),
         "inner": {"text": "ä", "none": []},
     }
-    assert json.loads(plain(facts)) == {
+    assert json.loads(format_json(facts)) == {
         "infinite": [None] * 3,
         "numbers": [5, 0.5, True, None, 2.5],
         "inner": {"text": "ä", "none": []},
     }
-    assert plain({"a": 1}) == '{\n  "a": 1\n}'
+    assert format_json({"a": 1}) == '{\n  "a": 1\n}'
 
 
 # --------------------------------------------------------------------------- streams
@@ -167,7 +167,7 @@ def test_a_signal_that_ends_is_an_exception_meanwhile(name):
     signal.signal(number, signal.SIG_DFL)
 
     def end_oneself():
-        with streams.signals_as_exceptions():
+        with streams.raise_for_signals():
             assert sys.unraisablehook is not hook
             os.kill(os.getpid(), number)
             signal.pause()
@@ -179,7 +179,7 @@ def test_a_signal_that_ends_is_an_exception_meanwhile(name):
         assert signal.getsignal(number) is signal.SIG_DFL
         assert sys.unraisablehook is hook
         signal.signal(number, signal.SIG_IGN)
-        with streams.signals_as_exceptions():
+        with streams.raise_for_signals():
             assert signal.getsignal(number) is signal.SIG_IGN
             os.kill(os.getpid(), number)
     finally:
@@ -228,7 +228,7 @@ class Bar:
 def test_steps_show_once_they_take_long(monkeypatch):
     bar = Bar()
     monkeypatch.setattr(progress, "_is_terminal", lambda: True)
-    monkeypatch.setattr(progress, "_progress_bar", lambda: bar)
+    monkeypatch.setattr(progress, "_make_progress_bar", lambda: bar)
     steps = progress.Steps()
     assert steps._timer.interval == 0.5
     assert steps._timer.daemon
@@ -251,7 +251,7 @@ def test_steps_show_once_they_take_long(monkeypatch):
 @pytest.mark.parametrize(("quiet", "is_terminal"), [(True, True), (False, False)])
 def test_nothing_is_shown_to_who_does_not_look(monkeypatch, quiet, is_terminal):
     monkeypatch.setattr(progress, "_is_terminal", lambda: is_terminal)
-    monkeypatch.setattr(progress, "_progress_bar", lambda: pytest.fail("a bar"))
+    monkeypatch.setattr(progress, "_make_progress_bar", lambda: pytest.fail("a bar"))
     with progress.Steps(quiet=quiet) as steps:
         with steps.step("Growing") as tell:
             tell(0.5)
@@ -263,7 +263,7 @@ def test_nothing_is_shown_to_who_does_not_look(monkeypatch, quiet, is_terminal):
 
 
 def test_the_bar_speaks_on_stderr_and_vanishes():
-    bar = progress._progress_bar()
+    bar = progress._make_progress_bar()
     assert bar.console.stderr
     assert bar.live.transient
     words = bar.columns[1]

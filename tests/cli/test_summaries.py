@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 import tinsmith as ts
-from tinsmith.cli.output import line_summaries as line_facts
-from tinsmith.cli.output import summaries as facts
+from tinsmith.cli.output import line_summaries, summaries
 from tinsmith.tin.meshing.shape_quality import quality
 
 GROUND = [[0, 0, 10], [4, 0, 10], [4, 3, 10], [0, 3, 10], [4, 0, 10], [0, 0, 12], [0, 0, 11.5]]
@@ -31,7 +30,7 @@ def report(survey):
 
 
 def test_merged_rows_are_named_by_point_number_or_row(survey, report):
-    assert facts.merge_field(report, survey) == [
+    assert summaries.summarise_merges(report, survey) == [
         ("Merged", "3 rows at 2 places, elevation by 'mean'"),
         (
             "",
@@ -40,7 +39,7 @@ def test_merged_rows_are_named_by_point_number_or_row(survey, report):
         ),
     ]
     metres = ts.Survey(points=GROUND, crs=UTM, elevation_unit="m")
-    (_, (_, text)) = facts.merge_field(ts.triangulate(metres).report, metres)
+    (_, (_, text)) = summaries.summarise_merges(ts.triangulate(metres).report, metres)
     assert text.endswith("most by 2.000 m: rows 0 (10.000), 5 (12.000), 6 (11.500)")
 
 
@@ -48,30 +47,33 @@ def test_the_place_where_elevations_differ_most_is_told():
     points = [[0, 0, 1], [9, 0, 1], [0, 9, 1], [0, 0, 1.5], [9, 0, -6], [0, 9, 1]]
     many = [*points, *([9, 0, z] for z in range(2, 6))]
     tin = ts.triangulate(many)
-    (_, total), (_, worst) = facts.merge_field(tin.report, ts.Survey(points=many))
+    (_, total), (_, worst) = summaries.summarise_merges(tin.report, ts.Survey(points=many))
     assert total == "7 rows at 3 places, elevation by 'mean'"
     assert worst == (
         "elevations differ at 2 places, most by 11.000: "
         "rows 1 (1.000), 4 (-6.000), 6 (2.000), 7 (3.000) ..."
     )
     same = [*points[:3], points[0], points[0]]
-    assert facts.merge_field(ts.triangulate(same).report, ts.Survey(points=same)) == [
+    assert summaries.summarise_merges(ts.triangulate(same).report, ts.Survey(points=same)) == [
         ("Merged", "2 rows at 1 place, with equal elevations")
     ]
-    assert facts.merge_field(ts.triangulate(points[:3]).report, ts.Survey(points=points[:3])) == []
+    assert (
+        summaries.summarise_merges(ts.triangulate(points[:3]).report, ts.Survey(points=points[:3]))
+        == []
+    )
 
 
 def test_crossings_are_told_by_the_worst(survey, report):
-    assert line_facts.line_fields(survey, ts.triangulate(survey)) == [
+    assert line_summaries.summarise_lines(survey, ts.triangulate(survey)) == [
         ("Lines", "2 breaklines"),
-        ("Crossings", "at 1 place, heights differ most by 3.000"),
+        ("Crossings", "at 1 place, elevations differ most by 3.000"),
         ("", "at x 2.000, y 1.500: breakline 0 at 20.000, breakline 1 at 23.000, taken 20.000"),
     ]
     level = ts.Survey(points=GROUND, breaklines=[LINES[0], np.array(LINES[1]) - [0, 0, 3]])
-    assert line_facts.line_fields(level, ts.triangulate(level))[1:] == [
-        ("Crossings", "at 1 place, at equal heights")
+    assert line_summaries.summarise_lines(level, ts.triangulate(level))[1:] == [
+        ("Crossings", "at 1 place, at equal elevations")
     ]
-    assert line_facts.line_fields(ts.Survey(points=TETRA), ts.triangulate(TETRA)) == []
+    assert line_summaries.summarise_lines(ts.Survey(points=TETRA), ts.triangulate(TETRA)) == []
 
 
 def test_what_gave_way_and_what_was_left_out():
@@ -79,14 +81,14 @@ def test_what_gave_way_and_what_was_left_out():
     points = [[0, 0, 0], [9, 0, 0], [9, 9, 0], [0, 9, 0], [1, 1, 17], [2, 2, 20], [8, 1, 5]]
     ring = [[0, 0], [7, 0], [7, 9], [0, 9]]
     survey = ts.Survey(points=points, breaklines=lines, boundary=[ring])
-    fields = dict(line_facts.line_fields(survey, ts.triangulate(survey)))
+    fields = dict(line_summaries.summarise_lines(survey, ts.triangulate(survey)))
     assert fields["Lines"] == "1 breakline, 1 boundary ring"
-    assert fields["Heights"] == "2 gave way to lines of more weight, the most by 3.000"
+    assert fields["Elevations"] == "2 overruled by lines of more weight, the most by 3.000"
     assert fields["Left out"].startswith("3 rows: 3 ")
 
 
 def test_points_in_words_and_numbers(survey):
-    assert facts.survey_fields(survey) == [
+    assert summaries.summarise_survey(survey) == [
         ("Points", "7"),
         ("Columns", "number"),
         ("Lines", "2 breaklines"),
@@ -96,7 +98,7 @@ def test_points_in_words_and_numbers(survey):
         ("Elevation", "10.000 to 12.000 (unit not known)"),
         ("CRS", "unknown (name it with --crs)"),
     ]
-    found = facts.survey_facts(survey)
+    found = summaries.describe_survey(survey)
     assert found["points"] == 7
     assert found["kind"] == "points"
     assert found["bounds"] == {"xmin": 0.0, "ymin": 0.0, "xmax": 4.0, "ymax": 3.0}
@@ -108,7 +110,7 @@ def test_points_in_words_and_numbers(survey):
 
 def test_a_pyramid_in_words_and_numbers():
     tin = ts.triangulate(TETRA, crs=UTM)
-    assert facts.tin_fields(tin) == [
+    assert summaries.summarise_tin(tin) == [
         ("TIN", "5 vertices, 4 triangles"),
         ("Edges", "8, 4 of them on the boundary"),
         ("Extent", "4.000 m x 4.000 m"),
@@ -123,33 +125,33 @@ def test_a_pyramid_in_words_and_numbers():
         ("Slope", "45.0° to 45.0°, mean 45.0°"),
         ("CRS", f"{UTM}, WGS 84 / UTM zone 16N"),
     ]
-    found = facts.tin_facts(tin)
+    found = summaries.describe_tin(tin)
     assert found["elevation"]["unit_assumed"] == "metre"
     assert found["hull_vertices"] == 4
     assert (found["crs"], found["crs_name"]) == (UTM, "WGS 84 / UTM zone 16N")
     known = ts.triangulate(TETRA, crs=UTM, z_unit="ft")
-    assert facts.units(known) == (" m", " ft")
-    assert facts.unit_note(known) == ""
-    assert ("Elevation", "0.000 to 2.000 ft") in facts.tin_fields(known)
+    assert summaries.find_symbols(known) == (" m", " ft")
+    assert summaries.note_assumed_unit(known) == ""
+    assert ("Elevation", "0.000 to 2.000 ft") in summaries.summarise_tin(known)
 
 
 def test_degrees_have_no_area():
     tin = ts.triangulate(TETRA, crs="EPSG:4326")
-    labels = [label for label, _ in facts.tin_fields(tin)]
+    labels = [label for label, _ in summaries.summarise_tin(tin)]
     assert "Area" not in labels
-    assert ("Extent", "4.0000000° x 4.0000000°") in facts.tin_fields(tin)
-    assert ("", "longitude 0.0000000 to 4.0000000") in facts.tin_fields(tin)
-    assert facts.quality_of(tin) is None
-    assert facts.quality_fields(None) == []
+    assert ("Extent", "4.0000000° x 4.0000000°") in summaries.summarise_tin(tin)
+    assert ("", "longitude 0.0000000 to 4.0000000") in summaries.summarise_tin(tin)
+    assert summaries.measure_quality(tin) is None
+    assert summaries.summarise_quality(None) == []
 
 
 def test_quality_in_words():
     right = ts.triangulate([[0, 0, 0], [1, 0, 0], [0, 1, 0]])  # 45, 45, 90 degrees
-    (_, angles), (_, aspect) = facts.quality_fields(facts.quality_of(right))
+    (_, angles), (_, aspect) = summaries.summarise_quality(summaries.measure_quality(right))
     assert angles == "smallest angle: median 45.0°, worst 45°, below 20° in 0.0 % of triangles"
     assert aspect.startswith(f"aspect ratio: median {quality(right).aspect_ratio[0]:.2f}, worst ")
     thin = ts.triangulate([[0, 0, 0], [100, 0, 0], [50, 1, 0]])
-    (_, angles), (_, aspect) = facts.quality_fields(quality(thin))
+    (_, angles), (_, aspect) = summaries.summarise_quality(quality(thin))
     assert angles.endswith("below 20° in 100.0 % of triangles")
     assert f"worst {math.degrees(math.atan(1 / 50)):.2g}°" in angles
 
@@ -159,7 +161,7 @@ def test_quality_in_words():
     [(1.234, "1.23"), (99.96, "100"), (100.4, "100"), (12_345.6, "12,346"), (1e9, "1e+09")],
 )
 def test_ratios(value, words):
-    assert facts._ratio(value) == words
+    assert summaries._format_ratio(value) == words
 
 
 def test_what_the_reader_skipped_and_noted():
@@ -168,22 +170,22 @@ def test_what_the_reader_skipped_and_noted():
         skipped={"header lines": 1, "rows without an elevation": 1, "nodata cells": 1200},
         notes=("odd",),
     )
-    assert facts.reading_fields(survey) == [
+    assert summaries.summarise_reading(survey) == [
         ("Skipped", "1 row without an elevation, 1,200 nodata cells"),
         ("Note", "odd"),
     ]
     plain = ts.Survey(points=TETRA)
-    assert facts.reading_fields(replace(plain, skipped={"header lines": 3})) == []
+    assert summaries.summarise_reading(replace(plain, skipped={"header lines": 3})) == []
 
 
 def test_the_report_with_point_numbers(survey, report):
-    found = facts.report_facts(report, survey, ["a gap"])
+    found = summaries.describe_report(report, survey, ["a gap"])
     assert found["notes"][-1] == "a gap"
     assert [merge["numbers"] for merge in found["merges"]] == [[5, 10, 11], [6, 9]]
     assert all(type(n) is int for merge in found["merges"] for n in merge["numbers"])
-    without = facts.report_facts(report, ts.Survey(points=GROUND))
+    without = summaries.describe_report(report, ts.Survey(points=GROUND))
     assert "numbers" not in without["merges"][0]
-    assert line_facts.line_counts(report) == {
+    assert line_summaries.count_lines(report) == {
         "rows": 7,
         "merged": 3,
         "left_out": {},

@@ -71,6 +71,10 @@ VALUES: dict[str, Any] = {
     "waters": [ts.Water(RING, 1.0)],
     "survey": ts.Survey(points=np.array(XYZ, float)),
     "bounds": ts.Bounds(0.0, 0.0, 1.0, 1.0),
+    "code": "EPSG:32616",
+    "other code": "EPSG:2240",
+    "format": "ply",
+    "shape": (2, 2),
     "tin": ts.triangulate(XYZ),
 }
 
@@ -85,10 +89,26 @@ FUNCTIONS: dict[str, Any] = {
     "tin.compare": ts.tin.compare,
     "paper.original": ts.tin.paper.original,
     "paper.improved": ts.tin.paper.improved,
+    "voronoi": ts.voronoi,
+    "slope": ts.slope,
+    "aspect": ts.aspect,
+    "lift": ts.lift,
+    "Survey": ts.Survey,
+    "Bounds": ts.Bounds,
+    "Bounds.of": ts.Bounds.of,
+    "Grid": ts.Grid,
+    "CRS": ts.CRS,
+    "CRS.of": ts.CRS.of,
+    "Unit.of": ts.Unit.of,
+    "length_unit": ts.length_unit,
+    "transform_points": ts.transform_points,
+    "lines_from_codes": ts.lines_from_codes,
+    "find_format": ts.find_format,
 }
 METHODS = (
     *("insert", "remove", "move", "set_z", "flip", "add_breakline", "remove_breakline", "undo"),
-    *("locate", "interpolate", "voronoi"),
+    *("set_elevation", "locate", "interpolate", "voronoi", "closest_vertex", "is_edge"),
+    *("edge_triangles", "vertex_triangles", "vertex_neighbors"),
 )
 USUAL: dict[str, str] = {  # what is mostly given, so that the rest is reached
     "points": "xyz",
@@ -104,6 +124,15 @@ USUAL: dict[str, str] = {  # what is mostly given, so that the rest is reached
     "b": "1",
     "number": "0",
     "triangles": "dict",
+    "survey": "survey",
+    "source": "code",
+    "target": "code",
+    "crs": "code",
+    "value": "code",
+    "name": "format",
+    "bounds": "bounds",
+    "shape": "shape",
+    "spacing": "0.5",
 }
 
 

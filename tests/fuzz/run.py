@@ -17,6 +17,7 @@ from .child import Child, Outcome
 from .minimise import minimise
 
 MOST_LABELS = 6  # of a campaign in the summary
+MOST_SHOWN = 12  # case numbers at one place; a find's file has all
 
 
 @dataclass
@@ -41,6 +42,8 @@ class Tally:
     campaign: str
     labels: Counter[str] = field(default_factory=Counter)
     finds: Counter[str] = field(default_factory=Counter)  # by where
+    numbers: dict[str, list[int]] = field(default_factory=dict)  # of the cases, by where
+    files: dict[str, Path] = field(default_factory=dict)  # by where
     seconds: float = 0.0
 
     @property
@@ -71,6 +74,7 @@ def run_campaign(campaign: Campaign, options: Options) -> Tally:
             child.stop()
     tally.seconds = time.monotonic() - began
     _end_line(options)
+    _note_further_cases(tally)
     return tally
 
 
@@ -114,9 +118,22 @@ def _note(
         tally.labels["slow"] += 1
         return
     tally.finds[outcome.where] += 1
+    tally.numbers.setdefault(outcome.where, []).append(number)
     if is_new:
         _end_line(options)
-        keep_find(campaign, options, number, outcome)
+        tally.files[outcome.where] = keep_find(campaign, options, number, outcome)
+
+
+def _note_further_cases(tally: Tally) -> None:
+    """Write into each find, and print, which other cases ended at the same place."""
+    for where, path in tally.files.items():
+        others = sorted(tally.numbers[where][1:])
+        if others:
+            find = json.loads(path.read_text(encoding="utf-8"))
+            path.write_text(json.dumps({**find, "others": others}, indent=1) + "\n", "utf-8")
+            shown = ", ".join(map(str, others[:MOST_SHOWN]))
+            more = f" and {len(others) - MOST_SHOWN:,} more" if len(others) > MOST_SHOWN else ""
+            print(f"also in {tally.campaign}, cases {shown}{more}: {where}", flush=True)
 
 
 def _recurs(campaign: Campaign, options: Options, number: int) -> bool:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import tinsmith as ts
-from tinsmith.io.nodata import as_nodata, describe_suspects, find_suspect_elevations
+from tinsmith.io.nodata import describe_suspects, find_suspect_elevations, parse_nodata
 
 NINES = [-99.0, -999.0, -9999.0, -99999.0, -999999.0, -99.9, -999.9, -9999.9]
 POSITIVE_NINES = [9999.0, 99999.0, 999999.0]
@@ -129,7 +129,7 @@ def test_sentences_on_suspects(count, what, begin, end):
     [(None, []), (-9999, [-9999.0]), ([0, -1.5], [0.0, -1.5]), (np.float32(2), [2.0])],
 )
 def test_values_that_callers_name(given, values):
-    found = as_nodata(given)
+    found = parse_nodata(given)
     assert found.dtype == np.float64
     assert found.tolist() == values
 
@@ -139,4 +139,4 @@ def test_what_is_no_value_is_refused(given):
     with pytest.raises(
         ts.OptionError, match=r"Invalid nodata .*: it must be a number, or several\."
     ):
-        as_nodata(given)
+        parse_nodata(given)

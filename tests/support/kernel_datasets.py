@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 import tinsmith as ts
-from benchmarks.datasets.points import DATASETS, dataset
+from benchmarks.datasets.points import DATASETS, make_points
 from tinsmith.tin import _kernel
 
 __all__ = [
     "DATASETS",
     "Method",
-    "dataset",
+    "make_points",
     "require_same_by_threads",
     "require_same_growth",
     "require_sound",

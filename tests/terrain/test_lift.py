@@ -9,7 +9,7 @@ import pytest
 
 from tinsmith import TIN, MissingExtraError, TinsmithError, triangulate
 from tinsmith.terrain import OptionError, aspect, lift, slope
-from tinsmith.terrain.lift import default_origin
+from tinsmith.terrain.lift import choose_origin
 
 pytest.importorskip("pyvista")
 
@@ -44,7 +44,7 @@ def test_points_plus_origin_are_the_tin_points():
 @pytest.mark.parametrize("extent", [0.02, 250.0, 80_000.0])
 def test_the_default_origin_is_near_and_round(extent):
     tin = survey(extent=extent)
-    origin = default_origin(tin)
+    origin = choose_origin(tin)
     shifted = np.abs(tin.points - origin).max(axis=0)
     assert (shifted <= np.maximum(np.ptp(tin.points, axis=0), extent)).all()
     step = 10.0 ** np.floor(np.log10(np.ptp(tin.points[:, 0])))
@@ -55,14 +55,14 @@ def test_the_default_origin_is_near_and_round(extent):
 def test_the_default_origin_of_a_strip_is_rounded_by_its_length(turned):
     strip = [[10.3, 17.0, 3.4], [10.7, 817.0, 3.6], [11.4, 300.0, 2.5]]
     points = [[y, x, z] for x, y, z in strip] if turned else strip
-    assert default_origin(triangulate(points)).tolist() == (
+    assert choose_origin(triangulate(points)).tolist() == (
         [400.0, 0.0, 3.0] if turned else [0.0, 400.0, 3.0]
     )
 
 
 def test_the_default_origin_of_level_ground_is_its_elevation_rounded():
     tin = triangulate([[0, 0, 7.4], [30, 0, 7.4], [0, 30, 7.4]])
-    assert default_origin(tin).tolist() == [20.0, 20.0, 7.0]
+    assert choose_origin(tin).tolist() == [20.0, 20.0, 7.0]
 
 
 def test_a_given_origin_and_exaggeration_are_used_and_recorded():

@@ -8,7 +8,7 @@ from PIL import Image
 
 import tinsmith as ts
 from tinsmith.terrain import preview
-from tinsmith.terrain.linework import EDGE_KINDS, dashes, line_edges
+from tinsmith.terrain.linework import EDGE_KINDS, cut_into_dashes, find_line_edges
 
 SIDE = 100.0
 
@@ -24,7 +24,7 @@ def lined(**lines):
 
 
 def kinds_by_edge(tin, **options):
-    found = line_edges(tin, **options)
+    found = find_line_edges(tin, **options)
     assert len(found.pairs) == len(found.kinds)
     return {
         frozenset(map(tuple, tin.points[pair, :2].tolist())): EDGE_KINDS[kind]
@@ -80,12 +80,12 @@ def test_without_lines_there_are_none():
 
 def test_dashes_are_as_long_as_their_gaps_and_run_on_round_corners():
     ends = np.array([[[0, 0, 0], [25, 0, 0]], [[25, 0, 0], [25, 15, 0]]], float)
-    cut = dashes(ends, np.array([[0, 1], [1, 2]], np.int32), 10.0)
+    cut = cut_into_dashes(ends, np.array([[0, 1], [1, 2]], np.int32), 10.0)
     lengths = np.linalg.norm(cut[:, 1] - cut[:, 0], axis=1)
     assert lengths == pytest.approx([10, 5, 5])  # 0-10, 20-25 and on round the corner to 30
     assert cut[1].tolist() == [[20, 0, 0], [25, 0, 0]]
     assert cut[2].tolist() == [[25, 0, 0], [25, 5, 0]]
-    begun_anew = dashes(ends, np.array([[0, 1], [3, 2]], np.int32), 10.0)
+    begun_anew = cut_into_dashes(ends, np.array([[0, 1], [3, 2]], np.int32), 10.0)
     assert begun_anew[2].tolist() == [[25, 0, 0], [25, 10, 0]]
 
 
@@ -95,7 +95,9 @@ def test_dashes_agree_with_a_walk_in_small_steps(length):
     places = np.cumsum(rng.uniform(0.5, 9.0, (12, 3)), axis=0)
     ends = np.stack([places[:-1], places[1:]], axis=1)
     pairs = np.stack([np.arange(11), np.arange(1, 12)], axis=1).astype(np.int32)
-    drawn = np.linalg.norm(np.diff(dashes(ends, pairs, length), axis=1)[:, 0], axis=1).sum()
+    drawn = np.linalg.norm(
+        np.diff(cut_into_dashes(ends, pairs, length), axis=1)[:, 0], axis=1
+    ).sum()
     total = np.linalg.norm(np.diff(places, axis=0), axis=1).sum()
     walk = (np.arange(200_000) + 0.5) * total / 200_000
     assert drawn == pytest.approx(np.mean(walk // length % 2 == 0) * total, rel=1e-3, abs=1e-2)

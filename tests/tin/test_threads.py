@@ -13,7 +13,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
-from support.kernel_datasets import DATASETS, dataset, require_same_growth, with_heights
+from support.kernel_datasets import DATASETS, make_points, require_same_growth, with_heights
 
 import tinsmith as ts
 from tinsmith._interrupts import hold_interrupts
@@ -81,7 +81,7 @@ def test_minus_zero_is_zero_in_every_thread():
 
 @pytest.mark.parametrize("name", DATASETS)
 def test_default_is_one_thread_for_few_points_and_changes_nothing(name):
-    points = dataset(name, 2_000)
+    points = make_points(name, 2_000)
     require_same_tin(ts.triangulate(points), ts.triangulate(points, threads=4))
 
 
@@ -140,7 +140,7 @@ def test_threads_that_take_over_from_each_other_change_nothing(threads):
 
 
 def test_callers_at_the_same_time_get_their_own_tins():
-    clouds = [dataset(name, 10_000) for name in ("uniform", "raster", "clusters", "circle")] * 2
+    clouds = [make_points(name, 10_000) for name in ("uniform", "raster", "clusters", "circle")] * 2
     wanted = [ts.triangulate(points, threads=1) for points in clouds]
     together = threading.Barrier(4)
 
@@ -154,7 +154,7 @@ def test_callers_at_the_same_time_get_their_own_tins():
 
 
 def test_callers_may_share_one_array():
-    points = dataset("scan lines", 10_000)
+    points = make_points("scan lines", 10_000)
     wanted = ts.triangulate(points, threads=1)
     with ThreadPoolExecutor(max_workers=3) as pool:
         for found in pool.map(lambda n: ts.triangulate(points, threads=n), (1, 2, 3)):
@@ -169,7 +169,7 @@ def test_other_python_threads_run_meanwhile(threads):
     so the count advances within the call only if the kernel lets go of the interpreter. Several
     calls, as a busy machine may not run the counter during one of them.
     """
-    points = dataset("uniform", 50_000)
+    points = make_points("uniform", 50_000)
     count, is_over = 0, threading.Event()
 
     def go_on_counting():
@@ -230,7 +230,7 @@ def signals(handler, *, first, every=0.0):
 @pytest.mark.parametrize("name", ["uniform", "clusters", "circle"])
 def test_kernel_lets_signals_through_all_along(name, threads):
     """A kernel that asked only at its end would hear of one signal, however many came."""
-    points = dataset(name, 200_000)
+    points = make_points(name, 200_000)
     heard = []
     with signals(lambda *_: heard.append(1), first=1e-4, every=1e-4):
         _kernel.grow(points, threads=threads)
@@ -241,7 +241,7 @@ def test_kernel_lets_signals_through_all_along(name, threads):
 @pytest.mark.parametrize("threads", [1, 2, 5])
 @pytest.mark.parametrize("name", ["uniform", "clusters", "circle"])
 def test_what_a_signal_handler_raises_ends_the_kernel(name, threads):
-    points = dataset(name, 100_000)
+    points = make_points(name, 100_000)
     wanted = _kernel.grow(points)
 
     def stop(*_):

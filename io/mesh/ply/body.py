@@ -59,7 +59,7 @@ def read_tables(content: bytes, header: Header, path: Path) -> dict[str, Table]:
     wanted = [i for i, element in enumerate(header.elements) if element.name in ("vertex", "face")]
     body = _Body(content, header, path)
     read = header.elements[: max(wanted, default=-1) + 1]
-    tables = {element.name: body.table(element) for element in read}
+    tables = {element.name: body.read_table(element) for element in read}
     if read and len(read) == len(header.elements):
         body.require_end(read[-1])
     return tables
@@ -75,57 +75,57 @@ class _Body:
         self.cells: NDArray[Any] = (
             np.frombuffer(content, np.uint8)[header.size :]
             if self.byte_order
-            else _numbers(content[header.size :], path)
+            else _parse_text_body(content[header.size :], path)
         )
 
-    def dtype(self, type_name: str) -> np.dtype[Any]:
-        """Type in which a value is stored."""
+    def find_dtype(self, type_name: str) -> np.dtype[Any]:
+        """Return the type in which a value is stored."""
         return np.dtype(self.byte_order + type_name) if self.byte_order else np.dtype(np.float64)
 
-    def width(self, type_name: str) -> int:
-        """Cells of one value."""
-        return self.dtype(type_name).itemsize // self.cells.itemsize
+    def measure_width(self, type_name: str) -> int:
+        """Return the cells that one value takes."""
+        return self.find_dtype(type_name).itemsize // self.cells.itemsize
 
-    def picked(self, starts: NDArray[np.int64], type_name: str) -> NDArray[Any]:
+    def pick(self, starts: NDArray[np.int64], type_name: str) -> NDArray[Any]:
         """Return the values that begin at these cells."""
-        cells = self.cells[starts[:, None] + np.arange(self.width(type_name))]
-        values: NDArray[Any] = cells.view(self.dtype(type_name)).reshape(len(starts))
+        cells = self.cells[starts[:, None] + np.arange(self.measure_width(type_name))]
+        values: NDArray[Any] = cells.view(self.find_dtype(type_name)).reshape(len(starts))
         return values
 
-    def block(
+    def view_block(
         self, start: int, stride: int, shape: tuple[int, int], type_name: str
     ) -> NDArray[Any]:
         """View ``shape[1]`` neighbouring values in each of ``shape[0]`` rows ``stride`` apart."""
-        dtype, cell = self.dtype(type_name), self.cells.itemsize
+        dtype, cell = self.find_dtype(type_name), self.cells.itemsize
         strides = (stride * cell, dtype.itemsize)
         return np.ndarray(shape, dtype, self.cells.data, start * cell, strides)
 
-    def table(self, element: Element) -> Table:
+    def read_table(self, element: Element) -> Table:
         """Read an element's rows and move the cursor behind them."""
         self._require_room(element)
-        table = self._even_table(element) if element.count else None
-        return self._uneven_table(element) if table is None else table
+        table = self._read_even_table(element) if element.count else None
+        return self._read_uneven_table(element) if table is None else table
 
     def require_end(self, element: Element) -> None:
         """Refuse a file that holds further rows: its header tells too small a count."""
         rest = len(self.cells) - self.cursor
-        if rest >= max(_least(element, self), _LINE_END if self.byte_order else 1):
+        if rest >= max(_measure_shortest_row(element, self), _LINE_END if self.byte_order else 1):
             raise ReadError(
                 f"'{self.path}' goes on behind its last element: its header promises "
-                f"{_rows(element)}, and more follow.",
+                f"{_count_rows(element)}, and more follow.",
                 path=self.path,
             )
 
     def _require_room(self, element: Element) -> None:
         """Refuse a count that the file cannot hold before anything is allocated for it."""
         room = len(self.cells) - self.cursor
-        if element.count * max(_least(element, self), 1) > room:
-            raise self._truncated(element)
+        if element.count * max(_measure_shortest_row(element, self), 1) > room:
+            raise self._describe_truncation(element)
 
-    def _truncated(self, element: Element) -> ReadError:
+    def _describe_truncation(self, element: Element) -> ReadError:
         return ReadError(
-            f"'{self.path}' ends too early: its header promises {_rows(element)}, more than the "
-            "file holds.",
+            f"'{self.path}' ends too early: its header promises {_count_rows(element)}, more than "
+            "the file holds.",
             path=self.path,
         )
 
@@ -135,17 +135,19 @@ class _Body:
         for prop in element.properties:
             if prop.count_type is not None:
                 lengths.append(self._list_length(element, prop.count_type, start))
-                start += self.width(prop.count_type) + lengths[-1] * self.width(prop.type)
+                start += self.measure_width(prop.count_type) + lengths[-1] * self.measure_width(
+                    prop.type
+                )
             else:
-                start += self.width(prop.type)
+                start += self.measure_width(prop.type)
         if start > len(self.cells):
-            raise self._truncated(element)
+            raise self._describe_truncation(element)
         return lengths, start
 
     def _list_length(self, element: Element, count_type: str, start: int) -> int:
-        if start + self.width(count_type) > len(self.cells):
-            raise self._truncated(element)
-        length = self.block(start, 1, (1, 1), count_type)[0, 0]
+        if start + self.measure_width(count_type) > len(self.cells):
+            raise self._describe_truncation(element)
+        length = self.view_block(start, 1, (1, 1), count_type)[0, 0]
         if not (0 <= length < len(self.cells) and length == int(length)):
             raise ReadError(
                 f"'{self.path}': a list of '{element.name}' has the length {length}.",
@@ -153,7 +155,7 @@ class _Body:
             )
         return int(length)
 
-    def _even_table(self, element: Element) -> Table | None:
+    def _read_even_table(self, element: Element) -> Table | None:
         """Read all rows at once if each is as long as the first; otherwise return None."""
         lengths, after = self._list_lengths(element, self.cursor)
         stride = after - self.cursor
@@ -164,11 +166,13 @@ class _Body:
             length = 1
             if prop.count_type is not None:
                 length = next(following)
-                if (self.block(start, stride, (element.count, 1), prop.count_type) != length).any():
+                if (
+                    self.view_block(start, stride, (element.count, 1), prop.count_type) != length
+                ).any():
                     return None
-                start += self.width(prop.count_type)
-            values = self.block(start, stride, (element.count, length), prop.type)
-            start += length * self.width(prop.type)
+                start += self.measure_width(prop.count_type)
+            values = self.view_block(start, stride, (element.count, length), prop.type)
+            start += length * self.measure_width(prop.type)
             if prop.count_type is None:
                 table.columns[prop.name] = values[:, 0]
             else:
@@ -177,21 +181,21 @@ class _Body:
         self.cursor += stride * element.count
         return table
 
-    def _uneven_table(self, element: Element) -> Table:
-        starts, sizes = self._uneven_rows(element)
+    def _read_uneven_table(self, element: Element) -> Table:
+        starts, sizes = self._walk_uneven_rows(element)
         table, following = Table({}, {}), iter(sizes)
         for prop in element.properties:
             if prop.count_type is None:
-                table.columns[prop.name] = self.picked(starts, prop.type)
-                starts = starts + self.width(prop.type)
+                table.columns[prop.name] = self.pick(starts, prop.type)
+                starts = starts + self.measure_width(prop.type)
             else:
                 lengths = next(following)
-                starts = starts + self.width(prop.count_type)
-                table.lists[prop.name] = self._gathered(starts, lengths, prop.type)
-                starts = starts + lengths * self.width(prop.type)
+                starts = starts + self.measure_width(prop.count_type)
+                table.lists[prop.name] = self._gather(starts, lengths, prop.type)
+                starts = starts + lengths * self.measure_width(prop.type)
         return table
 
-    def _uneven_rows(self, element: Element) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    def _walk_uneven_rows(self, element: Element) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """Walk the rows one by one: their start cells, and per list property the lengths."""
         n_lists = sum(prop.count_type is not None for prop in element.properties)
         starts = np.empty(element.count, np.int64)
@@ -201,26 +205,26 @@ class _Body:
             sizes[row], self.cursor = self._list_lengths(element, self.cursor)
         return starts, sizes.T
 
-    def _gathered(
+    def _gather(
         self, starts: NDArray[np.int64], lengths: NDArray[np.int64], type_name: str
     ) -> Ragged:
         offsets = np.zeros(len(lengths) + 1, np.int64)
         np.cumsum(lengths, out=offsets[1:])
         within = np.arange(offsets[-1]) - np.repeat(offsets[:-1], lengths)
-        cells = np.repeat(starts, lengths) + within * self.width(type_name)
-        return Ragged(self.picked(cells, type_name), offsets)
+        cells = np.repeat(starts, lengths) + within * self.measure_width(type_name)
+        return Ragged(self.pick(cells, type_name), offsets)
 
 
-def _rows(element: Element) -> str:
+def _count_rows(element: Element) -> str:
     return f"{element.count} {'row' if element.count == 1 else 'rows'} of '{element.name}'"
 
 
-def _least(element: Element, body: _Body) -> int:
+def _measure_shortest_row(element: Element, body: _Body) -> int:
     """Return the cells of the shortest row that an element can have."""
-    return sum(body.width(prop.count_type or prop.type) for prop in element.properties)
+    return sum(body.measure_width(prop.count_type or prop.type) for prop in element.properties)
 
 
-def _numbers(text: bytes, path: Path) -> NDArray[np.float64]:
+def _parse_text_body(text: bytes, path: Path) -> NDArray[np.float64]:
     with warnings.catch_warnings():
         warnings.simplefilter("error", DeprecationWarning)
         try:

@@ -18,13 +18,13 @@ from ....errors import ReadError
 from ....tin import TIN, Survey
 from ..common import (
     choose_reference,
-    fans,
-    file_content,
-    one_line,
+    cut_into_fans,
+    format_crs,
+    format_unit,
+    make_survey,
+    make_tin,
+    read_content,
     require_writable,
-    survey_of,
-    tin_of,
-    unit_text,
 )
 from .body import Ragged, Table, read_tables
 from .header import parse_header
@@ -78,36 +78,38 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     OptionError
         If the unit is unknown, or the file names another.
     """
-    content = file_content(path)
+    content = read_content(path)
     header = parse_header(content, path)
     tables = read_tables(content, header, path)
     vertices = tables.get("vertex")
     if vertices is None or not set(_COORDINATES) <= vertices.columns.keys():
         raise ReadError(f"'{path}' has no element 'vertex' with x, y and z.", path=path)
-    points = _points(vertices)
+    points = _stack_coordinates(vertices)
     reference = choose_reference(
         crs, z_unit, path, found_crs=header.crs, found_unit=header.elevation_unit
     )
-    faces = _face_list(tables.get("face"))
+    faces = _find_face_list(tables.get("face"))
     if faces is None or len(faces.offsets) == 1:
-        return survey_of(points, path, attributes=_attributes(vertices), reference=reference)
-    made = fans(_whole_numbers(faces.items, path), faces.offsets, points, path)
-    flags = _flags(tables["face"], len(made.triangles))
-    return tin_of(points, made.triangles, path, constrained=flags, reference=reference)
+        return make_survey(
+            points, path, attributes=_find_vertex_attributes(vertices), reference=reference
+        )
+    made = cut_into_fans(_require_whole_numbers(faces.items, path), faces.offsets, points, path)
+    flags = _find_edge_flags(tables["face"], len(made.triangles))
+    return make_tin(points, made.triangles, path, constrained=flags, reference=reference)
 
 
-def _points(vertices: Table) -> NDArray[np.float64]:
+def _stack_coordinates(vertices: Table) -> NDArray[np.float64]:
     columns = [vertices.columns[name] for name in _COORDINATES]
     with np.errstate(invalid="ignore"):  # what is not finite is refused
         return np.stack(columns, axis=1).astype(np.float64)
 
 
-def _face_list(table: Table | None) -> Ragged | None:
+def _find_face_list(table: Table | None) -> Ragged | None:
     lists = {} if table is None else table.lists
     return next((lists[name] for name in _FACE_LISTS if name in lists), None)
 
 
-def _whole_numbers(items: NDArray[Any], path: Path) -> NDArray[np.int64]:
+def _require_whole_numbers(items: NDArray[Any], path: Path) -> NDArray[np.int64]:
     if items.dtype.kind == "f" and not (np.abs(items) < 2.0**53).all():
         raise ReadError(f"'{path}': a face names a vertex that is no number.", path=path)
     whole = items.astype(np.int64)
@@ -116,7 +118,7 @@ def _whole_numbers(items: NDArray[Any], path: Path) -> NDArray[np.int64]:
     return whole
 
 
-def _flags(faces: Table, n_triangles: int) -> NDArray[np.bool_] | None:
+def _find_edge_flags(faces: Table, n_triangles: int) -> NDArray[np.bool_] | None:
     """Return the edge flags if the file has them and every face is a triangle."""
     columns = [faces.columns[name] for name in _FLAGS if name in faces.columns]
     if len(columns) < len(_FLAGS) or len(columns[0]) != n_triangles:
@@ -125,7 +127,7 @@ def _flags(faces: Table, n_triangles: int) -> NDArray[np.bool_] | None:
     return flags
 
 
-def _attributes(vertices: Table) -> dict[str, NDArray[Any]]:
+def _find_vertex_attributes(vertices: Table) -> dict[str, NDArray[Any]]:
     return {
         name: np.array(column, column.dtype.newbyteorder("="))
         for name, column in vertices.columns.items()
@@ -156,10 +158,10 @@ def write(
     """
     surface = require_writable(surface, path)
     attributes = surface.attributes if isinstance(surface, Survey) else {}
-    vertices = _vertex_rows(surface.points, attributes)
-    faces = _face_rows(surface) if isinstance(surface, TIN) else None
+    vertices = _pack_vertices(surface.points, attributes)
+    faces = _pack_faces(surface) if isinstance(surface, TIN) else None
     with replacing(path) as file:
-        file.write(_header(surface, vertices, faces))
+        file.write(_format_header(surface, vertices, faces))
         file.write(vertices.data)
         if progress is not None:
             progress(0.5)
@@ -169,15 +171,17 @@ def write(
             progress(1.0)
 
 
-def _header(surface: TIN | Survey, vertices: NDArray[Any], faces: NDArray[Any] | None) -> bytes:
+def _format_header(
+    surface: TIN | Survey, vertices: NDArray[Any], faces: NDArray[Any] | None
+) -> bytes:
     lines = ["ply", "format binary_little_endian 1.0"]
     if surface.crs is not None:
-        lines.append(f"comment crs: {one_line(surface.crs)}")
-    if unit := unit_text(surface):
+        lines.append(f"comment crs: {format_crs(surface.crs)}")
+    if unit := format_unit(surface):
         lines.append(f"comment elevation unit: {unit}")
     lines.append(f"element vertex {len(vertices)}")
     lines += [
-        f"property {_type_name(vertices.dtype[name])} {name}" for name in vertices.dtype.names or ()
+        f"property {_name_type(vertices.dtype[name])} {name}" for name in vertices.dtype.names or ()
     ]
     if faces is not None:
         lines += [f"element face {len(faces)}", "property list uchar int vertex_indices"]
@@ -185,12 +189,12 @@ def _header(surface: TIN | Survey, vertices: NDArray[Any], faces: NDArray[Any] |
     return ("\n".join([*lines, "end_header"]) + "\n").encode()
 
 
-def _type_name(dtype: np.dtype[Any]) -> str:
+def _name_type(dtype: np.dtype[Any]) -> str:
     return _TYPE_NAMES.get(dtype.str[1:], "double")
 
 
-def _vertex_rows(points: NDArray[np.float64], attributes: Any) -> NDArray[Any]:
-    columns = _number_columns(attributes)
+def _pack_vertices(points: NDArray[np.float64], attributes: Any) -> NDArray[Any]:
+    columns = _select_number_columns(attributes)
     fields = [(name, "<f8") for name in _COORDINATES]
     fields += [(name, column.dtype.newbyteorder("<").str) for name, column in columns.items()]
     rows = np.empty(len(points), fields)
@@ -201,7 +205,7 @@ def _vertex_rows(points: NDArray[np.float64], attributes: Any) -> NDArray[Any]:
     return rows
 
 
-def _number_columns(attributes: Any) -> dict[str, NDArray[Any]]:
+def _select_number_columns(attributes: Any) -> dict[str, NDArray[Any]]:
     """Return the attributes that PLY can hold, under names of one word that are still free."""
     columns: dict[str, NDArray[Any]] = {}
     for given, values in attributes.items():
@@ -219,7 +223,7 @@ def _number_columns(attributes: Any) -> dict[str, NDArray[Any]]:
     return columns
 
 
-def _face_rows(tin: TIN) -> NDArray[Any]:
+def _pack_faces(tin: TIN) -> NDArray[Any]:
     flags = _FLAGS if tin.constrained.any() else ()
     fields: list[Any] = [("count", "u1"), ("corners", "<i4", (3,))]
     rows = np.empty(len(tin.triangles), [*fields, *((name, "u1") for name in flags)])

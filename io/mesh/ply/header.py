@@ -108,7 +108,7 @@ def parse_header(content: bytes, path: Path) -> Header:
     ReadError
         If it is not the header of a PLY file.
     """
-    lines, size = _header_lines(content, path)
+    lines, size = _split_header(content, path)
     byte_order: str | None = None
     elements: list[Element] = []
     crs: str | None = None
@@ -124,7 +124,7 @@ def parse_header(content: bytes, path: Path) -> Header:
                 unit = line.split("unit:", 1)[1].strip()
             case ["element", name, count] if _is_new(name, elements) and _COUNT.fullmatch(count):
                 elements.append(Element(name, int(count)))
-            case ["property", *rest] if elements and (found := _property(rest)) is not None:
+            case ["property", *rest] if elements and (found := _parse_property(rest)) is not None:
                 _require_new(found, elements[-1], number, path)
                 elements[-1].properties.append(found)
             case [] | ["ply" | "comment" | "obj_info" | "end_header", *_]:
@@ -140,7 +140,7 @@ def parse_header(content: bytes, path: Path) -> Header:
     return Header(byte_order, elements, crs, size, unit)
 
 
-def _header_lines(content: bytes, path: Path) -> tuple[list[str], int]:
+def _split_header(content: bytes, path: Path) -> tuple[list[str], int]:
     if not is_ply(content[:_LONGEST_FIRST_LINE]):
         raise ReadError(f"'{path}' is no PLY file: it does not begin with 'ply'.", path=path)
     mark = content.find(b"\nend_header", 0, LONGEST_HEADER)
@@ -164,7 +164,7 @@ def _require_new(added: Property, element: Element, number: int, path: Path) -> 
         )
 
 
-def _property(words: list[str]) -> Property | None:
+def _parse_property(words: list[str]) -> Property | None:
     match words:
         case ["list", count_type, item_type, name] if {count_type, item_type} <= SCALARS.keys():
             if SCALARS[count_type][0] == "f":

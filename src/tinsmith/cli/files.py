@@ -14,7 +14,7 @@ import click
 from .._sentences import counted
 from .output.console import emit_file
 from .output.failures import Failure, note_written
-from .paths import STANDARD, Named, name_of, require_separate
+from .paths import STANDARD, Named, name_file, require_separate
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -29,18 +29,18 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Output",
-    "inputs_of",
+    "add_lines",
+    "build_tin",
+    "describe_written",
+    "list_inputs",
+    "open_standard_input",
     "plan_outputs",
     "read_input",
     "read_tin",
     "require_picture",
-    "standard_input",
-    "triangulated",
-    "with_lines",
     "write_figure",
     "write_outputs",
     "write_text",
-    "written_text",
 ]
 
 _TEXT_FORMATS = ("delimited", "geojson", "obj", "csv", "json")
@@ -66,14 +66,14 @@ def read_input(path: Path, reading: Reading, console: Console) -> Survey | TIN:
     options = {name: value for name, value in asdict(reading).items() if value is not None}
     if reading.window is not None:
         options["window"] = Bounds(*reading.window)
-    with console.steps() as steps, steps.step(f"Reading {name_of(Path(path.name))}"):
+    with console.steps() as steps, steps.step(f"Reading {name_file(Path(path.name))}"):
         if path == STANDARD:
-            return read_stream(standard_input(), name_of(path), **options)
+            return read_stream(open_standard_input(), name_file(path), **options)
         found: Survey | TIN = read(path, **options)
         return found
 
 
-def standard_input() -> IO[bytes]:
+def open_standard_input() -> IO[bytes]:
     """Return standard input, to be read once.
 
     Raises
@@ -88,7 +88,7 @@ def standard_input() -> IO[bytes]:
     return sys.stdin.buffer
 
 
-def with_lines(survey: Survey, how: Triangulating, console: Console) -> Survey:
+def add_lines(survey: Survey, how: Triangulating, console: Console) -> Survey:
     """Add the lines of the points' codes and of files to a survey, showing progress.
 
     Raises
@@ -109,7 +109,7 @@ def with_lines(survey: Survey, how: Triangulating, console: Console) -> Survey:
         return with_lines_of_files(survey, **how.files)
 
 
-def triangulated(survey: Survey, how: Triangulating, console: Console) -> TIN:
+def build_tin(survey: Survey, how: Triangulating, console: Console) -> TIN:
     """Build the TIN of a survey, showing progress; rows at fault are named by point number too."""
     from ..errors import PointsError
     from ..tin import triangulate
@@ -118,10 +118,10 @@ def triangulated(survey: Survey, how: Triangulating, console: Console) -> TIN:
         with console.steps() as steps, steps.step(f"Triangulating {counted(len(survey), 'point')}"):
             return triangulate(survey, **how.method)
     except PointsError as error:
-        raise Failure(f"{error}{_row_names(survey, error.rows)}") from error
+        raise Failure(f"{error}{_name_rows(survey, error.rows)}") from error
 
 
-def _row_names(survey: Survey, rows: Sequence[int]) -> str:
+def _name_rows(survey: Survey, rows: Sequence[int]) -> str:
     if not rows:
         return ""
     numbers = survey.attributes.get("number")
@@ -144,22 +144,22 @@ def read_tin(
                 "'tinsmith edit' adds lines to a TIN."
             )
         return found, None
-    survey = with_lines(found, how, console)
-    return triangulated(survey, how, console), survey
+    survey = add_lines(found, how, console)
+    return build_tin(survey, how, console), survey
 
 
-def inputs_of(
+def list_inputs(
     file: Path, how: Triangulating | None = None, *, script: Path | None = None
 ) -> list[Named]:
     """Return all files that a command reads."""
-    from ..io.vector.survey_lines import path_and_layer
+    from ..io.vector.survey_lines import split_layer
 
     inputs = [Named(file, "the input")]
     if script is not None:
         inputs.append(Named(script, "the script"))
     given = {} if how is None else how.line_files
     for flag, paths in given.items():
-        inputs += [Named(path_and_layer(path)[0], f"the file of {flag}") for path in paths]
+        inputs += [Named(split_layer(path)[0], f"the file of {flag}") for path in paths]
     return inputs
 
 
@@ -197,7 +197,7 @@ def plan_outputs(
     if report is not None:
         outputs.append(Named(report, "--report"))
     require_separate(inputs, outputs)
-    formats = [_output_format(path, writing.output_format, kinds) for path in paths]
+    formats = [_choose_output_format(path, writing.output_format, kinds) for path in paths]
     given: dict[str, Any] = {} if writing.kind is None else {"kind": writing.kind}
     if writing.projected:
         given["projected"] = True
@@ -205,7 +205,7 @@ def plan_outputs(
     _require_taken(set(given).difference(*taken) if taken else set(given))
     _require_free_stdout(paths, formats, console)
     return [
-        Output(path, one, {name: given[name] for name in names}, _suffix(one, writing))
+        Output(path, one, {name: given[name] for name in names}, _choose_suffix(one, writing))
         for path, one, names in zip(paths, formats, taken, strict=True)
     ]
 
@@ -250,7 +250,7 @@ def write_figure(figure: Any, path: Path, *, dpi: int) -> None:
     note_written(path)
 
 
-def _suffix(one: Format, writing: Writing) -> str:
+def _choose_suffix(one: Format, writing: Writing) -> str:
     """Return the suffix that --output-format names, or the first of the format."""
     named = f".{(writing.output_format or '').strip().lower().lstrip('.')}"
     return named if named in one.suffixes else one.suffixes[0]
@@ -274,7 +274,7 @@ def _require_taken(left_over: set[str]) -> None:
         raise click.UsageError(f"No output takes the option --{min(left_over)}: GeoJSON does.")
 
 
-def _output_format(path: Path, name: str | None, kinds: Sequence[str]) -> Format:
+def _choose_output_format(path: Path, name: str | None, kinds: Sequence[str]) -> Format:
     from ..io.registry import find_writer
 
     if name is None and path == STANDARD:
@@ -311,14 +311,14 @@ def _write_to_stdout(obj: Product, output: Output, options: dict[str, Any]) -> N
         emit_file(path)
 
 
-def written_text(outputs: Sequence[Output]) -> str:
+def describe_written(outputs: Sequence[Output]) -> str:
     """Return what was written for a summary, a line each."""
-    from .output.summaries import file_size
+    from .output.summaries import describe_file_size
 
     return "\n".join(
         "standard output"
         if one.path == STANDARD
-        else f"{name_of(one.path)} ({file_size(one.path)})"
+        else f"{name_file(one.path)} ({describe_file_size(one.path)})"
         for one in outputs
     )
 

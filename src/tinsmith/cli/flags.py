@@ -24,9 +24,9 @@ def name_flags(text: str, **renamed: str) -> str:
     context = click.get_current_context(silent=True)
     if context is None:
         return text
-    flags = _flags(_running(context)) | renamed
+    flags = _list_flags(_find_running_command(context)) | renamed
     text = text.replace(", or None.", ".")
-    text = re.sub(r"(?<=its options are )[\w, ]+", lambda found: _known(found[0], flags), text)
+    text = re.sub(r"(?<=its options are )[\w, ]+", lambda found: _name_known(found[0], flags), text)
     for name, flag in flags.items():
         text = re.sub(rf"\b[Tt]he option '?{name}\b'?", flag, text)
         text = re.sub(rf"\b(Invalid|Unknown option) '?{name}\b'?", rf"\1 {flag}", text)
@@ -37,12 +37,12 @@ def name_flags(text: str, **renamed: str) -> str:
     return text
 
 
-def _known(names: str, flags: dict[str, str]) -> str:
+def _name_known(names: str, flags: dict[str, str]) -> str:
     """Return the flags of those options in a list that have one here."""
     return ", ".join(flags[name] for name in names.split(", ") if name in flags)
 
 
-def _running(context: click.Context) -> click.Command:
+def _find_running_command(context: click.Context) -> click.Command:
     """Return the command that runs, also when it has failed and only its group is left."""
     command = context.command
     if isinstance(command, click.Group) and context.invoked_subcommand:
@@ -50,7 +50,7 @@ def _running(context: click.Context) -> click.Command:
     return command
 
 
-def _flags(command: click.Command) -> dict[str, str]:
+def _list_flags(command: click.Command) -> dict[str, str]:
     """Return the flag for each name that the library may use, longest names first."""
     flags = {}
     for option in command.params:

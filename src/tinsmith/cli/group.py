@@ -17,12 +17,12 @@ import click
 
 from .. import __version__
 from ..io.isolated.forking import permit_forks
-from .output.failures import Failure, failures_as_sentences, show_failure
+from .output.failures import Failure, show_failure, translate_failures
 from .output.streams import (
     Terminated,
     accept_any_text,
+    raise_for_signals,
     reserve_standard_streams,
-    signals_as_exceptions,
     silence,
 )
 
@@ -42,7 +42,7 @@ class _Commands(click.Group):
     """Loads a command when it is asked for, and turns every failure into a sentence."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002 - click's signature
-        return [*_BUILT_IN, *_plug_ins()]
+        return [*_BUILT_IN, *_find_plug_ins()]
 
     def get_command(
         self,
@@ -53,8 +53,8 @@ class _Commands(click.Group):
             module = import_module(f".commands.{cmd_name}", __package__)
             built_in: click.Command = getattr(module, cmd_name)
             return built_in
-        entry = _plug_ins().get(cmd_name)
-        return None if entry is None else _plugged_in(entry)
+        entry = _find_plug_ins().get(cmd_name)
+        return None if entry is None else _load_command(entry)
 
     def main(self, args: Sequence[str] | None = None, **how: Any) -> Any:  # type: ignore[override]
         """Run; click's own ``main``, but for failures, signals and streams that are closed."""
@@ -64,7 +64,7 @@ class _Commands(click.Group):
         reserve_standard_streams()
         if args is None:  # this process is the command's own
             permit_forks()
-        with signals_as_exceptions():
+        with raise_for_signals():
             sys.exit(self._exit_code(arguments, **how))
 
     def _exit_code(self, arguments: list[str], **how: Any) -> int:
@@ -83,28 +83,30 @@ class _Commands(click.Group):
 
     def invoke(self, ctx: click.Context) -> Any:
         accept_any_text()
-        with failures_as_sentences(ctx):
+        with translate_failures(ctx):
             return super().invoke(ctx)
 
 
 @cache
-def _plug_ins() -> dict[str, EntryPoint]:
+def _find_plug_ins() -> dict[str, EntryPoint]:
     found = sorted(entry_points(group=_ENTRY_POINTS), key=lambda entry: entry.name)
     return {entry.name: entry for entry in found if entry.name not in _BUILT_IN}
 
 
-def _plugged_in(entry: EntryPoint) -> click.Command:
+def _load_command(entry: EntryPoint) -> click.Command:
     """Load a plug-in's command; a broken one stays in the list and says what is wrong."""
     try:
         command = entry.load()
     except Exception as error:
-        return _broken(entry.name, f"{type(error).__name__}: {error}")
+        return _make_broken_command(entry.name, f"{type(error).__name__}: {error}")
     if not isinstance(command, click.Command):
-        return _broken(entry.name, f"it is a {type(command).__name__}, not a click command")
+        return _make_broken_command(
+            entry.name, f"it is a {type(command).__name__}, not a click command"
+        )
     return command
 
 
-def _broken(name: str, reason: str) -> click.Command:
+def _make_broken_command(name: str, reason: str) -> click.Command:
     def fail(**_: object) -> None:
         raise Failure(f"The plug-in '{name}' cannot be loaded ({reason}): mend or uninstall it.")
 

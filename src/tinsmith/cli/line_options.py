@@ -12,7 +12,7 @@ from .paths import LINES
 __all__ = ["LINE_OPTIONS"]
 
 
-def _files(name: str, words: str) -> Any:
+def _make_files_option(name: str, words: str) -> Any:
     return click.option(
         name,
         metavar="FILE",
@@ -22,7 +22,7 @@ def _files(name: str, words: str) -> Any:
     )
 
 
-def _as_level(
+def _parse_level(
     ctx: click.Context,  # noqa: ARG001 - click's signature
     param: click.Parameter,  # noqa: ARG001 - click's signature
     value: str | None,
@@ -37,20 +37,24 @@ def _as_level(
 
 
 LINE_OPTIONS = (
-    _files(
+    _make_files_option(
         "--breaklines",
         "Vector file (GeoPackage, Shapefile, GeoJSON ...) of lines that must be edges of the "
         "surface; columns kind, priority and name are honoured.",
     ),
-    _files("--soft-breaklines", "Vector file of lines that are edges but no breaks of slope."),
-    _files("--boundary", "Vector file of polygons: the surface ends there."),
-    _files("--holes", "Vector file of polygons without surface inside."),
-    _files("--erase", "Vector file of polygons: points inside are left out and spanned."),
-    _files("--water", "Vector file of flat polygons."),
+    _make_files_option(
+        "--soft-breaklines", "Vector file of lines that are edges but no breaks of slope."
+    ),
+    _make_files_option("--boundary", "Vector file of polygons: the surface ends there."),
+    _make_files_option("--holes", "Vector file of polygons without surface inside."),
+    _make_files_option(
+        "--erase", "Vector file of polygons: points inside are left out and spanned."
+    ),
+    _make_files_option("--water", "Vector file of flat polygons."),
     click.option(
         "--water-z",
         metavar="Z",
-        callback=_as_level,
+        callback=_parse_level,
         help="Height of the water, or the column that holds it.",
     ),
     click.option(

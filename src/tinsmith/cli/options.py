@@ -114,7 +114,7 @@ class Writing:
     projected: bool = False
 
 
-def _gathered(name: str, factory: type, *options: Decorator) -> Callable[[Function], Function]:
+def _gather(name: str, factory: type, *options: Decorator) -> Callable[[Function], Function]:
     """Return a decorator that adds options and hands them over as one value called ``name``."""
     names = [one.name for one in fields(factory)]
 
@@ -132,7 +132,7 @@ def _gathered(name: str, factory: type, *options: Decorator) -> Callable[[Functi
     return decorate
 
 
-def _as_columns(
+def _parse_columns(
     ctx: click.Context,  # noqa: ARG001 - click's signature
     param: click.Parameter,  # noqa: ARG001 - click's signature
     value: str | None,
@@ -149,7 +149,7 @@ def _as_columns(
     }
 
 
-def _as_given(
+def _parse_given(
     ctx: click.Context,  # noqa: ARG001 - click's signature
     param: click.Parameter,  # noqa: ARG001 - click's signature
     value: tuple[float, ...],
@@ -175,7 +175,7 @@ output_files: Decorator = click.option(
     "- is standard output, with --output-format. May be given several times.",
 )
 
-reading_options = _gathered(
+reading_options = _gather(
     "reading",
     Reading,
     click.option(
@@ -197,7 +197,7 @@ reading_options = _gathered(
     click.option(
         "--columns",
         metavar="LAYOUT",
-        callback=_as_columns,
+        callback=_parse_columns,
         help="Columns of a text file: letters (PNEZD, PENZD, XYZ, ENZ; - skips one), names in "
         "their order (x,y,z), or roles (easting=X,northing=Y,elevation=3).",
     ),
@@ -224,7 +224,7 @@ reading_options = _gathered(
         metavar="ELEVATION",
         type=float,
         multiple=True,
-        callback=_as_given,
+        callback=_parse_given,
         help="Elevation that stands for no data, such as -9999. May be given several times.",
     ),
     click.option(
@@ -232,7 +232,7 @@ reading_options = _gathered(
     ),
 )
 
-triangulating_options = _gathered(
+triangulating_options = _gather(
     "how",
     Triangulating,
     click.option(
@@ -259,7 +259,7 @@ triangulating_options = _gathered(
     *LINE_OPTIONS,
 )
 
-writing_options = _gathered(
+writing_options = _gather(
     "writing",
     Writing,
     click.option(
@@ -275,7 +275,7 @@ writing_options = _gathered(
     ),
 )
 
-product_options = _gathered(
+product_options = _gather(
     "writing",
     Writing,
     click.option(
@@ -288,7 +288,7 @@ product_options = _gathered(
     ),
 )
 
-console_options = _gathered(
+console_options = _gather(
     "console",
     Console,
     click.option("--json", "as_json", is_flag=True, help="Write the result as JSON to stdout."),

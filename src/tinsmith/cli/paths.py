@@ -19,9 +19,9 @@ __all__ = [
     "OUTPUT",
     "STANDARD",
     "Named",
-    "name_of",
+    "make_title",
+    "name_file",
     "require_separate",
-    "title_of",
 ]
 
 STANDARD = Path("-")
@@ -41,12 +41,12 @@ _MORE_PARTS = (".aux.xml", ".xml", ".ovr", ".msk", "-wal", "-shm", "-journal")
 """What is appended to the whole name of the file that they belong to."""
 
 
-def name_of(path: Path) -> str:
+def name_file(path: Path) -> str:
     """Return what a file to read is called in summaries."""
     return "standard input" if path == STANDARD else escape_unprintable(str(path))
 
 
-def title_of(path: Path) -> str:
+def make_title(path: Path) -> str:
     """Return the title of a picture of what is in a file."""
     return "" if path == STANDARD else path.stem.replace("_", " ")
 
@@ -105,21 +105,21 @@ def require_separate(inputs: Iterable[Named], outputs: Sequence[Named]) -> None:
     from .._atomic import require_writable
 
     taken: dict[object, Named] = {}
-    for one in _files(inputs, "input"):
-        for path in [one.path, *_parts(one.path)]:
-            for key in _keys(path):
+    for one in _drop_streams(inputs, "input"):
+        for path in [one.path, *_list_parts(one.path)]:
+            for key in _identify(path):
                 taken.setdefault(key, one)
-    files = _files(outputs, "output")
+    files = _drop_streams(outputs, "output")
     for one in files:
-        keys = _keys(one.path)
+        keys = _identify(one.path)
         for before in (taken[key] for key in keys if key in taken):
-            raise click.UsageError(_collision(one, before, is_input=before not in files))
+            raise click.UsageError(_describe_collision(one, before, is_input=before not in files))
         taken.update(dict.fromkeys(keys, one))
     for one in files:
         require_writable(one.path)
 
 
-def _files(named: Iterable[Named], what: str) -> list[Named]:
+def _drop_streams(named: Iterable[Named], what: str) -> list[Named]:
     """Leave a standard stream aside, which can be named once."""
     given = list(named)
     files = [one for one in given if one.path != STANDARD]
@@ -128,16 +128,16 @@ def _files(named: Iterable[Named], what: str) -> list[Named]:
     return files
 
 
-def _collision(one: Named, before: Named, *, is_input: bool) -> str:
+def _describe_collision(one: Named, before: Named, *, is_input: bool) -> str:
     if not is_input:
         if one.place == before.place:
             return f"'{one.path}' is named twice as output."
         return f"'{one.path}' is named twice as output, by {before.place} and by {one.place}."
-    part = "" if _keys(one.path) & _keys(before.path) else f" a part of '{before.path}',"
+    part = "" if _identify(one.path) & _identify(before.path) else f" a part of '{before.path}',"
     return f"'{one.path}' is{part} {before.place}: it cannot be the output too ({one.place})."
 
 
-def _keys(path: Path) -> set[object]:
+def _identify(path: Path) -> set[object]:
     """Return what identifies a file: its place, and its number in the file system."""
     place = Path(os.path.realpath(path))
     name = place.name.casefold() if _folds_case(place.parent) else place.name
@@ -162,7 +162,7 @@ def _folds_case(folder: Path) -> bool:
         return False
 
 
-def _parts(path: Path) -> list[Path]:
+def _list_parts(path: Path) -> list[Path]:
     """Return the files that belong to a file and are there, such as the parts of a shapefile."""
     if not path.name:
         return []

@@ -6,14 +6,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from .files import (
-    inputs_of,
+    add_lines,
+    build_tin,
+    describe_written,
+    list_inputs,
     plan_outputs,
     read_input,
-    triangulated,
-    with_lines,
     write_figure,
     write_outputs,
-    written_text,
 )
 from .output.failures import Failure
 from .paths import STANDARD, Named, require_separate
@@ -63,10 +63,10 @@ class Products:
     @property
     def text(self) -> str:
         """What was written, a line each."""
-        from .output.summaries import file_size
+        from .output.summaries import describe_file_size
 
-        texts = [written_text(group) for group in self.outputs.values() if group]
-        return "\n".join(texts + [f"{path} ({file_size(path)})" for path in self.pictures])
+        texts = [describe_written(group) for group in self.outputs.values() if group]
+        return "\n".join(texts + [f"{path} ({describe_file_size(path)})" for path in self.pictures])
 
 
 def plan_products(
@@ -121,7 +121,7 @@ def _kind_of(path: Path, writing: Writing, kinds: Sequence[str]) -> str:
 
 def surface_inputs(files: Sequence[Path], how: Triangulating) -> list[Named]:
     """Return all files that are read."""
-    return [Named(file, "the input") for file in files] + inputs_of(files[0], how)[1:]
+    return [Named(file, "the input") for file in files] + list_inputs(files[0], how)[1:]
 
 
 def read_surfaces(
@@ -146,6 +146,6 @@ def read_surfaces(
             f"{n_surveys}: 'tinsmith build' makes TINs of them first."
         )
     return [
-        one if isinstance(one, TIN) else triangulated(with_lines(one, how, console), how, console)
+        one if isinstance(one, TIN) else build_tin(add_lines(one, how, console), how, console)
         for one in found
     ]

@@ -8,14 +8,14 @@ from tinsmith.errors import OptionError
 from tinsmith.io import ReadError
 from tinsmith.io.delimited.columns import (
     Columns,
-    columns_by_header,
-    columns_by_word,
+    find_columns_by_header,
+    find_columns_by_word,
+    find_role,
+    find_unit_word,
+    list_meanings,
     list_names,
-    meanings,
-    numbered,
-    role_of,
+    name_columns,
     shorten,
-    unit_of,
 )
 
 ROLES = {
@@ -31,19 +31,19 @@ OTHERS = ["intensity", "red", "classification", "time", "gridz", "quality", "dat
 @pytest.mark.parametrize("role", ROLES)
 def test_names_say_what_a_column_means(role):
     for name in ROLES[role].split():
-        assert role_of(name) == role, name
-        assert role_of(f" {name} ") == role, name
+        assert find_role(name) == role, name
+        assert find_role(f" {name} ") == role, name
 
 
 @pytest.mark.parametrize("name", ["Elev (ft)", "elev_us_ft", "Elev US-ft", "ELEV.m", "Elev [m]"])
 def test_a_unit_is_no_part_of_a_name(name):
-    assert role_of(name) == "elevation"
+    assert find_role(name) == "elevation"
 
 
 def test_other_names_say_nothing():
-    assert [role_of(name) for name in (*OTHERS, "", "x" * 300)] == [None] * (len(OTHERS) + 2)
-    assert role_of("e" + " " * 199) == "easting"
-    assert role_of("e" + " " * 200) is None  # some other text
+    assert [find_role(name) for name in (*OTHERS, "", "x" * 300)] == [None] * (len(OTHERS) + 2)
+    assert find_role("e" + " " * 199) == "easting"
+    assert find_role("e" + " " * 200) is None  # some other text
 
 
 @pytest.mark.parametrize(
@@ -58,7 +58,7 @@ def test_other_names_say_nothing():
     ],
 )  # fmt: skip
 def test_units_stand_in_brackets_or_behind_a_name(name, unit):
-    assert unit_of(name) == unit
+    assert find_unit_word(name) == unit
 
 
 TWO_PAIRS = "The header names two pairs of coordinates: {} are taken, {} are not."
@@ -91,7 +91,7 @@ HEIGHTS = "The header's 'Z' is taken as the elevation, not {}."
     ],
 )
 def test_a_header_names_the_columns_and_what_it_leaves_open_is_told(header, word, notes):
-    found = columns_by_header(header.split(), strict=False)
+    found = find_columns_by_header(header.split(), strict=False)
     assert found.word == word
     assert list(found.notes) == notes
     assert not found.is_degrees
@@ -99,39 +99,39 @@ def test_a_header_names_the_columns_and_what_it_leaves_open_is_told(header, word
 
 @pytest.mark.parametrize("header", ["E N", "X Z q", "Lon N Z", "E Lat Z", "", "P D"])
 def test_a_header_without_three_coordinates_names_none(header):
-    assert columns_by_header(header.split(), strict=False) is None
+    assert find_columns_by_header(header.split(), strict=False) is None
 
 
 def test_longitude_and_latitude_are_degrees():
-    found = columns_by_header(["Lat", "Long", "Alt"])
+    found = find_columns_by_header(["Lat", "Long", "Alt"])
     assert found.is_degrees
     assert found.coordinates == [1, 0, 2]
-    assert columns_by_word("x,y,z", ["Long", "Lat", "Z"], 3).is_degrees
-    assert not columns_by_word("x,y,z", ["Long", "North", "Z"], 3).is_degrees
-    assert columns_by_word("lon,lat,z", [], 3).is_degrees
-    assert not columns_by_word("ENZ", [], 3).is_degrees
+    assert find_columns_by_word("x,y,z", ["Long", "Lat", "Z"], 3).is_degrees
+    assert not find_columns_by_word("x,y,z", ["Long", "North", "Z"], 3).is_degrees
+    assert find_columns_by_word("lon,lat,z", [], 3).is_degrees
+    assert not find_columns_by_word("ENZ", [], 3).is_degrees
     named = {"easting": 2, "northing": 1, "elevation": 3}
-    assert columns_by_word(named, ["Lat", "Lon", "h"], 3).is_degrees
-    assert not columns_by_word(named, [], 3).is_degrees
+    assert find_columns_by_word(named, ["Lat", "Lon", "h"], 3).is_degrees
+    assert not find_columns_by_word(named, [], 3).is_degrees
 
 
 def test_units_stand_in_the_header_or_below_it():
     units = {"easting": "ft", "elevation": "m"}
-    assert columns_by_header(["E (ft)", "N", "Z"], ["", "", "(m)"]).units == units
-    assert columns_by_word("ENZ", ["E (ft)", "N", "Z"], 3, ["m", "q", "[m]"]).units == units
-    assert columns_by_header(["E", "N", "Z"], ["m"]).units == {"easting": "m"}
-    assert columns_by_header(["E", "N", "Z"]).units == {}
+    assert find_columns_by_header(["E (ft)", "N", "Z"], ["", "", "(m)"]).units == units
+    assert find_columns_by_word("ENZ", ["E (ft)", "N", "Z"], 3, ["m", "q", "[m]"]).units == units
+    assert find_columns_by_header(["E", "N", "Z"], ["m"]).units == {"easting": "m"}
+    assert find_columns_by_header(["E", "N", "Z"]).units == {}
 
 
 def test_equal_names_of_a_coordinate_are_refused():
     header = ["E", "N", "Z", "z (m)", "e"]
     with pytest.raises(ReadError) as caught:
-        columns_by_header(header)
+        find_columns_by_header(header)
     assert str(caught.value) == (
         "the header has 2 columns named 'E' for the easting: say with the option columns which is "
         "meant."
     )
-    assert columns_by_header(header, strict=False).word == "ENZ"
+    assert find_columns_by_header(header, strict=False).word == "ENZ"
 
 
 # ---------------------------------------------------------------- the caller's word
@@ -151,7 +151,7 @@ def test_equal_names_of_a_coordinate_are_refused():
     ],
 )
 def test_columns_by_the_callers_word(word, header, count, letters, names):
-    found = columns_by_word(word, header, count)
+    found = find_columns_by_word(word, header, count)
     assert found.word == letters
     if names is not None:
         assert found.names == tuple(name.replace("_", " ") for name in names.split())
@@ -159,14 +159,14 @@ def test_columns_by_the_callers_word(word, header, count, letters, names):
 
 
 def test_the_caller_may_contradict_the_header_which_is_told():
-    found = columns_by_word("NEZ", ["E", "N", "Z"], 3)
+    found = find_columns_by_word("NEZ", ["E", "N", "Z"], 3)
     assert found.notes == (
         "The option columns takes 'E' as the northing and 'N' as the easting, against the header.",
     )
-    assert columns_by_word("ENZ", ["E", "N", "Z"], 3).notes == ()
-    assert columns_by_word("ENZ", ["a", "b", "c"], 3).notes == ()
-    assert columns_by_word("ENZD", ["E", "N"], 4).notes == ()
-    three = columns_by_word("NZE", ["E", "N", "Z"], 3).notes[0]
+    assert find_columns_by_word("ENZ", ["E", "N", "Z"], 3).notes == ()
+    assert find_columns_by_word("ENZ", ["a", "b", "c"], 3).notes == ()
+    assert find_columns_by_word("ENZD", ["E", "N"], 4).notes == ()
+    three = find_columns_by_word("NZE", ["E", "N", "Z"], 3).notes[0]
     assert "'E' as the northing, 'Z' as the easting and 'N' as the elevation" in three or (
         three.count("'") == 6
     )
@@ -247,15 +247,15 @@ MISSING = (
 )
 def test_words_that_fit_no_table_are_refused(word, header, count, sentence):
     with pytest.raises(OptionError) as caught:
-        columns_by_word(word, header, count)
+        find_columns_by_word(word, header, count)
     assert str(caught.value) == sentence
 
 
 def test_letters_and_names_are_told_apart():
-    assert meanings("PNEZD") == ["number", "northing", "easting", "elevation", "description"]
-    assert meanings("-H") == ["", "elevation"]
-    assert meanings("x,Q ,z") == ["easting", "Q", "elevation"]
-    assert meanings(["PN", "N"]) == ["PN", "northing"]
+    assert list_meanings("PNEZD") == ["number", "northing", "easting", "elevation", "description"]
+    assert list_meanings("-H") == ["", "elevation"]
+    assert list_meanings("x,Q ,z") == ["easting", "Q", "elevation"]
+    assert list_meanings(["PN", "N"]) == ["PN", "northing"]
 
 
 # ------------------------------------------------------------------- for sentences
@@ -279,7 +279,7 @@ def test_names_are_shortened_and_listed_to_a_limit():
     ],
 )
 def test_every_column_has_a_name_of_its_own(names, count, unique):
-    assert list(numbered(names, count)) == unique
+    assert list(name_columns(names, count)) == unique
 
 
 def test_columns_are_named_in_sentences():
@@ -292,7 +292,7 @@ def test_columns_are_named_in_sentences():
     assert columns.coordinates == [1, 2, 3]
     assert columns.layout == "number, easting, northing, elevation, red"
     assert columns.word == "PENZ"
-    turned = columns.permuted([2, 0, 1])
+    turned = columns.permute([2, 0, 1])
     assert turned.coordinates == [3, 1, 2]
     assert turned.roles["number"] == 0
     assert turned.word == "PNZE"

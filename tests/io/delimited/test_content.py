@@ -9,10 +9,10 @@ from tinsmith.crs import CRS
 from tinsmith.io import ReadError
 from tinsmith.io.delimited.content import (
     Column,
-    columns_by_content,
+    are_plausible_elevations,
+    find_columns_by_content,
     is_too_steep,
-    plausible_elevations,
-    relief_and_extent,
+    measure_relief_and_extent,
     require_no_split_decimals,
 )
 from tinsmith.io.reprojection.area_of_use import AreaOfUse
@@ -52,7 +52,7 @@ def whole(column):
     ],
 )
 def test_the_layout_that_nothing_speaks_against_is_taken(columns, area, word):
-    found, note = columns_by_content(columns, area)
+    found, note = find_columns_by_content(columns, area)
     assert f"({word})" in note
     letters = dict(zip(word, range(len(word)), strict=True))
     east, north = letters.get("X", letters.get("E")), letters.get("Y", letters.get("N"))
@@ -65,12 +65,12 @@ def test_the_layout_that_nothing_speaks_against_is_taken(columns, area, word):
 
 
 def test_numbers_in_columns_alone_are_x_y_z_by_convention():
-    _, note = columns_by_content([EASTING, NORTHING, ELEVATION], None)
+    _, note = find_columns_by_content([EASTING, NORTHING, ELEVATION], None)
     assert note.endswith("(XYZ), the convention for columns of numbers alone.")
     all_whole = [whole(one) for one in (EASTING, NORTHING)]
-    _, note = columns_by_content([*all_whole, ELEVATION, ELEVATION], None, is_scan=True)
+    _, note = find_columns_by_content([*all_whole, ELEVATION, ELEVATION], None, is_scan=True)
     assert note.endswith("(XYZ), the convention for files of this kind.")
-    _, note = columns_by_content([EASTING, NORTHING, ELEVATION], None, is_announced=True)
+    _, note = find_columns_by_content([EASTING, NORTHING, ELEVATION], None, is_announced=True)
     assert note.endswith("(XYZ), the convention for files of this kind.")
 
 
@@ -86,7 +86,7 @@ def test_numbers_in_columns_alone_are_x_y_z_by_convention():
 )
 def test_two_plausible_layouts_are_refused(columns, words):
     with pytest.raises(ReadError) as caught:
-        columns_by_content(columns, None)
+        find_columns_by_content(columns, None)
     message = str(caught.value)
     assert f"its columns may be {' or '.join(words)}: " in message
     assert " or ".join(f"columns='{word}'" for word in words) in message
@@ -96,10 +96,10 @@ def test_two_plausible_layouts_are_refused(columns, words):
 def test_whole_numbers_before_whole_coordinates_may_be_coordinates_themselves():
     small = [Column(np.round(RNG.uniform(100, 200, N)), is_whole=True) for _ in range(4)]
     with pytest.raises(ReadError, match=r"its first column may be point numbers") as caught:
-        columns_by_content(small, None)
+        find_columns_by_content(small, None)
     assert "PNEZ or PENZ or NEZ or XYZ" in str(caught.value)
     with pytest.raises(ReadError) as caught:
-        columns_by_content(small, AreaOfUse.of(CRS.of("EPSG:4326"), None))
+        find_columns_by_content(small, AreaOfUse.of(CRS.of("EPSG:4326"), None))
     assert "may tell, too" not in str(caught.value)
 
 
@@ -114,13 +114,13 @@ def test_whole_numbers_before_whole_coordinates_may_be_coordinates_themselves():
 )
 def test_columns_of_no_layout_are_refused(columns, words):
     with pytest.raises(ReadError, match=words):
-        columns_by_content(columns, None)
+        find_columns_by_content(columns, None)
 
 
 def test_no_layout_fits_and_each_is_told_why():
     high = Column(np.full(N, 50_000.0))
     with pytest.raises(ReadError) as caught:
-        columns_by_content([EASTING, NORTHING, high], UTM_16)
+        find_columns_by_content([EASTING, NORTHING, high], UTM_16)
     message = str(caught.value)
     assert "no customary layout fits: NEZ would" in message
     assert "XYZ would have elevations of 50,000 to 50,000" in message
@@ -131,11 +131,11 @@ def test_coordinates_have_no_leading_zeros(padded):
     columns = [NUMBERS, EASTING, NORTHING, ELEVATION]
     columns[padded] = Column(columns[padded].values, is_whole=padded == 0, is_padded=True)
     if padded == 0:
-        _, note = columns_by_content(columns, UTM_16)
+        _, note = find_columns_by_content(columns, UTM_16)
         assert "(PENZ)" in note
         return
     with pytest.raises(ReadError) as caught:
-        columns_by_content(columns, UTM_16)
+        find_columns_by_content(columns, UTM_16)
     assert "PENZ would have coordinates with leading zeros" in str(caught.value)
 
 
@@ -149,13 +149,13 @@ def test_what_counts_the_rows_is_no_coordinate():
         (MIXED, "would have whole numbers in one coordinate and decimals in the other"),
     ):
         with pytest.raises(ReadError) as caught:
-            columns_by_content([numbers, *near, high], None)
+            find_columns_by_content([numbers, *near, high], None)
         assert f"NEZ {words}; XYZ {words}" in str(caught.value)
     with pytest.raises(ReadError, match="coordinates that count 1, 2, 3"):
-        columns_by_content([NUMBERS, NORTHING, ELEVATION], None)
-    columns_by_content([NUMBERS, whole(NORTHING), ELEVATION], None)  # a regular profile
+        find_columns_by_content([NUMBERS, NORTHING, ELEVATION], None)
+    find_columns_by_content([NUMBERS, whole(NORTHING), ELEVATION], None)  # a regular profile
     few = [Column(one.values[:2], is_whole=one.is_whole) for one in (NUMBERS, EASTING, ELEVATION)]
-    columns_by_content(few, None)
+    find_columns_by_content(few, None)
 
 
 def test_a_column_with_words_or_a_cliff_is_no_coordinate():
@@ -166,13 +166,13 @@ def test_a_column_with_words_or_a_cliff_is_no_coordinate():
         (Column(RNG.uniform(0, 9000, N)), "would rise by "),
     ):
         with pytest.raises(ReadError) as caught:
-            columns_by_content([MIXED, *near, last], None)
+            find_columns_by_content([MIXED, *near, last], None)
         assert f"no customary layout fits: PNEZ {words}" in str(caught.value)
         assert f"PENZ {words}" in str(caught.value)
 
 
 def test_whole_eastings_of_three_columns_are_coordinates():
-    assert columns_by_content([whole(EASTING), NORTHING, ELEVATION], None)[0].word == "ENZ"
+    assert find_columns_by_content([whole(EASTING), NORTHING, ELEVATION], None)[0].word == "ENZ"
 
 
 # ------------------------------------------------------------------ measures
@@ -188,7 +188,7 @@ def test_whole_eastings_of_three_columns_are_coordinates():
     ],
 )
 def test_elevations_lie_between_the_deepest_trench_and_the_highest_summit(z, is_plausible):
-    assert plausible_elevations(np.array(z)) is is_plausible
+    assert are_plausible_elevations(np.array(z)) is is_plausible
 
 
 @pytest.mark.parametrize(
@@ -208,13 +208,13 @@ def test_ground_rises_by_three_times_its_extent_at_most(relief, extent, is_steep
 def test_a_twentieth_of_the_values_at_either_end_counts_for_nothing():
     line = np.arange(101.0)
     points = np.column_stack([3 * line, 4 * line, -line])[RNG.permutation(101)]
-    assert relief_and_extent(points) == (90.0, 450.0)
+    assert measure_relief_and_extent(points) == (90.0, 450.0)
     points[points[:, 2] > -5] = 1e9
     points[points[:, 2] < -95] = -1e9
-    relief, extent = relief_and_extent(points)
+    relief, extent = measure_relief_and_extent(points)
     assert relief == pytest.approx(90, abs=1)
     assert extent == pytest.approx(450, abs=5)
-    assert relief_and_extent(points[:0]) == (0.0, 0.0)
+    assert measure_relief_and_extent(points[:0]) == (0.0, 0.0)
 
 
 @pytest.mark.parametrize(

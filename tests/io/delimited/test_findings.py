@@ -43,7 +43,7 @@ def test_columns_that_fit_only_when_exchanged_are_refused_with_the_word_that_fit
     points = given[:, np.argsort(order)]
     with pytest.raises(CrsError) as caught:
         told(points)
-    right = COLUMNS.permuted(order)
+    right = COLUMNS.permute(order)
     places = [f"{role} in {right.label(right.roles[role])}" for role in ROLES]
     assert str(caught.value) == (
         f"'a.csv': read as ENZ the points lie outside {AREA}, and read as "

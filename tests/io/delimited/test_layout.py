@@ -10,7 +10,7 @@ import pytest
 from tinsmith.io import ReadError
 from tinsmith.io.delimited import layout as layouts
 from tinsmith.io.delimited.layout import find_layout
-from tinsmith.io.delimited.lines import TextLines, decoded, read_lines
+from tinsmith.io.delimited.lines import TextLines, decode_head, read_lines
 
 USUAL = {
     "delimiter": ",",
@@ -329,7 +329,7 @@ def test_a_count_that_fits_is_no_row():
     ],
 )  # fmt: skip
 def test_lines_are_looked_at_on_top_and_spread(rows, sampled):
-    looked = layouts._sampled(np.arange(rows) * 2)
+    looked = layouts._sample_lines(np.arange(rows) * 2)
     assert len(looked) == sampled
     assert looked[:100] == list(range(0, 2 * min(rows, 100), 2))
     assert all(np.diff(looked) > 0)
@@ -352,7 +352,7 @@ def test_lines_are_looked_at_on_top_and_spread(rows, sampled):
     ],
 )
 def test_where_the_text_of_a_row_begins(row, tail):
-    assert layouts._text_tail(row.split(), ".") == tail
+    assert layouts._find_text_tail(row.split(), ".") == tail
 
 
 # -------------------------------------------------------------------------- lines
@@ -371,7 +371,7 @@ def test_where_the_text_of_a_row_begins(row, tail):
 )
 def test_every_customary_line_end_ends_a_line(data, lines, is_whole):
     found = TextLines.of(data)
-    assert found.texts(range(len(found))) == lines
+    assert found.decode_lines(range(len(found))) == lines
     assert found.is_whole == is_whole
 
 
@@ -387,13 +387,13 @@ def test_lines_tell_how_they_begin():
 def test_chosen_lines_are_joined(chosen):
     found = TextLines.of(b"a\nbb\n\nc\n")
     texts = [b"a", b"bb", b"", b"c"]
-    assert found.joined(np.array(chosen, np.int64)) == b"\n".join(texts[k] for k in chosen)
+    assert found.join(np.array(chosen, np.int64)) == b"\n".join(texts[k] for k in chosen)
 
 
 def test_lines_with_decimals_are_found():
     found = TextLines.of(b"1.5 2\n1 .5\n1,5\n1, 5\n0.0\n9,9\n.1.\n")
-    assert found.with_decimals(np.arange(7)).tolist() == [0, 2, 4, 5]
-    assert found.with_decimals(np.array([1, 2, 6])).tolist() == [2]
+    assert found.find_with_decimals(np.arange(7)).tolist() == [0, 2, 4, 5]
+    assert found.find_with_decimals(np.array([1, 2, 6])).tolist() == [2]
 
 
 @pytest.mark.parametrize(
@@ -410,7 +410,7 @@ def test_lines_with_decimals_are_found():
     ],
 )
 def test_the_head_of_a_file_as_text(head, text):
-    assert decoded(head) == text
+    assert decode_head(head) == text
 
 
 @pytest.mark.parametrize(
@@ -427,7 +427,7 @@ def test_the_head_of_a_file_as_text(head, text):
 )
 def test_the_encoding_is_found_or_told(tmp_path, data, encoding, text):
     (tmp_path / "a.csv").write_bytes(data)
-    assert read_lines(tmp_path / "a.csv", encoding=encoding).text(0) == text
+    assert read_lines(tmp_path / "a.csv", encoding=encoding).decode_line(0) == text
 
 
 @pytest.mark.parametrize(

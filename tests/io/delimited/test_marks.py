@@ -10,11 +10,11 @@ from tinsmith.io import OptionError, ReadError
 from tinsmith.io.delimited import cells
 from tinsmith.io.delimited.cells import BLANKS
 from tinsmith.io.delimited.marks import (
-    as_decimal,
-    as_delimiter,
-    decimal_of,
-    delimiter_of,
+    find_decimal_mark,
+    find_delimiter,
     looks_like_table,
+    parse_decimal_mark,
+    parse_delimiter,
     require_one_kind_of_comma,
 )
 
@@ -41,7 +41,7 @@ from tinsmith.io.delimited.marks import (
     ],
 )
 def test_the_delimiter_gives_the_most_numbers_and_even_rows(lines, delimiter):
-    assert delimiter_of(lines) == delimiter
+    assert find_delimiter(lines) == delimiter
 
 
 @pytest.mark.parametrize(
@@ -70,21 +70,21 @@ def test_what_looks_like_a_table(head, is_table):
     ],
 )  # fmt: skip
 def test_delimiters_by_name(word, delimiter):
-    assert as_delimiter(word) == delimiter
+    assert parse_delimiter(word) == delimiter
 
 
 @pytest.mark.parametrize("word", ["", ",,", "a", "7", ".", "+", "-", '"', "\n", "\r", "\x7f", "é"])
 def test_what_is_no_delimiter(word):
     with pytest.raises(OptionError, match="one letter such as ',' or one of comma, semicolon") as e:
-        as_delimiter(word)
+        parse_delimiter(word)
     assert "tab" in e.value.allowed
 
 
 def test_decimal_marks_by_name():
-    assert [as_decimal(word) for word in (None, ".", ",")] == [None, ".", ","]
+    assert [parse_decimal_mark(word) for word in (None, ".", ",")] == [None, ".", ","]
     for word in (";", "", "point"):
         with pytest.raises(OptionError, match=r"Invalid decimal .*: it must be '\.' or ','"):
-            as_decimal(word)
+            parse_decimal_mark(word)
 
 
 @pytest.mark.parametrize(
@@ -111,7 +111,7 @@ def test_decimal_marks_by_name():
     ],
 )
 def test_the_decimal_mark_that_cells_prove(row, delimiter, mark, is_noted):
-    found = decimal_of([row], delimiter)
+    found = find_decimal_mark([row], delimiter)
     assert (found and found.mark) == mark
     assert bool(found and found.note) is is_noted
     if is_noted:
@@ -120,14 +120,14 @@ def test_the_decimal_mark_that_cells_prove(row, delimiter, mark, is_noted):
 
 def test_a_comma_that_may_separate_thousands_is_refused():
     with pytest.raises(ReadError, match=r"\('752,700'\): decimal=',' or decimal='\.' settles it"):
-        decimal_of([["752,700", "4"]], BLANKS)
+        find_decimal_mark([["752,700", "4"]], BLANKS)
 
 
 @pytest.mark.parametrize("cell", ["5,", ",5", "1,234", "-1,234"])
 @pytest.mark.parametrize("delimiter", [";", "\t", "|"])
 def test_a_comma_at_the_edge_of_a_cell_proves_no_decimal_comma(cell, delimiter):
     with pytest.raises(ReadError, match="may be decimal marks or separate thousands"):
-        decimal_of([["752,", "4024,", "1,234"], ["753", ",4025", cell]], delimiter)
+        find_decimal_mark([["752,", "4024,", "1,234"], ["753", ",4025", cell]], delimiter)
 
 
 @pytest.mark.parametrize(
@@ -212,10 +212,10 @@ def test_numbers_of_cells(decimal):
     for text in NUMBERS[decimal]:
         assert cells.is_number(text, decimal), text
         assert cells.is_number_like(text, decimal), text
-        assert cells.as_number(f" {text} ", decimal) == float(text.replace(",", "."))
+        assert cells.parse_number(f" {text} ", decimal) == float(text.replace(",", "."))
     for text in NO_NUMBERS:
         assert not cells.is_number(text, decimal), text
-        assert math.isnan(cells.as_number(text, decimal))
+        assert math.isnan(cells.parse_number(text, decimal))
     other = {".": ",", ",": "."}[decimal]
     assert not cells.is_number(f"1{other}5", decimal)
 
@@ -225,10 +225,10 @@ def test_numbers_in_groups(decimal):
     for text, value in GROUPED[decimal].items():
         assert cells.is_grouped(text, decimal), text
         assert cells.is_number_like(text, decimal), text
-        assert cells.as_grouped(f" {text} ", decimal) == value
+        assert cells.parse_grouped(f" {text} ", decimal) == value
     for text in NOT_GROUPED:
         assert not cells.is_grouped(text, "."), text
-        assert math.isnan(cells.as_grouped(text, "."))
+        assert math.isnan(cells.parse_grouped(text, "."))
     assert not cells.is_grouped(f"1{decimal}234", decimal)
     assert not cells.is_grouped("1" + ",000" * 300, ".")
 

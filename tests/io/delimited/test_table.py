@@ -11,10 +11,15 @@ import pytest
 
 from tinsmith.io import ReadError
 from tinsmith.io.delimited import table
-from tinsmith.io.delimited.columns import columns_by_word
+from tinsmith.io.delimited.columns import find_columns_by_word
 from tinsmith.io.delimited.layout import find_layout
 from tinsmith.io.delimited.lines import TextLines
-from tinsmith.io.delimited.table import describe_columns, faults_error, read_cells, read_table
+from tinsmith.io.delimited.table import (
+    describe_columns,
+    describe_faults_of_rows,
+    read_cells,
+    read_table,
+)
 
 PATH = Path("a.csv")
 
@@ -27,7 +32,7 @@ def cells_of(text, **options):
 
 def table_of(text, columns="ENZ", **options):
     cells, layout, lines = cells_of(text, columns=columns, **options)
-    return read_table(cells, layout, columns_by_word(columns, [], layout.count), lines)
+    return read_table(cells, layout, find_columns_by_word(columns, [], layout.count), lines)
 
 
 # --------------------------------------------------------------------- regular rows
@@ -45,7 +50,7 @@ def test_rows_taken_as_regular_read_as_by_csv(first, second):
     """Whatever is called regular must be what Python's csv module makes of each line."""
     lines = TextLines.of(f"{first}\n{second}\n{first}".encode())
     layout = find_layout(TextLines.of(b"1,2,3\n4,5,6\n"), PATH)
-    data = lines.joined(np.arange(3))
+    data = lines.join(np.arange(3))
     rows = [next(csv.reader(io.StringIO(line), strict=True), []) for line in (second,)]
     try:
         rows += [next(csv.reader([first], strict=True))]
@@ -76,9 +81,9 @@ def test_words_between_blanks_are_counted_line_by_line(text, is_regular):
 
 def test_places_between_quotes_count_for_nothing():
     places = np.array([1, 4, 6, 9, 12])
-    assert table._outside(places, np.array([3, 5])).tolist() == [1, 6, 9, 12]
-    assert table._outside(places, np.array([0, 2, 5, 10])).tolist() == [4, 12]
-    assert table._outside(places, np.array([2, 3, 13, 14])).tolist() == places.tolist()
+    assert table._drop_quoted(places, np.array([3, 5])).tolist() == [1, 6, 9, 12]
+    assert table._drop_quoted(places, np.array([0, 2, 5, 10])).tolist() == [4, 12]
+    assert table._drop_quoted(places, np.array([2, 3, 13, 14])).tolist() == places.tolist()
 
 
 def test_rows_that_are_not_regular_are_rewritten_one_by_one():
@@ -249,8 +254,8 @@ def test_the_share_of_words_among_numbers_is_told():
 )
 def test_faults_are_one_sentence(text, sentence, lines):
     cells, layout, source = cells_of(text, columns="ENZ")
-    faults = read_table(cells, layout, columns_by_word("ENZ", [], 3), source).faults
-    error = faults_error(faults, len(layout.rows), source, layout, PATH)
+    faults = read_table(cells, layout, find_columns_by_word("ENZ", [], 3), source).faults
+    error = describe_faults_of_rows(faults, len(layout.rows), source, layout, PATH)
     assert isinstance(error, ReadError)
     assert str(error) == sentence
     assert list(error.lines) == lines
@@ -259,5 +264,7 @@ def test_faults_are_one_sentence(text, sentence, lines):
 
 def test_a_decimal_comma_is_named():
     cells, layout, source = cells_of("1,5;2;3\nx;5;6\n", columns="ENZ", decimal=",")
-    faults = read_table(cells, layout, columns_by_word("ENZ", [], 3), source).faults
-    assert "finite number with decimal comma" in str(faults_error(faults, 2, source, layout, PATH))
+    faults = read_table(cells, layout, find_columns_by_word("ENZ", [], 3), source).faults
+    assert "finite number with decimal comma" in str(
+        describe_faults_of_rows(faults, 2, source, layout, PATH)
+    )

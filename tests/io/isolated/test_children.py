@@ -17,7 +17,7 @@ import pytest
 
 from tinsmith.io import ReadError, read
 from tinsmith.io.isolated import Limits, run_isolated, spooling, stream_isolated, workers
-from tinsmith.io.isolated.answers import Answer, BrokenMessageError, _empty, receive, send
+from tinsmith.io.isolated.answers import Answer, BrokenMessageError, _reserve_array, receive, send
 from tinsmith.io.isolated.child import _Buffered
 from tinsmith.io.reading import read_stream
 
@@ -66,10 +66,10 @@ def test_a_pipe_that_takes_only_some_bytes_gets_all(most):
 @pytest.mark.parametrize(("axes", "is_taken"), [(8, True), (9, False)])
 def test_arrays_have_at_most_eight_axes(axes, is_taken):
     if is_taken:
-        assert _empty("<f8", [1] * axes).ndim == axes
+        assert _reserve_array("<f8", [1] * axes).ndim == axes
         return
     with pytest.raises(BrokenMessageError):
-        _empty("<f8", [1] * axes)
+        _reserve_array("<f8", [1] * axes)
 
 
 def test_an_axis_may_be_empty_and_a_message_exactly_as_long_as_allowed():
@@ -111,7 +111,7 @@ CRASHED = "'some file' cannot be read, it is damaged: the library that reads thi
     ],
 )
 def test_each_end_of_a_child_has_its_sentence(code, timed_out, sentence):
-    error = workers._death(code, timed_out, FILE, LIMITS)
+    error = workers._describe_death(code, timed_out, FILE, LIMITS)
     assert str(error) == sentence
     assert error.path == FILE
 
@@ -121,7 +121,7 @@ def test_each_end_of_a_child_has_its_sentence(code, timed_out, sentence):
     [(1.0, "1 second"), (1.4, "1 second"), (1.6, "2 seconds"), (0.4, "0 seconds")],
 )
 def test_seconds_are_counted_in_words(seconds, words):
-    error = workers._death(None, True, FILE, Limits(seconds, 1))
+    error = workers._describe_death(None, True, FILE, Limits(seconds, 1))
     assert str(error) == TOO_LONG.format(words)
 
 
@@ -145,7 +145,7 @@ def test_seconds_are_counted_in_words(seconds, words):
     ],
 )
 def test_each_answer_that_is_none_has_its_sentence(answer, sentence):
-    error = workers._error(answer, FILE, LIMITS)
+    error = workers._describe_answer(answer, FILE, LIMITS)
     assert str(error) == sentence
     assert error.path == FILE
 
@@ -164,13 +164,13 @@ def test_python_is_looked_for_beside_the_program_and_then_in_its_prefix(tmp_path
     monkeypatch.setattr(sys, "executable", str(tmp_path / places[0]))
     monkeypatch.setattr(sys, "exec_prefix", str(tmp_path / "prefix"))
     for place in places:
-        assert workers._interpreter() == str(tmp_path / place)
+        assert workers._find_interpreter() == str(tmp_path / place)
         (tmp_path / place).unlink()
     with pytest.raises(ReadError, match="no Python interpreter"):
-        workers._interpreter()
+        workers._find_interpreter()
     (tmp_path / places[1]).mkdir()  # a folder of that name is none
     with pytest.raises(ReadError, match="no Python interpreter"):
-        workers._interpreter()
+        workers._find_interpreter()
 
 
 @pytest.mark.parametrize("name", ["", "qgis", "own/embedding"])
@@ -181,7 +181,7 @@ def test_a_program_that_embeds_python_is_no_interpreter(tmp_path, monkeypatch, n
     (tmp_path / "bin" / "python3").write_text("")
     monkeypatch.setattr(sys, "executable", name and str(tmp_path / name))
     monkeypatch.setattr(sys, "exec_prefix", str(tmp_path))
-    assert workers._interpreter() == str(tmp_path / "bin" / "python3")
+    assert workers._find_interpreter() == str(tmp_path / "bin" / "python3")
 
 
 # -------------------------------------------------------------------------- the pool
@@ -317,7 +317,7 @@ def test_a_fork_begins_clean_and_its_end_is_told():
     ],
 )
 def test_faults_of_the_system_are_sentences(error, sentence):
-    found = spooling.as_sentence(FILE, error)
+    found = spooling.describe_system_error(FILE, error)
     assert isinstance(found, ReadError)
     assert (str(found), found.path) == (sentence, FILE)
 
@@ -325,7 +325,7 @@ def test_faults_of_the_system_are_sentences(error, sentence):
 def test_a_file_is_read_where_it_is(tmp_path):
     path = tmp_path / "a.csv"
     path.write_text("1,2,3")
-    with spooling.ordinary_file(path) as found:
+    with spooling.open_ordinary_file(path) as found:
         assert found is path
 
 
@@ -335,7 +335,7 @@ def test_a_pipe_is_copied_and_the_copy_removed(tmp_path, name, copied):
     os.mkfifo(pipe)
     sender = threading.Thread(target=pipe.write_bytes, args=(b"x" * 200_000,))
     sender.start()
-    with spooling.ordinary_file(pipe) as copy:
+    with spooling.open_ordinary_file(pipe) as copy:
         assert copy.name == copied
         assert copy.read_bytes() == b"x" * 200_000
         folder = copy.parent
@@ -346,12 +346,12 @@ def test_a_pipe_is_copied_and_the_copy_removed(tmp_path, name, copied):
 
 def test_errors_of_a_copy_speak_of_the_pipe():
     path = Path("/dev/stdin")
-    with pytest.raises(ReadError) as caught, spooling.spooled(io.BytesIO(b"1"), path) as copy:
+    with pytest.raises(ReadError) as caught, spooling.spool(io.BytesIO(b"1"), path) as copy:
         raise ReadError(f"'{copy}' is not good, nor is {copy.name}.", path=copy)
     assert str(caught.value) == "'/dev/stdin' is not good, nor is stdin."
     assert caught.value.path == path
     other = Path("elsewhere")
-    with pytest.raises(ReadError) as caught, spooling.spooled(io.BytesIO(b"1"), path):
+    with pytest.raises(ReadError) as caught, spooling.spool(io.BytesIO(b"1"), path):
         raise ReadError("Not here.", path=other)
     assert caught.value.path == other
 
@@ -360,7 +360,7 @@ def test_errors_of_a_copy_speak_of_the_pipe():
 def test_devices_and_sockets_are_named(tmp_path, monkeypatch):
     with (
         pytest.raises(ReadError, match=r"'/dev/null' is a device or a terminal: a file or a pipe"),
-        spooling.ordinary_file(Path("/dev/null")),
+        spooling.open_ordinary_file(Path("/dev/null")),
     ):
         pass
     monkeypatch.chdir(tmp_path)
@@ -368,10 +368,10 @@ def test_devices_and_sockets_are_named(tmp_path, monkeypatch):
         server.bind("s")
         with (
             pytest.raises(ReadError, match=r"'s' is a socket: a file or a pipe is needed"),
-            spooling.ordinary_file(Path("s")),
+            spooling.open_ordinary_file(Path("s")),
         ):
             pass
-    with spooling.ordinary_file(tmp_path / "missing") as path:
+    with spooling.open_ordinary_file(tmp_path / "missing") as path:
         assert path == tmp_path / "missing"  # left to the reader
 
 

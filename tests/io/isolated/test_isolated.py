@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from tinsmith.io import ReadError
-from tinsmith.io.isolated import Limits, limits_for, run_isolated, stream_isolated
+from tinsmith.io.isolated import Limits, choose_limits, run_isolated, stream_isolated
 from tinsmith.io.isolated.answers import Answer, BrokenMessageError, receive, send
 
 FILE = Path("some file")
@@ -105,7 +105,7 @@ def test_memory_has_a_limit(name):
 
 
 def test_limits_grow_with_the_file():
-    small, large = limits_for(0), limits_for(100_000_000)
+    small, large = choose_limits(0), choose_limits(100_000_000)
     assert small.seconds == 5
     assert large.seconds == 105
     assert small.memory == 1 << 30

@@ -46,7 +46,7 @@ def test_the_inverse_leads_back(seed):
     np.testing.assert_allclose(
         there, np.array([affine[0:3], affine[3:6]]) @ [column, row, np.ones(20)]
     )
-    np.testing.assert_allclose(affine.inverse().apply(*there), [column, row], atol=1e-9)
+    np.testing.assert_allclose(affine.invert().apply(*there), [column, row], atol=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -64,10 +64,10 @@ def test_the_bounds_hold_all_cells(affine, bounds):
 
 def test_centres_lie_half_a_cell_in_and_the_middle_in_the_middle():
     raster = header()
-    x, y = dem._centres(raster, np.array([0, 6]), np.array([0, 2, 4]))
+    x, y = dem._compute_centres(raster, np.array([0, 6]), np.array([0, 2, 4]))
     assert x.tolist() == [[101, 113]] * 3
     assert y.T.tolist() == [[498.5, 492.5, 486.5]] * 2
-    assert dem._middle(raster).tolist() == [[107.0, 492.5, 0.0]]
+    assert dem._find_middle(raster).tolist() == [[107.0, 492.5, 0.0]]
 
 
 # -------------------------------------------------------------------- cells
@@ -80,7 +80,7 @@ def test_strips_hold_every_row_wanted_once(monkeypatch, stride, row, height, blo
     monkeypatch.setattr(dem, "_STRIP_CELLS", 12)
     cells = dem._Cells(2, row, 4, height, stride)
     raster = header(height=40, block_height=block)
-    strips = dem._strips_of_rows(raster, cells)
+    strips = dem._cut_into_strips(raster, cells)
     wanted = list(range(row, row + height, stride))
     assert [one for strip in strips for one in strip.tolist()] == wanted
     assert cells.columns.tolist() == list(range(2, 6, stride))
@@ -94,7 +94,7 @@ def test_strips_hold_every_row_wanted_once(monkeypatch, stride, row, height, blo
 def test_strips_are_whole_blocks_of_some_cells(monkeypatch, block, width, height):
     monkeypatch.setattr(dem, "_STRIP_CELLS", 12)
     cells = dem._Cells(0, 0, width, 9, 1)
-    assert dem._strip_height(header(block_height=block), cells) == height
+    assert dem._choose_strip_height(header(block_height=block), cells) == height
 
 
 @pytest.mark.parametrize(
@@ -108,7 +108,7 @@ def test_strips_are_whole_blocks_of_some_cells(monkeypatch, block, width, height
     ],
 )
 def test_bounds_choose_the_cells_that_they_touch(bounds, part):
-    cells = dem._cells(header(), Bounds(*map(float, bounds)), 1, PATH)
+    cells = dem._choose_cells(header(), Bounds(*map(float, bounds)), 1, PATH)
     assert (cells.column, cells.row, cells.width, cells.height) == part
     assert cells.bounds == Bounds(*bounds)
 
@@ -119,7 +119,9 @@ def test_bounds_choose_the_cells_that_they_touch(bounds, part):
      (110, 485, 105, 500), (100, 495, 114, 490)],
 )  # fmt: skip
 def test_bounds_beyond_the_raster_or_turned_are_refused(bounds):
-    said = sentence_of(OptionError, dem._cells, header(), Bounds(*map(float, bounds)), 1, PATH)
+    said = sentence_of(
+        OptionError, dem._choose_cells, header(), Bounds(*map(float, bounds)), 1, PATH
+    )
     assert said == (
         f"Invalid window {list(map(float, bounds))}: it must be an area that meets 'ground.tif', "
         "which spans easting 100 to 114 and northing 485 to 500."
@@ -128,7 +130,7 @@ def test_bounds_beyond_the_raster_or_turned_are_refused(bounds):
 
 @pytest.mark.parametrize("window", [(0, 0, 7, 5), (6, 4, 1, 1), [1, 1, 2, 3]])
 def test_a_window_in_cells_is_taken_as_it_is(window):
-    cells = dem._cells(header(), window, 1, PATH)
+    cells = dem._choose_cells(header(), window, 1, PATH)
     assert (cells.column, cells.row, cells.width, cells.height) == tuple(window)
     assert cells.bounds is None
 
@@ -139,7 +141,7 @@ def test_a_window_in_cells_is_taken_as_it_is(window):
      (6, 0, 2, 1), (0, 4, 1, 2)],
 )  # fmt: skip
 def test_a_window_must_lie_in_the_raster(window):
-    said = sentence_of(OptionError, dem._cells, header(), window, 1, PATH)
+    said = sentence_of(OptionError, dem._choose_cells, header(), window, 1, PATH)
     assert said == (
         f"Invalid window {list(window)}: it must be a part of 'ground.tif': the raster has 7 "
         "columns and 5 rows."
@@ -148,7 +150,7 @@ def test_a_window_must_lie_in_the_raster(window):
 
 @pytest.mark.parametrize("window", [(0, 0, 7), (0, 0, 7, 5, 1), (0.0, 0, 7, 5), 7, "abcd"])
 def test_a_window_is_four_whole_numbers(window):
-    said = sentence_of(OptionError, dem._cells, header(), window, 1, PATH)
+    said = sentence_of(OptionError, dem._choose_cells, header(), window, 1, PATH)
     shown = list(window) if isinstance(window, tuple) else window
     assert said == (
         f"Invalid window {shown!r}: it must be four whole numbers (first column, first row, width, "
@@ -161,9 +163,9 @@ def test_a_window_is_four_whole_numbers(window):
     [(None, 5, 4), (None, 0, 4), (None, 1.5, 4), ((0, 0, 3, 5), 3, 2), ((0, 0, 1, 1), 2, 1)],
 )
 def test_a_stride_leaves_two_rows_and_columns_at_least(window, stride, most):
-    said = sentence_of(OptionError, dem._cells, header(), window, stride, PATH)
+    said = sentence_of(OptionError, dem._choose_cells, header(), window, stride, PATH)
     assert f"Invalid stride {stride!r}: it must be a whole number from 1 to {most} for the" in said
-    assert dem._cells(header(), window, most, PATH).stride == most
+    assert dem._choose_cells(header(), window, most, PATH).stride == most
 
 
 # --------------------------------------------------------------------- room
@@ -173,10 +175,10 @@ def test_a_stride_leaves_two_rows_and_columns_at_least(window, stride, most):
 def test_no_more_cells_are_read_than_memory_holds(monkeypatch, width, height, stride):
     cells = dem._Cells(0, 0, width, height, stride)
     count = -(-width // stride) * -(-height // stride)
-    monkeypatch.setattr(dem, "_free_memory", lambda: 48 * count)
-    dem._require_room(cells, PATH)
-    monkeypatch.setattr(dem, "_free_memory", lambda: 48 * count - 1)
-    said = sentence_of(ReadError, dem._require_room, cells, PATH)
+    monkeypatch.setattr(dem, "_measure_free_memory", lambda: 48 * count)
+    dem._require_few_cells(cells, PATH)
+    monkeypatch.setattr(dem, "_measure_free_memory", lambda: 48 * count - 1)
+    said = sentence_of(ReadError, dem._require_few_cells, cells, PATH)
     assert said == (
         f"'ground.tif': {count:,} cells are to be read, and {count - 1:,} are the most that 0.0 "
         "GiB of memory can hold: read a part of it (window) or every n-th row and column (stride)."
@@ -184,9 +186,9 @@ def test_no_more_cells_are_read_than_memory_holds(monkeypatch, width, height, st
 
 
 def test_no_more_cells_are_read_than_a_tin_holds(monkeypatch):
-    monkeypatch.setattr(dem, "_free_memory", lambda: 1 << 60)
-    dem._require_room(dem._Cells(0, 0, 2**31 - 1, 1, 1), PATH)
-    said = sentence_of(ReadError, dem._require_room, dem._Cells(0, 0, 2**31, 1, 1), PATH)
+    monkeypatch.setattr(dem, "_measure_free_memory", lambda: 1 << 60)
+    dem._require_few_cells(dem._Cells(0, 0, 2**31 - 1, 1, 1), PATH)
+    said = sentence_of(ReadError, dem._require_few_cells, dem._Cells(0, 0, 2**31, 1, 1), PATH)
     assert "2,147,483,648 cells are to be read, and 2,147,483,647 are the most that a TIN" in said
 
 
@@ -200,9 +202,9 @@ def test_free_memory_is_what_the_system_tells(monkeypatch, tmp_path):
     for text, expected in files.items():
         (tmp_path / "meminfo").write_text(text)
         monkeypatch.setattr(dem, "Path", lambda _: tmp_path / "meminfo")
-        assert dem._free_memory() == expected
+        assert dem._measure_free_memory() == expected
     monkeypatch.setattr(dem, "Path", lambda _: tmp_path / "nowhere")
-    assert dem._free_memory() == 48 * (2**31 - 1)
+    assert dem._measure_free_memory() == 48 * (2**31 - 1)
 
 
 # ------------------------------------------------------------------- points
@@ -214,23 +216,27 @@ def test_a_strip_is_scaled_after_its_mask_and_before_nodata_of_the_caller():
     values = np.array([[1, 2, 3], [4, 5, 6]], np.int16)
     valid = np.array([[255, 0, 255], [1, 255, 255]], np.uint8)
     arrays = {"values": values, "valid": valid}
-    points, keep, missing = dem._strip(raster, 2, cells, np.array([0, 1]), arrays, np.array([12.0]))
+    points, keep, missing = dem._read_strip(
+        raster, 2, cells, np.array([0, 1]), arrays, np.array([12.0])
+    )
     assert points.tolist() == [[101, 498.5, 10.5], [103, 495.5, 12.5]]
     assert keep.tolist() == [[True, False, False], [False, True, False]]
     assert missing == 2  # one by the mask, one by the caller's word; the last column is outside
-    plain, _, _ = dem._strip(raster, 1, cells, np.array([0, 1]), arrays, np.array([]))
+    plain, _, _ = dem._read_strip(raster, 1, cells, np.array([0, 1]), arrays, np.array([]))
     assert plain[:, 2].tolist() == [1, 4, 5]
 
 
 def test_elevations_that_scale_makes_infinite_are_counted():
     points = np.array([[1, 2, 3], [4, 5, np.inf], [6, 7, np.nan]])
-    said = sentence_of(ReadError, dem._require_finite, points, 3, PATH)
+    said = sentence_of(ReadError, dem._require_finite_centres, points, 3, PATH)
     assert said == (
         "'ground.tif': 2 cells of band 3 would have an elevation that is not finite (first at 4, "
         "5): its scale or offset is wrong."
     )
-    assert "1 cell of band 1" in sentence_of(ReadError, dem._require_finite, points[:2], 1, PATH)
-    dem._require_finite(points[:1], 1, PATH)
+    assert "1 cell of band 1" in sentence_of(
+        ReadError, dem._require_finite_centres, points[:2], 1, PATH
+    )
+    dem._require_finite_centres(points[:1], 1, PATH)
 
 
 # ----------------------------------------------------------------- the band
@@ -261,11 +267,11 @@ BANDS = "Invalid band {}: it must be one of the bands 1 to 2 of 'ground.tif'."
     ],
 )
 def test_a_band_that_is_not_there_is_refused(given, band, kind, sentence):
-    assert sentence_of(kind, dem._band, header(**given), band, PATH) == sentence
+    assert sentence_of(kind, dem._choose_band, header(**given), band, PATH) == sentence
 
 
 def test_the_first_band_is_the_default():
-    assert [dem._band(header(), band, PATH) for band in (None, 1, 2)] == [1, 1, 2]
+    assert [dem._choose_band(header(), band, PATH) for band in (None, 1, 2)] == [1, 1, 2]
 
 
 @pytest.mark.parametrize(
@@ -287,9 +293,9 @@ def test_the_first_band_is_the_default():
 def test_what_has_no_elevations_or_no_place_is_refused(given, band, is_told, words):
     raster = header(**given)
     if words is None:
-        dem._require_elevations(raster, band, is_told, PATH)
+        dem._require_elevation_band(raster, band, is_told, PATH)
     else:
-        said = sentence_of(ReadError, dem._require_elevations, raster, band, is_told, PATH)
+        said = sentence_of(ReadError, dem._require_elevation_band, raster, band, is_told, PATH)
         assert words in said
 
 
@@ -317,7 +323,7 @@ FEET_UP = CRS.of("EPSG:32616+6360")
 )
 def test_the_unit_is_that_of_band_axis_or_caller(word, crs, declared, unit, n_notes):
     raster = header(units=[None, word])
-    found, notes = dem._elevation_unit(raster, 2, crs, declared)
+    found, notes = dem._find_elevation_unit(raster, 2, crs, declared)
     assert (found, len(notes)) == (unit, n_notes)
     if notes:
         assert notes == ["The unit of band 2, 'counts', is no length: the elevations have none."]
@@ -325,7 +331,7 @@ def test_the_unit_is_that_of_band_axis_or_caller(word, crs, declared, unit, n_no
 
 def test_two_units_are_refused_until_one_is_declared():
     raster = header(units=["m", None])
-    said = sentence_of(ReadError, dem._elevation_unit, raster, 1, FEET_UP, None)
+    said = sentence_of(ReadError, dem._find_elevation_unit, raster, 1, FEET_UP, None)
     assert said == (
         "'ground.tif' gives its elevations two units: metre (of band 1) and US survey foot (of the "
         "vertical axis of its CRS); declare the one that is right."

@@ -243,11 +243,13 @@ def test_window_that_the_raster_does_not_have(raster, window):
 
 @pytest.mark.parametrize("stride", [1, 3])
 def test_cells_are_no_more_than_an_int32_can_number(monkeypatch, stride):
-    monkeypatch.setattr(reading, "_free_memory", lambda: 1 << 60)
+    monkeypatch.setattr(reading, "_measure_free_memory", lambda: 1 << 60)
     most = np.iinfo(np.int32).max
-    reading._require_room(SimpleNamespace(width=stride * most, height=1, stride=stride), Path("a"))
+    reading._require_few_cells(
+        SimpleNamespace(width=stride * most, height=1, stride=stride), Path("a")
+    )
     with pytest.raises(ReadError, match=f"{most + 1:,} cells .* {most:,} are the most that a TIN"):
-        reading._require_room(
+        reading._require_few_cells(
             SimpleNamespace(width=stride * most + 1, height=1, stride=stride), Path("a")
         )
 
@@ -411,4 +413,4 @@ def test_raster_becomes_a_tin(raster):
 def test_cells_without_a_size_are_refused(transform):
     header = SimpleNamespace(transform=transform, bounds=(0.0, 0.0, 1.0, 1.0))
     with pytest.raises(ReadError, match="in which a cell has no size, or none that is finite"):
-        reading._require_place(header, Path("a.tif"))
+        reading._require_position(header, Path("a.tif"))

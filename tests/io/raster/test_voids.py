@@ -8,7 +8,7 @@ from click.testing import CliRunner
 
 import tinsmith as ts
 from tinsmith.cli import main
-from tinsmith.io.raster.voids import rings_around
+from tinsmith.io.raster.voids import trace_rings
 
 rasterio = pytest.importorskip("rasterio")
 
@@ -66,7 +66,7 @@ def test_the_surface_is_what_lies_between_cells(seed, tmp_path):
 
 def test_rings_visit_no_cell_twice_and_tell_inside_by_an_odd_number():
     valid = np.random.default_rng(3).random((30, 40)) < 0.8
-    rings = rings_around(valid)
+    rings = trace_rings(valid)
     assert all(len(set(ring.tolist())) == len(ring) >= 3 for ring in rings)
     cells = np.argwhere(valid)
     areas = [ring_area(cells[ring]) for ring in rings]

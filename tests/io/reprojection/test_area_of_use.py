@@ -9,7 +9,7 @@ import pyproj
 import pytest
 
 from tinsmith.crs import CRS
-from tinsmith.io.reprojection.area_of_use import AreaOfUse, _degrees, _width
+from tinsmith.io.reprojection.area_of_use import AreaOfUse, _convert_to_degrees, _measure_width
 
 UTM_16 = "EPSG:32616"
 NEW_ZEALAND = "EPSG:4167"  # 160.6 E to 171.2 W: across the antimeridian
@@ -149,12 +149,12 @@ def test_rows_outside_are_found_wherever_they_stand():
         UTM_16, np.column_stack([rng.uniform(-88, -86, 3000), rng.uniform(30, 45, 3000)])
     )
     area = area_of(UTM_16)
-    assert area.outside(xy).tolist() == area.outside(xy[:0]).tolist() == []
+    assert area.find_outside(xy).tolist() == area.find_outside(xy[:0]).tolist() == []
     for k, away in enumerate(([9e6, 0], [-9e6, 0], [0, 2e7], [0, -3e7])):
         rows = sorted(rng.choice(3000, k + 1, replace=False).tolist())
         moved = xy.copy()
         moved[rows] += away
-        assert area.outside(moved).tolist() == rows
+        assert area.find_outside(moved).tolist() == rows
 
 
 @pytest.mark.parametrize(
@@ -169,7 +169,7 @@ def test_rows_outside_are_found_wherever_they_stand():
     ],
 )
 def test_angles_are_degrees_from_greenwich(crs, place, angles):
-    found = np.concatenate(_degrees(CRS.of(crs), np.array([place])))
+    found = np.concatenate(_convert_to_degrees(CRS.of(crs), np.array([place])))
     assert found == pytest.approx(angles, abs=1e-6)
 
 
@@ -179,4 +179,4 @@ def test_angles_are_degrees_from_greenwich(crs, place, angles):
 )
 def test_areas_are_compared_by_their_size_in_degrees(west, east, south, north, size):
     area = SimpleNamespace(west=west, east=east, south=south, north=north)
-    assert _width(area) == size
+    assert _measure_width(area) == size

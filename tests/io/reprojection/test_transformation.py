@@ -48,7 +48,7 @@ def test_degrees_are_told_apart():
     ],
 )
 def test_fitting_zone_holds_the_place(longitude, latitude, code):
-    assert crs.fitting_utm(longitude, latitude) == f"EPSG:{code}"
+    assert crs.find_utm_zone(longitude, latitude) == f"EPSG:{code}"
     area = pyproj.CRS(code).area_of_use
     assert area.south <= latitude <= area.north
     assert area.west <= longitude <= area.east or abs(longitude) == 180.0

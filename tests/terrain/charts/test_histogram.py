@@ -7,7 +7,7 @@ import pytest
 
 from tinsmith import TIN
 from tinsmith.terrain import histogram
-from tinsmith.terrain.charts.histogram import _log_ticks
+from tinsmith.terrain.charts.histogram import _choose_log_ticks
 from tinsmith.tin import Quality, quality
 
 pytest.importorskip("matplotlib")
@@ -181,7 +181,7 @@ def test_few_far_values_are_off_the_axis_and_told():
     ],
 )
 def test_ticks_of_a_logarithmic_axis_are_one_two_five_or_powers_alone(low, high, expected):
-    assert _log_ticks(low, high) == pytest.approx(expected)
+    assert _choose_log_ticks(low, high) == pytest.approx(expected)
 
 
 @pytest.mark.parametrize("seed", range(40))
@@ -189,7 +189,7 @@ def test_ticks_of_any_logarithmic_axis_are_few_and_within(seed):
     rng = np.random.default_rng(seed)
     low = 10.0 ** rng.uniform(-6, 6)
     high = low * 10.0 ** rng.uniform(0.2, 18)
-    places = _log_ticks(low, high)
+    places = _choose_log_ticks(low, high)
     assert len(places) == 0 or 3 <= len(places) <= 12
     assert all(low <= place <= high for place in places)
     assert places == sorted(set(places))

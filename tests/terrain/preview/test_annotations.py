@@ -18,11 +18,17 @@ from tinsmith.terrain.preview.annotations import (
     annotate,
     scale_bar_length,
 )
-from tinsmith.terrain.preview.camera import VIEWS, View, aim, ground_axes, pixels_per_unit
-from tinsmith.terrain.preview.overlay import Overlay, _wide_font
-from tinsmith.terrain.preview.scene import add_lights, scene_points
-from tinsmith.terrain.preview.tints import tints
-from tinsmith.terrain.units import METRE, ground_of
+from tinsmith.terrain.preview.camera import (
+    VIEWS,
+    View,
+    aim,
+    measure_pixels_per_unit,
+    project_ground_axes,
+)
+from tinsmith.terrain.preview.overlay import Overlay, _find_wide_font
+from tinsmith.terrain.preview.scene import add_lights, place_vertices
+from tinsmith.terrain.preview.tints import interpolate_tints
+from tinsmith.terrain.units import METRE, find_ground
 from tinsmith.tin import Bounds
 
 pv = pytest.importorskip("pyvista")
@@ -41,20 +47,20 @@ class Recorder:
     def clear(self):
         self.__init__()
 
-    def rectangle(self, corner, size, color):
+    def draw_rectangle(self, corner, size, color):
         self.rectangles.append((*corner, *size, tuple(color)))
 
-    def polygon(self, corners, color):
+    def draw_polygon(self, corners, color):
         self.polygons.append((np.array(corners, float), tuple(color)))
 
-    def line(self, places, color, *, width=1.0):
+    def draw_line(self, places, color, *, width=1.0):
         self.lines.append((np.array(places, float), tuple(color)))
 
-    def text(self, place, words, color, *, size, bold=False, align="left"):
+    def draw_text(self, place, words, color, *, size, bold=False, align="left"):
         self.texts.append((words, *place, align))
         self.styles.append((tuple(color), size, bold))
 
-    def text_width(self, words, *, size, bold=False):
+    def measure_text(self, words, *, size, bold=False):
         return 0.6 * size * len(words)
 
     def place_of(self, words):
@@ -85,8 +91,8 @@ def tinsmith_hill(crs):
 @pytest.mark.parametrize("crs", ["EPSG:32616", "EPSG:2264+5703"])
 def test_elevations_are_drawn_with_the_exaggeration(crs, factor):
     tin = tinsmith_hill(crs)
-    ground = ground_of(tin)
-    plain, drawn = scene_points(tin, ground, 1.0), scene_points(tin, ground, factor)
+    ground = find_ground(tin)
+    plain, drawn = place_vertices(tin, ground, 1.0), place_vertices(tin, ground, factor)
     np.testing.assert_array_equal(drawn[:, :2], plain[:, :2])
     np.testing.assert_allclose(np.ptp(drawn[:, 2]), factor * np.ptp(plain[:, 2]), rtol=1e-12)
     assert np.ptp(drawn[:, 2]) == pytest.approx(
@@ -110,7 +116,7 @@ def test_the_caption_states_the_exaggeration_that_is_drawn(factor):
 @pytest.mark.parametrize("extent", [0.7, 37.0, 500.0, 8_300.0, 120_000.0])
 def test_the_scale_bar_is_as_long_as_it_says(extent):
     overlay, camera = annotated(VIEWS["top"], extent=extent)
-    pixels = pixels_per_unit(camera, SHEET.height)
+    pixels = measure_pixels_per_unit(camera, SHEET.height)
     length, shown, symbol = scale_bar_length(METRE, pixels)
     parts = [r for r in overlay.rectangles if r[3] == 7.0]
     assert [color for *_, color in parts] == [INK, PAPER, INK, PAPER]
@@ -142,7 +148,7 @@ def test_kilometres_begin_at_one(length, expected):
 @pytest.mark.parametrize("view", [*VIEWS.values(), View(90.0, 90.0), View(300.0, 20.0)])
 def test_needle_and_letter_lie_to_the_north(view):
     overlay, camera = annotated(view)
-    axes = ground_axes(camera)
+    axes = project_ground_axes(camera)
     (left, dark), (right, light) = overlay.polygons
     assert (dark, light) == (INK, PAPER)
     circle = max((p for p, _ in overlay.lines), key=len)
@@ -181,7 +187,7 @@ def test_the_legend_rises_from_left_to_right(elevations):
     overlay, _ = annotated(VIEWS["top"], elevations=elevations)
     low, high = elevations
     boxes = [r for r in overlay.rectangles if r[3] == 14.0]
-    assert [color for *_, color in boxes] == [tuple(c) for c in tints(100).tolist()]
+    assert [color for *_, color in boxes] == [tuple(c) for c in interpolate_tints(100).tolist()]
     assert (np.diff([x for x, *_ in boxes]) > 0).all()
     left = boxes[0][0]
     width = boxes[-1][0] - left + boxes[1][0] - left
@@ -228,7 +234,7 @@ def test_a_title_too_long_for_the_sheet_is_cut_and_shows_it():
     annotate(overlay, SHEET, caption, camera)
     (title,) = [said for said, *_ in overlay.texts if said.startswith("word")]
     assert title.endswith("...")
-    assert 0.8 * 1312 < overlay.text_width(title, size=30.0) <= 1312
+    assert 0.8 * 1312 < overlay.measure_text(title, size=30.0) <= 1312
 
 
 @pytest.mark.parametrize("length", [100, 101])
@@ -238,17 +244,17 @@ def test_a_title_is_cut_to_the_last_letter_that_fits(length):
     aim(camera, np.eye(3), view=VIEWS["top"], frame=SHEET.frame, size=(1400, 900))
     annotate(overlay, SHEET, Caption("x" * length, "short", 1.0, (0.0, 1.0), "m", METRE), camera)
     (title,) = [said for said, *_ in overlay.texts if said.startswith("x")]
-    letter = overlay.text_width("x", size=30.0)
-    assert 1312 - letter < overlay.text_width(title, size=30.0) <= 1312
+    letter = overlay.measure_text("x", size=30.0)
+    assert 1312 - letter < overlay.measure_text(title, size=30.0) <= 1312
 
 
 def test_every_word_stands_where_the_layout_has_it():
     """The sheet as a whole, so that nothing moves, is lost or says something else unseen."""
     overlay, camera = annotated(VIEWS["oblique"])
-    pixels = pixels_per_unit(camera, SHEET.height)
+    pixels = measure_pixels_per_unit(camera, SHEET.height)
     assert 100 * pixels <= 260 < 200 * pixels
     tip = overlay.polygons[0][0][0]
-    north = ground_axes(camera)[1]
+    north = project_ground_axes(camera)[1]
     letter = tip + 12.0 * north / np.linalg.norm(north) - (0, 6)
     expected = [
         ("Title", 44.0, 838.0, "left"),
@@ -316,7 +322,7 @@ def test_numbers_of_the_legend_do_not_run_into_each_other(elevations, words):
     found = sorted((x, said) for said, x, y, _ in overlay.texts if y == 43.0)
     assert [said for _, said in found] == words
     for (x, said), (other, after) in itertools.pairwise(found):
-        room = (overlay.text_width(said, size=13) + overlay.text_width(after, size=13)) / 2
+        room = (overlay.measure_text(said, size=13) + overlay.measure_text(after, size=13)) / 2
         assert other - x >= room + 12.0
     inner = [float(said.replace(",", "")) for _, said in found[1:-1]]
     for (x, _), value in zip(found[1:-1], inner, strict=True):
@@ -354,7 +360,7 @@ def test_the_settings_of_vtk_come_back_after_drawing():
     try:
         for backend in (words.MathText, words.FreeType):
             words.SetDefaultBackend(backend)
-            with drawing._plain_vtk():
+            with drawing._keep_vtk_plain():
                 assert words.GetDefaultBackend() == words.FreeType
             assert words.GetDefaultBackend() == backend
     finally:
@@ -369,18 +375,18 @@ def test_what_an_overlay_draws_is_where_it_was_asked_for(factor, can_draw):
     plotter.background_color = "white"
     plotter.disable_anti_aliasing()
     overlay = Overlay(plotter.renderer, factor=factor)
-    overlay.rectangle((20, 10), (60, 30), red)
-    overlay.polygon([(100, 10), (140, 10), (100, 50)], green)
-    overlay.line([(20, 80), (80, 80), (80, 110)], blue, width=3.0)
+    overlay.draw_rectangle((20, 10), (60, 30), red)
+    overlay.draw_polygon([(100, 10), (140, 10), (100, 50)], green)
+    overlay.draw_line([(20, 80), (80, 80), (80, 110)], blue, width=3.0)
     for align in ("left", "center", "right"):
-        overlay.text(
+        overlay.draw_text(
             (150, {"left": 20, "center": 60, "right": 95}[align]),
             "HHH",
             black,
             size=16,
             align=align,
         )
-    width = overlay.text_width("HHH", size=16)
+    width = overlay.measure_text("HHH", size=16)
     shot = plotter.screenshot(return_img=True)[::-1].astype(int)
 
     def box_of(color):
@@ -411,7 +417,7 @@ def test_what_an_overlay_draws_is_where_it_was_asked_for(factor, can_draw):
 
 
 def test_letters_beyond_latin_are_written_with_a_font_that_has_them():
-    names = [_wide_font(bold=bold).name for bold in (False, True)]
+    names = [_find_wide_font(bold=bold).name for bold in (False, True)]
     assert names == ["DejaVuSans.ttf", "DejaVuSans-Bold.ttf"]
     overlay, chosen = Overlay(None), []
 

@@ -16,12 +16,18 @@ from tinsmith.crs import FOOT, METRE
 from tinsmith.terrain import OptionError, RenderError, preview, slope
 from tinsmith.terrain.preview import opengl
 from tinsmith.terrain.preview.annotations import Sheet, scale_bar_length
-from tinsmith.terrain.preview.camera import VIEWS, View, aim, ground_axes, pixels_per_unit
+from tinsmith.terrain.preview.camera import (
+    VIEWS,
+    View,
+    aim,
+    measure_pixels_per_unit,
+    project_ground_axes,
+)
 from tinsmith.terrain.preview.picture import PICTURE_SUFFIXES
 from tinsmith.terrain.preview.scene import choose_exaggeration
-from tinsmith.terrain.preview.tints import lightness, tints
-from tinsmith.terrain.rounding import format_number, round_down, ticks
-from tinsmith.terrain.units import NOT_KNOWN, ground_of
+from tinsmith.terrain.preview.tints import compute_lightness, interpolate_tints
+from tinsmith.terrain.rounding import choose_ticks, format_number, round_down
+from tinsmith.terrain.units import NOT_KNOWN, find_ground
 from tinsmith.tin import Bounds
 
 pv = pytest.importorskip("pyvista")
@@ -155,14 +161,14 @@ class TestPicture:
         path = preview(tin, output=tmp_path / "a.png", size=(400, 250), view="top")
         center = picture(path)[115:125, 195:205].reshape(-1, 3)
         assert (center == center[0]).all()
-        assert np.abs(center[0].astype(int) - tints(257)[128]).max() <= 6
+        assert np.abs(center[0].astype(int) - interpolate_tints(257)[128]).max() <= 6
 
     def test_higher_ground_is_lighter(self, tmp_path):
         tin = triangulate([[0, 0, 0], [200, 0, 0], [200, 200, 1], [0, 200, 1]])
         path = preview(tin, output=tmp_path / "a.png", size=(400, 250), view="top", exaggeration=1)
         column = in_frame(picture(path))
         column = column[5:-5, column.shape[1] // 2]
-        light = lightness(column)
+        light = compute_lightness(column)
         assert light[0] > light[-1] + 0.3
         assert (np.diff(light) <= 0.004).all()
 
@@ -195,7 +201,7 @@ class TestPicture:
         written = []
         monkeypatch.setattr(opengl, "require_window", lambda: None)
         monkeypatch.setattr(
-            module.Overlay, "text", lambda self, place, words, *_, **__: written.append(words)
+            module.Overlay, "draw_text", lambda self, place, words, *_, **__: written.append(words)
         )
         plotter = pv.Plotter
 
@@ -270,9 +276,9 @@ def test_without_pyvista_the_extra_is_named(tmp_path, monkeypatch):
 @pytest.fixture
 def fresh_probe():
     """Forget what the probe said, before and after."""
-    opengl._window_class.cache_clear()
+    opengl._find_window_class.cache_clear()
     yield
-    opengl._window_class.cache_clear()
+    opengl._find_window_class.cache_clear()
 
 
 @pytest.mark.usefixtures("fresh_probe")
@@ -348,13 +354,13 @@ def test_another_process_draws_without_a_word_on_stderr(tmp_path):
 )
 def test_the_exaggeration_lifts_the_relief_to_a_tenth_of_the_extent(relief, expected):
     tin = dipping(0, steepness=relief / 240, extent=240.0)
-    assert choose_exaggeration(tin, ground_of(tin)) == expected
+    assert choose_exaggeration(tin, find_ground(tin)) == expected
 
 
 @pytest.mark.parametrize("relief", np.geomspace(0.25, 24.0, 12))
 def test_a_chosen_exaggeration_is_not_too_much(relief):
     tin = dipping(90, steepness=relief / 240, extent=240.0)
-    drawn = choose_exaggeration(tin, ground_of(tin)) * np.ptp(tin.points[:, 2])
+    drawn = choose_exaggeration(tin, find_ground(tin)) * np.ptp(tin.points[:, 2])
     assert drawn >= 24.0 * (1 - 1e-9)
     assert drawn <= 48.0 * (1 + 1e-9)
 
@@ -387,7 +393,7 @@ def test_the_scale_holds_from_left_to_right_and_all_points_are_in_the_frame(view
     across = view.axes[0]
     ends = projected(camera, np.array([points[0], points[0] + 100 * across]), size)
     drawn = np.subtract(*ends[::-1])
-    assert drawn == pytest.approx([100 * pixels_per_unit(camera, size[1]), 0.0], abs=1e-6)
+    assert drawn == pytest.approx([100 * measure_pixels_per_unit(camera, size[1]), 0.0], abs=1e-6)
 
 
 def projected(camera, points, size):
@@ -405,8 +411,8 @@ def test_the_north_arrow_points_where_the_camera_sees_north(view):
     size = (1000, 1000)
     aim(camera, np.eye(3) * 9, view=view, frame=Bounds(0, 0, 1000, 1000), size=size)
     start, north = projected(camera, np.array([[0, 0, 0], [0, 1.0, 0]]), size)
-    expected = (north - start) / pixels_per_unit(camera, 1000)
-    np.testing.assert_allclose(ground_axes(camera)[1], expected, atol=1e-9)
+    expected = (north - start) / measure_pixels_per_unit(camera, 1000)
+    np.testing.assert_allclose(project_ground_axes(camera)[1], expected, atol=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -441,7 +447,7 @@ def test_a_view_is_read_back_from_the_camera_and_put_in_words(view, caption):
     ],
 )
 def test_units_come_from_the_crs(crs, name, unit, elevation_unit, scale):
-    ground = ground_of(hill(crs=crs, steps=3))
+    ground = find_ground(hill(crs=crs, steps=3))
     assert (ground.unit.symbol, ground.elevation_unit.symbol) == (unit, elevation_unit)
     assert ground.scale == pytest.approx((1.0, 1.0, scale))
     assert name in (None, ground.crs_name)
@@ -454,7 +460,7 @@ def test_degrees_are_drawn_as_long_as_they_are(latitude):
     corners = np.array([(10, -0.005), (10.01, -0.005), (10.01, 0.005), (10, 0.005)])
     corners[:, 1] += latitude
     tin = triangulate(np.column_stack([corners, [1, 2, 3, 4]]), crs="EPSG:4326")
-    ground, geod = ground_of(tin), Geod(ellps="WGS84")
+    ground, geod = find_ground(tin), Geod(ellps="WGS84")
     east = geod.inv(10, latitude, 10.01, latitude)[2] / 0.01
     north = geod.inv(10, latitude - 0.005, 10, latitude + 0.005)[2] / 0.01
     assert ground.scale == pytest.approx((east, north, 1.0), rel=1e-6)
@@ -465,7 +471,7 @@ def test_degrees_are_drawn_as_long_as_they_are(latitude):
 
 
 def test_lightness_rises_evenly_with_elevation():
-    light = lightness(tints(32))
+    light = compute_lightness(interpolate_tints(32))
     steps = np.diff(light)
     np.testing.assert_allclose(steps, steps.mean(), atol=0.004)
     assert light[0] < 0.55
@@ -475,17 +481,17 @@ def test_lightness_rises_evenly_with_elevation():
 def test_lightness_of_black_white_and_grey():
     # CSS Color 4: the mid grey #808080 has Oklab lightness 0.5999.
     grey = np.array([[0] * 3, [128] * 3, [255] * 3], np.uint8)
-    np.testing.assert_allclose(lightness(grey), [0.0, 0.5999, 1.0], atol=1e-3)
+    np.testing.assert_allclose(compute_lightness(grey), [0.0, 0.5999, 1.0], atol=1e-3)
 
 
 def test_tints_go_from_moss_green_to_limestone():
-    assert tints(5).tolist() == TINTS
-    assert tints(2).tolist() == [TINTS[0], TINTS[-1]]
-    np.testing.assert_array_equal(tints(256)[[0, 255]], [TINTS[0], TINTS[-1]])
+    assert interpolate_tints(5).tolist() == TINTS
+    assert interpolate_tints(2).tolist() == [TINTS[0], TINTS[-1]]
+    np.testing.assert_array_equal(interpolate_tints(256)[[0, 255]], [TINTS[0], TINTS[-1]])
 
 
 def test_no_tint_looks_like_water():
-    red, green, blue = tints().astype(int).T
+    red, green, blue = interpolate_tints().astype(int).T
     assert (blue < np.maximum(red, green)).all()
 
 
@@ -506,7 +512,7 @@ def test_lengths_are_rounded_down_to_the_leads_asked_for():
 
 @pytest.mark.parametrize(("low", "high"), [(0, 971), (211.3, 220.5), (-5, 5), (1e-3, 2e-3)])
 def test_ticks_are_within_evenly_spaced_and_few(low, high):
-    values = np.array(ticks(low, high, count=5))
+    values = np.array(choose_ticks(low, high, count=5))
     assert low <= values[0]
     assert values[-1] <= high
     assert 3 <= len(values) <= 10
@@ -514,7 +520,7 @@ def test_ticks_are_within_evenly_spaced_and_few(low, high):
 
 
 def test_level_ground_has_no_ticks():
-    assert ticks(5.0, 5.0, count=5) == []
+    assert choose_ticks(5.0, 5.0, count=5) == []
 
 
 @pytest.mark.parametrize(

@@ -11,14 +11,14 @@ import pytest
 from tinsmith import TIN, Breakline, Water, triangulate
 from tinsmith.terrain.linework import add_lines
 from tinsmith.terrain.preview.scene import (
-    _vertex_normals,
+    _average_normals,
     add_terrain,
     choose_exaggeration,
     fade_edges,
-    scene_points,
+    place_vertices,
 )
-from tinsmith.terrain.preview.tints import tints
-from tinsmith.terrain.units import ground_of
+from tinsmith.terrain.preview.tints import interpolate_tints
+from tinsmith.terrain.units import find_ground
 
 pv = pytest.importorskip("pyvista")
 
@@ -49,13 +49,13 @@ def terrain(width, height, *, relief=8.0, count=30, crs=None):
 @pytest.mark.parametrize("shape", [(1000.0, 10.0), (10.0, 1000.0)])
 def test_the_exaggeration_goes_by_the_longer_side(shape):
     tin = triangulate([[0, 0, 0], [shape[0], 0, 1], [0, shape[1], 20], [*shape, 1]])
-    assert choose_exaggeration(tin, ground_of(tin)) == 5.0
+    assert choose_exaggeration(tin, find_ground(tin)) == 5.0
 
 
 @pytest.mark.parametrize(("relief", "factor"), [(1e-6, 100.0), (0.5, 20.0), (10.0, 1.0)])
 def test_the_exaggeration_ends_at_a_hundred(relief, factor):
     tin = triangulate([[0, 0, 0], [100, 0, relief], [0, 100, 0]])
-    assert choose_exaggeration(tin, ground_of(tin)) == factor
+    assert choose_exaggeration(tin, find_ground(tin)) == factor
 
 
 # ------------------------------------------------------------------------- edges
@@ -68,7 +68,7 @@ def test_edges_fade_with_the_side_of_the_triangles(side):
     x, y = (part.ravel() for part in np.meshgrid(axis, axis))
     tin = triangulate(np.column_stack([x, y, np.zeros(25)]))
     actor = SimpleNamespace(prop=SimpleNamespace(edge_opacity=None))
-    fade_edges(actor, tin, ground_of(tin), side)
+    fade_edges(actor, tin, find_ground(tin), side)
     assert actor.prop.edge_opacity == pytest.approx(max(0.42 * min(side / 16, 1.0), 0.04))
 
 
@@ -79,7 +79,7 @@ def test_edges_fade_by_the_length_on_the_ground():
         corners = [[x, latitude + y, 0] for x in (0, 0.001) for y in (-0.0005, 0.0005)]
         tin = triangulate(corners, crs="EPSG:4326")
         actor = SimpleNamespace(prop=SimpleNamespace(edge_opacity=None))
-        fade_edges(actor, tin, ground_of(tin), 0.1)
+        fade_edges(actor, tin, find_ground(tin), 0.1)
         strengths.append(actor.prop.edge_opacity)
     assert strengths[1] == pytest.approx(strengths[0] * math.sqrt(0.5), rel=0.01)
     assert 0.04 < strengths[1] < strengths[0] < 0.42
@@ -91,7 +91,7 @@ def test_edges_fade_by_the_length_on_the_ground():
 @pytest.mark.parametrize("edges", [True, False])
 def test_surface_and_block_are_handed_over_with_their_colours(edges):
     tin, plotter = terrain(60.0, 40.0), Plotter()
-    points = scene_points(tin, ground_of(tin), 2.0)
+    points = place_vertices(tin, find_ground(tin), 2.0)
     actor, seen = add_terrain(plotter, tin, points, edges=edges)
     surface, block = plotter.meshes
     np.testing.assert_array_equal(surface.regular_faces, tin.triangles)
@@ -101,7 +101,7 @@ def test_surface_and_block_are_handed_over_with_their_colours(edges):
     table = above["cmap"]
     low, high = tin.points[:, 2].min(), tin.points[:, 2].max()
     assert table.scalar_range == pytest.approx((low, high))
-    np.testing.assert_array_equal(table.values[:, :3], tints())
+    np.testing.assert_array_equal(table.values[:, :3], interpolate_tints())
     assert (table.values[:, 3] == 255).all()
     assert above["scalars"] == "elevation"
     assert above["show_scalar_bar"] is False
@@ -124,7 +124,7 @@ def test_surface_and_block_are_handed_over_with_their_colours(edges):
 def test_the_block_closes_the_terrain_down_to_a_level_base(shape):
     """Walls that face outwards, whose area is that below the rim."""
     tin, plotter = terrain(*shape), Plotter()
-    points = scene_points(tin, ground_of(tin), 3.0)
+    points = place_vertices(tin, find_ground(tin), 3.0)
     add_terrain(plotter, tin, points, edges=False)
     block = plotter.meshes[1]
     base = points[:, 2].min() - 0.025 * 60.0
@@ -145,7 +145,7 @@ def test_the_block_closes_the_terrain_down_to_a_level_base(shape):
 
 def test_level_ground_has_the_middle_tint():
     tin, plotter = triangulate([[0, 0, 5], [9, 0, 5], [0, 9, 5]]), Plotter()
-    add_terrain(plotter, tin, scene_points(tin, ground_of(tin), 1.0), edges=False)
+    add_terrain(plotter, tin, place_vertices(tin, find_ground(tin), 1.0), edges=False)
     assert plotter.options[0]["cmap"].scalar_range == (4.5, 5.5)
 
 
@@ -158,14 +158,14 @@ def test_normals_are_means_of_the_triangles_weighted_by_their_area_in_the_plane(
         area = normal[2] / 2
         sums[triangle] += area * normal / np.linalg.norm(normal)
     expected = sums / np.linalg.norm(sums, axis=1, keepdims=True)
-    found = _vertex_normals(tin.points, tin.triangles)
+    found = _average_normals(tin.points, tin.triangles)
     assert found.dtype == np.float32
     np.testing.assert_allclose(found, expected, atol=1e-6)
 
 
 def test_a_vertex_without_triangles_has_no_normal():
     points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [5, 5, 5]], float)
-    found = _vertex_normals(points, np.array([[0, 1, 2]], np.int32))
+    found = _average_normals(points, np.array([[0, 1, 2]], np.int32))
     assert found.tolist() == [[0, 0, 1], [0, 0, 1], [0, 0, 1], [0, 0, 0]]
 
 
@@ -187,7 +187,7 @@ def test_each_kind_of_line_is_drawn_with_its_pen(factor):
         boundary=[[[0, 0], [100, 0], [100, 100], [0, 100]]],
     )
     plotter = Plotter()
-    actors = add_lines(plotter, tin, scene_points(tin, ground_of(tin), 1.0), factor=factor)
+    actors = add_lines(plotter, tin, place_vertices(tin, find_ground(tin), 1.0), factor=factor)
     assert len(actors) == 5
     pens = [(one["color"], one["line_width"] / factor) for one in plotter.options]
     assert [width for _, width in pens] == pytest.approx([1.8, 1.7, 2.0, 2.4, 2.6])

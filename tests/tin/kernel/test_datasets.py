@@ -8,7 +8,7 @@ from support import oracles
 from support.kernel_datasets import (
     DATASETS,
     Method,
-    dataset,
+    make_points,
     require_same_by_threads,
     require_same_growth,
     require_sound,
@@ -28,7 +28,7 @@ each_data_set = pytest.mark.parametrize("name", DATASETS)
 
 @each_data_set
 def test_data_set_passes_the_check(name):
-    points = dataset(name, N)
+    points = make_points(name, N)
     tin = require_sound(points)
     assert len(tin.points) == len(points)
     assert len(tin.triangles) == 2 * len(points) - 2 - oracles.hull_size(points)
@@ -37,7 +37,7 @@ def test_data_set_passes_the_check(name):
 @each_data_set
 def test_shuffled_data_set_gives_the_same_arrays(name):
     """The order of the triangles is a function of the point set too."""
-    points = dataset(name, N)
+    points = make_points(name, N)
     wanted = _kernel.grow(points)
     for seed in range(3):
         row = np.random.default_rng(seed).permutation(len(points))
@@ -48,7 +48,7 @@ def test_shuffled_data_set_gives_the_same_arrays(name):
 
 @each_data_set
 def test_shuffled_data_set_gives_the_same_tin(name):
-    points = dataset(name, N)
+    points = make_points(name, N)
     row = np.random.default_rng(4).permutation(len(points))
     wanted, found = ts.triangulate(points), ts.triangulate(points[row], threads=3)
     np.testing.assert_array_equal(found.points[found.vertex_of], points[row])
@@ -58,13 +58,13 @@ def test_shuffled_data_set_gives_the_same_tin(name):
 @each_data_set
 @pytest.mark.parametrize("method", [Method.GROWTH, Method.AUTOMATIC], ids=lambda m: m.name)
 def test_threads_give_the_same_arrays(name, method):
-    require_same_by_threads(dataset(name, N), THREADS, methods=(method,))
+    require_same_by_threads(make_points(name, N), THREADS, methods=(method,))
 
 
 @each_data_set
 @pytest.mark.parametrize("threads", [1, 3])
 def test_vector_paths_give_the_same_arrays(name, threads):
-    points = dataset(name, N)
+    points = make_points(name, N)
     wanted = _kernel.grow(points, method=Method.GROWTH, path=_kernel.VECTOR_PATHS[0])
     for path in _kernel.VECTOR_PATHS[1:]:
         found = _kernel.grow(points, method=Method.GROWTH, path=path, threads=threads)
@@ -73,7 +73,7 @@ def test_vector_paths_give_the_same_arrays(name, threads):
 
 @each_data_set
 def test_methods_give_the_same_arrays(name):
-    points = dataset(name, N)
+    points = make_points(name, N)
     wanted = _kernel.grow(points, method=Method.INSERTION)
     for method in (Method.GROWTH, Method.AUTOMATIC):
         require_same_growth(_kernel.grow(points, method=method), wanted)
@@ -85,14 +85,14 @@ def test_methods_give_the_same_arrays(name):
 @pytest.mark.proof
 @each_data_set
 def test_a_hundred_thousand_points_pass_the_check(name):
-    points = dataset(name, 100_000)
+    points = make_points(name, 100_000)
     assert len(require_sound(points).points) == len(points)
 
 
 @pytest.mark.proof
 @each_data_set
 def test_a_hundred_thousand_points_give_the_same_arrays_by_every_way(name):
-    points = dataset(name, 100_000)
+    points = make_points(name, 100_000)
     methods = [Method.INSERTION, Method.AUTOMATIC]
     if name not in QUADRATIC_TO_GROW:
         methods.append(Method.GROWTH)
@@ -109,7 +109,7 @@ def test_a_hundred_thousand_points_give_the_same_arrays_by_every_way(name):
 @pytest.mark.proof
 @each_data_set
 def test_a_million_points_pass_the_check_of_shape(name):
-    points = dataset(name, 1_000_000)
+    points = make_points(name, 1_000_000)
     tin = ts.triangulate(points)
     assert len(tin.points) == len(points)
     ts.check(tin, level=2).raise_if_failed()

@@ -7,7 +7,7 @@ import pytest
 from support.kernel_datasets import (
     DATASETS,
     Method,
-    dataset,
+    make_points,
     require_same_growth,
     require_sound,
     with_heights,
@@ -32,7 +32,7 @@ UNEVEN = [
 
 
 def work_per_triangle(name, **options):
-    counts = _kernel.count_work(dataset(name, N), **options)
+    counts = _kernel.count_work(make_points(name, N), **options)
     return {key: count / counts["triangles"] for key, count in counts.items()}
 
 
@@ -75,27 +75,27 @@ def test_points_in_general_position_need_no_exact_decisions(name):
 @pytest.mark.parametrize("name", EVEN)
 @pytest.mark.parametrize("method", [Method.GROWTH, Method.AUTOMATIC], ids=lambda m: m.name)
 def test_each_triangle_is_searched_once(name, method):
-    counts = _kernel.count_work(dataset(name, N), method=method)
+    counts = _kernel.count_work(make_points(name, N), method=method)
     assert counts["searches"] == counts["triangles"]
 
 
 @pytest.mark.parametrize("name", DATASETS)
 def test_growth_alone_searches_each_triangle_once(name):
-    counts = _kernel.count_work(dataset(name, 2_000), method=Method.GROWTH)
+    counts = _kernel.count_work(make_points(name, 2_000), method=Method.GROWTH)
     assert counts["searches"] == counts["triangles"]
 
 
 @pytest.mark.parametrize("name", EVEN)
 def test_threads_share_the_searches(name):
     """Only triangles across a seam are found twice: about three a column of cells and seam."""
-    counts = _kernel.count_work(dataset(name, N), threads=4)
+    counts = _kernel.count_work(make_points(name, N), threads=4)
     seams, columns = 3, (N / 2) ** 0.5
     assert 0 < counts["searches"] - counts["triangles"] < 6 * seams * columns
 
 
 @pytest.mark.parametrize("name", DATASETS)
 def test_vector_paths_do_the_same_work(name):
-    points = dataset(name, 2_000)
+    points = make_points(name, 2_000)
     wanted = _kernel.count_work(points, path=_kernel.VECTOR_PATHS[0])
     for path in _kernel.VECTOR_PATHS[1:]:
         assert _kernel.count_work(points, path=path) == wanted
@@ -110,7 +110,7 @@ def test_uneven_data_are_given_up_early(name, n):
     a point, before insertion begins, where even data take 35 altogether. Points on one circle are
     not even tried.
     """
-    counts = _kernel.count_work(dataset(name, n))
+    counts = _kernel.count_work(make_points(name, n))
     assert counts["searches"] < 0.2 * counts["triangles"]
     assert counts["candidates"] + counts["cell_rows"] < 6 * n
 
@@ -118,12 +118,12 @@ def test_uneven_data_are_given_up_early(name, n):
 @pytest.mark.parametrize("name", ["rails", "circle", "few circles"])
 def test_points_on_curves_are_given_up_within_the_first_rows(name):
     """Every search there sees a share of all points: a few of them spend the budget."""
-    counts = _kernel.count_work(dataset(name, N))
+    counts = _kernel.count_work(make_points(name, N))
     assert counts["searches"] < 0.01 * counts["triangles"]
 
 
 def test_insertion_searches_nothing():
-    counts = _kernel.count_work(dataset("uniform", N), method=Method.INSERTION)
+    counts = _kernel.count_work(make_points("uniform", N), method=Method.INSERTION)
     assert counts["triangles"] > N
     assert counts["searches"] == counts["candidates"] == counts["cell_rows"] == 0
 

@@ -15,8 +15,8 @@ from ..options import (
     triangulating_options,
     writing_options,
 )
-from ..output.console import plain
-from ..paths import OUTPUT, name_of
+from ..output.console import format_json
+from ..paths import OUTPUT, name_file
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ...tin import TIN, Survey
     from ..files import Output
     from ..options import Reading, Triangulating, Writing
-    from ..output.console import Console, Field
+    from ..output.console import Console, Row
 
 __all__ = ["build"]
 
@@ -63,33 +63,33 @@ def build(
       tinsmith build sample_data/jacksboro.tif --stride 4 -o hills.ply -o hills.stl
     """  # noqa: D301 - click reads the control character
     from ..files import (
-        inputs_of,
+        add_lines,
+        build_tin,
+        list_inputs,
         plan_outputs,
         read_input,
-        triangulated,
-        with_lines,
         write_outputs,
         write_text,
     )
-    from ..output.summaries import report_facts
+    from ..output.summaries import describe_report
 
     started = perf_counter()
     planned = plan_outputs(
-        outputs, writing, inputs=inputs_of(points, how), console=console, report=report
+        outputs, writing, inputs=list_inputs(points, how), console=console, report=report
     )
-    survey = with_lines(_as_survey(read_input(points, reading, console), points), how, console)
-    tin = triangulated(survey, how, console)
-    gaps = _gaps(tin, how, console)
+    survey = add_lines(_require_survey(read_input(points, reading, console), points), how, console)
+    tin = build_tin(survey, how, console)
+    gaps = _warn_of_gaps(tin, how, console)
     write_outputs(tin, planned, console)
     if report is not None:
-        write_text(report, plain(report_facts(tin.report, survey, gaps)) + "\n")
+        write_text(report, format_json(describe_report(tin.report, survey, gaps)) + "\n")
     seconds = perf_counter() - started
-    console.summarise(_fields(points, survey, tin, gaps, planned, seconds))
+    console.summarise(_summarise_build(points, survey, tin, gaps, planned, seconds))
     if console.as_json:
-        console.emit(plain(_facts(points, survey, tin, gaps, planned, seconds)))
+        console.emit(format_json(_describe_build(points, survey, tin, gaps, planned, seconds)))
 
 
-def _gaps(tin: TIN, how: Triangulating, console: Console) -> list[str]:
+def _warn_of_gaps(tin: TIN, how: Triangulating, console: Console) -> list[str]:
     """Tell of gaps that the surface spans, unless the user has said how far it may."""
     from ...terrain.gaps import describe_gaps
 
@@ -99,7 +99,7 @@ def _gaps(tin: TIN, how: Triangulating, console: Console) -> list[str]:
         return describe_gaps(tin)
 
 
-def _as_survey(found: Survey | TIN, path: Path) -> Survey:
+def _require_survey(found: Survey | TIN, path: Path) -> Survey:
     from ...tin import TIN
     from ..output.failures import Failure
 
@@ -110,39 +110,44 @@ def _as_survey(found: Survey | TIN, path: Path) -> Survey:
     return found
 
 
-def _fields(
+def _summarise_build(
     points: Path, survey: Survey, tin: TIN, gaps: list[str], outputs: list[Output], seconds: float
-) -> list[Field]:
-    from ..files import written_text
-    from ..output.line_summaries import line_fields, tin_counts
-    from ..output.summaries import crs_field, extent_fields, merge_field, reading_fields
+) -> list[Row]:
+    from ..files import describe_written
+    from ..output.line_summaries import describe_counts, summarise_lines
+    from ..output.summaries import (
+        summarise_crs,
+        summarise_extent,
+        summarise_merges,
+        summarise_reading,
+    )
 
     return [
-        ("Points", f"{len(survey):,} from {name_of(points)}"),
-        *reading_fields(survey),
-        *merge_field(tin.report, survey),
-        *line_fields(survey, tin),
-        ("TIN", tin_counts(tin)),
+        ("Points", f"{len(survey):,} from {name_file(points)}"),
+        *summarise_reading(survey),
+        *summarise_merges(tin.report, survey),
+        *summarise_lines(survey, tin),
+        ("TIN", describe_counts(tin)),
         *(("Gaps", gap) for gap in gaps),
-        *extent_fields(tin),
-        crs_field(tin.crs),
-        ("Written", written_text(outputs)),
+        *summarise_extent(tin),
+        summarise_crs(tin.crs),
+        ("Written", describe_written(outputs)),
         ("Time", f"{seconds:.2f} s"),
     ]
 
 
-def _facts(
+def _describe_build(
     points: Path, survey: Survey, tin: TIN, gaps: list[str], outputs: list[Output], seconds: float
 ) -> dict[str, Any]:
-    from ..output.line_summaries import line_counts
-    from ..output.summaries import report_facts, survey_facts, tin_facts
+    from ..output.line_summaries import count_lines
+    from ..output.summaries import describe_report, describe_survey, describe_tin
 
     return {
         "input": str(points),
-        "survey": survey_facts(survey),
-        "tin": tin_facts(tin),
-        "counts": line_counts(tin.report),
-        "report": report_facts(tin.report, survey, gaps),
+        "survey": describe_survey(survey),
+        "tin": describe_tin(tin),
+        "counts": count_lines(tin.report),
+        "report": describe_report(tin.report, survey, gaps),
         "outputs": [
             {"path": str(one.path), "format": one.format.name, "bytes": one.path.stat().st_size}
             for one in outputs

@@ -9,14 +9,14 @@ import click
 from ..._sentences import counted
 from ..options import console_options, input_file, reading_options, triangulating_options
 from ..output.failures import Failure
-from ..paths import name_of
+from ..paths import name_file
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from ...tin.checking.checker import CheckResult
     from ..options import Reading, Triangulating
-    from ..output.console import Console, Field
+    from ..output.console import Console, Row
 
 __all__ = ["check"]
 
@@ -56,20 +56,20 @@ def check(file: Path, level: int, reading: Reading, how: Triangulating, console:
     triangles = counted(len(tin.triangles), "triangle")
     with console.steps() as steps, steps.step(f"Checking {triangles}"):
         result = check_tin(tin, level=level, points=survey)
-    console.answer(_fields(file, result), {"input": str(file)} | result.to_dict())
+    console.answer(_summarise_check(file, result), {"input": str(file)} | result.to_dict())
     if not result.ok:
-        raise Failure(f"The TIN of '{file}' is not sound: {_kinds(result)}.")
+        raise Failure(f"The TIN of '{file}' is not sound: {_list_kinds(result)}.")
 
 
-def _fields(file: Path, result: CheckResult) -> list[Field]:
+def _summarise_check(file: Path, result: CheckResult) -> list[Row]:
     counts = ", ".join(
         counted(result.counts[name], one, name)
         for name, one in (("vertices", "vertex"), ("triangles", "triangle"), ("edges", "edge"))
         if name in result.counts
     )
-    verdict = _PROVED[result.level] if result.ok else f"failed: {_kinds(result)}"
+    verdict = _PROVED[result.level] if result.ok else f"failed: {_list_kinds(result)}"
     return [
-        ("File", name_of(file)),
+        ("File", name_file(file)),
         ("Counted", counts),
         (f"Level {result.level}", verdict),
         *(("Problem", problem.sentence) for problem in result.problems),
@@ -77,5 +77,5 @@ def _fields(file: Path, result: CheckResult) -> list[Field]:
     ]
 
 
-def _kinds(result: CheckResult) -> str:
+def _list_kinds(result: CheckResult) -> str:
     return ", ".join(dict.fromkeys(problem.kind for problem in result.problems))

@@ -9,7 +9,7 @@ import click
 from ..._sentences import counted
 from ..options import console_options, input_file, reading_options
 from ..output.failures import Failure
-from ..paths import OUTPUT, name_of, title_of
+from ..paths import OUTPUT, make_title, name_file
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from ...tin import Comparison, Outcome
     from ..options import Reading
-    from ..output.console import Console, Field
+    from ..output.console import Console, Row
 
 __all__ = ["compare"]
 
@@ -57,24 +57,24 @@ def compare(
     """  # noqa: D301 - click reads the control character
     from ...tin import TIN
     from ...tin import compare as compare_points
-    from ..files import inputs_of, read_input, require_picture
+    from ..files import list_inputs, read_input, require_picture
 
     if output is not None:
-        require_picture(output, place="--output", inputs=inputs_of(file))
+        require_picture(output, place="--output", inputs=list_inputs(file))
     found = read_input(file, reading, console)
     if isinstance(found, TIN):
         raise Failure(f"'{file}' holds a TIN: 'tinsmith compare' needs points.")
-    points = _sampled(found.points, sample)
+    points = _sample_points(found.points, sample)
     with console.steps() as steps, steps.step(f"Comparing on {counted(len(points), 'point')}"):
         result = compare_points(points, limit=len(points))
-    facts = {"input": str(file)} | result.to_dict()
+    record = {"input": str(file)} | result.to_dict()
     if output is not None:
-        _draw(result, file, output, console)
-        facts["output"] = str(output)
-    console.answer(_fields(file, result, output), facts)
+        _draw_comparison(result, file, output, console)
+        record["output"] = str(output)
+    console.answer(_summarise_comparison(file, result, output), record)
 
 
-def _sampled(points: NDArray[Any], count: int | None) -> NDArray[Any]:
+def _sample_points(points: NDArray[Any], count: int | None) -> NDArray[Any]:
     """Return some of the points, in their order; all of them if no number is given."""
     import numpy as np
 
@@ -95,12 +95,12 @@ def _sampled(points: NDArray[Any], count: int | None) -> NDArray[Any]:
     return points[np.sort(rows)]
 
 
-def _draw(result: Comparison, file: Path, output: Path, console: Console) -> None:
+def _draw_comparison(result: Comparison, file: Path, output: Path, console: Console) -> None:
     """Write the picture, whole or not at all."""
     from ...terrain import comparison_picture
     from ..files import write_figure
 
-    title = f"{title_of(file) or 'points'}: {len(result.points):,} points"
+    title = f"{make_title(file) or 'points'}: {len(result.points):,} points"
     with console.steps() as steps, steps.step("Drawing"):
         figure = comparison_picture(result, title=title)
         write_figure(figure, output, dpi=120)
@@ -109,48 +109,48 @@ def _draw(result: Comparison, file: Path, output: Path, console: Console) -> Non
 # ---------------------------------------------------------------- for people
 
 
-def _fields(file: Path, result: Comparison, output: Path | None) -> list[Field]:
-    from ..output.summaries import file_size
+def _summarise_comparison(file: Path, result: Comparison, output: Path | None) -> list[Row]:
+    from ..output.summaries import describe_file_size
 
     hull = f"{len(result.points):,} points, {len(result.hull):,} of them on the hull"
     due = f"2n - 2 - h = {result.expected:,} triangles make a triangulation"
-    fields = [("File", name_of(file)), ("Points", f"{hull}: {due}"), ("", "")]
-    fields += [_row(label, result, text) for label, text in _ROWS]
+    rows = [("File", name_file(file)), ("Points", f"{hull}: {due}"), ("", "")]
+    rows += [_make_row(label, result, text) for label, text in _ROWS]
     if output is not None:
-        fields.append(("Written", f"{output} ({file_size(output)})"))
-    return fields
+        rows.append(("Written", f"{output} ({describe_file_size(output)})"))
+    return rows
 
 
-def _row(label: str, result: Comparison, text: Callable[[Outcome, Comparison], str]) -> Field:
+def _make_row(label: str, result: Comparison, text: Callable[[Outcome, Comparison], str]) -> Row:
     cells = (text(outcome, result) for outcome in result.outcomes)
     return label, "".join(f"{cell:>{_COLUMN}}" for cell in cells)
 
 
-def _triangles(outcome: Outcome, _: Comparison) -> str:
+def _count_triangles_made(outcome: Outcome, _: Comparison) -> str:
     return f"{len(outcome.triangles):,}" + (" (stopped)" if outcome.is_stopped else "")
 
 
-def _without_removal(outcome: Outcome, _: Comparison) -> str:
+def _count_without_removal(outcome: Outcome, _: Comparison) -> str:
     count = outcome.candidates_without_removal
     return "-" if count is None else f"{count / len(outcome.triangles):,.1f}"
 
 
-def _share(part: float, whole: float) -> str:
+def _format_share(part: float, whole: float) -> str:
     return f"{100 * part / whole:.2f} %"
 
 
 _ROWS: list[tuple[str, Callable[[Outcome, Comparison], str]]] = [
     ("", lambda one, _: one.name),
-    ("Triangles", _triangles),
+    ("Triangles", _count_triangles_made),
     ("Open edges", lambda one, _: f"{len(one.unextended):,}"),
-    ("In circle", lambda one, _: _share(one.violating.sum(), len(one.triangles))),
-    ("Overlapping", lambda one, _: _share(one.overlapping.sum(), len(one.triangles))),
-    ("  area", lambda one, all_: _share(one.overlap, all_.area)),
-    ("Gaps, area", lambda one, all_: _share(one.gap, all_.area)),
+    ("In circle", lambda one, _: _format_share(one.violating.sum(), len(one.triangles))),
+    ("Overlapping", lambda one, _: _format_share(one.overlapping.sum(), len(one.triangles))),
+    ("  area", lambda one, all_: _format_share(one.overlap, all_.area)),
+    ("Gaps, area", lambda one, all_: _format_share(one.gap, all_.area)),
     ("Least angle", lambda one, _: f"{one.angles.min():.2f}°"),
-    ("  below 20°", lambda one, _: _share(one.angle_counts[:2].sum(), len(one.triangles))),
+    ("  below 20°", lambda one, _: _format_share(one.angle_counts[:2].sum(), len(one.triangles))),
     ("Searched", lambda one, _: f"{one.candidates / len(one.triangles):,.1f}"),
-    ("  no removal", _without_removal),
+    ("  no removal", _count_without_removal),
     ("Tests", lambda one, _: f"{one.tests:,}"),
     ("Time", lambda one, _: f"{1000 * one.seconds:,.2f} ms"),
     ("Memory", lambda one, _: f"{one.memory / 1000:,.0f} kB"),

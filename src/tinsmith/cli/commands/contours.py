@@ -17,7 +17,7 @@ from ..options import (
     triangulating_options,
     writing_options,
 )
-from ..output.console import plain
+from ..output.console import format_json
 from ..output.failures import Failure
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from ...terrain import Features
     from ...tin import TIN
     from ..options import Reading, Triangulating, Writing
-    from ..output.console import Console, Field
+    from ..output.console import Console, Row
 
 __all__ = ["contours"]
 
@@ -96,13 +96,13 @@ def contours(
       tinsmith contours sample_data/site_survey.csv --crs EPSG:32616 --interval 0.5 -o site.gpkg
       tinsmith contours sample_data/site_survey.csv --crs EPSG:32616 --interval 1 --bands -o b.gpkg
     """  # noqa: D301 - click reads the control character
-    from ..files import inputs_of, plan_outputs, read_tin, write_outputs, written_text
+    from ..files import describe_written, list_inputs, plan_outputs, read_tin, write_outputs
 
     started = perf_counter()
     _require_one_product(options)
     levels = _numbers(options["levels"])
     planned = plan_outputs(
-        outputs, writing, inputs=inputs_of(file, how), console=console, kinds=("Features",)
+        outputs, writing, inputs=list_inputs(file, how), console=console, kinds=("Features",)
     )
     tin, _ = read_tin(file, reading, how, console)
     with console.steps() as steps, steps.step("Drawing contours"):
@@ -113,12 +113,12 @@ def contours(
         [
             *_fields(made),
             *(("Note", note) for note in made.notes),
-            ("Written", written_text(planned)),
+            ("Written", describe_written(planned)),
             ("Time", f"{perf_counter() - started:.2f} s"),
         ]
     )
     if console.as_json:
-        console.emit(plain(_facts(file, made, written)))
+        console.emit(format_json(_facts(file, made, written)))
 
 
 def _require_one_product(options: dict[str, Any]) -> None:
@@ -169,7 +169,7 @@ def _product(tin: TIN, options: dict[str, Any]) -> Features:
         raise Failure(name_flags(str(error), spacing="--label-spacing")) from error
 
 
-def _fields(made: Features) -> list[Field]:
+def _fields(made: Features) -> list[Row]:
     if made.kind == "polygons":
         return [("Bands", counted(len(made), "band"))]
     if made.kind == "points":
@@ -179,7 +179,7 @@ def _fields(made: Features) -> list[Field]:
     return [("Contours", counts), ("Points", f"{len(made.coordinates):,}"), *_level_fields(made)]
 
 
-def _level_fields(made: Features) -> list[Field]:
+def _level_fields(made: Features) -> list[Row]:
     from ...terrain.results.columns import unit_text
 
     levels = sorted(set(made.columns["elevation"].tolist()))
@@ -193,7 +193,7 @@ def _level_fields(made: Features) -> list[Field]:
 def _facts(file: Path, made: Features, outputs: list[str]) -> dict[str, Any]:
     from ...terrain.results.columns import unit_text
 
-    facts: dict[str, Any] = {
+    record: dict[str, Any] = {
         "input": str(file),
         "kind": made.name,
         "features": len(made),
@@ -203,11 +203,11 @@ def _facts(file: Path, made: Features, outputs: list[str]) -> dict[str, Any]:
         "outputs": outputs,
     }
     if made.kind == "lines":
-        facts["levels"] = sorted(set(made.columns["elevation"].tolist()))
-        facts["length"] = float(made.columns["length"].sum())
-        facts["closed"] = int(made.columns["is_closed"].sum())
+        record["levels"] = sorted(set(made.columns["elevation"].tolist()))
+        record["length"] = float(made.columns["length"].sum())
+        record["closed"] = int(made.columns["is_closed"].sum())
     if made.kind == "polygons":
         names = ("from", "to", "area")
         rows = zip(*(made.columns[name].tolist() for name in names), strict=True)
-        facts["bands"] = [dict(zip(names, row, strict=True)) for row in rows]
-    return facts
+        record["bands"] = [dict(zip(names, row, strict=True)) for row in rows]
+    return record

@@ -8,8 +8,8 @@ import click
 
 from ..._sentences import counted
 from ..options import console_options, input_file, output_files, reading_options, writing_options
-from ..output.console import plain
-from ..paths import name_of
+from ..output.console import format_json
+from ..paths import name_file
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -38,22 +38,24 @@ def convert(
     Example:
       tinsmith convert sample_data/site_survey.csv -o site.xyz
     """  # noqa: D301 - click reads the control character
-    from ..files import inputs_of, plan_outputs, read_input, write_outputs, written_text
-    from ..output.summaries import reading_fields, unit_note
+    from ..files import describe_written, list_inputs, plan_outputs, read_input, write_outputs
+    from ..output.summaries import note_assumed_unit, summarise_reading
 
-    planned = plan_outputs(outputs, writing, inputs=inputs_of(file), console=console)
+    planned = plan_outputs(outputs, writing, inputs=list_inputs(file), console=console)
     found = read_input(file, reading, console)
     write_outputs(found, planned, console)
-    notes = reading_fields(found)
-    if note := unit_note(found):
+    notes = summarise_reading(found)
+    if note := note_assumed_unit(found):
         notes = [*notes, ("Elevation", note)]
-    read = ("Read", f"{_what(found)} from {name_of(file)}")
-    console.summarise([read, *notes, ("Written", written_text(planned))])
+    read = ("Read", f"{_describe_content(found)} from {name_file(file)}")
+    console.summarise([read, *notes, ("Written", describe_written(planned))])
     if console.as_json:
-        console.emit(plain({"input": str(file), "outputs": [str(one.path) for one in planned]}))
+        console.emit(
+            format_json({"input": str(file), "outputs": [str(one.path) for one in planned]})
+        )
 
 
-def _what(found: TIN | Survey) -> str:
+def _describe_content(found: TIN | Survey) -> str:
     from ...tin import TIN
 
     if isinstance(found, TIN):

@@ -15,8 +15,8 @@ from ..options import (
     reading_options,
     triangulating_options,
 )
-from ..output.console import plain
-from ..paths import INPUT, title_of
+from ..output.console import format_json
+from ..paths import INPUT, make_title
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ...terrain import Difference, Table
     from ...tin import TIN
     from ..options import Reading, Triangulating, Writing
-    from ..output.console import Console, Field
+    from ..output.console import Console, Row
     from ..surfaces import Products
 
 __all__ = ["diff"]
@@ -86,11 +86,11 @@ def diff(
         ]
     )
     if console.as_json:
-        console.emit(plain(_facts(files, found, planned)))
+        console.emit(format_json(_facts(files, found, planned)))
 
 
 def _title(files: Sequence[Path]) -> str:
-    return f"Difference: {title_of(files[1])} less {title_of(files[0])}"
+    return f"Difference: {make_title(files[1])} less {make_title(files[0])}"
 
 
 def _write(
@@ -111,7 +111,7 @@ def _write(
     planned.draw(lambda: earthwork_map(found, ground=ground, title=title), console)
 
 
-def _fields(found: Difference, surfaces: Sequence[TIN]) -> list[Field]:
+def _fields(found: Difference, surfaces: Sequence[TIN]) -> list[Row]:
     from ..output.line_summaries import mesh_counts
 
     table = found.statistics

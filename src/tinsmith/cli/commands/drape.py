@@ -17,7 +17,7 @@ from ..options import (
     reading_options,
     triangulating_options,
 )
-from ..output.console import plain
+from ..output.console import format_json
 from ..paths import LINES, Named
 
 if TYPE_CHECKING:
@@ -63,14 +63,14 @@ def drape(
       tinsmith drape site.ply roads.gpkg --outside cut -o roads_3d.gpkg
     """  # noqa: D301 - click reads the control character
     from ...io.vector.geometries import read_geometries
-    from ...io.vector.survey_lines import path_and_layer
+    from ...io.vector.survey_lines import split_layer
     from ...terrain import drape as drape_features
-    from ..files import inputs_of, plan_outputs, read_tin, write_outputs, written_text
+    from ..files import describe_written, list_inputs, plan_outputs, read_tin, write_outputs
     from ..output.line_summaries import mesh_counts
 
     started = perf_counter()
-    path, layer = path_and_layer(features)
-    inputs = [*inputs_of(file, how), Named(path, "the file of features")]
+    path, layer = split_layer(features)
+    inputs = [*list_inputs(file, how), Named(path, "the file of features")]
     planned = plan_outputs(outputs, writing, inputs=inputs, console=console, kinds=("Features",))
     tin, _ = read_tin(file, reading, how, console)
     with console.steps() as steps, steps.step("Draping"):
@@ -82,7 +82,7 @@ def drape(
             ("Surface", mesh_counts(tin)),
             ("Draped", _counts(given, draped)),
             *[("Note", note) for note in draped.notes],
-            ("Written", written_text(planned)),
+            ("Written", describe_written(planned)),
             ("Time", f"{perf_counter() - started:.2f} s"),
         ]
     )
@@ -94,7 +94,7 @@ def drape(
             "vertices_draped": len(draped.coordinates),
         }
         notes = {"notes": list(draped.notes), "outputs": [str(one.path) for one in planned]}
-        console.emit(plain(facts | counts | vertices | notes))
+        console.emit(format_json(facts | counts | vertices | notes))
 
 
 def _counts(given: Features, draped: Features) -> str:

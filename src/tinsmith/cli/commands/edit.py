@@ -18,8 +18,8 @@ from ..options import (
     triangulating_options,
     writing_options,
 )
-from ..output.console import plain
-from ..paths import INPUT, OUTPUT, STANDARD, name_of
+from ..output.console import format_json
+from ..paths import INPUT, OUTPUT, STANDARD, name_file
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -75,14 +75,21 @@ def edit(
        {"op": "add_breakline", "coords": [[752650, 4024200, 321], [752700, 4024300, 323]]}]
     """  # noqa: D301 - click reads the control character
     from ...tin.editing.history import apply_edits
-    from ..files import inputs_of, plan_outputs, read_tin, write_outputs, write_text, written_text
+    from ..files import (
+        describe_written,
+        list_inputs,
+        plan_outputs,
+        read_tin,
+        write_outputs,
+        write_text,
+    )
     from ..output.line_summaries import mesh_counts
 
     started = perf_counter()
     planned = plan_outputs(
         outputs,
         writing,
-        inputs=inputs_of(file, how, script=script),
+        inputs=list_inputs(file, how, script=script),
         console=console,
         report=report,
     )
@@ -93,34 +100,36 @@ def edit(
         apply_edits(tin, edits)
     write_outputs(tin, planned, console)
     if report is not None:
-        write_text(report, plain(tin.report.to_dict()) + "\n")
+        write_text(report, format_json(tin.report.to_dict()) + "\n")
     console.summarise(
         [
-            ("Read", f"a TIN of {before} from {name_of(file)}"),
-            ("Edits", _counted(tin)),
+            ("Read", f"a TIN of {before} from {name_file(file)}"),
+            ("Edits", _count_edits(tin)),
             ("TIN", mesh_counts(tin)),
             *(("Note", note) for one in tin.edits for note in one.notes),
-            ("Written", written_text(planned)),
+            ("Written", describe_written(planned)),
             ("Time", f"{perf_counter() - started:.2f} s"),
         ]
     )
     if console.as_json:
-        console.emit(plain(_facts(file, script, tin, [str(one.path) for one in planned])))
+        console.emit(
+            format_json(_describe_edits(file, script, tin, [str(one.path) for one in planned]))
+        )
 
 
-def _counted(tin: TIN) -> str:
+def _count_edits(tin: TIN) -> str:
     counts = Counter(one.operation for one in tin.edits)
     named = ", ".join(f"{count} {operation}" for operation, count in counts.items())
     return f"{len(tin.edits):,} ({named})" if named else "none"
 
 
-def _facts(file: Path, script: Path, tin: TIN, outputs: list[str]) -> dict[str, Any]:
-    from ..output.summaries import tin_facts
+def _describe_edits(file: Path, script: Path, tin: TIN, outputs: list[str]) -> dict[str, Any]:
+    from ..output.summaries import describe_tin
 
     return {
         "input": str(file),
         "script": str(script),
-        "tin": tin_facts(tin),
+        "tin": describe_tin(tin),
         "report": tin.report.to_dict(),
         "outputs": outputs,
     }
@@ -131,7 +140,7 @@ def _read_script(path: Path) -> list[dict[str, Any]]:
 
     wanted = 'a list of edits is needed, such as [{"op": "remove", "vertices": [3]}]'
     try:
-        content = json.loads(_content(path).decode("utf-8-sig"))
+        content = json.loads(_read_bytes(path).decode("utf-8-sig"))
     except json.JSONDecodeError as error:
         raise Failure(
             f"'{path}' is no JSON (line {error.lineno}: {error.msg}): {wanted}."
@@ -144,14 +153,14 @@ def _read_script(path: Path) -> list[dict[str, Any]]:
     return edits
 
 
-def _content(path: Path) -> bytes:
-    from ...io.isolated.spooling import as_sentence, ordinary_file
-    from ..files import standard_input
+def _read_bytes(path: Path) -> bytes:
+    from ...io.isolated.spooling import describe_system_error, open_ordinary_file
+    from ..files import open_standard_input
 
     if path == STANDARD:
-        return standard_input().read()
-    with ordinary_file(path) as local:
+        return open_standard_input().read()
+    with open_ordinary_file(path) as local:
         try:
             return local.read_bytes()
         except OSError as error:
-            raise as_sentence(path, error) from error
+            raise describe_system_error(path, error) from error

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..options import console_options
-from ..output.console import plain
+from ..output.console import format_json
 
 if TYPE_CHECKING:
     from ...io import Format
@@ -29,12 +29,12 @@ def formats(console: Console) -> None:
     from ...io import known_formats
 
     if console.as_json:
-        console.emit(plain({"formats": [_facts(one) for one in known_formats()]}))
+        console.emit(format_json({"formats": [_describe_format(one) for one in known_formats()]}))
     else:
-        console.emit(_table(known_formats()))
+        console.emit(_draw_table(known_formats()))
 
 
-def _facts(one: Format) -> dict[str, Any]:
+def _describe_format(one: Format) -> dict[str, Any]:
     return {
         "name": one.name,
         "description": one.description,
@@ -45,7 +45,7 @@ def _facts(one: Format) -> dict[str, Any]:
     }
 
 
-def _table(known: tuple[Format, ...]) -> str:
+def _draw_table(known: tuple[Format, ...]) -> str:
     from io import StringIO
     from shutil import get_terminal_size
 

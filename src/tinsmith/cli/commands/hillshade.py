@@ -17,7 +17,7 @@ from ..options import (
     reading_options,
     triangulating_options,
 )
-from ..output.console import plain
+from ..output.console import format_json
 from ..output.failures import Failure
 
 if TYPE_CHECKING:
@@ -87,11 +87,11 @@ def hillshade(
     """  # noqa: D301 - click reads the control character
     from ... import terrain
     from ...errors import OptionError
-    from ..files import inputs_of, plan_outputs, read_tin, write_outputs, written_text
+    from ..files import describe_written, list_inputs, plan_outputs, read_tin, write_outputs
 
     started = perf_counter()
     planned = plan_outputs(
-        outputs, writing, inputs=inputs_of(file, how), console=console, kinds=("Raster",)
+        outputs, writing, inputs=list_inputs(file, how), console=console, kinds=("Raster",)
     )
     tin, _ = read_tin(file, reading, how, console)
     try:
@@ -112,7 +112,7 @@ def hillshade(
     console.summarise(
         [
             ("Raster", size),
-            ("Written", written_text(planned)),
+            ("Written", describe_written(planned)),
             ("Time", f"{perf_counter() - started:.2f} s"),
         ]
     )
@@ -120,4 +120,4 @@ def hillshade(
         raster = {"shape": list(made.shape), "spacing": made.grid.spacing}
         raster["bounds"] = asdict(made.grid.bounds)
         paths = [str(one.path) for one in planned]
-        console.emit(plain({"input": str(file), "raster": raster, "outputs": paths}))
+        console.emit(format_json({"input": str(file), "raster": raster, "outputs": paths}))

@@ -8,14 +8,14 @@ import click
 
 from ..options import console_options, input_file, reading_options
 from ..output.failures import Failure
-from ..paths import OUTPUT, name_of, title_of
+from ..paths import OUTPUT, make_title, name_file
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from ...tin import TIN, Quality
     from ..options import Reading
-    from ..output.console import Console, Field
+    from ..output.console import Console, Row
 
 __all__ = ["info"]
 
@@ -42,11 +42,11 @@ def info(file: Path, plot: Path | None, reading: Reading, console: Console) -> N
       tinsmith info sample_data/site_survey.csv --crs EPSG:32616 --json
     """  # noqa: D301 - click reads the control character
     from ...tin import TIN
-    from ..files import inputs_of, read_input, require_picture
-    from ..output.summaries import survey_facts, survey_fields
+    from ..files import list_inputs, read_input, require_picture
+    from ..output.summaries import describe_survey, summarise_survey
 
     if plot is not None:
-        require_picture(plot, place="--plot", inputs=inputs_of(file))
+        require_picture(plot, place="--plot", inputs=list_inputs(file))
     found = read_input(file, reading, console)
     if isinstance(found, TIN):
         _describe(found, file, plot, console)
@@ -55,29 +55,39 @@ def info(file: Path, plot: Path | None, reading: Reading, console: Console) -> N
         raise Failure(
             f"'{file}' holds points, and --plot needs a TIN: 'tinsmith build' makes one of them."
         )
-    facts = {"input": str(file)} | survey_facts(found)
-    console.answer([("File", name_of(file)), *survey_fields(found)], facts)
+    record = {"input": str(file)} | describe_survey(found)
+    console.answer([("File", name_file(file)), *summarise_survey(found)], record)
 
 
 def _describe(tin: TIN, file: Path, plot: Path | None, console: Console) -> None:
-    from ..output.summaries import file_size, quality_fields, quality_of, tin_facts, tin_fields
+    from ..output.summaries import (
+        describe_file_size,
+        describe_tin,
+        measure_quality,
+        summarise_quality,
+        summarise_tin,
+    )
 
-    shapes = quality_of(tin)
-    fields: list[Field] = [("File", name_of(file)), *tin_fields(tin), *quality_fields(shapes)]
-    facts = {"input": str(file)} | tin_facts(tin)
-    facts["quality"] = None if shapes is None else shapes.summary()
+    shapes = measure_quality(tin)
+    rows: list[Row] = [
+        ("File", name_file(file)),
+        *summarise_tin(tin),
+        *summarise_quality(shapes),
+    ]
+    record = {"input": str(file)} | describe_tin(tin)
+    record["quality"] = None if shapes is None else shapes.summary()
     if plot is not None:
         _plot(shapes, tin, file, plot, console)
-        fields.append(("Written", f"{plot} ({file_size(plot)})"))
-        facts["plot"] = str(plot)
-    console.answer(fields, facts)
+        rows.append(("Written", f"{plot} ({describe_file_size(plot)})"))
+        record["plot"] = str(plot)
+    console.answer(rows, record)
 
 
 def _plot(shapes: Quality | None, tin: TIN, file: Path, plot: Path, console: Console) -> None:
     """Write the histograms, whole or not at all."""
     from ...terrain import histogram
     from ..files import write_figure
-    from ..output.summaries import units
+    from ..output.summaries import find_symbols
 
     if shapes is None:
         raise Failure(
@@ -85,6 +95,6 @@ def _plot(shapes: Quality | None, tin: TIN, file: Path, plot: Path, console: Con
             "--plot needs a projected CRS, such as UTM."
         )
     with console.steps() as steps, steps.step("Drawing"):
-        title = f"Triangle quality: {title_of(file)}".rstrip(": ")
-        figure = histogram(shapes, title=title, unit=units(tin)[0].strip())
+        title = f"Triangle quality: {make_title(file)}".rstrip(": ")
+        figure = histogram(shapes, title=title, unit=find_symbols(tin)[0].strip())
         write_figure(figure, plot, dpi=150)

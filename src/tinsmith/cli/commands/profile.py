@@ -16,8 +16,8 @@ from ..options import (
     reading_options,
     triangulating_options,
 )
-from ..output.console import plain
-from ..paths import INPUT, LINES, Named, title_of
+from ..output.console import format_json
+from ..paths import INPUT, LINES, Named, make_title
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -138,14 +138,14 @@ def profile(
         ]
     )
     if console.as_json:
-        console.emit(plain(_facts(files, table, notes, planned)))
+        console.emit(format_json(_facts(files, table, notes, planned)))
 
 
 # ---------------------------------------------------------------- what is given
 
 
 def _names(files: Sequence[Path], given: Sequence[str]) -> list[str]:
-    names = list(given) or [title_of(file) or "surface" for file in files]
+    names = list(given) or [make_title(file) or "surface" for file in files]
     if len(names) != len(files):
         raise click.UsageError(
             f"--name is given {len(names)} times for {len(files)} surfaces: name each once."
@@ -166,12 +166,12 @@ def _plan(
     sections: Pair | None,
 ) -> Products:
     """Choose what each output holds, before any work is done."""
-    from ...io.vector.survey_lines import path_and_layer
+    from ...io.vector.survey_lines import split_layer
     from ..surfaces import plan_products, surface_inputs
 
     inputs = surface_inputs(files, how)
     if line_file is not None:
-        inputs.append(Named(path_and_layer(line_file)[0], "the file of --line"))
+        inputs.append(Named(split_layer(line_file)[0], "the file of --line"))
     kinds = ("Table", "picture") if sections is None else ("Table", "Features", "picture")
     planned = plan_products(outputs, writing, inputs=inputs, console=console, kinds=kinds)
     if planned.pictures and sections is not None:
@@ -181,11 +181,11 @@ def _plan(
 
 def _lines(line: _Line, tin: TIN, notes: list[str]) -> Any:
     from ...io import read_lines
-    from ...io.vector.survey_lines import path_and_layer
+    from ...io.vector.survey_lines import split_layer
 
     if line.file is None:
         return [line.start, line.end]
-    path, layer = path_and_layer(line.file)
+    path, layer = split_layer(line.file)
     return read_lines(path, crs=tin.crs, layer=layer, drape=True, notes=notes)
 
 
@@ -216,7 +216,7 @@ def _draw(
     from ...terrain import profile_picture
 
     crs = next((tin.crs for tin in surfaces.values() if tin.crs is not None), None)
-    title = asked["title"] or f"Profile: {title_of(files[0])}"
+    title = asked["title"] or f"Profile: {make_title(files[0])}"
     return profile_picture(table, exaggeration=asked["exaggeration"], title=title, crs=crs)
 
 

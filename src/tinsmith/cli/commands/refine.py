@@ -17,7 +17,7 @@ from ..options import (
     triangulating_options,
     writing_options,
 )
-from ..output.console import plain
+from ..output.console import format_json
 from ..output.failures import Failure
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from ...tin import TIN, Quality
     from ...tin.report import Unmended
     from ..options import Reading, Triangulating, Writing
-    from ..output.console import Console, Field
+    from ..output.console import Console, Row
 
 __all__ = ["refine"]
 
@@ -86,11 +86,11 @@ def refine(
     from ...errors import TinsmithError
     from ...tin import quality
     from ...tin import refine as refine_tin
-    from ..files import inputs_of, plan_outputs, read_tin, write_outputs, written_text
+    from ..files import describe_written, list_inputs, plan_outputs, read_tin, write_outputs
     from ..output.line_summaries import mesh_counts
 
     started = perf_counter()
-    planned = plan_outputs(outputs, writing, inputs=inputs_of(file, how), console=console)
+    planned = plan_outputs(outputs, writing, inputs=list_inputs(file, how), console=console)
     tin, _ = read_tin(file, reading, how, console)
     _require_lengths(tin, file)
     triangles = counted(len(tin.triangles), "triangle")
@@ -113,13 +113,13 @@ def refine(
         [
             ("Read", mesh_counts(tin)),
             ("Mesh", mesh_counts(refined)),
-            *_angles(quality(tin), shapes, refined.report.unmended),
-            ("Written", written_text(planned)),
+            *_summarise_angles(quality(tin), shapes, refined.report.unmended),
+            ("Written", describe_written(planned)),
             ("Time", f"{perf_counter() - started:.2f} s"),
         ]
     )
     if console.as_json:
-        console.emit(plain(_facts(file, refined, shapes, written)))
+        console.emit(format_json(_describe_refinement(file, refined, shapes, written)))
 
 
 def _require_lengths(tin: TIN, file: Path) -> None:
@@ -132,18 +132,20 @@ def _require_lengths(tin: TIN, file: Path) -> None:
         )
 
 
-def _angles(given: Quality, refined: Quality, unmended: Unmended) -> list[Field]:
+def _summarise_angles(given: Quality, refined: Quality, unmended: Unmended) -> list[Row]:
     before, after = given.min_angle, refined.min_angle
-    fields = [("Angles", f"from {after.min():.1f}° on, before from {before.min():.1f}°")]
-    return fields + [("", sentence) for sentence in unmended.sentences()]
+    rows = [("Angles", f"from {after.min():.1f}° on, before from {before.min():.1f}°")]
+    return rows + [("", sentence) for sentence in unmended.sentences()]
 
 
-def _facts(file: Path, refined: TIN, shapes: Quality, outputs: list[str]) -> dict[str, Any]:
-    from ..output.summaries import tin_facts
+def _describe_refinement(
+    file: Path, refined: TIN, shapes: Quality, outputs: list[str]
+) -> dict[str, Any]:
+    from ..output.summaries import describe_tin
 
     return {
         "input": str(file),
-        "tin": tin_facts(refined) | {"quality": shapes.summary()},
+        "tin": describe_tin(refined) | {"quality": shapes.summary()},
         "report": refined.report.to_dict(),
         "outputs": outputs,
     }

@@ -16,7 +16,7 @@ from ..options import (
     reading_options,
     triangulating_options,
 )
-from ..output.console import plain
+from ..output.console import format_json
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ...terrain import Features, Table
     from ...tin import TIN
     from ..options import Reading, Triangulating, Writing
-    from ..output.console import Console, Field
+    from ..output.console import Console, Row
 
 __all__ = ["slope"]
 
@@ -87,7 +87,7 @@ def slope(
     """  # noqa: D301 - click reads the control character
     from ...terrain import aspect_classes, slope_classes, slope_statistics
     from ...terrain.relief.classes import class_table
-    from ..files import inputs_of, read_tin
+    from ..files import list_inputs, read_tin
     from ..surfaces import plan_products
 
     if aspect and breaks is not None:
@@ -96,7 +96,7 @@ def slope(
     planned = plan_products(
         outputs,
         writing,
-        inputs=inputs_of(file, how),
+        inputs=list_inputs(file, how),
         console=console,
         kinds=("Features", "Table"),
     )
@@ -114,11 +114,11 @@ def slope(
         ]
     )
     if console.as_json:
-        console.emit(plain(_facts(file, made, statistics, planned.paths)))
+        console.emit(format_json(_facts(file, made, statistics, planned.paths)))
 
 
-def _fields(tin: TIN, made: Features, statistics: Table) -> list[Field]:
-    from ..output.line_summaries import tin_counts
+def _fields(tin: TIN, made: Features, statistics: Table) -> list[Row]:
+    from ..output.line_summaries import describe_counts
 
     found = {name: f"{statistics[name][0]:.1f}" for name in statistics.columns}
     mark = str(statistics.units["mean"])
@@ -129,7 +129,7 @@ def _fields(tin: TIN, made: Features, statistics: Table) -> list[Field]:
         f"{label}: {size:,.1f} {area}, {share:.1f} %" for label, size, share in rows
     )
     return [
-        ("TIN", tin_counts(tin)),
+        ("TIN", describe_counts(tin)),
         (
             "Slope",
             f"{found['minimum']} to {found['maximum']}{behind}, mean {found['mean']}{behind}, "

@@ -8,13 +8,13 @@ import click
 
 from ..options import console_options, input_file, reading_options, triangulating_options
 from ..output.failures import note_written
-from ..paths import OUTPUT, title_of
+from ..paths import OUTPUT, make_title
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from ..options import Reading, Triangulating
-    from ..output.console import Console, Field
+    from ..output.console import Console, Row
 
 __all__ = ["view"]
 
@@ -56,26 +56,26 @@ def view(
     """  # noqa: D301 - click reads the control character
     from ...terrain import preview
     from ...terrain.preview.picture import PICTURE_SUFFIXES
-    from ..files import inputs_of, read_tin, require_picture
+    from ..files import list_inputs, read_tin, require_picture
 
     if output is not None:
         require_picture(
-            output, place="--output", inputs=inputs_of(file, how), suffixes=PICTURE_SUFFIXES
+            output, place="--output", inputs=list_inputs(file, how), suffixes=PICTURE_SUFFIXES
         )
 
     tin, _ = read_tin(file, reading, how, console)
     top = drawing.pop("top")
-    drawing["title"] = drawing["title"] or title_of(file)
+    drawing["title"] = drawing["title"] or make_title(file)
     with console.steps() as steps, steps.step("Drawing"):
         preview(tin, output=output, view="top" if top else "oblique", **drawing)  # type: ignore[arg-type]
     if output is not None:
         note_written(output)
-        console.summarise(_fields(output))
+        console.summarise(_summarise_picture(output))
         if console.as_json:
             console.answer([], {"input": str(file), "output": str(output)})
 
 
-def _fields(output: Path) -> list[Field]:
-    from ..output.summaries import file_size
+def _summarise_picture(output: Path) -> list[Row]:
+    from ..output.summaries import describe_file_size
 
-    return [("Written", f"{output} ({file_size(output)})")]
+    return [("Written", f"{output} ({describe_file_size(output)})")]

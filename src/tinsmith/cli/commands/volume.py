@@ -14,8 +14,8 @@ from ..options import (
     reading_options,
     triangulating_options,
 )
-from ..output.console import plain
-from ..paths import INPUT, LINES, Named, title_of
+from ..output.console import format_json
+from ..paths import INPUT, LINES, Named, make_title
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from ...terrain import Table
     from ...tin import TIN
     from ..options import Reading, Triangulating, Writing
-    from ..output.console import Console, Field
+    from ..output.console import Console, Row
     from ..surfaces import Products
 
 __all__ = ["volume"]
@@ -110,7 +110,7 @@ def volume(
         ]
     )
     if console.as_json:
-        console.emit(plain(_facts(files, table, planned)))
+        console.emit(format_json(_facts(files, table, planned)))
 
 
 # ---------------------------------------------------------------- what is given
@@ -131,17 +131,17 @@ def _require_one_base(files: Sequence[Path], asked: dict[str, Any]) -> None:
 
 
 def _named(regions: Path) -> Named:
-    from ...io.vector.survey_lines import path_and_layer
+    from ...io.vector.survey_lines import split_layer
 
-    return Named(path_and_layer(regions)[0], "the file of --regions")
+    return Named(split_layer(regions)[0], "the file of --regions")
 
 
 def _read_regions(path: Path, tin: TIN) -> dict[str, Any]:
     """Read polygons, in the CRS of the TIN, by their numbers."""
     from ...io import read_polygons
-    from ...io.vector.survey_lines import path_and_layer
+    from ...io.vector.survey_lines import split_layer
 
-    file, layer = path_and_layer(path)
+    file, layer = split_layer(path)
     polygons = read_polygons(file, crs=tin.crs, layer=layer, drape=True)
     return {str(number): rings for number, rings in enumerate(polygons, start=1)}
 
@@ -182,34 +182,34 @@ def _map(
         found = difference(tin, other)
     if planned.holds("Features"):
         planned.write("Features", found.zones, console)
-    title = asked["title"] or f"Cut and fill: {' to '.join(title_of(file) for file in files)}"
+    title = asked["title"] or f"Cut and fill: {' to '.join(make_title(file) for file in files)}"
     planned.draw(lambda: earthwork_map(found, ground=tin, title=title), console)
 
 
 # ---------------------------------------------------------------- for people
 
 
-def _fields(table: Table, surfaces: Sequence[TIN]) -> list[Field]:
+def _fields(table: Table, surfaces: Sequence[TIN]) -> list[Row]:
     from ..output.line_summaries import mesh_counts
 
     names = ["Ground", "Design"]
-    fields = [(name, mesh_counts(tin)) for name, tin in zip(names, surfaces, strict=False)]
+    rows = [(name, mesh_counts(tin)) for name, tin in zip(names, surfaces, strict=False)]
     rows = _stages(table) if "level" in table.columns else _volumes(table)
     more = [("", f"... {len(table) - _SHOWN} more")] if len(table) > _SHOWN else []
-    return [*fields, *rows, *more, *(("Note", note) for note in table.notes)]
+    return [*rows, *rows, *more, *(("Note", note) for note in table.notes)]
 
 
-def _volumes(table: Table) -> list[Field]:
-    fields = []
+def _volumes(table: Table) -> list[Row]:
+    rows = []
     for row in range(min(len(table), _SHOWN)):
         if len(table) > 1 or table["region"][row] != "all":
-            fields.append(("Region", str(table["region"][row])))
+            rows.append(("Region", str(table["region"][row])))
         for name in ("cut", "fill"):
             text = f"{_quantity(table, name, row)} over {_quantity(table, f'{name}_area', row)}"
-            fields.append((name.capitalize(), text))
-        fields.append(("Net", f"{_quantity(table, 'net', row)} (fill less cut)"))
-        fields.append(("Area", _area_text(table, row)))
-    return fields
+            rows.append((name.capitalize(), text))
+        rows.append(("Net", f"{_quantity(table, 'net', row)} (fill less cut)"))
+        rows.append(("Area", _area_text(table, row)))
+    return rows
 
 
 def _area_text(table: Table, row: int) -> str:
@@ -221,13 +221,13 @@ def _area_text(table: Table, row: int) -> str:
     return text
 
 
-def _stages(table: Table) -> list[Field]:
-    fields = []
+def _stages(table: Table) -> list[Row]:
+    rows = []
     for row in range(min(len(table), _SHOWN)):
         spills = "" if table["is_contained"][row] else ", reaches the boundary"
         area, held = _quantity(table, "area", row), _quantity(table, "volume", row)
-        fields.append(("Level", f"{_quantity(table, 'level', row)}: {held}, {area}{spills}"))
-    return fields
+        rows.append(("Level", f"{_quantity(table, 'level', row)}: {held}, {area}{spills}"))
+    return rows
 
 
 def _quantity(table: Table, name: str, row: int) -> str:
@@ -240,7 +240,7 @@ def _quantity(table: Table, name: str, row: int) -> str:
     return text
 
 
-def _written(planned: Products) -> list[Field]:
+def _written(planned: Products) -> list[Row]:
     return [("Written", planned.text)] if planned.paths else []
 
 

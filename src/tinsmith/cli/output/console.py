@@ -20,9 +20,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
     from pathlib import Path
 
-__all__ = ["Console", "Field", "emit_file", "plain"]
+__all__ = ["Console", "Row", "emit_file", "format_json"]
 
-Field = tuple[str, str]
+Row = tuple[str, str]
 """A label and what it says; further lines stand under the first."""
 
 _LABEL_WIDTH = 11
@@ -47,14 +47,14 @@ class Console:
         """Return the context in which long work shows its progress."""
         return Steps(quiet=self.quiet)
 
-    def summarise(self, fields: Iterable[Field]) -> None:
+    def summarise(self, rows: Iterable[Row]) -> None:
         """Write a summary to stderr."""
         if not self.quiet:
-            tell(_lines(fields))
+            tell(_format_rows(rows))
 
-    def answer(self, fields: Iterable[Field], facts: Mapping[str, Any]) -> None:
-        """Write the result to stdout: fields for people, or facts as JSON."""
-        self.emit(plain(facts) if self.as_json else _lines(fields))
+    def answer(self, rows: Iterable[Row], record: Mapping[str, Any]) -> None:
+        """Write the result to stdout: rows for people, or a record as JSON."""
+        self.emit(format_json(record) if self.as_json else _format_rows(rows))
 
     def emit(self, text: str) -> None:
         """Write to stdout, to the last byte.
@@ -98,26 +98,26 @@ def emit_file(path: Path) -> None:
         raise Failure(f"Cannot write to standard output: {error.strerror}.") from error
 
 
-def _lines(fields: Iterable[Field]) -> str:
+def _format_rows(rows: Iterable[Row]) -> str:
     indent = "\n" + " " * (_LABEL_WIDTH + 1)
     return "\n".join(
         click.style(f"{label:<{_LABEL_WIDTH}}", bold=True)
         + " "
         + indent.join(map(escape_unprintable, name_flags(text).split("\n")))
-        for label, text in fields
+        for label, text in rows
     )
 
 
-def plain(facts: Mapping[str, Any]) -> str:
-    """Return facts as strict JSON: a number that is not finite becomes null."""
-    return json.dumps(_finite(facts), indent=2, allow_nan=False)
+def format_json(record: Mapping[str, Any]) -> str:
+    """Return a record as strict JSON: a number that is not finite becomes null."""
+    return json.dumps(_replace_infinite(record), indent=2, allow_nan=False)
 
 
-def _finite(value: Any) -> Any:
+def _replace_infinite(value: Any) -> Any:
     if isinstance(value, dict):
-        return {key: _finite(item) for key, item in value.items()}
+        return {key: _replace_infinite(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return [_finite(item) for item in value]
+        return [_replace_infinite(item) for item in value]
     if hasattr(value, "item"):  # a number of numpy
         value = value.item()
     return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from pathlib import Path
 
-__all__ = ["Failure", "failures_as_sentences", "note_answer", "note_written", "show_failure"]
+__all__ = ["Failure", "note_answer", "note_written", "show_failure", "translate_failures"]
 
 DEBUG = "TINSMITH_DEBUG"
 """Environment variable that, when set, lets every traceback through."""
@@ -82,9 +82,9 @@ def show_failure(error: click.ClickException, arguments: Sequence[str]) -> int:
     except OSError:
         silence(sys.stderr)
     if _wants_json(arguments) and not getattr(error, "is_answered", False):
-        facts = {"error": error.format_message(), "exit_code": error.exit_code}
+        record = {"error": error.format_message(), "exit_code": error.exit_code}
         try:
-            click.echo(json.dumps(facts, indent=2))
+            click.echo(json.dumps(record, indent=2))
             if sys.stdout is not None:
                 sys.stdout.flush()
         except OSError:
@@ -99,7 +99,7 @@ def _wants_json(arguments: Sequence[str]) -> bool:
 
 
 @contextmanager
-def failures_as_sentences(ctx: click.Context) -> Iterator[None]:
+def translate_failures(ctx: click.Context) -> Iterator[None]:
     """Turn exceptions into :class:`Failure`, and warnings into one line each."""
     if os.environ.get(DEBUG):
         yield
@@ -109,18 +109,18 @@ def failures_as_sentences(ctx: click.Context) -> Iterator[None]:
         try:
             yield
         except click.ClickException as error:
-            raise _marked(error, ctx) from error.__cause__
+            raise _translate(error, ctx) from error.__cause__
         except (click.exceptions.Exit, click.Abort, BrokenPipeError):
             raise
         except KeyboardInterrupt:
-            raise _marked(_interruption(ctx, signal.SIGINT), ctx) from None
+            raise _translate(_make_interruption(ctx, signal.SIGINT), ctx) from None
         except Terminated as ended:
-            raise _marked(_interruption(ctx, ended.number), ctx) from None
+            raise _translate(_make_interruption(ctx, ended.number), ctx) from None
         except Exception as error:
-            raise _marked(_failure(error), ctx) from error
+            raise _translate(_make_failure(error), ctx) from error
 
 
-def _marked(error: click.ClickException, ctx: click.Context) -> click.ClickException:
+def _translate(error: click.ClickException, ctx: click.Context) -> click.ClickException:
     """Return the error in the words of this command, and whether the result is on stdout."""
     if isinstance(error, Failure):
         error.translated = name_flags(error.message)
@@ -128,13 +128,13 @@ def _marked(error: click.ClickException, ctx: click.Context) -> click.ClickExcep
     return error
 
 
-def _interruption(ctx: click.Context, number: int) -> Interruption:
+def _make_interruption(ctx: click.Context, number: int) -> Interruption:
     written = ctx.find_root().meta.get(_WRITTEN, [])
     outcome = f"already written: {', '.join(written)}" if written else "nothing was written"
     return Interruption(f"Interrupted; {outcome}.", number)
 
 
-def _failure(error: Exception) -> Failure:
+def _make_failure(error: Exception) -> Failure:
     from ...errors import TinsmithError
 
     if isinstance(error, TinsmithError):

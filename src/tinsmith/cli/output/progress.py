@@ -28,7 +28,7 @@ class Steps:
     """A context in which steps follow each other; what they showed vanishes with it."""
 
     def __init__(self, *, quiet: bool = False) -> None:
-        self._bar = None if quiet or not _is_terminal() else _progress_bar()
+        self._bar = None if quiet or not _is_terminal() else _make_progress_bar()
         self._is_shown = False
         self._timer = Timer(PATIENCE, self._show)
         self._timer.daemon = True
@@ -73,7 +73,7 @@ def _is_terminal() -> bool:
     return sys.stderr is not None and sys.stderr.isatty()
 
 
-def _progress_bar() -> Progress:
+def _make_progress_bar() -> Progress:
     from rich.console import Console
     from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 

@@ -21,8 +21,8 @@ __all__ = [
     "Terminated",
     "accept_any_text",
     "escape_unprintable",
+    "raise_for_signals",
     "reserve_standard_streams",
-    "signals_as_exceptions",
     "silence",
     "tell",
 ]
@@ -47,7 +47,7 @@ class Terminated(BaseException):
 
 
 @contextmanager
-def signals_as_exceptions() -> Iterator[None]:
+def raise_for_signals() -> Iterator[None]:
     """Raise :class:`Terminated` for a signal that would end the program at once.
 
     One that is ignored, as under ``nohup``, stays ignored. Python drops an exception that is raised
@@ -136,10 +136,10 @@ def escape_unprintable(text: str) -> str:
     if text.isprintable():
         return text
     return "".join(
-        letter if letter.isprintable() or "\ud800" <= letter <= "\udfff" else _escaped(letter)
+        letter if letter.isprintable() or "\ud800" <= letter <= "\udfff" else _escape(letter)
         for letter in text
     )
 
 
-def _escaped(letter: str) -> str:
+def _escape(letter: str) -> str:
     return letter.encode("unicode_escape").decode("ascii")

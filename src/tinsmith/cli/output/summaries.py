@@ -1,4 +1,4 @@
-"""Facts about points and TINs: as plain values for JSON, and as fields for people."""
+"""What is told of points and TINs: records for JSON, and rows for people."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from ..._sentences import counted
 from ...crs import assume_elevation_unit
 from ...io.reprojection.transformation import is_geographic, length_unit
 from ...terrain import slope
-from ...terrain.slope import areas
+from ...terrain.slope import measure_areas
 from ...tin import TIN, Bounds, Survey, quality
 from .line_summaries import (
-    constrained_edges,
-    elevation_symbol,
-    given_lines,
-    given_lines_text,
-    tin_counts,
+    count_constrained_edges,
+    count_given_lines,
+    describe_counts,
+    describe_given_lines,
+    find_elevation_symbol,
 )
 
 if TYPE_CHECKING:
@@ -28,44 +28,44 @@ if TYPE_CHECKING:
 
     from ...crs import CRS
     from ...tin import Merge, Quality, Report
-    from .console import Field
+    from .console import Row
 
 __all__ = [
-    "crs_field",
-    "extent_fields",
-    "file_size",
-    "merge_field",
-    "quality_fields",
-    "quality_of",
-    "reading_fields",
-    "report_facts",
-    "survey_facts",
-    "survey_fields",
-    "tin_facts",
-    "tin_fields",
-    "unit_note",
-    "units",
+    "describe_file_size",
+    "describe_report",
+    "describe_survey",
+    "describe_tin",
+    "find_symbols",
+    "measure_quality",
+    "note_assumed_unit",
+    "summarise_crs",
+    "summarise_extent",
+    "summarise_merges",
+    "summarise_quality",
+    "summarise_reading",
+    "summarise_survey",
+    "summarise_tin",
 ]
 
 _EXPECTED = "header lines"
 """What every file may have, and nobody needs to be told of."""
 
 
-def survey_facts(survey: Survey) -> dict[str, Any]:
+def describe_survey(survey: Survey) -> dict[str, Any]:
     """Describe points as plain values."""
     return {
         "kind": "points",
         "points": len(survey),
-        **_place_facts(survey),
+        **_describe_place(survey),
         "attributes": list(survey.attributes),
-        **given_lines(survey),
+        **count_given_lines(survey),
         "skipped": dict(survey.skipped),
         "skipped_lines": {what: list(rows) for what, rows in survey.skipped_lines.items()},
         "notes": list(survey.notes),
     }
 
 
-def tin_facts(tin: TIN) -> dict[str, Any]:
+def describe_tin(tin: TIN) -> dict[str, Any]:
     """Describe a TIN as plain values; areas are None in degrees."""
     return {
         "kind": "tin",
@@ -74,36 +74,36 @@ def tin_facts(tin: TIN) -> dict[str, Any]:
         "edges": len(tin.edges),
         "hull_vertices": len(tin.hull),
         "rings": len(tin.rings),
-        "constrained_edges": constrained_edges(tin),
+        "constrained_edges": count_constrained_edges(tin),
         "lines": {kind: tin.lines.kinds.count(kind) for kind in sorted(set(tin.lines.kinds))},
-        **_place_facts(tin),
-        **_ground_facts(tin),
+        **_describe_place(tin),
+        **_describe_ground(tin),
         "notes": list(tin.report.notes),
     }
 
 
-def quality_of(tin: TIN) -> Quality | None:
+def measure_quality(tin: TIN) -> Quality | None:
     """Measure the triangles in the plane; None in degrees, where angles are not those on earth."""
     return None if is_geographic(tin.crs) else quality(tin)
 
 
-def report_facts(report: Report, survey: Survey, gaps: Sequence[str] = ()) -> dict[str, Any]:
+def describe_report(report: Report, survey: Survey, gaps: Sequence[str] = ()) -> dict[str, Any]:
     """Return the report, with the gaps found, and the point numbers of merged rows."""
-    facts = report.to_dict()
-    facts["notes"] += gaps
-    facts["skipped_lines"] = {what: list(rows) for what, rows in survey.skipped_lines.items()}
+    record = report.to_dict()
+    record["notes"] += gaps
+    record["skipped_lines"] = {what: list(rows) for what, rows in survey.skipped_lines.items()}
     numbers = survey.attributes.get("number")
     if numbers is not None:
-        for merge in facts["merges"]:
-            merge["numbers"] = [_plain(numbers[row]) for row in merge["rows"]]
-    return facts
+        for merge in record["merges"]:
+            merge["numbers"] = [_convert_to_python(numbers[row]) for row in merge["rows"]]
+    return record
 
 
-def _plain(value: Any) -> Any:
+def _convert_to_python(value: Any) -> Any:
     return value.item() if isinstance(value, np.generic) else value
 
 
-def _place_facts(found: Survey | TIN) -> dict[str, Any]:
+def _describe_place(found: Survey | TIN) -> dict[str, Any]:
     z, crs = found.points[:, 2], found.crs
     return {
         "bounds": asdict(Bounds.of(found.points)),
@@ -111,35 +111,35 @@ def _place_facts(found: Survey | TIN) -> dict[str, Any]:
             "min": float(z.min()),
             "max": float(z.max()),
             "mean": float(z.mean()),
-            "unit_assumed": _assumed_unit(found),
+            "unit_assumed": _name_assumed_unit(found),
         },
         "crs": None if crs is None else str(crs),
         "crs_name": None if crs is None else crs.name,
-        "units": _unit_names(found),
+        "units": _name_units(found),
     }
 
 
-def _unit_names(found: Survey | TIN) -> dict[str, str]:
+def _name_units(found: Survey | TIN) -> dict[str, str]:
     return {
         "horizontal": "unknown" if found.crs is None else found.crs.horizontal_unit.name,
         "vertical": "unknown" if found.elevation_unit is None else found.elevation_unit.name,
     }
 
 
-def _assumed_unit(found: Survey | TIN) -> str | None:
+def _name_assumed_unit(found: Survey | TIN) -> str | None:
     """Name what elevations are taken to be measured in where that is not known."""
     usual = assume_elevation_unit(found.crs, None)
     return usual.name if found.elevation_unit is None and usual is not None else None
 
 
-def _ground_facts(tin: TIN) -> dict[str, Any]:
+def _describe_ground(tin: TIN) -> dict[str, Any]:
     degrees, in_degrees = slope(tin), is_geographic(tin.crs)
     return {
         "area": None if in_degrees else tin.area,
         "surface_area": None if in_degrees else tin.surface_area,
         "slope": {
             "min": float(degrees.min()),
-            "mean": float(np.average(degrees, weights=areas(tin))),
+            "mean": float(np.average(degrees, weights=measure_areas(tin))),
             "max": float(degrees.max()),
         },
     }
@@ -148,13 +148,13 @@ def _ground_facts(tin: TIN) -> dict[str, Any]:
 # ---------------------------------------------------------------- for people
 
 
-def units(found: Survey | TIN) -> tuple[str, str]:
+def find_symbols(found: Survey | TIN) -> tuple[str, str]:
     """Return the symbols behind horizontal and vertical numbers, with the space before them."""
     across = length_unit(found.crs).symbol
-    return across if across == "°" else f" {across}", elevation_symbol(found)
+    return across if across == "°" else f" {across}", find_elevation_symbol(found)
 
 
-def unit_note(found: Survey | TIN) -> str:
+def note_assumed_unit(found: Survey | TIN) -> str:
     """Say what the unit of elevations is taken to be where it is not known; else nothing."""
     if found.elevation_unit is not None:
         return ""
@@ -164,36 +164,36 @@ def unit_note(found: Survey | TIN) -> str:
     return f"unit not known, taken to be {usual.name}, the usual one in {found.crs.label}"
 
 
-def survey_fields(survey: Survey) -> list[Field]:
+def summarise_survey(survey: Survey) -> list[Row]:
     """Describe points."""
-    fields = [("Points", f"{len(survey):,}"), *reading_fields(survey)]
+    rows = [("Points", f"{len(survey):,}"), *summarise_reading(survey)]
     if survey.attributes:
-        fields.append(("Columns", ", ".join(survey.attributes)))
+        rows.append(("Columns", ", ".join(survey.attributes)))
     if survey.has_lines:
-        fields.append(("Lines", given_lines_text(survey)))
-    return [*fields, *extent_fields(survey), crs_field(survey.crs)]
+        rows.append(("Lines", describe_given_lines(survey)))
+    return [*rows, *summarise_extent(survey), summarise_crs(survey.crs)]
 
 
-def tin_fields(tin: TIN) -> list[Field]:
+def summarise_tin(tin: TIN) -> list[Row]:
     """Describe a TIN."""
-    facts = _ground_facts(tin)
-    across, _ = units(tin)
-    fields = [
-        ("TIN", tin_counts(tin)),
+    record = _describe_ground(tin)
+    across, _ = find_symbols(tin)
+    rows = [
+        ("TIN", describe_counts(tin)),
         ("Edges", f"{len(tin.edges):,}, {sum(map(len, tin.boundary)):,} of them on the boundary"),
-        *extent_fields(tin),
+        *summarise_extent(tin),
     ]
-    if facts["area"] is not None:
-        fields += [
-            ("Area", f"{facts['area']:,.1f}{across}² in the plane"),
-            ("", f"{facts['surface_area']:,.1f}{across}² in space"),
+    if record["area"] is not None:
+        rows += [
+            ("Area", f"{record['area']:,.1f}{across}² in the plane"),
+            ("", f"{record['surface_area']:,.1f}{across}² in space"),
         ]
-    low, mean, high = (facts["slope"][name] for name in ("min", "mean", "max"))
-    fields.append(("Slope", f"{low:.1f}° to {high:.1f}°, mean {mean:.1f}°"))
-    return [*fields, crs_field(tin.crs), *reading_fields(tin)]
+    low, mean, high = (record["slope"][name] for name in ("min", "mean", "max"))
+    rows.append(("Slope", f"{low:.1f}° to {high:.1f}°, mean {mean:.1f}°"))
+    return [*rows, summarise_crs(tin.crs), *summarise_reading(tin)]
 
 
-def quality_fields(shapes: Quality | None) -> list[Field]:
+def summarise_quality(shapes: Quality | None) -> list[Row]:
     """Describe the shapes of triangles in two lines; in none if they were not measured."""
     if shapes is None:
         return []
@@ -206,23 +206,23 @@ def quality_fields(shapes: Quality | None) -> list[Field]:
             f"smallest angle: median {smallest['median']:.1f}°, worst {smallest['min']:.2g}°, "
             f"below 20° in {below:.1f} % of triangles",
         ),
-        ("", f"aspect ratio: median {aspect['median']:.2f}, worst {_ratio(aspect['max'])}"),
+        ("", f"aspect ratio: median {aspect['median']:.2f}, worst {_format_ratio(aspect['max'])}"),
     ]
 
 
-def _ratio(value: float) -> str:
+def _format_ratio(value: float) -> str:
     return f"{value:,.0f}" if 100 <= value < 1e9 else f"{value:.3g}"
 
 
-def extent_fields(found: Survey | TIN) -> list[Field]:
+def summarise_extent(found: Survey | TIN) -> list[Row]:
     """Describe where points lie, and how high."""
-    across, up = units(found)
+    across, up = find_symbols(found)
     in_degrees = is_geographic(found.crs)
     digits = 7 if in_degrees else 3
     box = Bounds.of(found.points)
     low, high = found.points[:, 2].min(), found.points[:, 2].max()
     east, north = ("longitude", "latitude") if in_degrees else ("easting", "northing")
-    note = unit_note(found)
+    note = note_assumed_unit(found)
     return [
         ("Extent", f"{box.width:,.{digits}f}{across} x {box.height:,.{digits}f}{across}"),
         ("", f"{east} {box.xmin:.{digits}f} to {box.xmax:.{digits}f}"),
@@ -231,32 +231,32 @@ def extent_fields(found: Survey | TIN) -> list[Field]:
     ]
 
 
-def crs_field(crs: CRS | None) -> Field:
+def summarise_crs(crs: CRS | None) -> Row:
     """Name the CRS."""
     if crs is None:
         return ("CRS", "unknown (name it with --crs)")
     return ("CRS", crs.name if crs.label == crs.name else f"{crs}, {crs.name}")
 
 
-def reading_fields(found: Survey | TIN) -> list[Field]:
+def summarise_reading(found: Survey | TIN) -> list[Row]:
     """Say what the reader left out, what it assumed and what it found odd, if anything."""
     if not isinstance(found, Survey):
         return [("Note", note) for note in found.report.notes]
     skipped = [
-        counted(number, _singular(what), what)
+        counted(number, _make_singular(what), what)
         for what, number in found.skipped.items()
         if what != _EXPECTED
     ]
-    fields = [("Skipped", ", ".join(skipped))] if skipped else []
-    return [*fields, *(("Note", note) for note in found.notes)]
+    rows = [("Skipped", ", ".join(skipped))] if skipped else []
+    return [*rows, *(("Note", note) for note in found.notes)]
 
 
-def _singular(what: str) -> str:
+def _make_singular(what: str) -> str:
     """Return what was skipped as one thing: "nodata cells", "rows without an elevation"."""
     return re.sub(r"\b(cell|row|line|point)s\b", r"\1", what, count=1)
 
 
-def merge_field(report: Report, survey: Survey) -> list[Field]:
+def summarise_merges(report: Report, survey: Survey) -> list[Row]:
     """Say how many rows were merged and where their elevations differ most."""
     surplus = len(report.merged_rows) - len(report.merged_vertices)
     if surplus == 0:
@@ -269,20 +269,20 @@ def merge_field(report: Report, survey: Survey) -> list[Field]:
     worst = int(spread.argmax())
     if spread[worst] == 0:
         return [("Merged", f"{text}, with equal elevations")]
-    merge = next(_merges_from(report, worst))
-    up = elevation_symbol(survey)
+    merge = next(_iterate_merges(report, worst))
+    up = find_elevation_symbol(survey)
     differing = int(np.count_nonzero(spread))
     return [
         ("Merged", f"{text}, elevation by '{report.duplicates}'"),
         (
             "",
             f"elevations differ at {counted(differing, 'place')}, most by {spread[worst]:.3f}{up}: "
-            f"{_rows_text(merge, survey)}",
+            f"{_describe_rows(merge, survey)}",
         ),
     ]
 
 
-def _merges_from(report: Report, index: int) -> Any:
+def _iterate_merges(report: Report, index: int) -> Any:
     """Walk the merges from the one at ``index``."""
     begin = report.merged_offsets[index]
     return replace(
@@ -296,7 +296,7 @@ def _merges_from(report: Report, index: int) -> Any:
     ).merges()
 
 
-def _rows_text(merge: Merge, survey: Survey) -> str:
+def _describe_rows(merge: Merge, survey: Survey) -> str:
     """Name the rows of a merge, by point number where there is one, with their elevations."""
     numbers = survey.attributes.get("number")
     names = merge.rows if numbers is None else [numbers[row] for row in merge.rows]
@@ -308,7 +308,7 @@ def _rows_text(merge: Merge, survey: Survey) -> str:
     return f"{'rows' if numbers is None else 'points'} {shown}{more}"
 
 
-def file_size(path: Path) -> str:
+def describe_file_size(path: Path) -> str:
     """Return the size of a file for people."""
     size = float(path.stat().st_size)
     for unit in ("bytes", "kB", "MB"):
