@@ -9,6 +9,7 @@ import numpy as np
 
 from ..errors import choice
 from ..policies import SlopeUnit, SurfacePart
+from ..tin.validation.options import require_tin
 from .units import find_scales
 
 if TYPE_CHECKING:
@@ -180,6 +181,7 @@ def compute_normals(tin: TIN) -> NDArray[np.float64]:
         Of the true surface, as in :func:`slope`: in CRS units squared, in a geographic CRS square
         metres. Its horizontal part points downhill; the vertical part is positive.
     """
+    require_tin(tin)
     corners = [tin.points[tin.triangles[:, k]] for k in range(3)]
     first, second = corners[1] - corners[0], corners[2] - corners[0]
     upward: NDArray[np.float64] = np.cross(first, second)
