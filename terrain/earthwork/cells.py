@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 __all__ = ["Pieces", "cut_pieces", "fan_out", "turns"]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Pieces:
     """The parts of a surface's triangles in some groups.
 

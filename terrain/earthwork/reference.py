@@ -49,7 +49,7 @@ class Reference:
         return f"{unit.symbol}{_POWERS[exponent]}"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Surface:
     """Triangles of a surface, or pieces of them.
 

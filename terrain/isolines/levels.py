@@ -25,7 +25,7 @@ MOST_LEVELS = 100_000
 """More are refused: an interval with so many was given in another unit, or by a slip."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Levels:
     """Elevations in ascending order.
 

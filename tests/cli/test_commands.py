@@ -332,6 +332,12 @@ def test_formats_lists_every_known_format():
     listed = json.loads(run("formats", "--json").stdout)["formats"]
     assert [one["name"] for one in listed] == [one.name for one in known]
     assert all(re.search(rf"^ ?{one.name} ", table, re.MULTILINE) for one in known)
+    for one, facts in zip(known, listed, strict=True):
+        assert (facts["read"], facts["write"]) == (bool(one.read), bool(one.write))
+        assert facts["suffixes"] == list(one.suffixes)
+        assert (facts["description"], facts["extra"]) == (one.description, one.extra)
+        words = [("yes" if way else "-") for way in (one.read, one.write)]
+        assert re.search(rf"^ ?{one.name} +{words[0]} +{words[1]} ", table, re.MULTILINE)
 
 
 class Entry:

@@ -85,3 +85,36 @@ def test_missing_script_is_named(folder):
     result = CliRunner().invoke(main, ["edit", "points.csv", "nowhere.json", "-o", "out.ply"])
     assert result.exit_code == 1
     assert "nowhere.json" in result.stderr
+
+
+def test_json_tells_files_surface_and_report(folder):
+    facts = json.loads(run(folder, SCRIPT, "--json").stdout)
+    tin = ts.read(folder / "out.ply")
+    assert (facts["input"], facts["script"]) == ("points.csv", "script.json")
+    assert facts["outputs"] == ["out.ply"]
+    assert facts["tin"]["vertices"] == len(tin.points)
+    assert facts["tin"]["triangles"] == len(tin.triangles)
+    assert len(facts["report"]["edits"]) == len(SCRIPT)
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (b"\xff\xfe[]", "'script.json' is no text in UTF-8: a list of edits is needed"),
+        (b"[1", "'script.json' is no JSON (line 1: Expecting ',' delimiter): a list of edits"),
+        (b"[1]", "'script.json' holds something else: a list of edits is needed"),
+        (b"{}", "'script.json' holds something else: a list of edits is needed"),
+    ],
+)
+def test_a_script_that_is_none_is_refused(folder, content, words):
+    (folder / "script.json").write_bytes(content)
+    result = CliRunner().invoke(main, ["edit", "points.csv", "script.json", "-o", "out.ply"])
+    assert result.exit_code == 1
+    assert words in result.stderr
+
+
+def test_a_script_may_begin_with_a_byte_order_mark(folder):
+    (folder / "script.json").write_bytes(b"\xef\xbb\xbf[]")
+    result = CliRunner().invoke(main, ["edit", "points.csv", "script.json", "-o", "out.ply"])
+    assert result.exit_code == 0
+    assert "Edits       none" in result.stderr

@@ -305,6 +305,11 @@ class Workshop:
         finally:
             target.write_text(text)
 
+    def restore(self) -> None:
+        """Build the core without a mutant; the last one may live in it."""
+        if self.kind == "core":
+            self._build()
+
     def _target(self, path: Path) -> Path:
         if path.suffix == ".hpp":
             return self.folder / "source" / path.relative_to(ROOT)
@@ -424,7 +429,9 @@ def run(mutants: list[Mutant], given: argparse.Namespace) -> dict[str, list[str]
 
     with ThreadPoolExecutor(given.jobs) as pool:
         list(pool.map(judge, mutants))
-    for mutant in unsure(workshops.get(), noticed, given.limit):
+    workshop = workshops.get()
+    workshop.restore()
+    for mutant in unsure(workshop, noticed, given.limit):
         verdicts["noticed"].remove(mutant)
         verdicts.setdefault("unsure", []).append(mutant)
     results.write_text(json.dumps(verdicts, indent=1))

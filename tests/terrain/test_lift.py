@@ -51,6 +51,15 @@ def test_the_default_origin_is_near_and_round(extent):
     np.testing.assert_allclose(origin[:2] / step, np.round(origin[:2] / step), rtol=1e-12)
 
 
+@pytest.mark.parametrize("turned", [False, True])
+def test_the_default_origin_of_a_strip_is_rounded_by_its_length(turned):
+    strip = [[10.3, 17.0, 3.4], [10.7, 817.0, 3.6], [11.4, 300.0, 2.5]]
+    points = [[y, x, z] for x, y, z in strip] if turned else strip
+    assert choose_origin(triangulate(points)).tolist() == (
+        [400.0, 0.0, 3.0] if turned else [0.0, 400.0, 3.0]
+    )
+
+
 def test_the_default_origin_of_level_ground_is_its_elevation_rounded():
     tin = triangulate([[0, 0, 7.4], [30, 0, 7.4], [0, 30, 7.4]])
     assert choose_origin(tin).tolist() == [20.0, 20.0, 7.0]

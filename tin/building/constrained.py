@@ -32,10 +32,10 @@ __all__ = ["ConstrainedTriangulation", "CrossingPolicy", "LineOptions", "triangu
 class LineOptions(NamedTuple):
     """How rows are merged and lines cut."""
 
+    threads: int
     duplicates: DuplicatePolicy = "mean"
     snap: float = 0.0
     crossing: CrossingPolicy = "split"
-    threads: int = 1
 
 
 class ConstrainedTriangulation(NamedTuple):

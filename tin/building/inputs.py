@@ -22,11 +22,11 @@ from ..constraints.constraint_set import (
     require_length,
 )
 from ..constraints.polygons import starts_with_elevations
-from ..survey import Survey
 from ..validation.options import as_flag, require_distance, require_positive
 from ..validation.points import as_masked_points, require_three
 from ..validation.threads import thread_count
 from .constrained import LineOptions
+from .survey import Survey
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -175,7 +175,7 @@ def gather_inputs(
         max_edge=np.inf if max_edge is None else float(max_edge),
         trim=trim,
         conforming=as_flag("conforming", conforming),
-        options=LineOptions(duplicates, float(snap), crossing, thread_count(threads, len(xyz))),
+        options=LineOptions(thread_count(threads, len(xyz)), duplicates, float(snap), crossing),
         crs=system,
         elevation_unit=unit,
         skipped=own.skipped,

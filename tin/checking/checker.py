@@ -30,8 +30,8 @@ from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from ...errors import CheckError, OptionError
+from ..building.survey import Survey
 from ..constraints.constraint_set import as_sequence, gather_lines
-from ..survey import Survey
 from ..validation.options import as_flag, is_whole_number, require_tin
 from ..validation.points import as_masked_points
 from .chains import check_chains, check_segments, has_sound_chains

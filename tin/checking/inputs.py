@@ -51,9 +51,7 @@ def check_rows(tin: TIN, rows: NDArray[np.float64], found: Findings) -> None:
         return
     moved = np.abs(tin.points[tin.vertex_of, :2] - rows[:, :2])
     moved[tin.vertex_of < 0] = 0.0
-    is_moved = moved.any(axis=1)
-    if tin.report.snap > 0:
-        is_moved = np.hypot(moved[:, 0], moved[:, 1]) > tin.report.snap * (1 + _ROUNDING)
+    is_moved = np.hypot(moved[:, 0], moved[:, 1]) > tin.report.snap * (1 + _ROUNDING)
     found.report(
         "rows",
         np.flatnonzero(is_moved),

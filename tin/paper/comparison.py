@@ -13,8 +13,8 @@ import numpy as np
 
 from ...errors import PointsError
 from .. import _kernel
+from ..building.survey import Survey
 from ..construction import triangulate
-from ..survey import Survey
 from ..validation.options import require_count
 from ..validation.points import as_points
 from .cover import cover

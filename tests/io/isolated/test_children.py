@@ -15,10 +15,11 @@ from types import SimpleNamespace
 
 import pytest
 
-from tinsmith.io import ReadError
+from tinsmith.io import ReadError, read
 from tinsmith.io.isolated import Limits, run_isolated, spooling, stream_isolated, workers
 from tinsmith.io.isolated.answers import Answer, BrokenMessageError, _reserve_array, receive, send
 from tinsmith.io.isolated.child import _Buffered
+from tinsmith.io.reading import read_stream
 
 FILE = Path("some file")
 on_linux = pytest.mark.skipif(sys.platform != "linux", reason="what /proc tells of a process")
@@ -372,3 +373,28 @@ def test_devices_and_sockets_are_named(tmp_path, monkeypatch):
             pass
     with spooling.open_ordinary_file(tmp_path / "missing") as path:
         assert path == tmp_path / "missing"  # left to the reader
+
+
+@pytest.mark.parametrize("name", ["ground.csv", "ground"])
+def test_what_is_read_from_a_pipe_bears_its_name(tmp_path, name):
+    content = b"1.5,2.5,3.5\n4.5,5.5,6.5\n7.5,1.5,-9999\n2.5,8.5,4.5\n"
+    pipe = tmp_path / name
+    os.mkfifo(pipe)
+    sender = threading.Thread(target=pipe.write_bytes, args=(content,))
+    sender.start()
+    found = read(pipe)
+    sender.join()
+    pipe.unlink()
+    (tmp_path / "ground.csv").write_bytes(content)
+    plain = read(tmp_path / "ground.csv")
+    streamed = read_stream(io.BytesIO(content), "ground.csv")
+    assert found.source == name
+    assert plain.source == streamed.source == "ground.csv"
+    for one in (found, streamed):
+        assert one.points.tolist() == plain.points.tolist()
+        assert list(one.notes) == list(plain.notes)
+        assert not any("piped" in note for note in one.notes)
+    (tmp_path / "bad.csv").write_bytes(b"no,table\n")
+    with pytest.raises(ReadError, match=r"'bad\.csv'") as caught:
+        read_stream(io.BytesIO(b"no,table\n"), "bad.csv")
+    assert "piped" not in str(caught.value)

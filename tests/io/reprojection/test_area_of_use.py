@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pyproj
 import pytest
 
 from tinsmith.crs import CRS
-from tinsmith.io.reprojection.area_of_use import AreaOfUse, _convert_to_degrees
+from tinsmith.io.reprojection.area_of_use import AreaOfUse, _convert_to_degrees, _measure_width
 
 UTM_16 = "EPSG:32616"
 NEW_ZEALAND = "EPSG:4167"  # 160.6 E to 171.2 W: across the antimeridian
@@ -169,3 +171,12 @@ def test_rows_outside_are_found_wherever_they_stand():
 def test_angles_are_degrees_from_greenwich(crs, place, angles):
     found = np.concatenate(_convert_to_degrees(CRS.of(crs), np.array([place])))
     assert found == pytest.approx(angles, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("west", "east", "south", "north", "size"),
+    [(0, 10, 0, 20, 200), (0, 10, -2, 2, 40), (170, -170, 0, 5, 100), (-180, 180, -90, 90, 64800)],
+)
+def test_areas_are_compared_by_their_size_in_degrees(west, east, south, north, size):
+    area = SimpleNamespace(west=west, east=east, south=south, north=north)
+    assert _measure_width(area) == size

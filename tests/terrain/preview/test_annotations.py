@@ -25,7 +25,7 @@ from tinsmith.terrain.preview.camera import (
     measure_pixels_per_unit,
     project_ground_axes,
 )
-from tinsmith.terrain.preview.overlay import Overlay
+from tinsmith.terrain.preview.overlay import Overlay, _find_wide_font
 from tinsmith.terrain.preview.scene import add_lights, place_vertices
 from tinsmith.terrain.preview.tints import interpolate_tints
 from tinsmith.terrain.units import METRE, find_ground
@@ -414,3 +414,23 @@ def test_what_an_overlay_draws_is_where_it_was_asked_for(factor, can_draw):
     plotter.render()
     assert (plotter.screenshot(return_img=True) == 255).all()
     plotter.close()
+
+
+def test_letters_beyond_latin_are_written_with_a_font_that_has_them():
+    names = [_find_wide_font(bold=bold).name for bold in (False, True)]
+    assert names == ["DejaVuSans.ttf", "DejaVuSans-Bold.ttf"]
+    overlay, chosen = Overlay(None), []
+
+    class Style:
+        def __getattr__(self, name):
+            return lambda *given: chosen.append((name, *given))
+
+    for words in ("Größe \N{LATIN SMALL LETTER LONG S}", "Пример", ""):
+        overlay._set_font(Style(), words, size=10, bold=False)
+    kinds = [name for name, *_ in chosen if "Font" in name and name != "SetFontSize"]
+    assert kinds == [
+        *("SetFontFamilyToArial", "SetFontFamily", "SetFontFile", "SetFontFamilyToArial")
+    ]
+    overlay.factor = 0.01
+    overlay._set_font(Style(), "x", size=10, bold=True)
+    assert chosen[-2:] == [("SetFontSize", 1), ("SetBold", True)]

@@ -536,3 +536,48 @@ def test_an_exaggerated_picture_leaves_the_slope_true(tmp_path, can_draw):
     before = slope(tin)
     preview(tin, output=tmp_path / "a.png", size=(400, 250), exaggeration=5)
     np.testing.assert_array_equal(slope(tin), before)
+
+
+@pytest.mark.parametrize(
+    ("window", "display", "platform", "is_refused"),
+    [
+        ("vtkXOpenGLRenderWindow", ":0", "linux", False),
+        ("vtkXOpenGLRenderWindow", "", "linux", True),
+        ("vtkXOpenGLRenderWindow", None, "linux2", True),
+        ("vtkCocoaRenderWindow", None, "darwin", False),
+        ("vtkWin32OpenGLRenderWindow", None, "win32", False),
+        ("vtkEGLRenderWindow", ":0", "linux", True),
+        ("vtkOSOpenGLRenderWindow", ":0", "darwin", True),
+    ],
+)
+def test_a_window_needs_a_display(monkeypatch, window, display, platform, is_refused):
+    monkeypatch.setattr(opengl, "_find_window_class", lambda: window)
+    monkeypatch.setattr(opengl.sys, "platform", platform)
+    monkeypatch.delenv("DISPLAY", raising=False)
+    if display is not None:
+        monkeypatch.setenv("DISPLAY", display)
+    if is_refused:
+        with pytest.raises(RenderError, match="no display to open a window on"):
+            opengl.require_window()
+    else:
+        opengl.require_window()
+
+
+@pytest.mark.usefixtures("fresh_probe")
+@pytest.mark.parametrize(
+    ("code", "said", "expected"),
+    [
+        (0, "window:vtkEGLRenderWindow\n", "vtkEGLRenderWindow"),
+        (0, "a library says\nwindow:vtkX\n", "vtkX"),
+        (0, "nothing", ""),
+        (1, "window:vtkX\n", ""),
+        (-11, "window:vtkX\n", ""),
+    ],
+)
+def test_the_probe_tells_the_kind_of_window(monkeypatch, code, said, expected):
+    def run(command, **options):
+        assert options["timeout"] == opengl.PROBE_SECONDS == 60
+        return subprocess.CompletedProcess(command, code, stdout=said)
+
+    monkeypatch.setattr(opengl.subprocess, "run", run)
+    assert opengl._find_window_class() == expected

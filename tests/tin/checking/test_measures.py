@@ -8,8 +8,8 @@ import shapely
 
 import tinsmith as ts
 from tinsmith.tin.checking import inputs
-from tinsmith.tin.checking.chain_matching import _along, distance
-from tinsmith.tin.checking.inputs import _is_in_ring, _is_in_water, _is_inside, _unit
+from tinsmith.tin.checking.chain_matching import _project, distance
+from tinsmith.tin.checking.inputs import _is_in_ring, _is_in_water, _is_inside, _measure_unit
 from tinsmith.tin.constraints.constraint_set import gather_lines
 
 ELL = np.array([[0, 0], [6, 0], [6, 2], [2, 2], [2, 6], [0, 6], [0, 0]], float)
@@ -36,7 +36,7 @@ def test_the_foot_of_a_place_lies_so_far_along():
         foot = a + along * np.array([0.6, 0.8])
         for across in (-3.0, 0.0, 1.0):
             place = foot + across * np.array([-0.8, 0.6])
-            assert _along(place, a, b) == pytest.approx(along, abs=1e-12)
+            assert _project(place, a, b) == pytest.approx(along, abs=1e-12)
 
 
 @pytest.mark.parametrize("slack", [0.0, 0.25, 1.0])
@@ -84,5 +84,5 @@ def test_one_cut_moves_a_line_by_the_snap_and_some_roundings(shift, snap):
     some = np.array([[3.0, -7.0]])
     largest = max(abs(shift), abs(shift + 1), 7.0)
     wanted = snap / 1000 + inputs._UNITS_OF_ROUNDING * np.spacing(largest)
-    assert _unit(tin, some) == pytest.approx(wanted, rel=1e-15)
-    assert _unit(tin, some[:0]) <= wanted
+    assert _measure_unit(tin, some) == pytest.approx(wanted, rel=1e-15)
+    assert _measure_unit(tin, some[:0]) <= wanted

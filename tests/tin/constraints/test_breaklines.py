@@ -577,6 +577,16 @@ def test_a_crossing_that_rounds_to_a_given_vertex_is_that_vertex(first):
     assert tin.report.crossings.vertices.tolist() == [first]
 
 
+def test_lines_are_shown_in_one_line():
+    assert repr(ts.Breakline([[0, 0, 1], [1, 1, 2]])) == "<Breakline: hard, 2 vertices>"
+    draped = ts.Breakline([[0, 0], [1, 1], [2, 0]], kind="soft", name="kerb")
+    assert repr(draped) == "<Breakline: soft, 3 vertices, draped, 'kerb'>"
+    tin = ts.triangulate(
+        [[0, 0, 0], [9, 0, 0], [9, 9, 0], [0, 9, 0]], breaklines=[[[1, 1, 1], [2, 2, 2]]]
+    )
+    assert repr(tin.lines) == ("<Lines: 1 hard, 0 soft, 0 boundary, 0 hole, 0 water; 2 vertices>")
+
+
 def test_a_draped_line_ends_at_the_hull_where_a_crossing_was_rounded_beyond_it():
     """Where two parts of the line cross, on the hull but for a rounding, it was left out whole."""
     points = [[0, 2, 0], [1 / 3, 2 + 1 / 3, 0]]

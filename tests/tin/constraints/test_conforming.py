@@ -369,3 +369,25 @@ def test_check_still_loses_a_chain_that_is_on_no_part_of_its_line():
 def test_ring_of_two_corners_is_refused_wherever_it_begins(ring):
     with pytest.raises(ts.LinesError, match="two corners: a ring needs three"):
         ts.triangulate([[-9, -9, 0], [15, -5, 0], [0, 20, 0]], holes=[ring])
+
+
+@pytest.mark.parametrize("length", [1.0, 3.0, 5.7, 6.0, 1e-3, 12345.6])
+def test_segments_are_split_on_shells_around_the_given_end_or_in_the_middle(length):
+    """Lines that meet at a small angle are split as far from it: at powers of two."""
+    direction = np.array([0.6, 0.8])
+    points = np.zeros((4, 3))
+    points[[1, 3], :2] = length * direction
+    points[[1, 3], 2] = 8.0
+    both, first, second, none = [0, 1], [0, 3], [2, 1], [2, 3]
+    for reverse in (False, True):
+        segments = np.array(
+            [pair[::-1] if reverse else pair for pair in (both, first, second, none)]
+        )
+        split = conforming._place_split_points(points, segments.astype(np.int32), 2)
+        along = split[:, :2] @ direction
+        assert along[[0, 3]] == pytest.approx(length / 2)
+        for distance in (along[1], length - along[2]):
+            assert np.log2(distance) == pytest.approx(round(np.log2(distance)), abs=1e-9)
+            assert length / 2 / 2**0.5 * 0.999 <= distance <= length / 2 * 2**0.5 * 1.001
+        np.testing.assert_allclose(split[:, 2], 8.0 * along / length, rtol=1e-12)
+        np.testing.assert_allclose(split[:, :2], along[:, None] * direction, rtol=1e-12)

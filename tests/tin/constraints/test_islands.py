@@ -5,7 +5,7 @@ import pytest
 import shapely
 
 import tinsmith as ts
-from tinsmith.tin.constraints.polygons import rings_of
+from tinsmith.tin.constraints.polygons import gather_rings_of_regions
 
 SIDE = np.arange(0.0, 11.0)
 GRID = np.array([[x, y, x / 10] for x in SIDE for y in SIDE])
@@ -195,16 +195,16 @@ def test_regions_are_numbered_in_the_order_in_which_they_are_given():
         }
 
     for given in (Features(), shapely.GeometryCollection(squares)):
-        wests = [ring[0][:, 0].min() for ring in rings_of([given], "hole")]
+        wests = [ring[0][:, 0].min() for ring in gather_rings_of_regions([given], "hole")]
         assert wests == [1, 3, 5, 7]
     closed = shapely.LinearRing([[0, 0], [1, 0], [0, 1]])
-    assert len(rings_of([closed, shapely.LineString(closed.coords)], "hole")) == 2
+    assert len(gather_rings_of_regions([closed, shapely.LineString(closed.coords)], "hole")) == 2
     for open_line in (shapely.LineString([[0, 0], [1, 0], [0, 1]]), shapely.Point(0, 0)):
         with pytest.raises(ts.LinesError, match=f"Invalid hole: a {open_line.geom_type} is no"):
-            rings_of([open_line], "hole")
+            gather_rings_of_regions([open_line], "hole")
     with pytest.raises(ts.LinesError, match="Invalid hole: a LineString is no polygon"):
-        rings_of([shapely.LineString([[0, 0], [1, 0], [0, 0]])], "hole")
-    assert rings_of([shapely.Polygon()], "hole") == []
+        gather_rings_of_regions([shapely.LineString([[0, 0], [1, 0], [0, 0]])], "hole")
+    assert gather_rings_of_regions([shapely.Polygon()], "hole") == []
 
 
 def test_rings_are_called_by_their_number_over_all_regions():
@@ -213,4 +213,4 @@ def test_rings_are_called_by_their_number_over_all_regions():
         ([bad], 0), ([OUTER, bad], 1), ([[OUTER, INNER], bad], 2), ([DONUT, [OUTER, bad]], 3),
     ):  # fmt: skip
         with pytest.raises(ts.LinesError, match=rf"[Hh]ole ring {number}\b"):
-            rings_of(given, "hole")
+            gather_rings_of_regions(given, "hole")

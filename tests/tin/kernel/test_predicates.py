@@ -246,3 +246,25 @@ def test_the_core_refuses_places_that_are_not_finite():
         _kernel.orientation(good, good, bad)
     with pytest.raises(ValueError, match="finite"):
         _kernel.in_circle(good, bad, good, good)
+
+
+@pytest.mark.parametrize("n", [1, 3, 7])
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
+def test_no_row_and_no_argument_may_hold_what_is_not_finite(n, bad):
+    for predicate, count in (
+        (_kernel.orientation, 3),
+        (_kernel.in_circle, 4),
+        (_kernel.compare_distances, 3),
+    ):
+        for argument in range(count):
+            for row in range(n):
+                for axis in (0, 1):
+                    given = [np.zeros((n, 2)) for _ in range(count)]
+                    assert len(predicate(*given)) == n
+                    given[argument][row, axis] = bad
+                    with pytest.raises(ValueError, match="finite"):
+                        predicate(*given)
+
+
+def test_both_implementations_are_exact_in_the_same_range():
+    assert exact.EXACT_RANGE == _kernel.EXACT_RANGE

@@ -58,7 +58,12 @@ class _Line:
     "--interval", metavar="LENGTH", type=float, help="Add a row at every multiple of this station."
 )
 @click.option(
-    "--start", metavar="STATION", type=float, default=0.0, help="Station where the line begins."
+    "--start",
+    metavar="STATION",
+    type=float,
+    default=0.0,
+    show_default=True,
+    help="Station where the line begins.",
 )
 @click.option(
     "--sections",

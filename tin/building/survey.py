@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .._sentences import counted
-from ..crs import CRS, Unit, require_one_unit, shorten_crs
-from .constraints.breaklines import Breakline, Water
-from .types import Bounds
-from .validation.tables import as_table
+from ..._sentences import counted
+from ...crs import CRS, Unit, require_one_unit, shorten_crs
+from ..constraints.breaklines import Breakline, Water
+from ..types import Bounds
+from ..validation.tables import as_table
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
