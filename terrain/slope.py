@@ -9,6 +9,7 @@ import numpy as np
 
 from ..errors import choice
 from ..policies import SlopeUnit, SurfacePart
+from ..tin.validation.options import require_tin
 from .units import find_scales
 
 if TYPE_CHECKING:
@@ -180,6 +181,7 @@ def compute_normals(tin: TIN) -> NDArray[np.float64]:
         Of the true surface, as in :func:`slope`: in CRS units squared, in a geographic CRS square
         metres. Its horizontal part points downhill; the vertical part is positive.
     """
+    require_tin(tin)
     first, second, third = (np.ascontiguousarray(corner) for corner in tin.triangles.T)
     axes = [np.ascontiguousarray(axis) for axis in tin.points.T]
     (ux, vx), (uy, vy), (uz, vz) = (
