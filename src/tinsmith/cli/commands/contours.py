@@ -19,6 +19,7 @@ from ..options import (
 )
 from ..output.console import format_json
 from ..output.failures import Failure
+from ..paths import make_title
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -94,26 +95,28 @@ def contours(
     \b
     Example:
       tinsmith contours sample_data/site_survey.csv --crs EPSG:32616 --interval 0.5 -o site.gpkg
+      tinsmith contours sample_data/site_survey.csv --crs EPSG:32616 --interval 0.5 -o site.png
       tinsmith contours sample_data/site_survey.csv --crs EPSG:32616 --interval 1 --bands -o b.gpkg
     """  # noqa: D301 - click reads the control character
-    from ..files import describe_written, list_inputs, plan_outputs, read_tin, write_outputs
+    from ..files import list_inputs, read_tin
+    from ..surfaces import plan_products
 
     started = perf_counter()
     _require_one_product(options)
-    levels = _numbers(options["levels"])
-    planned = plan_outputs(
-        outputs, writing, inputs=list_inputs(file, how), console=console, kinds=("Features",)
-    )
+    options["levels"] = _numbers(options["levels"])
+    inputs, kinds = list_inputs(file, how), ["Features", "picture"]
+    planned = plan_products(outputs, writing, inputs=inputs, console=console, kinds=kinds)
     tin, _ = read_tin(file, reading, how, console)
-    with console.steps() as steps, steps.step("Drawing contours"):
-        made = _product(tin, options | {"levels": levels})
-    write_outputs(made, planned, console)
-    written = [str(one.path) for one in planned]
+    with console.steps() as steps, steps.step("Tracing contours"):
+        made = _product(tin, options)
+    planned.write("Features", made, console)
+    planned.draw(lambda: _draw(tin, made, options, make_title(file)), console)
+    written = [str(path) for path in planned.paths]
     console.summarise(
         [
             *_fields(made),
             *(("Note", note) for note in made.notes),
-            ("Written", describe_written(planned)),
+            ("Written", planned.text),
             ("Time", f"{perf_counter() - started:.2f} s"),
         ]
     )
@@ -167,6 +170,18 @@ def _product(tin: TIN, options: dict[str, Any]) -> Features:
         return contour_labels(lines, spacing=options["label_spacing"])
     except OptionError as error:
         raise Failure(name_flags(str(error), spacing="--label-spacing")) from error
+
+
+def _draw(tin: TIN, made: Features, options: dict[str, Any], title: str) -> Any:
+    """Return a map of what was made; labels stand on their lines."""
+    from ...terrain import contour_labels, contour_map
+
+    if options["bands"]:
+        return contour_map(tin, bands=made, title=title)
+    is_labels = options["labels"]
+    lines = _product(tin, options | {"labels": False}) if is_labels else made
+    labels = made if is_labels else contour_labels(lines)
+    return contour_map(tin, lines, labels=labels, title=title)
 
 
 def _fields(made: Features) -> list[Row]:

@@ -194,10 +194,10 @@ def _fields(table: Table, surfaces: Sequence[TIN]) -> list[Row]:
     from ..output.line_summaries import mesh_counts
 
     names = ["Ground", "Design"]
-    rows = [(name, mesh_counts(tin)) for name, tin in zip(names, surfaces, strict=False)]
-    rows = _stages(table) if "level" in table.columns else _volumes(table)
+    given = [(name, mesh_counts(tin)) for name, tin in zip(names, surfaces, strict=False)]
+    found = _stages(table) if "level" in table.columns else _volumes(table)
     more = [("", f"... {len(table) - _SHOWN} more")] if len(table) > _SHOWN else []
-    return [*rows, *rows, *more, *(("Note", note) for note in table.notes)]
+    return [*given, *found, *more, *(("Note", note) for note in table.notes)]
 
 
 def _volumes(table: Table) -> list[Row]:
