@@ -18,12 +18,11 @@ import numpy as np
 
 from ..errors import LinesError, OptionError
 from ..policies import BreaklineKind, LineRole
-from ..tin import Breakline, Water
+from ..tin import Breakline, Survey, Water
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from ..tin import Survey
 
 __all__ = ["MARKS", "RULES", "LineRole", "lines_from_codes"]
 
@@ -96,6 +95,8 @@ def lines_from_codes(survey: Survey, rules: Mapping[str, LineRole] | None = None
     >>> lines_from_codes(survey).breaklines
     [<Breakline: hard, 3 vertices, 'EP1'>]
     """
+    if not isinstance(survey, Survey):
+        raise OptionError("survey", survey, "a Survey")
     roles = _require_rules(RULES if rules is None else rules)
     found, notes = _follow_lines(survey, roles)
     runs = [run for run in found if len(run.rows) >= _count_least(run)]
@@ -123,6 +124,8 @@ def lines_from_codes(survey: Survey, rules: Mapping[str, LineRole] | None = None
 
 
 def _require_rules(rules: Mapping[str, LineRole]) -> dict[str, LineRole]:
+    if not isinstance(rules, Mapping):
+        raise OptionError("rules", rules, "a mapping of codes to roles")
     for code, role in rules.items():
         if role not in get_args(LineRole):
             roles = ", ".join(get_args(LineRole))

@@ -13,6 +13,7 @@ from importlib import import_module
 from importlib.metadata import entry_points
 from typing import TYPE_CHECKING, Any
 
+from .._sentences import shown
 from ..errors import FormatError
 from . import signatures
 
@@ -272,13 +273,13 @@ def find_format(name: str) -> Format:
     >>> find_format("csv").name
     'delimited'
     """
-    wanted = name.strip().lower()
+    wanted = name.strip().lower() if isinstance(name, str) else ""
     suffix = wanted if wanted.startswith(".") else f".{wanted}"
     for one in known_formats():
         if one.name == wanted or suffix in one.suffixes:
             return one
     names = tuple(one.name for one in known_formats())
-    raise FormatError(f"Unknown format '{name}': one of {', '.join(names)}.", known=names)
+    raise FormatError(f"Unknown format {shown(name)}: one of {', '.join(names)}.", known=names)
 
 
 def choose_format(suffix: str, action: str) -> Format | None:

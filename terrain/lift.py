@@ -10,6 +10,7 @@ import numpy as np
 from .. import _optional
 from ..crs import scale_elevations
 from ..errors import OptionError
+from ..tin.validation.options import is_finite_number, require_tin
 from .slope import aspect, slope
 
 if TYPE_CHECKING:
@@ -68,6 +69,7 @@ def lift(
     [500000.0, 4000000.0, 80.0]
     """
     pv = _optional.load("pyvista", "Lifting a TIN into 3D")
+    require_tin(tin)
     shift = choose_origin(tin) if origin is None else _parse_origin(origin)
     factor = parse_exaggeration(exaggeration)
     scale = scale_elevations(tin.crs, tin.elevation_unit)
@@ -109,10 +111,9 @@ def choose_origin(tin: TIN) -> NDArray[np.float64]:
 
 def parse_exaggeration(exaggeration: float) -> float:
     """Return a vertical exaggeration as a float, or raise OptionError."""
-    factor = float(exaggeration)
-    if not (math.isfinite(factor) and factor > 0):
+    if not is_finite_number(exaggeration) or exaggeration <= 0:
         raise OptionError("exaggeration", exaggeration, "a finite number above 0")
-    return factor
+    return float(exaggeration)
 
 
 def _round_down_to_power(extent: float) -> float:
@@ -120,7 +121,10 @@ def _round_down_to_power(extent: float) -> float:
 
 
 def _parse_origin(origin: ArrayLike) -> NDArray[np.float64]:
-    shift = np.array(origin, np.float64)
+    try:
+        shift = np.array(origin, np.float64)
+    except (TypeError, ValueError, OverflowError):
+        shift = np.empty(0)
     if shift.shape != (3,) or not np.isfinite(shift).all():
         raise OptionError("origin", origin, "three finite numbers: easting, northing, elevation")
     return shift

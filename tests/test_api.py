@@ -23,15 +23,9 @@ WITHOUT_EXAMPLE = {
         "read_rings",
         "read_water",
     },
-    "shown by the example of TIN.insert, and the page on editing": {
-        "TIN.add_breakline",
+    "shown by the page on editing": {
         "TIN.flip",
-        "TIN.move",
-        "TIN.remove",
-        "TIN.remove_breakline",
-        "TIN.set_elevation",
         "TIN.set_z",
-        "TIN.undo",
     },
     "is made by triangulate, for reading; its methods serve edits": {
         "Lines",

@@ -258,3 +258,13 @@ def test_a_crs_equals_whatever_names_it():
     assert hash(crs) == hash(CRS.of("epsg:32616"))
     for other in (None, 32617, "EPSG:32617", "nonsense", object(), CRS.of(32617)):
         assert crs != other
+
+
+def test_an_array_is_no_crs_in_a_sentence_of_one_line():
+    with pytest.raises(CrsError, match=r"^Unknown CRS an array of shape \(2, 2, 2\): an auth"):
+        CRS(np.zeros((2, 2, 2)))
+
+
+def test_an_array_is_no_unit_in_a_sentence_of_one_line():
+    with pytest.raises(ts.OptionError, match=r"^Invalid unit of elevations an array of shape"):
+        Unit.of(np.ma.masked_array([[1.0, 2.0]], mask=[[True, False]]))

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
+from ..errors import OptionError
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -44,8 +46,14 @@ class Bounds:
         >>> Bounds.of(np.array([[0.0, 1.0], [3.0, 5.0]]))
         Bounds(xmin=0.0, ymin=1.0, xmax=3.0, ymax=5.0)
         """
-        xmin, ymin = points[:, :2].min(axis=0)
-        xmax, ymax = points[:, :2].max(axis=0)
+        try:
+            xy = np.asarray(points, np.float64)
+        except (TypeError, ValueError, OverflowError):
+            xy = np.empty(0)
+        if xy.ndim != 2 or xy.shape[1] < 2 or len(xy) == 0:
+            raise OptionError("points", points, "an (n, 2) or (n, 3) array of one row or more")
+        xmin, ymin = xy[:, :2].min(axis=0)
+        xmax, ymax = xy[:, :2].max(axis=0)
         return cls(float(xmin), float(ymin), float(xmax), float(ymax))
 
     @property

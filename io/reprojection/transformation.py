@@ -12,6 +12,7 @@ import numpy as np
 from ..._sentences import counted
 from ...crs import CRS, METRE, UNKNOWN, Unit, assume_elevation_unit
 from ...errors import CrsError
+from ...tin.validation.points import as_points
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -103,7 +104,10 @@ def transform_points(
     >>> transform_points([[-84.2, 36.4, 300.0]], "EPSG:4326", "EPSG:32616").round(1).tolist()
     [[751106.6, 4031958.5, 300.0]]
     """
-    return reproject(points, CRS.of(source), CRS.of(target), unit=Unit.of(z_unit)).points
+    known, wanted = CRS.of(source), CRS.of(target)
+    if known is None or wanted is None:
+        raise CrsError("Points are transformed from one CRS to another: both are needed.")
+    return reproject(as_points(points), known, wanted, unit=Unit.of(z_unit)).points
 
 
 def reproject(

@@ -13,6 +13,7 @@ from functools import lru_cache
 from numbers import Integral
 from typing import TYPE_CHECKING, Any, overload
 
+from ._sentences import shown
 from .errors import CrsError, OptionError
 
 if TYPE_CHECKING:
@@ -96,7 +97,7 @@ class Unit:
             return value
         found = _unit_named(value) if isinstance(value, str) else None
         if found is None:
-            raise OptionError("unit of elevations", str(value), _ALLOWED_UNITS)
+            raise OptionError("unit of elevations", value, _ALLOWED_UNITS)
         return found
 
     @property
@@ -419,8 +420,9 @@ def _parse(value: object) -> pyproj.CRS:
     try:
         parsed = pyproj.CRS.from_user_input(value)
     except (CRSError, TypeError, ValueError, AttributeError) as error:
+        text = shown(value) if hasattr(value, "__array__") else f"'{_shortened(str(value))}'"
         raise CrsError(
-            f"Unknown CRS '{_shortened(str(value))}': an authority code such as EPSG:32616, "
+            f"Unknown CRS {text}: an authority code such as EPSG:32616, "
             "its number, a WKT or a PROJ text is needed.",
             crs=value,
         ) from error

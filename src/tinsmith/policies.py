@@ -10,6 +10,7 @@ from typing import Literal, TypeAlias
 __all__ = [
     "BreaklineKind",
     "CrossingPolicy",
+    "CurvatureKind",
     "DistanceRule",
     "DuplicatePolicy",
     "EmptyCircleRule",
@@ -75,5 +76,7 @@ SurfacePart: TypeAlias = Literal["triangle", "vertex"]
 OverviewMethod: TypeAlias = Literal["average", "nearest", "none"]
 """How the cells of a raster's smaller copies are found."""
 
+CurvatureKind: TypeAlias = Literal["profile", "plan", "tangential", "mean", "gaussian"]
+"""In which direction a surface is curved."""
 OutsidePolicy: TypeAlias = Literal["error", "nan", "cut"]
 """What becomes of parts of features where there is no surface."""

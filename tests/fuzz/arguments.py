@@ -93,7 +93,6 @@ FUNCTIONS: dict[str, Any] = {
     "slope": ts.slope,
     "aspect": ts.aspect,
     "lift": ts.lift,
-    "Survey": ts.Survey,
     "Bounds": ts.Bounds,
     "Bounds.of": ts.Bounds.of,
     "Grid": ts.Grid,

@@ -210,3 +210,11 @@ def test_the_pond_of_the_sample_is_flat(sample):
     soundings = np.array([d == "BOT" for d in sample.attributes["description"]])
     assert (tin.vertex_of[soundings] == -1).all()
     assert tin.report.to_dict()["left_out"] == {"in water": np.flatnonzero(soundings).tolist()}
+
+
+def test_lines_are_made_of_a_survey_by_rules():
+    with pytest.raises(ts.OptionError, match=r"^Invalid survey \{\}: it must be a Survey\.$"):
+        lines_from_codes({})
+    survey = ts.Survey(points=np.zeros((3, 3)))
+    with pytest.raises(ts.OptionError, match=r"^Invalid rules \[0, 1\]: it must be a mapping"):
+        lines_from_codes(survey, [0, 1])

@@ -358,3 +358,9 @@ def test_file_beside_has_the_same_suffix(tmp_path):
     with replacing_path(tmp_path / ("n" * 240 + ".vtp")) as beside:
         assert beside.suffix == ".vtp"
         assert beside.parent == tmp_path
+
+
+@pytest.mark.parametrize("name", [1, None, b"ply", ["ply"], ""])
+def test_a_name_that_is_no_text_is_no_format(name):
+    with pytest.raises(ts.FormatError, match=r"^Unknown format .*: one of "):
+        ts.find_format(name)

@@ -129,3 +129,24 @@ def test_without_pyvista_the_extra_is_named(monkeypatch):
     with pytest.raises(MissingExtraError, match=r'pip install "tinsmith\[view\]"') as caught:
         lift(tin)
     assert caught.value.extra == "view"
+
+
+@pytest.mark.parametrize("function", [slope, aspect, lift])
+@pytest.mark.parametrize("given", [None, {"x": "a"}, np.zeros((3, 3)), TIN])
+def test_what_is_no_tin_is_refused(function, given):
+    with pytest.raises(TinsmithError, match=r"^Invalid TIN .*one made by triangulate is needed"):
+        function(given)
+
+
+@pytest.mark.parametrize("origin", [b"mean", {}, 10**400, [[0.0, 0.0, 0.0]]])
+def test_an_origin_that_is_no_place_is_refused(origin):
+    tin = triangulate([[0, 0, 0], [1, 0, 0], [0, 1, 0]])
+    with pytest.raises(OptionError, match=r"^Invalid origin .*three finite numbers"):
+        lift(tin, origin=origin)
+
+
+@pytest.mark.parametrize("factor", [object(), "2", None, 10**400, True])
+def test_an_exaggeration_that_is_no_number_is_refused(factor):
+    tin = triangulate([[0, 0, 0], [1, 0, 0], [0, 1, 0]])
+    with pytest.raises(OptionError, match=r"^Invalid exaggeration .*a finite number above 0"):
+        lift(tin, exaggeration=factor)

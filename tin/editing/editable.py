@@ -148,6 +148,14 @@ class Editable:
         LinesError
             If a line would vanish, or the vertex was made by the build (where lines cross, are laid
             on the surface, or are split): it goes with its lines. Then nothing has changed.
+
+        Examples
+        --------
+        >>> from tinsmith import triangulate
+        >>> tin = triangulate([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8], [2, 1, 9]])
+        >>> tin.remove(4)
+        >>> tin
+        <TIN: 4 vertices, 2 triangles, z 5 to 8, crs unknown>
         """
         self._edit("remove", vertices=vertices)
 
@@ -166,6 +174,14 @@ class Editable:
         LinesError
             If the vertex was made by the build, or a build refuses the lines as they are then.
             Then nothing has changed.
+
+        Examples
+        --------
+        >>> from tinsmith import triangulate
+        >>> tin = triangulate([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8], [2, 1, 9]])
+        >>> tin.move(4, [2, 2, 9])
+        >>> tin.points[4].tolist()
+        [2.0, 2.0, 9.0]
         """
         self._edit("move", vertex=vertex, point=point)
 
@@ -186,6 +202,14 @@ class Editable:
             If there is no such vertex, or an elevation is not finite.
         LinesError
             If something else decides there, such as the level of water. Then nothing has changed.
+
+        Examples
+        --------
+        >>> from tinsmith import triangulate
+        >>> tin = triangulate([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8], [2, 1, 9]])
+        >>> tin.set_elevation([0, 4], [4, 10])
+        >>> tin.points[:, 2].tolist()
+        [4.0, 6.0, 7.0, 8.0, 10.0]
         """
         self._edit("set_elevation", vertices=vertices, z=z)
 
@@ -238,6 +262,14 @@ class Editable:
             If the line is none, or crosses another and must not. Then nothing has changed.
         OptionError
             If kind, priority, name or crossing is none that is allowed.
+
+        Examples
+        --------
+        >>> from tinsmith import triangulate
+        >>> tin = triangulate([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8], [2, 1, 9]])
+        >>> tin.add_breakline([[0, 0, 5], [4, 3, 7]])
+        >>> bool(tin.constrained.any()), tin.lines.vertices.tolist()
+        (True, [0, 2])
         """
         self._edit(
             "add_breakline",
@@ -263,6 +295,15 @@ class Editable:
         ------
         LinesError
             If there is no such breakline.
+
+        Examples
+        --------
+        >>> from tinsmith import triangulate
+        >>> tin = triangulate([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8], [2, 1, 9]])
+        >>> tin.add_breakline([[0, 0, 5], [4, 3, 7]])
+        >>> tin.remove_breakline(0)
+        >>> bool(tin.constrained.any())
+        False
         """
         self._edit("remove_breakline", number=number)
 
@@ -275,6 +316,15 @@ class Editable:
             If there are not so many.
         OptionError
             If ``count`` is no whole number above 0.
+
+        Examples
+        --------
+        >>> from tinsmith import triangulate
+        >>> tin = triangulate([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8], [2, 1, 9]])
+        >>> tin.remove(4)
+        >>> tin.undo()
+        >>> len(tin.points)
+        5
         """
         with self._lock:
             self._open_session().undo(count)

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from tinsmith import CRS
+from tinsmith import CRS, PointsError
 from tinsmith.crs import METRE
 from tinsmith.io import CrsError, LengthUnit, length_unit, transform_points
 from tinsmith.io.reprojection import transformation as crs
@@ -130,3 +130,15 @@ def test_a_conversion_is_told_and_so_is_what_was_assumed_for_it():
     assert known.note == "Elevations were converted from metre to US survey foot."
     assert known.unit == LengthUnit.of("US survey foot")
     assert reproject(SUMMIT, metres, CRS.of(32617), unit=None).note is None
+
+
+@pytest.mark.parametrize("points", [(), "EPSG:32616", np.zeros((2, 2, 2)), [[1.0, 2.0]]])
+def test_what_is_no_points_is_not_transformed(points):
+    with pytest.raises(PointsError, match=r"\.$"):
+        transform_points(points, "EPSG:32616", "EPSG:4326")
+
+
+@pytest.mark.parametrize("systems", [(None, "EPSG:4326"), ("EPSG:32616", None)])
+def test_both_systems_are_needed(systems):
+    with pytest.raises(CrsError, match="both are needed"):
+        transform_points([[1.0, 2.0, 3.0]], *systems)

@@ -551,7 +551,7 @@ def test_an_exaggerated_picture_leaves_the_slope_true(tmp_path, can_draw):
     ],
 )
 def test_a_window_needs_a_display(monkeypatch, window, display, platform, is_refused):
-    monkeypatch.setattr(opengl, "_window_class", lambda: window)
+    monkeypatch.setattr(opengl, "_find_window_class", lambda: window)
     monkeypatch.setattr(opengl.sys, "platform", platform)
     monkeypatch.delenv("DISPLAY", raising=False)
     if display is not None:
@@ -580,4 +580,4 @@ def test_the_probe_tells_the_kind_of_window(monkeypatch, code, said, expected):
         return subprocess.CompletedProcess(command, code, stdout=said)
 
     monkeypatch.setattr(opengl.subprocess, "run", run)
-    assert opengl._window_class() == expected
+    assert opengl._find_window_class() == expected
