@@ -12,7 +12,7 @@ from support import oracles
 
 import tinsmith as ts
 from benchmarks.__main__ import main
-from benchmarks.answers import profiles
+from benchmarks.answers import interpolation, profiles
 from benchmarks.cgal import CgalMissingError, build, build_harness
 from benchmarks.datasets.edits import BATCH, EDIT_TASKS, INSERT_ALL, WHAT, make_edit_task
 from benchmarks.datasets.lines import LINE_DATASETS, make_lines
@@ -381,7 +381,14 @@ def test_tools_take_turns():
 
 
 @pytest.mark.parametrize(
-    ("run", "tasks"), [(locate.run, 2), (readers.run, 3), (writers.run, 2), (profiles.run, 2)]
+    ("run", "tasks"),
+    [
+        (locate.run, 2),
+        (readers.run, 3),
+        (writers.run, 2),
+        (profiles.run, 2),
+        (interpolation.run, 5),
+    ],
 )
 def test_section_runs_and_its_answers_agree(run, tasks):
     outcome = run(500, repeats=1)
