@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 import tinsmith as ts
 from tinsmith.tin import TIN
 
-from ..cgal import CgalMissingError, harness
+from ..cgal import CgalMissingError, build_harness
 from ..datasets.lines import LEAST_POINTS, LINE_DATASETS, LineTask, make_lines
 from ..datasets.tasks import write_task
 from ..measure import Outcome, Result
@@ -77,7 +77,7 @@ def find_line_tools(
     here = outcome.present({x: modules[x].module for x in tools if not is_cgal(x)})
     if any(map(is_cgal, tools)):
         try:
-            harness(program)
+            build_harness(program)
             here += filter(is_cgal, tools)
         except CgalMissingError as error:
             outcome.skip({tool: str(error) for tool in filter(is_cgal, tools)})
@@ -98,7 +98,7 @@ class LineProcess(ToolProcess):
         task.vertices.tofile(plane)
         task.segments.tofile(segments)
         way = "indices" if name == CGAL_INDICES else "handles"
-        return [str(harness("constrained")), str(plane), str(segments), way]
+        return [str(build_harness("constrained")), str(plane), str(segments), way]
 
 
 def _measure_lines(
