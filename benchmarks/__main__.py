@@ -12,10 +12,10 @@ from .datasets.points import DATASETS
 from .measure import Outcome
 from .report.machine import describe
 from .report.page import write_report
-from .sections import edits, kernel, lines, locate, readers, writers
+from .sections import answers, edits, kernel, lines, locate, readers, writers
 from .sections import variants as ways
 
-SIMPLE = {module.SECTION: module for module in (ways, edits, readers, writers)}
+SIMPLE = {module.SECTION: module for module in (ways, edits, readers, writers, answers)}
 SECTIONS = (
     kernel.SECTION,
     ways.SECTION,
@@ -24,6 +24,7 @@ SECTIONS = (
     locate.SECTION,
     readers.SECTION,
     writers.SECTION,
+    answers.SECTION,
 )
 RESULTS = Path(__file__).parent / "results"
 LEAST_POINTS = 200

@@ -6,10 +6,13 @@ from .charts.contour_map import contour_map
 from .charts.earthwork import earthwork_map
 from .charts.histogram import histogram
 from .charts.profiles import profile_picture
-from .earthwork import Difference, difference, level_surface, stage_storage, volume
+from .charts.relief import relief_map
+from .earthwork import Difference, difference, stage_storage, volume
+from .gridding import height_above, rasterize
 from .isolines import ContourCheck, check_contours, contour_bands, contour_labels, contours
 from .lift import lift
 from .preview.picture import preview
+from .relief import aspect_classes, curvature, hillshade, slope_classes, slope_statistics
 from .results import Features, Raster, Table
 from .sections import cross_sections, drape, profile, section_lines
 from .slope import aspect, slope
@@ -23,6 +26,7 @@ __all__ = [
     "RenderError",
     "Table",
     "aspect",
+    "aspect_classes",
     "check_contours",
     "comparison_picture",
     "contour_bands",
@@ -30,17 +34,23 @@ __all__ = [
     "contour_map",
     "contours",
     "cross_sections",
+    "curvature",
     "difference",
     "drape",
     "earthwork_map",
+    "height_above",
+    "hillshade",
     "histogram",
-    "level_surface",
     "lift",
     "preview",
     "profile",
     "profile_picture",
+    "rasterize",
+    "relief_map",
     "section_lines",
     "slope",
+    "slope_classes",
+    "slope_statistics",
     "stage_storage",
     "volume",
 ]

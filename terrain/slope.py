@@ -23,9 +23,9 @@ __all__ = [
     "compute_normals",
     "measure_areas",
     "measure_ring_area",
-    "normals_of",
+    "measure_slopes",
     "slope",
-    "slope_of",
+    "sum_normals",
 ]
 
 _SLIVER = 2.0**-20
@@ -72,10 +72,10 @@ def slope(
     (array([45.]), array([100., 100., 100.]))
     """
     choice("unit", unit, SlopeUnit)
-    return slope_of(normals_of(tin, per), unit)
+    return measure_slopes(sum_normals(tin, per), unit)
 
 
-def slope_of(upward: NDArray[np.float64], unit: SlopeUnit) -> NDArray[np.float64]:
+def measure_slopes(upward: NDArray[np.float64], unit: SlopeUnit) -> NDArray[np.float64]:
     """Return the slope of planes with some upward normals, (k, 3), NaN where there is none."""
     east, north, up = upward.T
     run = np.hypot(east, north)
@@ -115,7 +115,7 @@ def aspect(tin: TIN, *, per: SurfacePart = "triangle") -> NDArray[np.float64]:
     >>> aspect(tin)
     array([270.])
     """
-    east, north, _ = normals_of(tin, per).T
+    east, north, _ = sum_normals(tin, per).T
     azimuth: NDArray[np.float64] = np.degrees(np.arctan2(east, north)) % 360.0
     # A hair west of north rounds up to the full circle, which is north.
     azimuth[azimuth == 360.0] = 0.0
@@ -182,16 +182,22 @@ def compute_normals(tin: TIN) -> NDArray[np.float64]:
         metres. Its horizontal part points downhill; the vertical part is positive.
     """
     require_tin(tin)
-    corners = [tin.points[tin.triangles[:, k]] for k in range(3)]
-    first, second = corners[1] - corners[0], corners[2] - corners[0]
-    upward: NDArray[np.float64] = np.cross(first, second)
-    size = np.abs(first[:, :2]).max(axis=1) * np.abs(second[:, :2]).max(axis=1)
-    for row in np.flatnonzero(~(upward[:, 2] > _SLIVER * size)).tolist():
-        upward[row] = _exact_normal(*(corner[row] for corner in corners))
+    first, second, third = (np.ascontiguousarray(corner) for corner in tin.triangles.T)
+    axes = [np.ascontiguousarray(axis) for axis in tin.points.T]
+    (ux, vx), (uy, vy), (uz, vz) = (
+        (axis[second] - axis[first], axis[third] - axis[first]) for axis in axes
+    )
+    components = [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx]
+    sizes = np.maximum(np.abs(ux), np.abs(uy)) * np.maximum(np.abs(vx), np.abs(vy))
+    for row in np.flatnonzero(~(components[2] > _SLIVER * sizes)).tolist():
+        exact = _exact_normal(*tin.points[tin.triangles[row]])
+        for component, value in zip(components, exact, strict=True):
+            component[row] = value
     east, north, up = find_scales(tin.crs, tin.elevation_unit, _average_northings(tin))
-    for axis, factor in enumerate((north * up, east * up, east * north)):
-        upward[:, axis] *= factor
-    return upward
+    factors = (north * up, east * up, east * north)
+    return np.stack(
+        [component * factor for component, factor in zip(components, factors, strict=True)], axis=1
+    )
 
 
 def _exact_normal(*corners: NDArray[np.float64]) -> list[float]:
@@ -205,7 +211,7 @@ def _exact_normal(*corners: NDArray[np.float64]) -> list[float]:
     return [float(u[i] * v[j] - u[j] * v[i]) for i, j in turns]
 
 
-def normals_of(tin: TIN, per: SurfacePart) -> NDArray[np.float64]:
+def sum_normals(tin: TIN, per: SurfacePart) -> NDArray[np.float64]:
     """Return the upward normals of triangles, or their sums at each vertex, (n, 3).
 
     Raises

@@ -22,6 +22,10 @@ __all__ = [
     "Locator",
     "Mesh",
     "Method",
+    "NaturalNeighbors",
+    "NaturalWeights",
+    "NearestBoundary",
+    "SmoothPatches",
     "clean",
     "compare_distances",
     "contacts",
@@ -30,6 +34,7 @@ __all__ = [
     "grow",
     "in_circle",
     "intersections",
+    "nearest_vertices",
     "orientation",
     "places_in_rings",
     "refine",
@@ -46,6 +51,11 @@ MOST_POINTS: int = _core.MOST_POINTS
 """So many points 32-bit indices can number, and their edges."""
 
 Locator = _core.Locator
+NaturalNeighbors = _core.NaturalNeighbors
+NaturalWeights = _core.NaturalWeights
+NearestBoundary = _core.NearestBoundary
+nearest_vertices = _core.nearest_vertices
+SmoothPatches = _core.SmoothPatches
 Mesh = _core.Mesh
 refine = _core.refine
 regions = _core.regions

@@ -12,6 +12,7 @@ Numbering, used everywhere::
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -169,35 +170,39 @@ def boundary_rings(
     At a vertex where two rings touch, they are kept apart by turning about the vertex through
     the triangles inside, so that every ring is one walk along the surface's boundary.
     """
-    return [
-        triangles[walk // 3, (walk % 3 + 1) % 3] for walk in boundary_walks(triangles, neighbors)
-    ]
+    edges, offsets = boundary_walks(triangles, neighbors)
+    start = triangles[edges // 3, (edges % 3 + 1) % 3]
+    return [start[a:b] for a, b in pairwise(offsets.tolist())]
 
 
 def boundary_walks(
     triangles: NDArray[np.int32], neighbors: NDArray[np.int32]
-) -> list[NDArray[np.int64]]:
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Return the boundary edges, ring by ring, as in :func:`boundary_rings`.
 
     Returns
     -------
-    list of (k,) int64 array
-        Each edge as 3 * triangle + corner that it lies opposite of.
+    edges : (k,) int64 array
+        Each as 3 * triangle + corner that it lies opposite of.
+    offsets : (n_rings + 1,) int64 array
+        Ring r is ``edges[offsets[r]:offsets[r + 1]]``.
     """
     triangle, corner = np.nonzero(neighbors == NO_NEIGHBOR)
     edge = 3 * triangle + corner
     following = np.searchsorted(edge, _find_next_on_boundary(triangles, neighbors)).tolist()
     is_left = [True] * len(following)
-    walks: list[NDArray[np.int64]] = []
+    order: list[int] = []
+    offsets = [0]
     for first in range(len(following)):
-        walk, here = [], first
+        if not is_left[first]:
+            continue
+        here = first
         while is_left[here]:
             is_left[here] = False
-            walk.append(here)
+            order.append(here)
             here = following[here]
-        if walk:
-            walks.append(edge[walk])
-    return walks
+        offsets.append(len(order))
+    return edge[np.array(order, np.int64)], np.array(offsets, np.int64)
 
 
 def _find_next_on_boundary(

@@ -12,7 +12,7 @@ from ..measure import OURS, Outcome, Result, is_installed
 from ..peers.answers import AS_MANY, EQUAL
 from ..peers.line_tools import ALL_LINE_TOOLS
 from ..peers.triangulators import CGAL, KERNEL
-from ..sections import edits, kernel, lines, locate, readers, writers
+from ..sections import answers, edits, kernel, lines, locate, readers, writers
 from ..sections import variants as ways
 from .goals import judge_goals
 
@@ -384,5 +384,11 @@ SECTIONS: dict[str, Callable[[list[Result], str], str]] = {
     ),
     writers.SECTION: _make_part_formatter(
         "Writers", "triangles", "From the TIN to the file; every file is read back and compared.\n"
+    ),
+    answers.SECTION: _make_part_formatter(
+        "Answers from the surface",
+        "points",
+        "What is derived from a TIN, on one and the same TIN, answers compared. To prepare is\n"
+        "from the TIN to its index.\n",
     ),
 }

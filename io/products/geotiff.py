@@ -77,6 +77,7 @@ def write(
         _write_tiles(raster, new, path, progress)
         if resampling != "none":
             _add_overviews(raster, new, resampling)
+        _require_complete(raster, new, path)
         _require_crs(raster, new, path)
 
 
@@ -108,6 +109,7 @@ def write_cog(
             **({} if resampling == "none" else {"OVERVIEW_RESAMPLING": resampling.upper()}),
         )
         plain.unlink()
+        _require_complete(raster, new, path)
         _require_crs(raster, new, path)
 
 
@@ -133,7 +135,8 @@ def _nodata(raster: Raster, dtype: np.dtype[Any], path: Path) -> float | None:
     """Return the value of cells without data; None where there is none."""
     value = raster.nodata
     if dtype.kind == "f":
-        held = float(np.asarray(value, dtype)) if not math.isnan(value) else value
+        with np.errstate(over="ignore"):
+            held = float(np.float64(value).astype(dtype))
     elif math.isnan(value):
         return None
     else:
@@ -208,6 +211,14 @@ def _require_crs(raster: Raster, new: Path, path: Path) -> None:
     require_kept(raster.crs, found, path)
 
 
+def _require_complete(raster: Raster, new: Path, path: Path) -> None:
+    """Read every block: GDAL does not say when a disk is full as it closes a file."""
+    rasterio = _optional.load("rasterio", f"Writing '{path}'")
+    with rasterio.open(new) as dataset:
+        for rows, columns in _blocks(*raster.shape):
+            dataset.read(window=rasterio.windows.Window.from_slices(rows, columns))
+
+
 def _describe(dataset: Any, number: int, raster: Raster, name: str) -> None:
     dataset.set_band_description(number, name)
     unit = unit_text(raster.units, name)
@@ -246,6 +257,6 @@ def _faults_as_sentences(path: Path) -> Iterator[None]:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
             yield
-    except rasterio.errors.RasterioError as error:
+    except (rasterio.errors.RasterioError, rasterio._err.CPLE_BaseError) as error:
         reason = " ".join(str(error.__cause__ or error).split()).rstrip(".")
         raise WriteError(f"Cannot write '{path}': {reason}.", path=path) from error

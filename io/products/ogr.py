@@ -82,8 +82,18 @@ def write_layer(
             layer_metadata=None if metadata is None else dict(metadata),
             layer_options=options,
         )
+        _require_last(pyogrio, path, len(features))
         found = pyogrio.read_info(path)["crs"] if features.crs is not None else None
     require_kept(features.crs, found, shown)
+
+
+def _require_last(pyogrio: Any, path: Path, count: int) -> None:
+    """Read the last feature: GDAL does not say when a disk is full as it closes a file."""
+    if count == 0:
+        return
+    _, _, geometries, _ = pyogrio.raw.read(path, skip_features=count - 1)
+    if len(geometries) != 1:
+        raise OSError("the file that GDAL wrote is not complete (is the disk full?)")
 
 
 def describe(features: Features) -> dict[str, str]:
@@ -150,6 +160,7 @@ def _faults_as_sentences(path: Path) -> Iterator[None]:
         with warnings.catch_warnings():
             warnings.simplefilter("error", RuntimeWarning)
             warnings.filterwarnings("ignore", message="'crs' was not provided")
+            warnings.filterwarnings("ignore", message="Measured")  # of an empty shapefile
             yield
     except (RuntimeError, RuntimeWarning, ValueError, OSError) as error:
         reason = " ".join(str(error).split()).rstrip(".") or type(error).__name__

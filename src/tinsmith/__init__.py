@@ -40,8 +40,16 @@ if TYPE_CHECKING:
         with_lines,
         write,
     )
-    from .terrain import comparison_picture, contour_map, earthwork_map, histogram, profile_picture
+    from .terrain import (
+        comparison_picture,
+        contour_map,
+        earthwork_map,
+        histogram,
+        profile_picture,
+        relief_map,
+    )
     from .terrain.earthwork import Difference, difference, stage_storage, volume
+    from .terrain.gridding import height_above, rasterize
     from .terrain.isolines import (
         ContourCheck,
         check_contours,
@@ -51,6 +59,13 @@ if TYPE_CHECKING:
     )
     from .terrain.lift import lift
     from .terrain.preview.picture import preview
+    from .terrain.relief import (
+        aspect_classes,
+        curvature,
+        hillshade,
+        slope_classes,
+        slope_statistics,
+    )
     from .terrain.results import Features, Raster, Table
     from .terrain.sections import cross_sections, drape, profile, section_lines
     from .terrain.slope import aspect, slope
@@ -132,9 +147,18 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "lift",
                 "preview",
                 "profile_picture",
+                "relief_map",
                 "slope",
                 "stage_storage",
                 "volume",
+            ),
+            ".terrain.gridding": ("height_above", "rasterize"),
+            ".terrain.relief": (
+                "aspect_classes",
+                "curvature",
+                "hillshade",
+                "slope_classes",
+                "slope_statistics",
             ),
             ".terrain.sections": ("cross_sections", "drape", "profile", "section_lines"),
             ".terrain.results": ("Features", "Raster", "Table"),
@@ -203,6 +227,7 @@ __all__ = [
     "WriteError",
     "__version__",
     "aspect",
+    "aspect_classes",
     "check",
     "check_contours",
     "compare",
@@ -212,10 +237,13 @@ __all__ = [
     "contour_map",
     "contours",
     "cross_sections",
+    "curvature",
     "difference",
     "drape",
     "earthwork_map",
     "find_format",
+    "height_above",
+    "hillshade",
     "histogram",
     "io",
     "known_formats",
@@ -227,14 +255,18 @@ __all__ = [
     "profile",
     "profile_picture",
     "quality",
+    "rasterize",
     "read",
     "read_lines",
     "read_polygons",
     "read_rings",
     "read_water",
     "refine",
+    "relief_map",
     "section_lines",
     "slope",
+    "slope_classes",
+    "slope_statistics",
     "stage_storage",
     "terrain",
     "tin",

@@ -12,6 +12,7 @@ from support import oracles
 
 import tinsmith as ts
 from benchmarks.__main__ import main
+from benchmarks.answers import profiles
 from benchmarks.cgal import CgalMissingError, build, build_harness
 from benchmarks.datasets.edits import BATCH, EDIT_TASKS, INSERT_ALL, WHAT, make_edit_task
 from benchmarks.datasets.lines import LINE_DATASETS, make_lines
@@ -379,7 +380,9 @@ def test_tools_take_turns():
     assert {len(seconds) for seconds in runs.values()} == {2}
 
 
-@pytest.mark.parametrize(("run", "tasks"), [(locate.run, 2), (readers.run, 3), (writers.run, 2)])
+@pytest.mark.parametrize(
+    ("run", "tasks"), [(locate.run, 2), (readers.run, 3), (writers.run, 2), (profiles.run, 2)]
+)
 def test_section_runs_and_its_answers_agree(run, tasks):
     outcome = run(500, repeats=1)
     ours = [result for result in outcome.results if result.tool == OURS]

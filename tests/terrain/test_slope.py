@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from fractions import Fraction
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tinsmith import CRS, TIN, triangulate
+from tinsmith import CRS, TIN, OptionError, triangulate
 from tinsmith.terrain import aspect, slope
 from tinsmith.terrain.slope import measure_areas, measure_ring_area
 
@@ -108,6 +109,76 @@ def test_scaling_a_plane_leaves_its_angles(east, north, scale):
     scaled = TIN.from_triangles(tin.points * scale, tin.triangles)
     np.testing.assert_array_equal(slope(scaled), slope(tin))
     np.testing.assert_array_equal(aspect(scaled), aspect(tin))
+
+
+# ------------------------------------------------------------------------------ units, vertices
+
+
+def test_percent_and_ratio_are_tangents():
+    tin = rough()
+    tangent = np.tan(np.radians(slope(tin)))
+    np.testing.assert_allclose(slope(tin, unit="ratio"), tangent, rtol=1e-9)
+    np.testing.assert_allclose(slope(tin, unit="percent"), 100 * tangent, rtol=1e-9)
+
+
+def test_a_vertex_of_a_plane_has_the_slope_of_the_plane():
+    tin = plane(0.75, -1.0)
+    np.testing.assert_allclose(slope(tin, unit="ratio", per="vertex"), 1.25, rtol=1e-12)
+    np.testing.assert_allclose(aspect(tin, per="vertex"), aspect(tin)[0], rtol=1e-12)
+
+
+def test_the_gradient_at_a_vertex_is_the_mean_weighted_by_area():
+    tin = rough()
+    gradients = np.array([plane_fit(tin.points[corners]) for corners in tin.triangles])
+    found = slope(tin, unit="ratio", per="vertex")
+    azimuth = np.radians(aspect(tin, per="vertex"))
+    for vertex in range(0, len(tin.points), 25):
+        own = tin.vertex_triangles(vertex)
+        mean = np.average(gradients[own], axis=0, weights=tin.triangle_areas[own])
+        assert found[vertex] == pytest.approx(math.hypot(*mean), rel=1e-6)
+        assert np.sin(azimuth[vertex]) == pytest.approx(-mean[0] / math.hypot(*mean), abs=1e-6)
+
+
+def test_a_vertex_without_a_triangle_has_no_slope():
+    points = [[0, 0, 0], [1, 0, 1], [0, 1, 0], [5, 5, 5]]
+    tin = TIN.from_triangles(points, [[0, 1, 2]])
+    for unit in ("degrees", "percent", "ratio"):
+        assert np.isnan(slope(tin, unit=unit, per="vertex")[3])
+    assert np.isnan(aspect(tin, per="vertex")[3])
+
+
+@pytest.mark.parametrize("given", [{"unit": "radians"}, {"unit": None}, {"per": "edge"}])
+def test_words_that_are_none(given):
+    with pytest.raises(OptionError, match=f"Invalid {next(iter(given))}"):
+        slope(rough(20), **given)
+
+
+def exact_gradient(corners):
+    """Gradient of the plane through three corners in fractions."""
+    a, b, c = ([Fraction(value) for value in corner] for corner in corners.tolist())
+    u, v = ([end - start for start, end in zip(a, other, strict=True)] for other in (b, c))
+    up = u[0] * v[1] - u[1] * v[0]
+    return (u[1] * v[2] - u[2] * v[1]) / -up, (u[2] * v[0] - u[0] * v[2]) / -up
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_slivers_are_exact(seed):
+    """Points along a line, some of them off it by roundings: their products cancel."""
+    random = np.random.default_rng(seed)
+    along = random.uniform(0, 1, 30)[:, None]
+    xy = UTM + along * random.normal(size=2) * 100
+    points = np.column_stack([xy, random.uniform(0, 30, 30)])
+    side = random.normal(size=2) * 100
+    tin = triangulate(np.vstack([points, [*(UTM + side), 3.0]]))
+    assert (tin.triangle_areas < 1e-9).any()
+    found, falls = slope(tin, unit="ratio"), aspect(tin)
+    for row, corners in enumerate(tin.triangles):
+        east, north = exact_gradient(tin.points[corners])
+        squared = east * east + north * north
+        assert found[row] == pytest.approx(math.sqrt(squared), rel=1e-9)
+        turn = math.degrees(math.atan2(-float(east), -float(north))) % 360
+        assert abs((falls[row] - turn + 180) % 360 - 180) < 1e-6
+    assert (slope(tin) <= 90.0).all()
 
 
 @pytest.mark.parametrize("place", [(0.0, 0.0), (742_000.0, 4_030_000.0), (-6e6, 9e6)])

@@ -1,7 +1,8 @@
 """The vertex nearest to a place: the Voronoi cell that holds it, found without building cells.
 
-A place's nearest vertex is reached from any vertex by going on to a nearer Delaunay neighbour as
-long as there is one: only the owner of the cell that holds the place has none [1]_.
+Inside the hull it is the nearest of the place's natural neighbours, at which the compiled core
+looks. Outside it is reached from any vertex by going on to a nearer Delaunay neighbour as long as
+there is one: only the owner of the cell that holds the place has none [1]_.
 
 .. [1] P. Bose and P. Morin, "Online routing in triangulations", SIAM Journal on Computing 33
    (2004), 937-951. https://doi.org/10.1137/S0097539700369387
@@ -46,7 +47,6 @@ class NearestVertex:
         distinct = np.ascontiguousarray(points[kept])
         self._number = kept
         self._xy = np.ascontiguousarray(distinct[:, :2])
-        self._triangles = growth.triangles
         self._locator = _kernel.Locator(distinct, growth.triangles, growth.neighbors)
         edges = topology.edges(growth.triangles, growth.neighbors).astype(np.int64)
         start, end = np.concatenate([edges, edges[:, ::-1]]).T
@@ -56,27 +56,20 @@ class NearestVertex:
             topology.edges_at(growth.triangles, growth.neighbors == topology.NO_NEIGHBOR)
         )
 
-    def find(self, xy: NDArray[np.float64]) -> NDArray[np.int32]:
+    def find(self, xy: NDArray[np.float64], *, threads: int = 1) -> NDArray[np.int32]:
         """Return the nearest vertex of each place, the smallest number of several; -1 for NaN."""
         found = np.full(len(xy), -1, np.int32)
-        is_place = ~np.isnan(xy).any(axis=1)
-        xy = np.ascontiguousarray(xy[is_place])
-        nearest = self._descend(xy, self._find_start(xy))
-        found[is_place] = self._number[self._choose_smallest_of_tied(xy, nearest)]
+        nearest = _kernel.nearest_vertices(self._locator, xy, threads)
+        inside = np.flatnonzero(~np.isnan(nearest))
+        found[inside] = self._number[nearest[inside].astype(np.int64)]
+        outside = np.flatnonzero(np.isnan(nearest) & ~np.isnan(xy).any(axis=1))
+        if len(outside):
+            found[outside] = self._number[self._find_outside(np.ascontiguousarray(xy[outside]))]
         return found
 
-    def _find_start(self, xy: NDArray[np.float64]) -> NDArray[np.int64]:
-        """Return a vertex near each place: a corner of its triangle, or of one near by."""
-        start = np.zeros(len(xy), np.int64)
-        triangle = self._locator.locate(xy)
-        outside = np.flatnonzero(triangle < 0)
-        if len(outside):
-            start[outside] = self._find_near_hull(xy[outside])
-        inside = np.flatnonzero(triangle >= 0)
-        corners = self._triangles[triangle[inside]]
-        away = self._measure_squares(xy[inside, None], corners)
-        start[inside] = corners[np.arange(len(inside)), np.argmin(away, axis=1)]
-        return start
+    def _find_outside(self, xy: NDArray[np.float64]) -> NDArray[np.int64]:
+        """Return the nearest vertex of places outside the hull."""
+        return self._choose_smallest_of_tied(xy, self._descend(xy, self._find_near_hull(xy)))
 
     def _find_near_hull(self, xy: NDArray[np.float64]) -> NDArray[np.int64]:
         """Return a vertex of the hull near each place outside: by one of the two coordinates."""

@@ -33,7 +33,8 @@ __all__ = ["main"]
 
 _BUILT_IN = (
     *("build", "info", "check", "view", "compare", "refine", "edit", "convert", "formats"),
-    *("contours", "profile", "volume", "diff", "drape"),
+    *("contours", "slope", "hillshade", "profile", "volume", "diff", "drape"),
+    *("interpolate", "raster"),
 )
 _ENTRY_POINTS = "tinsmith.commands"
 

@@ -1,0 +1,127 @@
+"""Statistics of the slope, weighted by area."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...errors import OptionError, choice
+from ...policies import SlopeUnit
+from ..results import Table
+from ..slope import measure_areas, slope
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from ...crs import CRS
+    from ...tin import TIN
+
+__all__ = ["area_unit", "slope_statistics", "slope_symbol", "unit_notes", "weighted_percentiles"]
+
+_SYMBOLS = {"degrees": "°", "percent": "%", "ratio": ""}
+_PERCENTILES = (5.0, 25.0, 50.0, 75.0, 95.0)
+
+
+def slope_statistics(
+    tin: TIN, *, unit: SlopeUnit = "degrees", percentiles: ArrayLike = _PERCENTILES
+) -> Table:
+    """Summarise the slope of a surface, every triangle weighted by its area in the plane.
+
+    Parameters
+    ----------
+    tin : TIN
+    unit : {"degrees", "percent", "ratio"}, optional
+    percentiles : sequence of float, optional
+        Shares of the area, 0 to 100.
+
+    Returns
+    -------
+    Table
+        One row: ``area``, ``minimum``, ``mean``, ``standard deviation``, ``maximum``, and for each
+        percentile ``p50`` the least slope that so much of the area does not exceed.
+
+    Raises
+    ------
+    OptionError
+        If the unit is another, or percentiles are not from 0 to 100.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> roof = [[0, 0, 0], [4, 0, 3], [4, 4, 3], [0, 4, 0], [9, 0, 3], [9, 4, 3]]
+    >>> table = ts.slope_statistics(ts.triangulate(roof), unit="percent", percentiles=[50, 90])
+    >>> table["mean"].round(2), table["p50"], table["p90"]
+    (array([33.33]), array([0.]), array([75.]))
+    """
+    choice("unit", unit, SlopeUnit)
+    shares = _as_percentiles(percentiles)
+    values, weights = slope(tin, unit=unit), measure_areas(tin)
+    mean = float(np.average(values, weights=weights))
+    deviation = float(np.sqrt(np.average((values - mean) ** 2, weights=weights)))
+    measured = {
+        "minimum": values.min(),
+        "mean": mean,
+        "standard deviation": deviation,
+        "maximum": values.max(),
+    }
+    found = weighted_percentiles(values, weights, shares)
+    measured |= {f"p{share:g}": value for share, value in zip(shares, found, strict=True)}
+    symbol = _SYMBOLS[unit] or "ratio"
+    return Table(
+        {name: np.array([value]) for name, value in {"area": weights.sum(), **measured}.items()},
+        units={"area": area_unit(tin.crs), **dict.fromkeys(measured, symbol)},
+        name="slope_statistics",
+        notes=unit_notes(tin),
+    )
+
+
+def weighted_percentiles(
+    values: NDArray[np.float64], weights: NDArray[np.float64], shares: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return the least values that so many percent of the weight do not exceed.
+
+    Examples
+    --------
+    >>> weighted_percentiles(np.array([1.0, 2.0]), np.array([3.0, 1.0]), np.array([75.0, 76.0]))
+    array([1., 2.])
+    """
+    order = np.argsort(values, kind="stable")
+    reached = np.cumsum(weights[order])
+    wanted = shares / 100.0 * reached[-1]
+    places = np.minimum(np.searchsorted(reached, wanted), len(values) - 1)
+    found: NDArray[np.float64] = values[order][places]
+    return found
+
+
+def _as_percentiles(percentiles: ArrayLike) -> NDArray[np.float64]:
+    allowed = "a sequence of numbers from 0 to 100"
+    try:
+        shares = np.asarray(percentiles, np.float64)
+    except (TypeError, ValueError):
+        raise OptionError("percentiles", percentiles, allowed=allowed) from None
+    if shares.ndim != 1 or not ((shares >= 0) & (shares <= 100)).all():
+        raise OptionError("percentiles", percentiles, allowed=allowed)
+    return shares
+
+
+def area_unit(crs: CRS | None) -> str | None:
+    """Return the symbol of the unit of :func:`measure_areas`; None if it is not known."""
+    if crs is None:
+        return None
+    return "m²" if crs.is_geographic or crs.horizontal_unit.metres is not None else None
+
+
+def slope_symbol(unit: SlopeUnit) -> str:
+    """Return what stands behind a slope; nothing for a ratio."""
+    return _SYMBOLS[unit]
+
+
+def unit_notes(tin: TIN) -> list[str]:
+    """Say what elevations were taken to be measured in, where that is not known."""
+    if tin.elevation_unit is not None:
+        return []
+    usual = None if tin.crs is None else tin.crs.usual_elevation_unit
+    if usual is None:
+        return ["The unit of elevations is not known and taken to be that of the eastings."]
+    return [f"The unit of elevations is not known and taken to be the {usual.name}."]

@@ -1,0 +1,42 @@
+"""A disk that is full as GDAL closes a file: refused, whatever the format."""
+
+from __future__ import annotations
+
+import sys
+
+import pytest
+from support.processes import run
+
+CODE = """
+import resource, signal, sys, warnings
+import numpy as np
+import tinsmith as ts
+
+warnings.simplefilter("ignore")
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+random = np.random.default_rng(0)
+name, form, share, folder = sys.argv[1:5]
+if name.endswith(".tif"):
+    grid = ts.Grid(ts.Bounds(0, 0, 600, 700), (700, 600), 1.0)
+    made = ts.Raster({"z": random.uniform(size=(700, 600))}, grid)
+else:
+    xyz = random.uniform(0, 1000, (3000, 3))
+    made = ts.Features.of_points(xyz, columns={"a": random.uniform(size=3000)})
+options = {} if form == "-" else {"format": form}
+path = ts.write(made, f"{folder}/{name}", **options)
+size = path.stat().st_size
+path.unlink()
+resource.setrlimit(resource.RLIMIT_FSIZE, (int(size * float(share)),) * 2)
+try:
+    ts.write(made, path, **options)
+except ts.WriteError as error:
+    print("refused", error)
+"""
+
+
+@pytest.mark.parametrize("share", [0.5, 0.9999])
+@pytest.mark.parametrize(("name", "form"), [("a.fgb", "-"), ("a.tif", "cog")])
+def test_a_file_without_its_end_is_refused(tmp_path, name, form, share):
+    result = run(sys.executable, "-c", CODE, name, form, str(share), str(tmp_path), cwd=tmp_path)
+    assert result.stdout.startswith("refused Cannot write"), result.stdout + result.stderr
+    assert list(tmp_path.iterdir()) == []

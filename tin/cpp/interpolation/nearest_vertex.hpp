@@ -1,0 +1,43 @@
+// The vertex nearest to a point of a Delaunay triangulation: the nearest of its natural neighbours.
+//
+// The middle between the point and its nearest vertices is nearer to none else, so that these are
+// all natural neighbours: cells that the point's own would share a side with.
+#pragma once
+
+#include <cstdint>
+
+#include "neighbor_ring.hpp"
+
+namespace tinsmith {
+
+// One for a thread.
+class NearestVertex {
+ public:
+  explicit NearestVertex(const Surface& surface) : surface_(surface) {}
+
+  // The vertex of smallest number among the nearest to p, which the triangle holds.
+  Vertex find(Point p, Triangle t) {
+    Vertex nearest = surface_.vertex(t, 0);
+    for (std::uint32_t k = 1; k < 3; ++k) nearest = nearer(p, nearest, surface_.vertex(t, k));
+    if (point_of(nearest) == p || !ring_.collect(surface_, nullptr, p, t)) return nearest;
+    for (const auto& edge : ring_.ring()) nearest = nearer(p, nearest, edge.start);
+    return nearest;
+  }
+
+ private:
+  Point point_of(Vertex v) const {
+    const double* row = surface_.points + 3 * static_cast<std::size_t>(number(v));
+    return {row[0], row[1]};
+  }
+
+  Vertex nearer(Point p, Vertex one, Vertex other) const {
+    const int further = compare_distances(p, point_of(one), point_of(other));
+    if (further == 0) return one < other ? one : other;
+    return further < 0 ? one : other;
+  }
+
+  Surface surface_;
+  NeighborRing ring_;
+};
+
+}  // namespace tinsmith
