@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 import tinsmith as ts
 from tinsmith.tin import TIN
 
-from ..measure import OURS, Outcome, Result, alternate, median
+from ..measure import OURS, Outcome, Result, alternate, find_median
 
 __all__ = ["run"]
 
@@ -60,7 +60,7 @@ def run(n_points: int, *, repeats: int = 3) -> Outcome:
     answers, runs = alternate({name: tools[name] for name in present}, repeats)
     for name, lengths in answers.items():
         _require_same(answers[OURS], lengths, is_raster=name in NOTES)
-        seconds = median(runs[name])
+        seconds = find_median(runs[name])
         task = f"contours: {LEVELS} levels, {len(tin.triangles):,} triangles"
         note = NOTES.get(name, "")
         outcome.results.append(

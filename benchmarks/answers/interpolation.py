@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 import tinsmith as ts
 from tinsmith.tin import TIN
 
-from ..measure import OURS, Outcome, Result, alternate, median
+from ..measure import OURS, Outcome, Result, alternate, find_median
 
 __all__ = ["run"]
 
@@ -89,7 +89,7 @@ def _measure(
         assert both.mean() > 0.95, f"{name} has other places inside"
         np.testing.assert_allclose(found[both], wanted[both], rtol=0, atol=tools[name].rounding)
         extra = {"prepare_seconds": prepared[name]}
-        seconds, times = median(runs[name]), tuple(runs[name])
+        seconds, times = find_median(runs[name]), tuple(runs[name])
         outcome.results.append(Result(SECTION, task, name, counts[name], seconds, times, "", extra))
 
 

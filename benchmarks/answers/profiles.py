@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 import tinsmith as ts
 from tinsmith.tin import TIN
 
-from ..measure import OURS, Outcome, Result, alternate, median
+from ..measure import OURS, Outcome, Result, alternate, find_median
 
 __all__ = ["run"]
 
@@ -83,7 +83,7 @@ def _measure(
     for name in present:
         np.testing.assert_allclose(answers[name], answers[OURS], rtol=0, atol=ROUNDING)
         extra = {"prepare_seconds": prepared[name], "breaks": len(answers[name])}
-        seconds = median(runs[name])
+        seconds = find_median(runs[name])
         outcome.results.append(
             Result(SECTION, task, name, len(tin.points), seconds, tuple(runs[name]), "", extra)
         )
