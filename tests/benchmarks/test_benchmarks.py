@@ -215,7 +215,7 @@ def test_a_tool_answers_the_same_at_every_run(tmp_path, tin):
 
 
 def test_a_missing_cgal_is_said(monkeypatch, tmp_path):
-    monkeypatch.setattr(build, "BUILT", tmp_path / "build_harness")
+    monkeypatch.setattr(build, "BUILT", tmp_path / "harness")
     monkeypatch.setattr(build.shutil, "which", lambda name: None)
     with pytest.raises(CgalMissingError, match=r"g\+\+ is not installed"):
         build_harness()
