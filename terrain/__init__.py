@@ -7,7 +7,8 @@ from .charts.earthwork import earthwork_map
 from .charts.histogram import histogram
 from .charts.profiles import profile_picture
 from .charts.relief import relief_map
-from .earthwork import Difference, difference, level_surface, stage_storage, volume
+from .earthwork import Difference, difference, stage_storage, volume
+from .gridding import height_above, rasterize
 from .isolines import ContourCheck, check_contours, contour_bands, contour_labels, contours
 from .lift import lift
 from .preview.picture import preview
@@ -37,13 +38,14 @@ __all__ = [
     "difference",
     "drape",
     "earthwork_map",
+    "height_above",
     "hillshade",
     "histogram",
-    "level_surface",
     "lift",
     "preview",
     "profile",
     "profile_picture",
+    "rasterize",
     "relief_map",
     "section_lines",
     "slope",

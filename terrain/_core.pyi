@@ -2,12 +2,38 @@
 import numpy as np
 from numpy.typing import NDArray
 
+def values_at_centers(
+    points: NDArray[np.float64],
+    triangles: NDArray[np.int32],
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
+    spacing: float,
+    values: NDArray[np.float64] | None,
+    threads: int = ...,
+) -> NDArray[np.float64]: ...
+def means_of_cells(
+    points: NDArray[np.float64],
+    triangles: NDArray[np.int32],
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
+    spacing: float,
+    x_edges: NDArray[np.float64],
+    y_edges: NDArray[np.float64],
+    values: NDArray[np.float64] | None,
+    threads: int = ...,
+) -> NDArray[np.float64]: ...
 def trace_contours(
     points: NDArray[np.float64],
     triangles: NDArray[np.int32],
     neighbors: NDArray[np.int32],
     levels: NDArray[np.float64],
-) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int32], NDArray[np.bool_]]: ...
+) -> tuple[
+    NDArray[np.float64],
+    NDArray[np.int64],
+    NDArray[np.int32],
+    NDArray[np.bool_],
+    NDArray[np.float64],
+]: ...
 def fill_bands(
     points: NDArray[np.float64],
     triangles: NDArray[np.int32],
@@ -27,7 +53,13 @@ def smooth_contours(
     smooth: float,
     rounds: int,
     simplify: float,
-) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int32], NDArray[np.bool_]]: ...
+) -> tuple[
+    NDArray[np.float64],
+    NDArray[np.int64],
+    NDArray[np.int32],
+    NDArray[np.bool_],
+    NDArray[np.float64],
+]: ...
 def sum_between(
     points: NDArray[np.float64],
     triangles: NDArray[np.int32],

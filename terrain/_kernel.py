@@ -17,13 +17,18 @@ __all__ = [
     "SUMS",
     "OverlayMesh",
     "fill_bands",
+    "means_of_cells",
     "overlay",
     "smooth_contours",
     "stage_sums",
     "sum_between",
     "sum_heights",
     "trace_contours",
+    "values_at_centers",
 ]
+
+means_of_cells = _core.means_of_cells
+values_at_centers = _core.values_at_centers
 
 trace_contours = _core.trace_contours
 smooth_contours = _core.smooth_contours

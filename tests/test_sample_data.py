@@ -7,10 +7,13 @@ import runpy
 import subprocess
 import sys
 from collections import Counter
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import pytest
+
+import tinsmith as ts
 
 SAMPLES = Path(__file__).parents[1] / "sample_data"
 CROSS_MOUNTAIN = (-84.23056, 36.19833, 1077.0)
@@ -152,3 +155,90 @@ def test_pond_bed_lies_below_its_water():
     u, v = script["POND_CENTER"]
     bed = float(script["elevation"](np.array(u), np.array(v)))
     assert bed == pytest.approx(script["POND_LEVEL"] - script["POND_DEPTH"], abs=1e-9)
+
+
+def test_design_is_made_again_byte_for_byte(tmp_path):
+    run_script("make_design.py", tmp_path / "again.csv")
+    assert (tmp_path / "again.csv").read_bytes() == (SAMPLES / "design_pad.csv").read_bytes()
+
+
+@pytest.fixture(scope="module")
+def design():
+    """The ground and the pad, as TINs."""
+    return [
+        ts.triangulate(ts.lines_from_codes(ts.read(SAMPLES / name, crs="EPSG:32616", z_unit="m")))
+        for name in ("site_survey.csv", "design_pad.csv")
+    ]
+
+
+def test_design_meets_the_ground_all_around(design):
+    ground, pad = design
+    (ring,) = pad.rings
+    assert len(ring) > 90
+    above = pad.points[ring, 2] - ground.interpolate(pad.points[ring, :2])
+    assert np.abs(above).max() < 0.002
+
+
+def test_side_slopes_are_1_in_2_in_cut_and_1_in_2_and_a_half_in_fill(design):
+    _, pad = design
+    steep = np.tan(np.radians(ts.slope(pad)))
+    areas = pad.triangle_areas
+    for run in (1 / 2.0, 1 / 2.5, 0.01):
+        assert areas[np.abs(steep - run) < 0.03].sum() > 20
+
+
+def test_cut_and_fill_of_the_design_are_those_of_a_fine_grid(design):
+    """Without the overlay: elevations of both at the centres of cells of 0.1 m."""
+    ground, pad = design
+    box, step = pad.bounds, 0.1
+    x, y = (
+        np.arange(low + step / 2, high, step)
+        for low, high in ((box.xmin, box.xmax), (box.ymin, box.ymax))
+    )
+    centres = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+    height = pad.interpolate(centres) - ground.interpolate(centres)
+    height = height[~np.isnan(height)]
+    table = ts.volume(ground, pad)
+    assert table["fill"][0] == pytest.approx(height[height > 0].sum() * step**2, rel=2e-3)
+    assert table["cut"][0] == pytest.approx(-height[height < 0].sum() * step**2, rel=2e-3)
+
+
+def test_cut_and_fill_of_the_design_are_those_of_shapely(design):
+    """Cells cut by GEOS; planes by least squares; each part's volume by its centroid."""
+    shapely = pytest.importorskip("shapely")
+    ground, pad = design
+    cells = [shapely.polygons(tin.points[tin.triangles, :2]) for tin in design]
+    pairs = shapely.STRtree(cells[0]).query(cells[1], predicate="intersects").T
+    volumes = {1: 0.0, -1: 0.0}
+    origin = np.array([pad.bounds.xmin, pad.bounds.ymin])
+    for b, a in pairs:
+        cell = shapely.intersection(cells[0][a], cells[1][b])
+        if cell.geom_type != "Polygon" or cell.is_empty:
+            continue
+        plane = plane_of(pad, b, origin) - plane_of(ground, a, origin)
+        corners = np.array(cell.exterior.coords) - origin
+        for sign in volumes:
+            volumes[sign] += volume_above(corners, sign * plane)
+    table = ts.volume(ground, pad)
+    assert table["fill"][0] == pytest.approx(volumes[1], rel=1e-7)
+    assert table["cut"][0] == pytest.approx(volumes[-1], rel=1e-7)
+
+
+def plane_of(tin, triangle, origin):
+    xyz = tin.points[tin.triangles[triangle]]
+    return np.linalg.solve(np.column_stack([xyz[:, :2] - origin, np.ones(3)]), xyz[:, 2])
+
+
+def volume_above(corners, plane):
+    """Integrate the positive part of a linear function over a convex ring, by triangles."""
+    values = corners @ plane[:2] + plane[2]
+    kept = []
+    for p, q, u, v in zip(corners[:-1], corners[1:], values[:-1], values[1:], strict=True):
+        kept += [(*p, u)] if u >= 0 else []
+        kept += [(*(p + u / (u - v) * (q - p)), 0.0)] if u * v < 0 else []
+    total = 0.0
+    for first, second in pairwise(kept[1:]):
+        a, b, c = np.array(kept[0]), np.array(first), np.array(second)
+        doubled = (b - a)[0] * (c - a)[1] - (b - a)[1] * (c - a)[0]
+        total += abs(doubled) / 2 * (a[2] + b[2] + c[2]) / 3
+    return total

@@ -22,6 +22,10 @@ __all__ = [
     "Locator",
     "Mesh",
     "Method",
+    "NaturalNeighbors",
+    "NaturalWeights",
+    "NearestBoundary",
+    "SmoothPatches",
     "clean",
     "compare_distances",
     "contacts",
@@ -46,6 +50,10 @@ MOST_POINTS: int = _core.MOST_POINTS
 """So many points 32-bit indices can number, and their edges."""
 
 Locator = _core.Locator
+NaturalNeighbors = _core.NaturalNeighbors
+NaturalWeights = _core.NaturalWeights
+NearestBoundary = _core.NearestBoundary
+SmoothPatches = _core.SmoothPatches
 Mesh = _core.Mesh
 refine = _core.refine
 regions = _core.regions

@@ -9,6 +9,8 @@ import numpy as np
 
 from .._sentences import counted
 from ..crs import CRS, Unit, require_one_unit, scale_elevations, shorten_crs
+from ..errors import choice
+from ..policies import Extrapolation, InterpolationMethod
 from . import topology
 from .constraints.breaklines import Lines
 from .editing.editable import Editable
@@ -16,7 +18,7 @@ from .editing.version import Version
 from .report import Report
 from .triangulation import Triangulation
 from .types import seal
-from .validation.points import as_points, as_xy
+from .validation.points import as_places, as_points, as_xy
 from .validation.triangles import as_flags, as_triangles, turn_counter_clockwise
 from .validation.vertices import as_vertex, as_vertex_pairs
 
@@ -372,30 +374,96 @@ class TIN(Editable):
         """
         return self._current.triangulation.locator.locate(as_xy(xy))
 
-    def interpolate(self, xy: ArrayLike) -> NDArray[np.float64]:
-        """Interpolate the elevation linearly at each place.
+    def interpolate(
+        self,
+        xy: ArrayLike,
+        method: InterpolationMethod = "linear",
+        *,
+        extrapolate: Extrapolation | None = None,
+        threads: int | None = None,
+    ) -> NDArray[np.float64]:
+        """Interpolate the elevation at each place.
 
         Parameters
         ----------
         xy : (k, 2) array, CRS units
+            Or (2,), one place.
+        method : {"linear", "nearest", "laplace", "natural", "c1"}
+            What lies between the vertices:
+
+            - "linear": the triangles;
+            - "nearest": at each place the elevation of the nearest vertex;
+            - "natural": natural neighbours, weighted by the areas that the place's Voronoi cell
+              takes from theirs [1]_: smooth but at vertices, and never beyond the neighbours'
+              elevations;
+            - "laplace": natural neighbours, weighted by the length of the side that both cells
+              share over the distance [2]_: about the same, a little faster and less smooth;
+            - "c1": a patch over each triangle, with one gradient at each vertex, estimated by
+              bending the edges least [3]_, [4]_: smooth everywhere, but it may overshoot.
+        extrapolate : {"nearest"}, optional
+            Outside the surface take the elevation at the nearest place of its boundary; with
+            ``method="nearest"`` that of the nearest vertex. Default: NaN.
+        threads : int, optional
+            Default: every core, where it pays. The result is the same for any number.
 
         Returns
         -------
         (k,) float64 array
-            Elevation, NaN outside the surface; at a vertex exactly the vertex's own.
+            Elevation, NaN outside the surface; at a vertex exactly the vertex's own. For one place
+            a number.
 
         Raises
         ------
+        OptionError
+            If ``method`` or ``extrapolate`` is none of the words.
         PointsError
-            As :meth:`locate`.
+            As :meth:`locate`, or if ``threads`` is no whole number above 0.
+
+        Notes
+        -----
+        Breaklines, boundary, holes and water are edges across which neither natural neighbours nor
+        gradients look: on them every method but "nearest" is linear from vertex to vertex, and the
+        slope may break there. So natural neighbours weigh as in the Voronoi diagram with obstacles
+        [5]_. A soft breakline is no such edge: its vertices count, and the surface is smooth
+        across it. "linear", "natural", "laplace" and "c1" reproduce planes. Natural neighbours are
+        those in the constrained Delaunay triangulation of the vertices, whatever the triangles.
+
+        What a method needs is made once for each version of the TIN, when it is first asked for.
+
+        References
+        ----------
+        .. [1] R. Sibson, "A brief description of natural neighbour interpolation", Interpreting
+           Multivariate Data (1981), 21-36.
+        .. [2] V. Belikov, V. Ivanov, V. Kontorovich, S. Korytnik and A. Semenov, "The
+           non-Sibsonian interpolation", Computational Mathematics and Mathematical Physics 37
+           (1997), 9-15.
+        .. [3] G. M. Nielson, "A method for interpolating scattered data based upon a minimum norm
+           network", Mathematics of Computation 40 (1983), 253-271.
+           https://doi.org/10.1090/S0025-5718-1983-0679444-7
+        .. [4] G. M. Nielson, "The side-vertex method for interpolation in triangles", Journal of
+           Approximation Theory 25 (1979), 318-336.
+           https://doi.org/10.1016/0021-9045(79)90020-0
+        .. [5] R. Seidel, "Constrained Delaunay triangulations and Voronoi diagrams with obstacles",
+           1978-1988 Ten Years IIG (1988), 178-191.
 
         Examples
         --------
         >>> tin = TIN.from_triangles([[0, 0, 1], [4, 0, 2], [0, 4, 3]], [[0, 1, 2]])
         >>> tin.interpolate([[4, 0], [2, 0], [3, 3]])
         array([2. , 1.5, nan])
+        >>> tin.interpolate([[3, 3]], method="natural", extrapolate="nearest")
+        array([2.5])
+        >>> float(tin.interpolate([1, 1]))
+        1.75
         """
-        return self._current.triangulation.locator.interpolate(as_xy(xy))
+        choice("method", method, InterpolationMethod)
+        if extrapolate is not None:
+            choice("extrapolate", extrapolate, Extrapolation)
+        places, is_one = as_places(xy)
+        elevations = self._current.interpolator.interpolate(
+            places, method, extrapolate=extrapolate is not None, threads=threads
+        )
+        return elevations.reshape(())[()] if is_one else elevations
 
     def closest_vertex(self, xy: ArrayLike) -> NDArray[np.int32]:
         """Find the vertex nearest to each place, in the plane.

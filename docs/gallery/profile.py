@@ -12,7 +12,7 @@ import tinsmith as ts
 
 HERE = Path(__file__).parent
 SAMPLES = HERE.parent.parent / "sample_data"
-LINE = [(752770, 4024225), (752800, 4024300), (752835, 4024350)]
+LINE = [(752770, 4024240), (752835, 4024340)]
 
 
 def main(folder: Path = HERE) -> None:
@@ -22,7 +22,9 @@ def main(folder: Path = HERE) -> None:
         for name in ("site_survey.csv", "design_pad.csv")
     )
     table = ts.profile({"existing ground": ground, "design": design}, LINE)
-    figure = ts.profile_picture(table, title="Profile A-A of the building pad", crs=ground.crs)
+    figure = ts.profile_picture(
+        table, title="Profile A-A of the building pad", crs=ground.crs, exaggeration=4
+    )
     figure.savefig(folder / "profile.png", dpi=110, metadata={"Software": None})
 
 

@@ -1,9 +1,9 @@
 """Gmsh meshes (``.msh``) through meshio, for finite element programs.
 
 The file is MSH 2.2 in text, which they all read. Triangles are in the physical group ``surface``.
-Edges of the rim and of lines are line elements for boundary conditions: of the rim in the group
-``boundary``, of a line in one with its name, else its kind and number. MSH has no place for CRS
-and units.
+Edges of the boundary and of lines are line elements for boundary conditions: the first in group
+``boundary``, those of a line in one with its name, else its kind and number. MSH has no place for
+CRS and units.
 """
 
 from __future__ import annotations
@@ -134,7 +134,7 @@ def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None 
 
 
 def _gather_edges(tin: TIN) -> _Edges:
-    """Gather edges by group, the rim first: an element has one group only."""
+    """Gather edges by group, the boundary first: an element has one group only."""
     triangle, corner = np.nonzero(tin.neighbors == NO_NEIGHBOR)
     groups = [(np.stack(ends(tin.triangles, triangle, corner), axis=1), BOUNDARY)]
     for number, chain in enumerate(tin.lines.chains()):

@@ -49,6 +49,7 @@ if TYPE_CHECKING:
         relief_map,
     )
     from .terrain.earthwork import Difference, difference, stage_storage, volume
+    from .terrain.gridding import height_above, rasterize
     from .terrain.isolines import (
         ContourCheck,
         check_contours,
@@ -151,6 +152,7 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "stage_storage",
                 "volume",
             ),
+            ".terrain.gridding": ("height_above", "rasterize"),
             ".terrain.relief": (
                 "aspect_classes",
                 "curvature",
@@ -240,6 +242,7 @@ __all__ = [
     "drape",
     "earthwork_map",
     "find_format",
+    "height_above",
     "hillshade",
     "histogram",
     "io",
@@ -252,6 +255,7 @@ __all__ = [
     "profile",
     "profile_picture",
     "quality",
+    "rasterize",
     "read",
     "read_lines",
     "read_polygons",

@@ -14,11 +14,15 @@ __all__ = [
     "DistanceRule",
     "DuplicatePolicy",
     "EmptyCircleRule",
+    "Extrapolation",
     "FeatureKind",
+    "InterpolationMethod",
     "LineKind",
     "LineRole",
     "OutsidePolicy",
     "OverviewMethod",
+    "RasterSample",
+    "RasterValue",
     "SlopeUnit",
     "SurfacePart",
     "TrimPolicy",
@@ -50,6 +54,18 @@ EmptyCircleRule: TypeAlias = Literal["angle", "open"]
 
 DistanceRule: TypeAlias = Literal["circle", "ties"]
 """Among which points the paper's distance decides."""
+
+InterpolationMethod: TypeAlias = Literal["linear", "nearest", "laplace", "natural", "c1"]
+"""What lies between the vertices of a TIN."""
+
+Extrapolation: TypeAlias = Literal["nearest"]
+"""What is taken for the elevation outside a surface."""
+
+RasterValue: TypeAlias = Literal["elevation", "slope", "aspect", "hillshade"]
+"""What the cells of a raster hold."""
+
+RasterSample: TypeAlias = Literal["center", "mean"]
+"""Whether a cell holds the value at its centre, or the mean over it."""
 
 SlopeUnit: TypeAlias = Literal["degrees", "percent", "ratio"]
 """How a slope is given: as an angle, or as rise over a run of 100 or of 1."""

@@ -28,8 +28,8 @@ _COLORS = ("#7a5230", "#c0392b", "#1f618d", "#6c3483", "#117864")
 _GROUND = "#efe6da"
 _CUT, _FILL = "#e8a598", "#a3cfa8"
 _NAME_LETTERS = 20
-_LABELS = 11
-"""About so many stations are labelled."""
+_LABELS = 8
+"""About so many stations are labelled, twice as many at most."""
 
 # Inches.
 _PLOT_WIDTH, _LEFT, _RIGHT = 9.4, 1.5, 0.35
@@ -158,17 +158,18 @@ def profile_picture(
 
 def _curves(table: Any, line: Any) -> tuple[list[_Curve], NDArray[np.float64]]:
     """Return the surfaces along one line, and the stations where breaklines are crossed."""
-    if not isinstance(table, Table) or not {"line", "station"} <= set(table.columns):
+    names = set(table.columns) if isinstance(table, Table) else set()
+    if not {"line", "station"} <= names or "offset" in names:
         raise OptionError("profile", table, allowed="a table that profile returned")
     if not is_whole_number(line) or not (table["line"] == line).any():
         allowed = f"a whole number from 0 to {int(table['line'].max())}"
         raise OptionError("line", line, allowed=allowed)
     own = table["line"] == line
-    names = [name for name in table.columns if name.partition("_")[0] == "elevation"]
+    measured = [name for name in table.columns if name.partition("_")[0] == "elevation"]
     stations = table["station"][own]
     curves = [
         _Curve(name.partition("_")[2], stations, table[name][own], _COLORS[k % len(_COLORS)])
-        for k, name in enumerate(names)
+        for k, name in enumerate(measured)
     ]
     if not any(np.isfinite(curve.elevations).any() for curve in curves):
         raise OptionError("line", int(line), allowed="one that meets a surface")

@@ -44,6 +44,17 @@ class Difference:
         fill, below where there is cut. Its edges are those of both TINs and the zero line.
     notes : tuple of str
         What was assumed or converted.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> flat = ts.triangulate([[0, 0, 1], [4, 0, 1], [4, 4, 1], [0, 4, 1]])
+    >>> ramp = ts.triangulate([[0, 0, 0], [4, 0, 4], [4, 4, 4], [0, 4, 0]])
+    >>> found = ts.difference(flat, ramp)
+    >>> found.cut, found.fill, found.statistics["mean"]
+    (2.0, 18.0, array([1.]))
+    >>> found.zero_line.columns["length"]
+    array([4.])
     """
 
     tin: TIN
@@ -178,8 +189,8 @@ def difference(tin: TIN, other: TIN) -> Difference:
     >>> flat = ts.triangulate([[0, 0, 1], [4, 0, 1], [4, 4, 1], [0, 4, 1]])
     >>> ramp = ts.triangulate([[0, 0, 0], [4, 0, 2], [4, 4, 2], [0, 4, 0]])
     >>> found = ts.difference(flat, ramp)
-    >>> found.statistics["highest"], found.zones.columns["kind"]
-    (array([1.]), array(['cut', 'fill'], dtype=object))
+    >>> found.statistics["highest"], sorted(found.zones.columns["kind"])
+    (array([1.]), ['cut', 'fill'])
     """
     reference = reference_of(tin, "Differences")
     reference_of(other, "Differences")

@@ -16,9 +16,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["as_mesh", "cut_at_zero", "mend", "rebuild"]
+__all__ = ["as_mesh", "cut_at_zero", "mend", "number_parts", "rebuild"]
 
-_MOST_ROUNDS = 16
+_MOST_ROUNDS = 64
 """Flat triangles lie side by side in short chains; each round takes one off an end."""
 
 
@@ -31,9 +31,9 @@ def mend(
 ) -> tuple[NDArray[np.float64], NDArray[np.int32]] | None:
     """Remove triangles that rounding has made flat or turned over; None if that is not enough.
 
-    Vertices that were rounded to one place become one. The longest edge of a flat triangle is
-    flipped, as its third vertex lies on it but for rounding; one on the boundary is dropped. What
-    moves is as thin as coordinates can tell.
+    Vertices that were rounded to one place become one. A flat triangle on the boundary is dropped;
+    the longest edge of another one is flipped, as its third vertex lies on it but for rounding.
+    What moves is as thin as coordinates can tell.
     """
     try:
         return _mended(points, triangles)
@@ -50,7 +50,7 @@ def _mended(
         if not len(flat):
             found = _drop_unused(points, merged)
             return found if _is_sound(*found) else None
-        merged = _flip_longest(points, merged, flat)
+        merged = _remove_flat(points, merged, flat)
     return None
 
 
@@ -101,14 +101,54 @@ def rebuild(
             tin = triangulate(points, breaklines=lines, duplicates="first", snap=snap)
         except (LinesError, PointsError):  # lines meet anew wherever they are split
             continue
-        centers = tin.points[tin.triangles, :2].mean(axis=1)
-        found = _drop_unused(tin.points, tin.triangles[holds(centers)])
+        found = _drop_unused(tin.points, tin.triangles[_is_inside(tin, holds)])
         if _is_sound(*found):
             return found
     raise PointsError(
         "What both surfaces cover is thinner than coordinates can tell: round the points of both "
         "to a unit that they are surveyed in, such as a millimetre."
     )
+
+
+def _is_inside(tin: TIN, holds: Callable[[Any], Any]) -> NDArray[np.bool_]:
+    """Tell which triangles are inside, cell by cell.
+
+    What is reached from the outside without crossing a line is outside, however thin: the rounded
+    boundary and its hull lie a rounding apart.
+    """
+    cell = number_parts(tin.neighbors, tin.constrained)
+    is_open = np.zeros(int(cell.max()) + 1, bool)
+    is_open[cell[((tin.neighbors < 0) & ~tin.constrained).any(axis=1)]] = True
+    largest = np.empty(len(is_open), np.int64)
+    order = np.argsort(tin.triangle_areas, kind="stable")
+    largest[cell[order]] = order
+    centers = tin.points[tin.triangles[largest], :2].mean(axis=1)
+    inside: NDArray[np.bool_] = (holds(centers) & ~is_open)[cell]
+    return inside
+
+
+def number_parts(neighbors: NDArray[np.int32], barrier: NDArray[np.bool_]) -> NDArray[np.int32]:
+    """Give the triangles of each part that no barrier divides one number.
+
+    Parameters
+    ----------
+    neighbors : (m, 3) int32 array
+    barrier : (m, 3) bool array
+        Whether an edge divides; those without a neighbour do anyway.
+    """
+    part = np.arange(len(neighbors))
+    triangle, corner = np.nonzero(~barrier & (neighbors >= 0))
+    other = neighbors[triangle, corner].astype(np.int64)
+    while True:
+        smallest = part.copy()
+        np.minimum.at(smallest, triangle, part[other])
+        np.minimum.at(smallest, part[triangle], part[other])
+        smallest = smallest[smallest]
+        if (smallest == part).all():
+            break
+        part = smallest
+    numbers: NDArray[np.int32] = np.unique(part, return_inverse=True)[1].astype(np.int32)
+    return numbers
 
 
 def _merge_places(points: NDArray[np.float64], triangles: NDArray[np.int32]) -> NDArray[np.int32]:
@@ -124,34 +164,37 @@ def _merge_places(points: NDArray[np.float64], triangles: NDArray[np.int32]) -> 
     return np.ascontiguousarray(merged[(a != b) & (b != c) & (c != a)])
 
 
-def _flip_longest(
+def _remove_flat(
     points: NDArray[np.float64], triangles: NDArray[np.int32], flat: NDArray[np.int64]
 ) -> NDArray[np.int32]:
-    """Flip the longest edges of flat triangles, none of which share a neighbour."""
+    """Drop the flat triangles along the boundary; if there are none, flip edges of the others."""
+    neighbors = topology.neighbors_of(triangles, len(points))
+    longest = _corners_on_edges(points, triangles[flat])
+    is_outside = neighbors[flat] == topology.NO_NEIGHBOR
+    loose = is_outside[np.arange(len(flat)), longest] | (is_outside.sum(axis=1) > 1)
+    if loose.any():
+        return np.delete(triangles, flat[loose], axis=0)
     corners = triangles.copy()
-    neighbors = topology.neighbors_of(corners, len(points))
-    is_kept = np.ones(len(corners), bool)
     is_touched = np.zeros(len(corners), bool)
-    for triangle in flat.tolist():
-        corner = _corner_on_edge(points[corners[triangle], :2])
+    for triangle, corner in zip(flat.tolist(), longest.tolist(), strict=True):
         across = int(neighbors[triangle, corner])
-        if is_touched[triangle] or (across >= 0 and is_touched[across]):
+        if is_touched[triangle] or is_touched[across]:
             continue
-        is_touched[triangle] = True
-        if across == topology.NO_NEIGHBOR:
-            is_kept[triangle] = False
-            continue
-        is_touched[across] = True
+        is_touched[[triangle, across]] = True
         apex, start, end = (int(corners[triangle, (corner + k) % 3]) for k in range(3))
         far = int(next(v for v in corners[across] if v not in (start, end)))
         corners[triangle], corners[across] = (apex, start, far), (apex, far, end)
-    return np.ascontiguousarray(corners[is_kept])
+    return corners
 
 
-def _corner_on_edge(xy: NDArray[np.float64]) -> int:
-    """Return the corner opposite the longest edge."""
-    edges = xy[[2, 0, 1]] - xy[[1, 2, 0]]
-    return int(np.argmax(np.hypot(edges[:, 0], edges[:, 1])))
+def _corners_on_edges(
+    points: NDArray[np.float64], triangles: NDArray[np.int32]
+) -> NDArray[np.int64]:
+    """Return the corner of each triangle that lies opposite its longest edge."""
+    xy = points[triangles, :2]
+    edges = xy[:, [2, 0, 1]] - xy[:, [1, 2, 0]]
+    longest: NDArray[np.int64] = np.argmax(np.hypot(edges[..., 0], edges[..., 1]), axis=1)
+    return longest
 
 
 def _drop_unused(

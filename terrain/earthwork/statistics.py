@@ -36,27 +36,35 @@ def percentiles(surface: Surface, shares: Sequence[float]) -> NDArray[np.float64
     function of the elevation: those are found by the areas below vertices, then it is solved.
     """
     values = np.unique(surface.points[surface.triangles.ravel(), 2])
-    whole = _areas_below(surface, np.array([np.inf]))[0]
-    found = [_elevation_at(surface, values, whole * share / 100.0) for share in shares]
-    return np.array(found)
+    wanted = _areas_below(surface, np.array([np.inf]))[0] * np.asarray(shares) / 100.0
+    low, high = _enclose(surface, values, wanted)
+    pairs = zip(values[low].tolist(), values[high].tolist(), wanted.tolist(), strict=True)
+    return np.array([_between(surface, *one) for one in pairs])
+
+
+def _enclose(
+    surface: Surface, values: NDArray[np.float64], wanted: NDArray[np.float64]
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Find the two of ascending elevations between which areas wanted are reached."""
+    low = np.zeros(len(wanted), np.int64)
+    high = np.full(len(wanted), len(values) - 1)
+    while (high - low > 1).any():
+        steps = [
+            np.linspace(a, b, _FAN_OUT + 2).astype(np.int64) for a, b in zip(low, high, strict=True)
+        ]
+        trial = np.unique(np.concatenate([low, high, *steps]))
+        below = _areas_below(surface, np.nextafter(values[trial], np.inf))
+        for k, area in enumerate(wanted):
+            inner = trial[(trial > low[k]) & (trial < high[k])]
+            reached = below[np.searchsorted(trial, inner)] >= area
+            low[k] = inner[~reached].max(initial=low[k])
+            high[k] = inner[reached].min(initial=high[k])
+    return low, high
 
 
 def _areas_below(surface: Surface, levels: NDArray[np.float64]) -> NDArray[np.float64]:
     finite = np.minimum(levels, np.finfo(float).max)
     return _kernel.stage_sums(surface.points, surface.triangles, finite, 1.0)[:, 0]
-
-
-def _elevation_at(surface: Surface, values: NDArray[np.float64], area: float) -> float:
-    """Find the lowest elevation at and under which there is so much area."""
-    low, high = 0, len(values) - 1
-    while high - low > 1:
-        trial = np.unique(np.linspace(low, high, _FAN_OUT + 2).astype(np.int64)[1:-1])
-        trial = trial[(trial > low) & (trial < high)]
-        is_enough = _areas_below(surface, np.nextafter(values[trial], np.inf)) >= area
-        first = int(np.argmax(is_enough)) if is_enough.any() else len(trial)
-        low = int(trial[first - 1]) if first > 0 else low
-        high = int(trial[first]) if first < len(trial) else high
-    return _between(surface, float(values[low]), float(values[high]), area)
 
 
 def _between(surface: Surface, low: float, high: float, area: float) -> float:

@@ -9,6 +9,7 @@ import numpy as np
 from ...tin import topology
 from .. import _kernel
 from ..results import Features
+from .meshes import number_parts
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -72,7 +73,7 @@ def _join(start: NDArray[np.int64], end: NDArray[np.int64]) -> list[list[int]]:
     passed = {vertex for chain in chains for vertex in chain}
     for a, b in segments:
         if a in inside and a not in passed:
-            chain = _follow(a, b, following, inside - {a})
+            chain = _follow(a, b, following, inside)
             chains.append(chain)
             passed.update(chain)
     return chains
@@ -89,7 +90,7 @@ def zones(mesh: Triangulation, reference: Reference) -> Features:
     """Return the connected parts that are cut, filled or unchanged as polygons."""
     classes = classes_of(mesh)
     barrier = (mesh.neighbors < 0) | (classes[mesh.neighbors] != classes[:, None])
-    part = _number_parts(mesh, barrier)
+    part = number_parts(mesh.neighbors, barrier)
     count = int(part.max()) + 1
     rings, ring_offsets, polygon_offsets = _polygons(mesh, barrier, part, count)
     sums = _kernel.sum_heights(
@@ -116,23 +117,6 @@ def zones(mesh: Triangulation, reference: Reference) -> Features:
         name="cut and fill",
         notes=reference.notes,
     )
-
-
-def _number_parts(mesh: Triangulation, barrier: NDArray[np.bool_]) -> NDArray[np.int32]:
-    """Give the triangles of each part that no barrier divides one number."""
-    part = np.arange(len(mesh.triangles))
-    triangle, corner = np.nonzero(~barrier)
-    other = mesh.neighbors[triangle, corner].astype(np.int64)
-    while True:
-        smallest = part.copy()
-        np.minimum.at(smallest, triangle, part[other])
-        np.minimum.at(smallest, part[triangle], part[other])
-        smallest = smallest[smallest]
-        if (smallest == part).all():
-            break
-        part = smallest
-    numbers: NDArray[np.int32] = np.unique(part, return_inverse=True)[1].astype(np.int32)
-    return numbers
 
 
 def _polygons(

@@ -12,6 +12,7 @@ from .. import _kernel
 from ..results import Features
 from .levels import LevelOptions
 from .measures import measure_ring_areas, plane_units, sum_parts
+from .mending import PolygonParts, mend_polygons, require_whole
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -51,12 +52,16 @@ def contour_bands(
     ------
     OptionError
         As :func:`tinsmith.contours`.
+    PointsError
+        If rounding leaves no polygons that add up to the surface.
 
     Notes
     -----
     A band has its lower level and not its upper one, so that a flat area at a level belongs to the
     band above. The polygons are valid, share every vertex along their common boundaries, tile the
-    surface and nothing else; their areas add up to that of the TIN, up to rounding.
+    surface and nothing else; their areas add up to that of the TIN, up to rounding. Where triangles
+    are thinner than the rounding of their coordinates a polygon may meet itself: it is made valid,
+    and a note tells it.
 
     Examples
     --------
@@ -68,28 +73,32 @@ def contour_bands(
     """
     require_tin(tin)
     chosen = LevelOptions(interval, levels, base).for_bands(tin)
-    points, ring_offsets, polygon_offsets, band = _kernel.fill_bands(
-        tin.points, tin.triangles, tin.neighbors, chosen.values
+    parts = PolygonParts(
+        *_kernel.fill_bands(tin.points, tin.triangles, tin.neighbors, chosen.values)
     )
-    numbers, first = np.unique(band, return_index=True)
-    areas = measure_ring_areas(tin.crs, points, ring_offsets)
+    parts, notes = mend_polygons(parts)
+    require_whole(tin, parts)
+    numbers, first = np.unique(parts.band, return_index=True)
+    areas = measure_ring_areas(tin.crs, parts.points, parts.ring_offsets)
+    rings = sum_parts(areas, parts.polygon_offsets[:-1])
     bounds = _band_bounds(chosen.values)
     columns = {
         "from": bounds[numbers],
         "to": bounds[numbers + 1],
-        "area": sum_parts(areas, polygon_offsets[first]),
+        "area": sum_parts(rings, first),
     }
     units = {"from": tin.elevation_unit, "to": tin.elevation_unit}
     return Features.of_polygons(
-        seal(points),
-        seal(ring_offsets),
-        seal(polygon_offsets),
-        seal(np.append(first, len(band)).astype(np.int64)),
+        seal(parts.points),
+        seal(parts.ring_offsets),
+        seal(parts.polygon_offsets),
+        seal(np.append(first, len(parts.band)).astype(np.int64)),
         columns={name: seal(values) for name, values in columns.items()},
         units={**units, "area": plane_units(tin.crs).area},
         crs=tin.crs,
         elevation_unit=tin.elevation_unit,
         name="contour bands",
+        notes=notes,
     )
 
 

@@ -34,7 +34,7 @@ class ContourCheck:
     lines : tuple of (int, int)
         The first few pairs of lines that these belong to.
     shared_vertices : int
-        Pairs of segments that meet in a vertex of the TIN at their level, as exact contours do.
+        Pairs of segments of one level that meet in a vertex of the TIN, as exact contours do.
     deviation : float
         Largest difference of the surface from the level along a line, in the unit of elevations.
 
@@ -122,7 +122,7 @@ def _find_contacts(tin: TIN, segments: _Segments) -> tuple[int, int, tuple[tuple
     tree = shapely.STRtree(shapes)
     contacts, shared = 0, 0
     pairs: list[tuple[int, int]] = []
-    at_level = {tuple(vertex) for vertex in tin.points.tolist()}
+    vertices = set(map(tuple, tin.points[:, :2].tolist()))
     for first in range(0, len(shapes), _BLOCK):
         one, other = tree.query(shapes[first : first + _BLOCK], predicate="intersects")
         one = one + first
@@ -130,7 +130,7 @@ def _find_contacts(tin: TIN, segments: _Segments) -> tuple[int, int, tuple[tuple
         is_joint = _are_joined(segments, one, other)
         one, other = one[~is_joint], other[~is_joint]
         for a, b in zip(one.tolist(), other.tolist(), strict=True):
-            if _meet_in_vertex(segments, a, b, at_level):
+            if _meet_in_vertex(segments, a, b, vertices):
                 shared += 1
                 continue
             contacts += 1
@@ -165,9 +165,9 @@ def _are_joined(
 
 
 def _meet_in_vertex(segments: _Segments, a: int, b: int, vertices: set[tuple[float, ...]]) -> bool:
-    """Whether two segments share an end that is a vertex of the TIN at their level."""
-    ends = [{tuple(side[k].tolist()) for side in segments[:2]} for k in (a, b)]
-    return any(end in vertices for end in ends[0] & ends[1])
+    """Whether two segments of one level share an end that is a vertex of the TIN."""
+    ends = [{tuple(side[k].tolist()) for side in (segments.start, segments.end)} for k in (a, b)]
+    return any(end[:2] in vertices for end in ends[0] & ends[1])
 
 
 def _largest_deviation(tin: TIN, segments: _Segments) -> float:

@@ -144,9 +144,10 @@ def _rounded(level: Fraction) -> float:
 
 def elevation_range(tin: TIN) -> tuple[float, float]:
     """Return the lowest and the highest elevation of the vertices that triangles have."""
-    is_used = np.zeros(len(tin.points), np.bool_)
-    is_used[tin.triangles.ravel()] = True
-    z = tin.points[is_used, 2]
+    z = tin.points[:, 2]
+    ends = z.argmin(), z.argmax()
+    if not all((tin.triangles == end).any() for end in ends):
+        z = z[np.unique(tin.triangles)]
     return (float(z.min()), float(z.max())) if len(z) else (0.0, 0.0)
 
 

@@ -101,12 +101,14 @@ def contours(
 
 
 def _as_features(tin: TIN, lines: TracedLines, chosen: Levels) -> Features:
-    xyz, offsets, level, is_closed = lines
+    xyz, offsets, level, is_closed, length = lines
+    if tin.crs is not None and tin.crs.is_geographic:
+        length = measure_lengths(tin.crs, xyz, offsets)
     columns: dict[str, Any] = {
         "elevation": chosen.values[level],
         "is_index": chosen.is_index[level],
         "is_closed": is_closed,
-        "length": measure_lengths(tin.crs, xyz, offsets),
+        "length": length,
     }
     return Features.of_lines(
         seal(xyz),

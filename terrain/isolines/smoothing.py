@@ -32,12 +32,15 @@ class TracedLines(NamedTuple):
     level : (k,) int32 array
         Place in the levels.
     is_closed : (k,) bool array
+    length : (k,) float64 array
+        In the plane of the coordinates.
     """
 
     coordinates: NDArray[np.float64]
     offsets: NDArray[np.int64]
     level: NDArray[np.int32]
     is_closed: NDArray[np.bool_]
+    length: NDArray[np.float64]
 
 
 def require_tolerance(option: str, value: Any) -> float:
@@ -100,7 +103,7 @@ def smooth_lines(
             tin.triangles,
             tin.neighbors,
             levels,
-            *lines,
+            *lines[:4],
             places,
             smooth,
             _ROUNDS,

@@ -18,7 +18,10 @@ from tinsmith.policies import CrossingPolicy, DuplicatePolicy, FeatureKind, Trim
 SAMPLES = Path(__file__).parents[2] / "sample_data"
 SURVEY = str(SAMPLES / "site_survey.csv")
 UTM = ("--crs", "EPSG:32616")
-COMMANDS = ("build", "info", "check", "view", "refine", "compare", "edit", "convert", "formats")
+COMMANDS = (
+    *("build", "info", "check", "view", "refine", "compare", "edit", "convert"),
+    *("volume", "diff", "formats"),
+)
 
 
 def run(*arguments, code=0):

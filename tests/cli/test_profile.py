@@ -77,6 +77,12 @@ def test_several_surfaces_have_names(site, tmp_path):
     assert "old" in out.stderr
 
 
+def test_a_name_is_taken_for_one_surface_too(site, tmp_path):
+    out = run("profile", site, *LINE, "--name", "ground", "-o", tmp_path / "a.csv")
+    assert out.exit_code == 0, out.output
+    assert "crossed_ground" in read_csv(tmp_path / "a.csv")[0]
+
+
 def test_lines_of_a_file_are_reprojected(site, tmp_path):
     here = [[752690, 4024225], [752850, 4024330]]
     there = ts.transform_points([[*xy, 0.0] for xy in here], UTM, "EPSG:4326")[:, :2]

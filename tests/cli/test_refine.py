@@ -53,7 +53,7 @@ def test_triangles_that_stay_bad_are_told_with_their_numbers_and_why(tmp_path):
     out = run("refine", points, "-o", tmp_path / "a.ply", "--json")
     assert out.exit_code == 0
     (group,) = json.loads(out.stdout)["report"]["unmended"]
-    assert group["why"] == "lines or the rim meet there under a small angle"
+    assert group["why"] == "lines or the boundary meet there under a small angle"
     angles = ts.tin.quality(ts.read(tmp_path / "a.ply")).min_angle
     assert group["triangles"] == np.flatnonzero(angles < 25).tolist()
     assert group["count"] == len(group["triangles"]) > 0

@@ -100,7 +100,7 @@ def rounding_of_angles(mesh: Any, shapes: Any) -> NDArray[np.float64]:
 
 
 def require_kept(tin: Any, mesh: Any) -> None:
-    """Vertices stay, lines pass through theirs in order, the rim keeps the area."""
+    """Vertices stay, lines pass through theirs in order, the boundary keeps the area."""
     assert np.array_equal(mesh.points[: len(tin.points)], tin.points), "vertices moved"
     n = len(tin.points)
     for before, after in zip(tin.lines.chains(), mesh.lines.chains(), strict=False):

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
+from ..interpolation.interpolator import Interpolator
 from ..types import Frozen
 
 if TYPE_CHECKING:
@@ -35,3 +37,8 @@ class Version(Frozen):
     vertex_of: NDArray[np.int32]
     lines: Lines
     report: Report
+
+    @cached_property
+    def interpolator(self) -> Interpolator:
+        """What interpolation needs; any number of threads may ask it at a time."""
+        return Interpolator(self.triangulation, self.lines)

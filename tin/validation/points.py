@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 __all__ = [
     "as_elevations",
     "as_masked_points",
+    "as_places",
     "as_points",
     "as_xy",
     "require_exact_range",
@@ -101,6 +102,16 @@ def as_xy(xy: Any) -> NDArray[np.float64]:
     queries = np.ascontiguousarray(queries, np.float64)
     require_exact_range(queries, "Query points")
     return queries
+
+
+def as_places(xy: Any) -> tuple[NDArray[np.float64], bool]:
+    """Return one place, or several, as :func:`as_xy` does, and whether it is one."""
+    shape = getattr(xy, "shape", None)
+    if shape is None:
+        is_one = isinstance(xy, list | tuple) and len(xy) == 2 and not np.ndim(xy[0])
+    else:
+        is_one = tuple(shape) == (2,)
+    return as_xy([xy] if is_one else xy), is_one
 
 
 def as_elevations(values: Any) -> NDArray[np.float64]:

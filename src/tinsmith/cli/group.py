@@ -34,6 +34,7 @@ __all__ = ["main"]
 _BUILT_IN = (
     *("build", "info", "check", "view", "compare", "refine", "edit", "convert", "formats"),
     *("contours", "slope", "hillshade", "profile", "volume", "diff", "drape"),
+    *("interpolate", "raster"),
 )
 _ENTRY_POINTS = "tinsmith.commands"
 

@@ -63,8 +63,15 @@ inline std::vector<Sums> sum_between(const Triangles& first, const std::int32_t*
   const Pairs pairs(first, second);
   const auto steep = all_steepness(first, up), other_steep = all_steepness(second, up);
   std::vector<std::vector<Sums>> parts(team.size(), std::vector<Sums>(group_count));
+  struct Kept {
+    std::int32_t triangle = -1;
+    Facet facet;
+  };
+  std::vector<Kept> kept(team.size());  // the triangle of the pair before is often that of this one
   pairs.visit(team, [&](int part, std::int32_t a, std::int32_t b) {
-    const Facet one = Facet::of(first, a), other = Facet::of(second, b);
+    if (kept[part].triangle != a) kept[part] = {a, Facet::of(first, a)};
+    const Facet& one = kept[part].facet;
+    const Facet other = Facet::of(second, b);
     const bool is_kept = is_measured_along(one, other);
     Cell cell;
     if (!(is_kept ? cell.cut(one, other) : cell.cut(other, one))) return;

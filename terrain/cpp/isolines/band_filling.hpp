@@ -9,13 +9,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "../../../tin/cpp/base/parallel.hpp"
-#include "band_pieces.hpp"
 #include "level_surface.hpp"
+#include "ring_nesting.hpp"
 #include "ring_tracing.hpp"
 
 namespace tinsmith::isolines {
@@ -30,8 +29,7 @@ struct Bands {
 
 class BandFiller {
  public:
-  BandFiller(const LevelSurface& surface, Team& team)
-      : surface_(surface), team_(team), pieces_(surface) {
+  BandFiller(const LevelSurface& surface, Team& team) : surface_(surface), team_(team) {
     list_triangles();
   }
 
@@ -87,7 +85,7 @@ class BandFiller {
     const Point start = surface_.crossing(surface_.entry_of_line(t, above), level);
     const Point end = surface_.crossing(surface_.exit_of(t, above), level);
     if (start == end) return;
-    segments.push_back(is_above ? BoundarySegment{start, end, t} : BoundarySegment{end, start, t});
+    segments.push_back(is_above ? BoundarySegment{start, end} : BoundarySegment{end, start});
   }
 
   // The part of a band of an edge of the boundary.
@@ -100,29 +98,30 @@ class BandFiller {
     const std::int32_t lowest = surface_.rank(edge.low);
     const std::int32_t highest = surface_.rank(edge.high);
     if (band < lowest || band > highest) return;
-    const Point low =
-        band > lowest ? surface_.crossing(edge, band - 1) : surface_.point(edge.low);
-    const Point high =
-        band < highest ? surface_.crossing(edge, band) : surface_.point(edge.high);
+    const Point low = band > lowest ? surface_.crossing(edge, band - 1) : surface_.point(edge.low);
+    const Point high = band < highest ? surface_.crossing(edge, band) : surface_.point(edge.high);
     if (low == high) return;
-    segments.push_back(is_rising ? BoundarySegment{low, high, t} : BoundarySegment{high, low, t});
+    segments.push_back(is_rising ? BoundarySegment{low, high} : BoundarySegment{high, low});
   }
 
-  // Rings of one connected part of the band are one polygon.
+  // An exterior and its holes are a polygon.
   void add_polygons(std::vector<Ring> rings, std::int32_t band) {
     const auto by_first = [](const Ring& a, const Ring& b) {
       return std::lexicographical_compare(a.points.begin(), a.points.end(), b.points.begin(),
                                           b.points.end(), lexicographically_before);
     };
     std::sort(rings.begin(), rings.end(), by_first);
-    std::unordered_map<std::int32_t, std::vector<std::size_t>> holes;
+    const RingNesting nesting(rings);
+    std::vector<std::vector<std::size_t>> holes(rings.size());
     for (std::size_t i = 0; i < rings.size(); ++i) {
-      if (!rings[i].is_exterior) holes[pieces_.part_of(rings[i].triangle, band)].push_back(i);
+      const std::int32_t around =
+          rings[i].is_exterior ? RingNesting::kNone : nesting.exterior_of(rings[i]);
+      if (around != RingNesting::kNone) holes[around].push_back(i);
     }
-    for (const Ring& ring : rings) {
-      if (!ring.is_exterior) continue;
-      add_ring(ring);
-      for (const std::size_t i : holes[pieces_.part_of(ring.triangle, band)]) add_ring(rings[i]);
+    for (std::size_t i = 0; i < rings.size(); ++i) {
+      if (!rings[i].is_exterior) continue;
+      add_ring(rings[i]);
+      for (const std::size_t hole : holes[i]) add_ring(rings[hole]);
       found_.polygon_offsets.push_back(static_cast<std::int64_t>(found_.ring_offsets.size()) - 1);
       found_.band.push_back(band);
     }
@@ -136,7 +135,6 @@ class BandFiller {
 
   const LevelSurface& surface_;
   Team& team_;
-  const BandPieces pieces_;
   std::vector<std::size_t> first_;  // of each band
   std::vector<Triangle> listed_;
   Bands found_;

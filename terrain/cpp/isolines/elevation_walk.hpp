@@ -62,9 +62,9 @@ class ElevationWalk {
   bool is_within(const Place& place, double level, double tolerance) const {
     double weight = 0.0, height = 0.0, error = 0.0, largest = 0.0;
     for (std::uint32_t corner = 0; corner < 3; ++corner) {
-      const Turn part = measure_turn(point(vertex(place.triangle, corner_after(corner))),
-                                     point(vertex(place.triangle, corner_before(corner))),
-                                     place.point);
+      const Turn part =
+          measure_turn(point(vertex(place.triangle, corner_after(corner))),
+                       point(vertex(place.triangle, corner_before(corner))), place.point);
       const double rise = elevation(vertex(place.triangle, corner)) - level;
       weight += part.value;
       height += part.value * rise;

@@ -3,6 +3,9 @@
 // A level is thought just below its value: a vertex at the level lies above it. Every vertex is
 // therefore above or below, a triangle is crossed in two edges or in none, and all decisions are
 // comparisons of ranks.
+//
+// A vertex so near to a level that its lines would pass it within some roundings of its coordinates
+// is taken to be at the level: lines through such a place could not be told apart.
 #pragma once
 
 #include <algorithm>
@@ -41,32 +44,51 @@ struct Exit {
   Vertex high;
 };
 
+// A triangle that a level crosses: which corners are above, as bits, and the lowest rank.
+struct Crossed {
+  std::uint32_t above;
+  std::int32_t lowest_rank;
+};
+
+// A vertex, and how many levels are at or below it; half a line of the cache.
+struct alignas(32) RankedVertex {
+  Point point;
+  double elevation;
+  std::int32_t rank;
+};
+
 // A crossing of an edge: where the elevation is the level. The same from both triangles, as it is
 // computed from the lower end to the higher one.
-inline Point cross_edge(const double* low, const double* high, double level) {
-  if (high[2] == level) return {high[0], high[1]};
-  const double rise = high[2] - low[2];
+inline Point cross_edge(const RankedVertex& low, const RankedVertex& high, double level) {
+  if (high.elevation == level) return high.point;
+  const double rise = high.elevation - low.elevation;
   // Halves where the difference of two huge elevations overflows.
-  const double share = std::isfinite(rise) ? (level - low[2]) / rise
-                                           : (0.5 * level - 0.5 * low[2]) /
-                                                 (0.5 * high[2] - 0.5 * low[2]);
+  const double share = std::isfinite(rise) ? (level - low.elevation) / rise
+                                           : (0.5 * level - 0.5 * low.elevation) /
+                                                 (0.5 * high.elevation - 0.5 * low.elevation);
   const auto between = [share](double a, double b) {
     const double value = a + share * (b - a);
     return std::min(std::max(value, std::min(a, b)), std::max(a, b));
   };
-  return {between(low[0], high[0]), between(low[1], high[1])};
+  return {between(low.point.x, high.point.x), between(low.point.y, high.point.y)};
 }
 
 class LevelSurface {
  public:
   LevelSurface(const SurfaceArrays& surface, const Levels& levels)
-      : surface_(surface), levels_(levels), rank_(surface.vertex_count) {
-    const double first = levels.count > 0 ? levels.values[0] : 0.0;
-    const double range = levels.count > 1 ? levels.values[levels.count - 1] - first : 0.0;
-    const double per_unit = range > 0.0 ? (levels.count - 1) / range : 0.0;
+      : surface_(surface),
+        levels_(levels),
+        vertices_(surface.vertex_count),
+        rank_(surface.vertex_count) {
+    double lowest = HUGE_VAL, highest = -HUGE_VAL;
     for (std::int32_t v = 0; v < surface.vertex_count; ++v) {
-      rank_[v] = rank_of(surface.xyz[3 * std::size_t(v) + 2], first, per_unit);
+      const double* const row = surface.xyz + 3 * std::size_t(v);
+      vertices_[v] = {{row[0], row[1]}, row[2], 0};
+      lowest = std::min(lowest, row[2]);
+      highest = std::max(highest, row[2]);
     }
+    rank_vertices(kNear * highest - kNear * lowest);
+    for (std::int32_t v = 0; v < surface.vertex_count; ++v) rank_[v] = vertices_[v].rank;
   }
 
   const SurfaceArrays& arrays() const { return surface_; }
@@ -76,7 +98,9 @@ class LevelSurface {
   // How many levels are at or below a vertex.
   std::int32_t rank(Vertex v) const { return rank_[number(v)]; }
   bool is_above(Vertex v, std::int32_t level) const { return rank(v) > level; }
-  bool is_at(Vertex v, std::int32_t level) const { return xyz(v)[2] == levels_.values[level]; }
+  bool is_at(Vertex v, std::int32_t level) const {
+    return vertices_[number(v)].elevation == levels_.values[level];
+  }
 
   Vertex corner(Triangle t, std::uint32_t corner) const {
     return Vertex{surface_.triangles[entry_of(t, corner)]};
@@ -85,8 +109,23 @@ class LevelSurface {
     const std::int32_t across = surface_.neighbors[entry_of(t, corner)];
     return across == kNoNeighbor ? kNoTriangle : Triangle{static_cast<std::uint32_t>(across)};
   }
-  const double* xyz(Vertex v) const { return surface_.xyz + 3 * std::size_t(number(v)); }
-  Point point(Vertex v) const { return {xyz(v)[0], xyz(v)[1]}; }
+  Point point(Vertex v) const { return vertices_[number(v)].point; }
+
+  // Ask for the rows of a triangle's neighbours: one of them comes next, and memory is what a walk
+  // waits for.
+  void prefetch_around(Triangle t, const std::uint32_t* first_exits) const {
+#if defined(__GNUC__)
+    for (std::uint32_t corner = 0; corner < 3; ++corner) {
+      const std::int32_t across = surface_.neighbors[entry_of(t, corner)];
+      const std::size_t entry = across == kNoNeighbor ? 0 : 3 * std::size_t(across);
+      __builtin_prefetch(surface_.triangles + entry);
+      __builtin_prefetch(surface_.neighbors + entry);
+      __builtin_prefetch(first_exits + entry / 3);
+    }
+#else
+    (void)t, (void)first_exits;
+#endif
+  }
 
   // The lowest and the highest rank of a triangle's corners: levels from the first to before the
   // second cross it, and bands from the first to the second have a part of it.
@@ -104,6 +143,17 @@ class LevelSurface {
            std::uint32_t{is_above(corner(t, 2), level)} << 2;
   }
 
+  // Throws where the level crosses no edge, as only wrong neighbours lead there.
+  Crossed crossed(Triangle t, std::int32_t level) const {
+    const std::int32_t a = rank(corner(t, 0)), b = rank(corner(t, 1)), c = rank(corner(t, 2));
+    const std::uint32_t above =
+        std::uint32_t{a > level} | std::uint32_t{b > level} << 1 | std::uint32_t{c > level} << 2;
+    if (above == 0 || above == 7) {
+      throw std::invalid_argument("the neighbours are not those of the triangles");
+    }
+    return {above, std::min(a, std::min(b, c))};
+  }
+
   Exit exit_of(Triangle t, std::uint32_t above) const {
     // The edge that rises from below to above counter-clockwise, for each set of corners above.
     constexpr std::uint32_t kRising[8] = {3, 1, 2, 1, 0, 0, 2, 3};
@@ -115,7 +165,8 @@ class LevelSurface {
     return {falling.corner, falling.high, falling.low};
   }
   Point crossing(const Exit& edge, std::int32_t level) const {
-    return cross_edge(xyz(edge.low), xyz(edge.high), levels_.values[level]);
+    return cross_edge(vertices_[number(edge.low)], vertices_[number(edge.high)],
+                      levels_.values[level]);
   }
 
   // The triangle beyond a ridge at the level, kNoTriangle where there is none: an edge at the
@@ -133,8 +184,65 @@ class LevelSurface {
   }
 
  private:
+  // Of the range of elevations: vertices nearer to a level are looked at.
+  static constexpr double kNear = 1e-6;
+  // A line nearer to a vertex than so many roundings of its coordinates runs through it.
+  static constexpr double kRoundings = 16.0;
+
+  void rank_vertices(double near) {
+    const double first = levels_.count > 0 ? levels_.values[0] : 0.0;
+    const double range = levels_.count > 1 ? levels_.values[levels_.count - 1] - first : 0.0;
+    const double per_unit = range > 0.0 ? (levels_.count - 1) / range : 0.0;
+    std::vector<Vertex> near_levels;
+    for (const Vertex v : Ids<Vertex>(surface_.vertex_count)) {
+      RankedVertex& vertex = vertices_[number(v)];
+      vertex.rank = rank_of(vertex.elevation, first, per_unit);
+      const double off = vertex.elevation - nearest_level(vertex);
+      if (off != 0.0 && std::fabs(off) < near) near_levels.push_back(v);
+    }
+    if (!near_levels.empty()) move_to_levels(near_levels);
+  }
+
+  double nearest_level(const RankedVertex& vertex) const {
+    const double elevation = vertex.elevation;
+    const std::int32_t r = vertex.rank;
+    const double below = r > 0 ? levels_.values[r - 1] : -HUGE_VAL;
+    const double above = r < levels_.count ? levels_.values[r] : HUGE_VAL;
+    return elevation - below <= above - elevation ? below : above;
+  }
+
+  void move_to_levels(const std::vector<Vertex>& near_levels) {
+    std::vector<double> steepest(std::size_t(surface_.vertex_count), -1.0);
+    for (const Vertex v : near_levels) steepest[number(v)] = 0.0;
+    for (const Triangle t : Ids<Triangle>(surface_.triangle_count)) {
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const Vertex v = corner(t, k);
+        if (steepest[number(v)] < 0.0) continue;
+        for (const Vertex w : {corner(t, corner_after(k)), corner(t, corner_before(k))}) {
+          steepest[number(v)] = std::max(steepest[number(v)], steepness(v, w));
+        }
+      }
+    }
+    for (const Vertex v : near_levels) {
+      RankedVertex& vertex = vertices_[number(v)];
+      const double largest = std::max(std::fabs(vertex.point.x), std::fabs(vertex.point.y));
+      const double level = nearest_level(vertex);
+      const double off = std::fabs(vertex.elevation - level);
+      if (!(off <= kRoundings * 0x1p-52 * largest * steepest[number(v)])) continue;
+      const double* const end = levels_.values + levels_.count;
+      vertex.elevation = level;
+      vertex.rank =
+          static_cast<std::int32_t>(std::upper_bound(levels_.values, end, level) - levels_.values);
+    }
+  }
+
+  double steepness(Vertex v, Vertex w) const {
+    const RankedVertex &p = vertices_[number(v)], &q = vertices_[number(w)];
+    return std::fabs(p.elevation - q.elevation) /
+           std::hypot(p.point.x - q.point.x, p.point.y - q.point.y);
+  }
+
   Exit edge(Triangle t, std::uint32_t opposite) const {
-    if (opposite > 2) throw std::invalid_argument("the neighbours are not those of the triangles");
     return {opposite, corner(t, corner_after(opposite)), corner(t, corner_before(opposite))};
   }
 
@@ -151,13 +259,14 @@ class LevelSurface {
         }
       }
     }
-    return static_cast<std::int32_t>(
-        std::upper_bound(values, values + levels_.count, elevation) - values);
+    return static_cast<std::int32_t>(std::upper_bound(values, values + levels_.count, elevation) -
+                                     values);
   }
 
   SurfaceArrays surface_;
   Levels levels_;
-  ScratchVector<std::int32_t> rank_;
+  ScratchVector<RankedVertex> vertices_;
+  ScratchVector<std::int32_t> rank_;  // once more: so few bytes stay in the cache
 };
 
 }  // namespace tinsmith::isolines

@@ -109,14 +109,16 @@ class LineNetwork {
     triangle_.resize(count);
     is_alive_.assign(count, 1);
     for (std::size_t i = 0; i < count; ++i) {
-      triangle_[i] = triangles[i] < 0 ? kNoTriangle
-                                      : Triangle{static_cast<std::uint32_t>(triangles[i])};
+      triangle_[i] =
+          triangles[i] < 0 ? kNoTriangle : Triangle{static_cast<std::uint32_t>(triangles[i])};
       grid_.add(Node(i), points_[i]);
     }
     for (const Line& line : lines.lines) {
       for (std::size_t i = line.begin; i < line.end; ++i) {
         previous_[i] = i > line.begin ? Node(i - 1) : line.is_closed ? Node(line.end - 1) : kNoNode;
-        following_[i] = i + 1 < line.end ? Node(i + 1) : line.is_closed ? Node(line.begin) : kNoNode;
+        following_[i] = i + 1 < line.end ? Node(i + 1)
+                        : line.is_closed ? Node(line.begin)
+                                         : kNoNode;
       }
     }
   }

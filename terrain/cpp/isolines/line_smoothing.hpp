@@ -110,8 +110,8 @@ class LineSmoother {
     }
     const double level = levels_.values[line.level];
     Place end = network_.place(c);
-    if (!reaches(network_.place(a), q, level, tolerance) ||
-        !reaches(q, r, level, tolerance) || !passes(r, end, level, tolerance)) {
+    if (!reaches(network_.place(a), q, level, tolerance) || !reaches(q, r, level, tolerance) ||
+        !passes(r, end, level, tolerance)) {
       return false;
     }
     network_.add_after(network_.add_after(a, q), r);
@@ -158,7 +158,8 @@ class LineSmoother {
       const auto [area, node, before, after] = queue.top();
       queue.pop();
       const Node b{node}, a{before}, c{after};
-      if (!network_.is_alive(b) || network_.previous(b) != a || network_.following(b) != c) continue;
+      if (!network_.is_alive(b) || network_.previous(b) != a || network_.following(b) != c)
+        continue;
       if (!can_drop(a, b, c, line, tolerance)) continue;
       network_.drop(b);
       --left;

@@ -28,8 +28,8 @@ struct TracedLines {
   std::vector<Line> lines;
 };
 
-// Turn a closed line, the last of all, to its first point by easting, then northing; where it passes
-// there twice, to the way whose next point is first.
+// Turn a closed line, the last of all, to its first point by easting, then northing; where it
+// passes there twice, to the way whose next point is first.
 inline void turn_to_first(ScratchVector<Point>& points, std::size_t begin) {
   const auto start = points.begin() + std::ptrdiff_t(begin);
   const std::size_t count = points.size() - begin;
@@ -56,34 +56,35 @@ class LineTracer {
     std::size_t total = 0;
     for (const Triangle t : Ids<Triangle>(count)) {
       const auto [low, high] = surface.ranks(t);
-      first_exit_[number(t)] = static_cast<std::uint32_t>(total) - std::uint32_t(low);
+      first_exit_[number(t)] = static_cast<std::uint32_t>(total);
       total += std::size_t(high - low);
+      if (total > kMostCrossings) throw std::length_error("too many crossings");
+      if (low < high) list_boundary(t);
     }
-    if (total > kMostCrossings) throw std::length_error("too many crossings");
+    first_exit_[count] = static_cast<std::uint32_t>(total);
     is_left_.assign(total, 1);
   }
 
   static constexpr std::size_t kMostCrossings = INT32_MAX;
 
   TracedLines trace() {
-    for (const Triangle t : Ids<Triangle>(surface_.arrays().triangle_count)) {
-      for (std::uint32_t corner = 0; corner < 3; ++corner) {
-        if (surface_.neighbor(t, corner) == kNoTriangle) trace_from_boundary(t, corner);
-      }
-    }
+    for (const HalfEdge e : boundary_) trace_from_boundary(triangle_of(e), corner_of(e));
     for (const Triangle t : Ids<Triangle>(surface_.arrays().triangle_count)) {
       if ((number(t) & 0xFFFF) == 0 && !team_.keeps_going(0)) break;
-      const auto [low, high] = surface_.ranks(t);
-      for (std::int32_t level = low; level < high; ++level) {
-        if (is_left_[exit_number(t, level)]) trace_closed(t, level);
+      const std::uint32_t begin = first_exit_[number(t)];
+      const std::uint32_t end = first_exit_[std::size_t{number(t)} + 1];
+      for (std::uint32_t exit = begin; exit < end; ++exit) {
+        if (is_left_[exit]) trace_closed(t, surface_.ranks(t).first + std::int32_t(exit - begin));
       }
     }
     return std::move(found_);
   }
 
  private:
-  std::size_t exit_number(Triangle t, std::int32_t level) const {
-    return std::uint32_t(first_exit_[number(t)] + std::uint32_t(level));
+  void list_boundary(Triangle t) {
+    for (std::uint32_t corner = 0; corner < 3; ++corner) {
+      if (surface_.neighbor(t, corner) == kNoTriangle) boundary_.push_back(half_edge(t, corner));
+    }
   }
 
   // Lines come in where the boundary falls, with the surface on its left.
@@ -101,7 +102,7 @@ class LineTracer {
   void trace_closed(Triangle t, std::int32_t level) {
     const std::size_t begin = found_.points.size();
     Triangle next = t;
-    leave(t, level, begin, next);
+    leave(t, surface_.crossed(t, level), level, begin, next);
     follow(next, level, begin);
     auto& points = found_.points;
     while (points.size() > begin + 1 && points.back() == points[begin]) points.pop_back();
@@ -112,17 +113,24 @@ class LineTracer {
   // From exit to exit, until the boundary or an exit that the line had before.
   void follow(Triangle t, std::int32_t level, std::size_t begin) {
     while (t != kNoTriangle) {
-      const Triangle beyond = surface_.beyond_ridge(t, surface_.corners_above(t, level), level);
-      if (!leave(beyond == kNoTriangle ? t : beyond, level, begin, t)) return;
+      surface_.prefetch_around(t, first_exit_.data());
+      Crossed crossed = surface_.crossed(t, level);
+      const Triangle beyond = surface_.beyond_ridge(t, crossed.above, level);
+      if (beyond != kNoTriangle) {
+        t = beyond;
+        crossed = surface_.crossed(t, level);
+      }
+      if (!leave(t, crossed, level, begin, t)) return;
     }
   }
 
   // Add the point where the line leaves a triangle and find the next one; false if that was done.
-  bool leave(Triangle t, std::int32_t level, std::size_t begin, Triangle& next) {
-    const Exit exit = surface_.exit_of(t, surface_.corners_above(t, level));
-    char& is_left = is_left_[exit_number(t, level)];
+  bool leave(Triangle t, const Crossed& crossed, std::int32_t level, std::size_t begin,
+             Triangle& next) {
+    char& is_left = is_left_[first_exit_[number(t)] + std::uint32_t(level - crossed.lowest_rank)];
     if (!is_left) return false;
     is_left = 0;
+    const Exit exit = surface_.exit_of(t, crossed.above);
     const Point point = surface_.crossing(exit, level);
     auto& points = found_.points;
     if (points.size() == begin || !(points.back() == point)) points.push_back(point);
@@ -142,7 +150,8 @@ class LineTracer {
 
   const LevelSurface& surface_;
   Team& team_;
-  std::vector<std::uint32_t> first_exit_;  // less the lowest rank, modulo 2^32
+  ScratchVector<std::uint32_t> first_exit_;  // of each triangle, that of its lowest level
+  std::vector<HalfEdge> boundary_;           // of crossed triangles
   std::vector<char> is_left_;
   TracedLines found_;
 };
@@ -152,11 +161,10 @@ inline void sort_lines(TracedLines& found) {
   const auto& points = found.points;
   const auto before = [&](const Line& a, const Line& b) {
     if (a.level != b.level) return a.level < b.level;
-    return std::lexicographical_compare(points.begin() + std::ptrdiff_t(a.begin),
-                                        points.begin() + std::ptrdiff_t(a.end),
-                                        points.begin() + std::ptrdiff_t(b.begin),
-                                        points.begin() + std::ptrdiff_t(b.end),
-                                        lexicographically_before);
+    return std::lexicographical_compare(
+        points.begin() + std::ptrdiff_t(a.begin), points.begin() + std::ptrdiff_t(a.end),
+        points.begin() + std::ptrdiff_t(b.begin), points.begin() + std::ptrdiff_t(b.end),
+        lexicographically_before);
   };
   std::sort(found.lines.begin(), found.lines.end(), before);
 }

@@ -10,24 +10,22 @@
 #include <utility>
 #include <vector>
 
-#include "../../../tin/cpp/base/ids.hpp"
 #include "../../../tin/cpp/base/point.hpp"
 #include "../../../tin/cpp/predicates/predicates.hpp"
 
 namespace tinsmith::isolines {
 
-// A segment of a boundary, and the triangle that it lies in.
+// A segment of a boundary.
 struct BoundarySegment {
   Point from;
   Point to;
-  Triangle triangle;
 };
 
 // A ring without a point that it passes twice; its first point is the first by easting, then
 // northing.
 struct Ring {
   std::vector<Point> points;
-  Triangle triangle;  // of one of its segments
+  std::int32_t walk;  // rings that touch, around one connected part, are of one walk
   bool is_exterior;   // counter-clockwise
 };
 
@@ -50,7 +48,6 @@ class RingTracer {
   struct Edge {
     std::int32_t from;
     std::int32_t to;
-    Triangle triangle;
     bool is_traced = false;
   };
 
@@ -62,7 +59,7 @@ class RingTracer {
     points_.erase(std::unique(points_.begin(), points_.end()), points_.end());
     edges_.reserve(segments_.size());
     for (const BoundarySegment& s : segments_) {
-      edges_.push_back({number_of(s.from), number_of(s.to), s.triangle});
+      edges_.push_back({number_of(s.from), number_of(s.to)});
     }
     segments_ = {};
   }
@@ -78,8 +75,7 @@ class RingTracer {
     const auto low = [](const Edge& e) { return std::min(e.from, e.to); };
     const auto high = [](const Edge& e) { return std::max(e.from, e.to); };
     std::sort(edges_.begin(), edges_.end(), [&](const Edge& a, const Edge& b) {
-      return std::make_tuple(low(a), high(a), a.from, number(a.triangle)) <
-             std::make_tuple(low(b), high(b), b.from, number(b.triangle));
+      return std::make_tuple(low(a), high(a), a.from) < std::make_tuple(low(b), high(b), b.from);
     });
     std::vector<Edge> kept;
     for (std::size_t i = 0, end = 0; i < edges_.size(); i = end) {
@@ -118,11 +114,12 @@ class RingTracer {
       if (since >= 0) cut_ring(way, std::size_t(since));
       edge = following(edge, start);
     } while (edge != start);
+    ++walks_;
   }
 
   void cut_ring(std::vector<std::size_t>& way, std::size_t begin) {
     Ring ring;
-    ring.triangle = edges_[way[begin]].triangle;
+    ring.walk = walks_;
     for (std::size_t i = begin; i < way.size(); ++i) {
       ring.points.push_back(points_[edges_[way[i]].from]);
       place_[edges_[way[i]].from] = -1;
@@ -144,9 +141,8 @@ class RingTracer {
     std::size_t best = edges_.size();
     for (std::size_t e = first_[at]; e < first_[std::size_t(at) + 1]; ++e) {
       if (edges_[e].is_traced && e != start) continue;
-      if (best == edges_.size() ||
-          is_before(points_[at], points_[edges_[edge].from], points_[edges_[e].to],
-                    points_[edges_[best].to])) {
+      if (best == edges_.size() || is_before(points_[at], points_[edges_[edge].from],
+                                             points_[edges_[e].to], points_[edges_[best].to])) {
         best = e;
       }
     }
@@ -173,6 +169,7 @@ class RingTracer {
   std::vector<std::size_t> first_;
   std::vector<std::int64_t> place_;  // of a point in the way since the start, -1 for none
   std::vector<Ring> rings_;
+  std::int32_t walks_ = 0;
 };
 
 }  // namespace tinsmith::isolines

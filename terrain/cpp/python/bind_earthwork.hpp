@@ -78,8 +78,7 @@ inline SumTable sum_heights(const GivenXyz& points, const GivenTriples& triangle
     throw std::invalid_argument("a height for each point is needed");
   }
   nb::gil_scoped_release release;
-  const auto sums =
-      earthwork::sum_heights(given, heights.data(), groups.data(), group_count, up);
+  const auto sums = earthwork::sum_heights(given, heights.data(), groups.data(), group_count, up);
   nb::gil_scoped_acquire acquire;
   return hand_over(sums);
 }
@@ -92,11 +91,12 @@ inline auto overlay(const GivenXyz& points, const GivenTriples& triangles,
     return earthwork::Overlay(first, static_cast<std::int32_t>(points.shape(0)), second,
                               static_cast<std::int32_t>(other_points.shape(0)), team);
   });
-  return std::make_tuple(copy_over<Xyz, double>(made.vertices, {made.vertices.size(), 3}),
-                         copy_over<Pairs, std::int32_t>(made.origins, {made.origins.size(), 2}),
-                         copy_over<Offsets, std::int64_t>(made.offsets, {made.offsets.size()}),
-                         hand_over(made.corners),
-                         copy_over<Pairs, std::int32_t>(made.triangles, {made.triangles.size(), 2}));
+  return std::make_tuple(
+      copy_over<Xyz, double>(made.vertices, {made.vertices.size(), 3}),
+      copy_over<Pairs, std::int32_t>(made.origins, {made.origins.size(), 2}),
+      copy_over<Offsets, std::int64_t>(made.offsets, {made.offsets.size()}),
+      hand_over(made.corners),
+      copy_over<Pairs, std::int32_t>(made.triangles, {made.triangles.size(), 2}));
 }
 
 inline StageTable stage_sums(const GivenXyz& points, const GivenTriples& triangles,
@@ -106,8 +106,7 @@ inline StageTable stage_sums(const GivenXyz& points, const GivenTriples& triangl
     throw std::invalid_argument("levels must ascend");
   }
   nb::gil_scoped_release release;
-  const auto rows =
-      earthwork::Storage(given, levels.data(), row_count(levels.shape(0)), up).rows();
+  const auto rows = earthwork::Storage(given, levels.data(), row_count(levels.shape(0)), up).rows();
   nb::gil_scoped_acquire acquire;
   return copy_over<StageTable, double>(rows, {rows.size(), 3});
 }
@@ -120,9 +119,10 @@ inline void bind_earthwork(nb::module_& m) {
   m.def("sum_heights", &sum_heights, "points"_a.noconvert(), "triangles"_a.noconvert(),
         "heights"_a.noconvert(), "groups"_a.noconvert(), "group_count"_a, "up"_a,
         "Cut and fill of heights at the vertices, a row for each group of triangles.");
-  m.def("overlay", &overlay, "points"_a.noconvert(), "triangles"_a.noconvert(),
-        "other_points"_a.noconvert(), "other_triangles"_a.noconvert(),
-        "Vertices with differences, their origins, offsets and corners of cells, triangles of each.");
+  m.def(
+      "overlay", &overlay, "points"_a.noconvert(), "triangles"_a.noconvert(),
+      "other_points"_a.noconvert(), "other_triangles"_a.noconvert(),
+      "Vertices with differences, their origins, offsets and corners of cells, triangles of each.");
   m.def("stage_sums", &stage_sums, "points"_a.noconvert(), "triangles"_a.noconvert(),
         "levels"_a.noconvert(), "up"_a, "Area, area in space and volume under each level.");
 }

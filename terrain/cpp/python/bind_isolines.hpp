@@ -51,7 +51,7 @@ inline isolines::Levels levels_of(const GivenLevels& levels) {
   return {levels.data(), row_count(levels.shape(0))};
 }
 
-// Coordinates, offsets, and the level and whether it is closed of each line.
+// Coordinates and offsets, and of each line its level, whether it is closed, and its length.
 inline auto hand_over_lines(const isolines::TracedLines& found, const isolines::Levels& levels) {
   const std::size_t count = found.lines.size();
   const auto closed = [](const isolines::Line& line) { return line.is_closed; };
@@ -61,36 +61,38 @@ inline auto hand_over_lines(const isolines::TracedLines& found, const isolines::
   auto offsets = streamed_array<std::int64_t>(count + 1);
   auto level = streamed_array<std::int32_t>(count);
   auto is_closed = streamed_array<bool>(count);
+  auto length = streamed_array<double>(count);
   std::size_t at = 0;
   for (std::size_t k = 0; k < count; ++k) {
     const isolines::Line& line = found.lines[k];
     offsets[k] = static_cast<std::int64_t>(at);
     level[k] = line.level;
     is_closed[k] = line.is_closed;
+    length[k] = 0.0;
     const std::size_t points = line.end - line.begin + (line.is_closed ? 1 : 0);
     for (std::size_t i = 0; i < points; ++i, ++at) {
       const Point p = found.points[line.begin + i == line.end ? line.begin : line.begin + i];
       xyz[3 * at] = p.x;
       xyz[3 * at + 1] = p.y;
       xyz[3 * at + 2] = levels.values[line.level];
+      if (i > 0) length[k] += std::hypot(p.x - xyz[3 * at - 3], p.y - xyz[3 * at - 2]);
     }
   }
   offsets[count] = static_cast<std::int64_t>(at);
   return std::make_tuple(hand_over<Xyz>(std::move(xyz), {total, 3}),
                          hand_over<Offsets>(std::move(offsets), {count + 1}),
                          hand_over<Numbers>(std::move(level), {count}),
-                         hand_over<Flags>(std::move(is_closed), {count}));
+                         hand_over<Flags>(std::move(is_closed), {count}),
+                         hand_over<Elevations>(std::move(length), {count}));
 }
 
 inline auto trace_contours(const GivenXyz& points, const GivenTriples& triangles,
                            const GivenTriples& neighbors, const GivenLevels& levels) {
   const isolines::SurfaceArrays surface = surface_of(points, triangles, neighbors);
   const isolines::Levels wanted = levels_of(levels);
-  return hand_over_lines(unlocked(1,
-                                  [&](Team& team) {
-                                    return isolines::trace_lines(surface, wanted, team);
-                                  }),
-                         wanted);
+  return hand_over_lines(
+      unlocked(1, [&](Team& team) { return isolines::trace_lines(surface, wanted, team); }),
+      wanted);
 }
 
 using GivenOffsets = Given<std::int64_t, -1>;
@@ -138,17 +140,17 @@ inline auto smooth_contours(const GivenXyz& points, const GivenTriples& triangle
       !std::all_of(places.data(), places.data() + places.shape(0), is_sound)) {
     throw std::invalid_argument("every point of a line needs a triangle");
   }
-  return hand_over_lines(
-      unlocked(1,
-               [&](Team& team) {
-                 isolines::LineSmoother smoother(surface, wanted, lines, places.data(), team);
-                 if (smooth > 0.0) smoother.smooth(smooth, rounds);
-                 if (simplify > 0.0) smoother.simplify(simplify);
-                 isolines::TracedLines made = smoother.take();
-                 isolines::sort_lines(made);
-                 return made;
-               }),
-      wanted);
+  return hand_over_lines(unlocked(1,
+                                  [&](Team& team) {
+                                    isolines::LineSmoother smoother(surface, wanted, lines,
+                                                                    places.data(), team);
+                                    if (smooth > 0.0) smoother.smooth(smooth, rounds);
+                                    if (simplify > 0.0) smoother.simplify(simplify);
+                                    isolines::TracedLines made = smoother.take();
+                                    isolines::sort_lines(made);
+                                    return made;
+                                  }),
+                         wanted);
 }
 
 // Points of the rings, offsets of rings and polygons, and the band of each polygon.

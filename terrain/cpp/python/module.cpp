@@ -2,10 +2,12 @@
 #include <nanobind/nanobind.h>
 
 #include "bind_earthwork.hpp"
+#include "bind_gridding.hpp"
 #include "bind_isolines.hpp"
 
 NB_MODULE(_core, m) {
   m.doc() = "Compiled core of tinsmith.terrain: what is derived from a TIN.";
   tinsmith::python::bind_isolines(m);
+  tinsmith::python::bind_gridding(m);
   tinsmith::python::bind_earthwork(m);
 }

@@ -34,7 +34,7 @@ def test_a_child_has_the_limits_of_its_file_beyond_what_is_in_use():
     found = run_isolated("support.isolated_functions:limits", {}, path=FILE, limits=limits).value
     assert 7.0 <= found["seconds"] - found["used"] < 8.1
     assert found["core"] == [0, 0]
-    assert 0 <= (1 << 29) - (found["memory"] - found["mapped"]) < 1 << 26
+    assert 0 <= (1 << 29) - (found["memory"] - found["mapped"]) < 1 << 28  # what came since
     assert found["ends"] == ["/dev/null"] * 3
 
 

@@ -86,5 +86,7 @@ def test_what_cannot_be_drawn_is_refused(how, why):
 def test_another_table_is_no_profile():
     with pytest.raises(ts.OptionError, match="profile"):
         ts.profile_picture(ts.Table({"a": [1.0]}))
+    with pytest.raises(ts.OptionError, match="profile"):
+        ts.profile_picture(ts.cross_sections(TIN, LINE, interval=5, width=4))
     with pytest.raises(ts.OptionError, match="meets a surface"):
         ts.profile_picture(ts.profile(TIN, [LINE, [[90, 90], [99, 99]]]), line=1)

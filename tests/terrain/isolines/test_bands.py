@@ -116,3 +116,37 @@ def test_bands_do_not_depend_on_the_order_of_triangles():
     assert np.array_equal(found.coordinates, expected.coordinates)
     for one, other in zip(found.offsets, expected.offsets, strict=True):
         assert np.array_equal(one, other)
+
+
+# ------------------------------------------------------------------ rounding
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_vertices_a_rounding_from_a_level_leave_bands_whole(seed):
+    """Crossings near such vertices fell together: bands lost holes, and a fifth of their area."""
+    rng = np.random.default_rng(seed)
+    xy = np.array([500_000.0, 4_000_000.0]) + rng.integers(0, 12, (150, 2))
+    z = 300 + rng.integers(0, 4, 150) + rng.choice([0, 1e-13, -1e-13, 5.7e-14], 150)
+    tin = ts.triangulate(np.column_stack([xy, z]))
+    found = ts.contour_bands(tin, interval=0.5)
+    require_a_partition(tin, found)
+    assert found.notes == ()
+
+
+def test_polygons_of_slivers_thinner_than_rounding_are_mended_and_told():
+    rng = np.random.default_rng(2)
+    along = np.sort(rng.uniform(0, 100, 120))
+    across = 0.37 * along + rng.normal(0, 1e-8, 120)
+    points = np.column_stack([500_000 + along, 4_000_000 + across, rng.uniform(300, 310, 120)])
+    found = ts.contour_bands(ts.triangulate(points), interval=0.5)
+    assert all(polygon.is_valid for polygon in polygons_of(found))
+    assert "met themselves within the rounding of coordinates" in found.notes[0]
+
+
+def test_bands_that_cannot_add_up_are_refused():
+    rng = np.random.default_rng(4)
+    xy = rng.uniform(0, 1, (120, 2))
+    xy[:60] = xy[0] + rng.integers(-4, 5, (60, 2)) * 2.0**-52
+    tin = ts.triangulate(np.column_stack([xy, rng.uniform(300, 310, 120)]))
+    with pytest.raises(ts.PointsError, match="The bands add up to an area of"):
+        ts.contour_bands(tin, interval=0.5)

@@ -336,8 +336,13 @@ class TestInput:
         tin = ts.triangulate(uniform_points(10))
         assert getattr(tin, query)(np.empty((0, 2))).shape == (0,)
 
-    @pytest.mark.parametrize("query", ["locate", "interpolate"])
-    @pytest.mark.parametrize("xy", [(0.0, 0.0), [[0, 0, 0]], [[[0, 0]]], 3.0])
+    @pytest.mark.parametrize(
+        ("query", "xy"),
+        [
+            ("locate", (0.0, 0.0)),  # for interpolate it is one place
+            *[(q, xy) for q in ("locate", "interpolate") for xy in ([[0, 0, 0]], [[[0, 0]]], 3.0)],
+        ],
+    )
     def test_wrong_shape(self, query, xy):
         tin = ts.triangulate(uniform_points(10))
         with pytest.raises(PointsError, match=r"\(k, 2\) is needed"):

@@ -104,7 +104,7 @@ def test_angles_are_reached_and_the_mesh_is_sound(make, min_angle):
 
 
 def smallest_between_segments(tin):
-    """Return the smallest angle between edges of rim and lines that meet."""
+    """Return the smallest angle between edges of boundary and lines that meet."""
     ways = {}
     segments = tin.constrained | (tin.neighbors < 0)
     for t, k in np.argwhere(segments):
@@ -148,7 +148,7 @@ def test_given_points_stay_and_new_ones_lie_on_the_surface(make):
     inside = ~np.isnan(on_surface)
     np.testing.assert_allclose(new[inside, 2], on_surface[inside], rtol=0, atol=1e-7)
     rim = [LineString(tin.points[[*ring, ring[0]], :2]) for ring in tin.rings]
-    for x, y, _ in new[~inside]:  # beside the rim by a rounding
+    for x, y, _ in new[~inside]:  # beside the boundary by a rounding
         assert min(line.distance(Point(x, y)) for line in rim) < 1e-9
     assert np.isfinite(new).all()
 
@@ -526,7 +526,7 @@ def test_bad_limits_are_told_in_a_sentence(options, words):
 
 @pytest.mark.parametrize("make", [square, with_boundary_and_hole, touching_corners])
 def test_places_beside_the_rim_have_the_height_of_the_nearest_edge(make):
-    """A rounding outside, and at random places outside: against each edge of the rim in turn."""
+    """A rounding outside, and at random places outside: each edge of the boundary in turn."""
     tin = make()
     rng = np.random.default_rng(4)
     low, high = tin.points[:, :2].min(axis=0), tin.points[:, :2].max(axis=0)

@@ -68,6 +68,45 @@ struct Surface {
   }
 };
 
+// Twice the areas opposite the corners of the parts into which p divides a triangle; their signs
+// are exact.
+struct CornerWeights {
+  double of[3];
+
+  static CornerWeights at(Point p, Point a, Point b, Point c) {
+    return {
+        {detail::twice_area(b, c, p), detail::twice_area(c, a, p), detail::twice_area(a, b, p)}};
+  }
+
+  double total() const { return of[0] + of[1] + of[2]; }
+  std::uint32_t heaviest() const {
+    const std::uint32_t main = of[1] > of[0];
+    return of[2] > of[main] ? 2 : main;
+  }
+
+  // The mean of three elevations, one of a corner each. Differences from the corner of largest
+  // weight keep the digits that the elevations share, and give a vertex exactly its own elevation;
+  // differences of halves cannot overflow.
+  double mean_of(const double (&elevations)[3]) const {
+    const std::uint32_t main = heaviest(), next = (main + 1) % 3, last = (main + 2) % 3;
+    const double sum = total();
+    const double z = elevations[main], z_next = elevations[next], z_last = elevations[last];
+    const double half_rise =
+        of[next] / sum * (0.5 * z_next - 0.5 * z) + of[last] / sum * (0.5 * z_last - 0.5 * z);
+    const double lowest = std::min({z, z_next, z_last});
+    const double highest = std::max({z, z_next, z_last});
+    return std::min(std::max(z + 2.0 * half_rise, lowest), highest);
+  }
+};
+
+// The elevation of the plane through a triangle's corners at a point that the triangle holds.
+inline double elevation_at(const Surface& surface, Point p, Triangle t) {
+  const double elevations[3] = {surface.elevation(t, 0), surface.elevation(t, 1),
+                                surface.elevation(t, 2)};
+  return CornerWeights::at(p, surface.corner(t, 0), surface.corner(t, 1), surface.corner(t, 2))
+      .mean_of(elevations);
+}
+
 class Locator {
  public:
   // The surface's arrays must outlive the locator, and its points and corners be sound.
@@ -93,11 +132,9 @@ class Locator {
     return visit_queries(
         queries, count, keep_going, [&](std::int64_t i, Point p, Triangle triangle) {
           result[i] = triangle == kNoTriangle ? std::numeric_limits<double>::quiet_NaN()
-                                              : elevation_at(p, triangle);
+                                              : tinsmith::elevation_at(surface_, p, triangle);
         });
   }
-
-  const Surface& surface() const { return surface_; }
 
   // Every triangle whose box a band may meet, and some more, in no order.
   template <typename Near, typename Visit>
@@ -109,48 +146,12 @@ class Locator {
     });
   }
 
-  // Differences from the corner of largest weight keep the digits that the elevations share, and
-  // give a vertex exactly its own elevation; differences of halves cannot overflow.
   double elevation_at(Point p, Triangle triangle) const {
-    const Point a = surface_.corner(triangle, 0);
-    const Point b = surface_.corner(triangle, 1);
-    const Point c = surface_.corner(triangle, 2);
-    const double weight[3] = {detail::twice_area(b, c, p), detail::twice_area(c, a, p),
-                              detail::twice_area(a, b, p)};
-    const double total = weight[0] + weight[1] + weight[2];
-    std::uint32_t main = weight[1] > weight[0];
-    main = weight[2] > weight[main] ? 2 : main;
-    const std::uint32_t next = (main + 1) % 3, last = (main + 2) % 3;
-    const double z = surface_.elevation(triangle, main);
-    const double z_next = surface_.elevation(triangle, next);
-    const double z_last = surface_.elevation(triangle, last);
-    const double half_rise = weight[next] / total * (0.5 * z_next - 0.5 * z) +
-                             weight[last] / total * (0.5 * z_last - 0.5 * z);
-    const double lowest = std::min({z, z_next, z_last});
-    const double highest = std::max({z, z_next, z_last});
-    return std::min(std::max(z + 2.0 * half_rise, lowest), highest);
+    return tinsmith::elevation_at(surface_, p, triangle);
   }
 
- private:
-  static constexpr std::int64_t kQueriesAtATime = std::int64_t{1} << 22;  // bounds the memory
-  static constexpr std::int32_t kBlock = 4096;  // fits the first-level cache
-  static constexpr int kLongestWalk = 24;       // as costly as a search
-
-  static std::vector<Triangle> in_spatial_order(const Surface& surface) {
-    std::vector<Point> centers(surface.triangle_count);
-    for (const Triangle t : Ids<Triangle>(surface.triangle_count)) {
-      centers[number(t)] = surface.box_of(t).center();
-    }
-    const auto count = static_cast<std::int32_t>(surface.triangle_count);
-    const HilbertOrder order(centers.data(), count);
-    std::vector<Triangle> triangles(surface.triangle_count);
-    for (std::int32_t i = 0; i < count; ++i) {
-      triangles[i] = Triangle{static_cast<std::uint32_t>(order[i])};
-    }
-    return triangles;
-  }
-
-  // Queries in spatial order, so that walks are short and memory is near.
+  // visit(i, point, triangle) of each query, kNoTriangle outside: in an order in which neighbours in
+  // the plane follow each other. False if asked to stop.
   template <typename KeepGoing, typename Visit>
   bool visit_queries(const Point* all_queries, std::int64_t count, KeepGoing&& keep_going,
                      Visit&& visit) const {
@@ -173,6 +174,27 @@ class Locator {
       }
     }
     return true;
+  }
+
+  const Surface& surface() const { return surface_; }
+
+ private:
+  static constexpr std::int64_t kQueriesAtATime = std::int64_t{1} << 22;  // bounds the memory
+  static constexpr std::int32_t kBlock = 4096;  // fits the first-level cache
+  static constexpr int kLongestWalk = 24;       // as costly as a search
+
+  static std::vector<Triangle> in_spatial_order(const Surface& surface) {
+    std::vector<Point> centers(surface.triangle_count);
+    for (const Triangle t : Ids<Triangle>(surface.triangle_count)) {
+      centers[number(t)] = surface.box_of(t).center();
+    }
+    const auto count = static_cast<std::int32_t>(surface.triangle_count);
+    const HilbertOrder order(centers.data(), count);
+    std::vector<Triangle> triangles(surface.triangle_count);
+    for (std::int32_t i = 0; i < count; ++i) {
+      triangles[i] = Triangle{static_cast<std::uint32_t>(order[i])};
+    }
+    return triangles;
   }
 
   Triangle find(Point p, Triangle start) const {

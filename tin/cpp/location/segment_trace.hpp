@@ -33,10 +33,10 @@ namespace tinsmith {
 // Places along segments where something changes, and both ends of each segment.
 struct TraceBreaks {
   std::vector<Point> places;
-  std::vector<double> elevations;     // NaN where there is no surface
-  std::vector<double> ratios;         // 0 at the first end, 1 at the second
-  std::vector<std::int32_t> vertices;  // that are there, else -1
-  std::vector<std::int32_t> edges;     // crossed, or on which an end lies, else -1
+  std::vector<double> elevations;       // NaN where there is no surface
+  std::vector<double> ratios;           // 0 at the first end, 1 at the second
+  std::vector<std::int32_t> vertices;   // that are there, else -1
+  std::vector<std::int32_t> edges;      // crossed, or on which an end lies, else -1
   std::vector<std::int32_t> triangles;  // through which the segment goes on, -1 outside
   std::vector<std::int32_t> along;      // edge along which it goes on, else -1
   // Edges stand as 3 * triangle + corner opposite, of their smaller triangle.
@@ -45,8 +45,7 @@ struct TraceBreaks {
 class SegmentTrace {
  public:
   // The locator must outlive the trace.
-  explicit SegmentTrace(const Locator& locator)
-      : locator_(locator), surface_(locator.surface()) {}
+  explicit SegmentTrace(const Locator& locator) : locator_(locator), surface_(locator.surface()) {}
 
   // Append the breaks of one segment, whose ends are apart. False if triangles that it meets lie
   // over each other.
@@ -203,8 +202,8 @@ class SegmentTrace {
     spots_.clear();
     for (const Touch& touch : touches_) {
       if (spots_.empty() || spots_.back().key != touch.key) {
-        spots_.push_back({touch.key, touch.triangle, touch.vertex, touch.edge, {}, 0.0, 0.0, kNone,
-                          false});
+        spots_.push_back(
+            {touch.key, touch.triangle, touch.vertex, touch.edge, {}, 0.0, 0.0, kNone, false});
         continue;
       }
       Spot& spot = spots_.back();

@@ -10,11 +10,25 @@
 #include <utility>
 #include <vector>
 
+#include "../interpolation/batch.hpp"
 #include "../location/locator.hpp"
 #include "../location/segment_trace.hpp"
 #include "arrays.hpp"
 
 namespace tinsmith::python {
+
+// The elevation at each point; make() gives each thread an evaluate(point, triangle).
+template <typename Make>
+Elevations elevations_at(const Locator& locator, const GivenXy& xy, int threads, Make&& make) {
+  const std::size_t count = xy.shape(0);
+  auto result = streamed_array<double>(count);
+  unlocked(threads, [&](Team& team) {
+    interpolate_all(locator, points_of(xy), static_cast<std::int64_t>(count), result.get(), team,
+                    make);
+    return 0;
+  });
+  return hand_over<Elevations>(std::move(result), {count});
+}
 
 // Breaks of segments one after the other: where those of each begin, the arrays, and the first
 // segment for which there are none, -1 if all have theirs.
@@ -33,9 +47,9 @@ class HeldLocator {
     });
   }
 
-  Elevations interpolate(const GivenXy& xy) const {
-    return answer<Elevations, double>(xy, [&](std::int64_t count, double* result) {
-      return locator_.interpolate(points_of(xy), count, result, no_signal);
+  Elevations interpolate(const GivenXy& xy, int threads) const {
+    return elevations_at(locator_, xy, threads, [&] {
+      return [&](Point p, Triangle triangle) { return elevation_at(surface(), p, triangle); };
     });
   }
 
@@ -73,6 +87,9 @@ class HeldLocator {
             hand_over(breaks.along),
             done < count ? done : -1};
   }
+
+  const Locator& locator() const { return locator_; }
+  const Surface& surface() const { return locator_.surface(); }
 
  private:
   static constexpr std::int64_t kSegmentsAtATime = 64;  // before Ctrl-C is asked for
@@ -132,7 +149,7 @@ inline void bind_location(nb::module_& m) {
            "points"_a.noconvert(), "triangles"_a.noconvert(), "neighbors"_a.noconvert())
       .def("locate", &HeldLocator::locate, "xy"_a.noconvert(),
            "The triangle at each point, -1 outside; the smallest one where several meet.")
-      .def("interpolate", &HeldLocator::interpolate, "xy"_a.noconvert(),
+      .def("interpolate", &HeldLocator::interpolate, "xy"_a.noconvert(), "threads"_a = 1,
            "The elevation at each point, NaN outside.")
       .def("trace", &HeldLocator::trace, "starts"_a.noconvert(), "ends"_a.noconvert(),
            "The places along segments where they cross edges, and the triangles between them.");

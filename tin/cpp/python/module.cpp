@@ -2,6 +2,7 @@
 #include <nanobind/nanobind.h>
 
 #include "bind_constraints.hpp"
+#include "bind_interpolation.hpp"
 #include "bind_location.hpp"
 #include "bind_mesh.hpp"
 #include "bind_points.hpp"
@@ -13,6 +14,7 @@ NB_MODULE(_core, m) {
   tinsmith::python::bind_points(m);
   tinsmith::python::bind_triangulation(m);
   tinsmith::python::bind_location(m);
+  tinsmith::python::bind_interpolation(m);
   tinsmith::python::bind_constraints(m);
   tinsmith::python::bind_mesh(m);
   tinsmith::python::bind_refinement(m);

@@ -63,8 +63,7 @@ def diff(
 
     \b
     Example:
-      tinsmith diff sample_data/site_survey.csv sample_data/design_pad.csv
-        --crs EPSG:32616 --codes -o difference.ply -o difference.csv -o zones.gpkg
+      tinsmith diff sample_data/site_survey.csv sample_data/design_pad.csv --codes -o pad.ply
     """  # noqa: D301 - click reads the control character
     from ...terrain import difference
     from ..surfaces import plan_products, read_surfaces, surface_inputs

@@ -117,7 +117,7 @@ def profile(
     started = perf_counter()
     line = _Line(file=line_file, start=begin, end=end)
     line.require_one()
-    chosen = _names(files, names)
+    chosen, asked["is_named"] = _names(files, names), bool(names)
     planned = _plan(outputs, files, line_file, how, writing, console, asked["sections"])
     surfaces = dict(zip(chosen, read_surfaces(files, reading, how, console), strict=True))
     notes: list[str] = []
@@ -199,7 +199,8 @@ def _cut(
     from ...terrain import cross_sections, section_lines
     from ...terrain import profile as cut_profile
 
-    given: Any = surfaces if len(surfaces) > 1 else next(iter(surfaces.values()))
+    is_named = len(surfaces) > 1 or asked["is_named"]
+    given: Any = surfaces if is_named else next(iter(surfaces.values()))
     with console.steps() as steps, steps.step("Cutting"):
         if asked["sections"] is None:
             rows = cut_profile(given, lines, interval=asked["interval"], start=asked["start"])

@@ -84,9 +84,9 @@ def volume(
 
     \b
     Example:
-      tinsmith volume sample_data/site_survey.csv sample_data/design_pad.csv
-        --crs EPSG:32616 --codes -o pad.csv -o pad.gpkg -o pad.png
-      tinsmith volume sample_data/site_survey.csv --crs EPSG:32616 --base 325 -o level.csv
+      tinsmith volume sample_data/site_survey.csv sample_data/design_pad.csv --codes -o pad.csv
+      tinsmith volume sample_data/site_survey.csv --crs EPSG:32616 --base 325 -o cut.gpkg
+      tinsmith volume sample_data/site_survey.csv --stage-storage --interval 0.5 -o stages.csv
     """  # noqa: D301 - click reads the control character
     from ..surfaces import plan_products, read_surfaces, surface_inputs
 
@@ -172,7 +172,8 @@ def _map(
     console: Console,
 ) -> None:
     """Write polygons and pictures, if there are to be some."""
-    from ...terrain import difference, earthwork_map, level_surface
+    from ...terrain import difference, earthwork_map
+    from ...terrain.earthwork import level_surface
 
     if not (planned.holds("Features") or planned.holds("picture")):
         return

@@ -1,0 +1,114 @@
+"""Contours beside matplotlib on the same TIN, and contourpy on a raster of the same surface.
+
+The same lines must come of the TIN: as many, as long. On a raster of as many cells as the TIN has
+points the lines are others, of the same shape.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import tinsmith as ts
+from tinsmith.tin import TIN
+
+from ..measure import OURS, Outcome, Result, alternate, median
+
+__all__ = ["run"]
+
+SECTION = "answers"
+SIZE = 10_000.0
+"""Side of the square, metres."""
+
+LEVELS = 72
+MODULES = {
+    OURS: "tinsmith",
+    "matplotlib": "matplotlib",
+    "contourpy, on a raster": "contourpy",
+}
+NOTES = {"contourpy, on a raster": "of as many cells; other lines of the same surface"}
+RELATIVE = 1e-9
+ON_A_RASTER = 0.2
+"""Lines through scattered points wind more than those through a raster: by less than this share."""
+
+Floats = NDArray[np.float64]
+
+
+def run(n_points: int, *, repeats: int = 3) -> Outcome:
+    """Measure 72 contours of ``n_points`` points on hills, joined lines included.
+
+    Raises
+    ------
+    AssertionError
+        If a peer has other lines.
+    """
+    rng = np.random.default_rng(1)
+    xy = rng.random((n_points, 2)) * SIZE
+    tin = ts.triangulate(np.column_stack([xy, hills(*xy.T)]))
+    z = tin.points[:, 2]
+    levels = np.linspace(z.min(), z.max(), LEVELS + 2)[1:-1]
+    outcome = Outcome()
+    tools = {
+        OURS: lambda: _ours(tin, levels),
+        "matplotlib": _matplotlib(tin, levels),
+        "contourpy, on a raster": _contourpy(n_points, levels),
+    }
+    present = outcome.present(MODULES)
+    answers, runs = alternate({name: tools[name] for name in present}, repeats)
+    for name, lengths in answers.items():
+        _require_same(answers[OURS], lengths, is_raster=name in NOTES)
+        seconds = median(runs[name])
+        task = f"contours: {LEVELS} levels, {len(tin.triangles):,} triangles"
+        note = NOTES.get(name, "")
+        outcome.results.append(
+            Result(SECTION, task, name, n_points, seconds, tuple(runs[name]), note)
+        )
+    return outcome
+
+
+def hills(x: Floats, y: Floats) -> Floats:
+    """Return the elevations of rolling ground, metres."""
+    broad = 60 * np.sin(x / 900) * np.cos(y / 1100) + 30 * np.sin(x / 310 + y / 270)
+    elevations: Floats = 300 + broad + 8 * np.sin(x / 70) * np.sin(y / 90)
+    return elevations
+
+
+def _ours(tin: TIN, levels: Floats) -> list[Floats]:
+    found = ts.contours(tin, levels=levels)
+    return np.split(found.coordinates[:, :2], found.offsets[0][1:-1])
+
+
+def _matplotlib(tin: TIN, levels: Floats) -> Callable[[], list[Floats]]:
+    """Return the call of what tricontour calls for each level; its preparation is not timed."""
+    from matplotlib import _tri
+    from matplotlib.tri import Triangulation
+
+    prepared = Triangulation(tin.points[:, 0], tin.points[:, 1], tin.triangles)
+    generator: Any = _tri.TriContourGenerator(
+        prepared.get_cpp_triangulation(), np.ascontiguousarray(tin.points[:, 2])
+    )
+    generator.create_contour(float(levels[0]))
+    return lambda: [line for level in levels for line in generator.create_contour(level)[0]]
+
+
+def _contourpy(n_points: int, levels: Floats) -> Callable[[], list[Floats]]:
+    from contourpy import contour_generator
+
+    axis = np.linspace(0, SIZE, round(n_points**0.5))
+    x, y = np.meshgrid(axis, axis)
+    generator: Any = contour_generator(x, y, hills(x, y), name="serial")
+    return lambda: [line for level in levels for line in generator.lines(level)]
+
+
+def _require_same(ours: list[Floats], theirs: list[Floats], *, is_raster: bool) -> None:
+    total, other = (sum(_length(line) for line in lines) for lines in (ours, theirs))
+    np.testing.assert_allclose(other, total, rtol=ON_A_RASTER if is_raster else RELATIVE)
+    if not is_raster:
+        assert sorted(map(len, ours)) == sorted(map(len, theirs)), "other lines"
+
+
+def _length(line: Floats) -> float:
+    return float(np.hypot(*np.diff(line, axis=0).T).sum())

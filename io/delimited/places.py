@@ -1,0 +1,195 @@
+"""Places in a text file with a header: two columns of coordinates, and whatever else there is."""
+
+from __future__ import annotations
+
+import csv
+from dataclasses import dataclass
+from io import StringIO
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ..._sentences import counted
+from ...errors import OptionError, ReadError
+from .columns import find_role
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+__all__ = ["Places", "read_places"]
+
+_DELIMITERS = {",": "commas", ";": "semicolons", "\t": "tabs"}
+_IN_DEGREES = ("lon", "lat")
+_SHOWN = 5
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Places:
+    """A table with places.
+
+    Attributes
+    ----------
+    columns : dict of str to (n,) object array
+        The text of every cell, as it stands in the file.
+    xy : (n, 2) float64 array
+    is_degrees : bool
+        Whether the columns of coordinates are called longitude and latitude.
+    notes : tuple of str
+        What was assumed.
+    """
+
+    columns: dict[str, NDArray[np.object_]]
+    xy: NDArray[np.float64]
+    is_degrees: bool
+    notes: tuple[str, ...]
+
+
+class _Table(NamedTuple):
+    header: list[str]
+    rows: list[list[str]]
+    lines: list[int]
+
+
+def read_places(
+    path: Path, *, columns: tuple[str, str] | None = None, delimiter: str | None = None
+) -> Places:
+    """Read places from a text file whose first line names the columns.
+
+    Parameters
+    ----------
+    path : Path
+    columns : (str, str), optional
+        Names of the columns of easting (longitude) and northing (latitude); default those that
+        are called so.
+    delimiter : str, optional
+        What separates columns; default that of comma, semicolon and tab which the header has.
+
+    Returns
+    -------
+    Places
+
+    Raises
+    ------
+    ReadError
+        If the file cannot be read, its header leaves the delimiter or the coordinates open, rows
+        have more or fewer cells, or coordinates are no finite numbers.
+    OptionError
+        If there is no column of a name given, or the delimiter is no single character.
+    """
+    table = _read_table(path, delimiter)
+    chosen, notes = _coordinates(table.header, columns, path)
+    xy = np.column_stack([_numbers(table, column, path) for column in chosen])
+    cells = np.array(table.rows, object).reshape(len(table.rows), len(table.header))
+    names = [table.header[column] for column in chosen]
+    return Places(
+        columns={name: cells[:, k] for k, name in enumerate(table.header)},
+        xy=xy,
+        is_degrees=any(_is_longitude(name) for name in names),
+        notes=notes,
+    )
+
+
+def _read_table(path: Path, delimiter: str | None) -> _Table:
+    try:
+        with path.open(encoding="utf-8-sig", newline="") as file:
+            text = file.read()
+    except OSError as error:
+        raise ReadError(f"Cannot read '{path}': {error.strerror}.", path=path) from error
+    except UnicodeDecodeError as error:
+        raise ReadError(f"Cannot read '{path}': it is no text in UTF-8.", path=path) from error
+    if not text.strip():
+        raise ReadError(
+            f"'{path}' is empty: a line with the names of columns is needed.", path=path
+        )
+    mark = _delimiter(text.partition("\n")[0], delimiter, path)
+    reader = csv.reader(StringIO(text, newline=""), delimiter=mark, strict=True)
+    try:
+        found = [(reader.line_num, row) for row in reader if any(cell.strip() for cell in row)]
+    except csv.Error as error:
+        raise ReadError(f"'{path}', line {reader.line_num}: {error}.", path=path) from error
+    header = [name.strip() for name in found[0][1]]
+    _require_names(header, path)
+    rows, numbers = [row for _, row in found[1:]], [number for number, _ in found[1:]]
+    uneven = [n for n, row in zip(numbers, rows, strict=True) if len(row) != len(header)]
+    if uneven:
+        raise ReadError(
+            f"'{path}' has {counted(len(uneven), 'row')} with more or fewer cells than the "
+            f"{len(header)} of the header (first: line {uneven[0]}).",
+            path=path,
+            lines=uneven[:_SHOWN],
+        )
+    return _Table(header, rows, numbers)
+
+
+def _delimiter(header: str, given: str | None, path: Path) -> str:
+    if given is not None:
+        if len(given) != 1 or given in '"\r\n':
+            raise OptionError("delimiter", given, "a single character")
+        return given
+    found = [mark for mark in _DELIMITERS if mark in header]
+    if len(found) == 1:
+        return found[0]
+    what = " and ".join(_DELIMITERS[mark] for mark in found) or "no delimiter"
+    raise ReadError(
+        f"The header of '{path}' has {what}: name what separates its columns.", path=path
+    )
+
+
+def _require_names(header: Sequence[str], path: Path) -> None:
+    for name in header:
+        if not name or header.count(name) > 1:
+            what = f"'{name}' twice" if name else "a column without a name"
+            raise ReadError(f"The header of '{path}' has {what}: names must differ.", path=path)
+
+
+def _is_longitude(name: str) -> bool:
+    plain = name.casefold()
+    return plain.startswith(_IN_DEGREES) or "longitud" in plain
+
+
+def _coordinates(
+    header: Sequence[str], named: tuple[str, str] | None, path: Path
+) -> tuple[tuple[int, int], tuple[str, ...]]:
+    """Return the columns of easting and northing, and what was assumed."""
+    if named is not None:
+        for name in named:
+            if name not in header:
+                raise OptionError("column", name, header)
+        return (header.index(named[0]), header.index(named[1])), ()
+    roles = [find_role(name) for name in header]
+    found = [[k for k, role in enumerate(roles) if role == one] for one in ("easting", "northing")]
+    if [len(one) for one in found] != [1, 1]:
+        names = ", ".join(header)
+        raise ReadError(
+            f"Which columns of '{path}' are easting and northing is open: name them; it has "
+            f"{names}.",
+            path=path,
+        )
+    (east,), (north,) = found
+    note = f"By the header {header[east]} is the easting and {header[north]} the northing."
+    return (east, north), (note,)
+
+
+def _numbers(table: _Table, column: int, path: Path) -> NDArray[np.float64]:
+    values = np.array([_number(row[column]) for row in table.rows], np.float64)
+    wrong = np.flatnonzero(~np.isfinite(values))
+    if len(wrong):
+        lines = [table.lines[row] for row in wrong[:_SHOWN]]
+        cell = table.rows[wrong[0]][column]
+        raise ReadError(
+            f"'{path}' has {counted(len(wrong), 'row')} whose {table.header[column]} is no finite "
+            f"number (first: line {lines[0]}, '{cell}').",
+            path=path,
+            lines=lines,
+        )
+    return values
+
+
+def _number(text: str) -> float:
+    try:
+        return float(text) if "_" not in text else float("nan")
+    except ValueError:
+        return float("nan")

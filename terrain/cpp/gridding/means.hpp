@@ -1,0 +1,164 @@
+// The mean of a surface over each cell of a grid, as far as the surface covers it: the integral over
+// the parts into which its triangles cut the cell, by clipping (I. E. Sutherland and G. W. Hodgman,
+// "Reentrant polygon clipping", 1974).
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "tiles.hpp"
+
+namespace tinsmith {
+
+class MeanScan {
+ public:
+  // As CenterScan; `x_edges` and `y_edges` hold the sides of the columns and rows, one more than
+  // there are.
+  static void run(const Surface& surface, const CellGrid& grid, const double* x_edges,
+                  const double* y_edges, const double* values, double* cells, Team& team) {
+    const Tiles tiles(surface, grid);
+    tiles.share(team, [&](std::int32_t tile) {
+      MeanScan scan(surface, grid, x_edges, y_edges, values, tiles[tile]);
+      tiles.for_each_triangle(surface, tile, [&](Triangle t) { scan.draw(t); });
+      scan.write(cells);
+    });
+  }
+
+ private:
+  // Where a polygon turns: relative to the tile's first cell, and its value.
+  struct Turn {
+    double x, y, value;
+  };
+
+  // Of a triangle after up to four cuts.
+  struct Polygon {
+    Turn turns[8];
+    int size = 0;
+
+    void add(const Turn& turn) { turns[size++] = turn; }
+  };
+
+  // Of the parts of a cell; the value's is relative to the first one seen in the tile.
+  struct Sum {
+    double area = 0.0;
+    double integral = 0.0;
+  };
+
+  MeanScan(const Surface& surface, const CellGrid& grid, const double* x_edges,
+           const double* y_edges, const double* values, const Tile& tile)
+      : surface_(surface),
+        grid_(grid),
+        x_edges_(x_edges),
+        y_edges_(y_edges),
+        values_(values),
+        tile_(tile),
+        origin_{x_edges[tile.columns.begin], y_edges[tile.rows.begin]},
+        sums_(static_cast<std::size_t>(tile.columns.size()) * tile.rows.size()) {}
+
+  void draw(Triangle t) {
+    Polygon whole;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const Point p = surface_.corner(t, k);
+      const double value = values_ == nullptr ? surface_.elevation(t, k) : values_[number(t)];
+      if (!is_shifted_) {
+        shift_ = value;
+        is_shifted_ = true;
+      }
+      whole.add({p.x - origin_.x, p.y - origin_.y, value - shift_});
+    }
+    const Box box = surface_.box_of(t);
+    const Range rows = cells_between(grid_.row_at(box.north), grid_.row_at(box.south), tile_.rows);
+    for (std::int32_t row = rows.begin; row < rows.end; ++row) {
+      const double top = y_edges_[row] - origin_.y, bottom = y_edges_[row + 1] - origin_.y;
+      const Polygon strip = cut(cut(whole, [top](const Turn& p) { return top - p.y; }),
+                                [bottom](const Turn& p) { return p.y - bottom; });
+      if (strip.size >= 3) draw_strip(strip, row);
+    }
+  }
+
+  void draw_strip(const Polygon& strip, std::int32_t row) {
+    double west = strip.turns[0].x, east = west;
+    for (int i = 1; i < strip.size; ++i) {
+      west = std::min(west, strip.turns[i].x);
+      east = std::max(east, strip.turns[i].x);
+    }
+    const Range columns = cells_between(grid_.column_at(west + origin_.x),
+                                        grid_.column_at(east + origin_.x), tile_.columns);
+    for (std::int32_t column = columns.begin; column < columns.end; ++column) {
+      const double left = x_edges_[column] - origin_.x, right = x_edges_[column + 1] - origin_.x;
+      add(cut(cut(strip, [left](const Turn& p) { return p.x - left; }),
+              [right](const Turn& p) { return right - p.x; }),
+          row, column);
+    }
+  }
+
+  // Cells that reach from one place between centres to another, and one more on both sides.
+  static Range cells_between(double first, double last, Range within) {
+    const double begin = std::max<double>(within.begin, std::floor(first) - 1.0);
+    const double end = std::min<double>(within.end, std::ceil(last) + 2.0);
+    if (!(begin < end)) return {0, 0};
+    return {static_cast<std::int32_t>(begin), static_cast<std::int32_t>(end)};
+  }
+
+  // The part of a convex polygon where `inside` is not negative. A crossing is computed from the
+  // inner end of the side: it is the same for the cell on the other side but for rounding.
+  template <typename Inside>
+  static Polygon cut(const Polygon& polygon, Inside&& inside) {
+    Polygon kept;
+    for (int i = 0; i < polygon.size; ++i) {
+      const Turn& a = polygon.turns[i];
+      const Turn& b = polygon.turns[i + 1 < polygon.size ? i + 1 : 0];
+      const double here = inside(a), there = inside(b);
+      if (here >= 0.0) kept.add(a);
+      if ((here > 0.0 && there < 0.0) || (here < 0.0 && there > 0.0)) {
+        const double share = here / (here - there);
+        kept.add({a.x + share * (b.x - a.x), a.y + share * (b.y - a.y),
+                  a.value + share * (b.value - a.value)});
+      }
+    }
+    return kept;
+  }
+
+  void add(const Polygon& part, std::int32_t row, std::int32_t column) {
+    Sum& sum = sums_[place(row, column)];
+    for (int i = 2; i < part.size; ++i) {
+      const Turn &a = part.turns[0], &b = part.turns[i - 1], &c = part.turns[i];
+      const double area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+      sum.area += area;
+      sum.integral += area * ((a.value + b.value + c.value) / 3.0);
+    }
+  }
+
+  std::size_t place(std::int32_t row, std::int32_t column) const {
+    return static_cast<std::size_t>(row - tile_.rows.begin) * tile_.columns.size() +
+           (column - tile_.columns.begin);
+  }
+
+  void write(double* cells) const {
+    for (std::int32_t row = tile_.rows.begin; row < tile_.rows.end; ++row) {
+      double* const first = grid_.row_of(cells, row);
+      for (std::int32_t column = tile_.columns.begin; column < tile_.columns.end; ++column) {
+        const Sum& sum = sums_[place(row, column)];
+        first[column] = sum.area > 0.0 ? shift_ + sum.integral / sum.area
+                                       : std::numeric_limits<double>::quiet_NaN();
+      }
+    }
+  }
+
+  const Surface& surface_;
+  const CellGrid& grid_;
+  const double* x_edges_;
+  const double* y_edges_;
+  const double* values_;
+  Tile tile_;
+  Point origin_;
+  double shift_ = 0.0;
+  bool is_shifted_ = false;
+  std::vector<Sum> sums_;
+};
+
+}  // namespace tinsmith

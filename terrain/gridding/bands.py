@@ -1,0 +1,105 @@
+"""A band of a raster whose cells are computed as they are asked for."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...tin.validation.threads import thread_count
+from .. import _kernel
+from .grids import as_parts, centers, edges
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...policies import InterpolationMethod
+    from ...tin import TIN, Grid
+
+__all__ = ["SurfaceBand"]
+
+_STRIP = 1 << 22
+"""Cells whose centres are listed in one go, about: a bound on memory."""
+
+
+class SurfaceBand:
+    """Cells over a surface: ``band[rows, columns]`` computes a block of them.
+
+    Parameters
+    ----------
+    tin : TIN
+        As it is now; later edits do not count.
+    grid : Grid
+    values : (m,) float64 array or None
+        Of triangles; None for elevations.
+    method : InterpolationMethod
+        Of elevations.
+    is_mean : bool
+        Of cells, instead of the value at their centres.
+    threads : int or None
+    """
+
+    dtype = np.dtype(np.float64)
+
+    def __init__(
+        self,
+        tin: TIN,
+        grid: Grid,
+        values: NDArray[np.float64] | None,
+        *,
+        method: InterpolationMethod,
+        is_mean: bool,
+        threads: int | None,
+    ) -> None:
+        self._tin = copy.copy(tin)
+        self._grid = grid
+        self._values = values
+        self._method = method
+        self._is_mean = is_mean
+        self._threads = threads
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns."""
+        return self._grid.shape
+
+    def __getitem__(self, key: tuple[slice, slice]) -> NDArray[np.float64]:
+        """Compute a block; slices have no step."""
+        rows, columns = as_parts(key, self.shape)
+        if rows.stop <= rows.start or columns.stop <= columns.start:
+            return np.empty((max(0, rows.stop - rows.start), max(0, columns.stop - columns.start)))
+        if self._method == "linear":
+            return self._scanned(rows, columns)
+        block = np.empty((rows.stop - rows.start, columns.stop - columns.start))
+        for strip in _strips(rows, columns):
+            block[strip.start - rows.start : strip.stop - rows.start] = self._asked(strip, columns)
+        return block
+
+    def _scanned(self, rows: slice, columns: slice) -> NDArray[np.float64]:
+        surface, (x, y) = self._tin.triangulation, centers(self._grid, rows, columns)
+        threads = thread_count(self._threads, len(x) * len(y))
+        spacing, values = self._grid.spacing, self._values
+        if not self._is_mean:
+            return _kernel.values_at_centers(
+                surface.points, surface.triangles, x, y, spacing, values, threads
+            )
+        x_edges, y_edges = edges(self._grid, rows, columns)
+        return _kernel.means_of_cells(
+            surface.points, surface.triangles, x, y, spacing, x_edges, y_edges, values, threads
+        )
+
+    def _asked(self, rows: slice, columns: slice) -> NDArray[np.float64]:
+        x, y = centers(self._grid, rows, columns)
+        xy = np.empty((len(y), len(x), 2))
+        xy[..., 0], xy[..., 1] = x, y[:, None]
+        places = xy.reshape(-1, 2)
+        found = self._tin.interpolate(places, self._method, threads=self._threads)
+        return found.reshape(len(y), len(x))
+
+
+def _strips(rows: slice, columns: slice) -> Iterator[slice]:
+    height = max(1, _STRIP // (columns.stop - columns.start))
+    for top in range(rows.start, rows.stop, height):
+        yield slice(top, min(top + height, rows.stop))

@@ -1,0 +1,130 @@
+"""Rasters of a surface."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from ...errors import OptionError, choice
+from ...policies import InterpolationMethod, RasterSample, RasterValue
+from ...tin.validation.options import as_flag, require_count, require_tin
+from ..results import Raster
+from .bands import SurfaceBand
+from .grids import as_grid
+from .triangle_values import triangle_values
+
+if TYPE_CHECKING:
+    import os
+
+    from ...crs import Unit
+    from ...tin import TIN, Grid
+
+__all__ = ["rasterize"]
+
+_UNITS = {"slope": "°", "aspect": "°"}
+
+
+def rasterize(
+    tin: TIN,
+    *,
+    spacing: float | None = None,
+    like: Raster | str | os.PathLike[str] | None = None,
+    grid: Grid | None = None,
+    method: InterpolationMethod = "linear",
+    value: RasterValue = "elevation",
+    at: RasterSample = "center",
+    azimuth: float = 315.0,
+    altitude: float = 45.0,
+    lazy: bool = False,
+    threads: int | None = None,
+) -> Raster:
+    """Turn a surface into a raster.
+
+    Parameters
+    ----------
+    tin : TIN
+    spacing : float, optional
+        Side of a square cell, CRS units. The cells' edges lie at its multiples, and they cover the
+        bounds of the TIN.
+    like : Raster, str or os.PathLike, optional
+        Take the cells of another raster, or of a raster file.
+    grid : Grid, optional
+        Take these cells. One of the three is needed.
+    method : {"linear", "nearest", "laplace", "natural", "c1"}
+        As :meth:`tinsmith.TIN.interpolate`; other values than elevations are those of triangles.
+    value : {"elevation", "slope", "aspect", "hillshade"}
+        Slope and aspect in degrees as :func:`tinsmith.slope` and :func:`tinsmith.aspect`, hillshade
+        from 0 (dark) to 255.
+    at : {"center", "mean"}
+        The value at the centre of each cell, or the mean over the part of it that the surface
+        covers.
+    azimuth, altitude : float
+        Where the light comes from for hillshade: degrees clockwise from north, and above the
+        horizon.
+    lazy : bool
+        Compute cells as they are asked for, such as by :func:`tinsmith.write`, for a raster larger
+        than memory.
+    threads : int, optional
+        Default: every core, where it pays. The result is the same for any number.
+
+    Returns
+    -------
+    Raster
+        One band, named as the value; NaN in cells whose centre (whose whole, for means) the
+        surface does not cover.
+
+    Raises
+    ------
+    OptionError
+        If not exactly one of ``spacing``, ``like`` and ``grid`` is given, cells are not square,
+        too small for the coordinates or too many (2^31, lazily 10^11), a mean is asked for that is
+        not exact, or another option is none.
+    CrsError
+        If the other raster has another CRS.
+    MissingExtraError
+        If a raster file is given and rasterio is not installed.
+
+    Notes
+    -----
+    The centre of the cell in row r and column c lies at ``xmin + (c + 0.5) * spacing``,
+    ``ymax - (r + 0.5) * spacing``. Values there equal those of :meth:`tinsmith.TIN.interpolate` to
+    the last bit; a centre on an edge is the smaller triangle's, as for :meth:`tinsmith.TIN.locate`.
+    Means are integrals over the triangles' parts of a cell, clipped exactly but for rounding.
+    Elevations are in the unit of the TIN's.
+
+    Examples
+    --------
+    >>> from tinsmith import TIN
+    >>> tin = TIN.from_triangles([[0, 0, 1], [4, 0, 5], [0, 4, 9]], [[0, 1, 2]])
+    >>> raster = rasterize(tin, spacing=2)
+    >>> raster.bands["elevation"]
+    array([[ 8., nan],
+           [ 4.,  6.]])
+    >>> rasterize(tin, spacing=4, at="mean").bands["elevation"].round(6)
+    array([[5.]])
+    """
+    require_tin(tin)
+    _require_options(method, value, at)
+    require_count("threads", threads, or_none=True)
+    is_lazy = as_flag("lazy", lazy)
+    cells = as_grid(tin, spacing=spacing, like=like, grid=grid, in_memory=not is_lazy)
+    values = triangle_values(tin, value, azimuth=azimuth, altitude=altitude)
+    band = SurfaceBand(tin, cells, values, method=method, is_mean=at == "mean", threads=threads)
+    held: Any = band if is_lazy else band[:, :]
+    return Raster({value: held}, cells, crs=tin.crs, units=_units(tin, value), name=value)
+
+
+def _require_options(method: str, value: str, at: str) -> None:
+    choice("method", method, InterpolationMethod)
+    choice("value", value, RasterValue)
+    choice("at", at, RasterSample)
+    if value != "elevation" and method != "linear":
+        raise OptionError("method", method, f"linear for {value}, which triangles have")
+    if at == "mean" and (method != "linear" or value == "aspect"):
+        what = "aspect, as directions have no mean" if value == "aspect" else f"method {method}"
+        raise OptionError("at", at, f"center for {what}")
+
+
+def _units(tin: TIN, value: str) -> dict[str, Unit | str | None]:
+    if value == "elevation":
+        return {value: tin.elevation_unit}
+    return {value: _UNITS[value]} if value in _UNITS else {}

@@ -1,0 +1,111 @@
+"""Polygons that meet themselves by rounding: made valid, or refused."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ..._sentences import counted
+from ...errors import PointsError
+from .measures import measure_lengths, measure_ring_areas
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...tin import TIN
+
+__all__ = ["PolygonParts", "mend_polygons", "require_whole"]
+
+_ROUNDINGS = 32.0
+"""So many roundings the boundary of a polygon may be off."""
+_SHARE = 1e-9
+"""Of the area of the TIN: what sums of floats may differ by."""
+
+
+class PolygonParts(NamedTuple):
+    """Polygons as the kernel returns them, by band.
+
+    Attributes
+    ----------
+    points : (n, 2) float64 array
+    ring_offsets, polygon_offsets : int64 arrays
+    band : (k,) int32 array
+        Of each polygon.
+    """
+
+    points: NDArray[np.float64]
+    ring_offsets: NDArray[np.int64]
+    polygon_offsets: NDArray[np.int64]
+    band: NDArray[np.int32]
+
+
+def mend_polygons(parts: PolygonParts) -> tuple[PolygonParts, tuple[str, ...]]:
+    """Make polygons valid that meet themselves, and say so."""
+    import shapely
+
+    offsets = parts.ring_offsets, parts.polygon_offsets
+    shapes = shapely.from_ragged_array(shapely.GeometryType.POLYGON, parts.points, offsets)
+    is_bad = ~shapely.is_valid(shapes)
+    if not is_bad.any():
+        return parts, ()
+    bands = np.unique(parts.band[is_bad])
+    pieces, numbers = [], []
+    for band in np.unique(parts.band):
+        members = shapes[parts.band == band]
+        if band in bands:
+            members = _made_valid(members)
+        pieces.append(members)
+        numbers.append(np.full(len(members), band, np.int32))
+    note = (
+        f"{counted(int(is_bad.sum()), 'polygon')} met themselves within the rounding of "
+        "coordinates, where triangles are thinner than it, and were made valid."
+    )
+    return _parts_of(np.concatenate(pieces), np.concatenate(numbers)), (note,)
+
+
+def _made_valid(shapes: NDArray[np.object_]) -> NDArray[np.object_]:
+    import shapely
+
+    whole = shapely.union_all(shapely.make_valid(shapes))
+    found = shapely.get_parts(whole)
+    polygons = found[shapely.get_type_id(found) == shapely.GeometryType.POLYGON]
+    kept: NDArray[np.object_] = np.array([_turn(one) for one in polygons], object)
+    return kept
+
+
+def _turn(polygon: Any) -> Any:
+    """Return a polygon whose exterior runs counter-clockwise, and its holes clockwise."""
+    from shapely.geometry.polygon import orient
+
+    return orient(polygon)
+
+
+def _parts_of(shapes: NDArray[np.object_], band: NDArray[np.int32]) -> PolygonParts:
+    import shapely
+
+    _, points, (rings, polygons) = shapely.to_ragged_array(shapes)
+    return PolygonParts(
+        np.ascontiguousarray(points[:, :2]),
+        np.asarray(rings, np.int64),
+        np.asarray(polygons, np.int64),
+        band,
+    )
+
+
+def require_whole(tin: TIN, parts: PolygonParts) -> None:
+    """Refuse polygons whose areas do not add up to that of the surface.
+
+    Raises
+    ------
+    PointsError
+        If more is missing than rounding along all rings can account for.
+    """
+    found = float(measure_ring_areas(None, parts.points, parts.ring_offsets).sum())
+    length = float(measure_lengths(None, parts.points, parts.ring_offsets).sum())
+    rounding = float(np.spacing(np.abs(parts.points).max(initial=0.0)))
+    if abs(found - tin.area) > _SHARE * tin.area + _ROUNDINGS * rounding * length:
+        raise PointsError(
+            f"The bands add up to an area of {found:g}, the surface has {tin.area:g}: its "
+            "triangles are too thin for coordinates of this size; subtract an origin from them."
+        )

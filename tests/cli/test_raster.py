@@ -1,0 +1,75 @@
+"""``tinsmith raster`` as people run it."""
+
+import json
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import tinsmith as ts
+from tinsmith.cli import main
+
+rasterio = pytest.importorskip("rasterio")
+
+
+def run(*arguments):
+    return CliRunner().invoke(main, list(map(str, arguments)))
+
+
+@pytest.fixture
+def surface(tmp_path):
+    points = np.random.default_rng(1).random((80, 3)) * [100, 100, 10] + [500_000, 4e6, 300]
+    return ts.write(ts.triangulate(points, crs="EPSG:32616"), tmp_path / "tin.ply")
+
+
+def test_a_surface_becomes_a_geotiff(tmp_path, surface):
+    path = tmp_path / "out.tif"
+    out = run("raster", surface, "--spacing", 2.5, "-o", path, "--json")
+    assert out.exit_code == 0, out.output
+    facts = json.loads(out.stdout)
+    wanted = ts.rasterize(ts.read(surface), spacing=2.5)
+    assert (facts["rows"], facts["columns"]) == wanted.shape
+    with rasterio.open(path) as file:
+        assert file.crs.to_epsg() == 32616
+        assert file.res == (2.5, 2.5)
+        np.testing.assert_array_equal(file.read(1), wanted.bands["elevation"])
+
+
+def test_the_cells_of_another_raster(tmp_path, surface):
+    first, second = tmp_path / "a.tif", tmp_path / "b.tif"
+    assert run("raster", surface, "--spacing", 5, "-o", first).exit_code == 0
+    out = run("raster", surface, "--like", first, "--value", "slope", "--at", "mean", "-o", second)
+    assert out.exit_code == 0, out.output
+    with rasterio.open(first) as one, rasterio.open(second) as other:
+        assert one.transform == other.transform
+        assert other.descriptions == ("slope",)
+        assert np.isfinite(other.read(1)).sum() > np.isfinite(one.read(1)).sum()
+
+
+@pytest.mark.parametrize(
+    ("options", "code", "sentence"),
+    [
+        ((), 2, "One of --spacing and --like is needed."),
+        (("--spacing", 1, "--like", "x.tif"), 2, "One of --spacing and --like is needed."),
+        (("--spacing", 0), 1, "Invalid --spacing 0.0"),
+        (("--spacing", -1), 1, "Invalid --spacing -1.0"),
+        (("--spacing", "1e-4"), 1, "number of cells"),
+        (("--spacing", 1, "--at", "mean", "--method", "natural"), 1, "Invalid --at"),
+        (("--spacing", 1, "--value", "height"), 2, "height"),
+        (("--like", "missing.tif"), 1, "a raster file that can be opened"),
+    ],
+)
+def test_what_cannot_be_done_is_said(tmp_path, surface, options, code, sentence):
+    out = run("raster", surface, *options, "-o", tmp_path / "out.tif")
+    assert out.exit_code == code, out.output
+    assert sentence in out.stderr
+    assert "Traceback" not in out.output
+    assert not (tmp_path / "out.tif").exists()
+
+
+def test_the_raster_of_like_is_never_overwritten(tmp_path, surface):
+    path = tmp_path / "a.tif"
+    assert run("raster", surface, "--spacing", 5, "-o", path).exit_code == 0
+    before = path.read_bytes()
+    assert run("raster", surface, "--like", path, "-o", path).exit_code == 2
+    assert path.read_bytes() == before

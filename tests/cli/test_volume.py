@@ -1,0 +1,133 @@
+"""``tinsmith volume`` and ``diff`` as people run them."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import shapely
+from click.testing import CliRunner
+
+import tinsmith as ts
+from tinsmith.cli import main
+
+SAMPLES = Path(__file__).parents[2] / "sample_data"
+SITE, PAD = SAMPLES / "site_survey.csv", SAMPLES / "design_pad.csv"
+CRS = ("--crs", "EPSG:32616", "--z-unit", "m")
+PNG = b"\x89PNG"
+
+
+def run(*arguments, code=0):
+    result = CliRunner().invoke(main, [str(one) for one in arguments])
+    assert result.exit_code == code, result.output
+    return result
+
+
+@pytest.fixture(scope="module")
+def files(tmp_path_factory):
+    """A level square and a ramp, as TINs in UTM."""
+    folder = tmp_path_factory.mktemp("tins")
+    corners = np.array([[0, 0], [40, 0], [40, 40], [0, 40]], float)
+    corners += [752_000, 4_024_000]
+    return [
+        ts.write(
+            ts.triangulate(np.column_stack([corners, z]), crs="EPSG:32616", z_unit="m"),
+            folder / f"{name}.ply",
+        )
+        for name, z in (("flat", [1, 1, 1, 1]), ("ramp", [0, 4, 4, 0]))
+    ]
+
+
+def test_the_pad_is_measured_drawn_and_written(tmp_path):
+    names = ["pad.csv", "pad.json", "pad.gpkg", "pad.png"]
+    outputs = [part for name in names for part in ("-o", tmp_path / name)]
+    result = run("volume", SITE, PAD, "--codes", *CRS, *outputs, "--json")
+    (row,) = json.loads(result.stdout)["rows"]
+    tins = [
+        ts.triangulate(ts.lines_from_codes(ts.read(path, crs="EPSG:32616", z_unit="m")))
+        for path in (SITE, PAD)
+    ]
+    table = ts.volume(*tins)
+    assert row["cut"] == table["cut"][0]
+    assert row["fill"] == table["fill"][0]
+    with (tmp_path / "pad.csv").open(encoding="utf-8", newline="") as file:
+        (written,) = csv.DictReader(file)
+    assert float(written["cut (m³)"]) == table["cut"][0]
+    assert (tmp_path / "pad.png").read_bytes().startswith(PNG)
+    pyogrio = pytest.importorskip("pyogrio")
+    _, _, shapes, _ = pyogrio.raw.read(tmp_path / "pad.gpkg")
+    areas = shapely.area(shapely.from_wkb(shapes))
+    assert areas.sum() == pytest.approx(table["area"][0], rel=1e-6)
+    assert "Cut" in result.stderr
+    assert "m³ over" in result.stderr
+
+
+def test_a_level_is_a_base(files):
+    (row,) = json.loads(run("volume", files[1], "--base", 1, "--json").stdout)["rows"]
+    assert row["cut"] == pytest.approx(40 * 4.5 * 10, rel=1e-9)
+    assert row["fill"] == pytest.approx(40 * 0.5 * 10, rel=1e-9)
+
+
+def test_volumes_come_by_region(files, tmp_path):
+    west = [[752_000, 4_024_000], [752_010, 4_024_000], [752_010, 4_024_040], [752_000, 4_024_040]]
+    east = [[752_010, 4_024_000], [752_040, 4_024_000], [752_040, 4_024_040], [752_010, 4_024_040]]
+    rings = np.array([*west, west[0], *east, east[0]], float)
+    regions = ts.Features.of_polygons(rings, [0, 5, 10], [0, 1, 2], crs="EPSG:32616")
+    ts.write(regions, tmp_path / "regions.gpkg")
+    result = run("volume", *files, "--regions", tmp_path / "regions.gpkg", "--json")
+    rows = json.loads(result.stdout)["rows"]
+    assert [row["cut"] for row in rows] == pytest.approx([200, 0], abs=1e-6)
+    assert [row["fill"] for row in rows] == pytest.approx([0, 1800], abs=1e-6)
+
+
+def test_stages_are_tabulated(files):
+    result = run("volume", files[1], "--stage-storage", "--interval", 2, "--json")
+    rows = json.loads(result.stdout)["rows"]
+    assert [row["level"] for row in rows] == [0, 2, 4]
+    assert [row["volume"] for row in rows] == pytest.approx([0, 800, 3200], rel=1e-9)
+    assert "reaches the boundary" in result.stderr
+
+
+def test_the_difference_goes_to_files_of_every_kind(files, tmp_path):
+    names = ["d.ply", "d.csv", "zones.geojson", "d.png"]
+    outputs = [part for name in names for part in ("-o", tmp_path / name)]
+    answer = json.loads(run("diff", *files, *outputs, "--json").stdout)
+    assert answer["statistics"]["mean"] == pytest.approx(1, rel=1e-9)
+    assert answer["fill"] == pytest.approx(1800, rel=1e-9)
+    tin = ts.read(tmp_path / "d.ply")
+    assert (tin.points[:, 2].min(), tin.points[:, 2].max()) == (-1.0, 3.0)
+    found = json.loads((tmp_path / "zones.geojson").read_text(encoding="utf-8"))
+    assert {one["properties"]["kind"] for one in found["features"]} == {"cut", "fill"}
+    assert (tmp_path / "d.png").read_bytes().startswith(PNG)
+
+
+def test_the_zero_line_is_written_in_place_of_zones(files, tmp_path):
+    run("diff", *files, "--zero-line", "-o", tmp_path / "line.geojson")
+    (feature,) = json.loads((tmp_path / "line.geojson").read_text(encoding="utf-8"))["features"]
+    assert feature["geometry"]["type"] == "LineString"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "part"),
+    [
+        (["volume", "flat"], 2, "One of these is needed"),
+        (["volume", "flat", "ramp", "--base", 3], 2, "One of these is needed"),
+        (["volume", "flat", "ramp", "flat"], 2, "3 files are given"),
+        (["volume", "flat", "--base", 3, "--interval", 1], 2, "are for --stage-storage"),
+        (["volume", "flat", "--stage-storage", "--interval", 0], 1, "Invalid --interval 0"),
+        (["volume", "ramp", "--stage-storage", "--interval", 1e-9], 1, "at most 100,000"),
+        (["volume", "flat", "--stage-storage", "--level", 1, "--interval", 1], 2, "choose one"),
+        (["volume", "flat", "ramp", "-o", "x.ply"], 1, "not a Table"),
+        (["volume", "flat", "ramp", "--codes"], 1, "--codes needs a file of points"),
+        (["diff", "flat", "ramp", "-o", "flat"], 2, "input"),
+    ],
+)
+def test_what_cannot_be_is_refused(files, tmp_path, monkeypatch, arguments, code, part):
+    monkeypatch.chdir(tmp_path)
+    named = {"flat": files[0], "ramp": files[1]}
+    result = run(*(named.get(one, one) for one in arguments), code=code)
+    assert part in " ".join(result.stderr.split())
+    assert not list(tmp_path.iterdir())

@@ -1,0 +1,254 @@
+"""The difference as a TIN: sound, of the exact volumes, with zones, zero line and statistics."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+import tinsmith as ts
+
+UTM = np.array([752_640.0, 4_024_180.0, 320.0])
+
+
+def square(elevations, *, side=4.0, origin=(0.0, 0.0, 0.0)):
+    corners = np.array([[0, 0], [side, 0], [side, side], [0, side]])
+    return ts.triangulate(np.column_stack([corners, elevations]) + origin)
+
+
+def pyramid(*, height, foot):
+    corners = [[-3, -3, foot], [3, -3, foot], [3, 3, foot], [-3, 3, foot]]
+    return ts.triangulate(np.array([*corners, [0, 0, foot + height]], float))
+
+
+def rough(n, seed, *, origin=(0.0, 0.0, 0.0)):
+    rng = np.random.default_rng(seed)
+    xy = rng.random((n, 2)) * 100
+    return ts.triangulate(np.column_stack([xy, np.sin(xy[:, 0] / 9) + rng.random(n)]) + origin)
+
+
+def polygons_of(features):
+    """Features as shapely's polygons, without the bridge under test elsewhere."""
+    rings, spans = features.offsets
+    shapes = [features.coordinates[a:b] for a, b in pairwise(rings)]
+    return [shapely.Polygon(shapes[a], shapes[a + 1 : b]) for a, b in pairwise(spans)]
+
+
+def lines_of(features):
+    (ends,) = features.offsets
+    return [features.coordinates[a:b] for a, b in pairwise(ends)]
+
+
+@pytest.mark.parametrize("origin", [np.zeros(3), UTM])
+def test_the_difference_is_a_sound_tin_with_the_exact_volumes(origin):
+    tin, other = rough(200, 1, origin=origin), rough(150, 2, origin=origin)
+    found, table = ts.difference(tin, other), ts.volume(tin, other)
+    assert ts.check(found.tin).ok
+    assert found.tin.area == pytest.approx(table["area"][0], rel=1e-9)
+    assert found.cut == pytest.approx(table["cut"][0], rel=1e-12)
+    assert found.fill == pytest.approx(table["fill"][0], rel=1e-12)
+    kinds, volumes = found.zones.columns["kind"], found.zones.columns["volume"]
+    assert volumes[kinds == "cut"].sum() == pytest.approx(table["cut"][0], rel=1e-8)
+    assert volumes[kinds == "fill"].sum() == pytest.approx(table["fill"][0], rel=1e-8)
+
+
+def test_its_elevation_is_the_difference_of_the_interpolated_ones():
+    tin, other = rough(200, 3), rough(150, 4)
+    found = ts.difference(tin, other).tin
+    places = np.random.default_rng(0).random((2000, 2)) * 100
+    expected = other.interpolate(places) - tin.interpolate(places)
+    both = ~np.isnan(expected)
+    np.testing.assert_allclose(found.interpolate(places)[both], expected[both], atol=1e-12)
+    assert np.isnan(found.interpolate(places)[~both]).all()
+
+
+def test_exchanged_surfaces_have_the_opposite_difference():
+    tin, other = rough(100, 5), rough(100, 6)
+    there, back = ts.difference(tin, other), ts.difference(other, tin)
+    places = there.tin.points[:, :2]
+    np.testing.assert_allclose(
+        np.nan_to_num(back.tin.interpolate(places)),
+        np.nan_to_num(-there.tin.interpolate(places)),
+        atol=1e-12,
+    )
+    assert there.cut == back.fill
+
+
+def test_no_triangle_crosses_the_zero_line():
+    found = ts.difference(rough(150, 7), rough(150, 8)).tin
+    elevations = found.points[found.triangles, 2]
+    assert not ((elevations.max(axis=1) > 0) & (elevations.min(axis=1) < 0)).any()
+    assert (elevations != 0).any(axis=1).all()
+
+
+def test_the_zero_line_of_two_pyramids_is_a_square_with_fill_on_its_left():
+    found = ts.difference(pyramid(height=3.0, foot=0.0), pyramid(height=-3.0, foot=3.0))
+    (line,) = lines_of(found.zero_line)
+    assert (line[0] == line[-1]).all()
+    np.testing.assert_allclose(np.abs(line).max(axis=1), 1.5, rtol=1e-12)
+    assert found.zero_line.columns["length"][0] == pytest.approx(12, rel=1e-12)
+    assert not shapely.LinearRing(line).is_ccw  # the cut in the middle is on the right
+    (cut,) = np.flatnonzero(found.zones.columns["kind"] == "cut")
+    (fill,) = np.flatnonzero(found.zones.columns["kind"] == "fill")
+    assert found.zones.columns["volume"][[cut, fill]] == pytest.approx([9, 45], rel=1e-12)
+    shape = polygons_of(found.zones)[fill]
+    assert len(shape.interiors) == 1
+    assert shape.area == pytest.approx(27, rel=1e-12)
+
+
+def test_where_surfaces_agree_on_an_area_its_border_is_a_line():
+    ground = square([0, 0, 0, 0])
+    corners = [[0, 0, 0], [4, 0, 0], [4, 4, 0], [0, 4, 0], [3, 2, 1]]
+    design = ts.triangulate(corners, breaklines=[[[2, 0, 0], [2, 4, 0]]])
+    found = ts.difference(ground, design)
+    kinds = found.zones.columns["kind"]
+    assert sorted(set(kinds)) == ["fill", "unchanged"]
+    areas = found.zones.columns["area"]
+    assert areas[kinds == "unchanged"].sum() + areas[kinds == "fill"].sum() == pytest.approx(16)
+    border = sum(found.zero_line.columns["length"])
+    shapes = polygons_of(found.zones)
+    shared = shapely.unary_union([s for s, k in zip(shapes, kinds, strict=True) if k == "fill"])
+    still = shapely.unary_union([s for s, k in zip(shapes, kinds, strict=True) if k != "fill"])
+    assert border == pytest.approx(shared.boundary.intersection(still.boundary).length)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_zones_are_valid_polygons_that_tile_the_overlap(seed):
+    found = ts.difference(rough(120, seed), rough(90, seed + 20))
+    shapes = polygons_of(found.zones)
+    assert all(shape.is_valid for shape in shapes)
+    areas = np.array([shape.area for shape in shapes])
+    np.testing.assert_allclose(areas, found.zones.columns["area"], rtol=1e-6, atol=1e-10)
+    assert shapely.unary_union(shapes).area == pytest.approx(found.tin.area, rel=1e-9)
+
+
+def test_the_zero_line_is_the_border_between_zones():
+    found = ts.difference(rough(120, 30), rough(90, 31))
+    kinds = found.zones.columns["kind"]
+    shapes = polygons_of(found.zones)
+    cut, fill = (
+        shapely.unary_union([s for s, k in zip(shapes, kinds, strict=True) if k == kind])
+        for kind in ("cut", "fill")
+    )
+    border = cut.boundary.intersection(fill.boundary).length
+    assert found.zero_line.columns["length"].sum() == pytest.approx(border, rel=1e-6)
+
+
+# ---------------------------------------------------------------------- statistics
+
+
+def test_statistics_of_a_ramp_are_those_of_a_uniform_distribution():
+    """The difference runs evenly from -1 to 3."""
+    table = ts.difference(square([1] * 4), square([0, 4, 4, 0])).statistics
+    expected = {
+        "mean": 1.0,
+        "rms": math.sqrt(1 + 16 / 12),
+        "standard_deviation": math.sqrt(16 / 12),
+        "mean_absolute": (0.5 * 1 * 0.25) + (0.5 * 3 * 0.75),
+        "lowest": -1.0,
+        "highest": 3.0,
+        "p05": -0.8,
+        "p25": 0.0,
+        "median": 1.0,
+        "p75": 2.0,
+        "p95": 2.8,
+        "area": 16.0,
+    }
+    assert {name: float(values[0]) for name, values in table.columns.items()} == pytest.approx(
+        expected, rel=1e-12, abs=1e-12
+    )
+
+
+def test_percentiles_of_a_cone_follow_its_areas():
+    """Under a height h of a pyramid lies the share 1 - (1 - h)^2 of its area."""
+    found = ts.difference(pyramid(height=0.0, foot=0.0), pyramid(height=1.0, foot=0.0))
+    shares = np.array([0, 10, 50, 90, 100])
+    np.testing.assert_allclose(
+        found.percentiles(shares), 1 - np.sqrt(1 - shares / 100), rtol=1e-9, atol=1e-12
+    )
+
+
+def test_percentiles_are_those_of_a_fine_sample():
+    tin, other = rough(60, 40), rough(60, 41)
+    found = ts.difference(tin, other)
+    places = np.random.default_rng(0).random((200_000, 2)) * 100
+    heights = other.interpolate(places) - tin.interpolate(places)
+    expected = np.percentile(heights[~np.isnan(heights)], [5, 25, 50, 75, 95])
+    assert found.percentiles([5, 25, 50, 75, 95]) == pytest.approx(expected, abs=0.01)
+
+
+def test_an_area_without_change_is_a_step_of_the_percentiles():
+    ground = square([0] * 4)
+    step = ts.TIN.from_triangles(
+        [[0, 0, 0], [2, 0, 0], [2, 4, 0], [0, 4, 0], [4, 0, 2], [4, 4, 2]],
+        [[0, 1, 2], [0, 2, 3], [1, 4, 5], [1, 5, 2]],
+    )
+    found = ts.difference(ground, step)
+    np.testing.assert_allclose(found.percentiles([0, 25, 50, 75, 100]), [0, 0, 0, 1, 2], atol=1e-12)
+
+
+@pytest.mark.parametrize("shares", [[-1], [101], [math.nan], "half", 5])
+def test_percentiles_that_are_none_are_refused(shares):
+    with pytest.raises(ts.OptionError, match="numbers from 0 to 100"):
+        ts.difference(square([1] * 4), square([0, 4, 4, 0])).percentiles(shares)
+
+
+# ---------------------------------------------------------------------- hard cases
+
+spots = st.lists(
+    st.tuples(st.integers(0, 4), st.integers(0, 4), st.integers(-2, 2)), min_size=3, max_size=9
+)
+
+
+@given(spots, spots, st.sampled_from([1.0, 0.25]), st.booleans())
+def test_differences_of_small_grids_are_sound(points, others, scale, is_far):
+    """Vertices on edges, edges on each other; crossings are rounded."""
+    try:
+        tin, other = (
+            ts.triangulate(np.array(xyz) * scale + UTM * is_far) for xyz in (points, others)
+        )
+    except ts.PointsError:
+        assume(False)
+    table = ts.volume(tin, other)
+    assume(table["area"][0] > 1e-6)
+    found = ts.difference(tin, other)
+    assert ts.check(found.tin).ok
+    zones = found.zones.columns
+    for kind, volume in (("cut", found.cut), ("fill", found.fill)):
+        assert zones["volume"][zones["kind"] == kind].sum() == pytest.approx(volume, abs=1e-6)
+
+
+def test_a_design_with_vertices_on_edges_of_the_ground_is_subtracted():
+    """As a program makes it that computes daylight points: on the edges but for rounding."""
+    ground = rough(300, 50, origin=UTM)
+    edges = ground.edges[:: len(ground.edges) // 60]
+    share = np.random.default_rng(1).random((len(edges), 1))
+    on_edges = ground.points[edges[:, 0]] + share * (
+        ground.points[edges[:, 1]] - ground.points[edges[:, 0]]
+    )
+    found = ts.difference(ground, ts.triangulate(on_edges))
+    assert ts.check(found.tin).ok
+    kept = found.tin.interpolate(on_edges[:, :2])
+    assert np.nanmax(np.abs(kept)) < 1e-6
+
+
+def test_walls_thinner_than_rounding_are_refused():
+    wall = [
+        [1.0, 0, 0],
+        [0.1, 1.0, 0],
+        [1 / 3, 2 / 3, 0],
+        [np.nextafter(1 / 3, 0), np.nextafter(2 / 3, 0), 644],
+    ]
+    ground = [[0.3, 15.0, 0], [0.1, 0, 0], [0, 0, 0]]
+    with pytest.raises(ts.PointsError, match="can tell"):
+        ts.difference(ts.triangulate(ground), ts.triangulate(wall))
+
+
+def test_surfaces_apart_are_refused():
+    with pytest.raises(ts.PointsError, match="do not overlap: one covers 0 to 4 east"):
+        ts.difference(square([0] * 4), square([0] * 4, origin=(4.0, 0.0, 0.0)))

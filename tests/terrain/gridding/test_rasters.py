@@ -1,0 +1,324 @@
+"""Rasters of a surface: against interpolation, clipping by shapely, and closed forms."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from support import oracles
+
+import tinsmith as ts
+from tinsmith.errors import CrsError, OptionError
+from tinsmith.terrain.gridding import bands, grids
+
+UTM = (500_000.0, 4_000_000.0)
+
+
+def rng(seed=0):
+    return np.random.default_rng(seed)
+
+
+def uniform(n, seed=0, size=100.0):
+    return rng(seed).random((n, 3)) * [size, size, 10.0] + [*UTM, 100.0]
+
+
+def centers_of(grid):
+    rows, columns = grid.shape
+    x = grid.bounds.xmin + (np.arange(columns) + 0.5) * grid.spacing
+    y = grid.bounds.ymax - (np.arange(rows) + 0.5) * grid.spacing
+    return np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+
+
+def elevations(raster):
+    return raster.bands["elevation"]
+
+
+def with_a_hole():
+    outer = np.array([(0, 0), (30, 2), (28, 30), (-1, 27)], float)
+    points = np.column_stack([rng(1).random((80, 2)) * 30, rng(2).random(80)])
+    return ts.triangulate(points, boundary=outer, holes=[outer / 3 + 8])
+
+
+SURFACES = {
+    "uniform": lambda: ts.triangulate(uniform(500)),
+    "with a hole": with_a_hole,
+    "raster": lambda: ts.triangulate(grid_points(12)),
+    "one triangle": lambda: ts.triangulate([[0, 0, 1], [90, 10, 5], [20, 70, 9]]),
+    "needles": lambda: ts.triangulate(uniform(200) * [1, 1e-3, 1]),
+}
+
+
+def grid_points(n):
+    x, y = np.meshgrid(np.arange(float(n)), np.arange(float(n)))
+    return np.column_stack([x.ravel(), y.ravel(), rng(0).random(n * n)])
+
+
+# ---------------------------------------------------------------- centres
+
+
+@pytest.mark.parametrize("surface", SURFACES)
+@pytest.mark.parametrize("cells", [3, 60, 700])
+@pytest.mark.parametrize("threads", [1, 3])
+def test_centres_have_the_interpolated_elevation_to_the_last_bit(surface, cells, threads):
+    tin = SURFACES[surface]()
+    raster = ts.rasterize(tin, spacing=tin.bounds.diagonal / cells, threads=threads)
+    wanted = tin.interpolate(centers_of(raster.grid)).reshape(raster.shape)
+    np.testing.assert_array_equal(elevations(raster), wanted)
+    assert cells < 700 or np.isfinite(wanted).any()
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    st.lists(st.tuples(st.integers(0, 6), st.integers(0, 6)), min_size=3, max_size=16, unique=True),
+    st.sampled_from([0.25, 0.5, 1.0, 2.0]),
+    st.booleans(),
+)
+def test_centres_on_edges_and_vertices_belong_to_the_located_triangle(sites, spacing, is_shifted):
+    if oracles.are_collinear(sites):
+        return
+    points = np.column_stack([np.array(sites, float), np.arange(len(sites)) ** 2])
+    if is_shifted:  # vertices are centres
+        points[:, :2] += spacing / 2
+    tin = ts.triangulate(points)
+    raster = ts.rasterize(tin, spacing=spacing)
+    xy = centers_of(raster.grid)
+    np.testing.assert_array_equal(elevations(raster).ravel(), tin.interpolate(xy))
+    triangles = tin.locate(xy)
+    slopes = np.append(ts.slope(tin), np.nan)[triangles]
+    found = ts.rasterize(tin, spacing=spacing, value="slope").bands["slope"].ravel()
+    np.testing.assert_array_equal(found, slopes)
+
+
+def test_a_surface_whose_parts_meet_without_being_neighbours():
+    """A vertex in the middle of a long edge: the smallest triangle has the centres there."""
+    points = [[0, 0, 0], [4, 0, 8], [2, 3, 1], [0, -3, 5], [4, -3, 6], [2, 0, 1]]
+    tin = ts.TIN.from_triangles(points, [[3, 5, 0], [4, 1, 5], [3, 4, 5], [0, 1, 2]])
+    grid = ts.Grid(ts.Bounds(-0.5, -3.5, 4.5, 3.5), shape=(7, 5), spacing=1.0)
+    for triangles in (tin.triangles, tin.triangles[::-1]):
+        again = ts.TIN.from_triangles(points, triangles)
+        found = elevations(ts.rasterize(again, grid=grid))
+        np.testing.assert_array_equal(found.ravel(), again.interpolate(centers_of(grid)))
+
+
+@pytest.mark.parametrize("method", ["nearest", "laplace", "natural", "c1"])
+def test_other_methods_are_those_of_interpolation(method, monkeypatch):
+    monkeypatch.setattr(bands, "_STRIP", 100)
+    tin = ts.triangulate(uniform(100))
+    raster = ts.rasterize(tin, spacing=2.5, method=method)
+    wanted = tin.interpolate(centers_of(raster.grid), method)
+    np.testing.assert_array_equal(elevations(raster).ravel(), wanted)
+
+
+@pytest.mark.parametrize("value", ["slope", "aspect", "hillshade"])
+def test_values_are_those_of_the_located_triangles(value):
+    tin = ts.triangulate(uniform(300))
+    raster = ts.rasterize(tin, spacing=1.0, value=value)
+    triangles = tin.locate(centers_of(raster.grid))
+    found = raster.bands[value].ravel()
+    assert np.isnan(found[triangles < 0]).all()
+    inside = triangles >= 0
+    if value == "hillshade":
+        turn, rise = np.radians([315.0, 45.0])
+        light = [np.sin(turn) * np.cos(rise), np.cos(turn) * np.cos(rise), np.sin(rise)]
+        wanted = 255 * np.maximum(tin.triangle_normals @ light, 0)
+        np.testing.assert_allclose(found[inside], wanted[triangles[inside]], atol=1e-9)
+    else:
+        each = {"slope": ts.slope, "aspect": ts.aspect}[value](tin)
+        np.testing.assert_array_equal(found[inside], each[triangles[inside]])
+
+
+def test_a_level_surface_lit_from_above_is_bright():
+    tin = ts.triangulate([[0, 0, 5], [9, 0, 5], [0, 9, 5]])
+    raster = ts.rasterize(tin, spacing=3, value="hillshade", altitude=90)
+    np.testing.assert_allclose(raster.bands["hillshade"][2], 255)
+
+
+# ---------------------------------------------------------------- means
+
+
+@pytest.mark.parametrize("surface", ["uniform", "with a hole", "one triangle", "raster"])
+def test_means_are_the_integrals_over_the_parts_of_cells(surface):
+    tin = SURFACES[surface]()
+    raster = ts.rasterize(tin, spacing=tin.bounds.diagonal / 13, at="mean")
+    found, spacing, b = elevations(raster), raster.grid.spacing, raster.grid.bounds
+    corners = tin.points[tin.triangles]
+    triangles = shapely.polygons(corners[:, :, :2])
+    for row in range(raster.shape[0]):
+        for column in range(raster.shape[1]):
+            west, north = b.xmin + column * spacing, b.ymax - row * spacing
+            cell = shapely.box(west, north - spacing, west + spacing, north)
+            parts = shapely.intersection(triangles, cell)
+            areas = shapely.area(parts)
+            if areas.sum() < 1e-9 * spacing**2:
+                continue
+            met = np.flatnonzero(areas > 0)
+            middles = shapely.get_coordinates(shapely.centroid(parts[met]))
+            z = [plane_at(corners[t], middle) for t, middle in zip(met, middles, strict=True)]
+            wanted = np.average(z, weights=areas[met])
+            assert found[row, column] == pytest.approx(wanted, abs=1e-7)
+
+
+def plane_at(corners, place):
+    """The elevation of a triangle's plane."""
+    shifted = corners - corners[0]
+    gradient = np.linalg.solve(shifted[1:, :2], shifted[1:, 2])
+    return corners[0, 2] + gradient @ (place - corners[0, :2])
+
+
+def test_means_add_up_to_the_volume():
+    tin = with_a_hole()
+    raster = ts.rasterize(tin, spacing=0.5, at="mean")
+    area = (~np.isnan(elevations(raster))).sum() * 0.25
+    assert area > tin.area  # cells on the boundary are covered in part
+    grid = ts.Grid(ts.Bounds(-2, -2, 34, 34), shape=(1, 1), spacing=36.0)
+    mean = elevations(ts.rasterize(tin, grid=grid, at="mean"))[0, 0]
+    volume = (tin.triangle_areas * tin.points[tin.triangles, 2].mean(axis=1)).sum()
+    assert mean * tin.area == pytest.approx(volume, rel=1e-12)
+
+
+def test_means_of_planes_and_slopes():
+    points = uniform(200)
+    points[:, 2] = points[:, 0] - UTM[0] + 2 * (points[:, 1] - UTM[1])
+    tin = ts.triangulate(points)
+    grid = ts.Grid(ts.Bounds(500_020, 4_000_020, 500_080, 4_000_080), shape=(60, 60), spacing=1.0)
+    centre, mean = (elevations(ts.rasterize(tin, grid=grid, at=at)) for at in ("center", "mean"))
+    np.testing.assert_allclose(mean, centre, atol=1e-7)
+    slopes = ts.rasterize(tin, grid=grid, value="slope", at="mean").bands["slope"]
+    np.testing.assert_allclose(slopes, np.degrees(np.arctan(np.sqrt(5))), atol=1e-6)
+
+
+@pytest.mark.parametrize("at", ["center", "mean"])
+def test_any_number_of_threads_and_any_blocks_give_the_same_bits(at):
+    tin = ts.triangulate(uniform(3000))
+    whole = elevations(ts.rasterize(tin, spacing=0.15, at=at, threads=1))
+    again = ts.rasterize(tin, spacing=0.15, at=at, threads=4, lazy=True).bands["elevation"]
+    np.testing.assert_array_equal(again[:, :], whole)
+    if at == "center":
+        np.testing.assert_array_equal(again[13:300, 55:601], whole[13:300, 55:601])
+    assert again[5:5, :].shape == (0, whole.shape[1])
+
+
+# ---------------------------------------------------------------- grids
+
+
+def test_cells_are_aligned_to_multiples_of_the_spacing():
+    tin = ts.triangulate([[1.2, -0.3, 0], [7.9, 0.1, 1], [2.0, 6.1, 2]])
+    grid = ts.rasterize(tin, spacing=2).grid
+    assert grid == ts.Grid(ts.Bounds(0.0, -2.0, 8.0, 8.0), shape=(5, 4), spacing=2.0)
+
+
+def test_the_cells_of_another_raster(tmp_path):
+    tin = ts.triangulate(uniform(100)).replace(crs="EPSG:32616")
+    grid = ts.Grid(ts.Bounds(500_010, 4_000_010, 500_030, 4_000_025), shape=(30, 40), spacing=0.5)
+    first = ts.rasterize(tin, grid=grid)
+    again = ts.rasterize(tin, like=first)
+    assert again.grid == grid
+    np.testing.assert_array_equal(elevations(first), elevations(again))
+
+
+def write_raster(path, transform, crs="EPSG:32616", shape=(4, 5)):
+    rasterio = pytest.importorskip("rasterio")
+    profile = {"width": shape[1], "height": shape[0], "count": 1, "dtype": "float32"}
+    with rasterio.open(
+        path, "w", driver="GTiff", crs=crs, transform=rasterio.Affine(*transform), **profile
+    ) as file:
+        file.write(np.zeros(shape, np.float32), 1)
+
+
+def test_the_cells_of_a_raster_file(tmp_path):
+    tin = ts.triangulate(uniform(100)).replace(crs="EPSG:32616")
+    path = tmp_path / "other.tif"
+    write_raster(path, (2.0, 0, 500_010, 0, -2.0, 4_000_050))
+    grid = ts.rasterize(tin, like=path).grid
+    assert grid == ts.Grid(
+        ts.Bounds(500_010, 4_000_042, 500_020, 4_000_050), shape=(4, 5), spacing=2.0
+    )
+
+
+@pytest.mark.parametrize(
+    ("transform", "crs", "error", "sentence"),
+    [
+        ((2.0, 0, 0, 0, -3.0, 0), "EPSG:32616", OptionError, "square cells .these are 2 by 3"),
+        ((2.0, 1, 0, 1, -2.0, 0), "EPSG:32616", OptionError, "north-up"),
+        ((2.0, 0, 0, 0, -2.0, 0), "EPSG:32617", CrsError, "they must be the same"),
+    ],
+)
+def test_files_whose_cells_cannot_be_taken(tmp_path, transform, crs, error, sentence):
+    tin = ts.triangulate(uniform(100)).replace(crs="EPSG:32616")
+    path = tmp_path / "other.tif"
+    write_raster(path, transform, crs)
+    with pytest.raises(error, match=sentence):
+        ts.rasterize(tin, like=path)
+
+
+def test_what_is_no_raster_file(tmp_path):
+    path = tmp_path / "text.tif"
+    path.write_text("no raster")
+    with pytest.raises(OptionError, match="a raster file that can be opened"):
+        ts.rasterize(ts.triangulate(uniform(9)), like=path)
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        ({}, "one of spacing, like and grid"),
+        ({"spacing": 1, "like": "x.tif"}, "one of spacing, like and grid"),
+        ({"spacing": 0}, "Invalid spacing 0: it must be a length > 0"),
+        ({"spacing": -2.0}, "Invalid spacing -2.0"),
+        ({"spacing": float("nan")}, "Invalid spacing nan"),
+        ({"spacing": float("inf")}, "Invalid spacing inf"),
+        ({"spacing": "wide"}, "Invalid spacing 'wide'"),
+        (
+            {"spacing": 1e-4},
+            "number of cells 8.* at most 2,147,483,648, not 8.* rows by 9.* columns",
+        ),
+        ({"spacing": 1e-4, "lazy": True}, "number of cells .* at most 100,000,000,000"),
+        ({"spacing": 1e-12}, "Invalid spacing 1e-12: it must be at least"),
+        ({"spacing": 1e-300}, "Invalid spacing 1e-300: it must be at least"),
+        ({"spacing": 1, "method": "cubic"}, "Invalid method 'cubic'"),
+        ({"spacing": 1, "value": "height"}, "Invalid value 'height'"),
+        ({"spacing": 1, "at": "corner"}, "Invalid at 'corner'"),
+        ({"spacing": 1, "at": "mean", "method": "natural"}, "center for method natural"),
+        ({"spacing": 1, "at": "mean", "value": "aspect"}, "directions have no mean"),
+        ({"spacing": 1, "value": "slope", "method": "c1"}, "linear for slope"),
+        ({"spacing": 1, "value": "hillshade", "altitude": 91}, "Invalid altitude 91"),
+        ({"spacing": 1, "threads": 0}, "Invalid threads 0"),
+        ({"spacing": 1, "lazy": 1}, "Invalid lazy 1"),
+        ({"grid": (3, 4)}, "a Grid"),
+        ({"like": 3}, "a Raster or the path"),
+    ],
+)
+def test_wrong_options_are_refused(options, sentence):
+    tin = ts.triangulate(uniform(20))
+    with pytest.raises(OptionError, match=sentence):
+        ts.rasterize(tin, **options)
+
+
+def test_rasters_know_unit_and_crs():
+    tin = ts.triangulate(uniform(20)).replace(crs="EPSG:32616", elevation_unit="ft")
+    raster = ts.rasterize(tin, spacing=10)
+    assert str(raster.crs) == "EPSG:32616"
+    assert raster.units["elevation"] == tin.elevation_unit
+    assert ts.rasterize(tin, spacing=10, value="slope").units["slope"] == "°"
+
+
+def test_edits_do_not_reach_a_lazy_raster():
+    tin = ts.triangulate(grid_points(5))
+    raster = ts.rasterize(tin, spacing=1, lazy=True)
+    before = raster.bands["elevation"][:, :]
+    tin.insert([[2.5, 2.5, 99.0]])
+    np.testing.assert_array_equal(raster.bands["elevation"][:, :], before)
+    assert np.nanmax(elevations(ts.rasterize(tin, spacing=1))) == 99.0
+
+
+def test_the_far_edge_of_a_grid_is_its_cells_away():
+    for spacing in (0.1, 0.3, 1 / 3, 7e-3):
+        grid = grids.as_grid(
+            ts.triangulate(uniform(20)), spacing=spacing, like=None, grid=None, in_memory=True
+        )
+        tin = ts.triangulate(uniform(20))
+        assert grid.bounds.xmin <= tin.bounds.xmin
+        assert grid.bounds.xmax >= tin.bounds.xmax
+        ts.rasterize(tin, grid=grid, lazy=True)

@@ -1,0 +1,1 @@
+"""Interpolation: the elevation between vertices, by several methods."""

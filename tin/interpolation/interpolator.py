@@ -1,0 +1,134 @@
+"""The elevation of a surface at any place, by each method."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .. import _kernel
+from ..validation.threads import thread_count
+from .barriers import find_barriers
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...policies import InterpolationMethod
+    from ..constraints.breaklines import Lines
+    from ..triangulation import Triangulation
+
+__all__ = ["Interpolator"]
+
+_WEIGHTS = {
+    "natural": _kernel.NaturalWeights.SIBSON,
+    "laplace": _kernel.NaturalWeights.LAPLACE,
+}
+
+
+class Interpolator:
+    """What interpolation needs of a surface, made when first asked for; it is never changed.
+
+    Parameters
+    ----------
+    surface : Triangulation
+    lines : Lines
+        They tell hard breaklines from soft ones.
+
+    Notes
+    -----
+    Any number of threads may ask it at a time.
+    """
+
+    def __init__(self, surface: Triangulation, lines: Lines) -> None:
+        self._surface = surface
+        self._lines = lines
+
+    def interpolate(
+        self,
+        xy: NDArray[np.float64],
+        method: InterpolationMethod,
+        *,
+        extrapolate: bool,
+        threads: int | None,
+    ) -> NDArray[np.float64]:
+        """Return the elevation at each place of a (k, 2) array, NaN outside or, if wished, nearest.
+
+        Parameters
+        ----------
+        xy : (k, 2) float64 array
+            NaN is allowed and has no elevation.
+        method : InterpolationMethod
+        extrapolate : bool
+            Take the nearest place of the surface for one outside.
+        threads : int or None
+        """
+        n_threads = thread_count(threads, len(xy))
+        elevations = self._inside(xy, method, n_threads)
+        if extrapolate:
+            outside = np.flatnonzero(np.isnan(elevations) & ~np.isnan(xy).any(axis=1))
+            if len(outside):
+                elevations[outside] = self._outside(xy[outside], method)
+        return elevations
+
+    def _inside(
+        self, xy: NDArray[np.float64], method: InterpolationMethod, threads: int
+    ) -> NDArray[np.float64]:
+        if method == "linear":
+            return self._surface.locator.interpolate(xy, threads)
+        if method == "nearest":
+            is_inside = self._surface.locator.locate(xy) >= 0
+            found = np.full(len(xy), np.nan)
+            found[is_inside] = self._nearest(np.ascontiguousarray(xy[is_inside]))
+            return found
+        if method == "c1":
+            return self._patches.interpolate(xy, threads)
+        return self._neighbors.interpolate(xy, _WEIGHTS[method], threads)
+
+    def _outside(self, xy: NDArray[np.float64], method: InterpolationMethod) -> NDArray[np.float64]:
+        if method == "nearest":
+            return self._nearest(xy)
+        edges, shares = self._boundary.find(xy)
+        if method == "c1":
+            return self._patches.on_edges(edges, shares)
+        corners = self._surface.triangles.ravel()
+        first = 3 * (edges // 3)
+        start = self._elevations[corners[first + (edges + 1) % 3]]
+        end = self._elevations[corners[first + (edges + 2) % 3]]
+        return _between(start, end, shares)
+
+    def _nearest(self, xy: NDArray[np.float64]) -> NDArray[np.float64]:
+        return self._elevations[self._surface.nearest.find(xy)]
+
+    @property
+    def _elevations(self) -> NDArray[np.float64]:
+        return self._surface.points[:, 2]
+
+    @cached_property
+    def barriers(self) -> NDArray[np.bool_]:
+        """Edges that are breaks of slope, (m, 3) array."""
+        return find_barriers(self._surface, self._lines)
+
+    @cached_property
+    def _neighbors(self) -> _kernel.NaturalNeighbors:
+        return _kernel.NaturalNeighbors(self._surface.locator, self.barriers)
+
+    @cached_property
+    def _patches(self) -> _kernel.SmoothPatches:
+        threads = thread_count(None, len(self._surface.points))
+        return _kernel.SmoothPatches(self._surface.locator, self.barriers, threads)
+
+    @cached_property
+    def _boundary(self) -> _kernel.NearestBoundary:
+        return _kernel.NearestBoundary(self._surface.locator)
+
+
+def _between(
+    start: NDArray[np.float64], end: NDArray[np.float64], share: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Interpolate from the nearer end, so that both ends are met exactly."""
+    half_rise = 0.5 * end - 0.5 * start
+    early = start + 2.0 * (share * half_rise)
+    late = end - 2.0 * ((1.0 - share) * half_rise)
+    between: NDArray[np.float64] = np.where(share > 0.5, late, early)
+    return between
