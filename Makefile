@@ -24,7 +24,7 @@ $(READY): pyproject.toml constraints.txt CMakeLists.txt $(CORE)
 	$(BIN)/python -m pip install --quiet --editable ".[all]" --group dev
 	@touch $(READY)
 
-demo: $(READY) ## Build TINs from both samples: GeoJSON, PLY and a picture in demo/
+demo: $(READY) ## Build both samples into demo/: TINs, pictures, contours, a profile, volumes
 	@PATH="$(CURDIR)/$(BIN):$$PATH" sh sample_data/demo.sh demo
 
 test: $(READY) ## Run the tests

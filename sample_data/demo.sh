@@ -1,5 +1,6 @@
 #!/bin/sh
-# Build a TIN of each sample: GeoJSON for a GIS, PLY for mesh tools, PNG to look at.
+# Build a TIN of each sample: GeoJSON for a GIS, PLY for mesh tools, PNG to look at; and ask the
+# site for contours, a profile and the volumes of a design.
 # Usage: sh sample_data/demo.sh FOLDER, with tinsmith on the PATH.
 set -eu
 samples=$(dirname "$0")
@@ -16,6 +17,16 @@ echo "A survey of an invented site:"
 tinsmith build "$samples/site_survey.csv" --crs EPSG:32616 --codes \
   -o "$folder/site_survey.geojson" -o "$folder/site_survey.ply"
 draw site_survey "Site survey"
+
+echo
+echo "Contours, a profile and volumes of a building pad designed into it:"
+tinsmith build "$samples/design_pad.csv" --crs EPSG:32616 --codes --quiet -o "$folder/design_pad.ply"
+tinsmith contours "$folder/site_survey.ply" --interval 0.5 --smooth 0.1 \
+  -o "$folder/contours.geojson" -o "$folder/contours.png"
+tinsmith profile "$folder/site_survey.ply" "$folder/design_pad.ply" \
+  --from 752770 4024225 --to 752835 4024340 -o "$folder/profile.csv" -o "$folder/profile.png"
+tinsmith volume "$folder/site_survey.ply" "$folder/design_pad.ply" \
+  -o "$folder/volume.csv" -o "$folder/volume.png"
 
 echo
 echo "The hills around Jacksboro, Tennessee:"

@@ -188,5 +188,5 @@ def test_mypy_refuses_names_that_are_not_there(judge):
     found = judge(TYPOS)
     lines = [int(number) for number in re.findall(r"program.py:(\d+): error", found)]
     assert sorted(set(lines)) == [5, 6, 7, 8, 9, 10, 11], found
-    assert 'Revealed type is "def (tin: tinsmith.tin.surface.TIN)' in found
+    assert 'Revealed type is "def (tin: tinsmith.tin.surface.TIN, *, unit: ' in found
     assert "int" in found.split("Revealed type")[-1]

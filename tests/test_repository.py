@@ -184,7 +184,7 @@ def test_readme_commands_run(tmp_path, can_draw):
     (tmp_path / "sample_data").symlink_to(ROOT / "sample_data")
     text = (ROOT / "README.md").read_text()
     lines = re.findall(r"^(tinsmith .*-o .*)$", text, re.MULTILINE)
-    assert len(lines) == 3
+    assert len(lines) == 5
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
     for line in lines:
         result = run(*line.split(), cwd=tmp_path, PATH=path)

@@ -26,7 +26,7 @@ _INK = "#333333"
 _FAINT = "#d9d9d9"
 _COLORS = ("#7a5230", "#c0392b", "#1f618d", "#6c3483", "#117864")
 _GROUND = "#efe6da"
-_CUT, _FILL = "#e8a598", "#a3cfa8"
+_CUT, _FILL = "#eba694", "#9cc9e4"  # the hues of a map of cut and fill
 _NAME_LETTERS = 20
 _LABELS = 8
 """About so many stations are labelled, twice as many at most."""
@@ -344,10 +344,10 @@ def _fill_band(band: Any, lines: list[_BandLine], scale: _Scale) -> None:
             **how,
         )
         for place, text in zip(places, line.texts, strict=True):
-            side, shift = _side(place, scale)
+            at, side, shift = _side(place, scale)
             band.annotate(
                 text,
-                (place, middle),
+                (at, middle),
                 xytext=(shift, 0),
                 textcoords="offset points",
                 ha=side,
@@ -359,11 +359,13 @@ def _fill_band(band: Any, lines: list[_BandLine], scale: _Scale) -> None:
         spine.set_color(_INK)
 
 
-def _side(place: float, scale: _Scale) -> tuple[str, int]:
-    """Return how figures stand at a place, those at the ends of the band inside it."""
+def _side(place: float, scale: _Scale) -> tuple[float, str, int]:
+    """Return where figures of a place stand, and how: those at the ends of the band inside it."""
     first, last = scale.stations
     share = (place - first) / ((last - first) or 1.0)
-    return ("left", 4) if share < 0.025 else ("right", -4) if share > 0.975 else ("center", 0)
+    if share < 0.025:
+        return first, "left", 2
+    return (last, "right", -2) if share > 0.975 else (place, "center", 0)
 
 
 def _write(value: float, sign: str = "") -> str:

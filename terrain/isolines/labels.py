@@ -73,7 +73,7 @@ def contour_labels(
     --------
     >>> import tinsmith as ts
     >>> tin = ts.triangulate([[0, 0, 0], [9, 0, 9], [9, 9, 9], [0, 9, 0]])
-    >>> labels = ts.contour_labels(ts.contours(tin, interval=5, index=1))
+    >>> labels = ts.contour_labels(ts.contours(tin, interval=5, index=1), spacing=9)
     >>> labels.columns["text"], labels.columns["rotation"], labels.columns["uphill"]
     (array(['5'], dtype=object), array([90.]), array(['below'], dtype=object))
     """

@@ -404,7 +404,9 @@ def test_format_that_cannot_be_written_is_refused_by_name(folder):
     Path("in.csv").write_text(SQUARE)
     arguments = ["build", "in.csv", "-o", "out.ply", "--output-format", "raster"]
     result = CliRunner().invoke(main, arguments)
-    assert result.stderr == "Error: The format raster can be read, not written.\n"
+    assert result.stderr.startswith("Error: Cannot write 'out.ply': Elevation rasters that GDAL")
+    assert "can be read, not written; a TIN or a Survey can be written to .csv, " in result.stderr
+    assert not Path("out.ply").exists()
 
 
 # ------------------------------------------------------------------ wrong usage

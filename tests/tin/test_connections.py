@@ -272,7 +272,9 @@ def test_no_places_have_no_answers(ask, none):
 
 
 @pytest.mark.parametrize("ask", ["locate", "interpolate", "closest_vertex"])
-@pytest.mark.parametrize("wrong", [[1, 2], [[1, 2, 3]], [["a", "b"]], [[np.inf, 0]], [[1e80, 0]]])
+@pytest.mark.parametrize(
+    "wrong", [[1, 2, 3], [[1, 2, 3]], [["a", "b"]], [[np.inf, 0]], [[1e80, 0]], 7.0]
+)
 def test_what_are_no_queries_is_refused(ask, wrong):
     with pytest.raises(PointsError, match="Query points"):
         getattr(TINS["one"](), ask)(wrong)

@@ -64,10 +64,20 @@ __all__ = ["raster"]
     help="The value at the centre of each cell, or its mean.",
 )
 @click.option(
-    "--azimuth", metavar="DEGREES", type=float, default=315.0, help="Of the light of hillshade."
+    "--azimuth",
+    metavar="DEGREES",
+    type=float,
+    default=315.0,
+    show_default=True,
+    help="Of the light of hillshade.",
 )
 @click.option(
-    "--altitude", metavar="DEGREES", type=float, default=45.0, help="Of the light of hillshade."
+    "--altitude",
+    metavar="DEGREES",
+    type=float,
+    default=45.0,
+    show_default=True,
+    help="Of the light of hillshade.",
 )
 @click.option("--output-format", metavar="NAME", help="Format of the output, whatever its suffix.")
 @reading_options
