@@ -63,14 +63,15 @@ fuzz: $(READY) ## Run random campaigns: MINUTES= or CASES=, SEED=, CAMPAIGN=
 # The tests of tin and a slice of the campaigns about it with ASan and UBSan, those of threads with
 # TSan. SANITIZE_CASES= makes the slice longer. Python alone captures: reports go past it.
 SANITIZE_CASES ?= 200
-SANITIZE_CAMPAIGNS ?= points lines edits refine voronoi
+SANITIZE_CAMPAIGNS ?= points lines edits refine voronoi contours volumes sections interpolation
+SANITIZE_PRODUCTS := $(addprefix tests/terrain/,isolines earthwork gridding sections)
 SANITIZE := tests/sanitizers/run.sh $(BIN)/python
 SANITIZE_PYTEST := -m pytest -q -p no:cacheprovider --capture=sys --timeout 1800
 .PHONY: sanitize sanitize-address sanitize-thread
 sanitize: sanitize-address sanitize-thread ## Run tests and campaigns under ASan, UBSan and TSan
 sanitize-address: $(READY)
 	$(BIN)/python -m pip install --quiet --group sanitize
-	$(SANITIZE) address $(SANITIZE_PYTEST) -n auto tests/tin
+	$(SANITIZE) address $(SANITIZE_PYTEST) -n auto tests/tin $(SANITIZE_PRODUCTS)
 	$(SANITIZE) address -m fuzz --no-memory-limit --folder build/sanitize/fuzz --cases $(SANITIZE_CASES) --seed $(SEED) $(addprefix --campaign ,$(SANITIZE_CAMPAIGNS))
 sanitize-thread: $(READY)
 	$(BIN)/python -m pip install --quiet --group sanitize

@@ -202,12 +202,14 @@ def difference(tin: TIN, other: TIN) -> Difference:
             f"{_extent(second)}."
         )
     require_finite(made.vertices)
+    sums = _sums_between(first, second)
+    if not sums["area"] > 0.0:
+        raise PointsError("The surfaces overlap only in what is thinner than coordinates can tell.")
     triangles, _ = fan_out(made.offsets, made.corners)
     given = cut_at_zero(made.vertices, triangles)
     points, triangles = mend(*given) or _rebuild(*given, _holder(tin, other))
     surface = as_mesh(points, triangles, crs=tin.crs, elevation_unit=tin.elevation_unit)
     every = tuple(dict.fromkeys([*reference.notes, *notes]))
-    sums = _sums_between(first, second)
     _require_agreement(surface, sums)
     return Difference(surface, every, reference, sums)
 

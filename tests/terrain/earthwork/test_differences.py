@@ -252,3 +252,21 @@ def test_walls_thinner_than_rounding_are_refused():
 def test_surfaces_apart_are_refused():
     with pytest.raises(ts.PointsError, match="do not overlap: one covers 0 to 4 east"):
         ts.difference(square([0] * 4), square([0] * 4, origin=(4.0, 0.0, 0.0)))
+
+
+def test_surfaces_that_overlap_by_less_than_a_rounding_have_no_difference():
+    """Two edges in one line but for a rounding: a cell without area, whose mean is none."""
+    one = [
+        [4078.3417448927994, 407.83417448928, 3.0],
+        [0.0, 6573.0, 3.0],
+        [89228.1090155054, 8922.81090155054, 3.0],
+    ]
+    other = [
+        [24630.0, 2463.0, 3.0],
+        [4078.34, 407.8, 3.0],
+        [65734.51693023487, 6573.451693023487, 3.0],
+    ]
+    tin, design = ts.triangulate(one), ts.triangulate(other)
+    assert ts.volume(tin, design)["area"].tolist() == [0.0]
+    with pytest.raises(ts.PointsError, match="only in what is thinner than coordinates can tell"):
+        ts.difference(tin, design)
