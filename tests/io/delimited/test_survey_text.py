@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 import tinsmith as ts
@@ -118,17 +118,22 @@ def text_of(layout, delimiter, decimal, rows, line_end, is_quoted):
 
 def has_unproved_commas(layout, delimiter, rows):
     """Tell if no decimal comma is surely one: 1,000 may be a thousand, "5, 6" two columns."""
-    table = [[c for k, c in zip(layout, row, strict=True) if k != "D"] for row in rows]
-    cells = [cell for row in table for cell in row]
-    may_delimit = delimiter == "spaces" or any(cell.endswith(".") for cell in cells)
-    inner = [cell.strip(".") if may_delimit else cell for cell in cells]
+    numbers = [
+        (cell, all(other.startswith(".") for other in row[1:]))
+        for row in rows
+        for letter, cell in zip(layout, row, strict=True)
+        if letter != "D"
+    ]
+    may_delimit = delimiter == "spaces" or any(cell.endswith(".") for cell, _ in numbers)
+    inner = [cell.strip(".") if may_delimit or leads else cell for cell, leads in numbers]
     unproved = [cell for cell in inner if re.fullmatch(r"[+-]?[1-9]\d{0,2}\.\d{3}|[^.]*", cell)]
-    marked = [cell for cell in cells if "." in cell.rstrip(".")]
+    marked = [cell for cell, _ in numbers if "." in cell.rstrip(".")]
     return unproved == inner and bool(marked)
 
 
 @settings(max_examples=250, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(table=tables())
+@example(table=("NEZ", "pipe", ",", [["1.000", ".5", ".5"]] * 3, "\n", False))
 def test_every_table_reads_as_csv_and_float_say(survey, table):
     layout, delimiter, decimal, rows, *_ = table
     content = text_of(*table)
