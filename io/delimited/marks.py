@@ -179,7 +179,8 @@ def find_decimal_mark(rows: Iterable[Sequence[str]], delimiter: str) -> DecimalM
     cells = [cell for row in rows for cell in row]
     commas = [cell for cell in cells if _has_comma(cell, delimiter) and is_number(cell, ",")]
     points = [cell for cell in cells if "." in cell and is_number(cell, ".")]
-    may_delimit = delimiter == BLANKS or any(cell.endswith(",") for cell in cells)
+    numbers = [cell for cell in cells if is_number(cell, ",")]
+    may_delimit = delimiter == BLANKS or any(cell.endswith(",") for cell in numbers)
     sure_commas = sum(_proves_comma(c, row, may_delimit=may_delimit) for row in rows for c in row)
     sure_points = sum(not may_group_or_divide(cell.replace(".", ",")) for cell in points)
     if sure_commas or sure_points:
@@ -190,7 +191,7 @@ def find_decimal_mark(rows: Iterable[Sequence[str]], delimiter: str) -> DecimalM
         return DecimalMark(".")
     if not commas:
         return None
-    if delimiter == ";" and not any(map(_clings, cells)):
+    if delimiter == ";" and not any(map(_clings, numbers)):
         return DecimalMark(
             ",",
             "The commas in its numbers are taken as decimal marks, as is usual between semicolons "
