@@ -4,7 +4,8 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from ..errors import CrsError, FormatError, OptionError, ReadError, WriteError
-    from .field_codes import lines_from_codes
+    from .field_survey import field_codes as field_codes
+    from .field_survey.field_codes import lines_from_codes
     from .reading import read
     from .registry import Format, find_format, known_formats
     from .reprojection.transformation import LengthUnit, length_unit, transform_points
@@ -18,7 +19,8 @@ else:  # a type checker takes every name for one that such a __getattr__ has
     __getattr__, __dir__ = lazy_names(
         __name__,
         {
-            ".field_codes": ("lines_from_codes",),
+            ".field_survey": ("field_codes",),  # where the module was before
+            ".field_survey.field_codes": ("lines_from_codes",),
             ".reprojection.transformation": ("LengthUnit", "length_unit", "transform_points"),
             "..errors": ("CrsError", "FormatError", "OptionError", "ReadError", "WriteError"),
             ".reading": ("read",),

@@ -10,7 +10,6 @@ from .._sentences import printable
 from ..crs import CRS, Unit
 from ..errors import CrsError, FormatError, MissingExtraError, ReadError, TinsmithError
 from ..tin import Survey
-from . import signatures
 from .isolated.local_files import require_local
 from .isolated.spooling import describe_system_error, open_ordinary_file, spool
 from .raster.virtual import is_virtual
@@ -24,6 +23,7 @@ from .registry import (
     list_suffixes,
     load_function,
     require_options,
+    signatures,
 )
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...errors import CrsError
-from ..nodata import describe_suspects, find_suspect_elevations
+from ...terrain.nodata import describe_suspects, find_suspect_elevations
 from .content import are_plausible_elevations, is_too_steep, measure_relief_and_extent
 
 if TYPE_CHECKING:

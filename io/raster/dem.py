@@ -14,9 +14,9 @@ from ... import _optional
 from ..._sentences import counted
 from ...crs import CRS, Unit
 from ...errors import OptionError, ReadError
+from ...terrain.nodata import describe_suspects, find_suspect_elevations, parse_nodata
 from ...tin import Bounds, Survey
 from ..isolated import Limits, choose_limits, run_isolated, stream_isolated
-from ..nodata import describe_suspects, find_suspect_elevations, parse_nodata
 from ..reprojection.placement import place, settle_unit
 from .virtual import is_virtual, require_plain_sources
 from .voids import trace_rings

@@ -15,7 +15,7 @@ from ...errors import CrsError, ReadError
 from ..isolated import choose_limits, run_isolated
 from ..isolated.local_files import require_local
 from ..isolated.spooling import describe_system_error, open_ordinary_file
-from ..signatures import HEAD_BYTES, find_reference_kind
+from ..registry.signatures import HEAD_BYTES, find_reference_kind
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -22,7 +22,7 @@ from tinsmith.io.mesh import obj, stl, vtk
 from tinsmith.io.mesh.ply import file as ply
 
 MODULES = {
-    "geojson": "geojson.writing",
+    "geojson": "vector.geojson.writing",
     "ply": "mesh.ply",
     "obj": "mesh.obj",
     "stl": "mesh.stl",

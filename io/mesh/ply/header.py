@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from ....errors import ReadError
-from ...signatures import is_ply
+from ...registry.signatures import is_ply
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -15,7 +15,7 @@ import shapely
 
 import tinsmith as ts
 from tinsmith.errors import CrsError, FormatError, OptionError, WriteError
-from tinsmith.io.geojson import writing as geojson
+from tinsmith.io.vector.geojson import writing as geojson
 
 UTM16 = "EPSG:32616"
 TENNESSEE = np.array([1_700_000.0, 600_000.0, 0.0])  # US survey feet

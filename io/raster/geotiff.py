@@ -16,7 +16,7 @@ from ..._atomic import replacing_files
 from ...errors import WriteError, choice
 from ...policies import OverviewMethod
 from ...terrain.results.columns import UNKNOWN_UNIT, unit_text
-from .crs_kept import require_kept
+from ..reprojection.crs_kept import require_kept
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import tinsmith as ts
-from tinsmith.io.nodata import describe_suspects, find_suspect_elevations, parse_nodata
+from tinsmith.terrain.nodata import describe_suspects, find_suspect_elevations, parse_nodata
 
 NINES = [-99.0, -999.0, -9999.0, -99999.0, -999999.0, -99.9, -999.9, -9999.9]
 POSITIVE_NINES = [9999.0, 99999.0, 999999.0]

@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING, get_args
 
 import numpy as np
 
-from ..errors import LinesError, OptionError
-from ..policies import BreaklineKind, LineRole
-from ..tin import Breakline, Survey, Water
+from ...errors import LinesError, OptionError
+from ...policies import BreaklineKind, LineRole
+from ...tin import Breakline, Survey, Water
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

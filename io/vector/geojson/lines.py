@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...errors import FormatError
-from ...terrain.linework import EDGE_KINDS, find_line_edges
-from ...tin.topology import edge_keys, edges_at
+from ....errors import FormatError
+from ....terrain.linework import EDGE_KINDS, find_line_edges
+from ....tin.topology import edge_keys, edges_at
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from ...tin import TIN
+    from ....tin import TIN
 
 __all__ = ["format_edge_properties", "format_lines", "list_line_vertices", "require_lines"]
 

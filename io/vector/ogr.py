@@ -13,7 +13,7 @@ from ... import _optional
 from ...errors import WriteError
 from ...terrain.results.columns import UNKNOWN_UNIT, unit_text
 from ...terrain.results.geometries import build_geometries
-from .crs_kept import require_kept
+from ..reprojection.crs_kept import require_kept
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence

@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
-from ..._sentences import counted
-from ...crs import CRS, METRE
-from ...errors import CrsError, WriteError
-from ..reprojection.transformation import reproject
+from ...._sentences import counted
+from ....crs import CRS, METRE
+from ....errors import CrsError, WriteError
+from ...reprojection.transformation import reproject
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from numpy.typing import NDArray
 
-    from ...crs import Unit
+    from ....crs import Unit
 
 __all__ = [
     "Located",

@@ -11,7 +11,7 @@ import rasterio
 
 import tinsmith as ts
 from tinsmith.errors import FormatError, OptionError, WriteError
-from tinsmith.io.products import geotiff
+from tinsmith.io.raster import geotiff
 from tinsmith.tin.types import Bounds, Grid
 
 FORMATS = ["geotiff", "cog"]

@@ -14,7 +14,7 @@ import shapely
 
 import tinsmith as ts
 from tinsmith.errors import CrsError, FormatError, LossWarning, WriteError
-from tinsmith.io.products.shapefile import short_names
+from tinsmith.io.vector.shapefile import short_names
 
 UTM = np.array([500_000.1, 4_000_000.7])
 SQUARE = np.array([[0, 0], [4, 0], [4, 3], [0, 3], [0, 0]], float)
@@ -256,8 +256,8 @@ def test_a_failed_write_leaves_the_old_file(tmp_path, suffix, monkeypatch):
         raise RuntimeError("no space; left")
 
     monkeypatch.setattr("tinsmith.terrain.results.geometries.build_geometries", fail)
-    monkeypatch.setattr("tinsmith.io.products.ogr.build_geometries", fail)
-    monkeypatch.setattr("tinsmith.io.geojson.features._geometries", fail)
+    monkeypatch.setattr("tinsmith.io.vector.ogr.build_geometries", fail)
+    monkeypatch.setattr("tinsmith.io.vector.geojson.features._geometries", fail)
     with pytest.raises((WriteError, RuntimeError), match="no space"):
         quietly(ts.write, features("lines"), path)
     assert path.read_text() == "old"

@@ -79,7 +79,7 @@ def test_no_rows(tmp_path, suffix):
 @pytest.mark.parametrize("suffix", [".csv", ".json"])
 def test_many_rows_come_in_chunks(tmp_path, suffix, monkeypatch):
     for module in ("csv_tables", "json_tables"):
-        monkeypatch.setattr(f"tinsmith.io.products.{module}._CHUNK_ROWS", 10)
+        monkeypatch.setattr(f"tinsmith.io.tables.{module}._CHUNK_ROWS", 10)
     seen = []
     made = ts.Table({"a": np.arange(25)})
     path = ts.write(made, tmp_path / f"x{suffix}", progress=seen.append)

@@ -10,9 +10,9 @@ import pytest
 
 import tinsmith as ts
 from tinsmith.io import lines_from_codes
-from tinsmith.io.field_codes import MARKS, RULES
+from tinsmith.io.field_survey.field_codes import MARKS, RULES
 
-SAMPLE = Path(__file__).parents[2] / "sample_data" / "site_survey.csv"
+SAMPLE = Path(__file__).parents[3] / "sample_data" / "site_survey.csv"
 
 
 def survey(*descriptions, numbers=None, z=None):

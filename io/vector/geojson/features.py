@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..._atomic import replacing
-from ...errors import WriteError
-from ...terrain.results.columns import unit_text
+from ...._atomic import replacing
+from ....errors import WriteError
+from ....terrain.results.columns import unit_text
 from .coordinates import format_positions, keep_in_crs, project_to_wgs84
 from .values import json_texts, properties_template
 
@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from ...crs import CRS, Unit
-    from ...terrain.results import Features
+    from ....crs import CRS, Unit
+    from ....terrain.results import Features
     from .coordinates import Places
 
 __all__ = ["write_features"]

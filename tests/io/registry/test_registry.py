@@ -22,8 +22,8 @@ from tinsmith.io import (
     read,
     write,
 )
-from tinsmith.io import registry as formats
 from tinsmith.io.reading import detect
+from tinsmith.io.registry import lookup as formats
 
 SURVEY = "x,y,z\n1,2,3\n4,5,6\n7,8.5,9\n"
 TABLE = b"1.5 2.5 3.5\n4.5 5.5 6.5\n"

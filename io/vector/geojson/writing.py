@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..._atomic import replacing
-from ..._sentences import counted
-from ...errors import FormatError, WriteError, choice
-from ...policies import FeatureKind
-from ...terrain.results import Features
-from ...terrain.slope import aspect, measure_areas, measure_ring_area, slope
-from ...tin import Survey
-from ..mesh.common import require_writable
+from ...._atomic import replacing
+from ...._sentences import counted
+from ....errors import FormatError, WriteError, choice
+from ....policies import FeatureKind
+from ....terrain.results import Features
+from ....terrain.slope import aspect, measure_areas, measure_ring_area, slope
+from ....tin import Survey
+from ...mesh.common import require_writable
 from .coordinates import Places, format_positions, keep_in_crs, project_to_wgs84, require_one_piece
 from .features import write_features
 from .lines import format_edge_properties, format_lines, list_line_vertices, require_lines
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from ...tin import TIN
+    from ....tin import TIN
 
 __all__ = ["Kind", "write"]
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..._atomic import replacing
 from ...terrain.results.columns import unit_text
-from ..geojson.values import json_texts, properties_template
+from ..vector.geojson.values import json_texts, properties_template
 
 if TYPE_CHECKING:
     from collections.abc import Callable

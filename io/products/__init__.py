@@ -1,1 +1,0 @@
-"""Files of products: features for GIS, rasters, tables."""

@@ -1,0 +1,22 @@
+"""The formats of tables."""
+
+from ..registry.format import Format
+
+__all__ = ["FORMATS"]
+
+FORMATS = (
+    Format(
+        name="csv",
+        description="CSV (RFC 4180) with units in the header",
+        suffixes=(".csv", ".tsv", ".txt"),
+        write="tinsmith.io.tables.csv_tables:write",
+        writes=("Table", "Features"),
+    ),
+    Format(
+        name="json",
+        description="JSON with units",
+        suffixes=(".json",),
+        write="tinsmith.io.tables.json_tables:write",
+        writes=("Table",),
+    ),
+)
