@@ -159,7 +159,7 @@ def require_exact_range(xy: NDArray[np.float64], what: str) -> None:
     PointsError
         The sentence begins with ``what``, in the plural.
     """
-    if xy.size == 0:
+    if xy.flags.c_contiguous and _kernel.are_in_exact_range(xy):
         return
     smallest, largest = _kernel.EXACT_RANGE
     size = np.abs(xy)
