@@ -100,4 +100,5 @@ def as_vertex_elevations(z: ArrayLike, count: int) -> list[float]:
             f"{elevations.size} elevations for {count} vertices: one each, or one for all, is "
             "needed."
         )
-    return np.broadcast_to(elevations, count).tolist()
+    values: list[float] = np.broadcast_to(elevations, count).tolist()
+    return values
