@@ -1,6 +1,7 @@
 """The public names: a snapshot of them, their examples, and what type checkers make of them."""
 
 import inspect
+import json
 import re
 import sys
 from pathlib import Path
@@ -117,17 +118,23 @@ def test_import_alone_loads_not_even_numpy():
 
 # -------------------------------------------------------------------- type checkers
 
-CONFIG = """
+MYPY = """
 [mypy]
 strict = True
 [mypy-shapely.*,rasterio.*,pyogrio.*,pyvista.*,vtk.*,vtkmodules.*,matplotlib.*,meshio.*]
 ignore_missing_imports = True
 """
+PYRIGHT = {
+    "include": ["program.py"],
+    "extraPaths": ["installed"],
+    "typeCheckingMode": "strict",
+    "pythonVersion": "3.11",
+}
 TYPOS = """
 import tinsmith as ts
 
 tin = ts.triangulate([[0, 0, 0], [1, 0, 0], [0, 1, 0]])
-tin.trianglse
+tin.trianlges
 ts.trianglate(tin)
 ts.io.raed("a.csv")
 tin.triangles = tin.triangles
@@ -150,8 +157,8 @@ line: ts.Breakline = ts.Breakline([[0, 0, 1], [1, 1, 1]])
 
 
 @pytest.fixture(scope="module")
-def judge(tmp_path_factory):
-    """Return a function that has mypy judge a user's file, strictly, against the packages."""
+def users_folder(tmp_path_factory):
+    """Mount the packages as they are installed, beside the place of a user's program."""
     folder = tmp_path_factory.mktemp("users")
     package = folder / "installed" / "tinsmith"
     package.mkdir(parents=True)
@@ -160,33 +167,53 @@ def judge(tmp_path_factory):
             (package / source.name).symlink_to(source)
     for name in ("tin", "io", "terrain"):
         (package / name).symlink_to(ROOT / name)
-    (folder / "mypy.ini").write_text(CONFIG)
+    (folder / "mypy.ini").write_text(MYPY)
+    (folder / "pyrightconfig.json").write_text(json.dumps(PYRIGHT))
+    return folder
+
+
+def run_mypy(folder):
+    # In the repository's root mypy would take its folder "io" for Python's own.
+    options = ["--config-file", "mypy.ini", "--cache-dir", "cache", "program.py"]
+    command = [str(Path(sys.executable).parent / "mypy"), *options]
+    return run(*command, cwd=folder, MYPYPATH="installed").stdout
+
+
+def run_pyright(folder):
+    """Run the pyright whose wheel brings all that it needs."""
+    return run(
+        *(sys.executable, "-m", "basedpyright", "--pythonpath", sys.executable), cwd=folder
+    ).stdout
+
+
+@pytest.fixture(params=[run_mypy, run_pyright])
+def judge(request, users_folder):
+    """Return a function that has a type checker judge a user's program, strictly."""
 
     def judge(text):
-        (folder / "program.py").write_text(text)
-        mypy = str(Path(sys.executable).parent / "mypy")
-        options = ["--config-file", str(folder / "mypy.ini"), "--cache-dir", str(folder / "cache")]
-        command = [mypy, *options, str(folder / "program.py")]
-        # In the repository's root mypy would take its folder "io" for Python's own.
-        return run(*command, cwd=folder, MYPYPATH=str(package.parent)).stdout
+        (users_folder / "program.py").write_text(text)
+        found = request.param(users_folder)
+        assert re.search("Success|errors?", found), found
+        lines = re.findall(r"program.py:(\d+):(?:\d+ -)? error", found)
+        return sorted({int(line) for line in lines}), found
 
     return judge
 
 
-def test_the_readme_passes_mypy(judge):
+def test_the_readme_passes_type_checkers(judge):
     text = (ROOT / "README.md").read_text()
-    found = judge("\n".join(re.findall(r"```python\n(.*?)```", text, re.DOTALL)))
-    assert found.startswith("Success"), found
+    lines, found = judge("\n".join(re.findall(r"```python\n(.*?)```", text, re.DOTALL)))
+    assert lines == [], found
 
 
-def test_flat_names_and_those_of_packages_pass_mypy(judge):
-    found = judge(FLAT)
-    assert found.startswith("Success"), found
+def test_flat_names_and_those_of_packages_pass_type_checkers(judge):
+    lines, found = judge(FLAT)
+    assert lines == [], found
 
 
-def test_mypy_refuses_names_that_are_not_there(judge):
-    found = judge(TYPOS)
-    lines = [int(number) for number in re.findall(r"program.py:(\d+): error", found)]
-    assert sorted(set(lines)) == [5, 6, 7, 8, 9, 10, 11], found
-    assert 'Revealed type is "def (tin: tinsmith.tin.surface.TIN, *, unit: ' in found
-    assert "int" in found.split("Revealed type")[-1]
+def test_type_checkers_refuse_names_that_are_not_there(judge):
+    lines, found = judge(TYPOS)
+    assert lines == [5, 6, 7, 8, 9, 10, 11], found
+    notes = dict(re.findall(r"program.py:(\d+):.*(?:note|information): (.*)", found))
+    assert "TIN, *, unit: " in notes["12"], found
+    assert "int" in notes["13"], found
