@@ -49,13 +49,7 @@ class Request:
     console: Console
     started: float = field(default_factory=perf_counter)
 
-    def plan(
-        self,
-        inputs: Sequence[Named],
-        *,
-        kinds: Sequence[str] = ("TIN", "Survey"),
-        report: Path | None = None,
-    ) -> Products:
+    def plan(self, inputs: Sequence[Named], kind: str, *, report: Path | None = None) -> Products:
         """Choose the formats of outputs that all hold one thing, before any work is done."""
         planned = plan_outputs(
             self.outputs,
@@ -63,9 +57,9 @@ class Request:
             inputs=inputs,
             console=self.console,
             report=report,
-            kinds=kinds,
+            kinds=(kind,),
         )
-        return Products(console=self.console, outputs={kinds[0]: planned})
+        return Products(console=self.console, outputs={kind: planned})
 
     def plan_products(self, inputs: Sequence[Named], *kinds: str) -> Products:
         """Choose what each output holds, of several things, before any work is done."""

@@ -52,7 +52,7 @@ def build(
     from ..output.summaries import describe_report
 
     how, console = request.how, request.console
-    planned = request.plan(request.list_inputs(points), report=report)
+    planned = request.plan(request.list_inputs(points), "TIN", report=report)
     found = read_input(points, request.reading, console)
     survey = add_lines(_require_survey(found, points), how, console)
     tin = build_tin(survey, how, console)
@@ -120,7 +120,11 @@ def _describe_build(
         "counts": count_lines(tin.report),
         "report": describe_report(tin.report, survey, gaps),
         "outputs": [
-            {"path": str(one.path), "format": one.format.name, "bytes": one.path.stat().st_size}
+            {
+                "path": str(one.path),
+                "format": one.formats["TIN"].name,
+                "bytes": one.path.stat().st_size,
+            }
             for one in planned.outputs["TIN"]
         ],
         "seconds": round(perf_counter() - started, 3),

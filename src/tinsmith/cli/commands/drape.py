@@ -52,7 +52,7 @@ def drape(
 
     path, layer = split_layer(features)
     inputs = request.list_inputs(file, more=[Named(path, "the file of features")])
-    planned = request.plan(inputs, kinds=("Features",))
+    planned = request.plan(inputs, "Features")
     tin = request.read_tin(file)
     with request.step("Draping"):
         given = read_geometries(path, crs=tin.crs, layer=layer)

@@ -60,7 +60,7 @@ def edit(
     from ..output.line_summaries import mesh_counts
 
     inputs = request.list_inputs(file, more=[Named(script, "the script")])
-    planned = request.plan(inputs, report=report)
+    planned = request.plan(inputs, "TIN", report=report)
     edits = _read_script(script)
     tin = request.read_tin(file)
     before = mesh_counts(tin)

@@ -52,7 +52,7 @@ def hillshade(
     from ...errors import OptionError
     from ..output.summaries import describe_raster_size
 
-    planned = request.plan(request.list_inputs(file), kinds=("Raster",))
+    planned = request.plan(request.list_inputs(file), "Raster")
     tin = request.read_tin(file)
     try:
         with request.step("Shading"):

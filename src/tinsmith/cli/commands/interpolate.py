@@ -74,7 +74,7 @@ def interpolate(
     from ...io.delimited.places import read_places
 
     inputs = request.list_inputs(file, more=[Named(places_file, "the file of --at")])
-    planned = request.plan(inputs, kinds=("Table",))
+    planned = request.plan(inputs, "Table")
     tin = request.read_tin(file)
     places = read_places(
         places_file,

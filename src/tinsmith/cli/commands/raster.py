@@ -67,7 +67,7 @@ def raster(
     if (spacing is None) == (like is None):
         raise click.UsageError("One of --spacing and --like is needed.")
     more = [] if like is None else [Named(like, "the raster of --like")]
-    planned = request.plan(request.list_inputs(file, more=more), kinds=("Raster",))
+    planned = request.plan(request.list_inputs(file, more=more), "Raster")
     tin = request.read_tin(file)
     made = _rasterize(tin, spacing, like, request.how.threads, asked)
     planned.write("Raster", made)

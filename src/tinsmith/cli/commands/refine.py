@@ -57,7 +57,7 @@ def refine(
     from ...tin import refine as refine_tin
     from ..output.line_summaries import mesh_counts
 
-    planned = request.plan(request.list_inputs(file))
+    planned = request.plan(request.list_inputs(file), "TIN")
     tin = request.read_tin(file)
     _require_lengths(tin, file)
     triangles = counted(len(tin.triangles), "triangle")
