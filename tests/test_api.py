@@ -217,3 +217,37 @@ def test_type_checkers_refuse_names_that_are_not_there(judge):
     notes = dict(re.findall(r"program.py:(\d+):.*(?:note|information): (.*)", found))
     assert "TIN, *, unit: " in notes["12"], found
     assert "int" in notes["13"], found
+
+
+# -------------------------------------------------------------------- values of a wrong type
+
+FLAT_TIN = ts.triangulate([[0, 0, 0], [1, 0, 0], [0, 1, 0]])
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: ts.read(5), "Invalid path 5: it must be the name of a file"),
+        (lambda: ts.write(FLAT_TIN, b"a.ply"), "Invalid path b'a.ply'"),
+        (lambda: ts.read_lines(None), "Invalid path None"),
+        (lambda: ts.read_water({}), "Invalid path {}"),
+        (lambda: ts.preview(FLAT_TIN, output=5), "Invalid output 5"),
+        (lambda: ts.preview(FLAT_TIN, output="a.png", size=5), "Invalid size 5"),
+        (lambda: ts.with_lines(5), "Invalid survey 5: it must be a Survey"),
+        (lambda: ts.with_lines(ts.Survey(points=[[0, 0, 0]]), breaklines="a.gpkg"), "a list"),
+        (lambda: ts.find_format("ply", "open"), "Invalid action 'open'"),
+        (lambda: ts.difference(FLAT_TIN, 5), "Invalid TIN 5"),
+        (lambda: ts.stage_storage([1], interval=1), "Invalid TIN [1]"),
+        (lambda: ts.stage_storage(FLAT_TIN, interval=10**400), "Invalid interval"),
+        (lambda: ts.curvature(None), "Invalid TIN None"),
+        (lambda: ts.hillshade("a"), "Invalid TIN 'a'"),
+        (lambda: ts.Features(kind="points", coordinates=[[0, 0, 0]], notes=5), "Invalid notes 5"),
+        (lambda: ts.Features(kind=[1], coordinates=[[0, 0, 0]]), "Invalid kind [1]"),
+        (lambda: ts.CRS({"a": [[0, 0], [0, 0]]}), "Unknown CRS {'a': [[0, 0], [0, 0]]}"),
+    ],
+)
+def test_values_of_a_wrong_type_are_refused_in_a_sentence(call, words):
+    with pytest.raises(ts.TinsmithError) as caught:
+        call()
+    assert words in str(caught.value)
+    assert "\n" not in str(caught.value)

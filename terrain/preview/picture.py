@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ... import _optional
+from ..._atomic import as_path
 from ...errors import OptionError, RenderError
 from ...tin import Bounds
 from ..lift import parse_exaggeration
@@ -222,13 +223,13 @@ def _check_options(size: tuple[int, int], view: str) -> None:
     if view not in VIEWS:
         raise OptionError("view", view, " or ".join(map(repr, VIEWS)))
     low, high = _SIZE_RANGE
-    whole = all(isinstance(side, Integral) for side in size)
-    if len(size) != 2 or not whole or not all(low <= side <= high for side in size):
+    whole = isinstance(size, tuple | list) and all(isinstance(side, Integral) for side in size)
+    if not whole or len(size) != 2 or not all(low <= side <= high for side in size):
         raise OptionError("size", size, f"width and height, {low} to {high} pixels each")
 
 
 def _require_picture_path(output: str | os.PathLike[str]) -> Path:
-    path = Path(output)
+    path = as_path(output, "output")
     if path.suffix.lower() not in PICTURE_SUFFIXES:
         raise RenderError(
             f"Cannot write a picture to '{path}': its name must end in "
