@@ -16,43 +16,6 @@ ROOT = Path(__file__).parents[1]
 SNAPSHOT = ROOT / "tests" / "api.txt"
 RENEW = "if that is meant, renew it: PYTHONPATH=tests python -m support.api > tests/api.txt"
 
-WITHOUT_EXAMPLE = {
-    "opens a window or draws": {"preview"},
-    "needs a file of lines and the library that reads it": {
-        "read_lines",
-        "read_polygons",
-        "read_rings",
-        "read_water",
-    },
-    "shown by the page on editing": {
-        "TIN.flip",
-        "TIN.set_z",
-    },
-    "is made by triangulate, for reading; its methods serve edits": {
-        "Lines",
-        "Lines.chains",
-        "Lines.has_breakline",
-        "Lines.renumber",
-        "Lines.renumbered",
-        "Lines.segment_chains",
-        "Lines.segments",
-        "Lines.step_chains",
-        "Lines.steps",
-        "Lines.with_breakline",
-        "Report.after_edits",
-        "Merge.to_dict",
-        "Report.describe_crossings",
-        "Report.met_by",
-        "Report.renumber",
-        "Report.renumbered",
-        "Report.with_lines",
-        "Report.with_merges",
-        "Report.with_removed",
-        "Report.with_rows",
-        "Water",
-    },
-}
-
 
 def test_public_names_are_those_of_the_snapshot():
     expected, found = SNAPSHOT.read_text().splitlines(), describe_api()
@@ -62,7 +25,6 @@ def test_public_names_are_those_of_the_snapshot():
 
 
 def test_every_public_name_has_an_example():
-    excused = set().union(*WITHOUT_EXAMPLE.values())
     called = {
         name: member
         for owner, thing in public_objects()
@@ -70,8 +32,7 @@ def test_every_public_name_has_an_example():
         if inspect.isfunction(member) or (inspect.isclass(member) and not is_error(member))
     }
     without = {name for name, thing in called.items() if ">>>" not in (thing.__doc__ or "")}
-    assert without - excused == set(), "public names whose docstring has no example"
-    assert excused <= set(called), "excused, but not public"
+    assert without == set(), "public names whose docstring has no example"
 
 
 def is_error(thing):

@@ -90,6 +90,18 @@ def read_lines(
         If the lines cannot be brought into the CRS.
     OptionError
         If a unit is unknown, or not that of the file's CRS.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> line = [[0, 0, 5], [4, 3, 6]]
+    >>> given = ts.Features(kind="lines", coordinates=line, offsets=[[0, 2]])
+    >>> with TemporaryDirectory() as folder:
+    ...     path = ts.write(given, Path(folder, "lines.gpkg"))
+    ...     [line.coords.tolist() for line in ts.read_lines(path)]
+    [[[0.0, 0.0, 5.0], [4.0, 3.0, 6.0]]]
     """
     features = read_features(as_path(path), layer=layer, where=where)
     parts = split_into_parts(
@@ -134,6 +146,18 @@ def read_rings(
         As :func:`read_lines`; ReadError also if a line is not closed.
     LinesError
         If a ring has fewer than three corners.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> ring = [[0, 0, 5], [4, 0, 5], [0, 3, 5], [0, 0, 5]]
+    >>> given = ts.Features(kind="polygons", coordinates=ring, offsets=[[0, 4], [0, 1]])
+    >>> with TemporaryDirectory() as folder:
+    ...     path = ts.write(given, Path(folder, "lines.gpkg"))
+    ...     [len(ring) for ring in ts.read_rings(path)]
+    [3]
     """
     features = read_features(as_path(path), layer=layer, where=where)
     parts = split_into_parts(
@@ -169,6 +193,18 @@ def read_polygons(
     ------
     MissingExtraError, ReadError, CrsError, LinesError
         As :func:`read_rings`.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> ring = [[0, 0, 5], [4, 0, 5], [0, 3, 5], [0, 0, 5]]
+    >>> given = ts.Features(kind="polygons", coordinates=ring, offsets=[[0, 4], [0, 1]])
+    >>> with TemporaryDirectory() as folder:
+    ...     path = ts.write(given, Path(folder, "lines.gpkg"))
+    ...     [[len(ring) for ring in rings] for rings in ts.read_polygons(path)]
+    [[3]]
     """
     features = read_features(as_path(path), layer=layer, where=where)
     polygons: list[list[NDArray[np.float64]]] = []
@@ -210,6 +246,18 @@ def read_water(
     ------
     MissingExtraError, ReadError, CrsError, LinesError
         As :func:`read_rings`; ReadError also if a height is missing, or a polygon has islands.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> ring = [[0, 0, 5], [4, 0, 5], [0, 3, 5], [0, 0, 5]]
+    >>> given = ts.Features(kind="polygons", coordinates=ring, offsets=[[0, 4], [0, 1]])
+    >>> with TemporaryDirectory() as folder:
+    ...     path = ts.write(given, Path(folder, "lines.gpkg"))
+    ...     [pond.z for pond in ts.read_water(path)]
+    [5.0]
     """
     features = read_features(as_path(path), layer=layer, where=where)
     wanted = _parse_wanted(crs, elevation_unit, z_unit)

@@ -102,6 +102,16 @@ def preview(
     picture. Light falls from the northwest at 45 degrees, fixed to the ground. Tints span the
     lowest to the highest elevation; perceived lightness rises evenly with elevation. The same TIN
     and options give the same bytes on the same machine.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8]], crs="EPSG:32616")
+    >>> with TemporaryDirectory() as folder:
+    ...     ts.preview(tin, output=Path(folder, "site.png"), size=(400, 300)).name
+    'site.png'
     """
     path = None if output is None else _require_picture_path(output)
     _check_options(size, view)
