@@ -12,6 +12,7 @@ __all__ = ["load", "require"]
 
 _EXTRA_OF = {
     "geopandas": "interop",
+    "laspy": "lidar",
     "matplotlib": "plot",
     "meshio": "mesh",
     "pyarrow": "interop",
