@@ -333,7 +333,8 @@ class Editable:
     def _edit(self, operation: str, **arguments: Any) -> Any:
         with self._lock:
             result = self._open_session().do(operation, arguments)
-            self._version = None
+            if self._version is not None:
+                self._version = None
             return result
 
     def _open_session(self) -> Session:

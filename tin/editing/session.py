@@ -173,9 +173,10 @@ class Session:
     def now(self) -> State:
         """Return the TIN after the edits, and how it hangs together with its inputs."""
         if self._state is None:
-            inputs = self.inputs()
-            built = self._editor.state(inputs) if self._editor is not None else None
-            self._state = build_state(inputs) if built is None else built
+            editor = self._editor
+            self._state = (
+                build_state(self.inputs()) if editor is None else editor.state(self.inputs)
+            )
         return self._state
 
     def inputs(self) -> NumberedInputs:

@@ -261,7 +261,7 @@ def test_a_folder_of_tiles_is_one_survey(tmp_path):
         one.write(tmp_path / f"tile{k}.{'las' if k == 1 else 'LAZ'}")
     (tmp_path / "._tile0.laz").write_bytes(b"a shadow")
     (tmp_path / "readme.txt").write_text("tiles")
-    survey = read_lidar(tmp_path, withheld=True)
+    survey = read(tmp_path, withheld=True)
     assert np.array_equal(survey.points, np.concatenate([one.xyz for one in made]))
     assert survey.attributes["intensity"].tolist() == [v for one in made for v in one.intensity]
     assert survey.source == tmp_path.name
