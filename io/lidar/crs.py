@@ -29,7 +29,7 @@ _VERTICAL_KEY, _VERTICAL_UNIT_KEY = 4096, 4099
 _USER_DEFINED = 32767
 _UNITS = {9001: METRE, 9002: FOOT, 9003: US_SURVEY_FOOT}
 _IN_FEET = {(5703, US_SURVEY_FOOT): 6360, (5703, FOOT): 8228}
-"""NAVD 88 in metres, as files name it whose elevations are said to be in feet, and what they mean."""
+"""NAVD 88 in metres, as files name it whose elevations are in feet, and what they mean."""
 
 
 class Reference(NamedTuple):

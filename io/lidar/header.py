@@ -181,7 +181,9 @@ def _require_offset(header_bytes: int, offset: int, size: int, path: Path) -> No
         )
 
 
-def _require_point_format(number: int, point_bytes: int, version: int, path: Path) -> tuple[int, int]:
+def _require_point_format(
+    number: int, point_bytes: int, version: int, path: Path
+) -> tuple[int, int]:
     plain = number & ~_COMPRESSED_BITS
     if plain >= len(_POINT_BYTES):
         raise ReadError(
@@ -343,7 +345,5 @@ def _count_chunks(header: Header, file: IO[bytes]) -> int | None:
     file.seek(table)
     _, n_chunks = struct.unpack("<II", file.read(8))
     if n_chunks * header.point_bytes > header.size:  # each begins with a whole point
-        raise _fault(
-            header.path, f"{n_chunks:,} chunks are said to be in {header.size:,} bytes"
-        )
+        raise _fault(header.path, f"{n_chunks:,} chunks are said to be in {header.size:,} bytes")
     return int(n_chunks)

@@ -43,7 +43,7 @@ _MOST_POINTS = 2**31 - 1
 """The vertices of a TIN are numbered with 32 bits."""
 
 _SPARSE = 0.5
-"""Share of the points of a file below which those taken are copied, so that memory is given back."""
+"""Share of the points below which those taken are copied, so that memory is given back."""
 
 
 def read(
@@ -273,7 +273,10 @@ class _Gathered:
 
     def replace(self, start: int, points: NDArray[np.float64]) -> None:
         """Put other coordinates in the place of those from a row on."""
-        if points.base is not self._points or points.ctypes.data != self._points[start:].ctypes.data:
+        if (
+            points.base is not self._points
+            or points.ctypes.data != self._points[start:].ctypes.data
+        ):
             self._points[start : self.count] = points
 
     @property
@@ -327,9 +330,7 @@ def _read_tile(
             gathered.tally.add(part.value, part.arrays["classes"])
             gathered.append(part.arrays, header)
     own = gathered._points[start : gathered.count]
-    placed = place(
-        own, source=tile.reference.crs, target=target, path=header.path, unit=tile.unit
-    )
+    placed = place(own, source=tile.reference.crs, target=target, path=header.path, unit=tile.unit)
     gathered.replace(start, placed.points)
     return placed
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from math import isfinite
 from numbers import Integral, Real
 from typing import TYPE_CHECKING, Any
 
@@ -23,6 +24,7 @@ __all__ = [
     "Selection",
     "Tally",
     "describe_classes",
+    "describe_marks",
     "parse_selection",
 ]
 
@@ -209,7 +211,7 @@ def _parse_window(given: Bounds | Sequence[float]) -> Bounds:
         box: list[Any] = [given.xmin, given.ymin, given.xmax, given.ymax]
     else:
         box = _split(given)
-    if len(box) != 4 or not all(isinstance(one, Real) and np.isfinite(one) for one in box):
+    if len(box) != 4 or not all(isinstance(one, Real) and isfinite(one) for one in box):
         raise OptionError("window", given, allowed)
     if not (box[0] < box[2] and box[1] < box[3]):
         raise OptionError("window", tuple(box), allowed)
@@ -217,7 +219,7 @@ def _parse_window(given: Bounds | Sequence[float]) -> Bounds:
 
 
 def _parse_resolution(given: object) -> float:
-    if not isinstance(given, Real) or not np.isfinite(given) or given <= 0:
+    if not isinstance(given, Real) or not isfinite(given) or given <= 0:
         raise OptionError("resolution", given, "a distance above 0, in units of the CRS")
     return float(given)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import datetime
+import datetime as dt
 import warnings
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -37,7 +37,7 @@ product and the sum by which it is read are rounded."""
 _POINT_FORMAT, _POINT_FORMAT_OF_COLOURS = 6, 7
 _COLOURS = ("red", "green", "blue")
 _CHUNK = 1_000_000
-_NO_CLOCK = datetime.date(1970, 1, 1)
+_NO_CLOCK = dt.date(1970, 1, 1)
 _STANDARD = {
     "intensity": (0, 65535),
     "return_number": (0, 15),
@@ -60,7 +60,7 @@ _STANDARD = {
 """Whole numbers that the format has a place for, and their range."""
 
 _NAME_BYTES = 32
-_EXTRA_TYPES = frozenset("u1 u2 u4 u8 i1 i2 i4 i8 f4 f8".split())
+_EXTRA_TYPES = frozenset(("u1", "u2", "u4", "u8", "i1", "i2", "i4", "i8", "f4", "f8"))
 
 
 class _Scaling(NamedTuple):
@@ -193,9 +193,7 @@ def _try_scale(values: NDArray[np.float64], scale: float) -> tuple[float, float,
     return scale, offset, error
 
 
-def _round_to_whole(
-    values: NDArray[np.float64], scale: float, offset: float
-) -> NDArray[np.int32]:
+def _round_to_whole(values: NDArray[np.float64], scale: float, offset: float) -> NDArray[np.int32]:
     return np.rint((values - offset) / scale).astype(np.int32)
 
 
@@ -217,8 +215,8 @@ def _choose_columns(attributes: Mapping[str, NDArray[Any]], path: Path) -> dict[
             texts.append(name)
     if texts:
         warnings.warn(
-            f"'{path}' does not hold the attributes {', '.join(texts)}: LAS has numbers, with names "
-            "of 32 bytes.",
+            f"'{path}' does not hold the attributes {', '.join(texts)}: LAS has numbers, "
+            "with names of 32 bytes.",
             LossWarning,
             stacklevel=4,
         )

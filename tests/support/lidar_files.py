@@ -27,7 +27,9 @@ def make_cloud(n: int = 500, *, seed: int = 1, point_format: int = 6, version: s
     cloud.xyz = CORNER + rng.random((n, 3)) * (200, 100, 30)
     cloud.classification = rng.choice([1, 2, 2, 5, 7], n).astype(np.uint8)
     cloud.number_of_returns = rng.integers(1, 4, n).astype(np.uint8)
-    cloud.return_number = np.minimum(rng.integers(1, 4, n), cloud.number_of_returns).astype(np.uint8)
+    cloud.return_number = np.minimum(rng.integers(1, 4, n), cloud.number_of_returns).astype(
+        np.uint8
+    )
     cloud.intensity = rng.integers(0, 60_000, n).astype(np.uint16)
     cloud.withheld = (rng.random(n) < 0.05).astype(np.uint8)
     if "gps_time" in cloud.point_format.dimension_names:
@@ -43,7 +45,7 @@ def write_copc(path: Path, cloud: Any, *, wkt: str = "") -> Path:
     import lazrs
 
     records = cloud.points.array
-    middle, half = CORNER + (100, 100, 100), 100.0
+    middle, half = CORNER + 100.0, 100.0
     level = np.full(len(records), 2)
     level[::4], level[::16] = 1, 0
     xyz = np.stack([cloud.x, cloud.y, cloud.z], axis=1)
@@ -99,5 +101,7 @@ def _pack_header(cloud: Any, offset: int, n_records: int, end: int) -> bytes:
     box = [number for pair in zip(high, low, strict=True) for number in pair]
     start = struct.pack("<4sHH16sBB32s32sHHHII", b"LASF", 0, 16, b"", 1, 4, b"", b"", 1, 2026, 375,
                         offset, n_records)  # fmt: skip
-    start += struct.pack("<BHI20s12d", 6 | 128, 30, count, b"", *header.scales, *header.offsets, *box)
+    start += struct.pack(
+        "<BHI20s12d", 6 | 128, 30, count, b"", *header.scales, *header.offsets, *box
+    )
     return start + struct.pack("<QQIQ15Q", 0, end, 1, count, *[0] * 15)
