@@ -243,10 +243,10 @@ reading_options = _gather(
         metavar="NAME",
         help="Column of a vector file that holds the elevations; 'geometry' for its coordinates.",
     ),
-    click.option(
+    choice_option(
         "--lines-as",
-        type=click.Choice(get_args(LineReading)),
-        help="Take the lines of a vector file as breaklines, or their vertices as points.",
+        LineReading,
+        "Take the lines of a vector file as breaklines, or their vertices as points.",
     ),
 )
 
