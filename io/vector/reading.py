@@ -91,7 +91,7 @@ def read_lines(
     OptionError
         If a unit is unknown, or not that of the file's CRS.
     """
-    features = read_features(Path(path), layer=layer, where=where)
+    features = read_features(Path(path), layer=layer, where=where, lines_only=True)
     parts = split_into_parts(
         features, _parse_wanted(crs, elevation_unit, z_unit), drape=drape, notes=notes
     )
@@ -135,7 +135,7 @@ def read_rings(
     LinesError
         If a ring has fewer than three corners.
     """
-    features = read_features(Path(path), layer=layer, where=where)
+    features = read_features(Path(path), layer=layer, where=where, lines_only=True)
     parts = split_into_parts(
         features, _parse_wanted(crs, elevation_unit, z_unit), drape=drape, notes=notes
     )
@@ -170,7 +170,7 @@ def read_polygons(
     MissingExtraError, ReadError, CrsError, LinesError
         As :func:`read_rings`.
     """
-    features = read_features(Path(path), layer=layer, where=where)
+    features = read_features(Path(path), layer=layer, where=where, lines_only=True)
     polygons: list[list[NDArray[np.float64]]] = []
     wanted = _parse_wanted(crs, elevation_unit, z_unit)
     for part in split_into_parts(features, wanted, drape=drape, notes=notes):
@@ -211,7 +211,7 @@ def read_water(
     MissingExtraError, ReadError, CrsError, LinesError
         As :func:`read_rings`; ReadError also if a height is missing, or a polygon has islands.
     """
-    features = read_features(Path(path), layer=layer, where=where)
+    features = read_features(Path(path), layer=layer, where=where, lines_only=True)
     wanted = _parse_wanted(crs, elevation_unit, z_unit)
     parts = split_into_parts(features, wanted, drape=False, notes=notes)
     island = next((part for part in parts if part.ring > 0), None)

@@ -11,6 +11,7 @@ from .errors import MissingExtraError
 __all__ = ["load", "require"]
 
 _EXTRA_OF = {
+    "ezdxf": "cad",
     "geopandas": "interop",
     "matplotlib": "plot",
     "meshio": "mesh",

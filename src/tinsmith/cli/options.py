@@ -10,7 +10,7 @@ from typing import Any, TypeVar, get_args
 
 import click
 
-from ..policies import DuplicatePolicy, FeatureKind
+from ..policies import DrawingContent, DuplicatePolicy, FeatureKind
 from .line_options import LINE_OPTIONS
 from .output.console import Console
 from .paths import INPUT
@@ -52,6 +52,11 @@ class Reading:
     stride: int | None = None
     nodata: tuple[float, ...] | None = None
     fill: bool | None = None
+    unit: str | None = None
+    surface: str | None = None
+    content: str | None = None
+    layer: str | None = None
+    texts: bool | None = None
 
 
 @dataclass(frozen=True)
@@ -229,6 +234,35 @@ reading_options = _gather(
     ),
     click.option(
         "--fill", is_flag=True, default=None, help="Let the surface span the voids of a raster."
+    ),
+    click.option(
+        "--unit",
+        metavar="UNIT",
+        help="Unit of the coordinates and elevations of a LandXML or DXF file, where it does not "
+        "say, or says another one than its CRS.",
+    ),
+    click.option(
+        "--surface",
+        metavar="NAME",
+        help="Surface of a LandXML file that has several: its name, or its number from 1.",
+    ),
+    click.option(
+        "--content",
+        type=click.Choice(get_args(DrawingContent)),
+        help="What to read of a LandXML or DXF file: the triangles of a surface, the points and "
+        "lines that make one, or points alone.",
+    ),
+    click.option(
+        "--layer",
+        metavar="NAME",
+        help="Layers of a DXF file to read: names or patterns with commas between, such as "
+        "'TOPO*,BREAK?'.",
+    ),
+    click.option(
+        "--texts",
+        is_flag=True,
+        default=None,
+        help="Read texts of a DXF file that are numbers as points of that elevation.",
     ),
 )
 
