@@ -16,7 +16,8 @@ FORMATS = (
         writes=(*SURFACES, "Features"),
         precision="Coordinates come back bit for bit.",
         losses="One unit for coordinates and elevations; of a survey no attributes but number, "
-        "description and code; no water, no report.",
+        "description and code; no notes and no report; vertices of no triangle.",
+        loses=("elevation unit", "attributes", "notes", "report"),
         sniff=signatures.is_landxml,
     ),
     Format(
@@ -28,8 +29,10 @@ FORMATS = (
         write="tinsmith.io.cad.dxf.writing:write",
         writes=(*SURFACES, "Features"),
         precision="Coordinates come back bit for bit.",
-        losses="Attributes of points but number and description, which are texts; columns of "
-        "features; the report. R12 has no CRS.",
+        losses="One unit for coordinates and elevations; the numbers of vertices; attributes of "
+        "points but number and description; columns of features; notes and report. R12 has no "
+        "CRS.",
+        loses=("elevation unit", "order", "attributes", "notes", "report"),
         extra="cad",
         sniff=signatures.is_dxf,
     ),

@@ -12,7 +12,7 @@ from ...errors import PointsError, ReadError
 from ...tin import TIN
 from ...tin.checking.overlaps import describe_overlaps
 from ...tin.constraints.breaklines import Lines
-from ...tin.topology import directed_edges, edge_keys
+from ...tin.topology import directed_edges, edge_keys, find_offsets
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -37,14 +37,15 @@ class EdgeLine(NamedTuple):
     Attributes
     ----------
     coordinates : (k, 2) or (k, 3) float64 array
-    kind : LineKind
+    kind : LineKind or None
+        None for what is constrained, but no line.
     name : str
     source : int, optional
         Its number as ``Lines.sources`` has it; default it is counted.
     """
 
     coordinates: NDArray[np.float64]
-    kind: LineKind
+    kind: LineKind | None
     name: str
     source: int | None = None
 
@@ -138,7 +139,7 @@ def _add_lines(tin: TIN, lines: Sequence[EdgeLine]) -> tuple[TIN, list[str]]:
     owners: list[int] = []
     n_partly = 0
     for number, line in enumerate(lines):
-        found = vertex_at.find(line.coordinates)
+        found = _fill_in(tin, vertex_at.find(line.coordinates), known)
         runs = _split_into_runs(found, known, len(tin.points))
         chains += runs
         owners += [number] * len(runs)
@@ -163,12 +164,13 @@ def _with_chains(
     segments = np.concatenate([np.stack([one[:-1], one[1:]], axis=1) for one in chains])
     flags = tin.constrained | np.isin(keys, edge_keys(segments, len(tin.points)))
     sources = _count_within_kinds(lines)
+    kept = [(k, chain) for k, chain in zip(owners, chains, strict=True) if lines[k].kind]
     held = Lines(
-        vertices=np.concatenate(chains).astype(np.int32),
-        offsets=np.concatenate([[0], np.cumsum([len(one) for one in chains])]).astype(np.int32),
-        kinds=tuple(lines[k].kind for k in owners),
-        sources=np.array([sources[k] for k in owners], np.int32),
-        names=tuple(lines[k].name for k in owners),
+        vertices=np.concatenate([[], *(chain for _, chain in kept)]).astype(np.int32),
+        offsets=find_offsets(len(chain) for _, chain in kept).astype(np.int32),
+        kinds=tuple(kind for k, _ in kept if (kind := lines[k].kind) is not None),
+        sources=np.array([sources[k] for k, _ in kept], np.int32),
+        names=tuple(lines[k].name for k, _ in kept),
     )
     return tin.replace(constrained=flags, lines=held)
 
@@ -178,7 +180,7 @@ def _count_within_kinds(lines: Sequence[EdgeLine]) -> list[int]:
     counts: dict[str, int] = {}
     numbers = []
     for line in lines:
-        kind = "breakline" if line.kind in ("hard", "soft") else line.kind
+        kind = "breakline" if line.kind in ("hard", "soft") else line.kind or ""
         count = counts.get(kind, 0)
         numbers.append(count if line.source is None else line.source)
         counts[kind] = count + 1
@@ -211,15 +213,59 @@ class _Vertices:
         return np.where(apart <= _SAME_PLACE, nearest, -1)
 
 
+def _fill_in(tin: TIN, vertices: NDArray[np.int64], known: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the vertices of a line with those between that lie on its segments.
+
+    Programs put the vertices of a surface where a breakline meets other edges.
+    """
+    is_edge = _find_edges(vertices, known, len(tin.points))
+    pairs = zip(vertices[:-1].tolist(), vertices[1:].tolist(), is_edge.tolist(), strict=True)
+    filled = vertices[:1].tolist()
+    for a, b, is_there in pairs:
+        if not is_there and a >= 0 and b >= 0 and a != b:
+            filled += _walk_along(tin, a, b)
+        filled.append(b)
+    return np.array(filled, np.int64)
+
+
+def _walk_along(tin: TIN, a: int, b: int) -> list[int]:
+    """Return the vertices between two others along edges on the line between; none if it fails."""
+    start = tin.points[a, :2]
+    way = tin.points[b, :2] - start
+    length = float(np.hypot(*way))
+    ahead = way / length
+    passed: list[int] = []
+    here, reached = a, 0.0
+    while here != b:
+        near = tin.vertex_neighbors(here)
+        apart = tin.points[near, :2] - start
+        along, aside = apart @ ahead, apart @ np.array([-ahead[1], ahead[0]])
+        is_on = (np.abs(aside) <= _SAME_PLACE) & (along > reached) & (along <= length)
+        if not is_on.any():
+            return []
+        step = int(np.argmin(np.where(is_on, along, np.inf)))
+        here, reached = int(near[step]), float(along[step])
+        passed.append(here)
+    return passed[:-1]
+
+
 def _split_into_runs(
     vertices: NDArray[np.int64], known: NDArray[np.int64], n_points: int
 ) -> list[NDArray[np.int64]]:
     """Return the longest parts of a line all of whose segments are edges."""
+    is_edge = _find_edges(vertices, known, n_points)
+    steps = np.diff(np.concatenate([[0], is_edge.astype(np.int8), [0]]))
+    starts, ends = np.flatnonzero(steps == 1), np.flatnonzero(steps == -1)
+    return [vertices[a : b + 1] for a, b in zip(starts.tolist(), ends.tolist(), strict=True)]
+
+
+def _find_edges(
+    vertices: NDArray[np.int64], known: NDArray[np.int64], n_points: int
+) -> NDArray[np.bool_]:
+    """Return which segments between vertices, -1 for none, are edges."""
     pairs = np.stack([vertices[:-1], vertices[1:]], axis=1)
     is_edge = (pairs >= 0).all(axis=1) & (pairs[:, 0] != pairs[:, 1])
     keys = edge_keys(np.where(is_edge[:, None], pairs, 0), n_points)
     at = np.minimum(np.searchsorted(known, keys), len(known) - 1)
-    is_edge &= known[at] == keys
-    steps = np.diff(np.concatenate([[0], is_edge.astype(np.int8), [0]]))
-    starts, ends = np.flatnonzero(steps == 1), np.flatnonzero(steps == -1)
-    return [vertices[a : b + 1] for a, b in zip(starts.tolist(), ends.tolist(), strict=True)]
+    found: NDArray[np.bool_] = is_edge & (known[at] == keys)
+    return found

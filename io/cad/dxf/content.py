@@ -9,6 +9,8 @@ import numpy as np
 from ....tin import Breakline
 from ....tin.constraints.constraint_set import as_sequence
 from ....tin.constraints.polygons import gather_rings_of_regions
+from ....tin.topology import directed_edges, edge_keys
+from .names import CONSTRAINED
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -37,6 +39,17 @@ def add_tin(writer: EntityWriter, tin: TIN, factor: float) -> None:
     told = zip(tin.lines.kinds, tin.lines.names, tin.lines.sources.tolist(), strict=True)
     for chain, (kind, name, source) in zip(tin.lines.chains(), told, strict=True):
         writer.add_line(_LAYER_OF_KIND[kind], points[chain], (kind, name, str(source)))
+    for edge in _find_other_edges(tin):
+        writer.add_line("CONSTRAINED_EDGES", points[edge], (CONSTRAINED, "", ""))
+
+
+def _find_other_edges(tin: TIN) -> NDArray[np.int64]:
+    """Return the constrained edges that belong to no line, (k, 2) vertices."""
+    pairs = np.stack(directed_edges(tin.triangles), axis=-1)[tin.constrained]
+    keys, first = np.unique(edge_keys(pairs, len(tin.points)), return_index=True)
+    known = edge_keys(tin.lines.segments(), len(tin.points))
+    others: NDArray[np.int64] = pairs[np.sort(first[~np.isin(keys, known)])]
+    return others
 
 
 def add_survey(writer: EntityWriter, survey: Survey, factor: float, *, labels: bool) -> None:

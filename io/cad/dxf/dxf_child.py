@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...isolated import Answer, Refusal
+from .curves import follow_bulges
 from .names import APPLICATION
 
 if TYPE_CHECKING:
@@ -44,7 +45,6 @@ _FAULTS = (
 
 def prepare() -> None:
     """Load the library."""
-    import_module("ezdxf.path")
     import_module("ezdxf.render")
 
 
@@ -147,6 +147,7 @@ class _Gathered:
         self._wants_texts = texts
         self._tolerance = tolerance
         self._layers: dict[str, int] = {}
+        self._seen: dict[str, None] = {}
         self._states = {
             str(one.dxf.name).casefold(): (one.is_off(), one.is_frozen()) for one in document.layers
         }
@@ -195,6 +196,7 @@ class _Gathered:
 
     def take(self, entity: Any, layer: str, *, is_nested: bool) -> None:
         """Take one entity that is no block."""
+        self._seen.setdefault(_clean(layer))
         if not self.is_wanted(layer) or self.is_hidden(entity, layer):
             return
         kind = str(entity.dxftype())
@@ -273,9 +275,10 @@ class _Gathered:
                 places = list(entity.ocs().points_to_wcs(flat))
             return _close(places, is_closed=entity.is_closed)
         self._n_curves += 1
-        path = import_module("ezdxf.path").make_path(entity)
         distance = self._tolerance or self._choose_tolerance()
-        return [place.xyz for place in path.flattening(distance)]
+        if kind in _CURVES:
+            return [place.xyz for place in entity.flattening(distance)]
+        return follow_bulges(entity, kind, distance)
 
     def _choose_tolerance(self) -> float:
         """Return a centimetre in the unit of the drawing, a hundredth where it names none."""
@@ -301,7 +304,7 @@ class _Gathered:
         header = self.document.header
         value = {
             "layers": list(self._layers),
-            "all_layers": [_clean(str(one.dxf.name)) for one in self.document.layers],
+            "all_layers": list(self._seen),
             "unit": int(header.get("$INSUNITS", 0)),
             "properties": [[_clean(str(a)), _clean(str(b))] for a, b in header.custom_vars],
             "epsg": self._find_epsg(),

@@ -1,9 +1,12 @@
 """Names that drawings have from here: layers with their colours, properties, extended data."""
 
-__all__ = ["APPLICATION", "CRS_PROPERTY", "ELEVATION_PROPERTY", "LAYERS", "UNKNOWN"]
+__all__ = ["APPLICATION", "CONSTRAINED", "CRS_PROPERTY", "ELEVATION_PROPERTY", "LAYERS", "UNKNOWN"]
 
 APPLICATION = "TINSMITH"
 """Whose extended data keep the names and kinds of lines, numbers and descriptions of points."""
+
+CONSTRAINED = "constrained"
+"""Kind of edges that are constrained, but belong to no line."""
 
 CRS_PROPERTY = "CRS"
 ELEVATION_PROPERTY = "Elevation unit"
@@ -23,6 +26,7 @@ LAYERS = {
     "POINT_DESCRIPTIONS": 9,
     "CONTOURS": 32,
     "INDEX_CONTOURS": 34,
+    "CONSTRAINED_EDGES": 9,
     "LINES": 7,
     "POLYGONS": 7,
 }

@@ -18,6 +18,7 @@ from ..reference import Declared, Measures, choose_measures, require_own_crs
 from ..surfaces import EdgeLine, make_tin, merge_equal_points
 from .drawing import Drawing, read_drawing
 from .faces import make_mesh
+from .names import CONSTRAINED
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -163,7 +164,9 @@ def _select_edge_lines(drawing: Drawing, measures: Measures) -> list[EdgeLine]:
     kinds: tuple[LineKind, ...] = get_args(LineKind)
     found = []
     for rows, told in zip(drawing.lines, _name_lines(drawing), strict=True):
-        kind: LineKind = next((one for one in kinds if one == told[0]), "hard")
+        kind = next((one for one in kinds if one == told[0]), None)
+        if told[0] != CONSTRAINED and kind is None:
+            kind = "hard"
         source = int(told[2]) if told[2].isdecimal() and len(told[2]) < 10 else None
         found.append(EdgeLine(measures.apply(rows), kind, told[1], source))
     return found

@@ -96,8 +96,9 @@ def write(
             LossWarning,
             stacklevel=3,
         )
-    document = _make_document(ezdxf, obj, version, along)
-    head, tail, encoding, writer = _split(document, version)
+    with _fix_dates():
+        document = _make_document(ezdxf, obj, version, along)
+        head, tail, encoding, writer = _split(document, version)
     _add_content(writer, obj, factor, labels=labels)
     with replacing(path) as file:
         file.write(_encode(_count_handles(head, writer), encoding))
@@ -153,8 +154,7 @@ def _make_document(
 def _split(document: Any, version: str) -> tuple[str, str, str, EntityWriter]:
     """Return the text before and after the entities, its encoding, and their writer."""
     stream = io.StringIO(newline="\n")
-    with _fix_dates():
-        document.write(stream)
+    document.write(stream)
     text = stream.getvalue().replace("\r\n", "\n")
     start = text.index("ENTITIES\n") + len("ENTITIES\n")
     end = text.index("  0\nENDSEC\n", start)

@@ -13,6 +13,7 @@ from ....policies import BreaklineKind
 from ....tin import Breakline, Survey, Water
 from ....tin.constraints.breaklines import as_ring
 from ..placing import Placing, place_rows
+from .numbers import fault
 from .properties import KIND, PRIORITY
 from .surface import NO_ELEVATIONS, describe_point_files, name_line, resolve_references
 
@@ -106,7 +107,7 @@ def make_survey_of_source(
         attributes = _gather_attributes(found.points, kept) if len(kept) else {}
         if len(kept):
             notes.append(f"Its points are the {counted(len(kept), 'survey point')} of the file.")
-    lines = [*_iterate_lines(surface), *_resolve_chains(found, surface, path)]
+    lines = [*_iterate_lines(surface, path), *_resolve_chains(found, surface, path)]
     placing = place_rows([*points, *(rows for _, rows in lines)], measures, declared, path)
     rows = placing.rows[: len(points)]
     survey = Survey(
@@ -129,14 +130,14 @@ def _turn(part: NDArray[np.float64], path: Path, *, one: str) -> NDArray[np.floa
     return part[:, [1, 0, 2]]
 
 
-def _iterate_lines(surface: Surface) -> list[tuple[Line, NDArray[np.float64]]]:
+def _iterate_lines(surface: Surface, path: Path) -> list[tuple[Line, NDArray[np.float64]]]:
     """Return the lines as easting, northing, and elevation where it counts."""
     found = []
     for line in surface.lines:
         for part in line.coordinates:
             rows = part[:, [1, 0, *range(2, part.shape[1])]]
             if line.element == "Contour":
-                rows = _raise_contour(line, rows)
+                rows = _raise_contour(line, rows, path)
             elif line.element == "DataPoints":
                 continue
             elif line.attributes.get("brkType") in NO_ELEVATIONS:
@@ -145,16 +146,14 @@ def _iterate_lines(surface: Surface) -> list[tuple[Line, NDArray[np.float64]]]:
     return found
 
 
-def _raise_contour(line: Line, rows: NDArray[np.float64]) -> NDArray[np.float64]:
+def _raise_contour(line: Line, rows: NDArray[np.float64], path: Path) -> NDArray[np.float64]:
     try:
         elevation = float(line.attributes.get("elev", "nan"))
     except ValueError:
         elevation = np.nan
     if not np.isfinite(elevation):
-        raise LinesError(
-            f"the contour of line {line.line} has the elevation "
-            f"'{line.attributes.get('elev', '')[:60]}', and a number is needed."
-        )
+        shown = line.attributes.get("elev", "")[:60]
+        raise fault(path, line.line, f"a contour has the elevation '{shown}', which is no number")
     return np.column_stack([rows[:, :2], np.full(len(rows), elevation)])
 
 
