@@ -18,6 +18,7 @@ __all__ = [
     "FeatureKind",
     "InterpolationMethod",
     "LineKind",
+    "LineReading",
     "LineRole",
     "OutsidePolicy",
     "OverviewMethod",
@@ -45,6 +46,9 @@ LineKind: TypeAlias = Literal["hard", "soft", "boundary", "hole", "water"]
 
 LineRole: TypeAlias = Literal["hard", "soft", "boundary", "hole", "erase", "water"]
 """What the line of a survey code becomes."""
+
+LineReading: TypeAlias = Literal["points", "breaklines"]
+"""What the lines of a file of points are taken for: their vertices, or lines of the surface."""
 
 FeatureKind: TypeAlias = Literal["triangles", "points", "edges", "lines", "hull"]
 """What a GeoJSON file shows of a surface."""

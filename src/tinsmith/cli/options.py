@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 
 import click
 
-from ..policies import DuplicatePolicy, FeatureKind
+from ..policies import DuplicatePolicy, FeatureKind, LineReading
 from .line_options import LINE_OPTIONS
 from .output.console import Console
 from .parameters import Decorator, choice_option, number_option
@@ -50,6 +50,13 @@ class Reading:
     stride: int | None = None
     nodata: tuple[float, ...] | None = None
     fill: bool | None = None
+    classes: str | None = None
+    returns: str | None = None
+    resolution: float | None = None
+    every: int | None = None
+    layer: str | None = None
+    z_field: str | None = None
+    lines_as: str | None = None
 
 
 @dataclass(frozen=True)
@@ -202,7 +209,7 @@ reading_options = _gather(
         "--window",
         metavar="XMIN YMIN XMAX YMAX",
         type=(float, float, float, float),
-        help="Part of a raster to read, in the units of its own CRS.",
+        help="Part of a raster or of lidar to read, in the units of its own CRS.",
     ),
     number_option("--stride", "N", "Take every Nth cell of a raster.", type=int),
     number_option(
@@ -214,6 +221,32 @@ reading_options = _gather(
     ),
     click.option(
         "--fill", is_flag=True, default=None, help="Let the surface span the voids of a raster."
+    ),
+    click.option(
+        "--classes", metavar="N,N", help="Classes of lidar points to take, such as 2 (ground)."
+    ),
+    click.option(
+        "--returns",
+        metavar="NAME,N",
+        help="Returns of lidar points to take: first, last, only, or numbers.",
+    ),
+    click.option(
+        "--resolution",
+        metavar="DISTANCE",
+        type=float,
+        help="Of COPC lidar take the levels down to this distance of points.",
+    ),
+    click.option("--every", metavar="N", type=int, help="Take every Nth point of lidar."),
+    click.option("--layer", metavar="NAME", help="Layer of a vector file."),
+    click.option(
+        "--z-field",
+        metavar="NAME",
+        help="Column of a vector file that holds the elevations; 'geometry' for its coordinates.",
+    ),
+    choice_option(
+        "--lines-as",
+        LineReading,
+        "Take the lines of a vector file as breaklines, or their vertices as points.",
     ),
 )
 
