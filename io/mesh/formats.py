@@ -1,66 +1,52 @@
 """The formats of meshes."""
 
+from typing import Any
+
 from ..registry import signatures
 from ..registry.format import Format
 
 __all__ = ["FORMATS"]
 
+
+def _make(name: str, description: str, *suffixes: str, module: str, **more: Any) -> Format:
+    """Describe a format that a module here reads and writes."""
+    where = f"{__package__}.{module}"
+    ends: dict[str, Any] = {"read": f"{where}:read", "reads": ("TIN",), "write": f"{where}:write"}
+    return Format(name=name, description=description, suffixes=suffixes, **ends, **more)
+
+
 FORMATS = (
-    Format(
-        name="tin",
-        description="A whole TIN as a GeoPackage (opens in QGIS, ArcGIS, GDAL)",
-        suffixes=(".gpkg",),
-        read="tinsmith.io.mesh.geopackage:read",
-        reads=("TIN",),
-        write="tinsmith.io.mesh.geopackage:write",
+    _make(
+        "tin",
+        "A whole TIN as a GeoPackage (opens in QGIS, ArcGIS, GDAL)",
+        ".gpkg",
+        module="geopackage",
         writes=("TIN",),
         precision="Every number comes back bit for bit.",
         sniff=signatures.is_tin_geopackage,
     ),
-    Format(
-        name="ply",
-        description="PLY mesh (opens in QGIS, CloudCompare, MeshLab)",
-        suffixes=(".ply",),
-        read="tinsmith.io.mesh.ply.file:read",
-        reads=("TIN",),
-        write="tinsmith.io.mesh.ply.file:write",
+    _make(
+        "ply",
+        "PLY mesh (opens in QGIS, CloudCompare, MeshLab)",
+        ".ply",
+        module="ply.file",
         sniff=signatures.is_ply,
     ),
-    Format(
-        name="obj",
-        description="Wavefront OBJ mesh",
-        suffixes=(".obj",),
-        read="tinsmith.io.mesh.obj:read",
-        reads=("TIN",),
-        write="tinsmith.io.mesh.obj:write",
-        sniff=signatures.is_obj,
-    ),
-    Format(
-        name="stl",
-        description="STL mesh",
-        suffixes=(".stl",),
-        read="tinsmith.io.mesh.stl:read",
-        reads=("TIN",),
-        write="tinsmith.io.mesh.stl:write",
-        sniff=signatures.is_stl,
-    ),
-    Format(
-        name="vtk",
-        description="VTK XML mesh (opens in ParaView)",
-        suffixes=(".vtp", ".vtu"),
-        read="tinsmith.io.mesh.vtk:read",
-        reads=("TIN",),
-        write="tinsmith.io.mesh.vtk:write",
+    _make("obj", "Wavefront OBJ mesh", ".obj", module="obj", sniff=signatures.is_obj),
+    _make("stl", "STL mesh", ".stl", module="stl", sniff=signatures.is_stl),
+    _make(
+        "vtk",
+        "VTK XML mesh (opens in ParaView)",
+        *(".vtp", ".vtu"),
+        module="vtk",
         extra="view",
         sniff=signatures.is_vtk_xml,
     ),
-    Format(
-        name="gmsh",
-        description="Gmsh mesh, with the edges of rim and lines (for finite element programs)",
-        suffixes=(".msh",),
-        read="tinsmith.io.mesh.gmsh:read",
-        reads=("TIN",),
-        write="tinsmith.io.mesh.gmsh:write",
+    _make(
+        "gmsh",
+        "Gmsh mesh, with the edges of boundary and lines (for finite element programs)",
+        ".msh",
+        module="gmsh",
         extra="mesh",
         sniff=signatures.is_gmsh,
     ),

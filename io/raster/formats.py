@@ -1,9 +1,19 @@
 """The formats of rasters."""
 
+from typing import Any
+
 from ..registry import signatures
 from ..registry.format import Format
 
 __all__ = ["FORMATS"]
+
+
+def _make(name: str, description: str, function: str) -> Format:
+    """Describe a kind of GeoTIFF that is written."""
+    write = f"{__package__}.geotiff:{function}"
+    kinds: dict[str, Any] = {"suffixes": (".tif", ".tiff"), "writes": ("Raster",)}
+    return Format(name=name, description=description, write=write, extra="raster", **kinds)
+
 
 FORMATS = (
     Format(
@@ -18,20 +28,6 @@ FORMATS = (
         extra="raster",
         sniff=signatures.is_raster,
     ),
-    Format(
-        name="geotiff",
-        description="GeoTIFF",
-        suffixes=(".tif", ".tiff"),
-        write="tinsmith.io.raster.geotiff:write",
-        writes=("Raster",),
-        extra="raster",
-    ),
-    Format(
-        name="cog",
-        description="Cloud optimized GeoTIFF",
-        suffixes=(".tif", ".tiff"),
-        write="tinsmith.io.raster.geotiff:write_cog",
-        writes=("Raster",),
-        extra="raster",
-    ),
+    _make("geotiff", "GeoTIFF", "write"),
+    _make("cog", "Cloud optimized GeoTIFF", "write_cog"),
 )

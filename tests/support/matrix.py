@@ -38,7 +38,9 @@ def make_tin():
         ),
         breaklines=[
             ts.Breakline([[*place(10, 10), 302], [*place(200, 120), 306]], name="kerb"),
-            ts.Breakline([[*place(20, 150), 304], [*place(190, 40), 308]], kind="soft", name="ridge"),
+            ts.Breakline(
+                [[*place(20, 150), 304], [*place(190, 40), 308]], kind="soft", name="ridge"
+            ),
         ],
         boundary=[place((0, 0), (225, 5), (228, 185), (2, 188))],
         water=[ts.Water(place((120, 120), (150, 122), (140, 150)), 299.5, name="pond")],
@@ -132,7 +134,9 @@ def _chains(tin, given):
     number = _match(tin, given)
     return sorted(
         (kind, name, tuple(number[chain].tolist()))
-        for kind, name, chain in zip(tin.lines.kinds, tin.lines.names, tin.lines.chains(), strict=True)
+        for kind, name, chain in zip(
+            tin.lines.kinds, tin.lines.names, tin.lines.chains(), strict=True
+        )
     )
 
 
