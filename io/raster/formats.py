@@ -12,6 +12,7 @@ def _make(name: str, description: str, function: str) -> Format:
     """Describe a kind of GeoTIFF that is written."""
     write = f"{__package__}.geotiff:{function}"
     kinds: dict[str, Any] = {"suffixes": (".tif", ".tiff"), "writes": ("Raster",)}
+    kinds["precision"] = "Every cell comes back bit for bit."
     return Format(name=name, description=description, write=write, extra="raster", **kinds)
 
 
