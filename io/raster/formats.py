@@ -34,4 +34,13 @@ FORMATS = (
         writes=("Raster",),
         extra="raster",
     ),
+    Format(
+        name="asc",
+        description="Esri ASCII grid, one band as text",
+        suffixes=(".asc",),
+        write="tinsmith.io.raster.ascii_grid:write",
+        writes=("Raster",),
+        precision="Every number is the same double.",
+        losses="Units and notes; all bands but one.",
+    ),
 )

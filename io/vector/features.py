@@ -16,6 +16,8 @@ from ..isolated import choose_limits, run_isolated
 from ..isolated.local_files import require_local
 from ..isolated.spooling import describe_system_error, open_ordinary_file
 from ..registry.signatures import HEAD_BYTES, find_reference_kind
+from .geojson.members import read_json_members
+from .signatures import is_parquet
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -27,6 +29,7 @@ __all__ = ["Features", "read_features"]
 _FOLDERS = (".gdb",)
 """Suffixes of formats that are folders."""
 
+_PARQUET = (".parquet", ".geoparquet")
 _SHAPEFILE = b"\x00\x00\x27\x0a"
 
 
@@ -45,6 +48,10 @@ class Features(NamedTuple):
     crs : CRS or None
     notes : tuple of str
         What was left out.
+    names : tuple of str
+        Of the columns, as the file writes them.
+    elevation_unit : str
+        What the file calls the unit of its elevations, apart from its CRS; empty if it does not.
     """
 
     path: Path
@@ -53,6 +60,8 @@ class Features(NamedTuple):
     columns: dict[str, NDArray[Any]]
     crs: CRS | None
     notes: tuple[str, ...]
+    names: tuple[str, ...] = ()
+    elevation_unit: str = ""
 
     def label(self, row: int) -> str:
         """Return what a feature is called in sentences."""
@@ -87,11 +96,16 @@ def read_features(path: Path, *, layer: str | None = None, where: str | None = N
 
 
 def _read_layer(path: Path, layer: str | None, where: str | None) -> Features:
-    _optional.require("pyogrio", "Reading vector files")
-    _require_whole_file(path)
+    if path.suffix.lower() not in _PARQUET:
+        _optional.require("pyogrio", "Reading vector files")
+    content = _require_whole_file(path)
+    library = "pyarrow" if is_parquet(content) else "pyogrio"
+    _optional.require(library, "Reading vector files")
+    head = read_json_members(content, path)
     where_it_is = {"path": os.path.abspath(path), "shown": str(path)}  # noqa: PTH100 - links stay
+    child = "parquet_child" if is_parquet(content) else "gdal_child"
     value, arrays = run_isolated(
-        f"{__package__}.gdal_child:read_features",
+        f"{__package__}.{child}:read_features",
         {**where_it_is, "layer": layer, "where": where},
         path=path,
         limits=choose_limits(_measure_folder(path)),
@@ -100,14 +114,19 @@ def _read_layer(path: Path, layer: str | None, where: str | None) -> Features:
         raise ReadError(
             f"'{path}' has no features{_describe_part(value['layer'], where)}.", path=path
         )
+    crs = None if head.names_no_crs else _find_file_crs(value["crs"], path)
+    in_metres = head.is_json and crs is not None and crs.is_geographic  # by RFC 7946
+    unit = value["elevation_unit"] or head.elevation_unit or ("metre" if in_metres else "")
     return _drop_without_geometry(
         Features(
             path,
             arrays["numbers"],
             _parse_shapes(arrays, path),
             _decode_columns(value, arrays),
-            _find_file_crs(value["crs"], path),
+            crs,
             (),
+            tuple(value["names"]),
+            unit,
         )
     )
 
@@ -138,12 +157,12 @@ def _measure_folder(path: Path) -> int:
     return sum(file.stat().st_size for file in path.iterdir() if file.is_file())
 
 
-def _require_whole_file(path: Path) -> None:
-    """Refuse a file that is missing, empty, or a shapefile shorter than it says."""
+def _require_whole_file(path: Path) -> bytes:
+    """Return the first bytes; refuse a file that is missing, empty, or a shapefile cut short."""
     try:
         if path.is_dir():
             if path.suffix.lower() in _FOLDERS:
-                return
+                return b""
             raise ReadError(f"'{path}' is a folder: name a file in it.", path=path)
         size = path.stat().st_size
         with path.open("rb") as file:
@@ -163,6 +182,7 @@ def _require_whole_file(path: Path) -> None:
             raise ReadError(
                 f"'{path}' is cut short: it has {size} of {2 * words} bytes.", path=path
             )
+    return head
 
 
 def _describe_part(layer: str, where: str | None) -> str:
