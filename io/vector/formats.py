@@ -38,8 +38,8 @@ FORMATS = (
             "projected every coordinate is the same double."
         ),
         rounding=2e-4,
-        losses="The CRS, as RFC 7946 knows WGS 84 alone, unless projected. " + _LOSSES,
-        loses=("crs", "elevation unit", *_LOSES),
+        losses="The CRS, as RFC 7946 knows WGS 84 alone: name it on reading. " + _LOSSES,
+        loses=_LOSES,
         sniff=signatures.is_geojson,
     ),
     Format(
@@ -52,8 +52,9 @@ FORMATS = (
         writes=("Features", "TIN", "Survey"),
         precision="Longitude and latitude with 9 decimals, elevations in metres with 6.",
         rounding=2e-4,
-        losses="The CRS, units and notes, which a sequence has no place for. " + _LOSSES,
-        loses=("crs", "elevation unit", *_LOSES),
+        losses="The CRS, units and notes, which a sequence has no place for: name it on reading. "
+        + _LOSSES,
+        loses=_LOSES,
         sniff=is_geojson_sequence,
     ),
     Format(
@@ -66,7 +67,6 @@ FORMATS = (
         writes=("Features", "Survey"),
         precision=_EXACT,
         losses="Of a survey its lines.",
-        loses=("lines", "report"),
         extra="vector",
         sniff=is_geopackage,
     ),

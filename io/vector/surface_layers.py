@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ...terrain.results import Features
+from ...tin import Survey
 from . import flatgeobuf, geopackage, shapefile
 from .surface_features import make_features
 
 if TYPE_CHECKING:
     from pathlib import Path
+    from typing import TypeAlias
 
     from ...policies import FeatureKind
-    from ...tin import TIN, Survey
+    from ...terrain.results import Features
+    from ...tin import TIN
 
-    Writable = TIN | Survey | Features
+    Writable: TypeAlias = TIN | Survey | Features
 
 __all__ = [
     "write_flatgeobuf",
@@ -40,7 +42,8 @@ def write_flatgeobuf(surface: Writable, path: Path, *, kind: FeatureKind | None 
     kind : {"triangles", "points", "edges", "lines", "hull"}, optional
         Of a TIN; default triangles.
     """
-    flatgeobuf.write(make_features(surface, path, kind), path)
+    is_survey = isinstance(surface, Survey)  # whose rows keep their order
+    flatgeobuf.write(make_features(surface, path, kind), path, has_index=not is_survey)
 
 
 def write_shapefile(surface: Writable, path: Path, *, kind: FeatureKind | None = None) -> None:
