@@ -35,7 +35,8 @@ def write(features: Features, path: Path, *, has_index: bool = True) -> None:
     Notes
     -----
     Coordinates and numbers are the same float64. Features stand in the order of the spatial index
-    if there is one, else in their own. Units of columns and of elevations, and notes, are metadata of the layer.
+    if there is one, else in their own. Units of columns and of elevations, and notes, are metadata
+    of the layer.
     """
     how = {} if has_index else {"SPATIAL_INDEX": "NO"}
     with replacing_files(path) as new:
