@@ -1,4 +1,4 @@
-"""How good a transformation is that PROJ can do here: whether grids are missing for a better one."""
+"""How good a transformation is that PROJ can do here: are grids missing for a better one?"""
 
 from __future__ import annotations
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
@@ -20,13 +20,21 @@ if TYPE_CHECKING:
 
 __all__ = ["reproject"]
 
-Surface = TypeVar("Surface", TIN, Survey)
-
 _FLAT = 1e-3
 """By how much the corners of water may differ in elevation after a change of the vertical datum."""
 
 
-def reproject(surface: Surface, crs: CrsLike, *, z_unit: UnitLike | None = None) -> Surface:
+@overload
+def reproject(surface: TIN, crs: CrsLike, *, z_unit: UnitLike | None = None) -> TIN: ...
+@overload
+def reproject(surface: Survey, crs: CrsLike, *, z_unit: UnitLike | None = None) -> Survey: ...
+@overload
+def reproject(
+    surface: TIN | Survey, crs: CrsLike, *, z_unit: UnitLike | None = None
+) -> TIN | Survey: ...
+def reproject(
+    surface: TIN | Survey, crs: CrsLike, *, z_unit: UnitLike | None = None
+) -> TIN | Survey:
     """Return a survey or TIN in another CRS.
 
     Parameters
