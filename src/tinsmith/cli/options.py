@@ -40,6 +40,7 @@ class Reading:
     crs: str | None = None
     z_unit: str | None = None
     source_crs: str | None = None
+    to_crs: str | None = None
     format: str | None = None
     columns: str | dict[str, str | int] | None = None
     delimiter: str | None = None
@@ -189,6 +190,11 @@ reading_options = _gather(
     ),
     click.option(
         "--source-crs", metavar="CRS", help="CRS that the points are in, if it is not --crs."
+    ),
+    click.option(
+        "--to-crs",
+        metavar="CRS",
+        help="Reproject what was read to this CRS; the input must name its own, or --crs does.",
     ),
     click.option("--format", metavar="NAME", help="Format of the input, whatever it looks like."),
     click.option(
