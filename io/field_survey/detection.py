@@ -1,0 +1,211 @@
+"""Which style descriptions are written in: all are tried, and the one that fits is told."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+from ..._sentences import counted
+from ...errors import LinesError
+from .descriptions import Coded, Description, Vocabulary
+from .figures import Fault, Figure, find_curves, follow_figures
+from .styles import STYLES, Style
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from .code_table import Rule
+
+__all__ = ["Reading", "choose_reading", "read_in_style"]
+
+_HARMLESS = ("curve without an end", "line without an end", "code behind others")
+"""What crews leave out, or do, in any style."""
+_COUNTED = "end without a begin"
+"""Such a line is counted for its one shot already."""
+
+
+class Unread(NamedTuple):
+    """A word behind a code that is neither mark nor code."""
+
+    row: int
+    word: str
+
+
+@dataclass(frozen=True)
+class Reading:
+    """Descriptions as they are read in one style.
+
+    Attributes
+    ----------
+    style : Style
+    figures : list of Figure
+    faults : list of Fault
+    unread : list of Unread
+    descriptions : dict of str to Description
+        By their texts.
+    """
+
+    style: Style
+    figures: list[Figure]
+    faults: list[Fault]
+    unread: list[Unread]
+    descriptions: dict[str, Description]
+
+    @property
+    def n_faults(self) -> int:
+        """How much speaks against it."""
+        short = sum(len(one.shots) < one.least for one in self.figures)
+        told = sum(fault.kind not in (*_HARMLESS, _COUNTED) for fault in self.faults)
+        return len(self.unread) + short + told
+
+    @property
+    def key(self) -> frozenset[tuple[object, ...]]:
+        """What tells its lines from those of another reading."""
+        return frozenset(one.key for one in self.figures if len(one.shots) >= one.least)
+
+
+def read_in_style(
+    order: Sequence[int], texts: Sequence[str], rules: dict[str, Rule], style: Style
+) -> Reading:
+    """Read descriptions in a style.
+
+    Parameters
+    ----------
+    order : sequence of int
+        Rows, in the order in which lines run.
+    texts : sequence of str
+        The descriptions, by row.
+    rules : dict of str to Rule
+    style : Style
+    """
+    return _follow(order, texts, rules, style, _parse(set(texts), rules, style))
+
+
+def _parse(texts: set[str], rules: dict[str, Rule], style: Style) -> dict[str, Description]:
+    parse = Vocabulary(rules.keys(), style).parse
+    return {text: parse(text) for text in texts}
+
+
+def _follow(
+    order: Sequence[int],
+    texts: Sequence[str],
+    rules: dict[str, Rule],
+    style: Style,
+    descriptions: dict[str, Description],
+) -> Reading:
+    coded = [(row, descriptions[texts[row]].codes) for row in order]
+    figures, faults = follow_figures(coded, rules)
+    faults += _find_codes_behind_others(coded, rules)
+    for figure in figures:
+        find_curves(figure, faults.append)
+    unread = [Unread(row, word) for row in order if (word := descriptions[texts[row]].unread) != ""]
+    return Reading(style, figures, faults, unread, descriptions)
+
+
+def _find_codes_behind_others(
+    coded: Sequence[tuple[int, Sequence[Coded]]], rules: dict[str, Rule]
+) -> list[Fault]:
+    """Tell of lines whose codes have no number and stand behind others only, as remarks do."""
+    first = {codes[0].code for _, codes in coded if codes}
+    found: dict[str, list[int]] = {}
+    for row, codes in coded:
+        for one in codes[1:]:
+            is_doubtful = not one.number and not one.marks and one.code not in first
+            if is_doubtful and rules[one.code].kind not in ("point", "exclude"):
+                found.setdefault(one.code, []).append(row)
+    return [Fault("code behind others", code, tuple(rows)) for code, rows in found.items()]
+
+
+def choose_reading(
+    order: Sequence[int],
+    texts: Sequence[str],
+    rules: dict[str, Rule],
+    name_row: Callable[[int], str],
+) -> tuple[Reading, list[str]]:
+    """Choose the style in which the least is odd, and say so if it is not the default.
+
+    Parameters
+    ----------
+    order, texts, rules
+        As for :func:`read_in_style`.
+    name_row : callable
+        Names a row for a sentence.
+
+    Returns
+    -------
+    reading : Reading
+    notes : list of str
+
+    Raises
+    ------
+    LinesError
+        If two styles fit equally, and lead to different lines.
+
+    Notes
+    -----
+    1. A style is tried if it understands a word that the default leaves, or the default finds
+       something odd; a style of short words that may be remarks needs two of them.
+    2. Those with the fewest oddities are plausible. If all of them lead to the same lines the
+       first is taken.
+    3. If not, and something is odd in each, the default is taken where it is among them, as it
+       is where nothing is said; else the codes are refused.
+    """
+    plain = read_in_style(order, texts, rules, STYLES["words"])
+    coded = {text for text, one in plain.descriptions.items() if one.codes}
+    found = [plain]
+    for style in list(STYLES.values())[1:]:
+        parsed = plain.descriptions | _parse(coded, rules, style)
+        if parsed != plain.descriptions and _is_worth_a_try(parsed, style, plain):
+            found.append(_follow(order, texts, rules, style, parsed))
+    least = min(one.n_faults for one in found)
+    plausible = [one for one in found if one.n_faults == least]
+    first = plausible[0]
+    other = next((one for one in plausible[1:] if one.key != first.key), None)
+    if other is not None and (least == 0 or first is not plain):
+        raise _refuse(first, other, name_row)
+    return first, [] if first is plain else [_describe_choice(first, plain)]
+
+
+def _is_worth_a_try(parsed: dict[str, Description], style: Style, plain: Reading) -> bool:
+    """Whether a style has enough words of its own there, or the default leaves doubts."""
+    words = {word for one in parsed.values() for code in one.codes for word in code.words}
+    if len(words - plain.style.marks.keys()) < style.least_words:
+        return False
+    says_more = any(one.n_words > plain.descriptions[text].n_words for text, one in parsed.items())
+    return plain.n_faults > 0 or says_more
+
+
+def _describe_choice(chosen: Reading, plain: Reading) -> str:
+    style = chosen.style.name
+    if plain.n_faults <= chosen.n_faults:
+        return (
+            f"Field codes are read in the style '{style}', which understands more of their words."
+        )
+    left = f"{chosen.n_faults:,}" if chosen.n_faults else "none"
+    return (
+        f"Field codes are read in the style '{style}': {plain.n_faults:,} of their words or "
+        f"lines make no sense in 'words', {left} in '{style}'."
+    )
+
+
+def _refuse(one: Reading, other: Reading, name_row: Callable[[int], str]) -> LinesError:
+    """Return the error that shows where two readings part."""
+    names = f"'{one.style.name}' and '{other.style.name}'"
+    shown = _find_difference(one, other, name_row)
+    return LinesError(
+        f"The field codes can be read in two styles, {names}, and lead to different lines{shown}: "
+        "the option style says which is meant."
+    )
+
+
+def _find_difference(one: Reading, other: Reading, name_row: Callable[[int], str]) -> str:
+    """Name the first line that only one of two readings has."""
+    for reading, keys in ((one, other.key), (other, one.key)):
+        for figure in reading.figures:
+            if len(figure.shots) >= figure.least and figure.key not in keys:
+                first, last = name_row(figure.rows[0]), name_row(figure.rows[-1])
+                return (
+                    f" (only '{reading.style.name}' makes {figure.name} of "
+                    f"{counted(len(figure.shots), 'shot')} from {first} to {last})"
+                )
+    return ""
