@@ -58,7 +58,7 @@ def lines_from_codes(
     rules: Mapping[str, LineRole] | None = None,
     *,
     code_table: CodeTable | str | os.PathLike[str] | Mapping[str, Any] | None = None,
-    style: CodeStyle | None = None,
+    code_style: CodeStyle | None = None,
     arc_tolerance: float | None = None,
 ) -> Survey:
     """Make lines of the points whose descriptions begin with a line code.
@@ -73,7 +73,7 @@ def lines_from_codes(
         ``water``. Default ``RULES``.
     code_table : path-like or mapping, optional
         A table of codes in TOML, or what one holds, instead of ``rules``: docs/field-codes.md.
-    style : str, optional
+    code_style : str, optional
         How codes are written: ``"words"``, ``"civil3d"``, ``"carlson"``, ...; default that of the
         table, else the one that fits.
     arc_tolerance : float, optional
@@ -115,7 +115,7 @@ def lines_from_codes(
     tolerance = _choose_tolerance(survey, table, arc_tolerance)
     texts = _require_descriptions(survey)
     order = _order_by_number(survey).tolist()
-    reading, notes = _read(order, texts, table, style, _namer(survey))
+    reading, notes = _read(order, texts, table, code_style, _namer(survey))
     if not reading.figures and not _excludes(table, reading):
         known = ", ".join(table.rules)
         raise LinesError(f"No description begins with a line code: {known} are known.")

@@ -204,4 +204,4 @@ def find_style(name: str) -> Style:
     >>> find_style("carlson").find_meaning("+7")
     'begin'
     """
-    return STYLES[choice("style", name, CodeStyle)]
+    return STYLES[choice("code_style", name, CodeStyle)]

@@ -30,7 +30,7 @@ __all__ = [
     "list_suffixes",
 ]
 
-_FAMILIES = ("delimited", "raster", "vector", "mesh", "tables")
+_FAMILIES = ("delimited", "field_survey", "raster", "vector", "mesh", "tables")
 """Packages of ``tinsmith.io`` with a module ``formats``, in the order in which they are asked."""
 
 _ENTRY_POINTS = "tinsmith.formats"
