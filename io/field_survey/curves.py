@@ -71,13 +71,15 @@ class Arc(NamedTuple):
         """Return points at shares of the length, (k, 2)."""
         chord = self.end - self.start
         if self.is_straight:
-            return self.start + shares[:, None] * chord
+            straight: NDArray[np.float64] = self.start + shares[:, None] * chord
+            return straight
         turn = self.angle * (shares - 1.0)  # of the direction from the start, seen from the chord
         reach = np.sin(self.angle * shares) / math.sin(self.angle)
         cos, sin = reach * np.cos(turn), reach * np.sin(turn)
-        return self.start + np.column_stack(
+        bent: NDArray[np.float64] = self.start + np.column_stack(
             [cos * chord[0] - sin * chord[1], sin * chord[0] + cos * chord[1]]
         )
+        return bent
 
 
 def fit_arcs(points: NDArray[np.float64]) -> list[list[Arc]]:

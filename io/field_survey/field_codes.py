@@ -47,6 +47,7 @@ RULES: Mapping[str, LineRole] = {
 """Codes that make lines, and what these become. A building is a hard line: the ground around it
 stays one surface, for contours and volumes; who wants the footprint cut out says "hole"."""
 
+_SHOWN = 5
 _TOLERANCE_METRES = 0.01
 """By which chords leave arcs where nobody says: below what a shot is worth."""
 
@@ -231,6 +232,7 @@ class _Builder:
                 *survey.notes,
                 *notes,
                 *told,
+                *self._note_curves(),
                 *(self._note_water_level(figure) for figure, _ in lines["water"]),
             ],
             findings=[*survey.findings, *findings],
@@ -297,6 +299,22 @@ class _Builder:
     def _make_water(self, figure: Figure, ring: NDArray[np.float64]) -> Water:
         level = float(np.median(self.survey.points[figure.rows, 2]))
         return Water(ring[:, :2], level, name=figure.name)
+
+    def _note_curves(self) -> list[str]:
+        """Say that vertices which nobody shot stand for curves."""
+        bent = [one for one in self.figures if one.n_added]
+        if not bent:
+            return []
+        added = sum(one.n_added for one in bent)
+        names = ", ".join(dict.fromkeys(one.name for one in bent[:_SHOWN]))
+        more = " ..." if len(bent) > _SHOWN else ""
+        keeps = sorted({one.rule.arc_tolerance or self.tolerance for one in bent})
+        within = " or ".join(f"{one:.4g}" for one in keeps[:3])
+        verb = "vertex stands" if added == 1 else "vertices stand"
+        return [
+            f"{added:,} {verb} for the curves of {names}{more}, whose chords keep within {within} "
+            "of them; their elevations change evenly from shot to shot."
+        ]
 
     def _note_water_level(self, figure: Figure) -> str:
         z = self.survey.points[figure.rows, 2]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from .code_table import Rule
-    from .descriptions import Coded, Description
+    from .descriptions import Coded
     from .styles import Meaning
 
 __all__ = ["RINGS", "Curve", "Fault", "Figure", "Shot", "find_curves", "follow_figures"]
@@ -60,6 +60,8 @@ class Figure:
         Whether a fourth corner closes it.
     is_begun, is_ended : bool
         Whether marks say so.
+    n_added : int
+        Vertices of its curves that are no shots.
     """
 
     name: str
@@ -69,6 +71,7 @@ class Figure:
     is_rectangle: bool = False
     is_begun: bool = False
     is_ended: bool = False
+    n_added: int = 0
 
     @property
     def rows(self) -> list[int]:
@@ -167,11 +170,10 @@ class _Follower:
         ends = any(figure.is_ended for figure in self.figures)
         for figure in self.figures:
             if "continue" in figure.shots[-1].marks:
-                at = (figure.rows[-1],)
-                self.faults.append(Fault("nothing to continue", figure.name, at))
+                self.faults.append(Fault("nothing to continue", figure.name, (figure.rows[-1],)))
             if ends and figure.is_begun and not figure.is_ended and len(figure.shots) > 1:
-                at = (figure.rows[0], figure.rows[-1])
-                self.faults.append(Fault("line without an end", figure.name, at))
+                ends_at = (figure.rows[0], figure.rows[-1])
+                self.faults.append(Fault("line without an end", figure.name, ends_at))
 
 
 def _is_before(marks: Sequence[Meaning], some: Sequence[Meaning], other: Meaning) -> bool:

@@ -59,6 +59,7 @@ def build_polyline(
     for curve in curves:
         line.bend(*_find_span(curve, kept), is_tangent=curve.is_tangent)
     vertices = line.join(tolerance)
+    figure.n_added = len(vertices) - len(shots)
     if figure.is_rectangle:
         vertices = np.vstack([vertices, *_find_corner(figure, shots, tell)])
     is_back = len(vertices) > 1 and (vertices[0] == vertices[-1]).all()

@@ -38,7 +38,8 @@ SENTENCES = {
         "{count} [curve leaves its|curves leave their] second leg by more than 10°"
     ),
     "curve that turns back": (
-        "{count} tangent [curve points|curves point] away from [its|their] end and [is|are] straight"
+        "{count} tangent [curve points|curves point] away from [its|their] end and [is|are] "
+        "straight"
     ),
     "repeated point": (
         "{count} [shot stands|shots stand] at the place of the one before and [is|are] taken once"

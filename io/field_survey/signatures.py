@@ -15,7 +15,7 @@ _JOBXML = re.compile(rb"<JOBFile[\s>]")
 
 
 def is_gsi(head: bytes) -> bool:
-    """Whether the file is certainly Leica GSI: a word of a point or code, and another, or an end."""
+    """Whether the file is certainly Leica GSI: a word of a point or code, and another."""
     return _GSI.match(head) is not None
 
 

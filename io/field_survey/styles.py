@@ -5,8 +5,8 @@ Each style says where its words are from:
 - ``words``: what crews write whatever the program; the default.
 - ``dash``, ``slash``, ``dot``: the same words, parted by one more letter: EP1-B, EP1/B, EP1.B.
 - ``star``: EP1* begins a new line; ``star-end``: EP1* ends the line.
-- ``civil3d``: a linework code set of Autodesk Civil 3D with the codes of its documentation: B begin,
-  C continue, E end, CLS close, BC and EC curves, RECT; behind ``/`` follows a comment.
+- ``civil3d``: a linework code set of Autodesk Civil 3D with the codes of its documentation: B
+  begin, C continue, E end, CLS close, BC and EC curves, RECT; behind ``/`` follows a comment.
 - ``carlson``: Carlson Field to Finish: +7 and -7 of PointCAD, PC and PT curves, CLO.
 - ``trimble``: control codes of Trimble Business Center as LISCAD lists them: ST, END, CLOSE,
   CLSRECT, SA and EA arcs that leave their leg as a tangent, SC and EC curves.

@@ -48,7 +48,7 @@ _SAME_PLACE = 0.05
 
 
 class _Word(NamedTuple):
-    index: int
+    number: int
     unit: str
     sign: str
     data: str
@@ -138,11 +138,11 @@ def _iterate_blocks(lines: TextLines, path: Path) -> Iterator[_Block]:
             continue
         block: _Block | None = None
         for word in _split(text, number + 1, path):
-            if block is None or (word.index in (11, 41) and block.words):
+            if block is None or (word.number in (11, 41) and block.words):
                 if block is not None:
                     yield block
                 block = _Block(number + 1)
-            block.words.setdefault(word.index, word)
+            block.words.setdefault(word.number, word)
         if block is not None:
             yield block
 
@@ -303,7 +303,8 @@ class _Reader:
 
     def _set_up(self, block: _Block) -> None:
         if all(index in block.words for index in _STATION):
-            place = tuple(self._length(block, index) for index in _STATION)
+            x, y, z = (self._length(block, index) for index in _STATION)
+            place = (x, y, z)
             if place != self._station:
                 self._height = math.nan
             self._station = place
@@ -345,7 +346,7 @@ class _Reader:
 
     def _fail_value(self, block: _Block, word: _Word, allowed: str) -> ReadError:
         return ReadError(
-            f"'{self.book.path}', line {block.line}: word {word.index} is "
+            f"'{self.book.path}', line {block.line}: word {word.number} is "
             f"'{word.unit}{word.sign}{word.data}', and it must have {allowed}.",
             path=self.book.path,
             lines=[block.line],

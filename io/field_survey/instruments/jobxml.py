@@ -1,9 +1,9 @@
 """Trimble JobXML files (.jxl): points of the reductions, else those of the field book.
 
-All lengths of JobXML are metres, whatever the job showed in the field. Of the reductions every point
-is read, of the field book the records that are not deleted and have a position in the grid, keyed
-in, computed or observed by GNSS. Circle readings are not reduced here, since corrections of the
-instrument would be missing: a job that is exported with its reductions has all of it.
+All lengths of JobXML are metres, whatever the job showed in the field. Of the reductions every
+point is read, of the field book the records that are not deleted and have a position in the grid,
+keyed in, computed or observed by GNSS. Circle readings are not reduced here, since corrections of
+the instrument would be missing: a job that is exported with its reductions has all of it.
 
 Reference: Trimble, JobXML schema 5.3.
 """
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 __all__ = ["read"]
 
-_RECORDS = {
+_RECORDS: dict[tuple[str, ...], str] = {
     ("JOBFile", "Reductions", "Point"): "reductions",
     ("JOBFile", "InventoryData", "Point"): "reductions",
     ("JOBFile", "FieldBook", "PointRecord"): "field book",

@@ -138,7 +138,8 @@ class Book:
         lost = ", ".join(f"{len(lines):,} {what}" for what, lines in self.left_out.items())
         why = f": {lost}" if lost else ""
         first = self.notes[0] if self.notes else ""
-        return f"'{self.path}' holds no point with coordinates{why}{f' ({first[:-1]})' if first else ''}."
+        hint = f" ({first[:-1]})" if first else ""
+        return f"'{self.path}' holds no point with coordinates{why}{hint}."
 
     def _settle(self, crs: CRS | None, declared: Unit | None) -> Unit:
         """Return the unit of the file's lengths: feet are those of the CRS, or as declared."""

@@ -1,10 +1,10 @@
 """Radial shots reduced to coordinates.
 
 The slope distance s, the zenith angle v and the azimuth a from a station give, in the plane,
-``e = e0 + s sin v sin a`` and ``n = n0 + s sin v cos a``; in height ``z = z0 + i + s cos v - t`` with
-the heights i of the instrument and t of the target. The curvature of the earth and refraction raise
-the target by ``(1 - k) (s sin v)^2 / 2R`` where a coefficient k is given. Nothing else is applied: no
-scale of a projection, no sea level, no weather, no constant of a prism.
+``e = e0 + s sin v sin a`` and ``n = n0 + s sin v cos a``; in height ``z = z0 + i + s cos v - t``
+with the heights i of the instrument and t of the target. The curvature of the earth and refraction
+raise the target by ``(1 - k) (s sin v)^2 / 2R`` where a coefficient k is given. Nothing else is
+applied: no scale of a projection, no sea level, no weather, no constant of a prism.
 """
 
 from __future__ import annotations

@@ -11,14 +11,17 @@ from typing import Any, TypeVar, get_args
 import click
 
 from ..policies import DuplicatePolicy, FeatureKind
-from .line_options import LINE_OPTIONS
+from .line_options import CODE_OPTIONS, LINE_OPTIONS
 from .output.console import Console
 from .paths import INPUT
 
 __all__ = [
+    "CODE_FLAGS",
+    "Coding",
     "Reading",
     "Triangulating",
     "Writing",
+    "coding_options",
     "console_options",
     "input_file",
     "output_files",
@@ -32,6 +35,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
 _METHOD = ("duplicates", "snap", "threads", "crossing", "conforming", "max_edge", "trim")
+CODE_FLAGS = ("codes", "code_table", "code_style")
 _FILES = ("breaklines", "soft_breaklines", "boundary", "holes", "erase", "water")
 
 
@@ -52,10 +56,34 @@ class Reading:
     stride: int | None = None
     nodata: tuple[float, ...] | None = None
     fill: bool | None = None
+    code_blocks: str | None = None
+    oriented: bool | None = None
+    refraction: float | None = None
 
 
 @dataclass(frozen=True)
-class Triangulating:
+class Coding:
+    """How the points' own codes become lines."""
+
+    codes: bool = False
+    code_table: Path | None = None
+    code_style: str | None = None
+    arc_tolerance: float | None = None
+
+    @property
+    def has_codes(self) -> bool:
+        """Whether lines are made of codes; a table or a style asks for it, too."""
+        return self.codes or self.code_table is not None or self.code_style is not None
+
+    @property
+    def coding(self) -> dict[str, Any]:
+        """Options of :func:`tinsmith.lines_from_codes`."""
+        names = ("code_table", "code_style", "arc_tolerance")
+        return {name: getattr(self, name) for name in names}
+
+
+@dataclass(frozen=True)
+class Triangulating(Coding):
     """How points become a TIN."""
 
     duplicates: str = "mean"
@@ -74,7 +102,6 @@ class Triangulating:
     water_z: float | str | None = None
     lines_z_unit: str | None = None
     drape: bool = False
-    codes: bool = False
 
     @property
     def method(self) -> dict[str, Any]:
@@ -101,7 +128,7 @@ class Triangulating:
     @property
     def shaping(self) -> list[str]:
         """Names of the options given that need points to build from."""
-        names = ("max_edge", "codes", "conforming", *_FILES)
+        names = ("max_edge", *CODE_FLAGS, "conforming", *_FILES)
         return [f"--{name.replace('_', '-')}" for name in names if getattr(self, name)]
 
 
@@ -235,6 +262,24 @@ reading_options = _gather(
     click.option(
         "--fill", is_flag=True, default=None, help="Let the surface span the voids of a raster."
     ),
+    click.option(
+        "--code-blocks",
+        type=click.Choice(("before", "after")),
+        help="Where the codes of a GSI file stand, seen from their points.",
+    ),
+    click.option(
+        "--oriented",
+        is_flag=True,
+        default=None,
+        help="Take the circle readings of a GSI file for azimuths, to reduce its shots.",
+    ),
+    click.option(
+        "--refraction",
+        metavar="K",
+        type=float,
+        help="Coefficient by which shots of GSI and SDR files are corrected for refraction and the "
+        "earth's curvature, such as 0.13; default neither.",
+    ),
 )
 
 triangulating_options = _gather(
@@ -263,6 +308,8 @@ triangulating_options = _gather(
     ),
     *LINE_OPTIONS,
 )
+
+coding_options = _gather("how", Coding, *CODE_OPTIONS)
 
 writing_options = _gather(
     "writing",

@@ -15,6 +15,7 @@ from .files import (
     write_figure,
     write_outputs,
 )
+from .options import CODE_FLAGS
 from .output.failures import Failure
 from .paths import STANDARD, Named, require_separate
 
@@ -138,9 +139,10 @@ def read_surfaces(
 
     found = [read_input(file, reading, console) for file in files]
     n_surveys = sum(not isinstance(one, TIN) for one in found)
-    named = [flag for flag in how.shaping if flag != "--codes"]
-    if (named and n_surveys != 1) or (how.codes and n_surveys == 0):
-        flag = (named or ["--codes"])[0]
+    of_codes = [f"--{name.replace('_', '-')}" for name in CODE_FLAGS]
+    named = [flag for flag in how.shaping if flag not in of_codes]
+    if (named and n_surveys != 1) or (how.has_codes and n_surveys == 0):
+        flag = (named or how.shaping)[0]
         raise Failure(
             f"{flag} needs {'a' if n_surveys == 0 else 'one'} file of points, and there are "
             f"{n_surveys}: 'tinsmith build' makes TINs of them first."
