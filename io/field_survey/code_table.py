@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NoReturn, get_args
 from ..._sentences import printable, shown
 from ...errors import OptionError, ReadError
 from ...policies import CodeKind, CodeStyle
+from .descriptions import LONGEST_CODE
 from .styles import MEANINGS, STYLES, Meaning, Style
 
 if TYPE_CHECKING:
@@ -151,8 +152,10 @@ class _Reader:
         rules: dict[str, Rule] = {}
         for code, value in codes.items():
             name = code if is_exact else code.upper()
-            if not name or any(letter.isspace() or letter in "\"'" for letter in name):
-                self._fail("a code", code, "a word without blanks and quotes")
+            is_word = not any(letter.isspace() or letter in "\"'" for letter in name)
+            if not 0 < len(name) <= LONGEST_CODE or not is_word:
+                allowed = f"a word of up to {LONGEST_CODE} letters without blanks and quotes"
+                self._fail("a code", code, allowed)
             if name in rules:
                 self._fail("a code", code, "there once: another one is written alike but for case")
             rules[name] = self._read_rule(code, value)

@@ -1,7 +1,7 @@
 """Curves through shots: arcs that are densified until no chord leaves them by a tolerance.
 
-The curve through three shots is their circle. Through more it is a chain of arcs that passes through
-every shot and has no corner: the tangent at a shot is that of the circle through it and its
+The curve through three shots is their circle. Through more it is a chain of arcs that passes
+through every shot and has no corner: the tangent at a shot is that of the circle through it and its
 neighbours, and two arcs that meet in a common tangent (a biarc) join two shots. Where the shots lie
 on one circle the chain is this circle. Between two shots alone the arc leaves the first one in the
 direction of the leg before it, or reaches the second in that of the leg behind it.

@@ -11,14 +11,13 @@ if TYPE_CHECKING:
 
     from .styles import Meaning, Style
 
-__all__ = ["Coded", "Description", "Vocabulary"]
+__all__ = ["LONGEST_CODE", "Coded", "Description", "Vocabulary"]
 
-_CODE = re.compile(r"(?P<code>[^\W\d_]+)(?P<number>\d*)(?![^\W_])(?P<rest>.*)", re.DOTALL)
 _NUMBERED = re.compile(r"(?P<number>\d*)(?![^\W_])(?P<rest>.*)", re.DOTALL)
 _TIGHT = r"(?<=[\w*])[{0}]+(?=\S)|(?<!\S)[{0}]+(?=[^\W\d])"
 """A separator stands within a text, or before a word: EP1-B, EP1 -B; alone it parts nothing."""
-_LONGEST = 2_000
-"""Letters of a description that are looked at."""
+_LONGEST, LONGEST_CODE = 2_000, 64
+"""Letters of a description, and of a code, that are looked at."""
 
 
 class Coded(NamedTuple):
@@ -143,13 +142,8 @@ class Vocabulary:
         return Description(tuple(codes), given[0] if codes and given else "", words[0])
 
     def _match_code(self, word: str) -> tuple[Coded, list[str]] | None:
-        """Return the code at the start of a word, with its number, and what follows in the word."""
-        if word in self.codes:
-            return Coded(word, ""), []
-        found = _CODE.match(word)
-        if found is not None and found["code"] in self.codes:
-            return Coded(found["code"], found["number"]), [found["rest"]] if found["rest"] else []
-        for length in range(len(word) - 1, 0, -1):
+        """Return the longest code that begins a word, with its number, and what follows in it."""
+        for length in range(min(len(word), LONGEST_CODE), 0, -1):
             if word[:length] not in self.codes:
                 continue
             rest = _NUMBERED.fullmatch(word[length:])

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from ..._sentences import counted
 from ...errors import LinesError
 from .descriptions import Coded, Description, Vocabulary
-from .figures import Fault, Figure, find_curves, follow_figures
+from .figures import NO_LINES, Fault, Figure, find_curves, follow_figures
 from .styles import STYLES, Style
 
 if TYPE_CHECKING:
@@ -98,8 +98,17 @@ def _follow(
     faults += _find_codes_behind_others(coded, rules)
     for figure in figures:
         find_curves(figure, faults.append)
-    unread = [Unread(row, word) for row in order if (word := descriptions[texts[row]].unread) != ""]
+    unread = [
+        Unread(row, descriptions[texts[row]].unread)
+        for row in order
+        if _has_unread_mark(descriptions[texts[row]], rules)
+    ]
     return Reading(style, figures, faults, unread, descriptions)
+
+
+def _has_unread_mark(description: Description, rules: dict[str, Rule]) -> bool:
+    """Whether a word that is not understood stands behind the code of a line."""
+    return bool(description.unread) and rules[description.codes[-1].code].kind not in NO_LINES
 
 
 def _find_codes_behind_others(
@@ -111,7 +120,7 @@ def _find_codes_behind_others(
     for row, codes in coded:
         for one in codes[1:]:
             is_doubtful = not one.number and not one.marks and one.code not in first
-            if is_doubtful and rules[one.code].kind not in ("point", "exclude"):
+            if is_doubtful and rules[one.code].kind not in NO_LINES:
                 found.setdefault(one.code, []).append(row)
     return [Fault("code behind others", code, tuple(rows)) for code, rows in found.items()]
 

@@ -11,10 +11,10 @@ if TYPE_CHECKING:
     from .descriptions import Coded
     from .styles import Meaning
 
-__all__ = ["RINGS", "Curve", "Fault", "Figure", "Shot", "find_curves", "follow_figures"]
+__all__ = ["NO_LINES", "RINGS", "Curve", "Fault", "Figure", "Shot", "find_curves", "follow_figures"]
 
 RINGS = ("boundary", "hole", "erase", "water")
-_MADE = ("point", "exclude")
+NO_LINES = ("point", "exclude")
 """Kinds whose codes make no line."""
 
 
@@ -91,7 +91,7 @@ class Figure:
     @property
     def key(self) -> tuple[object, ...]:
         """What tells it from another one: two readings with equal keys are one line."""
-        curves = tuple(find_curves(self, lambda fault: None))
+        curves = tuple(find_curves(self))
         return (self.rule.kind, tuple(self.rows), self.is_ring, self.is_rectangle, curves)
 
 
@@ -114,7 +114,7 @@ def follow_figures(
     follower = _Follower(rules)
     for row, codes in coded:
         for one in codes:
-            if rules[one.code].kind not in _MADE:
+            if rules[one.code].kind not in NO_LINES:
                 follower.add(row, one)
     follower.finish()
     return follower.figures, follower.faults
@@ -180,7 +180,12 @@ def _is_before(marks: Sequence[Meaning], some: Sequence[Meaning], other: Meaning
     return any(one in some for one in marks[: marks.index(other)])
 
 
-def find_curves(figure: Figure, tell: Callable[[Fault], None]) -> list[Curve]:
+def _say_nothing(fault: Fault) -> None:
+    """Take a fault that has been told already."""
+    del fault
+
+
+def find_curves(figure: Figure, tell: Callable[[Fault], None] = _say_nothing) -> list[Curve]:
     """Find the curves of a line, and tell of those that have too few shots, or no begin.
 
     A curve goes on to its end; without one it is the arc through three shots.

@@ -51,7 +51,7 @@ def build_polyline(
     LinesError
         If an arc would need too many vertices.
     """
-    curves = find_curves(figure, lambda fault: None)
+    curves = find_curves(figure)
     kept = _drop_repeated(figure, points, curves, tell)
     rows = [figure.rows[i] for i in kept]
     shots = points[rows]
@@ -165,13 +165,13 @@ class _Line:
         parts = [self.shots[:1]]
         for i in range(len(self.shots) - 1):
             if i in self.arcs:
-                self._require_few(self.arcs[i], tolerance, i)
+                self._require_few(self.arcs[i], tolerance)
                 heights = (float(self.shots[i, 2]), float(self.shots[i + 1, 2]))
                 parts.append(densify(self.arcs[i], heights, tolerance))
             parts.append(self.shots[i + 1 : i + 2])
         return np.vstack(parts)
 
-    def _require_few(self, arcs: list[Arc], tolerance: float, at: int) -> None:
+    def _require_few(self, arcs: list[Arc], tolerance: float) -> None:
         if sum(arc.count_chords(tolerance) for arc in arcs) > MOST_VERTICES:
             raise LinesError(
                 f"A curve of {self.figure.name} would need more than {MOST_VERTICES:,} vertices "

@@ -1,11 +1,12 @@
 """Leica GSI files, of words with 8 or 16 characters.
 
-A line is a block of words; each begins with its word index, tells units and how the value came to be
-in front of a sign, and ends with a blank: ``81..00+00515836`` is an easting of 515.836 m. Word indices
-read: 11 point, 21 circle, 22 zenith angle, 31 slope distance, 41 to 49 code block, 71 to 79 remarks,
-81 to 83 easting, northing, elevation of the target, 84 to 86 those of the station, 87 height of the
-target, 88 of the instrument. Unit digits: 0 mm, 1 thousandths of feet, 2 gon, 3 degrees,
-4 degrees, minutes and seconds, 5 mil, 6 tenths of mm, 7 ten-thousandths of feet, 8 hundredths of mm.
+A line is a block of words; each begins with its word index, tells units and how the value came to
+be in front of a sign, and ends with a blank: ``81..00+00515836`` is an easting of 515.836 m. Word
+indices read: 11 point, 21 circle, 22 zenith angle, 31 slope distance, 41 to 49 code block, 71 to 79
+remarks, 81 to 83 easting, northing, elevation of the target, 84 to 86 those of the station, 87
+height of the target, 88 of the instrument. Unit digits: 0 mm, 1 thousandths of feet, 2 gon, 3
+degrees, 4 degrees, minutes and seconds, 5 mil, 6 tenths of mm, 7 ten-thousandths of feet, 8
+hundredths of mm.
 
 Reference: Leica Geosystems, TPS1100 User Manual 2.2, chapter Data format.
 """
