@@ -105,7 +105,9 @@ class Vocabulary:
             text = text.upper()
         if self.style.separators:
             text = re.sub(_TIGHT.format(re.escape(self.style.separators)), " ", text)
-        return text.replace("*", " * ").split() if "*" in self.style.marks else text.split()
+        words = (text.replace("*", " * ") if "*" in self.style.marks else text).split()
+        alone = (i for i, word in enumerate(words) if not word.strip(self.style.separators or " "))
+        return words[: next(alone, len(words))]  # behind a separator alone follows a remark
 
     def _parse_behind(self, words: list[str], codes: list[Coded]) -> str:
         """Add marks and further codes; return the first word that is neither."""

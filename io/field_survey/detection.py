@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Reading", "choose_reading", "read_in_style"]
 
-_HARMLESS = ("curve without an end", "line without an end", "code behind others")
-"""What crews leave out, or do, in any style."""
+_HARMLESS = ("curve without an end", "line without an end")
+"""What crews leave out in any style."""
 _COUNTED = "end without a begin"
 """Such a line is counted for its one shot already."""
 
@@ -53,10 +53,14 @@ class Reading:
 
     @property
     def n_faults(self) -> int:
-        """How much speaks against it."""
+        """How much speaks against it: words that are not read, and lines that are odd."""
+        return len(self.unread) + self.n_odd_lines
+
+    @property
+    def n_odd_lines(self) -> int:
+        """How much is odd in the lines themselves."""
         short = sum(len(one.shots) < one.least for one in self.figures)
-        told = sum(fault.kind not in (*_HARMLESS, _COUNTED) for fault in self.faults)
-        return len(self.unread) + short + told
+        return short + sum(fault.kind not in (*_HARMLESS, _COUNTED) for fault in self.faults)
 
     @property
     def key(self) -> frozenset[tuple[object, ...]]:
@@ -153,7 +157,8 @@ def choose_reading(
     Notes
     -----
     1. A style is tried if it understands a word that the default leaves, or the default finds
-       something odd; a style of short words that may be remarks needs two of them.
+       something odd. A style of short words that may be remarks needs two of them, or to leave
+       fewer odd lines; where it needs neither, and leaves nothing odd, it is a doubt.
     2. Those with the fewest oddities are plausible. If all of them lead to the same lines the
        first is taken.
     3. If not, and something is odd in each, the default is taken where it is among them, as it
@@ -164,24 +169,39 @@ def choose_reading(
     found = [plain]
     for style in list(STYLES.values())[1:]:
         parsed = plain.descriptions | _parse(coded, rules, style)
-        if parsed != plain.descriptions and _is_worth_a_try(parsed, style, plain):
-            found.append(_follow(order, texts, rules, style, parsed))
+        if parsed != plain.descriptions:
+            reading = _follow(order, texts, rules, style, parsed)
+            if _is_plausible(reading, plain):
+                found.append(reading)
     least = min(one.n_faults for one in found)
     plausible = [one for one in found if one.n_faults == least]
     first = plausible[0]
     other = next((one for one in plausible[1:] if one.key != first.key), None)
+    if other is None and first.style.least_words > 1 and plain.n_odd_lines == 0:
+        other = plain if plain.key != first.key and not _is_meant(first, plain) else None
     if other is not None and (least == 0 or first is not plain):
         raise _refuse(first, other, name_row)
     return first, [] if first is plain else [_describe_choice(first, plain)]
 
 
-def _is_worth_a_try(parsed: dict[str, Description], style: Style, plain: Reading) -> bool:
+def _is_plausible(reading: Reading, plain: Reading) -> bool:
     """Whether a style has enough words of its own there, or the default leaves doubts."""
-    words = {word for one in parsed.values() for code in one.codes for word in code.words}
-    if len(words - plain.style.marks.keys()) < style.least_words:
+    parsed = reading.descriptions
+    if (
+        not _is_meant(reading, plain)
+        and reading.n_odd_lines >= plain.n_odd_lines
+        and reading.n_faults > 0
+    ):
         return False
     says_more = any(one.n_words > plain.descriptions[text].n_words for text, one in parsed.items())
     return plain.n_faults > 0 or says_more
+
+
+def _is_meant(reading: Reading, plain: Reading) -> bool:
+    """Whether enough words of a style's own are there, so that they are no remarks."""
+    parsed = reading.descriptions.values()
+    words = {word for one in parsed for code in one.codes for word in code.words}
+    return len(words - plain.style.marks.keys()) >= reading.style.least_words
 
 
 def _describe_choice(chosen: Reading, plain: Reading) -> str:

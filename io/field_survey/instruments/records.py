@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...._sentences import counted
 from ....crs import CRS, FOOT, METRE, US_SURVEY_FOOT, Unit, require_same_unit
 from ....errors import CrsError, OptionError, ReadError
 from ....tin import Survey
@@ -135,7 +136,7 @@ class Book:
         return attributes
 
     def _describe_nothing(self) -> str:
-        lost = ", ".join(f"{len(lines):,} {what}" for what, lines in self.left_out.items())
+        lost = ", ".join(_count(what, len(lines)) for what, lines in self.left_out.items())
         why = f": {lost}" if lost else ""
         first = self.notes[0] if self.notes else ""
         hint = f" ({first[:-1]})" if first else ""
@@ -193,10 +194,14 @@ def _describe_left_out(what: str, lines: Sequence[int]) -> str:
     shown = ", ".join(f"{line}" for line in lines[:_SHOWN])
     more = ", ..." if len(lines) > _SHOWN else ""
     verb = "is" if len(lines) == 1 else "are"
-    noun = (
-        what.replace("points", "point", 1).replace("shots", "shot", 1) if len(lines) == 1 else what
-    )
-    return f"{len(lines):,} {noun} {verb} left out: line{'s' * (len(lines) > 1)} {shown}{more}."
+    places = f"line{'s' * (len(lines) > 1)} {shown}{more}"
+    return f"{_count(what, len(lines))} {verb} left out: {places}."
+
+
+def _count(what: str, number: int) -> str:
+    """Count points or shots of some kind, such as "shots without orientation"."""
+    noun, _, rest = what.partition("s ")
+    return f"{counted(number, noun)} {rest}"
 
 
 def parse_names(names: Sequence[str]) -> np.ndarray[Any, Any]:

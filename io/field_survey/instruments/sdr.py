@@ -34,6 +34,8 @@ __all__ = ["read"]
 
 _ANGLES = {"1": "degrees", "2": "gon", "4": "mil"}
 _RIGHT_ANGLE = math.pi / 2
+_FIELDS = {"02": (1, 4), "07": (2, 2), "08": (1, 3), "09": (2, 3)}
+"""By record: how many names and how many numbers it has."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,7 +100,11 @@ def read(
     lines = read_lines(path, encoding=encoding)
     reader = _Reader(lines, path, coefficient)
     for number in range(len(lines)):
-        reader.read_record(lines.decode_line(number), number + 1)
+        line = lines.decode_line(number)
+        if number == len(lines) - 1 and not lines.is_whole and reader.may_be_cut(line):
+            reader.book.leave_out("records without an end that may be cut", number + 1)
+        else:
+            reader.read_record(line, number + 1)
     reader.finish()
     return reader.book.make_survey(crs=crs, z_unit=z_unit, source_crs=source_crs)
 
@@ -150,6 +156,14 @@ class _Reader:
         self.book.unit = METRE if length == "1" else None
         return columns, order == "2", _ANGLES[angle]
 
+    def may_be_cut(self, line: str) -> bool:
+        """Whether the last number of a record may go on."""
+        if line[:2] not in self._readers:
+            return False
+        names, numbers = _FIELDS.get(line[:2], (0, 1))
+        width = 4 + names * self.columns.name + numbers * self.columns.number
+        return len(line) < width
+
     def read_record(self, line: str, number: int) -> None:
         """Take one record; of kinds that say nothing of points none."""
         reader = self._readers.get(line[:2])
@@ -166,25 +180,25 @@ class _Reader:
         self.scale = self._number(line[4:20].strip(), number)
 
     def _read_station(self, line: str, number: int) -> None:
-        name, *cells, _ = self.columns.split(line, 1, 4)
+        name, *cells, _ = self.columns.split(line, *_FIELDS["02"])
         x, y, z, height = (self._number(cell, number) for cell in cells)
         self.stations[name] = (x, y, z, height) if self.is_east_first else (y, x, z, height)
         self.orientations.pop(name, None)
 
     def _read_back_bearing(self, line: str, number: int) -> None:
-        name, _, *cells, _ = self.columns.split(line, 2, 2)
+        name, _, *cells, _ = self.columns.split(line, *_FIELDS["07"])
         azimuth, circle = (to_radians(self._number(cell, number), self.angle) for cell in cells)
         self.orientations[name] = azimuth - circle
 
     def _read_coordinates(self, line: str, number: int) -> None:
-        name, *cells, code = self.columns.split(line, 1, 3)
+        name, *cells, code = self.columns.split(line, *_FIELDS["08"])
         x, y, z = (self._number(cell, number) for cell in cells)
         xyz = (x, y, z) if self.is_east_first else (y, x, z)
         self._known.add(name)
         self.book.add(name, xyz, code, number, "coordinates")
 
     def _read_observation(self, line: str, number: int) -> None:
-        station, name, *cells, code = self.columns.split(line, 2, 3)
+        station, name, *cells, code = self.columns.split(line, *_FIELDS["09"])
         kind = line[2:4]
         if kind not in ("F1", "F2"):
             self._waiting.append((number, name, code, None, Shot(*(math.nan,) * 4)))
@@ -216,7 +230,7 @@ class _Reader:
                 what = "shots without station, back bearing, heights, angles or distance"
                 self.book.leave_out(what, number)
             elif name in done:
-                self.book.leave_out("further shots of points", number)
+                self.book.leave_out("shots of points that have one already", number)
             else:
                 done.add(name)
                 xyz = reduce_shot(station, shot, refraction=self.refraction, metres=metres)

@@ -114,9 +114,12 @@ def test_the_letter_x_closes_excludes_or_extends():
 
 
 def test_short_words_that_may_be_remarks_do_not_make_a_style():
-    rows = ("EP1 N", "EP1", "EP1 N", "EP1")
-    assert lines(*rows) == [("EP1", [0, 1, 2, 3])]
-    assert "2 unknown marks" in notes(*rows)
+    rows = ("EP1 N", "EP1", "EP1 N", "EP1 S", "EP1")
+    assert lines(*rows) == [("EP1", [0, 1, 2, 3, 4])]
+    assert "3 unknown marks" in notes(*rows)
+    doubtful = ("EP1 N", "EP1", "EP1 N", "EP1")
+    refused("two styles, 'leica' and 'words'", *doubtful)
+    assert lines(*doubtful, code_style="words") == [("EP1", [0, 1, 2, 3])]
 
 
 def test_several_codes_of_one_shot():
