@@ -20,6 +20,7 @@ __all__ = [
     "FeatureKind",
     "InterpolationMethod",
     "LineKind",
+    "LineReading",
     "LineRole",
     "OutsidePolicy",
     "OverviewMethod",
@@ -77,6 +78,9 @@ CodeStyle: TypeAlias = Literal[
     "cg",
 ]
 """How field codes are written."""
+
+LineReading: TypeAlias = Literal["points", "breaklines"]
+"""What the lines of a file of points are taken for: their vertices, or lines of the surface."""
 
 FeatureKind: TypeAlias = Literal["triangles", "points", "edges", "lines", "hull"]
 """What a GeoJSON file shows of a surface."""

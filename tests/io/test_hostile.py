@@ -213,7 +213,7 @@ def test_a_mosaic_of_a_large_text_is_not_parsed(tmp_path, monkeypatch):
 def test_a_raster_of_more_cells_than_memory_is_refused_at_once(tmp_path, size, monkeypatch):
     from tinsmith.io.raster import dem as raster
 
-    monkeypatch.setattr(raster, "_measure_free_memory", lambda: 1 << 30)
+    monkeypatch.setattr(raster, "measure_free_memory", lambda: 1 << 30)
     path = tmp_path / "bomb.vrt"
     text = virtual("", size=size)
     start, end = text.index("<SimpleSource>"), text.index("</VRTRasterBand>")

@@ -176,15 +176,11 @@ def read_tin(
     return build_tin(survey, how, console), survey
 
 
-def list_inputs(
-    file: Path, how: Coding | None = None, *, script: Path | None = None
-) -> list[Named]:
+def list_inputs(file: Path, how: Coding | None = None) -> list[Named]:
     """Return all files that a command reads."""
     from ..io.vector.survey_lines import split_layer
 
     inputs = [Named(file, "the input")]
-    if script is not None:
-        inputs.append(Named(script, "the script"))
     if how is not None and how.code_table is not None:
         inputs.append(Named(how.code_table, "the file of --code-table"))
     given = getattr(how, "line_files", {})

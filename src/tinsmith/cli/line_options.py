@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any, get_args
+from typing import Any
 
 import click
 
 from ..policies import CodeStyle, CrossingPolicy, TrimPolicy
+from .parameters import choice_option, number_option
 from .paths import LINES
 
 __all__ = ["CODE_OPTIONS", "LINE_OPTIONS"]
@@ -48,16 +49,15 @@ CODE_OPTIONS = (
         type=LINES,
         help="As --codes, by a table of codes (TOML): what each becomes, and how they are written.",
     ),
-    click.option(
+    choice_option(
         "--code-style",
-        type=click.Choice(get_args(CodeStyle)),
-        help="As --codes, in this style; default that of the table, else the one that fits.",
+        CodeStyle,
+        "As --codes, in this style; default that of the table, else the one that fits.",
     ),
-    click.option(
+    number_option(
         "--arc-tolerance",
-        metavar="LENGTH",
-        type=float,
-        help="By which the chords of curves among the codes may leave them, in CRS units; default "
+        "LENGTH",
+        "By which the chords of curves among the codes may leave them, in CRS units; default "
         "0.01 m.",
     ),
 )
@@ -92,27 +92,20 @@ LINE_OPTIONS = (
         "--drape", is_flag=True, help="Take the heights of lines in files from the surface."
     ),
     *CODE_OPTIONS,
-    click.option(
+    choice_option(
         "--crossing",
-        type=click.Choice(get_args(CrossingPolicy)),
+        CrossingPolicy,
+        "Where lines cross: make a vertex there, or refuse.",
         default="split",
-        show_default=True,
-        help="Where lines cross: make a vertex there, or refuse.",
     ),
     click.option(
         "--conforming", is_flag=True, help="Split lines until every edge is Delaunay by itself."
     ),
-    click.option(
-        "--max-edge",
-        metavar="LENGTH",
-        type=float,
-        help="Drop triangles with longer edges, in CRS units.",
-    ),
-    click.option(
+    number_option("--max-edge", "LENGTH", "Drop triangles with longer edges, in CRS units."),
+    choice_option(
         "--trim",
-        type=click.Choice(get_args(TrimPolicy)),
+        TrimPolicy,
+        "Where --max-edge drops them: from the outside inwards, or everywhere.",
         default="perimeter",
-        show_default=True,
-        help="Where --max-edge drops them: from the outside inwards, or everywhere.",
     ),
 )

@@ -6,14 +6,14 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass, fields
 from functools import wraps
 from pathlib import Path
-from typing import Any, TypeVar, get_args
+from typing import Any, TypeVar
 
 import click
 
-from ..policies import DuplicatePolicy, FeatureKind
+from ..policies import DuplicatePolicy, FeatureKind, LineReading
 from .line_options import CODE_OPTIONS, LINE_OPTIONS
 from .output.console import Console
-from .paths import INPUT
+from .parameters import Decorator, choice_option, number_option
 
 __all__ = [
     "CODE_FLAGS",
@@ -23,8 +23,7 @@ __all__ = [
     "Writing",
     "coding_options",
     "console_options",
-    "input_file",
-    "output_files",
+    "format_options",
     "product_options",
     "reading_options",
     "triangulating_options",
@@ -32,7 +31,6 @@ __all__ = [
 ]
 
 Function = TypeVar("Function", bound=Callable[..., Any])
-Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
 _METHOD = ("duplicates", "snap", "threads", "crossing", "conforming", "max_edge", "trim")
 CODE_FLAGS = ("codes", "code_table", "code_style")
@@ -59,6 +57,13 @@ class Reading:
     code_blocks: str | None = None
     oriented: bool | None = None
     refraction: float | None = None
+    classes: str | None = None
+    returns: str | None = None
+    resolution: float | None = None
+    every: int | None = None
+    layer: str | None = None
+    z_field: str | None = None
+    lines_as: str | None = None
 
 
 @dataclass(frozen=True)
@@ -190,23 +195,6 @@ def _parse_given(
     return value or None
 
 
-def input_file(name: str) -> Decorator:
-    """Return the argument for the file to read."""
-    return click.argument(name, type=INPUT)
-
-
-output_files: Decorator = click.option(
-    "-o",
-    "--output",
-    "outputs",
-    metavar="FILE",
-    type=INPUT,
-    multiple=True,
-    required=True,
-    help="File to write; its suffix chooses the format, and one that is there is replaced. "
-    "- is standard output, with --output-format. May be given several times.",
-)
-
 reading_options = _gather(
     "reading",
     Reading,
@@ -243,21 +231,20 @@ reading_options = _gather(
         default=None,
         help="Leave out the rows of a text file that cannot be read, and name them.",
     ),
-    click.option("--band", metavar="N", type=int, help="Band of a raster, counted from 1."),
+    number_option("--band", "N", "Band of a raster, counted from 1.", type=int),
     click.option(
         "--window",
         metavar="XMIN YMIN XMAX YMAX",
         type=(float, float, float, float),
-        help="Part of a raster to read, in the units of its own CRS.",
+        help="Part of a raster or of lidar to read, in the units of its own CRS.",
     ),
-    click.option("--stride", metavar="N", type=int, help="Take every Nth cell of a raster."),
-    click.option(
+    number_option("--stride", "N", "Take every Nth cell of a raster.", type=int),
+    number_option(
         "--nodata",
-        metavar="ELEVATION",
-        type=float,
+        "ELEVATION",
+        "Elevation that stands for no data, such as -9999. May be given several times.",
         multiple=True,
         callback=_parse_given,
-        help="Elevation that stands for no data, such as -9999. May be given several times.",
     ),
     click.option(
         "--fill", is_flag=True, default=None, help="Let the surface span the voids of a raster."
@@ -273,72 +260,79 @@ reading_options = _gather(
         default=None,
         help="Take the circle readings of a GSI file for azimuths, to reduce its shots.",
     ),
-    click.option(
+    number_option(
         "--refraction",
-        metavar="K",
-        type=float,
-        help="Coefficient by which shots of GSI and SDR files are corrected for refraction and the "
+        "K",
+        "Coefficient by which shots of GSI and SDR files are corrected for refraction and the "
         "earth's curvature, such as 0.13; default neither.",
+    ),
+    click.option(
+        "--classes", metavar="N,N", help="Classes of lidar points to take, such as 2 (ground)."
+    ),
+    click.option(
+        "--returns",
+        metavar="NAME,N",
+        help="Returns of lidar points to take: first, last, only, or numbers.",
+    ),
+    click.option(
+        "--resolution",
+        metavar="DISTANCE",
+        type=float,
+        help="Of COPC lidar take the levels down to this distance of points.",
+    ),
+    click.option("--every", metavar="N", type=int, help="Take every Nth point of lidar."),
+    click.option("--layer", metavar="NAME", help="Layer of a vector file."),
+    click.option(
+        "--z-field",
+        metavar="NAME",
+        help="Column of a vector file that holds the elevations; 'geometry' for its coordinates.",
+    ),
+    choice_option(
+        "--lines-as",
+        LineReading,
+        "Take the lines of a vector file as breaklines, or their vertices as points.",
     ),
 )
 
 triangulating_options = _gather(
     "how",
     Triangulating,
-    click.option(
+    choice_option(
         "--duplicates",
-        type=click.Choice(get_args(DuplicatePolicy)),
+        DuplicatePolicy,
+        "Elevation where several points share one place.",
         default="mean",
-        show_default=True,
-        help="Elevation where several points share one place.",
     ),
-    click.option(
-        "--snap",
-        metavar="DISTANCE",
-        type=float,
-        default=0.0,
-        show_default=True,
-        help="Merge points no further apart than this, in CRS units.",
+    number_option(
+        "--snap", "DISTANCE", "Merge points no further apart than this, in CRS units.", default=0.0
     ),
-    click.option(
+    number_option(
         "--threads",
-        metavar="N",
+        "N",
+        "Number of threads; default every core. The result is the same.",
         type=click.IntRange(min=1),
-        help="Number of threads; default every core. The result is the same.",
     ),
     *LINE_OPTIONS,
 )
 
 coding_options = _gather("how", Coding, *CODE_OPTIONS)
 
-writing_options = _gather(
-    "writing",
-    Writing,
-    click.option(
-        "--output-format", metavar="NAME", help="Format of the output, whatever its suffix."
-    ),
-    click.option(
-        "--kind", type=click.Choice(get_args(FeatureKind)), help="What a GeoJSON file shows."
-    ),
-    click.option(
-        "--projected",
-        is_flag=True,
-        help="Leave the coordinates of a GeoJSON file in the CRS of the points.",
-    ),
+_format_option = click.option(
+    "--output-format", metavar="NAME", help="Format of the output, whatever its suffix."
 )
+_kind_option = choice_option("--kind", FeatureKind, "What a GeoJSON file shows.")
 
-product_options = _gather(
-    "writing",
-    Writing,
-    click.option(
-        "--output-format", metavar="NAME", help="Format of the output, whatever its suffix."
-    ),
-    click.option(
-        "--projected",
-        is_flag=True,
-        help="Leave the coordinates of a GeoJSON file in the CRS of the TIN.",
-    ),
+
+def _make_projected_option(whose: str) -> Decorator:
+    words = f"Leave the coordinates of a GeoJSON file in the CRS of the {whose}."
+    return click.option("--projected", is_flag=True, help=words)
+
+
+writing_options = _gather(
+    "writing", Writing, _format_option, _kind_option, _make_projected_option("points")
 )
+product_options = _gather("writing", Writing, _format_option, _make_projected_option("TIN"))
+format_options = _gather("writing", Writing, _format_option)
 
 console_options = _gather(
     "console",

@@ -78,7 +78,6 @@ def test_content_decides_before_the_suffix(name, head, expected):
     [
         (b"PK\x03\x04rest", "ZIP"),
         (b"%PDF-1.7", "PDF"),
-        (b"LASF\x00\x00", "LAS"),
         (b"\x1f\x8b\x08", "gzip"),
         (b"<!DOCTYPE html><html>", "HTML"),
         (b'<?xml version="1.0"?>\n<LandXML version="1.2">', "LandXML"),
