@@ -1090,3 +1090,41 @@ def test_words_between_tabs_are_one_text(tmp_path):
     assert list(found.attributes["description"]) == ["TOP BANK", "TOE OF", "ROAD CL"]
     assert found.points.tolist() == survey.points.tolist()
     assert found.elevation_unit == survey.elevation_unit
+
+
+# ------------------------------------------------------------------ units of the header
+
+
+def _with_units(tmp_path, unit, **options):
+    path = tmp_path / "units.csv"
+    rows = "".join(f"{i},{4024240.5 + i},{752700.5 + i},{5.25 + i}\n" for i in range(4))
+    path.write_text(f"p,n ({unit}),e ({unit}),z (m)\n{rows}")
+    return ts.read(path, **options)
+
+
+@pytest.mark.parametrize("unit", ["ft", "US survey foot", "km", "mm"])
+def test_a_unit_in_the_header_that_the_crs_has_not_is_refused(tmp_path, unit):
+    with pytest.raises(
+        ts.CrsError, match=r"gives the easting in .*, and EPSG:32616 measures in me"
+    ):
+        _with_units(tmp_path, unit, crs="EPSG:32616")
+    with pytest.raises(
+        ts.CrsError, match=r"gives the easting in .*, and EPSG:32616 measures in me"
+    ):
+        _with_units(tmp_path, unit, crs="EPSG:32617", source_crs="EPSG:32616")
+    told = _with_units(tmp_path, unit, crs="EPSG:32616", columns="PNEZ")
+    assert "measures in metre, as which they are taken" in " ".join(told.notes)
+    assert len(_with_units(tmp_path, unit)) == 4
+
+
+@pytest.mark.parametrize(("unit", "crs"), [("m", "EPSG:32616"), ("usft", "EPSG:2274")])
+def test_the_unit_of_the_crs_in_the_header_is_no_doubt(tmp_path, unit, crs):
+    notes = " ".join(_with_units(tmp_path, unit, crs=crs).notes)
+    assert "the header gives" not in notes.lower()
+
+
+def test_feet_of_the_other_kind_are_told(tmp_path):
+    told = " ".join(_with_units(tmp_path, "US survey foot", crs="EPSG:2222").notes)
+    assert "The header gives the easting in US survey foot, and EPSG:2222 measures in foot" in told
+    plain = " ".join(_with_units(tmp_path, "ft", crs="EPSG:2274").notes)
+    assert "header gives" not in plain
