@@ -30,6 +30,7 @@ from .findings import (
 from .layout import find_layout
 from .lines import read_lines
 from .table import describe_columns, describe_faults_of_rows, read_cells, read_table
+from .truncation import leave_out_cut_row
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -141,12 +142,14 @@ def read(
     meaning, notes = _find_columns(cells, layout, area, path)
     told_units = require_unit_of_crs(meaning, source or target, path, is_told=columns is not None)
     table = read_table(cells, layout, meaning, lines)
+    table, told_cut = leave_out_cut_row(table, lines, layout, meaning, path, skip_bad=skip_bad)
     _require_few_faults(table.faults, lines, layout, path, skip_bad=skip_bad)
     told = _account_for_rows(table, left_out, path)
     notes = [
         *layout.notes,
         *notes,
         *told_units,
+        *told_cut,
         *told.notes,
         *require_in_area(told.points, told.rows, meaning, area, path),
         *find_odd_elevations(told.points),
