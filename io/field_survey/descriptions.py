@@ -55,13 +55,10 @@ class Description(NamedTuple):
         Empty if it begins with no known code.
     unread : str
         The first word behind a code that is neither mark nor code; "" if there is none.
-    first : str
-        The word that it begins with.
     """
 
     codes: tuple[Coded, ...]
     unread: str = ""
-    first: str = ""
 
     @property
     def n_words(self) -> int:
@@ -92,11 +89,15 @@ class Vocabulary:
             return self._parse_before(words)
         first = self._match_code(words[0])
         if first is None:
-            return Description((), first=words[0])
+            return Description(())
         codes: list[Coded] = [first[0]]
         queue = [*first[1], *words[1:]]
         unread = self._parse_behind(queue, codes)
-        return Description(tuple(codes), unread, words[0])
+        return Description(tuple(codes), unread)
+
+    def find_first_word(self, text: str) -> str:
+        """Return the word that a description begins with; "" if there is none."""
+        return next(iter(self._split(text)), "")
 
     def _split(self, text: str) -> list[str]:
         """Return the words before any remark."""
@@ -106,7 +107,9 @@ class Vocabulary:
         if self.style.separators:
             text = re.sub(_TIGHT.format(re.escape(self.style.separators)), " ", text)
         words = (text.replace("*", " * ") if "*" in self.style.marks else text).split()
-        alone = (i for i, word in enumerate(words) if not word.strip(self.style.separators or " "))
+        if not self.style.separators:
+            return words
+        alone = (i for i, word in enumerate(words) if not word.strip(self.style.separators))
         return words[: next(alone, len(words))]  # behind a separator alone follows a remark
 
     def _parse_behind(self, words: list[str], codes: list[Coded]) -> str:
@@ -140,8 +143,8 @@ class Vocabulary:
                 codes.append(found[0]._replace(marks=marks, words=given))
                 marks, given = (), ()
             else:
-                return Description(tuple(codes), word if codes else "", words[0])
-        return Description(tuple(codes), given[0] if codes and given else "", words[0])
+                return Description(tuple(codes), word if codes else "")
+        return Description(tuple(codes), given[0] if codes and given else "")
 
     def _match_code(self, word: str) -> tuple[Coded, list[str]] | None:
         """Return the longest code that begins a word, with its number, and what follows in it."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -12,7 +13,7 @@ from .figures import NO_LINES, Fault, Figure, find_curves, follow_figures
 from .styles import STYLES, Style
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
 
     from .code_table import Rule
 
@@ -42,7 +43,7 @@ class Reading:
     faults : list of Fault
     unread : list of Unread
     descriptions : dict of str to Description
-        By their texts.
+        By their texts; of those that begin with a code.
     """
 
     style: Style
@@ -82,10 +83,24 @@ def read_in_style(
     rules : dict of str to Rule
     style : Style
     """
-    return _follow(order, texts, rules, style, _parse(set(texts), rules, style))
+    descriptions = _parse(_select_coded(set(texts), rules, style), rules, style)
+    descriptions = {text: one for text, one in descriptions.items() if one.codes}
+    coded = [row for row in order if texts[row] in descriptions]
+    return _follow(coded, texts, rules, style, descriptions)
 
 
-def _parse(texts: set[str], rules: dict[str, Rule], style: Style) -> dict[str, Description]:
+def _select_coded(texts: Iterable[str], rules: dict[str, Rule], style: Style) -> list[str]:
+    """Return the texts that may begin with a code: of a million shots most do not."""
+    if style.place == "before":
+        return list(texts)
+    codes = "|".join(re.escape(code) for code in rules)
+    may_begin = re.compile(
+        rf"[\s*{re.escape(style.separators)}]*(?:{codes})", 0 if style.is_exact else re.IGNORECASE
+    ).match
+    return [text for text in texts if may_begin(text)]
+
+
+def _parse(texts: Iterable[str], rules: dict[str, Rule], style: Style) -> dict[str, Description]:
     parse = Vocabulary(rules.keys(), style).parse
     return {text: parse(text) for text in texts}
 
@@ -112,7 +127,8 @@ def _follow(
 
 def _has_unread_mark(description: Description, rules: dict[str, Rule]) -> bool:
     """Whether a word that is not understood stands behind the code of a line."""
-    return bool(description.unread) and rules[description.codes[-1].code].kind not in NO_LINES
+    codes = description.codes
+    return bool(description.unread and codes) and rules[codes[-1].code].kind not in NO_LINES
 
 
 def _find_codes_behind_others(
@@ -165,12 +181,12 @@ def choose_reading(
        is where nothing is said; else the codes are refused.
     """
     plain = read_in_style(order, texts, rules, STYLES["words"])
-    coded = {text for text, one in plain.descriptions.items() if one.codes}
+    coded = [row for row in order if texts[row] in plain.descriptions]
     found = [plain]
     for style in list(STYLES.values())[1:]:
-        parsed = plain.descriptions | _parse(coded, rules, style)
+        parsed = _parse(plain.descriptions, rules, style)
         if parsed != plain.descriptions:
-            reading = _follow(order, texts, rules, style, parsed)
+            reading = _follow(coded, texts, rules, style, parsed)
             if _is_plausible(reading, plain):
                 found.append(reading)
     least = min(one.n_faults for one in found)

@@ -22,6 +22,7 @@ from ...policies import BreaklineKind, CodeStyle, LineRole
 from ...tin import Breakline, Survey, Water
 from ...tin.validation.options import is_finite_number
 from .code_table import CodeTable, make_rules, read_code_table
+from .descriptions import Vocabulary
 from .detection import Reading, choose_reading, read_in_style
 from .figures import RINGS, Fault, Figure
 from .geometry import build_polyline
@@ -281,10 +282,10 @@ class _Builder:
         if not self.table.is_complete:
             return
         unknown: dict[str, list[int]] = {}
+        split = Vocabulary(self.table.rules.keys(), self.reading.style).find_first_word
         for row in order:
-            description = self.reading.descriptions[texts[row]]
-            if not description.codes and description.first:
-                unknown.setdefault(description.first.rstrip("0123456789"), []).append(row)
+            if texts[row] not in self.reading.descriptions and (first := split(texts[row])):
+                unknown.setdefault(first.rstrip("0123456789"), []).append(row)
         self.faults += [
             Fault("unknown code", code or "a number", tuple(rows)) for code, rows in unknown.items()
         ]
@@ -325,7 +326,8 @@ class _Builder:
 
     def _exclude(self, survey: Survey, texts: Sequence[str]) -> Survey:
         """Leave out the points that are not for the surface, unless a line goes through them."""
-        is_out = np.array([self._is_excluded(text) for text in texts], np.bool_)
+        out = {text for text in self.reading.descriptions if self._is_excluded(text)}
+        is_out = np.array([bool(out) and text in out for text in texts], np.bool_)
         if not is_out.any():
             return survey
         kept = ~is_out

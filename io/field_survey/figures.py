@@ -211,6 +211,8 @@ def find_curves(figure: Figure, tell: Callable[[Fault], None] = _say_nothing) ->
 
 def _order_marks(marks: Sequence[Meaning], *, is_open: bool) -> list[Meaning]:
     """Return the marks of curves, the end of one before the begin of the next."""
+    if not marks:
+        return []
     found: list[Meaning] = [one for one in marks if one == "end_curve"]
     if "toggle_curve" in marks:
         found.append("end_curve" if is_open else "begin_curve")

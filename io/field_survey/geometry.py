@@ -53,7 +53,8 @@ def build_polyline(
     """
     curves = find_curves(figure)
     kept = _drop_repeated(figure, points, curves, tell)
-    rows = [figure.rows[i] for i in kept]
+    all_rows = figure.rows
+    rows = [all_rows[i] for i in kept]
     shots = points[rows]
     line = _Line(figure, shots, rows, tell)
     for curve in curves:
@@ -73,8 +74,11 @@ def _drop_repeated(
     tell: Callable[[Fault], None],
 ) -> list[int]:
     """Return the shots of a figure but those at the place of the one before."""
-    kept: list[int] = []
     rows = figure.rows
+    xy = points[rows, :2]
+    if not (xy[1:] == xy[:-1]).all(axis=1).any():
+        return list(range(len(rows)))
+    kept: list[int] = []
     for i, row in enumerate(rows):
         if not kept:
             kept.append(i)
