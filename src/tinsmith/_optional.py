@@ -14,6 +14,7 @@ _EXTRA_OF = {
     "geopandas": "interop",
     "matplotlib": "plot",
     "meshio": "mesh",
+    "netCDF4": "mesh",
     "pyarrow": "interop",
     "pyogrio": "vector",
     "pyvista": "view",
