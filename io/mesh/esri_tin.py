@@ -33,10 +33,7 @@ if TYPE_CHECKING:
     from ...policies import LineKind
     from ...tin import TIN
 
-__all__ = ["NODES", "is_folder", "read"]
-
-NODES = "tnxy.adf"
-"""The file that every such folder has."""
+__all__ = ["read"]
 
 _FILES = {
     "tnxy.adf": (">f8", 2),
@@ -56,11 +53,6 @@ class _Tables(NamedTuple):
     corners: NDArray[np.int64]
     beside: NDArray[np.int64]
     enforced: NDArray[np.int64]
-
-
-def is_folder(path: Path) -> bool:
-    """Whether a folder holds an Esri TIN."""
-    return path.is_dir() and (path / NODES).is_file()
 
 
 def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN:

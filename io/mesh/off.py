@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from ...crs import CrsLike, UnitLike
     from ...tin import TIN, Survey
 
-__all__ = ["is_off", "read", "write"]
+__all__ = ["read", "write"]
 
 _BATCH = 65_536
 _KEYWORD = re.compile(r"(ST)?(C)?(N)?(4)?(n)?OFF")
@@ -51,11 +51,6 @@ _RECORD = re.compile(rb"^# (crs|elevation unit): (.*?)\s*$", re.M)
 class _Counts(NamedTuple):
     vertices: int
     faces: int
-
-
-def is_off(head: bytes) -> bool:
-    """Whether the first bytes are certainly those of an OFF mesh: its keyword and counts."""
-    return re.match(rb"(?:ST)?C?N?OFF\s+(?:#[^\n]*\n\s*)*\d+\s+\d+(?:\s+\d+)?\s", head) is not None
 
 
 def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN | Survey:

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from ...crs import CrsLike, UnitLike
     from ...tin import TIN, Survey
 
-__all__ = ["is_2dm", "read", "write"]
+__all__ = ["read", "write"]
 
 _BATCH = 65_536
 _NODES_IN_A_ROW = 10
@@ -60,11 +60,6 @@ class _Rows(NamedTuple):
 
     words: list[list[str]]
     lines: list[int]
-
-
-def is_2dm(head: bytes) -> bool:
-    """Whether the first bytes are those of a 2DM mesh."""
-    return head.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"MESH2D")
 
 
 def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN | Survey:

@@ -22,14 +22,13 @@ if TYPE_CHECKING:
     from ....crs import CrsLike, UnitLike
     from ....tin import TIN
 
-__all__ = ["is_cityjson", "read"]
+__all__ = ["read"]
 
 _VERSIONS = ("1.0", "1.1", "2.0")
 _SURFACES = ("CompositeSurface", "MultiSurface")
 _URL = re.compile(
     r"(?:https?://www\.opengis\.net/def/crs/|urn:ogc:def:crs:)([A-Za-z]+)[/:][^/:]*[/:]([^/:]+)"
 )
-_HEAD = re.compile(rb'"type"\s*:\s*"CityJSON"')
 _SHOWN_NAMES = 8
 _LARGEST_EXACT = 2**53
 
@@ -40,11 +39,6 @@ class _Relief(NamedTuple):
     corners: NDArray[np.int64]
     offsets: NDArray[np.int64]
     attributes: dict[str, Any]
-
-
-def is_cityjson(head: bytes) -> bool:
-    """Whether the first bytes are those of a CityJSON file."""
-    return head.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"{") and _HEAD.search(head) is not None
 
 
 def read(

@@ -12,6 +12,7 @@ import click
 
 from ..policies import DuplicatePolicy, FeatureKind
 from .line_options import LINE_OPTIONS
+from .mesh_options import MESH_READING, MESH_WRITING
 from .output.console import Console
 from .paths import INPUT
 
@@ -52,6 +53,10 @@ class Reading:
     stride: int | None = None
     nodata: tuple[float, ...] | None = None
     fill: bool | None = None
+    surface: str | None = None
+    join: bool | None = None
+    variable: str | None = None
+    tile: str | None = None
 
 
 @dataclass(frozen=True)
@@ -112,6 +117,15 @@ class Writing:
     output_format: str | None = None
     kind: str | None = None
     projected: bool = False
+    texture: Path | None = None
+    solid: bool = False
+    thickness: float | None = None
+    scale: float | None = None
+    size: float | None = None
+    exaggeration: float | None = None
+    precision: float | None = None
+    max_level: int | None = None
+    gzipped: bool = False
 
     @property
     def options(self) -> dict[str, Any]:
@@ -235,6 +249,7 @@ reading_options = _gather(
     click.option(
         "--fill", is_flag=True, default=None, help="Let the surface span the voids of a raster."
     ),
+    *MESH_READING,
 )
 
 triangulating_options = _gather(
@@ -278,6 +293,7 @@ writing_options = _gather(
         is_flag=True,
         help="Leave the coordinates of a GeoJSON file in the CRS of the points.",
     ),
+    *MESH_WRITING,
 )
 
 product_options = _gather(
