@@ -209,7 +209,9 @@ def _gather_chains(
     edges, codes = number[edges], codes[(number[edges] >= 0).all(axis=1)]
     edges = edges[(edges >= 0).all(axis=1)]
     at_boundary = (tin.edge_triangles(edges[:, 0], edges[:, 1]) == NO_NEIGHBOR).sum(axis=1) == 1
-    chains = [Chain(chain, "boundary") for chain in chain_edges(edges[at_boundary], len(tin.points))]
+    chains = [
+        Chain(chain, "boundary") for chain in chain_edges(edges[at_boundary], len(tin.points))
+    ]
     for code, kind in _EDGE_KINDS.items():
         own = edges[~at_boundary & (codes == code)]
         chains += [Chain(chain, kind) for chain in chain_edges(own, len(tin.points))]

@@ -200,9 +200,10 @@ def _describe_losses(cards: dict[str, _Rows], n_quadrilaterals: int) -> list[str
         )
     n_edges = sum(len(cards[card].words) for card in _EDGES if card in cards)
     if n_edges:
+        kinds = " and ".join(card for card in _EDGES if card in cards)
         notes.append(
-            f"{counted(n_edges, 'element')} of the file that {'is a line' if n_edges == 1 else 'are lines'} "
-            f"({' and '.join(card for card in _EDGES if card in cards)}) "
+            f"{counted(n_edges, 'element')} of the file that "
+            f"{'is a line' if n_edges == 1 else 'are lines'} ({kinds}) "
             f"{'is' if n_edges == 1 else 'are'} left out."
         )
     materials = {

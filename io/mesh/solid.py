@@ -65,14 +65,16 @@ def build_solid(tin: TIN, points: NDArray[np.float64], thickness: float, path: P
     """
     triangles, neighbors = tin.triangles.astype(np.int64), tin.neighbors
     if len(triangles) == 0:
-        raise WriteError(f"Cannot write '{path}': {counted(0, 'triangle')} make no solid.", path=path)
+        raise WriteError(
+            f"Cannot write '{path}': {counted(0, 'triangle')} make no solid.", path=path
+        )
     corners, number = _split_touching(triangles, neighbors)
     tops = points[corners]
     base = np.array(tops)
     base[:, 2] = tops[:, 2].min() - thickness
     count = len(corners)
     triangle, corner = np.nonzero(neighbors == NO_NEIGHBOR)
-    first, last = ends(number, triangle, corner)
+    first, last = ends(number.astype(np.int32), triangle, corner)
     walls = [np.column_stack([last, first, first + count]),
              np.column_stack([last, first + count, last + count])]  # fmt: skip
     return Solid(

@@ -1,8 +1,8 @@
 """A picture draped over a surface: its bytes, and the place in it of each vertex.
 
 A GeoTIFF is read through GDAL in a child process, made smaller where graphics cards ask for that,
-and becomes JPEG, or PNG where it is partly transparent. PNG and JPEG files go as they are, placed by
-the world file beside them.
+and becomes JPEG, or PNG where it is partly transparent. PNG and JPEG files go as they are, placed
+by the world file beside them.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import struct
 import warnings
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import IO, TYPE_CHECKING
 
 import numpy as np
 
@@ -133,13 +133,13 @@ def _as_path(source: object) -> Path:
 def _read_picture(path: Path, stacklevel: int) -> _Picture:
     if path.is_dir():
         raise ReadError(f"'{path}' is a folder: name a picture in it.", path=path)
-    with _opened(path) as file:
+    with _open(path) as file:
         head = file.read(16)
     kind = next((kind for start, kind in _KINDS.items() if head.startswith(start)), None)
     return _read_georeferenced(path, stacklevel) if kind is None else _read_plain(path, kind)
 
 
-def _opened(path: Path):  # type: ignore[no-untyped-def]
+def _open(path: Path) -> IO[bytes]:
     try:
         return path.open("rb")
     except OSError as error:
@@ -232,15 +232,13 @@ def _require_same_crs(picture: _Picture, tin: TIN, path: Path) -> None:
         return
     if not picture.crs.horizontal.is_same(tin.crs.horizontal):
         raise CrsError(
-            f"'{path}' is in {picture.crs.label}, and the TIN in {tin.crs.label}: bring the picture "
-            "to the CRS of the TIN first (gdalwarp -t_srs).",
+            f"'{path}' is in {picture.crs.label}, and the TIN in {tin.crs.label}: bring the "
+            "picture to the CRS of the TIN first (gdalwarp -t_srs).",
             crs=picture.crs,
         )
 
 
-def _find_places(
-    picture: _Picture, points: NDArray[np.float64], path: Path
-) -> NDArray[np.float64]:
+def _find_places(picture: _Picture, points: NDArray[np.float64], path: Path) -> NDArray[np.float64]:
     """Return where in the picture each vertex lies."""
     a, b, x, d, e, y = picture.transform
     area = a * e - b * d

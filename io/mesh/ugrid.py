@@ -1,8 +1,9 @@
 """UGRID 1.0: unstructured meshes in netCDF, which Delft3D FM, xugrid and QGIS read.
 
 Coordinates and elevations are doubles; elevations have the standard name ``altitude`` and their
-unit. The CRS is a grid-mapping variable with WKT, EPSG number and what CF asks for. Where a TIN has
-lines, its edges have a type: hard, soft, boundary, hole, water, or constrained for those of no line.
+unit. The CRS is a grid-mapping variable with WKT, EPSG number and what CF asks for. Where a TIN
+has lines, its edges have a type: hard, soft, boundary, hole, water, or constrained for those of no
+line.
 """
 
 from __future__ import annotations
@@ -186,11 +187,10 @@ def _add_edge_types(tin: TIN, arrays: Mapping[str, NDArray[Any]]) -> TIN:
     return add_notes(tin, [f"{counted(lost, 'typed edge')} of the file lie along no edge."])
 
 
-def _find_opposite(
-    triangles: NDArray[np.int32], edges: NDArray[np.int64]
-) -> NDArray[np.intp]:
+def _find_opposite(triangles: NDArray[np.int32], edges: NDArray[np.int64]) -> NDArray[np.intp]:
     """Return the corner of each triangle that is no end of its edge."""
-    return np.argmin((triangles[:, :, None] == edges[:, None, :]).any(axis=2), axis=1)
+    is_end = (triangles[:, :, None] == edges[:, None, :]).any(axis=2)
+    return np.asarray(np.argmin(is_end, axis=1))
 
 
 def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None = None) -> None:

@@ -23,8 +23,9 @@ _ELEVATIONS = frozenset(
 """Standard names of what grows upwards."""
 
 _DEPTHS = frozenset(
-    {"depth", "sea_floor_depth", "sea_floor_depth_below_geoid", "sea_floor_depth_below_mean_sea_level",
-     "sea_floor_depth_below_sea_surface", "sea_floor_depth_below_geopotential_datum"}
+    {"depth", "sea_floor_depth", "sea_floor_depth_below_geoid",
+     "sea_floor_depth_below_mean_sea_level", "sea_floor_depth_below_sea_surface",
+     "sea_floor_depth_below_geopotential_datum"}
 )  # fmt: skip
 _CRS_NAMES = ("projected_coordinate_system", "wgs84", "crs", "spatial_ref")
 """What programs call the variable of the CRS where no attribute points to it."""
@@ -137,9 +138,13 @@ def _find_coordinates(data: Any, mesh: Any, shown: str) -> tuple[Any, Any]:
 def _tell_axis(variable: Any) -> str:
     """Return what a variable of coordinates is by its attributes: x, y or z, else nothing."""
     name, unit = _get_text(variable, "standard_name"), _get_text(variable, "units").lower()
-    if name in ("projection_x_coordinate", "longitude") or unit.startswith(("degrees_e", "degree_e")):
+    if name in ("projection_x_coordinate", "longitude") or unit.startswith(
+        ("degrees_e", "degree_e")
+    ):
         return "x"
-    if name in ("projection_y_coordinate", "latitude") or unit.startswith(("degrees_n", "degree_n")):
+    if name in ("projection_y_coordinate", "latitude") or unit.startswith(
+        ("degrees_n", "degree_n")
+    ):
         return "y"
     return "z" if name in _ELEVATIONS | _DEPTHS else ""
 
@@ -263,7 +268,7 @@ def _read_edges(data: Any, mesh: Any, n_nodes: int) -> dict[str, NDArray[np.int6
         edges = _read_table(data.variables[name], "")
     except Refusal:
         return {}
-    sound = edges.shape == (types.shape or (0,))[:1] + (2,) and np.dtype(types.dtype).kind in "iu"
+    sound = edges.shape == (*types.shape[:1], 2) and np.dtype(types.dtype).kind in "iu"
     if not sound or ((edges < 0) | (edges >= n_nodes)).any():
         return {}
     return {"edges": edges, "types": np.ma.filled(np.ma.asarray(types[:]), 0).astype(np.int64)}

@@ -141,7 +141,9 @@ def _choose_objects(
     names += ", ..." if len(found) > _SHOWN_NAMES else ""
     if surface is not None:
         if surface not in found:
-            raise ReadError(f"'{path}' holds no TINRelief '{surface}': there is {names}.", path=path)
+            raise ReadError(
+                f"'{path}' holds no TINRelief '{surface}': there is {names}.", path=path
+            )
         return {surface: found[surface]}
     if len(found) > 1 and not join:
         raise ReadError(
@@ -171,9 +173,7 @@ def _collect(name: str, relief: dict[str, Any], notes: list[str], path: Path) ->
     return _Relief(corners, np.concatenate([[0], np.cumsum(lengths)]), attributes)
 
 
-def _flatten(
-    boundaries: Any, name: str, path: Path
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _flatten(boundaries: Any, name: str, path: Path) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Return the corners of all polygons, and how many each has."""
     try:
         rings = [ring for (ring,) in boundaries]
@@ -184,7 +184,9 @@ def _flatten(
             path, f"the surfaces of '{name[:40]}' are no lists of one ring each"
         ) from None
     if not all(type(corner) is int and 0 <= corner < _LARGEST_EXACT for corner in flat):
-        raise _damaged(path, f"a surface of '{name[:40]}' names a vertex that is no number from 0 on")
+        raise _damaged(
+            path, f"a surface of '{name[:40]}' names a vertex that is no number from 0 on"
+        )
     return np.array(flat, np.int64), lengths
 
 
@@ -203,9 +205,7 @@ def _restore_vertices(city: dict[str, Any], path: Path) -> NDArray[np.float64]:
     except (KeyError, TypeError, ValueError, OverflowError):
         raise _damaged(path, "its transform has no scale and translate of three numbers") from None
     with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused later
-        return np.column_stack(
-            [_scale(vertices[:, k], scale[k], translate[k]) for k in range(3)]
-        )
+        return np.column_stack([_scale(vertices[:, k], scale[k], translate[k]) for k in range(3)])
 
 
 def _scale(values: NDArray[np.float64], scale: float, translate: float) -> NDArray[np.float64]:

@@ -119,8 +119,8 @@ def _require_areas(
     lost = int((u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0] <= 0).sum())
     if lost:
         raise WriteError(
-            f"Cannot write '{path}': at a precision of {grids[0].step:g} {counted(lost, 'triangle')} "
-            f"would have no area; choose a finer one.",
+            f"Cannot write '{path}': at a precision of {grids[0].step:g} "
+            f"{counted(lost, 'triangle')} would have no area; choose a finer one.",
             path=path,
         )
 

@@ -266,9 +266,7 @@ def _pack(mesh: _Mesh, node: dict[str, Any]) -> list[tuple[int, bytes]]:
     surface: dict[str, Any] = {"metallicFactor": 0.0, "roughnessFactor": 1.0}
     document: dict[str, Any] = {"asset": {"version": "2.0", "generator": _GENERATOR}}
     if mesh.colors is not None:
-        attributes["COLOR_0"] = buffer.add_array(
-            mesh.colors, target=_ARRAY_BUFFER, normalized=True
-        )
+        attributes["COLOR_0"] = buffer.add_array(mesh.colors, target=_ARRAY_BUFFER, normalized=True)
     if mesh.texture is not None:
         places = mesh.texture.places.astype(np.float32)
         attributes["TEXCOORD_0"] = buffer.add_array(places, target=_ARRAY_BUFFER)

@@ -1,4 +1,4 @@
-"""Read one tile of quantized-mesh 1.0: the surface in longitude, latitude and ellipsoidal height."""
+"""Read one tile of quantized-mesh 1.0: longitude, latitude and height above the ellipsoid."""
 
 from __future__ import annotations
 
@@ -80,7 +80,8 @@ def read(
     flat = _measure(steps, triangles) <= 0  # rounding turned some over: their neighbours cover them
     notes = []
     if flat.any():
-        notes.append(f"{counted(int(flat.sum()), 'triangle')} of the file without area, or turned over by rounding, left out.")
+        count = counted(int(flat.sum()), "triangle")
+        notes.append(f"{count} of the file without area, or turned over by rounding, left out.")
         triangles = triangles[~flat]
     if len(triangles) == 0:
         raise ReadError(f"'{path}' is a tile whose triangles have no area.", path=path)

@@ -51,9 +51,7 @@ def simplify(surface: TIN, tolerances: Sequence[float]) -> Iterator[NDArray[np.i
         yield triangles
 
 
-def _connect(
-    surface: TIN, rows: NDArray[np.int64], lines: list[Breakline]
-) -> NDArray[np.int64]:
+def _connect(surface: TIN, rows: NDArray[np.int64], lines: list[Breakline]) -> NDArray[np.int64]:
     """Triangulate some vertices within the boundary."""
     built = triangulate(Survey(points=surface.points[rows], breaklines=lines), duplicates="first")
     row_of = np.full(len(built.points), -1, np.int64)

@@ -53,7 +53,7 @@ class TileName:
     @property
     def width(self) -> float:
         """Degrees from edge to edge."""
-        return 180.0 / 2**self.level
+        return float(180.0 / 2**self.level)
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:
@@ -137,9 +137,7 @@ def _pack_header(places: NDArray[np.float64], tile: Tile, name: TileName) -> byt
     cartesian = to_cartesian(places)
     sphere = bound_by_sphere(cartesian)
     horizon = find_horizon_point(cartesian, sphere.center)
-    return _HEADER.pack(
-        *center, tile.lowest, tile.highest, *sphere.center, sphere.radius, *horizon
-    )
+    return _HEADER.pack(*center, tile.lowest, tile.highest, *sphere.center, sphere.radius, *horizon)
 
 
 def _encode_steps(values: NDArray[np.int64]) -> bytes:
@@ -173,7 +171,8 @@ def _encode_normals(normals: NDArray[np.float64]) -> bytes:
     sign = np.where(flat[:, :2] < 0, -1.0, 1.0)
     folded = (1.0 - np.abs(flat[:, 1::-1])) * sign
     plane = np.where(flat[:, 2:] < 0, folded, flat[:, :2])
-    return np.rint((np.clip(plane, -1, 1) * 0.5 + 0.5) * 255).astype(np.uint8).tobytes()
+    codes = np.rint((np.clip(plane, -1, 1) * 0.5 + 0.5) * 255).astype(np.uint8)
+    return bytes(codes.tobytes())
 
 
 # ---------------------------------------------------------------------------- reading

@@ -39,8 +39,8 @@ _MOST_LEVEL = 23
 """A step of its tiles is 0.07 mm."""
 
 _STEPS_IN_AN_EDGE = 1000
-"""Steps of the grid in the median edge of the TIN, on the finest level: so rounding turns an edge by
-a thousandth at most, and a tile holds about 2,000 triangles."""
+"""Steps of the grid in the median edge of the TIN, on the finest level: rounding turns an edge by a
+thousandth at most, and a tile holds about 2,000 triangles."""
 
 _SHARE_OF_A_TILE = 0.25
 """Of the coarsest level that shows the surface: how much of a tile's width that must be."""
@@ -55,6 +55,8 @@ _FINEST_HEIGHT_STEP = 2.0**-10
 """Metres: about a millimetre; a power of two, so that float32 holds the heights of a header."""
 
 _ELLIPSOIDAL = "EPSG:4979"
+_CORNER = np.array([180.0, 90.0])
+"""What makes longitude and latitude count from the south-west corner of all tiles."""
 
 
 def write(
@@ -195,8 +197,8 @@ def _choose_first(placed: TIN) -> int:
 def _list_parents(placed: TIN, level: int) -> list[TileName]:
     """Return the tiles that hold the surface, and of level 0 both."""
     width = 180.0 / 2**level
-    low = (placed.points[:, :2].min(axis=0) + (180.0, 90.0)) // width
-    high = (placed.points[:, :2].max(axis=0) + (180.0, 90.0)) // width
+    low = (placed.points[:, :2].min(axis=0) + _CORNER) // width
+    high = (placed.points[:, :2].max(axis=0) + _CORNER) // width
     low = np.minimum(low, (2 ** (level + 1) - 1, 2**level - 1)).astype(int)
     high = np.minimum(high, (2 ** (level + 1) - 1, 2**level - 1)).astype(int)
     if level == 0:
@@ -213,9 +215,7 @@ def _list_parents(placed: TIN, level: int) -> list[TileName]:
 
 def _iterate_meshes(placed: TIN, first: int, finest: int) -> Iterator[NDArray[np.int64]]:
     """Yield the triangles of each level, the TIN's own for the last."""
-    tolerances = [
-        _SHARE_OF_ERROR * _COARSEST_ERROR / 2**level for level in range(first, finest)
-    ]
+    tolerances = [_SHARE_OF_ERROR * _COARSEST_ERROR / 2**level for level in range(first, finest)]
     yield from simplify(placed, tolerances)
     yield placed.triangles.astype(np.int64)
 
@@ -225,7 +225,7 @@ def _cut_into_tiles(
 ) -> Iterator[tuple[TileName, Tile]]:
     """Yield the tiles of a level."""
     scale = STEPS * 2**level / 180.0
-    steps = np.rint((placed.points[:, :2] + (180.0, 90.0)) * scale).astype(np.int64)
+    steps = np.rint((placed.points[:, :2] + _CORNER) * scale).astype(np.int64)
     mesh = GridMesh(steps, placed.points[:, 2], triangles)
     mesh = cut_along_grid(mesh, STEPS)
     if len(mesh.triangles) == 0:
@@ -247,7 +247,7 @@ def _cut_into_tiles(
 
 def _compute_normals(mesh: GridMesh, scale: float) -> NDArray[np.float64]:
     """Return unit normals of all vertices in the axes of the globe, the same in every tile."""
-    plane = mesh.steps / scale - (180.0, 90.0)
+    plane = mesh.steps / scale - _CORNER
     points = to_cartesian(np.column_stack([plane, mesh.heights]))
     a, b, c = (points[mesh.triangles[:, k]] for k in range(3))
     faces = np.cross(b - a, c - a)

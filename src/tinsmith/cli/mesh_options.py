@@ -1,4 +1,4 @@
-"""Options of meshes: what to read of a file, and how surfaces are written for viewers and printers."""
+"""Options of meshes: what to read of a file, how to write it for viewers and printers."""
 
 from __future__ import annotations
 
@@ -37,8 +37,8 @@ MESH_WRITING = (
         "--texture",
         metavar="FILE",
         type=INPUT,
-        help="Drape a picture over a GLB or OBJ file: a GeoTIFF, or a PNG or JPEG file with a world "
-        "file beside it.",
+        help="Drape a picture over a GLB or OBJ file: a GeoTIFF, or a PNG or JPEG file with a "
+        "world file beside it.",
     ),
     click.option(
         "--solid",
