@@ -42,6 +42,9 @@ _FILES = {
     "tedg.adf": (">i4", 3),
     "teval.adf": (">i4", 4),
 }
+_SUPERPOINT = -3.4e38
+"""Elevations below are no data: the least float32, that superpoints have."""
+
 _EDGE_KINDS: dict[int, LineKind] = {2: "soft", 4: "hard"}
 _NO_CRS = ("{B286C06B-0879-11D2-AACA-00C04FA33C20}", "UNKNOWN")
 """What ``prj.adf`` holds where the CRS is not known: the class of ArcGIS for that."""
@@ -89,6 +92,12 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     wanted = ~_read_mask(folder, len(triangles))
     used = np.zeros(len(tables.places), np.bool_)
     used[triangles[wanted]] = True
+    if (used & (tables.elevations < _SUPERPOINT)).any():
+        raise ReadError(
+            f"'{folder}' is a damaged Esri TIN: a triangle that is not masked reaches a superpoint, "
+            "which has no elevation.",
+            path=folder,
+        )
     number = np.cumsum(used) - 1
     points = np.column_stack([tables.places, tables.elevations])[used]
     if not wanted.any():
@@ -173,10 +182,11 @@ def _read_mask(folder: Path, n_triangles: int) -> NDArray[np.bool_]:
     n_bits = int.from_bytes(mask[8:12], "big")
     words = np.frombuffer(mask[12 : len(mask) - len(mask) % 4], ">u4").astype("<u4")
     bits = np.unpackbits(words.view(np.uint8), bitorder="little")
-    if n_bits > len(bits):
+    n_words = int.from_bytes(mask[:4], "big")
+    if n_words != len(words) or n_words != -(-n_bits // 32):
         raise ReadError(
-            f"'{folder}' is a damaged Esri TIN: tmsk.adf promises {n_bits} bits, and has "
-            f"{len(bits)}.",
+            f"'{folder}' is a damaged Esri TIN: tmsk.adf promises {n_bits} bits in {n_words} "
+            f"words, and has {len(words)}.",
             path=folder,
         )
     masked = np.zeros(n_triangles, np.bool_)

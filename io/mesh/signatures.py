@@ -14,7 +14,7 @@ TIN_FILES = ("tnxy.adf", "tnz.adf", "tnod.adf", "tedg.adf", "tmsk.adf", "tmsx.ad
              "tdenv.adf", "tdenv9.adf", "tnodinfo.adf", "teval.adf")  # fmt: skip
 """Names of the files in the folder of an Esri TIN; grids of Esri have others."""
 
-_OFF = re.compile(rb"(?:ST)?C?N?OFF\s+(?:#[^\n]*\n\s*)*\d+\s+\d+(?:\s+\d+)?\s")
+_OFF = re.compile(rb"\s*(?:ST)?C?N?4?n?OFF\s")
 _CITYJSON = re.compile(rb'"type"\s*:\s*"CityJSON"')
 
 
@@ -24,7 +24,7 @@ def is_2dm(head: bytes) -> bool:
 
 
 def is_off(head: bytes) -> bool:
-    """Whether the file is an OFF mesh in text: its keyword and its counts."""
+    """Whether the file is an OFF mesh: its keyword."""
     return _OFF.match(head) is not None
 
 
