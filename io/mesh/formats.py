@@ -2,7 +2,14 @@
 
 from ..registry import signatures
 from ..registry.format import Format
-from .signatures import TIN_FILES, is_2dm, is_cityjson, is_esri_tin, is_off
+from .signatures import (
+    TIN_FILES,
+    is_2dm,
+    is_cityjson,
+    is_esri_tin,
+    is_off,
+    is_quantized_mesh,
+)
 
 __all__ = ["FORMATS"]
 
@@ -128,6 +135,7 @@ FORMATS = (
         losses="The surface is cut into tiles in longitude and latitude, without lines; one tile "
         "is read at a time.",
         loses=("crs", "elevation unit", "triangles", "constrained", "lines", "notes", "report"),
+        sniff=is_quantized_mesh,
     ),
     Format(
         name="glb",

@@ -90,7 +90,11 @@ def test_xarray_finds_the_topology(tmp_path):
         {"faces": [[0, 1, 2, -1], [0, 2, 3, -1]], "fill": -1},
         {"faces": [[1, 2, 3, -999], [1, 3, 4, -999]], "start": 1, "fill": -999},
         {"faces": [[0, 1, 2], [0, 2, 3]], "transposed": True},
-        {"faces": [[0.0, 1.0, 2.0, np.nan], [0.0, 2.0, 3.0, np.nan]], "dtype": "f8", "fill": np.nan},
+        {
+            "faces": [[0.0, 1.0, 2.0, np.nan], [0.0, 2.0, 3.0, np.nan]],
+            "dtype": "f8",
+            "fill": np.nan,
+        },
         {"faces": [[0, 1, 2], [0, 2, 3]], "format": "NETCDF3_CLASSIC"},
     ],
 )
