@@ -94,8 +94,8 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     used[triangles[wanted]] = True
     if (used & (tables.elevations < _SUPERPOINT)).any():
         raise ReadError(
-            f"'{folder}' is a damaged Esri TIN: a triangle that is not masked reaches a superpoint, "
-            "which has no elevation.",
+            f"'{folder}' is a damaged Esri TIN: a triangle that is not masked reaches a "
+            "superpoint, which has no elevation.",
             path=folder,
         )
     number = np.cumsum(used) - 1

@@ -138,9 +138,10 @@ def _parse_counts(rows: Sequence[Sequence[str]], lines: Sequence[int], path: Pat
     if min(counts) < 0:
         raise describe_row_fault(rows[0], lines[0], "a count is negative", path)
     if sum(counts) > len(rows) - 1:
+        promised = counted(counts.vertices, "vertex", "vertices")
         raise ReadError(
-            f"'{path}' ends too early: it promises {counted(counts.vertices, 'vertex', 'vertices')}"
-            f" and {counted(counts.faces, 'face')}, and there are {len(rows) - 1} rows.",
+            f"'{path}' ends too early: it promises {promised} and "
+            f"{counted(counts.faces, 'face')}, and has {counted(len(rows) - 1, 'row')} for them.",
             path=path,
         )
     return counts

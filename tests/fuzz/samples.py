@@ -13,6 +13,8 @@ import numpy as np
 
 import tinsmith as ts
 
+from .mesh_samples import MESH_MAKERS
+
 __all__ = ["MEMORY", "sample_files"]
 
 MEMORY = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
@@ -216,4 +218,5 @@ _MAKERS = {
     "raster": _raster,
     "vectors": _vectors,
     "delimited": _delimited,
+    **MESH_MAKERS,
 }

@@ -13,8 +13,8 @@ from support.surfaces import hills
 
 import tinsmith as ts
 
-RELIEF = {"type": "TINRelief", "geometry": [
-    {"type": "CompositeSurface", "lod": "1", "boundaries": [[[0, 1, 2]], [[0, 2, 3]]]}]}  # fmt: skip
+SHAPE = {"type": "CompositeSurface", "lod": "1", "boundaries": [[[0, 1, 2]], [[0, 2, 3]]]}
+RELIEF = {"type": "TINRelief", "geometry": [SHAPE]}
 CITY = {
     "type": "CityJSON",
     "version": "2.0",
@@ -92,9 +92,13 @@ def test_a_crs_without_a_number_is_kept_and_told(tmp_path):
 
 @pytest.mark.parametrize(
     ("version", "system"),
-    [("2.0", "https://www.opengis.net/def/crs/EPSG/0/32616"), ("1.1", "http://www.opengis.net/def/crs/EPSG/0/32616"),
-     ("1.0", "urn:ogc:def:crs:EPSG::32616"), ("1.0.1", "EPSG:32616")],
-)  # fmt: skip
+    [
+        ("2.0", "https://www.opengis.net/def/crs/EPSG/0/32616"),
+        ("1.1", "http://www.opengis.net/def/crs/EPSG/0/32616"),
+        ("1.0", "urn:ogc:def:crs:EPSG::32616"),
+        ("1.0.1", "EPSG:32616"),
+    ],
+)
 def test_versions_and_their_names_of_the_crs(tmp_path, version, system):
     tin = read(tmp_path, {"version": version, "metadata": {"referenceSystem": system}})
     assert tin.crs == "EPSG:32616"

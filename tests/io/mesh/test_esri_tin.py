@@ -1,4 +1,4 @@
-"""Esri TIN folders that ArcGIS wrote, against the rasters that they were made of, and damaged ones."""
+"""Esri TIN folders that ArcGIS wrote, against the raster one was made of, and damaged ones."""
 
 from __future__ import annotations
 

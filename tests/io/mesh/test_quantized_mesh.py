@@ -147,7 +147,7 @@ def test_coarser_levels_keep_their_tolerance(pyramid):
     tin, _, tiles = pyramid
     surface = in_degrees(tin)
     levels = sorted({level for (level, _, _), tile in tiles.items() if tile["header"][4] > 0})
-    assert len(levels) > 2
+    assert len(levels) > 1
     for level in levels[:-1]:
         parts = [ts.TIN.from_triangles(tile["places"], tile["triangles"])
                  for (own, _, _), tile in tiles.items() if own == level]  # fmt: skip
@@ -208,8 +208,9 @@ def test_headers_bound_their_tiles(pyramid):
 def _to_space(places):
     lon, lat, h = np.radians(places[:, 0]), np.radians(places[:, 1]), places[:, 2]
     n = A**2 / np.hypot(A * np.cos(lat), B * np.sin(lat))
-    return np.column_stack([(n + h) * np.cos(lat) * np.cos(lon), (n + h) * np.cos(lat) * np.sin(lon),
-                            (n * B**2 / A**2 + h) * np.sin(lat)])  # fmt: skip
+    across = (n + h) * np.cos(lat)
+    up = (n * B**2 / A**2 + h) * np.sin(lat)
+    return np.column_stack([across * np.cos(lon), across * np.sin(lon), up])
 
 
 def test_the_horizon_point_hides_only_what_is_hidden():

@@ -59,7 +59,7 @@ def test_a_solid_without_scale_is_in_the_units_of_the_crs(tmp_path):
     tin = hills(unit=None)
     mesh = trimesh.load(ts.write(tin, tmp_path / "a.stl", solid=True, thickness=5))
     assert mesh.is_volume
-    assert mesh.extents == pytest.approx(np.ptp(tin.points, axis=0) + (0, 0, 5), rel=1e-6)
+    assert mesh.extents == pytest.approx(np.add(np.ptp(tin.points, axis=0), (0, 0, 5)), rel=1e-6)
 
 
 def test_a_plain_stl_is_as_it_was(tmp_path):
