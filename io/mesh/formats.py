@@ -23,6 +23,7 @@ FORMATS = (
         write="tinsmith.io.mesh.geopackage:write",
         writes=("TIN",),
         precision="Every number comes back bit for bit.",
+        losses="",
         sniff=signatures.is_tin_geopackage,
     ),
     Format(
@@ -33,6 +34,10 @@ FORMATS = (
         reads=("TIN",),
         write="tinsmith.io.mesh.ply.file:write",
         sniff=signatures.is_ply,
+        precision="Every number comes back bit for bit.",
+        losses="The report and its notes, and what undoing edits needs; of points, attributes that "
+        "are no numbers.",
+        loses=("attributes", "notes", "report"),
     ),
     Format(
         name="obj",
@@ -42,6 +47,10 @@ FORMATS = (
         reads=("TIN",),
         write="tinsmith.io.mesh.obj:write",
         sniff=signatures.is_obj,
+        writes=("TIN",),
+        precision="Every number comes back bit for bit.",
+        losses="Which edges are constrained, lines and the report.",
+        loses=("constrained", "lines", "notes", "report"),
     ),
     Format(
         name="stl",
@@ -51,6 +60,13 @@ FORMATS = (
         reads=("TIN",),
         write="tinsmith.io.mesh.stl:write",
         sniff=signatures.is_stl,
+        writes=("TIN",),
+        precision="Coordinates are rounded to float32 after an origin is subtracted: to a sixteen "
+        "millionth of the extent.",
+        relative_rounding=6e-8,
+        losses="The order of vertices and triangles, which edges are constrained, lines and the "
+        "report.",
+        loses=("order", "constrained", "lines", "notes", "report"),
     ),
     Format(
         name="vtk",
@@ -61,6 +77,10 @@ FORMATS = (
         write="tinsmith.io.mesh.vtk:write",
         extra="view",
         sniff=signatures.is_vtk_xml,
+        writes=("TIN",),
+        precision="Every number comes back bit for bit.",
+        losses="Names and kinds of lines, and the report.",
+        loses=("lines", "notes", "report"),
     ),
     Format(
         name="gmsh",
@@ -71,6 +91,11 @@ FORMATS = (
         write="tinsmith.io.mesh.gmsh:write",
         extra="mesh",
         sniff=signatures.is_gmsh,
+        writes=("TIN",),
+        precision="Every number comes back bit for bit.",
+        losses="The CRS and the unit of elevations; lines are named groups of edges, which are "
+        "read as constrained edges; the report.",
+        loses=("crs", "elevation unit", "lines", "notes", "report"),
     ),
     Format(
         name="2dm",
@@ -125,9 +150,7 @@ FORMATS = (
     Format(
         name="quantized-mesh",
         description="Quantized-mesh 1.0 tiles (a folder with layer.json, for Cesium)",
-        suffixes=(".terrain",),
-        read="tinsmith.io.mesh.quantized_mesh.reading:read",
-        reads=("TIN",),
+        suffixes=(),
         write="tinsmith.io.mesh.quantized_mesh.writing:write",
         writes=("TIN",),
         precision="A thousandth of the median edge in the plane, a millimetre or a 32,767th of the "
@@ -135,6 +158,13 @@ FORMATS = (
         losses="The surface is cut into tiles in longitude and latitude, without lines; one tile "
         "is read at a time.",
         loses=("crs", "elevation unit", "triangles", "constrained", "lines", "notes", "report"),
+    ),
+    Format(
+        name="terrain",
+        description="One tile of quantized-mesh 1.0",
+        suffixes=(".terrain",),
+        read="tinsmith.io.mesh.quantized_mesh.reading:read",
+        reads=("TIN",),
         sniff=is_quantized_mesh,
     ),
     Format(

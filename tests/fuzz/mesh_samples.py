@@ -63,8 +63,8 @@ def _make_ugrid(folder: Path) -> list[tuple[str, bytes]]:
         for name, size in (("n", len(tin.points)), ("f", len(tin.triangles)), ("c", 4)):
             data.createDimension(name, size)
         mesh = data.createVariable("m", "i4")
-        mesh.setncatts({"cf_role": "mesh_topology", "topology_dimension": 2,
-                        "node_coordinates": "m_x m_y", "face_node_connectivity": "m_f"})  # fmt: skip
+        mesh.setncatts({"cf_role": "mesh_topology", "topology_dimension": 2})
+        mesh.setncatts({"node_coordinates": "m_x m_y", "face_node_connectivity": "m_f"})
         for name, column in zip(("m_x", "m_y", "m_node_z"), tin.points.T, strict=True):
             data.createVariable(name, "f8", ("n",))[:] = column
         faces = data.createVariable("m_f", "i4", ("f", "c"), fill_value=-1)

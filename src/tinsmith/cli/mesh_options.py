@@ -10,11 +10,6 @@ __all__ = ["MESH_READING", "MESH_WRITING"]
 
 MESH_READING = (
     click.option(
-        "--surface",
-        metavar="NAME",
-        help="Surface of a UGRID or CityJSON file that has several.",
-    ),
-    click.option(
         "--join",
         is_flag=True,
         default=None,
