@@ -114,11 +114,7 @@ def list_claims(formats: Iterable[Format], path: Path) -> list[Format]:
 
 def _measure_match(one: Format, name: str) -> int:
     """Return the length of the longest suffix of a format that a name ends in; 0 for none."""
-    found = (
-        len(suffix)
-        for suffix in one.suffixes
-        if name.endswith(suffix) and (name != suffix or not suffix.startswith("."))
-    )
+    found = (len(suffix) for suffix in one.suffixes if name.endswith(suffix) and name != suffix)
     return max(found, default=0)
 
 

@@ -196,9 +196,9 @@ def test_two_plug_ins_that_know_one_content_are_refused(install, tmp_path):
 
 
 def test_longest_suffix_counts(install, tmp_path):
-    city = replace(MINE, name="city", suffixes=(".city.json",), sniff=None)
+    city = replace(MINE, name="city", suffixes=(".site.json",), sniff=None)
     install(Entry("a", city))
-    assert detect(tmp_path / "a.city.json", b"{}").name == "city"
+    assert detect(tmp_path / "a.site.json", b"{}").name == "city"
     assert detect(tmp_path / "a.mine.csv", b"1,2,3\n").name == "delimited"
     tin = ts.triangulate(SQUARE)
     assert ts.write(tin, tmp_path / "a.CITY.json").read_text() == "MINE"
