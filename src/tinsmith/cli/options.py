@@ -25,6 +25,7 @@ __all__ = [
     "product_options",
     "reading_options",
     "triangulating_options",
+    "vector_options",
     "writing_options",
 ]
 
@@ -329,14 +330,9 @@ def _make_projected_option(whose: str) -> Decorator:
     return click.option("--projected", is_flag=True, help=words)
 
 
-writing_options = _gather(
-    "writing",
-    Writing,
-    _format_option,
-    _kind_option,
-    _make_projected_option("points"),
-    *MESH_WRITING,
-)
+_VECTOR_WRITING = (_format_option, _kind_option, _make_projected_option("points"))
+writing_options = _gather("writing", Writing, *_VECTOR_WRITING, *MESH_WRITING)
+vector_options = _gather("writing", Writing, *_VECTOR_WRITING)
 product_options = _gather("writing", Writing, _format_option, _make_projected_option("TIN"))
 format_options = _gather("writing", Writing, _format_option)
 
