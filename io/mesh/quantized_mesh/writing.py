@@ -172,7 +172,9 @@ def _has_vertical_transformation(crs: CRS) -> bool:
     """Whether PROJ knows the way to the ellipsoid, and has the grid that it needs."""
     from pyproj.transformer import TransformerGroup
 
-    group = TransformerGroup(crs.to_pyproj(), CRS(_ELLIPSOIDAL).to_pyproj(), always_xy=True)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)  # of a missing grid, which is told otherwise
+        group = TransformerGroup(crs.to_pyproj(), CRS(_ELLIPSOIDAL).to_pyproj(), always_xy=True)
     if not group.transformers:
         return False
     chosen = group.transformers[0]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import gzip
 import json
 import struct
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -314,6 +315,29 @@ def test_holes_and_parts_stay_open(tmp_path, seed):
                 a, b, c = (tile["places"][tile["triangles"][:, k], :2] for k in range(3))
                 area += cross(b - a, c - a).sum() / 2
         assert area == pytest.approx(surface.area, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("crs", "metres", "is_told"),
+    [("UTM 3D", 1.0, False), ("EPSG:32616+5703", 1.0, True), ("EPSG:2274+6360", 1200 / 3937, True)],
+)
+def test_heights_above_the_ellipsoid(tmp_path, crs, metres, is_told):
+    """A 3D CRS has them; of a geoid there is no grid here, and feet become metres all the same."""
+    pyproj = pytest.importorskip("pyproj")
+    system = pyproj.CRS("EPSG:32616").to_3d() if crs == "UTM 3D" else crs
+    points = np.array([[745_000, 4_033_000, 1000], [745_900, 4_033_000, 1100],
+                       [745_000, 4_033_900, 1200]]) * 1.0  # fmt: skip
+    if crs.startswith("EPSG:2274"):
+        points += (1_000_000, -3_400_000, 0)
+    tin = ts.triangulate(points, crs=system)
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        tiles = load(ts.write(tin, tmp_path / "a", format="quantized-mesh", max_level=15))
+    assert [one.category for one in told] == [ts.LossWarning] * is_told
+    finest = [tile["places"][:, 2] for (level, _, _), tile in tiles.items() if level == 15]
+    z = np.concatenate(finest)
+    assert z.min() == pytest.approx(1000 * metres, abs=0.2)
+    assert z.max() == pytest.approx(1200 * metres, abs=0.2)
 
 
 def test_folders_of_something_else_are_left_alone(tmp_path):
