@@ -105,13 +105,12 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     return make_tin(points, triangles, path, reference=reference)
 
 
-def _skip_keyword(
-    rows: list[list[str]], lines: list[int], path: Path
-) -> tuple[list[list[str]], list[int]]:
+def _skip_keyword(rows: list[str], lines: list[int], path: Path) -> tuple[list[str], list[int]]:
     """Return what stands behind the keyword, which some programs put before the counts."""
-    keyword = rows[0][0] if rows else ""
+    first = rows[0].split() if rows else [""]
+    keyword = first[0]
     found = _KEYWORD.fullmatch(keyword)
-    if found is None or "BINARY" in rows[0]:
+    if found is None or "BINARY" in first:
         raise ReadError(
             f"'{path}' is no OFF file in text: it must begin with 'OFF', not '{keyword[:20]}'.",
             path=path,
@@ -122,21 +121,22 @@ def _skip_keyword(
             "are no TIN.",
             path=path,
         )
-    if len(rows[0]) > 1:
-        return [rows[0][1:], *rows[1:]], lines
+    if len(first) > 1:
+        return [" ".join(first[1:]), *rows[1:]], lines
     return rows[1:], lines[1:]
 
 
-def _parse_counts(rows: Sequence[Sequence[str]], lines: Sequence[int], path: Path) -> _Counts:
+def _parse_counts(rows: Sequence[str], lines: Sequence[int], path: Path) -> _Counts:
     """Return the numbers of vertices and faces, once the file is long enough for them."""
     if not rows:
         raise ReadError(f"'{path}' ends before the numbers of its vertices and faces.", path=path)
-    if len(rows[0]) < 2:
+    first = rows[0].split()
+    if len(first) < 2:
         what = "the numbers of vertices and of faces are needed"
-        raise describe_row_fault(rows[0], lines[0], what, path)
-    counts = _Counts(*parse_integers(rows[0][:2], lines[0], path))
+        raise describe_row_fault(first, lines[0], what, path)
+    counts = _Counts(*parse_integers(first[:2], lines[0], path))
     if min(counts) < 0:
-        raise describe_row_fault(rows[0], lines[0], "a count is negative", path)
+        raise describe_row_fault(first, lines[0], "a count is negative", path)
     if sum(counts) > len(rows) - 1:
         promised = counted(counts.vertices, "vertex", "vertices")
         raise ReadError(
@@ -148,16 +148,17 @@ def _parse_counts(rows: Sequence[Sequence[str]], lines: Sequence[int], path: Pat
 
 
 def _parse_faces(
-    rows: Sequence[Sequence[str]], lines: Sequence[int], path: Path
+    rows: Sequence[str], lines: Sequence[int], path: Path
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Return the vertex numbers of all faces, and the offsets of each."""
-    if rows and all(row[0] == "3" for row in rows):
+    if rows and all(row.startswith(("3 ", "3\t")) for row in rows):
         what = "a face has fewer corners than it promises"
         corners = parse_integer_columns(rows, lines, path, columns=slice(1, 4), what=what)
         return corners.ravel(), np.arange(0, corners.size + 1, 3)
     found: list[int] = []
     offsets = [0]
-    for row, line in zip(rows, lines, strict=True):
+    for text, line in zip(rows, lines, strict=True):
+        row = text.split()
         count = parse_integers(row[:1], line, path, what="a face begins with its number of corners")
         if not 0 <= count[0] <= len(row) - 1:
             raise describe_row_fault(row, line, "a face has fewer corners than it promises", path)

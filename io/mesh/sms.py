@@ -58,7 +58,7 @@ _EDGES = ("E2L", "E3L")
 class _Rows(NamedTuple):
     """Rows of one card, and their lines in the file."""
 
-    words: list[list[str]]
+    texts: list[str]
     lines: list[int]
 
 
@@ -114,12 +114,12 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
 def _sort_cards(content: bytes, path: Path) -> dict[str, _Rows]:
     """Return the rows of each card, by its name."""
     rows, lines = split_rows(content)
-    if not rows or not rows[0][0].startswith("MESH2D"):
+    if not rows or not rows[0].startswith("MESH2D"):
         raise ReadError(f"'{path}' is no 2DM mesh: it must begin with 'MESH2D'.", path=path)
     cards: dict[str, _Rows] = {}
     for row, line in zip(rows, lines, strict=True):
-        words, numbers = cards.setdefault(row[0], _Rows([], []))
-        words.append(row)
+        texts, numbers = cards.setdefault(row.split(None, 1)[0], _Rows([], []))
+        texts.append(row)
         numbers.append(line)
     return cards
 
@@ -127,16 +127,16 @@ def _sort_cards(content: bytes, path: Path) -> dict[str, _Rows]:
 def _parse_nodes(rows: _Rows, path: Path) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
     """Return the numbers of the nodes as the file calls them, and their coordinates."""
     what = "a node needs its number, x, y and z"
-    points = parse_floats(rows.words, rows.lines, path, columns=slice(2, 5), what=what)
+    points = parse_floats(rows.texts, rows.lines, path, columns=slice(2, 5), what=what)
     numbers = parse_integer_columns(
-        rows.words, rows.lines, path, columns=slice(1, 2), what=what
+        rows.texts, rows.lines, path, columns=slice(1, 2), what=what
     ).ravel()
     order = np.argsort(numbers, kind="stable")
     again = np.flatnonzero(np.diff(numbers[order]) == 0)
     if len(again):
         row = int(order[again[0] + 1])
         what = f"there is a node {numbers[row]} already"
-        raise describe_row_fault(rows.words[row], rows.lines[row], what, path)
+        raise describe_row_fault(rows.texts[row].split(), rows.lines[row], what, path)
     return numbers, points
 
 
@@ -147,7 +147,7 @@ def _parse_elements(
     count, polygons = _FACES[card]
     what = f"an element {card} needs its number and {count} nodes"
     named = parse_integer_columns(
-        rows.words, rows.lines, path, columns=slice(2, count + 2), what=what
+        rows.texts, rows.lines, path, columns=slice(2, count + 2), what=what
     )
     nodes = _find_nodes(named, numbers, rows, path)
     corners = nodes[:, [slot for polygon in polygons for slot in polygon]].ravel()
@@ -166,7 +166,7 @@ def _find_nodes(
         row = int(np.argmax(wrong.reshape(len(named), -1).any(axis=1)))
         first = int(named[row].ravel()[np.argmax(wrong[row])])
         what = f"there is no node {first}"
-        raise describe_row_fault(rows.words[row], rows.lines[row], what, path)
+        raise describe_row_fault(rows.texts[row].split(), rows.lines[row], what, path)
     return np.asarray(found, np.int64)
 
 
@@ -174,11 +174,12 @@ def _parse_strings(rows: _Rows, numbers: NDArray[np.int64], path: Path) -> list[
     """Return the node strings: a negative number ends one, and the string's own may follow it."""
     chains: list[Chain] = []
     open_nodes: list[int] = []
-    for row, line in zip(rows.words, rows.lines, strict=True):
+    for text, line in zip(rows.texts, rows.lines, strict=True):
+        row = text.split()
         for at, word in enumerate(row[1:], start=1):
             node = parse_integers([word], line, path)[0]
             called = np.array([[abs(node)]], np.int64)
-            open_nodes.append(int(_find_nodes(called, numbers, _Rows([row], [line]), path)[0, 0]))
+            open_nodes.append(int(_find_nodes(called, numbers, _Rows([text], [line]), path)[0, 0]))
             if node < 0:
                 name = row[at + 1] if at + 1 < len(row) else ""
                 chains.append(Chain(np.array(open_nodes), None, name))
@@ -198,7 +199,7 @@ def _describe_losses(cards: dict[str, _Rows], n_quadrilaterals: int) -> list[str
             f"{'was' if n_quadrilaterals == 1 else 'were'} cut into triangles along a diagonal: "
             "the file does not tell which of the two."
         )
-    n_edges = sum(len(cards[card].words) for card in _EDGES if card in cards)
+    n_edges = sum(len(cards[card].texts) for card in _EDGES if card in cards)
     if n_edges:
         kinds = " and ".join(card for card in _EDGES if card in cards)
         notes.append(
@@ -207,9 +208,9 @@ def _describe_losses(cards: dict[str, _Rows], n_quadrilaterals: int) -> list[str
             f"{'is' if n_edges == 1 else 'are'} left out."
         )
     materials = {
-        tuple(row[count + 2 :])
+        tuple(row.split(None, count + 2)[count + 2 :])
         for card, (count, _) in _FACES.items()
-        for row in cards.get(card, _Rows([], [])).words
+        for row in cards.get(card, _Rows([], [])).texts
     }
     if len(materials) > 1:
         notes.append("The materials of the elements are left out.")

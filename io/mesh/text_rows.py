@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import re
-from typing import TYPE_CHECKING
+import warnings
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -27,11 +27,9 @@ _SHOWN_LETTERS = 60
 _MOST_DIGITS = 18
 """Digits of a number that 64 bits hold whatever they are."""
 
-_WHOLE = re.compile(rf"(?:[-+]?[0-9]{{1,{_MOST_DIGITS}}} )*")
 
-
-def split_rows(content: bytes, *, comment: str = "#") -> tuple[list[list[str]], list[int]]:
-    """Cut a text into rows of words, and tell the line of each, from 1 on.
+def split_rows(content: bytes, *, comment: str = "#") -> tuple[list[str], list[int]]:
+    """Cut a text into rows, and tell the line of each, from 1 on.
 
     Parameters
     ----------
@@ -41,28 +39,27 @@ def split_rows(content: bytes, *, comment: str = "#") -> tuple[list[list[str]], 
 
     Returns
     -------
-    rows : list of list of str
-        Those that are not empty.
+    rows : list of str
+        Those that are not empty, without comments and the spaces about them.
     lines : list of int
     """
     text = content.decode("utf-8", errors="replace").removeprefix("\ufeff")
-    rows, lines = [], []
-    for number, line in enumerate(text.split("\n"), start=1):
-        words = line.partition(comment)[0].split()
-        if words:
-            rows.append(words)
-            lines.append(number)
-    return rows, lines
+    every = text.split("\n")
+    if comment in text:
+        every = [line.partition(comment)[0] for line in every]
+    every = [line.strip() for line in every]
+    lines = [number for number, line in enumerate(every, start=1) if line]
+    return (every if len(lines) == len(every) else [line for line in every if line]), lines
 
 
 def parse_floats(
-    rows: Sequence[Sequence[str]], lines: Sequence[int], path: Path, *, columns: slice, what: str
+    rows: Sequence[str], lines: Sequence[int], path: Path, *, columns: slice, what: str
 ) -> NDArray[np.float64]:
     """Return the numbers in some columns of rows.
 
     Parameters
     ----------
-    rows : sequence of sequence of str
+    rows : sequence of str
     lines : sequence of int
         The line of each row.
     path : Path
@@ -76,17 +73,42 @@ def parse_floats(
     ReadError
         If a row is too short, or a word is no number.
     """
-    width = columns.stop - columns.start
-    picked = [row[columns] for row in rows]
-    for row, line in zip(picked, lines, strict=True):
-        if len(row) < width:
-            raise describe_row_fault(row, line, what, path)
+    plain = _parse_plain_rows(rows, columns, np.float64)
+    if plain is not None and np.isfinite(plain).all():
+        return plain
+    picked = _pick_words(rows, lines, path, columns=columns, what=what)
     try:
-        return np.array(picked, np.float64).reshape(-1, width)
+        return np.array(picked, np.float64).reshape(-1, columns.stop - columns.start)
     except ValueError:
         for row, line in zip(picked, lines, strict=True):
             _require_numbers(row, line, path)
         raise
+
+
+def _parse_plain_rows(
+    rows: Sequence[str], columns: slice, dtype: type[np.generic]
+) -> NDArray[Any] | None:
+    """Return the numbers in some columns at once; None where a row is not plain."""
+    if not rows:
+        return None
+    wanted = range(columns.start, columns.stop)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")  # of numbers that are not whole
+            return np.loadtxt(rows, dtype, comments=None, usecols=wanted, ndmin=2)
+    except (ValueError, OverflowError, Warning):
+        return None
+
+
+def _pick_words(
+    rows: Sequence[str], lines: Sequence[int], path: Path, *, columns: slice, what: str
+) -> list[list[str]]:
+    """Return the words in some columns; refuse a row that has fewer."""
+    picked = [row.split()[columns] for row in rows]
+    for row, words, line in zip(rows, picked, lines, strict=True):
+        if len(words) < columns.stop - columns.start:
+            raise describe_row_fault(row.split(), line, what, path)
+    return picked
 
 
 def _require_numbers(row: Sequence[str], line: int, path: Path) -> None:
@@ -97,19 +119,15 @@ def _require_numbers(row: Sequence[str], line: int, path: Path) -> None:
 
 
 def parse_integer_columns(
-    rows: Sequence[Sequence[str]], lines: Sequence[int], path: Path, *, columns: slice, what: str
+    rows: Sequence[str], lines: Sequence[int], path: Path, *, columns: slice, what: str
 ) -> NDArray[np.int64]:
     """Return the whole numbers in some columns of rows, as :func:`parse_floats`."""
-    width = columns.stop - columns.start
-    picked = [row[columns] for row in rows]
-    words = [word for row in picked for word in row]
-    if len(words) == width * len(rows) and _WHOLE.fullmatch(" ".join([*words, ""])):
-        return np.array(words, np.int64).reshape(-1, width)
-    for row, line in zip(picked, lines, strict=True):
-        if len(row) < width:
-            raise describe_row_fault(row, line, what, path)
+    plain = _parse_plain_rows(rows, columns, np.int64)
+    if plain is not None:
+        return plain
+    picked = _pick_words(rows, lines, path, columns=columns, what=what)
     numbers = [parse_integers(row, line, path) for row, line in zip(picked, lines, strict=True)]
-    return np.array(numbers, np.int64).reshape(-1, width)
+    return np.array(numbers, np.int64).reshape(-1, columns.stop - columns.start)
 
 
 def parse_integers(
