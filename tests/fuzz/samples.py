@@ -15,6 +15,8 @@ import numpy as np
 
 import tinsmith as ts
 
+from .mesh_samples import MESH_MAKERS
+
 __all__ = ["MEMORY", "sample_files"]
 
 MEMORY = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
@@ -259,4 +261,5 @@ _MAKERS = {
     "vectors": _vectors,
     "delimited": _delimited,
     "instruments": _instruments,
+    **MESH_MAKERS,
 }
