@@ -78,6 +78,12 @@ def sum_heights(
     group_count: int,
     up: float,
 ) -> NDArray[np.float64]: ...
+def sum_areas(
+    points: NDArray[np.float64],
+    triangles: NDArray[np.int32],
+    groups: NDArray[np.int32],
+    group_count: int,
+) -> NDArray[np.float64]: ...
 def overlay(
     points: NDArray[np.float64],
     triangles: NDArray[np.int32],
