@@ -14,6 +14,7 @@ __all__ = [
     "is_ply",
     "is_raster",
     "is_stl",
+    "is_tin_geopackage",
     "is_vtk_xml",
 ]
 
@@ -53,7 +54,6 @@ _FOREIGN_STARTS = {
     b"PK\x03\x04": "a ZIP archive (such as an Excel workbook or KMZ)",
     b"\x1f\x8b": "a gzip archive",
     b"%PDF": "a PDF document",
-    b"LASF": "a LAS/LAZ point cloud",
     b"SQLite format 3": "an SQLite database (such as a GeoPackage)",
     b"\xd0\xcf\x11\xe0": "an old Office document (such as .xls)",
     b"\x00\x00\x27\x0a": "a shapefile",
@@ -71,9 +71,7 @@ _REFERENCES = (
 _FOREIGN_TEXTS = (
     *_REFERENCES,
     (re.compile(rb"<(?:!doctype )?html", re.I), "an HTML page"),
-    (re.compile(rb"<LandXML"), "a LandXML file"),
     (re.compile(rb"<[?!]?[A-Za-z_-]"), "an XML document"),
-    (re.compile(rb"0\r?\n\s*SECTION\r?\n"), "a DXF drawing"),
 )
 
 
@@ -97,6 +95,11 @@ def is_obj(head: bytes) -> bool:
 def is_stl(head: bytes) -> bool:
     """Whether the file is a text STL mesh; a binary one has no signature."""
     return head.startswith(b"solid") and re.search(rb"\n\s*facet\s+normal\s", head) is not None
+
+
+def is_tin_geopackage(head: bytes) -> bool:
+    """Whether the file is a GeoPackage with the table that the record of a TIN is in."""
+    return head.startswith(b"SQLite format 3\0") and b"TABLE tinsmith_tin" in head
 
 
 def is_vtk_xml(head: bytes) -> bool:

@@ -9,6 +9,7 @@ import numpy as np
 
 from ...crs import assume_elevation_unit, scale_elevations
 from ...errors import CrsError, PointsError
+from ...tin.validation.options import require_tin
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -72,6 +73,7 @@ def reference_of(tin: TIN, purpose: str) -> Reference:
     CrsError
         If coordinates are angles.
     """
+    require_tin(tin)
     crs = tin.crs
     if crs is not None and crs.is_geographic:
         raise CrsError(
@@ -103,6 +105,8 @@ def surfaces_of(tin: TIN, other: TIN) -> tuple[Surface, Surface, list[str]]:
         If their CRSs differ, or only one of them is known, or if it cannot be told whether their
         elevations are in one unit.
     """
+    require_tin(tin)
+    require_tin(other)
     _require_one_crs(tin.crs, other.crs)
     notes = _datum_notes(tin.crs, other.crs)
     ours = assume_elevation_unit(tin.crs, tin.elevation_unit)

@@ -9,6 +9,7 @@ import numpy as np
 
 from ...errors import OptionError
 from ...tin.types import Bounds, Grid
+from ...tin.validation.options import require_tin
 from ..results import Raster
 from ..results.gridded import cell_centers
 from ..rounding import round_down
@@ -198,6 +199,7 @@ def grid_over(bounds: Bounds, spacing: float) -> Grid:
 
 
 def _as_grid(tin: TIN, spacing: Any, grid: Any) -> Grid:
+    require_tin(tin)
     if grid is not None and spacing is not None:
         raise OptionError("spacing", spacing, allowed="None where a grid is given")
     if grid is not None and not isinstance(grid, Grid):

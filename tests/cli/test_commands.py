@@ -339,49 +339,22 @@ def test_formats_lists_every_known_format():
         assert (facts["read"], facts["write"]) == (bool(one.read), bool(one.write))
         assert facts["suffixes"] == list(one.suffixes)
         assert (facts["description"], facts["extra"]) == (one.description, one.extra)
-        words = [("yes" if way else "-") for way in (one.read, one.write)]
-        assert re.search(rf"^ ?{one.name} +{words[0]} +{words[1]} ", table, re.MULTILINE)
+        assert facts["reads"] == (list(one.reads) if one.read else [])
+        assert facts["writes"] == (list(one.writes) if one.write else [])
+        assert (facts["precision"], facts["losses"]) == (one.precision, one.losses)
+        assert (facts["needs"], facts["installed"]) == (one.needs, one.is_installed)
+        assert facts["from"] == "tinsmith"
 
 
-class Entry:
-    """An entry point, as an installed package declares it."""
-
-    def __init__(self, name, value):
-        self.name, self.value = name, value
-
-    def load(self):
-        if isinstance(self.value, Exception):
-            raise self.value
-        return self.value
-
-
-@pytest.fixture
-def plug_in(monkeypatch):
-    def install(*entries):
-        monkeypatch.setattr(group, "entry_points", lambda group: entries)
-        group._find_plug_ins.cache_clear()
-
-    yield install
-    group._find_plug_ins.cache_clear()
-
-
-def test_plug_in_adds_a_command(plug_in):
-    plug_in(Entry("hello", click.Command("hello", callback=lambda: click.echo("hi"))))
-    assert run("hello").stdout == "hi\n"
-    assert "hello" in run("--help").output
-
-
-@pytest.mark.parametrize("value", [ImportError("no module 'x'"), "a text"])
-def test_broken_plug_in_says_so_and_harms_no_other(plug_in, value):
-    plug_in(Entry("broken", value))
-    assert "build" in run("--help").output
-    result = run("broken", "--option", "x", code=1)
-    assert "plug-in 'broken' cannot be loaded" in result.stderr
-
-
-def test_plug_in_cannot_replace_a_built_in_command(plug_in):
-    plug_in(Entry("formats", click.Command("formats", callback=lambda: click.echo("mine"))))
-    assert "mine" not in run("formats").stdout
+@pytest.mark.parametrize("is_there", [True, False])
+def test_formats_tells_what_is_installed(monkeypatch, is_there):
+    if not is_there:
+        monkeypatch.setattr("tinsmith._optional.find_spec", lambda name: None)
+    rows = run("formats").stdout.splitlines()
+    row = next(number for number, row in enumerate(rows) if row.split()[:1] == ["cog"])
+    assert rows[row].split()[:4] == ["cog", "-", "Raster", "tinsmith[raster]"]
+    assert ("not installed" not in rows[row + 1]) == is_there
+    assert " installed" in rows[row + 1]
 
 
 def test_formats_names_the_extras():

@@ -20,10 +20,17 @@ from ..flags import name_flags
 from .streams import Terminated, escape_unprintable, silence, tell
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
-__all__ = ["Failure", "note_answer", "note_written", "show_failure", "translate_failures"]
+__all__ = [
+    "Failure",
+    "note_answer",
+    "note_written",
+    "show_failure",
+    "tell_warning",
+    "translate_failures",
+]
 
 DEBUG = "TINSMITH_DEBUG"
 """Environment variable that, when set, lets every traceback through."""
@@ -99,8 +106,17 @@ def _wants_json(arguments: Sequence[str]) -> bool:
 
 
 @contextmanager
-def translate_failures(ctx: click.Context) -> Iterator[None]:
-    """Turn exceptions into :class:`Failure`, and warnings into one line each."""
+def translate_failures(
+    ctx: click.Context, find_owner: Callable[[], str] = lambda: "tinsmith"
+) -> Iterator[None]:
+    """Turn exceptions into :class:`Failure`, and warnings into one line each.
+
+    Parameters
+    ----------
+    ctx : click.Context
+    find_owner : callable
+        Whose fault an exception is that nobody expected.
+    """
     if os.environ.get(DEBUG):
         yield
         return
@@ -117,7 +133,7 @@ def translate_failures(ctx: click.Context) -> Iterator[None]:
         except Terminated as ended:
             raise _translate(_make_interruption(ctx, ended.number), ctx) from None
         except Exception as error:
-            raise _translate(_make_failure(error), ctx) from error
+            raise _translate(_make_failure(error, find_owner()), ctx) from error
 
 
 def _translate(error: click.ClickException, ctx: click.Context) -> click.ClickException:
@@ -134,7 +150,7 @@ def _make_interruption(ctx: click.Context, number: int) -> Interruption:
     return Interruption(f"Interrupted; {outcome}.", number)
 
 
-def _make_failure(error: Exception) -> Failure:
+def _make_failure(error: Exception, owner: str) -> Failure:
     from ...errors import TinsmithError
 
     if isinstance(error, TinsmithError):
@@ -146,10 +162,15 @@ def _make_failure(error: Exception) -> Failure:
         return Failure(f"The system refuses{where}: {error.strerror}.")
     what = " ".join(f"{type(error).__name__}: {error}".split())
     return Failure(
-        f"A bug in tinsmith: {what} (set {DEBUG}=1 to see the traceback, and please report it)."
+        f"A bug in {owner}: {what} (set {DEBUG}=1 to see the traceback, and please report it)."
     )
 
 
 def _show_warning(message: Warning | str, *_: object, **__: object) -> None:
+    tell_warning(name_flags(" ".join(str(message).split())))
+
+
+def tell_warning(text: str) -> None:
+    """Write a warning to stderr."""
     label = click.style("Warning: ", fg="yellow", bold=True)
-    tell(f"{label}{escape_unprintable(name_flags(' '.join(str(message).split())))}")
+    tell(f"{label}{escape_unprintable(text)}")
