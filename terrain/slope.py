@@ -22,6 +22,7 @@ __all__ = [
     "aspect",
     "compute_normals",
     "measure_areas",
+    "measure_plane_areas",
     "measure_ring_area",
     "measure_slopes",
     "slope",
@@ -123,8 +124,25 @@ def aspect(tin: TIN, *, per: SurfacePart = "triangle") -> NDArray[np.float64]:
     return azimuth
 
 
+def measure_plane_areas(tin: TIN) -> NDArray[np.float64]:
+    """Measure the area of each triangle in the plane, in the units of `find_plane_units`.
+
+    Parameters
+    ----------
+    tin : TIN
+
+    Returns
+    -------
+    (m,) float64 array
+        In CRS units squared, as all products have it; above longitude and latitude square metres.
+    """
+    scales = find_scales(tin.crs, None, _average_northings(tin))
+    measured: NDArray[np.float64] = tin.triangle_areas * scales.east * scales.north
+    return measured
+
+
 def measure_areas(tin: TIN) -> NDArray[np.float64]:
-    """Measure the area of each triangle in the plane on the ground.
+    """Measure the area of each triangle in the plane in square metres, as GeoJSON tells it.
 
     Parameters
     ----------

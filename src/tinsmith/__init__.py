@@ -152,7 +152,8 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "stage_storage",
                 "volume",
             ),
-            ".terrain.gridding": ("height_above", "rasterize"),
+            ".io.raster.cells": ("rasterize",),  # which reads the file of `like`, too
+            ".terrain.gridding": ("height_above",),
             ".terrain.relief": (
                 "aspect_classes",
                 "curvature",

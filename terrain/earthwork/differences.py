@@ -15,7 +15,7 @@ from ..results import Features, Table
 from . import zones as parts
 from .cells import fan_out
 from .meshes import as_mesh, cut_at_zero, mend, rebuild
-from .reference import Reference, Surface, reference_of, require_finite, surfaces_of
+from .reference import Reference, Surface, find_common_reference, require_finite
 from .statistics import percentiles
 
 if TYPE_CHECKING:
@@ -79,7 +79,7 @@ class Difference:
         They are closed, or end at the boundary or where three parts meet. Where the surfaces
         agree on an area its border is a line, such as that of a design that meets the ground.
         """
-        return parts.zero_line(self.tin.triangulation, self._reference)
+        return parts.trace_zero_line(self.tin.triangulation, self._reference)
 
     @cached_property
     def zones(self) -> Features:
@@ -88,7 +88,7 @@ class Difference:
         Columns ``kind`` ("cut", "fill", "unchanged"), ``area``, ``volume``, ``lowest``,
         ``highest``.
         """
-        return parts.zones(self.tin.triangulation, self._reference)
+        return parts.find_zones(self.tin.triangulation, self._reference)
 
     @cached_property
     def statistics(self) -> Table:
@@ -97,10 +97,10 @@ class Difference:
         ``mean``, ``rms``, ``standard_deviation``, ``mean_absolute``, ``lowest``, ``highest``,
         percentiles ``p05``, ``p25``, ``median``, ``p75``, ``p95``, and the ``area``.
         """
-        columns = _moments(self._sums)
+        columns = _list_moments(self._sums)
         columns |= dict(zip(_SHARES, self.percentiles(list(_SHARES.values())), strict=True))
         units: dict[str, Any] = dict.fromkeys(columns, self._reference.elevation_unit)
-        units["area"] = self._reference.power(2)
+        units["area"] = self._reference.units.area
         return Table(
             {name: np.array([value]) for name, value in columns.items()},
             units=units,
@@ -140,7 +140,7 @@ class Difference:
         return f"<Difference: {self.tin!r}>"
 
 
-def _moments(sums: dict[str, float]) -> dict[str, float]:
+def _list_moments(sums: dict[str, float]) -> dict[str, float]:
     area = sums["area"]
     mean, square = (sums["fill"] - sums["cut"]) / area, sums["squares"] / area
     return {
@@ -192,29 +192,26 @@ def difference(tin: TIN, other: TIN) -> Difference:
     >>> found.statistics["highest"], sorted(found.zones.columns["kind"])
     (array([1.]), ['cut', 'fill'])
     """
-    reference = reference_of(tin, "Differences")
-    reference_of(other, "Differences")
-    first, second, notes = surfaces_of(tin, other)
+    reference, first, second = find_common_reference(tin, other, "Differences")
     made = _kernel.overlay(first.points, first.triangles, second.points, second.triangles)
     if len(made.triangles) == 0:
         raise PointsError(
-            f"The surfaces do not overlap: one covers {_extent(first)}, the other "
-            f"{_extent(second)}."
+            f"The surfaces do not overlap: one covers {_describe_extent(first)}, the other "
+            f"{_describe_extent(second)}."
         )
     require_finite(made.vertices)
-    sums = _sums_between(first, second)
+    sums = _sum_differences(first, second)
     if not sums["area"] > 0.0:
         raise PointsError("The surfaces overlap only in what is thinner than coordinates can tell.")
     triangles, _ = fan_out(made.offsets, made.corners)
     given = cut_at_zero(made.vertices, triangles)
-    points, triangles = mend(*given) or _rebuild(*given, _holder(tin, other))
-    surface = as_mesh(points, triangles, crs=tin.crs, elevation_unit=tin.elevation_unit)
-    every = tuple(dict.fromkeys([*reference.notes, *notes]))
+    points, triangles = mend(*given) or _rebuild(*given, _make_holder(tin, other))
+    surface = as_mesh(points, triangles, crs=reference.crs, elevation_unit=reference.elevation_unit)
     _require_agreement(surface, sums)
-    return Difference(surface, every, reference, sums)
+    return Difference(surface, reference.notes, reference, sums)
 
 
-def _sums_between(first: Surface, second: Surface) -> dict[str, float]:
+def _sum_differences(first: Surface, second: Surface) -> dict[str, float]:
     groups = np.zeros(len(first.triangles), np.int32)
     workers = thread_count(None, len(first.points) + len(second.points))
     sums = _kernel.sum_between(
@@ -226,7 +223,7 @@ def _sums_between(first: Surface, second: Surface) -> dict[str, float]:
 
 def _require_agreement(surface: TIN, sums: dict[str, float]) -> None:
     """Refuse a TIN whose volumes are not those of the surfaces: rounding has moved a wall."""
-    found = _sums_of(surface)
+    found = _sum_classes(surface)
     most = max(sums["highest"], -sums["lowest"])
     apart = max(abs(found[name] - sums[name]) for name in ("cut", "fill"))
     if apart > _SHARE_OF_ROUNDING * sums["area"] * most:
@@ -237,11 +234,11 @@ def _require_agreement(surface: TIN, sums: dict[str, float]) -> None:
         )
 
 
-def _sums_of(surface: TIN) -> dict[str, float]:
+def _sum_classes(surface: TIN) -> dict[str, float]:
     """Return cut and fill in the triangles that count as cut and as filled."""
     mesh = surface.triangulation
     heights = np.ascontiguousarray(mesh.points[:, 2])
-    groups = parts.classes_of(mesh).astype(np.int32) + np.int32(1)
+    groups = parts.classify(mesh).astype(np.int32) + np.int32(1)
     sums = _kernel.sum_heights(mesh.points, mesh.triangles, heights, groups, 3, 1.0)
     column = _kernel.SUMS.index
     return {"cut": float(sums[0, column("cut")]), "fill": float(sums[2, column("fill")])}
@@ -255,12 +252,12 @@ def _rebuild(
     return mend(*cut_at_zero(*found)) or found
 
 
-def _holder(tin: TIN, other: TIN) -> Callable[[Any], Any]:
+def _make_holder(tin: TIN, other: TIN) -> Callable[[Any], Any]:
     """Return a function that tells whether both surfaces hold places."""
     return lambda xy: (tin.locate(xy) >= 0) & (other.locate(xy) >= 0)
 
 
-def _extent(surface: Surface) -> str:
+def _describe_extent(surface: Surface) -> str:
     used = surface.points[surface.triangles.ravel(), :2]
     (west, south), (east, north) = used.min(axis=0), used.max(axis=0)
     return f"{west:.10g} to {east:.10g} east, {south:.10g} to {north:.10g} north"

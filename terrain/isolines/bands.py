@@ -9,9 +9,10 @@ import numpy as np
 from ...tin.types import seal
 from ...tin.validation.options import require_tin
 from .. import _kernel
+from ..georeference import describe_unknown, find_plane_units
 from ..results import Features
 from .levels import LevelOptions
-from .measures import measure_ring_areas, plane_units, sum_parts
+from .measures import measure_ring_areas, sum_parts
 from .mending import PolygonParts, mend_polygons, require_whole
 
 if TYPE_CHECKING:
@@ -81,7 +82,7 @@ def contour_bands(
     numbers, first = np.unique(parts.band, return_index=True)
     areas = measure_ring_areas(tin.crs, parts.points, parts.ring_offsets)
     rings = sum_parts(areas, parts.polygon_offsets[:-1])
-    bounds = _band_bounds(chosen.values)
+    bounds = _list_bounds(chosen.values)
     columns = {
         "from": bounds[numbers],
         "to": bounds[numbers + 1],
@@ -94,14 +95,14 @@ def contour_bands(
         seal(parts.polygon_offsets),
         seal(np.append(first, len(parts.band)).astype(np.int64)),
         columns={name: seal(values) for name, values in columns.items()},
-        units={**units, "area": plane_units(tin.crs).area},
+        units={**units, "area": find_plane_units(tin.crs).area},
         crs=tin.crs,
         elevation_unit=tin.elevation_unit,
         name="contour bands",
-        notes=notes,
+        notes=[*describe_unknown(tin.crs, tin.elevation_unit), *notes],
     )
 
 
-def _band_bounds(levels: NDArray[np.float64]) -> NDArray[np.float64]:
+def _list_bounds(levels: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return where bands begin and end, from below all levels to above them."""
     return np.concatenate([[np.nan], levels, [np.nan]])

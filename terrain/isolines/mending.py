@@ -54,17 +54,17 @@ def mend_polygons(parts: PolygonParts) -> tuple[PolygonParts, tuple[str, ...]]:
     for band in np.unique(parts.band):
         members = shapes[parts.band == band]
         if band in bands:
-            members = _made_valid(members)
+            members = _make_valid(members)
         pieces.append(members)
         numbers.append(np.full(len(members), band, np.int32))
     note = (
         f"{counted(int(is_bad.sum()), 'polygon')} met themselves within the rounding of "
         "coordinates, where triangles are thinner than it, and were made valid."
     )
-    return _parts_of(np.concatenate(pieces), np.concatenate(numbers)), (note,)
+    return _as_parts(np.concatenate(pieces), np.concatenate(numbers)), (note,)
 
 
-def _made_valid(shapes: NDArray[np.object_]) -> NDArray[np.object_]:
+def _make_valid(shapes: NDArray[np.object_]) -> NDArray[np.object_]:
     import shapely
 
     whole = shapely.union_all(shapely.make_valid(shapes))
@@ -81,7 +81,7 @@ def _turn(polygon: Any) -> Any:
     return orient(polygon)
 
 
-def _parts_of(shapes: NDArray[np.object_], band: NDArray[np.int32]) -> PolygonParts:
+def _as_parts(shapes: NDArray[np.object_], band: NDArray[np.int32]) -> PolygonParts:
     import shapely
 
     _, points, (rings, polygons) = shapely.to_ragged_array(shapes)

@@ -15,30 +15,43 @@ if TYPE_CHECKING:
     from ...tin.types import Grid
     from .raster import Raster
 
-__all__ = ["build_dataset", "cell_centers"]
+__all__ = ["build_dataset", "locate_centers"]
 
 _MAPPING = "spatial_ref"
 
 
-def cell_centers(grid: Grid) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the eastings of the columns and the northings of the rows, at the cell centres.
+def locate_centers(
+    grid: Grid, rows: slice | None = None, columns: slice | None = None
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the eastings of columns and the northings of rows, at the cell centres.
+
+    Parameters
+    ----------
+    grid : Grid
+    rows, columns : slice, optional
+        From start to stop; default all.
 
     Examples
     --------
     >>> from tinsmith import Bounds, Grid
-    >>> cell_centers(Grid(Bounds(0.0, 0.0, 2.0, 3.0), shape=(3, 2), spacing=1.0))[1]
+    >>> locate_centers(Grid(Bounds(0.0, 0.0, 2.0, 3.0), shape=(3, 2), spacing=1.0))[1]
     array([2.5, 1.5, 0.5])
     """
-    rows, columns = grid.shape
-    east = grid.bounds.xmin + (np.arange(columns, dtype=np.float64) + 0.5) * grid.spacing
-    north = grid.bounds.ymax - (np.arange(rows, dtype=np.float64) + 0.5) * grid.spacing
-    return np.asarray(east, np.float64), np.asarray(north, np.float64)
+    height, width = grid.shape
+    x = grid.bounds.xmin + (_list_numbers(columns, width) + 0.5) * grid.spacing
+    y = grid.bounds.ymax - (_list_numbers(rows, height) + 0.5) * grid.spacing
+    return x, y
+
+
+def _list_numbers(part: slice | None, count: int) -> NDArray[np.float64]:
+    chosen = slice(0, count) if part is None else part
+    return np.arange(chosen.start, chosen.stop, dtype=np.float64)
 
 
 def build_dataset(raster: Raster) -> Any:
     """Return a data set of xarray, as :meth:`Raster.to_xarray` describes it."""
     xarray = _optional.load("xarray", "Turning a raster into a data set")
-    east, north = cell_centers(raster.grid)
+    east, north = locate_centers(raster.grid)
     variables = {
         name: (("y", "x"), np.array(band[:, :]), _attributes(raster, name))
         for name, band in raster.bands.items()

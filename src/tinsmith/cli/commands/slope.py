@@ -86,7 +86,7 @@ def slope(
       tinsmith slope sample_data/jacksboro.tif --unit percent --breaks 5,15,30 -o slope.geojson
     """  # noqa: D301 - click reads the control character
     from ...terrain import aspect_classes, slope_classes, slope_statistics
-    from ...terrain.relief.classes import class_table
+    from ...terrain.relief.classes import tabulate_classes
     from ..files import list_inputs, read_tin
     from ..surfaces import plan_products
 
@@ -105,7 +105,7 @@ def slope(
         made = aspect_classes(tin) if aspect else slope_classes(tin, breaks=breaks, unit=unit)
         statistics = slope_statistics(tin, unit=unit)
     planned.write("Features", made, console)
-    planned.write("Table", class_table(made), console)
+    planned.write("Table", tabulate_classes(made), console)
     console.summarise(
         [
             *_fields(tin, made, statistics),
