@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 from ... import terrain
 from ...crs import CRS
 from ...terrain.gridding.grids import Cells, to_grid
+from ..isolated.local_files import require_local
+from ..isolated.spooling import describe_system_error, open_ordinary_file
 from .dem import read_georeference
 
 if TYPE_CHECKING:
@@ -29,7 +31,7 @@ def read_cells(path: str | os.PathLike[str]) -> Cells:
     Raises
     ------
     ReadError
-        If GDAL cannot read the file, or it has no georeference.
+        If the file is missing, an address, or of another format, or it has no georeference.
     OptionError
         If its cells are turned or not square.
     CrsError
@@ -37,7 +39,15 @@ def read_cells(path: str | os.PathLike[str]) -> Cells:
     MissingExtraError
         If rasterio is not installed.
     """
-    transform, shape, crs = read_georeference(Path(path))
+    require_local(path)
+    file = Path(path)
+    with open_ordinary_file(file) as local:
+        try:
+            with local.open("rb"):
+                pass
+        except OSError as error:
+            raise describe_system_error(file, error) from error
+        transform, shape, crs = read_georeference(local)
     return Cells(to_grid(transform, shape, os.fspath(path)), CRS.of(crs))
 
 

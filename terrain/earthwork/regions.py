@@ -47,6 +47,7 @@ def as_regions(regions: Any, crs: CRS | None) -> tuple[list[str], Pieces, tuple[
     is_plain = not hasattr(regions, "crs")
     theirs = CRS.of(getattr(regions, "crs", None))
     notes = require_same_crs(theirs, crs, "the regions", is_plain=is_plain)
+    notes += tuple(regions.notes) if isinstance(regions, Features) else ()
     named = list(_name_regions(regions))
     if not named:
         raise OptionError("number of regions", 0, allowed="1 or more")

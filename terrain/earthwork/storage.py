@@ -12,7 +12,7 @@ from ...errors import OptionError, PointsError
 from ...tin import topology
 from .. import _kernel
 from ..georeference import require_same_crs
-from ..results import Table
+from ..results import Features, Table
 from .cells import cut_pieces
 from .reference import Surface, find_reference, require_finite
 from .regions import as_regions
@@ -116,6 +116,7 @@ def _cut_out(surface: Surface, region: Any, crs: CRS | None) -> tuple[Surface, t
     """Return the part of a surface in a region, and what was assumed of it."""
     theirs = CRS.of(getattr(region, "crs", None))
     notes = require_same_crs(theirs, crs, "the region", is_plain=not hasattr(region, "crs"))
+    notes += tuple(region.notes) if isinstance(region, Features) else ()
     pieces = cut_pieces(surface, as_regions({"region": region}, crs)[1]).surface
     if len(pieces.triangles) == 0:
         raise PointsError("The region lies outside the surface: it holds nothing.")

@@ -122,7 +122,7 @@ def test_points_are_triangulated_with_their_lines(tmp_path):
         (("--from", 1, 1, "--to", 2, 2, "-o", "a.csv"), "lies outside the surface"),
         ((*LINE, "--interval", 0, "-o", "a.csv"), "Invalid --interval 0.0"),
         ((*LINE, "--interval", 1e-9, "-o", "a.csv"), "at most 1,000,000"),
-        ((*LINE, "--sections", 10, 0, "-o", "a.csv"), "Invalid width 0.0"),
+        ((*LINE, "--sections", 10, 0, "-o", "a.csv"), "Invalid --sections 0.0"),
         ((*LINE, "--sections", 10, 5, "-o", "a.png"), "has no --sections"),
         ((*LINE, "-o", "a.gpkg"), "a Table can be written to"),
         ((*LINE, "--name", "a", "--name", "b", "-o", "a.csv"), "name each once"),

@@ -11,6 +11,7 @@ from typing import Any, TypeVar, get_args
 import click
 
 from ..policies import DuplicatePolicy, FeatureKind
+from .flags import note_given
 from .line_options import LINE_OPTIONS
 from .output.console import Console
 from .paths import INPUT
@@ -121,6 +122,7 @@ def _gather(name: str, factory: type, *options: Decorator) -> Callable[[Function
     def decorate(function: Function) -> Function:
         @wraps(function)
         def gathering(**given: Any) -> Any:
+            note_given(click.get_current_context())
             value = factory(**{key: given.pop(key) for key in names if key in given})
             return function(**given, **{name: value})
 

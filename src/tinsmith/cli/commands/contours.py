@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..._sentences import counted
-from ..flags import name_flags
 from ..options import (
     console_options,
     input_file,
@@ -18,7 +17,6 @@ from ..options import (
     writing_options,
 )
 from ..output.console import format_json
-from ..output.failures import Failure
 from ..paths import make_title
 
 if TYPE_CHECKING:
@@ -150,7 +148,6 @@ def _numbers(text: str | None) -> list[float] | None:
 
 
 def _product(tin: TIN, options: dict[str, Any]) -> Features:
-    from ...errors import OptionError
     from ...terrain import contour_bands, contour_labels
     from ...terrain import contours as trace
 
@@ -166,10 +163,7 @@ def _product(tin: TIN, options: dict[str, Any]) -> Features:
     )
     if not options["labels"]:
         return lines
-    try:
-        return contour_labels(lines, spacing=options["label_spacing"])
-    except OptionError as error:
-        raise Failure(name_flags(str(error), spacing="--label-spacing")) from error
+    return contour_labels(lines, spacing=options["label_spacing"])
 
 
 def _draw(tin: TIN, made: Features, options: dict[str, Any], title: str) -> Any:

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..flags import name_flags
 from ..options import (
     console_options,
     input_file,
@@ -18,7 +17,6 @@ from ..options import (
     triangulating_options,
 )
 from ..output.console import format_json
-from ..output.failures import Failure
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -86,7 +84,6 @@ def hillshade(
       tinsmith hillshade sample_data/site_survey.csv --crs EPSG:32616 --spacing 0.5 -o shade.tif
     """  # noqa: D301 - click reads the control character
     from ... import terrain
-    from ...errors import OptionError
     from ..files import describe_written, list_inputs, plan_outputs, read_tin, write_outputs
 
     started = perf_counter()
@@ -94,24 +91,22 @@ def hillshade(
         outputs, writing, inputs=list_inputs(file, how), console=console, kinds=("Raster",)
     )
     tin, _ = read_tin(file, reading, how, console)
-    try:
-        with console.steps() as steps, steps.step("Shading"):
-            made = terrain.hillshade(
-                tin,
-                spacing=spacing,
-                azimuth=azimuth,
-                altitude=altitude,
-                exaggeration=exaggeration,
-                smooth=smooth,
-            )
-    except OptionError as error:
-        raise Failure(name_flags(str(error))) from error
+    with console.steps() as steps, steps.step("Shading"):
+        made = terrain.hillshade(
+            tin,
+            spacing=spacing,
+            azimuth=azimuth,
+            altitude=altitude,
+            exaggeration=exaggeration,
+            smooth=smooth,
+        )
     write_outputs(made, planned, console)
     rows, columns = made.shape
     size = f"{rows:,} rows by {columns:,} columns of {made.grid.spacing:g}"
     console.summarise(
         [
             ("Raster", size),
+            *(("Note", note) for note in made.notes),
             ("Written", describe_written(planned)),
             ("Time", f"{perf_counter() - started:.2f} s"),
         ]
@@ -120,4 +115,5 @@ def hillshade(
         raster = {"shape": list(made.shape), "spacing": made.grid.spacing}
         raster["bounds"] = asdict(made.grid.bounds)
         paths = [str(one.path) for one in planned]
-        console.emit(format_json({"input": str(file), "raster": raster, "outputs": paths}))
+        record = {"input": str(file), "raster": raster, "notes": list(made.notes)}
+        console.emit(format_json(record | {"outputs": paths}))

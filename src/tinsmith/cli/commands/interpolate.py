@@ -94,6 +94,7 @@ def interpolate(
         --at places.csv --method natural -o elevations.csv
     """  # noqa: D301 - click reads the control character
     from ...io.delimited.places import read_places
+    from ...terrain.georeference import describe_unknown
     from ..files import list_inputs, plan_outputs, read_tin, write_outputs
 
     started = perf_counter()
@@ -105,7 +106,7 @@ def interpolate(
         columns=asked["places_columns"] or None,
         delimiter=asked["places_delimiter"],
     )
-    notes = list(places.notes)
+    notes = [*describe_unknown(tin.crs, tin.elevation_unit), *places.notes]
     table = _table(tin, places, notes, how.threads, asked, console)
     write_outputs(table, planned, console)
     _tell(table, tin, planned, notes, started, asked, console)

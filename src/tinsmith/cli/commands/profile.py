@@ -17,6 +17,7 @@ from ..options import (
     triangulating_options,
 )
 from ..output.console import format_json
+from ..output.failures import Failure
 from ..paths import INPUT, LINES, Named, make_title
 
 if TYPE_CHECKING:
@@ -117,11 +118,11 @@ def profile(
     started = perf_counter()
     line = _Line(file=line_file, start=begin, end=end)
     line.require_one()
-    chosen, asked["is_named"] = _names(files, names), bool(names)
+    chosen, asked["is_named"] = _choose_names(files, names), bool(names)
     planned = _plan(outputs, files, line_file, how, writing, console, asked["sections"])
     surfaces = dict(zip(chosen, read_surfaces(files, reading, how, console), strict=True))
     notes: list[str] = []
-    lines = _lines(line, next(iter(surfaces.values())), notes)
+    lines = _read_line(line, next(iter(surfaces.values())), notes)
     table, sections = _cut(surfaces, lines, planned.holds("Features"), console, asked)
     figure = _draw(table, surfaces, files, asked) if planned.holds("picture") else None
     planned.write("Table", table, console)
@@ -138,13 +139,13 @@ def profile(
         ]
     )
     if console.as_json:
-        console.emit(format_json(_facts(files, table, notes, planned)))
+        console.emit(format_json(_as_record(files, table, notes, planned)))
 
 
 # ---------------------------------------------------------------- what is given
 
 
-def _names(files: Sequence[Path], given: Sequence[str]) -> list[str]:
+def _choose_names(files: Sequence[Path], given: Sequence[str]) -> list[str]:
     names = list(given) or [make_title(file) or "surface" for file in files]
     if len(names) != len(files):
         raise click.UsageError(
@@ -179,14 +180,20 @@ def _plan(
     return planned
 
 
-def _lines(line: _Line, tin: TIN, notes: list[str]) -> Any:
-    from ...io import read_lines
+def _read_line(line: _Line, tin: TIN, notes: list[str]) -> Any:
+    """Return the lines to cut along; those of a file, also the rings of polygons, with its CRS."""
+    from ...io.vector.geometries import read_geometries
     from ...io.vector.survey_lines import split_layer
+    from ...terrain import Features
 
     if line.file is None:
         return [line.start, line.end]
     path, layer = split_layer(line.file)
-    return read_lines(path, crs=tin.crs, layer=layer, drape=True, notes=notes)
+    found = read_geometries(path, crs=tin.crs, layer=layer)
+    notes += found.notes
+    if found.kind == "points":
+        raise Failure(f"'{path}' has points: a profile runs along lines.")
+    return Features.of_lines(found.coordinates, found.offsets[0], crs=found.crs)
 
 
 # ---------------------------------------------------------------- what is made
@@ -221,7 +228,7 @@ def _draw(
     return profile_picture(table, exaggeration=asked["exaggeration"], title=title, crs=crs)
 
 
-def _facts(
+def _as_record(
     files: Sequence[Path], table: Table, notes: Sequence[str], planned: Products
 ) -> dict[str, Any]:
     """Describe the table: its columns, and the least and largest of those that are measured."""
@@ -230,12 +237,12 @@ def _facts(
         "inputs": [str(file) for file in files],
         "rows": len(table),
         "columns": list(table.columns),
-        "ranges": {name: _range(table[name]) for name in measured},
+        "ranges": {name: _measure_range(table[name]) for name in measured},
         "notes": list(notes),
         "outputs": [str(path) for path in planned.paths],
     }
 
 
-def _range(values: Any) -> list[float | None]:
+def _measure_range(values: Any) -> list[float | None]:
     known = values[values == values]
     return [float(known.min()), float(known.max())] if len(known) else [None, None]

@@ -16,7 +16,6 @@ from ..options import (
     triangulating_options,
 )
 from ..output.console import format_json
-from ..output.failures import Failure
 from ..paths import LINES, Named
 
 if TYPE_CHECKING:
@@ -46,7 +45,7 @@ __all__ = ["raster"]
     type=click.Choice(get_args(RasterValue)),
     default="elevation",
     show_default=True,
-    help="What the cells hold; slope and aspect in degrees, hillshade from 0 to 255.",
+    help="What the cells hold; slope and aspect in degrees, hillshade from 1 to 255.",
 )
 @click.option(
     "--method",
@@ -103,6 +102,7 @@ def raster(
       tinsmith raster sample_data/site_survey.csv --crs EPSG:32616 --codes
         --spacing 0.5 -o site.tif
     """  # noqa: D301 - click reads the control character
+    from ...io.raster.cells import read_cells
     from ..files import list_inputs, plan_outputs, read_tin, write_outputs
     from ..options import Writing
 
@@ -114,35 +114,32 @@ def raster(
         inputs.append(Named(like, "the raster of --like"))
     writing = Writing(output_format=output_format)
     planned = plan_outputs(outputs, writing, inputs=inputs, console=console, kinds=("Raster",))
+    cells = None if like is None else read_cells(like)
     tin, _ = read_tin(file, reading, how, console)
-    made = _raster(tin, spacing, like, how.threads, asked)
+    made = _rasterize(tin, spacing, cells, how.threads, asked)
     write_outputs(made, planned, console)
     _tell(tin, made, planned, started, console)
     if console.as_json:
-        console.emit(format_json(_facts(file, made, planned)))
+        console.emit(format_json(_as_record(file, made, planned)))
 
 
-def _raster(
-    tin: TIN, spacing: float | None, like: Path | None, threads: int | None, asked: dict[str, Any]
+def _rasterize(
+    tin: TIN, spacing: float | None, cells: Any, threads: int | None, asked: dict[str, Any]
 ) -> Raster:
-    from ...errors import OptionError
     from ...terrain import rasterize
 
-    try:
-        return rasterize(
-            tin,
-            spacing=spacing,
-            like=like,
-            value=asked["value"],
-            method=asked["method"],
-            at=asked["sample"],
-            azimuth=asked["azimuth"],
-            altitude=asked["altitude"],
-            lazy=True,
-            threads=threads,
-        )
-    except OptionError as error:
-        raise Failure(str(error)) from error
+    return rasterize(
+        tin,
+        spacing=spacing,
+        like=cells,
+        value=asked["value"],
+        method=asked["method"],
+        at=asked["sample"],
+        azimuth=asked["azimuth"],
+        altitude=asked["altitude"],
+        lazy=True,
+        threads=threads,
+    )
 
 
 def _tell(tin: TIN, made: Raster, planned: list[Output], started: float, console: Console) -> None:
@@ -156,13 +153,14 @@ def _tell(tin: TIN, made: Raster, planned: list[Output], started: float, console
             ("Surface", mesh_counts(tin)),
             ("Raster", f"{rows:,} rows by {columns:,} columns of {made.grid.spacing:g}"),
             ("", f"west {box.xmin:.10g}, north {box.ymax:.10g}"),
+            *(("Note", note) for note in made.notes),
             ("Written", describe_written(planned)),
             ("Time", f"{perf_counter() - started:.2f} s"),
         ]
     )
 
 
-def _facts(file: Path, made: Raster, planned: list[Output]) -> dict[str, Any]:
+def _as_record(file: Path, made: Raster, planned: list[Output]) -> dict[str, Any]:
     from dataclasses import asdict
 
     return {
@@ -173,5 +171,6 @@ def _facts(file: Path, made: Raster, planned: list[Output]) -> dict[str, Any]:
         "bounds": asdict(made.grid.bounds),
         "bands": list(made.bands),
         "crs": None if made.crs is None else str(made.crs),
+        "notes": list(made.notes),
         "outputs": [str(one.path) for one in planned],
     }

@@ -18,7 +18,7 @@ from ..options import (
     writing_options,
 )
 from ..output.console import format_json
-from ..output.failures import Failure
+from ..output.failures import Failure, refuse_option
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -83,7 +83,7 @@ def refine(
     Example:
       tinsmith refine sample_data/site_survey.csv --codes --max-area 20 -o site.msh -o site.vtu
     """  # noqa: D301 - click reads the control character
-    from ...errors import TinsmithError
+    from ...errors import OptionError, TinsmithError
     from ...tin import quality
     from ...tin import refine as refine_tin
     from ..files import describe_written, list_inputs, plan_outputs, read_tin, write_outputs
@@ -104,7 +104,9 @@ def refine(
                 max_vertices=max_vertices,
                 threads=how.threads,
             )
-        except TinsmithError as error:  # its max_edge is not --max-edge, which trims
+        except OptionError as error:  # its max_edge is not --max-edge, which trims
+            raise refuse_option(error, max_edge="max_side") from error
+        except TinsmithError as error:
             raise Failure(name_flags(str(error), max_edge="--max-side")) from error
     write_outputs(refined, planned, console)
     shapes = quality(refined)

@@ -20,7 +20,7 @@ from ..paths import INPUT, LINES, Named, make_title
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ...terrain import Table
+    from ...terrain import Features, Table
     from ...tin import TIN
     from ..options import Reading, Triangulating, Writing
     from ..output.console import Console, Row
@@ -51,7 +51,10 @@ _optional_outputs = click.option(
 @_optional_outputs
 @click.option("--base", metavar="ELEVATION", type=float, help="Level in place of a design.")
 @click.option(
-    "--regions", metavar="FILE", type=LINES, help="Vector file of polygons to measure in."
+    "--regions",
+    metavar="FILE",
+    type=LINES,
+    help="Vector file of polygons to measure in; a column name, region, id or label names them.",
 )
 @click.option(
     "--stage-storage",
@@ -94,7 +97,7 @@ def volume(
     _require_one_base(files, asked)
     inputs = surface_inputs(files, how)
     if regions is not None:
-        inputs.append(_named(regions))
+        inputs.append(_name_file(regions))
     kinds = ["Table"] if asked["stage_storage"] else ["Table", "Features", "picture"]
     planned = plan_products(outputs, writing, inputs=inputs, console=console, kinds=kinds)
     surfaces = read_surfaces(files, reading, how, console)
@@ -104,13 +107,13 @@ def volume(
     _map(surfaces, files, planned, asked, console)
     console.summarise(
         [
-            *_fields(table, surfaces),
-            *_written(planned),
+            *_list_fields(table, surfaces),
+            *_describe_output(planned),
             ("Time", f"{perf_counter() - started:.2f} s"),
         ]
     )
     if console.as_json:
-        console.emit(format_json(_facts(files, table, planned)))
+        console.emit(format_json(_as_record(files, table, planned)))
 
 
 # ---------------------------------------------------------------- what is given
@@ -130,20 +133,19 @@ def _require_one_base(files: Sequence[Path], asked: dict[str, Any]) -> None:
         raise click.UsageError("--level and --interval are both given: choose one.")
 
 
-def _named(regions: Path) -> Named:
+def _name_file(regions: Path) -> Named:
     from ...io.vector.survey_lines import split_layer
 
     return Named(split_layer(regions)[0], "the file of --regions")
 
 
-def _read_regions(path: Path, tin: TIN) -> dict[str, Any]:
-    """Read polygons, in the CRS of the TIN, by their numbers."""
-    from ...io import read_polygons
+def _read_regions(path: Path, tin: TIN) -> Features:
+    """Read polygons with their columns, in the CRS of the TIN."""
+    from ...io.vector.geometries import read_geometries
     from ...io.vector.survey_lines import split_layer
 
     file, layer = split_layer(path)
-    polygons = read_polygons(file, crs=tin.crs, layer=layer, drape=True)
-    return {str(number): rings for number, rings in enumerate(polygons, start=1)}
+    return read_geometries(file, crs=tin.crs, layer=layer)
 
 
 # ---------------------------------------------------------------- what is made
@@ -158,9 +160,8 @@ def _measure(surfaces: Sequence[TIN], regions: Path | None, asked: dict[str, Any
     if not asked["stage_storage"]:
         base = asked["base"] if len(surfaces) == 1 else None
         return measure(tin, *surfaces[1:], base=base, regions=chosen)
-    inside = None if chosen is None else [ring for rings in chosen.values() for ring in rings]
     return stage_storage(
-        tin, levels=asked["levels"] or None, interval=asked["interval"], region=inside
+        tin, levels=asked["levels"] or None, interval=asked["interval"], region=chosen
     )
 
 
@@ -190,48 +191,48 @@ def _map(
 # ---------------------------------------------------------------- for people
 
 
-def _fields(table: Table, surfaces: Sequence[TIN]) -> list[Row]:
+def _list_fields(table: Table, surfaces: Sequence[TIN]) -> list[Row]:
     from ..output.line_summaries import mesh_counts
 
     names = ["Ground", "Design"]
     given = [(name, mesh_counts(tin)) for name, tin in zip(names, surfaces, strict=False)]
-    found = _stages(table) if "level" in table.columns else _volumes(table)
+    found = _list_stages(table) if "level" in table.columns else _list_volumes(table)
     more = [("", f"... {len(table) - _SHOWN} more")] if len(table) > _SHOWN else []
     return [*given, *found, *more, *(("Note", note) for note in table.notes)]
 
 
-def _volumes(table: Table) -> list[Row]:
+def _list_volumes(table: Table) -> list[Row]:
     rows = []
     for row in range(min(len(table), _SHOWN)):
         if len(table) > 1 or table["region"][row] != "all":
             rows.append(("Region", str(table["region"][row])))
         for name in ("cut", "fill"):
-            text = f"{_quantity(table, name, row)} over {_quantity(table, f'{name}_area', row)}"
-            rows.append((name.capitalize(), text))
-        rows.append(("Net", f"{_quantity(table, 'net', row)} (fill less cut)"))
-        rows.append(("Area", _area_text(table, row)))
+            moved, area = (_write_quantity(table, one, row) for one in (name, f"{name}_area"))
+            rows.append((name.capitalize(), f"{moved} over {area}"))
+        rows.append(("Net", f"{_write_quantity(table, 'net', row)} (fill less cut)"))
+        rows.append(("Area", _describe_area(table, row)))
     return rows
 
 
-def _area_text(table: Table, row: int) -> str:
-    text = f"{_quantity(table, 'area', row)} compared"
+def _describe_area(table: Table, row: int) -> str:
+    text = f"{_write_quantity(table, 'area', row)} compared"
     alone = {"area_alone": "of the ground alone", "base_area_alone": "without ground"}
     for name, what in alone.items():
         if name in table.columns and table[name][row] > 0:
-            text += f", {_quantity(table, name, row)} {what}"
+            text += f", {_write_quantity(table, name, row)} {what}"
     return text
 
 
-def _stages(table: Table) -> list[Row]:
+def _list_stages(table: Table) -> list[Row]:
     rows = []
     for row in range(min(len(table), _SHOWN)):
         spills = "" if table["is_contained"][row] else ", reaches the boundary"
-        area, held = _quantity(table, "area", row), _quantity(table, "volume", row)
-        rows.append(("Level", f"{_quantity(table, 'level', row)}: {held}, {area}{spills}"))
+        area, held = _write_quantity(table, "area", row), _write_quantity(table, "volume", row)
+        rows.append(("Level", f"{_write_quantity(table, 'level', row)}: {held}, {area}{spills}"))
     return rows
 
 
-def _quantity(table: Table, name: str, row: int) -> str:
+def _write_quantity(table: Table, name: str, row: int) -> str:
     unit = table.units.get(name)
     symbol = getattr(unit, "symbol", unit) or ""
     value = float(table[name][row])
@@ -241,11 +242,11 @@ def _quantity(table: Table, name: str, row: int) -> str:
     return text
 
 
-def _written(planned: Products) -> list[Row]:
+def _describe_output(planned: Products) -> list[Row]:
     return [("Written", planned.text)] if planned.paths else []
 
 
-def _facts(files: Sequence[Path], table: Table, planned: Products) -> dict[str, Any]:
+def _as_record(files: Sequence[Path], table: Table, planned: Products) -> dict[str, Any]:
     from ...terrain.results.columns import unit_text
 
     columns = {name: values.tolist() for name, values in table.columns.items()}
