@@ -47,6 +47,7 @@ if TYPE_CHECKING:
         histogram,
         profile_picture,
         relief_map,
+        section_picture,
     )
     from .terrain.earthwork import Difference, difference, stage_storage, volume
     from .terrain.gridding import height_above, rasterize
@@ -148,6 +149,7 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "preview",
                 "profile_picture",
                 "relief_map",
+                "section_picture",
                 "slope",
                 "stage_storage",
                 "volume",
@@ -265,6 +267,7 @@ __all__ = [
     "refine",
     "relief_map",
     "section_lines",
+    "section_picture",
     "slope",
     "slope_classes",
     "slope_statistics",

@@ -105,7 +105,7 @@ def profile(
 
     A row wherever the line crosses an edge of a TIN, with the elevations of all of them. Tables go
     to .csv or .json, a picture to .png; cross sections also to .gpkg, .geojson and others as lines
-    in space. Lines in another CRS are reprojected.
+    in space; their picture is a sheet of them. Lines in another CRS are reprojected.
 
     \b
     Example:
@@ -174,10 +174,7 @@ def _plan(
     if line_file is not None:
         inputs.append(Named(split_layer(line_file)[0], "the file of --line"))
     kinds = ("Table", "picture") if sections is None else ("Table", "Features", "picture")
-    planned = plan_products(outputs, writing, inputs=inputs, console=console, kinds=kinds)
-    if planned.pictures and sections is not None:
-        raise click.UsageError(f"'{planned.pictures[0]}' shows a profile: it has no --sections.")
-    return planned
+    return plan_products(outputs, writing, inputs=inputs, console=console, kinds=kinds)
 
 
 def _read_line(line: _Line, tin: TIN, notes: list[str]) -> Any:
@@ -221,11 +218,13 @@ def _cut(
 def _draw(
     table: Table, surfaces: dict[str, TIN], files: Sequence[Path], asked: dict[str, Any]
 ) -> Any:
-    from ...terrain import profile_picture
+    from ...terrain import profile_picture, section_picture
 
     crs = next((tin.crs for tin in surfaces.values() if tin.crs is not None), None)
-    title = asked["title"] or f"Profile: {make_title(files[0])}"
-    return profile_picture(table, exaggeration=asked["exaggeration"], title=title, crs=crs)
+    is_profile = asked["sections"] is None
+    what, draw = ("Profile", profile_picture) if is_profile else ("Cross sections", section_picture)
+    title = asked["title"] or f"{what}: {make_title(files[0])}"
+    return draw(table, exaggeration=asked["exaggeration"], title=title, crs=crs)
 
 
 def _as_record(
