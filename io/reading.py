@@ -6,32 +6,32 @@ from dataclasses import replace
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
+from .._plug_ins import describe_failure, warn_of_plug_in
 from .._sentences import printable
 from ..crs import CRS, Unit
 from ..errors import CrsError, FormatError, MissingExtraError, ReadError, TinsmithError
-from ..tin import Survey
+from ..tin import TIN, Survey
 from .isolated.local_files import require_local
 from .isolated.spooling import describe_system_error, open_ordinary_file, spool
 from .raster.virtual import is_virtual
 from .registry import (
     Format,
+    choose_clear,
     choose_format,
     find_format,
     find_format_of_suffix,
     find_suffixes,
     known_formats,
     list_suffixes,
-    load_function,
     require_options,
     signatures,
 )
 
 if TYPE_CHECKING:
     import os
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from ..crs import CrsLike, UnitLike
-    from ..tin import TIN
 
 __all__ = ["detect", "read", "read_stream"]
 
@@ -131,26 +131,65 @@ def read_stream(
 def _read_file(
     file: Path, name: str | None, declared: Mapping[str, Any], options: Mapping[str, Any]
 ) -> Survey | TIN:
-    head = _read_head(file)
-    chosen = detect(file, head) if name is None else find_format(name)
+    chosen = _choose_format(file, name)
     if chosen.read is None:
         raise FormatError(
             f"'{file}' is {chosen.description}, a format that is written, not read: "
             f"{list_suffixes('read')} can be read.",
             known=find_suffixes("read"),
         )
-    reader = load_function(chosen.read)
+    reader = chosen.load("read")
     of_file = {name: declared[name] for name in declared if name != "crs"} | dict(options)
     require_options(chosen, "read", reader, of_file)
     try:
-        survey: Survey | TIN = reader(file, crs=declared["crs"], **of_file)
+        found = reader(file, crs=declared["crs"], **of_file)
     except CrsError as error:
         raise _name_file(error, file) from error
     except OSError as error:  # a file that vanishes, a disk that fails
         if isinstance(error, TinsmithError):
             raise
         raise describe_system_error(file, error) from error
-    return survey
+    except Exception as error:
+        if chosen.is_built_in or isinstance(error, TinsmithError):
+            raise
+        raise _blame_plug_in(chosen, file, describe_failure(error)) from error
+    if isinstance(found, Survey | TIN):
+        return found
+    raise _blame_plug_in(chosen, file, f"it gives a {type(found).__name__}, no Survey and no TIN")
+
+
+def _blame_plug_in(one: Format, file: Path, reason: str) -> ReadError:
+    return ReadError(
+        f"Cannot read '{file}': the reader of the format {one.name}, of the plug-in "
+        f"{one.distribution}, fails ({reason}).",
+        path=file,
+    )
+
+
+def _choose_format(file: Path, name: str | None) -> Format:
+    """Return the format of a file that is there and not empty, or of a folder."""
+    named = None if name is None else find_format(name, "read")
+    if _is_folder(file):
+        return _choose_format_of_folder(file, named)
+    head = _read_head(file)
+    return detect(file, head) if named is None else named
+
+
+def _is_folder(file: Path) -> bool:
+    try:
+        return file.is_dir()
+    except (OSError, ValueError):  # as the reader of its first bytes tells better
+        return False
+
+
+def _choose_format_of_folder(folder: Path, named: Format | None) -> Format:
+    known = [one for one in known_formats() if one.read and one.sniff_folder is not None]
+    if named in known:
+        return named
+    shown = [one for one in known if named is None and _recognises(one, one.sniff_folder, folder)]
+    if shown:
+        return choose_clear(shown, f"The folder '{folder}'")
+    raise ReadError(f"'{folder}' is a folder: name a file in it.", path=folder)
 
 
 def _restore_source(found: Survey | TIN, copy: Path, file: Path) -> Survey | TIN:
@@ -179,11 +218,12 @@ def detect(path: Path, head: bytes) -> Format:
     Raises
     ------
     FormatError
-        If neither content nor suffix is known.
+        If neither content nor suffix is known, or a plug-in claims what another format does.
 
     Notes
     -----
-    1. A signature in the content decides, whatever the suffix.
+    1. A signature in the content decides, whatever the suffix; one that a built-in format knows
+       is not a plug-in's to claim.
     2. A text that names other files or services, or of a format that is not read, is refused;
        a virtual raster is read under its own suffix.
     3. A table of numbers is delimited text where the suffix names a format that the content
@@ -191,13 +231,13 @@ def detect(path: Path, head: bytes) -> Format:
     4. Otherwise the suffix decides.
     5. A file of unknown suffix is a raster if GDAL says so.
     """
-    for one in known_formats():
-        if one.sniff is not None and one.sniff(head):
-            return one
+    shown = [one for one in known_formats() if _recognises(one, one.sniff, head)]
+    if shown:
+        return _choose_recognised(shown, path)
     if is_virtual(path):
         return find_format("raster")
     _require_not_foreign(path, head)
-    by_suffix = choose_format(path.suffix.lower(), "read")
+    by_suffix = choose_format(path, "read")
     if by_suffix is not None and (by_suffix.sniff is None or not _is_table(head)):
         return by_suffix
     if by_suffix is not None:
@@ -205,6 +245,34 @@ def detect(path: Path, head: bytes) -> Format:
     if _is_binary(head) and _is_gdal_raster(path):
         return find_format("raster")
     return find_format_of_suffix(path, "read")
+
+
+def _choose_recognised(shown: Sequence[Format], path: Path) -> Format:
+    """Return the first built-in format, else the only one of plug-ins."""
+    first = shown[0]
+    if not first.is_built_in:
+        return choose_clear(shown, f"The content of '{path}'")
+    for other in shown[1:]:
+        if not other.is_built_in:
+            reason = f"it claims '{path}' too, which is read as {first.name}; format= chooses"
+            warn_of_plug_in(f"format '{other.name}'", other.distribution, reason)
+    return first
+
+
+def _recognises(one: Format, sniff: Callable[[Any], bool] | None, content: object) -> bool:
+    """Whether a format's own function recognises a content; one that fails does not."""
+    if sniff is None:
+        return False
+    try:
+        return bool(sniff(content))
+    except Exception as error:
+        if one.is_built_in:
+            raise
+        reason = (
+            f"it failed to look at a file ({describe_failure(error)}), which it is not used for"
+        )
+        warn_of_plug_in(f"format '{one.name}'", one.distribution, reason)
+        return False
 
 
 def _require_not_foreign(path: Path, head: bytes) -> None:
@@ -239,12 +307,8 @@ def _is_gdal_raster(path: Path) -> bool:
 def _read_head(path: Path) -> bytes:
     """Return the first bytes of a file that is there, permitted and not empty."""
     try:
-        if path.is_dir():
-            raise ReadError(f"'{path}' is a folder: name a file in it.", path=path)
         with path.open("rb") as file:
             head = file.read(signatures.HEAD_BYTES)
-    except ReadError:
-        raise
     except OSError as error:
         raise describe_system_error(path, error) from error
     except ValueError as error:

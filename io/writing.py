@@ -5,15 +5,16 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..errors import FormatError
+from .._plug_ins import describe_failure
+from ..errors import FormatError, TinsmithError, WriteError
 from ..terrain.results import Features, Raster, Table
 from ..tin import TIN, Survey
-from .registry import find_writer, load_function, require_options
+from .registry import find_writer, require_options
 
 if TYPE_CHECKING:
     import os
 
-__all__ = ["write"]
+__all__ = ["find_kind", "write"]
 
 _KINDS = {"TIN": TIN, "Survey": Survey, "Features": Features, "Raster": Raster, "Table": Table}
 
@@ -67,14 +68,30 @@ def write(
     <TIN: 3 vertices, 1 triangle, z 5 to 8, crs EPSG:32616>
     """
     file = Path(path)
-    chosen = find_writer(file, format, (_kind_of(obj, file),))
-    writer = load_function(chosen.write or "")
+    chosen = find_writer(file, format, (find_kind(obj, file),))
+    writer = chosen.load("write")
     require_options(chosen, "write", writer, options)
-    writer(obj, file, **options)
+    try:
+        writer(obj, file, **options)
+    except Exception as error:
+        if chosen.is_built_in or isinstance(error, TinsmithError):
+            raise
+        raise WriteError(
+            f"Cannot write '{file}': the writer of the format {chosen.name}, of the plug-in "
+            f"{chosen.distribution}, fails ({describe_failure(error)}).",
+            path=file,
+        ) from error
     return file
 
 
-def _kind_of(obj: object, path: Path) -> str:
+def find_kind(obj: object, path: Path) -> str:
+    """Return the name of what is to be written, "TIN", "Survey", "Features", "Raster" or "Table".
+
+    Raises
+    ------
+    FormatError
+        If it is none of these.
+    """
     for name, kind in _KINDS.items():
         if isinstance(obj, kind):
             return name

@@ -26,6 +26,7 @@ __all__ = [
     "NaturalWeights",
     "NearestBoundary",
     "SmoothPatches",
+    "are_in_exact_range",
     "clean",
     "compare_distances",
     "contacts",
@@ -65,6 +66,7 @@ compare_distances = _core.compare_distances
 snap = _core.snap
 count_work = _core.count_work
 clean = _core.clean
+are_in_exact_range = _core.are_in_exact_range
 contacts = _core.contacts
 crossings = _core.crossings
 touches = _core.touches

@@ -114,10 +114,13 @@ class Frozen:
     """
 
     def __post_init__(self) -> None:
-        for value in self.__getstate__().values():
-            for array in value if isinstance(value, tuple) else (value,):
-                if isinstance(array, np.ndarray):
-                    seal(array)
+        for value in self.__dict__.values():
+            if isinstance(value, np.ndarray):
+                value.setflags(write=False)
+            elif isinstance(value, tuple):
+                for array in value:
+                    if isinstance(array, np.ndarray):
+                        array.setflags(write=False)
 
     def __getstate__(self) -> dict[str, Any]:
         fields: dict[str, Any] = type(self).__dict__["__dataclass_fields__"]

@@ -7,6 +7,17 @@ __all__ = ["FORMATS"]
 
 FORMATS = (
     Format(
+        name="tin",
+        description="A whole TIN as a GeoPackage (opens in QGIS, ArcGIS, GDAL)",
+        suffixes=(".gpkg",),
+        read="tinsmith.io.mesh.geopackage:read",
+        reads=("TIN",),
+        write="tinsmith.io.mesh.geopackage:write",
+        writes=("TIN",),
+        precision="Every number comes back bit for bit.",
+        sniff=signatures.is_tin_geopackage,
+    ),
+    Format(
         name="ply",
         description="PLY mesh (opens in QGIS, CloudCompare, MeshLab)",
         suffixes=(".ply",),

@@ -5,18 +5,39 @@ from __future__ import annotations
 import inspect
 from dataclasses import dataclass
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
+from ... import _optional
+from ..._plug_ins import describe_failure
 from ...errors import FormatError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
+    from pathlib import Path
 
-__all__ = ["SURFACES", "Format", "load_function", "require_options"]
+__all__ = ["KINDS", "SURFACES", "Format", "Loss", "load_function", "require_options"]
 
 _OWN_PARAMETERS = frozenset({"crs", "z_unit", "progress"})
 SURFACES = ("TIN", "Survey")
 """What triangulations and their points can be written as."""
+
+KINDS = ("TIN", "Survey", "Features", "Raster", "Table")
+"""What files can hold, by the names of the classes."""
+
+Loss = Literal[
+    "crs",  # the coordinate reference system
+    "elevation unit",  # the unit of elevations
+    "triangles",  # all but the points
+    "order",  # the numbers of vertices and triangles, and vertices of no triangle
+    "constrained",  # which edges are constrained
+    "lines",  # breaklines, boundary, holes and water: their names and kinds
+    "attributes",  # some columns of a survey, such as texts
+    "notes",  # notes of what was guessed
+    "report",  # what became of each row that was given, and what undoing edits needs
+]
+"""What of a TIN or of a survey may be lost, in a word."""
+
+_OWN = "tinsmith"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -26,11 +47,12 @@ class Format:
     Attributes
     ----------
     name : str
-        What ``format=`` calls it.
+        What ``format=`` calls it: small letters, digits and dashes.
     description : str
         A few words for a list.
     suffixes : tuple of str
         Lower case, with the dot; a writer is chosen by them, a reader where the content is silent.
+        The longest that a name ends in counts: ``.city.json`` before ``.json``.
     read, write : str, optional
         ``"module:function"``. A reader takes ``(path, *, crs=None, z_unit=None, <options>)``, a CRS
         and a Unit or None, and returns a Survey or a TIN; a writer ``(obj, path, *, <options>)``.
@@ -39,12 +61,22 @@ class Format:
         "Table". Several formats may share a suffix, if they hold different things.
     precision : str
         To which digit coordinates come back from a file that was written; one sentence.
+    rounding, relative_rounding : float
+        The same for a program: by how much a coordinate may differ from what was written, in CRS
+        units, plus a fraction of the longest side of the points' bounds. Both 0: not at all.
     losses : str
         What of a TIN, a Survey or a product the format does not hold; one sentence, empty if none.
+    loses : tuple of str
+        The same for a program: words of :data:`Loss`.
     extra : str, optional
         The extra of this package that brings the library it needs.
     sniff : callable, optional
         Whether the first bytes of a file are certainly of this format.
+    sniff_folder : callable, optional
+        Whether a folder is certainly of this format, by the names in it; a format without it is
+        of files.
+    distribution : str
+        Name and version of the plug-in's distribution, set by the registry; else "tinsmith".
 
     Examples
     --------
@@ -61,9 +93,36 @@ class Format:
     reads: tuple[str, ...] = ("Survey",)
     writes: tuple[str, ...] = SURFACES
     precision: str = ""
+    rounding: float = 0.0
+    relative_rounding: float = 0.0
     losses: str = ""
+    loses: tuple[Loss, ...] = ()
     extra: str | None = None
     sniff: Callable[[bytes], bool] | None = None
+    sniff_folder: Callable[[Path], bool] | None = None
+    distribution: str = _OWN
+
+    @property
+    def is_built_in(self) -> bool:
+        """Whether it belongs to this package, not to a plug-in."""
+        return self.distribution == _OWN
+
+    @property
+    def needs(self) -> str:
+        """What is to be installed for it, as pip calls it; empty for nothing more.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> ts.find_format("cog").needs
+        'tinsmith[raster]'
+        """
+        return f"{_OWN}[{self.extra}]" if self.extra else ""
+
+    @property
+    def is_installed(self) -> bool:
+        """Whether the libraries that it needs are there; they are not loaded."""
+        return self.extra is None or _optional.is_installed(self.extra)
 
     def options(self, action: str) -> tuple[str, ...]:
         """Return the names of the options of its reader or writer (``"read"``, ``"write"``).
@@ -74,8 +133,38 @@ class Format:
         >>> ts.find_format("geojson").options("write")
         ('kind', 'projected')
         """
-        target = getattr(self, action)
-        return () if target is None else _find_options(load_function(target))
+        return () if getattr(self, action) is None else _find_options(self.load(action))
+
+    def load(self, action: str) -> Callable[..., Any]:
+        """Load its reader or writer (``"read"``, ``"write"``).
+
+        Raises
+        ------
+        FormatError
+            If it is that of a plug-in and cannot be loaded, or does not take what it must.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> ts.find_format("ply").load("write").__name__
+        'write'
+        """
+        target: str = getattr(self, action) or ""
+        if self.is_built_in:
+            return load_function(target)
+        try:
+            function = load_function(target)
+            missing = _find_missing_parameter(function, action)
+        except (Exception, SystemExit) as error:
+            raise self._describe_fault(action, describe_failure(error)) from error
+        if missing:
+            raise self._describe_fault(action, f"'{target}' does not take {missing}")
+        return function
+
+    def _describe_fault(self, action: str, reason: str) -> FormatError:
+        return FormatError(
+            f"Cannot {action} the format {self.name}, of the plug-in {self.distribution}: {reason}."
+        )
 
 
 def load_function(target: str) -> Callable[..., Any]:
@@ -83,6 +172,19 @@ def load_function(target: str) -> Callable[..., Any]:
     module, _, function = target.partition(":")
     loaded: Callable[..., Any] = getattr(import_module(module), function)
     return loaded
+
+
+def _find_missing_parameter(function: Callable[..., Any], action: str) -> str:
+    """Return how a reader or writer would be called, if it cannot be called so."""
+    signature = inspect.signature(function)
+    try:
+        if action == "read":
+            signature.bind("path", crs=None)
+        else:
+            signature.bind("obj", "path")
+    except TypeError:
+        return "(path, *, crs)" if action == "read" else "(obj, path)"
+    return ""
 
 
 def _find_options(function: Callable[..., Any]) -> tuple[str, ...]:

@@ -2,38 +2,41 @@
 
 Each family of formats names its own in a module ``formats``, loaded by its name as those of a
 plug-in are. Another package adds a format through the entry-point group ``tinsmith.formats``: each
-entry names a :class:`Format`.
+entry names a :class:`Format`. A suffix that two formats claim for the same thing, one of them of a
+plug-in, is refused where it is used: ``format=`` chooses.
 """
 
 from __future__ import annotations
 
 from functools import cache
 from importlib import import_module
-from importlib.metadata import entry_points
 from typing import TYPE_CHECKING
 
 from ..._sentences import shown
 from ...errors import FormatError
 from .format import Format
+from .plug_in_formats import load_plug_in_formats
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Iterable, Sequence
     from pathlib import Path
 
 __all__ = [
+    "choose_clear",
     "choose_format",
     "find_format",
     "find_format_of_suffix",
     "find_suffixes",
     "find_writer",
+    "find_writers",
     "known_formats",
+    "list_claims",
     "list_suffixes",
 ]
 
-_FAMILIES = ("delimited", "raster", "vector", "mesh", "tables")
+_FAMILIES = ("delimited", "raster", "mesh", "vector", "tables")
 """Packages of ``tinsmith.io`` with a module ``formats``, in the order in which they are asked."""
 
-_ENTRY_POINTS = "tinsmith.formats"
 _ONE = {
     "TIN": "a TIN",
     "Survey": "a Survey",
@@ -48,23 +51,18 @@ _ONE = {
 def known_formats() -> tuple[Format, ...]:
     """Return the built-in formats, then those of installed plug-ins by name.
 
-    Raises
-    ------
-    FormatError
-        If a plug-in cannot be loaded, is no Format, or takes a name that is in use.
+    Warns
+    -----
+    PlugInWarning
+        If a plug-in cannot be loaded, is no Format, or takes a name that is in use; it is left out.
 
     Examples
     --------
     >>> "ply" in [form.name for form in known_formats()]
     True
     """
-    formats = [one for family in _FAMILIES for one in _load_family(family)]
-    for entry in sorted(entry_points(group=_ENTRY_POINTS), key=lambda entry: entry.name):
-        added = _load_plug_in(entry.name, entry.load)
-        if any(added.name == one.name for one in formats):
-            raise FormatError(f"Plug-in '{entry.name}' takes the name '{added.name}', in use.")
-        formats.append(added)
-    return tuple(formats)
+    built_in = [one for family in _FAMILIES for one in _load_family(family)]
+    return (*built_in, *load_plug_in_formats(built_in))
 
 
 def _load_family(name: str) -> tuple[Format, ...]:
@@ -73,23 +71,19 @@ def _load_family(name: str) -> tuple[Format, ...]:
     return formats
 
 
-def _load_plug_in(name: str, load: Callable[[], object]) -> Format:
-    try:
-        added = load()
-    except Exception as error:
-        raise FormatError(f"Format plug-in '{name}' cannot be loaded: {error}.") from error
-    if not isinstance(added, Format):
-        raise FormatError(f"Format plug-in '{name}' is a {type(added).__name__}, not a Format.")
-    return added
-
-
-def find_format(name: str) -> Format:
+def find_format(name: str, action: str | None = None) -> Format:
     """Look a format up by its name or one of its suffixes.
+
+    Parameters
+    ----------
+    name : str
+    action : {"read", "write"}, optional
+        What it should be able to, if one of several of that name and suffix is.
 
     Raises
     ------
     FormatError
-        If there is none.
+        If there is none, or a plug-in claims a suffix that another format has.
 
     Examples
     --------
@@ -98,27 +92,90 @@ def find_format(name: str) -> Format:
     """
     wanted = name.strip().lower() if isinstance(name, str) else ""
     suffix = wanted if wanted.startswith(".") else f".{wanted}"
-    for one in known_formats():
-        if one.name == wanted or suffix in one.suffixes:
-            return one
-    names = tuple(one.name for one in known_formats())
-    raise FormatError(f"Unknown format {shown(name)}: one of {', '.join(names)}.", known=names)
+    called = [one for one in known_formats() if one.name == wanted or suffix in one.suffixes]
+    able = [one for one in called if action and getattr(one, action) is not None]
+    found = able or called
+    if not found:
+        names = tuple(one.name for one in known_formats())
+        raise FormatError(f"Unknown format {shown(name)}: one of {', '.join(names)}.", known=names)
+    named = [one for one in found if one.name == wanted and not one.is_built_in]
+    return choose_clear(named or found, f"The suffix '{suffix}'")
 
 
-def choose_format(suffix: str, action: str) -> Format | None:
-    """Return the format of a suffix, one that can do the action first."""
-    fitting = [one for one in known_formats() if suffix in one.suffixes]
-    able = [one for one in fitting if getattr(one, action) is not None]
-    return next(iter(able + fitting), None)
+def list_claims(formats: Iterable[Format], path: Path) -> list[Format]:
+    """Return those of the formats that claim the longest suffix of a file's name."""
+    name = path.name.lower()
+    fitting = [(one, _measure_match(one, name)) for one in formats]
+    longest = max((length for _, length in fitting), default=0)
+    return [one for one, length in fitting if 0 < length == longest]
+
+
+def _measure_match(one: Format, name: str) -> int:
+    """Return the length of the longest suffix of a format that a name ends in; 0 for none."""
+    found = (len(suffix) for suffix in one.suffixes if name.endswith(suffix) and name != suffix)
+    return max(found, default=0)
+
+
+def choose_clear(claims: Sequence[Format], what: str) -> Format:
+    """Return the first of several formats; refuse to choose between a plug-in and another.
+
+    Parameters
+    ----------
+    claims : sequence of Format
+    what : str
+        What they claim, as the begin of a sentence.
+
+    Raises
+    ------
+    FormatError
+        If one of several is that of a plug-in.
+    """
+    if _is_clear(claims):
+        return claims[0]
+    raise _describe_clash(claims, what)
+
+
+def _is_clear(claims: Sequence[Format]) -> bool:
+    return len(claims) == 1 or (len(claims) > 1 and all(one.is_built_in for one in claims))
+
+
+def _describe_clash(claims: Sequence[Format], what: str) -> FormatError:
+    listed = ", ".join(f"{one.name} ({one.distribution})" for one in claims)
+    return FormatError(
+        f"{what} is claimed by {len(claims)} formats: {listed}; the option format names one.",
+        known=tuple(one.name for one in claims),
+    )
+
+
+def choose_format(path: Path, action: str) -> Format | None:
+    """Return the format of a file's suffix, one that can do the action first, or None.
+
+    Raises
+    ------
+    FormatError
+        If a plug-in claims a suffix that another format has.
+    """
+    claims = _list_claims_of_any(path, action)
+    return choose_clear(claims, f"The suffix of '{path}'") if claims else None
+
+
+def _list_claims_of_any(path: Path, action: str) -> list[Format]:
+    """Return the formats of a file's suffix that can do the action, or else all of them."""
+    able = [one for one in known_formats() if getattr(one, action) is not None]
+    return list_claims(able, path) or list_claims(known_formats(), path)
 
 
 def find_format_of_suffix(path: Path, action: str) -> Format:
     """Return the format of a file's suffix; refuse an unknown one."""
-    found = choose_format(path.suffix.lower(), action)
-    if found is not None:
-        return found
+    found = choose_format(path, action)
+    if found is None:
+        raise _describe_unknown_suffix(path, action)
+    return found
+
+
+def _describe_unknown_suffix(path: Path, action: str) -> FormatError:
     suffix = f"has the unknown suffix '{path.suffix}'" if path.suffix else "has no suffix"
-    raise FormatError(
+    return FormatError(
         f"'{path}' {suffix}: {list_suffixes(action)} can be "
         f"{'read' if action == 'read' else 'written'}; "
         "the option format names one whatever the suffix.",
@@ -140,21 +197,64 @@ def find_writer(path: Path, name: str | None, kinds: Sequence[str]) -> Format:
     Raises
     ------
     FormatError
-        If there is no such format, it cannot be written, or it holds other things.
+        If there is no such format, it cannot be written, or it holds other things; if a plug-in
+        claims a suffix that another format has.
     """
-    known = find_format_of_suffix(path, "write") if name is None else find_format(name)
+    return next(iter(find_writers(path, name, kinds).values()))
+
+
+def find_writers(path: Path, name: str | None, kinds: Sequence[str]) -> dict[str, Format]:
+    """Choose the format for each kind of thing that may be written to a file.
+
+    Parameters
+    ----------
+    path : Path
+    name : str or None
+        Of a format, to choose it whatever the suffix.
+    kinds : sequence of str
+
+    Returns
+    -------
+    dict of str to Format
+        By kind, without those that no format holds; never empty.
+
+    Raises
+    ------
+    FormatError
+        As :func:`find_writer`.
+    """
+    claims = {kind: _list_writers(path, name, kind) for kind in kinds}
+    clear = {kind: formats[0] for kind, formats in claims.items() if _is_clear(formats)}
+    what = f"The suffix of '{path}'" if name is None else f"The format {shown(name)}"
+    for formats in claims.values():
+        if formats and not clear:
+            raise _describe_clash(formats, what)
+    if not clear:
+        raise _describe_no_writer(path, name, kinds)
+    return clear
+
+
+def _list_writers(path: Path, name: str | None, kind: str) -> list[Format]:
+    """Return the formats that a kind of thing can be written in, of a name or else a suffix."""
+    fitting = [one for one in known_formats() if one.write is not None and kind in one.writes]
+    if name is None:
+        return list_claims(fitting, path)
+    named = [one for one in fitting if one.name == name.strip().lower()]
+    return named or [one for one in fitting if _as_suffix(name) in one.suffixes]
+
+
+def _describe_no_writer(path: Path, name: str | None, kinds: Sequence[str]) -> FormatError:
+    claims = _list_claims_of_any(path, "write") if name is None else [find_format(name, "write")]
+    if not claims:
+        return _describe_unknown_suffix(path, "write")
+    known = claims[0]
     fitting = [one for one in known_formats() if one.write is not None and {*kinds} & {*one.writes}]
-    wanted = path.suffix.lower() if name is None else _as_suffix(name)
-    named = [one for one in fitting if name is not None and one.name == name.strip().lower()]
-    found = next(iter(named + [one for one in fitting if wanted in one.suffixes]), None)
-    if found is not None:
-        return found
     suffixes = tuple(dict.fromkeys(suffix for one in fitting for suffix in one.suffixes))
-    if not any(one.write for one in known_formats() if one is known or wanted in one.suffixes):
+    if known.write is None:
         what = f"{known.description} can be read, not written"
     else:
         what = f"{known.description} holds {_listed(known.writes)}, not {_listed(kinds)}"
-    raise FormatError(
+    return FormatError(
         f"Cannot write '{path}': {what}; {_listed(kinds)} can be written to "
         f"{', '.join(suffixes) or 'no format'}.",
         known=suffixes,

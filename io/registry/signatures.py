@@ -14,6 +14,7 @@ __all__ = [
     "is_ply",
     "is_raster",
     "is_stl",
+    "is_tin_geopackage",
     "is_vtk_xml",
 ]
 
@@ -97,6 +98,11 @@ def is_obj(head: bytes) -> bool:
 def is_stl(head: bytes) -> bool:
     """Whether the file is a text STL mesh; a binary one has no signature."""
     return head.startswith(b"solid") and re.search(rb"\n\s*facet\s+normal\s", head) is not None
+
+
+def is_tin_geopackage(head: bytes) -> bool:
+    """Whether the file is a GeoPackage with the table that the record of a TIN is in."""
+    return head.startswith(b"SQLite format 3\0") and b"TABLE tinsmith_tin" in head
 
 
 def is_vtk_xml(head: bytes) -> bool:

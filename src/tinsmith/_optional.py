@@ -8,12 +8,15 @@ from typing import Any
 
 from .errors import MissingExtraError
 
-__all__ = ["load", "require"]
+__all__ = ["is_installed", "load", "require"]
 
 _EXTRA_OF = {
+    "ezdxf": "cad",
     "geopandas": "interop",
+    "laspy": "lidar",
     "matplotlib": "plot",
     "meshio": "mesh",
+    "netCDF4": "mesh",
     "pyarrow": "interop",
     "pyogrio": "vector",
     "pyvista": "view",
@@ -54,6 +57,18 @@ def require(library: str, purpose: str) -> None:
     """
     if find_spec(library) is None:
         raise _missing(library, purpose)
+
+
+def is_installed(extra: str) -> bool:
+    """Whether every library that an extra brings is there; none is loaded.
+
+    Examples
+    --------
+    >>> is_installed("no such extra")
+    False
+    """
+    libraries = [library for library, brought_by in _EXTRA_OF.items() if brought_by == extra]
+    return bool(libraries) and all(find_spec(library) is not None for library in libraries)
 
 
 def _missing(library: str, purpose: str) -> MissingExtraError:

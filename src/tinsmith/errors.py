@@ -18,6 +18,7 @@ __all__ = [
     "LossWarning",
     "MissingExtraError",
     "OptionError",
+    "PlugInWarning",
     "PointsError",
     "ReadError",
     "RenderError",
@@ -230,3 +231,7 @@ class MissingExtraError(TinsmithError, ImportError):
 
 class LossWarning(UserWarning):
     """A format could not hold all that was written; the text is one sentence that says what."""
+
+
+class PlugInWarning(UserWarning):
+    """A plug-in is left out, or a part of it; the text names its distribution and says why."""

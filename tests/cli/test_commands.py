@@ -343,47 +343,6 @@ def test_formats_lists_every_known_format():
         assert re.search(rf"^ ?{one.name} +{words[0]} +{words[1]} ", table, re.MULTILINE)
 
 
-class Entry:
-    """An entry point, as an installed package declares it."""
-
-    def __init__(self, name, value):
-        self.name, self.value = name, value
-
-    def load(self):
-        if isinstance(self.value, Exception):
-            raise self.value
-        return self.value
-
-
-@pytest.fixture
-def plug_in(monkeypatch):
-    def install(*entries):
-        monkeypatch.setattr(group, "entry_points", lambda group: entries)
-        group._find_plug_ins.cache_clear()
-
-    yield install
-    group._find_plug_ins.cache_clear()
-
-
-def test_plug_in_adds_a_command(plug_in):
-    plug_in(Entry("hello", click.Command("hello", callback=lambda: click.echo("hi"))))
-    assert run("hello").stdout == "hi\n"
-    assert "hello" in run("--help").output
-
-
-@pytest.mark.parametrize("value", [ImportError("no module 'x'"), "a text"])
-def test_broken_plug_in_says_so_and_harms_no_other(plug_in, value):
-    plug_in(Entry("broken", value))
-    assert "build" in run("--help").output
-    result = run("broken", "--option", "x", code=1)
-    assert "plug-in 'broken' cannot be loaded" in result.stderr
-
-
-def test_plug_in_cannot_replace_a_built_in_command(plug_in):
-    plug_in(Entry("formats", click.Command("formats", callback=lambda: click.echo("mine"))))
-    assert "mine" not in run("formats").stdout
-
-
 def test_formats_names_the_extras():
     shown = " ".join(run("formats").stdout.split())
     assert "tinsmith[raster]" in shown

@@ -283,6 +283,6 @@ def test_a_file_that_vanishes_is_a_sentence(folder, monkeypatch):
     def vanished(path, **_):
         raise FileNotFoundError(2, "No such file or directory", str(path))
 
-    monkeypatch.setattr("tinsmith.io.reading.load_function", lambda _: vanished)
+    monkeypatch.setattr("tinsmith.io.registry.format.load_function", lambda _: vanished)
     with pytest.raises(ts.ReadError, match=r"There is no file 's\.csv'"):
         ts.read("s.csv")

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..._sentences import shown
 from ...errors import PointsError
-from ..validation.points import as_elevations, as_points
-from ..validation.tables import as_table
+from ..validation.points import as_elevations, clean_points
+from ..validation.tables import Table, as_table
 from ..validation.vertices import require_vertices
 
 if TYPE_CHECKING:
@@ -27,6 +28,8 @@ __all__ = [
 
 def copy_argument(value: Any) -> Any:
     """Return an argument so that the caller's further use of it changes nothing."""
+    if type(value) in (int, float, str):
+        return value
     if isinstance(value, list):
         return [copy_argument(one) if isinstance(one, list) else one for one in value]
     return value.copy() if isinstance(value, np.ndarray) else value
@@ -78,7 +81,7 @@ def as_point(point: Any) -> NDArray[np.float64]:
     values, is_masked = as_table(point, "Points")
     if is_masked is not None:
         raise PointsError("The point is masked: one, easting, northing, elevation, is needed.")
-    rows = as_points(np.atleast_2d(values))
+    rows = clean_points(Table(values[None] if values.ndim == 1 else np.atleast_2d(values))).values
     if len(rows) != 1:
         raise PointsError(
             f"There are {len(rows)} points: one, easting, northing, elevation, is needed."
@@ -87,12 +90,15 @@ def as_point(point: Any) -> NDArray[np.float64]:
     return row
 
 
-def as_vertex_elevations(z: ArrayLike, count: int) -> NDArray[np.float64]:
-    """Return one elevation for all of so many vertices, or one for each."""
+def as_vertex_elevations(z: ArrayLike, count: int) -> list[float]:
+    """Return the elevation of each of so many vertices, given one for all or one for each."""
+    if type(z) is float and isfinite(z):
+        return [z + 0.0] * count
     elevations = as_elevations(z) + 0.0  # no -0.0
     if elevations.ndim == 1 and len(elevations) != count:
         raise PointsError(
             f"{elevations.size} elevations for {count} vertices: one each, or one for all, is "
             "needed."
         )
-    return elevations
+    values: list[float] = np.broadcast_to(elevations, count).tolist()
+    return values

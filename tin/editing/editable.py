@@ -11,6 +11,8 @@ from __future__ import annotations
 from threading import RLock
 from typing import TYPE_CHECKING, Any, Self, cast
 
+from .origin import Origin
+
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import ArrayLike, NDArray
@@ -39,12 +41,13 @@ class Editable:
         What it was built from; None for one of existing triangles.
     """
 
-    __slots__ = ("_inputs", "_lock", "_session", "_version")
+    __slots__ = ("_inputs", "_lock", "_origin", "_session", "_version")
 
     def __init__(self, version: Version, inputs: BuildInputs | None) -> None:
         self._version: Version | None = version
         self._session: Session | None = None
         self._inputs = inputs
+        self._origin: Origin | None = None
         self._lock = RLock()
 
     @property
@@ -61,8 +64,23 @@ class Editable:
     @property
     def edits(self) -> tuple[Edit, ...]:
         """What was done to the TIN since it was built, in order."""
-        session = self._session
-        return () if session is None else tuple(session.edits)
+        session, origin = self._session, self._origin
+        if session is not None:
+            return tuple(session.edits)
+        return () if origin is None else origin.edits
+
+    def _snapshot(self) -> tuple[Version, Origin]:
+        """Return what the TIN is, and what it was before its edits."""
+        with self._lock:
+            version = self._current
+            if self._session is not None:
+                return version, self._session.origin()
+            return version, self._origin or Origin(self._inputs)
+
+    def _resume(self, origin: Origin) -> None:
+        """Go on as the TIN did that was stored; its edits are done again when one follows."""
+        self._inputs = origin.inputs
+        self._origin = origin if origin.edits else None
 
     # ------------------------------------------------------------------- copies
 
@@ -81,11 +99,12 @@ class Editable:
                 "_version": self._current,
                 "_session": session,
                 "_inputs": self._inputs,
+                "_origin": self._origin,
                 **getattr(self, "__dict__", {}),  # of a subclass
             }
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        for name, value in state.items():
+        for name, value in ({"_origin": None} | state).items():
             setattr(self, name, value)
         self._lock = RLock()
 
@@ -333,12 +352,17 @@ class Editable:
     def _edit(self, operation: str, **arguments: Any) -> Any:
         with self._lock:
             result = self._open_session().do(operation, arguments)
-            self._version = None
+            if self._version is not None:
+                self._version = None
             return result
 
     def _open_session(self) -> Session:
         if self._session is None:
             from .session import Session
 
-            self._session = Session(cast("Version", self._version), self._inputs)
+            version = cast("Version", self._version)
+            if self._origin is None:
+                self._session = Session(version, self._inputs)
+            else:
+                self._session = Session.resume(self._origin, version)
         return self._session

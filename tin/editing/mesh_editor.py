@@ -7,6 +7,7 @@ a fresh build gives. An edit that fails, or that comes near a line, leaves the m
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right, insort
+from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -23,7 +24,7 @@ from .row_buffer import GrowingRows
 from .state import State
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
@@ -95,10 +96,10 @@ class Editor:
         self._n_base = len(surface.points)
         self._base_rows = _group_rows_by_vertex(state.vertex_of_row)
         self._n_rows = self._base_rows.n_vertices
+        self._own_rows: list[int] = []  # of each slot that was made since
         self._more_rows: dict[int, list[int]] = {}
         self._new_slots = GrowingRows(np.empty(0, np.int32))
         self._n_new = 0
-        self._least = _ROUNDINGS * float(np.spacing(np.abs(surface.points[:, :2]).max()))
         self._has_lines = self._n_rows < self._n_base or len(state.lines) > 0
         self._has_uncut_lines = are_uncut(state, inputs.build_inputs)
 
@@ -152,7 +153,9 @@ class Editor:
 
     def _find_rows_at(self, slot: int) -> list[int]:
         more = self._more_rows.get(slot, [])
-        return self._base_rows.at(slot) + more if slot < self._n_rows else more
+        if slot < self._n_rows:
+            return self._base_rows.at(slot) + more
+        return more if slot < self._n_base else [self._own_rows[slot - self._n_base], *more]
 
     # -------------------------------------------------------------------- edits
 
@@ -218,6 +221,11 @@ class Editor:
         for slot in set(slots.tolist()):
             self._require_free(slot)
 
+    @cached_property
+    def _least(self) -> float:
+        """The least distance from lines."""
+        return _ROUNDINGS * float(np.spacing(np.abs(self._points.values()[:, :2]).max()))
+
     def _require_free(self, slot: int) -> None:
         """Refuse a vertex on a line, or near one."""
         if self._mesh.has_fixed_edge(slot) or not self._mesh.clearance(slot) > self._least:
@@ -235,6 +243,7 @@ class Editor:
 
     def _keep_empty(self, xyz: NDArray[np.float64], first: int) -> None:
         self._points.extend(xyz)
+        self._own_rows.extend([-1] * len(xyz))
         self._removed.extend(range(first, first + len(xyz)))
 
     def _enter(
@@ -247,12 +256,13 @@ class Editor:
         first = len(self._points)
         self._points.extend(xyz)
         row = self._n_first_rows + self._n_new
+        self._own_rows.extend(range(row, row + len(xyz)))
         moved = []
         if elevations:
+            for i in np.flatnonzero(~is_new).tolist():
+                self._more_rows.setdefault(int(slots[i]), []).append(row + i)
             self._removed.extend((first + np.flatnonzero(~is_new)).tolist())
             moved = [self._put_elevation(slot, elevation) for slot, elevation in elevations.items()]
-        for number, slot in enumerate(slots.tolist(), row):
-            self._more_rows.setdefault(slot, []).append(number)
         self._new_slots.extend(slots)
         self._n_new += len(xyz)
         if not elevations:
@@ -300,8 +310,8 @@ class Editor:
         if self._has_lines:
             self._require_clear(slots)
         gone: list[int] = []
-        for slot in slots.tolist():
-            if not self._mesh.remove(np.array([slot], np.int32)):
+        for i, slot in enumerate(slots.tolist()):
+            if not self._mesh.remove(slots[i : i + 1]):
                 self._put_back(gone)
                 raise PointsError(
                     "No triangle would be left: three vertices not in line must stay."
@@ -351,11 +361,10 @@ class Editor:
                 self._put_back([slot])
                 raise
 
-    def set_elevations(self, slots: NDArray[np.int32], z: NDArray[np.float64]) -> Change:
+    def set_elevations(self, slots: NDArray[np.int32], elevations: list[float]) -> Change:
         """Give vertices, and the rows there, other elevations."""
         if self._has_lines and any(map(self._mesh.has_fixed_edge, slots.tolist())):
             raise NotLocal
-        elevations = np.broadcast_to(z, len(slots)).tolist()
         return _join_changes(
             [
                 self._put_elevation(slot, elevation)
@@ -393,8 +402,8 @@ class Editor:
 
     # ------------------------------------------------------------------- result
 
-    def state(self, inputs: NumberedInputs) -> State:
-        """Return what the edits led to; ``inputs`` are those of now."""
+    def state(self, inputs: Callable[[], NumberedInputs]) -> State:
+        """Return what the edits led to; ``inputs()`` are those of now, asked for if needed."""
         alive = self._live.alive()
         number = self._reorder(np.cumsum(alive, dtype=np.int32) - np.int32(1))
         number = np.where(alive, number, np.int32(-1))
@@ -410,7 +419,8 @@ class Editor:
         report = report.with_removed(vertex_of_row).with_merges(
             _gather_merges(vertex_of_row, self._count(), inputs)
         )
-        report = report.with_lines(inputs.build_inputs.lines.labels())
+        if self._has_lines:
+            report = report.with_lines(inputs().build_inputs.lines.labels())
         return State(surface, vertex_of_row, lines, report, None)
 
     def _make_triangulation(self, alive: NDArray[np.bool_]) -> Triangulation:
@@ -450,7 +460,7 @@ def _group_rows_by_vertex(vertex_of_row: NDArray[np.int32]) -> _RowsByVertex:
 
 
 def _gather_merges(
-    vertex_of_row: NDArray[np.int32], counts: _Counts, inputs: NumberedInputs
+    vertex_of_row: NDArray[np.int32], counts: _Counts, inputs: Callable[[], NumberedInputs]
 ) -> Report | None:
     """Return the account of rows that share a vertex, as a build gives it; None for none."""
     rows = np.flatnonzero(vertex_of_row >= 0)
@@ -460,7 +470,7 @@ def _gather_merges(
     shares = np.flatnonzero(np.bincount(vertex)[vertex] > 1)  # the others are no matter
     rows, vertex = rows[shares], vertex[shares]
     vertices, first, group = np.unique(vertex, return_index=True, return_inverse=True)
-    build_inputs = inputs.build_inputs
+    build_inputs = inputs().build_inputs
     kept_row = first[group.reshape(-1)].astype(np.int32)
     account = merge_rows(
         build_inputs.points[shares], kept_row, build_inputs.options.duplicates

@@ -90,7 +90,7 @@ class Done(NamedTuple):
     notes: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class Operation:
     """One edit with its arguments, not yet done."""
 
@@ -131,7 +131,7 @@ class MeshOperation(Operation):
         raise NotImplementedError
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class Insert(MeshOperation):
     """Further points."""
 
@@ -161,7 +161,7 @@ class Insert(MeshOperation):
         return Done(change, result=editor.numbers(slots))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class Remove(MeshOperation):
     """Vertices that go."""
 
@@ -187,7 +187,7 @@ class Remove(MeshOperation):
         return Done(editor.remove(editor.slots(numbers)))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class Move(MeshOperation):
     """A vertex at another place."""
 
@@ -222,7 +222,7 @@ class Move(MeshOperation):
         return Done(editor.move(slot, as_point(self.point)))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class SetElevation(MeshOperation):
     """Vertices at other elevations."""
 
@@ -234,7 +234,7 @@ class SetElevation(MeshOperation):
     def apply(self, tin: Edited) -> Done:
         """Build the TIN of the changed inputs."""
         numbers = as_vertices(self.vertices, tin.count)
-        elevations = np.broadcast_to(as_vertex_elevations(self.z, len(numbers)), len(numbers))
+        elevations = np.array(as_vertex_elevations(self.z, len(numbers)))
         state, inputs = tin.now(), tin.inputs()
         change = _change_elevations(state, inputs, numbers, elevations)
         made = numbers[~_has_own_elevation(state, inputs, numbers)]
@@ -253,7 +253,7 @@ class SetElevation(MeshOperation):
         )
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class Flip(MeshOperation):
     """The other diagonal of the two triangles at an edge."""
 
@@ -275,7 +275,7 @@ class Flip(MeshOperation):
         return Done(editor.flip(first, second))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class AddBreakline(Operation):
     """A further breakline."""
 
@@ -303,7 +303,7 @@ class AddBreakline(Operation):
         return Done(change, found, notes=tuple(crossings))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class RemoveBreakline(Operation):
     """A breakline that goes."""
 

@@ -59,13 +59,13 @@ class GrowingRows(Generic[Scalar]):
         return np.array([self.at(row) for row in rows])
 
     def put(self, row: int, values: NDArray[Scalar]) -> None:
-        """Change a row."""
+        """Change a row; the values are kept, and must not change any more."""
         if row >= len(self._head):
             self._tail[row - len(self._head)] = values
         elif self._is_own:
             self._head[row] = values
         else:
-            self._changed[row] = np.array(values)
+            self._changed[row] = values
             if len(self._changed) > _MANY:
                 self.values()
 

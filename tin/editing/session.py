@@ -14,6 +14,7 @@ from .changes import Change, NumberedInputs
 from .existing_triangles import build_state_of_triangles, gather_inputs_of_triangles
 from .mesh_editor import Editor, NotLocal, is_local
 from .operations import OPERATIONS, Done, MeshOperation, Operation
+from .origin import Origin
 from .state import State, build_state
 from .version import Version
 
@@ -60,6 +61,49 @@ class Session:
             )
         self._inputs, self._n_applied = self._begin, 0
         self._editor: Editor | None = None
+
+    @classmethod
+    def resume(cls, origin: Origin, version: Version) -> Session:
+        """Return the session of a TIN that was stored: its edits are done again.
+
+        Parameters
+        ----------
+        origin : Origin
+        version : Version
+            Where the edits led.
+
+        Raises
+        ------
+        PointsError, LinesError
+            If they lead elsewhere now.
+        """
+        given = origin.given
+        if origin.inputs is not None:
+            state = build_state(NumberedInputs.of(origin.inputs))
+            given = Version(
+                triangulation=state.triangulation,
+                vertex_of=state.vertex_of_row,
+                lines=state.lines,
+                report=state.report,
+            )
+        session = cls(cast("Version", given), origin.inputs)
+        for edit in origin.edits:
+            session.do(edit.operation, dict(edit.arguments))
+        found, wanted = session.now().triangulation, version.triangulation
+        if not (
+            _is_same(found.points, wanted.points) and _is_same(found.triangles, wanted.triangles)
+        ):
+            raise PointsError(
+                "The TIN cannot be edited: the edits that its record names do not lead to it; "
+                "triangulate its points first."
+            )
+        return session
+
+    def origin(self) -> Origin:
+        """Return what the TIN was before the edits, and the edits."""
+        given = None if not self.edits else self._given
+        inputs = self._begin.build_inputs if self._given is None else None
+        return Origin(inputs, given, tuple(self.edits))
 
     def copy(self) -> Session:
         """Return a session that goes on from here on its own."""
@@ -173,9 +217,10 @@ class Session:
     def now(self) -> State:
         """Return the TIN after the edits, and how it hangs together with its inputs."""
         if self._state is None:
-            inputs = self.inputs()
-            built = self._editor.state(inputs) if self._editor is not None else None
-            self._state = build_state(inputs) if built is None else built
+            editor = self._editor
+            self._state = (
+                build_state(self.inputs()) if editor is None else editor.state(self.inputs)
+            )
         return self._state
 
     def inputs(self) -> NumberedInputs:
@@ -195,3 +240,7 @@ class Session:
     def build(self, inputs: NumberedInputs) -> State:
         """Build the TIN of other inputs; nothing is changed yet."""
         return build_state(inputs)
+
+
+def _is_same(one: NDArray[Any], other: NDArray[Any]) -> bool:
+    return one.shape == other.shape and one.tobytes() == other.tobytes()

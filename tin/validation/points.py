@@ -21,6 +21,7 @@ __all__ = [
     "as_places",
     "as_points",
     "as_xy",
+    "clean_points",
     "require_exact_range",
     "require_three",
 ]
@@ -66,7 +67,12 @@ def as_points(points: Any, *, threads: int | None = 1) -> NDArray[np.float64]:
 
 def as_masked_points(points: Any, *, threads: int | None = 1) -> Table:
     """Return points as :func:`as_points` does, and which of them are masked; these are 0, 0, 0."""
-    xyz, is_masked = as_table(points, "Points")
+    return clean_points(as_table(points, "Points"), threads=threads)
+
+
+def clean_points(table: Table, *, threads: int | None = 1) -> Table:
+    """Check a table as :func:`as_masked_points` does; the numbers are fresh ones."""
+    xyz, is_masked = table
     if xyz.ndim != 2 or xyz.shape[1] != 3:
         raise PointsError(
             f"Points have shape {xyz.shape}: (n, 3) is needed, "
@@ -153,7 +159,7 @@ def require_exact_range(xy: NDArray[np.float64], what: str) -> None:
     PointsError
         The sentence begins with ``what``, in the plural.
     """
-    if xy.size == 0:
+    if xy.flags.c_contiguous and _kernel.are_in_exact_range(xy):
         return
     smallest, largest = _kernel.EXACT_RANGE
     size = np.abs(xy)

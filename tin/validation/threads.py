@@ -29,8 +29,10 @@ def thread_count(threads: int | None, n_points: int) -> int:
         If it is no whole number above 0.
     """
     if threads is None:
-        return max(1, min(available_cores(), n_points // LEAST_POINTS_PER_THREAD))
-    require_count("threads", threads, or_none=True)
+        most = n_points // LEAST_POINTS_PER_THREAD
+        return min(available_cores(), most) if most > 1 else 1
+    if type(threads) is not int or threads < 1:  # edits ask often
+        require_count("threads", threads, or_none=True)
     return min(int(threads), MOST_THREADS)
 
 

@@ -49,14 +49,15 @@ class Table:
 
 
 def read_tables(content: bytes, header: Header, path: Path) -> dict[str, Table]:
-    """Read the tables up to the last of ``vertex`` and ``face``.
+    """Read the tables up to the last of ``vertex``, ``face`` and edges that are constrained.
 
     Raises
     ------
     ReadError
         If the file ends before a table does, or text holds something that is no number.
     """
-    wanted = [i for i, element in enumerate(header.elements) if element.name in ("vertex", "face")]
+    names = ("vertex", "face") if header.lines is None else ("vertex", "face", "edge")
+    wanted = [i for i, element in enumerate(header.elements) if element.name in names]
     body = _Body(content, header, path)
     read = header.elements[: max(wanted, default=-1) + 1]
     tables = {element.name: body.read_table(element) for element in read}

@@ -3,8 +3,10 @@
 Written is binary little-endian with double coordinates, the face list ``vertex_indices``, and the
 CRS in a header line ``comment crs: EPSG:32616`` (WKT where there is no code). A line ``comment
 elevation unit: US survey foot`` keeps the unit of elevations where it is known. Constrained edges
-are the face properties ``constrained_0`` to ``constrained_2``, 1 where the edge opposite that
-corner is a breakline; a TIN without any goes without them.
+and the lines that they are of are edges of the file (see ``lines.py``). Files of earlier versions,
+which are read too, have the face properties ``constrained_0`` to ``constrained_2``, 1 where the
+edge opposite that corner is constrained; they are written still where an edge is constrained on
+one side only.
 """
 
 from __future__ import annotations
@@ -28,6 +30,14 @@ from ..common import (
 )
 from .body import Ragged, Table, read_tables
 from .header import parse_header
+from .lines import (
+    ENDS,
+    flag_edges,
+    format_line_comments,
+    read_lines,
+    require_edges,
+    take_edges,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -36,10 +46,14 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ....crs import CrsLike, UnitLike
+    from ....tin.constraints.breaklines import Lines
 
 __all__ = ["read", "write"]
 
 _FLAGS = ("constrained_0", "constrained_1", "constrained_2")
+_LIST = ("count", "corners")
+"""Length and items of the list of a face's vertices, as they lie in a row."""
+
 _COORDINATES = ("x", "y", "z")
 _FACE_LISTS = ("vertex_indices", "vertex_index")
 _TYPE_NAMES = {
@@ -95,7 +109,27 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
         )
     made = cut_into_fans(_require_whole_numbers(faces.items, path), faces.offsets, points, path)
     flags = _find_edge_flags(tables["face"], len(made.triangles))
-    return make_tin(points, made.triangles, path, constrained=flags, reference=reference)
+    if header.lines is None or "edge" not in tables:
+        return make_tin(points, made.triangles, path, constrained=flags, reference=reference)
+    edges = require_edges(tables["edge"], path, len(points))
+    if flags is None:
+        flags = flag_edges(made.triangles, edges, len(points))
+    tin = make_tin(points, made.triangles, path, constrained=flags, reference=reference)
+    lines = read_lines(header, edges, path)
+    _require_edges_of_tin(tin, lines, path)
+    return tin.replace(lines=lines)
+
+
+def _require_edges_of_tin(tin: TIN, lines: Lines, path: Path) -> None:
+    segments = lines.segments()
+    is_edge = tin.is_edge(segments[:, 0], segments[:, 1])
+    if not is_edge.all():
+        row = int(np.argmin(is_edge))
+        raise ReadError(
+            f"'{path}': edge {row}, of a line, joins vertices {segments[row].tolist()}, which are "
+            "no edge of a triangle.",
+            path=path,
+        )
 
 
 def _stack_coordinates(vertices: Table) -> NDArray[np.float64]:
@@ -158,34 +192,40 @@ def write(
     """
     surface = require_writable(surface, path)
     attributes = surface.attributes if isinstance(surface, Survey) else {}
-    vertices = _pack_vertices(surface.points, attributes)
-    faces = _pack_faces(surface) if isinstance(surface, TIN) else None
+    body = {"vertex": _pack_vertices(surface.points, attributes)}
+    comments: list[str] = []
+    if isinstance(surface, TIN):
+        edges = take_edges(surface)
+        body["face"] = _pack_faces(surface, edges)
+        if len(edges):
+            comments = format_line_comments(surface)
+            body["edge"] = np.ascontiguousarray(edges, "<i4").view([(name, "<i4") for name in ENDS])
     with replacing(path) as file:
-        file.write(_format_header(surface, vertices, faces))
-        file.write(vertices.data)
-        if progress is not None:
-            progress(0.5)
-        if faces is not None:
-            file.write(faces.data)
-        if progress is not None:
-            progress(1.0)
+        file.write(_format_header(surface, comments, body))
+        for number, rows in enumerate(body.values(), start=1):
+            file.write(rows.data)
+            if progress is not None:
+                progress(number / len(body))
 
 
 def _format_header(
-    surface: TIN | Survey, vertices: NDArray[Any], faces: NDArray[Any] | None
+    surface: TIN | Survey, comments: list[str], body: dict[str, NDArray[Any]]
 ) -> bytes:
     lines = ["ply", "format binary_little_endian 1.0"]
     if surface.crs is not None:
         lines.append(f"comment crs: {format_crs(surface.crs)}")
     if unit := format_unit(surface):
         lines.append(f"comment elevation unit: {unit}")
-    lines.append(f"element vertex {len(vertices)}")
-    lines += [
-        f"property {_name_type(vertices.dtype[name])} {name}" for name in vertices.dtype.names or ()
-    ]
-    if faces is not None:
-        lines += [f"element face {len(faces)}", "property list uchar int vertex_indices"]
-        lines += [f"property uchar {name}" for name in _FLAGS if name in (faces.dtype.names or ())]
+    lines += comments
+    for name, rows in body.items():
+        lines.append(f"element {name} {len(rows)}")
+        if name == "face":
+            lines.append("property list uchar int vertex_indices")
+        lines += [
+            f"property {_name_type(rows.dtype[column])} {column}"
+            for column in rows.dtype.names or ()
+            if name != "face" or column not in _LIST
+        ]
     return ("\n".join([*lines, "end_header"]) + "\n").encode()
 
 
@@ -223,12 +263,14 @@ def _select_number_columns(attributes: Any) -> dict[str, NDArray[Any]]:
     return columns
 
 
-def _pack_faces(tin: TIN) -> NDArray[Any]:
-    flags = _FLAGS if tin.constrained.any() else ()
-    fields: list[Any] = [("count", "u1"), ("corners", "<i4", (3,))]
+def _pack_faces(tin: TIN, edges: NDArray[Any]) -> NDArray[Any]:
+    """Return the rows of the faces, with flags only where the edges do not tell them."""
+    is_told = (flag_edges(tin.triangles, edges, len(tin.points)) == tin.constrained).all()
+    flags = () if is_told else _FLAGS
+    fields: list[Any] = [(_LIST[0], "u1"), (_LIST[1], "<i4", (3,))]
     rows = np.empty(len(tin.triangles), [*fields, *((name, "u1") for name in flags)])
-    rows["count"] = 3
-    rows["corners"] = tin.triangles
+    rows[_LIST[0]] = 3
+    rows[_LIST[1]] = tin.triangles
     for k, name in enumerate(flags):
         rows[name] = tin.constrained[:, k]
     return rows

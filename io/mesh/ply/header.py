@@ -8,9 +8,12 @@ from typing import TYPE_CHECKING
 
 from ....errors import ReadError
 from ...registry.signatures import is_ply
+from .lines import parse_line_comment
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+    from .lines import LineComment
 
 __all__ = ["SCALARS", "Element", "Header", "Property", "parse_header"]
 
@@ -34,8 +37,8 @@ SCALARS = {
 }
 """NumPy types of the names of the format, old and new."""
 
-LONGEST_HEADER = 1 << 20
-"""Bytes searched for the end of the header; a WKT takes some thousand."""
+LONGEST_HEADER = 1 << 24
+"""Bytes searched for the end of the header; a WKT takes some thousand, a line of a TIN some 40."""
 
 _COUNT = re.compile(r"[0-9]{1,100}")  # all that a disk holds, and a sentence about more
 _LONGEST_FIRST_LINE = 200
@@ -89,6 +92,8 @@ class Header:
         From the comment ``crs: ...``.
     elevation_unit : str or None
         From the comment ``elevation unit: ...``.
+    lines : list of LineComment or None
+        What the first edges are, where all edges are constrained ones; None where that is not said.
     size : int
         Bytes of the header.
     """
@@ -98,6 +103,7 @@ class Header:
     crs: str | None
     size: int
     elevation_unit: str | None = None
+    lines: list[LineComment] | None = None
 
 
 def parse_header(content: bytes, path: Path) -> Header:
@@ -111,17 +117,11 @@ def parse_header(content: bytes, path: Path) -> Header:
     lines, size = _split_header(content, path)
     byte_order: str | None = None
     elements: list[Element] = []
-    crs: str | None = None
-    unit: str | None = None
     for number, line in enumerate(lines, start=1):
         words = line.split()
         match words:
             case ["format", encoding, _] if encoding in _BYTE_ORDERS and byte_order is None:
                 byte_order = _BYTE_ORDERS[encoding]
-            case ["comment", "crs:", _, *_]:
-                crs = line.split("crs:", 1)[1].strip()
-            case ["comment", "elevation", "unit:", _, *_]:
-                unit = line.split("unit:", 1)[1].strip()
             case ["element", name, count] if _is_new(name, elements) and _COUNT.fullmatch(count):
                 elements.append(Element(name, int(count)))
             case ["property", *rest] if elements and (found := _parse_property(rest)) is not None:
@@ -137,7 +137,39 @@ def parse_header(content: bytes, path: Path) -> Header:
                 )
     if byte_order is None:
         raise ReadError(f"'{path}': the PLY header has no line 'format'.", path=path)
-    return Header(byte_order, elements, crs, size, unit)
+    crs, unit, told = _read_comments(lines, path)
+    return Header(byte_order, elements, crs, size, unit, told)
+
+
+def _read_comments(
+    lines: list[str], path: Path
+) -> tuple[str | None, str | None, list[LineComment] | None]:
+    """Return what comments say of the CRS, the unit of elevations, and lines."""
+    crs: str | None = None
+    unit: str | None = None
+    told: list[LineComment] | None = None
+    for number, line in enumerate(lines, start=1):
+        match line.split():
+            case ["comment", "crs:", _, *_]:
+                crs = line.split("crs:", 1)[1].strip()
+            case ["comment", "elevation", "unit:", _, *_]:
+                unit = line.split("unit:", 1)[1].strip()
+            case ["comment", "edges:", "constrained"]:
+                told = []
+            case ["comment", "line:", *_] if told is not None:
+                told.append(_require_line_comment(line, number, path))
+    return crs, unit, told
+
+
+def _require_line_comment(line: str, number: int, path: Path) -> LineComment:
+    found = parse_line_comment(line.split("line:", 1)[1].strip())
+    if found is None:
+        raise ReadError(
+            f"'{path}', line {number}: '{line[:60]}' tells no line of a TIN.",
+            path=path,
+            lines=[number],
+        )
+    return found
 
 
 def _split_header(content: bytes, path: Path) -> tuple[list[str], int]:

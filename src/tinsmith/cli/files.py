@@ -49,12 +49,26 @@ _TEXT_FORMATS = ("delimited", "geojson", "obj", "csv", "json")
 
 @dataclass(frozen=True)
 class Output:
-    """A file to write: where, as what, how; standard output also stands for a suffix."""
+    """A file to write: where, as what, how; standard output also stands for a suffix.
+
+    Attributes
+    ----------
+    path : Path
+    formats : dict of str to Format
+        By what may be written, such as "TIN".
+    options : dict
+        Options given, of which each format takes its own.
+    suffix : str
+    """
 
     path: Path
-    format: Format
+    formats: dict[str, Format]
     options: dict[str, Any]
     suffix: str = ""
+
+    def takes(self, name: str) -> bool:
+        """Whether one of the formats has an option."""
+        return any(name in one.options("write") for one in self.formats.values())
 
 
 def read_input(path: Path, reading: Reading, console: Console) -> Survey | TIN:
@@ -197,17 +211,18 @@ def plan_outputs(
     if report is not None:
         outputs.append(Named(report, "--report"))
     require_separate(inputs, outputs)
-    formats = [_choose_output_format(path, writing.output_format, kinds) for path in paths]
-    given: dict[str, Any] = {} if writing.kind is None else {"kind": writing.kind}
-    if writing.projected:
-        given["projected"] = True
-    taken = [set(given).intersection(one.options("write")) for one in formats]
-    _require_taken(set(given).difference(*taken) if taken else set(given))
-    _require_free_stdout(paths, formats, console)
-    return [
-        Output(path, one, {name: given[name] for name in names}, _choose_suffix(one, writing))
-        for path, one, names in zip(paths, formats, taken, strict=True)
+    given = {name: value for name, value in writing.options.items() if value}
+    planned = [
+        Output(path, formats, given, _choose_suffix(formats, writing))
+        for path, formats in (
+            (path, _choose_output_formats(path, writing.output_format, kinds)) for path in paths
+        )
     ]
+    for name in given:
+        if not any(one.takes(name) for one in planned):
+            raise _describe_option_not_taken(name)
+    _require_free_stdout(planned, console)
+    return planned
 
 
 def require_picture(
@@ -250,51 +265,76 @@ def write_figure(figure: Any, path: Path, *, dpi: int) -> None:
     note_written(path)
 
 
-def _choose_suffix(one: Format, writing: Writing) -> str:
+def _choose_suffix(formats: dict[str, Format], writing: Writing) -> str:
     """Return the suffix that --output-format names, or the first of the format."""
+    suffixes = [suffix for one in formats.values() for suffix in one.suffixes]
     named = f".{(writing.output_format or '').strip().lower().lstrip('.')}"
-    return named if named in one.suffixes else one.suffixes[0]
+    return named if named in suffixes else next(iter(suffixes), "")
 
 
-def _require_free_stdout(paths: Sequence[Path], formats: list[Format], console: Console) -> None:
+def _require_free_stdout(planned: Sequence[Output], console: Console) -> None:
     """Refuse more than one thing on standard output, and bytes on a terminal."""
-    chosen = [one for path, one in zip(paths, formats, strict=True) if path == STANDARD]
-    if not chosen:
+    chosen = next((one for one in planned if one.path == STANDARD), None)
+    if chosen is None:
         return
     if console.as_json:
         raise click.UsageError("--json and '-o -' both write to standard output: choose one.")
-    if chosen[0].name not in _TEXT_FORMATS and sys.stdout is not None and sys.stdout.isatty():
-        raise click.UsageError(
-            f"{chosen[0].name} is no text for a terminal: send standard output to a file or a pipe."
-        )
+    for one in chosen.formats.values():
+        if one.name not in _TEXT_FORMATS and sys.stdout is not None and sys.stdout.isatty():
+            raise click.UsageError(
+                f"{one.name} is no text for a terminal: send standard output to a file or a pipe."
+            )
 
 
-def _require_taken(left_over: set[str]) -> None:
-    if left_over:
-        raise click.UsageError(f"No output takes the option --{min(left_over)}: GeoJSON does.")
+def _describe_option_not_taken(name: str) -> click.UsageError:
+    from ..io import known_formats
+
+    takers = [one.name for one in known_formats() if name in one.options("write")]
+    flag = f"--{name.replace('_', '-')}"
+    return click.UsageError(
+        f"No output takes the option {flag}: "
+        + (f"only {', '.join(takers)} can." if takers else "no format can.")
+    )
 
 
-def _choose_output_format(path: Path, name: str | None, kinds: Sequence[str]) -> Format:
-    from ..io.registry import find_writer
+def _choose_output_formats(path: Path, name: str | None, kinds: Sequence[str]) -> dict[str, Format]:
+    from ..io.registry import find_writers
 
     if name is None and path == STANDARD:
         raise click.UsageError("'-o -' needs --output-format: standard output has no suffix.")
-    return find_writer(path, name, kinds)
+    return find_writers(path, name, kinds)
 
 
 def write_outputs(obj: Product, outputs: Sequence[Output], console: Console) -> None:
     """Write every output, showing progress."""
     with console.steps() as steps:
         for output in outputs:
+            one = _find_format_of(obj, output)
             with steps.step(f"Writing {output.path.name}") as progress:
-                options = dict(output.options)
-                if _shows_progress(output.format):
+                taken = one.options("write")
+                options = {name: output.options[name] for name in output.options if name in taken}
+                if "progress" in signature(one.load("write")).parameters:
                     options["progress"] = progress
                 if output.path == STANDARD:
-                    _write_to_stdout(obj, output, options)
+                    _write_to_stdout(obj, output, one, options)
                     continue
-                _write_file(obj, output.path, output.format, options)
+                _write_file(obj, output.path, one, options)
             note_written(output.path)
+
+
+def _find_format_of(obj: Product, output: Output) -> Format:
+    """Return the format for what there is to write after all."""
+    from ..io.writing import find_kind
+
+    kind = find_kind(obj, output.path)
+    if kind in output.formats:
+        return output.formats[kind]
+    held = " or ".join(output.formats)
+    raise Failure(
+        f"Cannot write '{output.path}': {next(iter(output.formats.values())).description} holds a "
+        f"{held}, and there is a {kind}"
+        + (": 'tinsmith build' makes a TIN of points." if held == "TIN" else ".")
+    )
 
 
 def _write_file(obj: Product, path: Path, one: Format, options: dict[str, Any]) -> None:
@@ -303,11 +343,11 @@ def _write_file(obj: Product, path: Path, one: Format, options: dict[str, Any]) 
     write(obj, path, format=one.name, **options)
 
 
-def _write_to_stdout(obj: Product, output: Output, options: dict[str, Any]) -> None:
+def _write_to_stdout(obj: Product, output: Output, one: Format, options: dict[str, Any]) -> None:
     """Write a whole file first, so that nothing comes if it fails."""
     with tempfile.TemporaryDirectory(prefix="tinsmith-") as folder:
         path = Path(folder) / f"output{output.suffix}"
-        _write_file(obj, path, output.format, options)
+        _write_file(obj, path, one, options)
         emit_file(path)
 
 
@@ -321,13 +361,6 @@ def describe_written(outputs: Sequence[Output]) -> str:
         else f"{name_file(one.path)} ({describe_file_size(one.path)})"
         for one in outputs
     )
-
-
-def _shows_progress(one: Format) -> bool:
-    from importlib import import_module
-
-    module, _, function = (one.write or "").partition(":")
-    return "progress" in signature(getattr(import_module(module), function)).parameters
 
 
 def write_text(path: Path, text: str) -> None:

@@ -1,23 +1,17 @@
-"""The group of commands: those of the package, then those of installed plug-ins.
-
-Another package adds a command through the entry-point group ``tinsmith.commands``: each entry
-names a :class:`click.Command`.
-"""
+"""The group of commands: those of the package, then those of installed plug-ins."""
 
 from __future__ import annotations
 
 import signal
 import sys
-from functools import cache
 from importlib import import_module
-from importlib.metadata import EntryPoint, entry_points
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from .. import __version__
 from ..io.isolated.forking import permit_forks
-from .output.failures import Failure, show_failure, translate_failures
+from .output.failures import show_failure, tell_warning, translate_failures
 from .output.streams import (
     Terminated,
     accept_any_text,
@@ -25,9 +19,10 @@ from .output.streams import (
     reserve_standard_streams,
     silence,
 )
+from .plug_in_commands import describe_faults, find_commands, find_owner, load_command
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
 __all__ = ["main"]
 
@@ -36,14 +31,13 @@ _BUILT_IN = (
     *("contours", "slope", "hillshade", "profile", "volume", "diff", "drape"),
     *("interpolate", "raster"),
 )
-_ENTRY_POINTS = "tinsmith.commands"
 
 
 class _Commands(click.Group):
     """Loads a command when it is asked for, and turns every failure into a sentence."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002 - click's signature
-        return [*_BUILT_IN, *_find_plug_ins()]
+        return [*_BUILT_IN, *(name for name in find_commands() if name not in _BUILT_IN)]
 
     def get_command(
         self,
@@ -54,8 +48,29 @@ class _Commands(click.Group):
             module = import_module(f".commands.{cmd_name}", __package__)
             built_in: click.Command = getattr(module, cmd_name)
             return built_in
-        entry = _find_plug_ins().get(cmd_name)
-        return None if entry is None else _load_command(entry)
+        claims = find_commands().get(cmd_name)
+        return None if claims is None else load_command(cmd_name, claims)
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """List the commands of the package, then those of plug-ins; tell of faulty ones."""
+        added = self.list_commands(ctx)[len(_BUILT_IN) :]
+        self._list_commands_under("Commands", _BUILT_IN, ctx, formatter)
+        self._list_commands_under("Commands of plug-ins", added, ctx, formatter)
+        for fault in describe_faults(_BUILT_IN):
+            tell_warning(fault)
+
+    def _list_commands_under(
+        self,
+        heading: str,
+        names: Iterable[str],
+        ctx: click.Context,
+        formatter: click.HelpFormatter,
+    ) -> None:
+        found = {name: self.get_command(ctx, name) for name in names}
+        rows = [(name, one.get_short_help_str(200)) for name, one in found.items() if one]
+        if rows:
+            with formatter.section(heading):
+                formatter.write_dl(rows)
 
     def main(self, args: Sequence[str] | None = None, **how: Any) -> Any:  # type: ignore[override]
         """Run; click's own ``main``, but for failures, signals and streams that are closed."""
@@ -84,40 +99,16 @@ class _Commands(click.Group):
 
     def invoke(self, ctx: click.Context) -> Any:
         accept_any_text()
-        with translate_failures(ctx):
+        with translate_failures(ctx, lambda: find_owner(ctx.invoked_subcommand, _BUILT_IN)):
             return super().invoke(ctx)
 
-
-@cache
-def _find_plug_ins() -> dict[str, EntryPoint]:
-    found = sorted(entry_points(group=_ENTRY_POINTS), key=lambda entry: entry.name)
-    return {entry.name: entry for entry in found if entry.name not in _BUILT_IN}
-
-
-def _load_command(entry: EntryPoint) -> click.Command:
-    """Load a plug-in's command; a broken one stays in the list and says what is wrong."""
-    try:
-        command = entry.load()
-    except Exception as error:
-        return _make_broken_command(entry.name, f"{type(error).__name__}: {error}")
-    if not isinstance(command, click.Command):
-        return _make_broken_command(
-            entry.name, f"it is a {type(command).__name__}, not a click command"
-        )
-    return command
-
-
-def _make_broken_command(name: str, reason: str) -> click.Command:
-    def fail(**_: object) -> None:
-        raise Failure(f"The plug-in '{name}' cannot be loaded ({reason}): mend or uninstall it.")
-
-    return click.Command(
-        name,
-        callback=fail,
-        short_help="(plug-in that cannot be loaded)",
-        context_settings={"ignore_unknown_options": True},
-        params=[click.Argument(["arguments"], nargs=-1)],
-    )
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Find the command, and tell if a plug-in has one of the same name."""
+        for fault in describe_faults(_BUILT_IN, args[0]) if args and args[0] in _BUILT_IN else []:
+            tell_warning(fault)
+        return super().resolve_command(ctx, args)
 
 
 @click.command(

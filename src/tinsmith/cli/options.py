@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import asdict, dataclass, fields
 from functools import wraps
 from pathlib import Path
 from typing import Any, TypeVar, get_args
@@ -113,6 +113,11 @@ class Writing:
     output_format: str | None = None
     kind: str | None = None
     projected: bool = False
+
+    @property
+    def options(self) -> dict[str, Any]:
+        """All that a writer may take, by the names of its options."""
+        return {name: value for name, value in asdict(self).items() if name != "output_format"}
 
 
 def _gather(name: str, factory: type, *options: Decorator) -> Callable[[Function], Function]:

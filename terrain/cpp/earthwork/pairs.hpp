@@ -14,6 +14,7 @@
 #include "../../../tin/cpp/base/parallel.hpp"
 #include "../../../tin/cpp/index/box_tree.hpp"
 #include "../../../tin/cpp/index/hilbert_order.hpp"
+#include "../pulse.hpp"
 #include "facet.hpp"
 
 namespace tinsmith::earthwork {
@@ -43,13 +44,16 @@ class Pairs {
     std::atomic<std::int64_t> next{0};
     team.run([&](int part) {
       std::vector<Item> near;
+      Pulse pulse(team, part);  // a single triangle may meet all of the others
       while (team.keeps_going(part)) {
         const std::int64_t begin = next.fetch_add(kBlocksAtATime * kBlock);
         if (begin >= first_.count) return;
         const std::int64_t end = std::min<std::int64_t>(begin + kBlocksAtATime * kBlock, first_.count);
         for (std::int64_t at = begin; at < end; at += kBlock) {
           visit_block(at, std::min(at + kBlock, end), near,
-                      [&](std::int32_t a, std::int32_t b) { visit(part, a, b); });
+                      [&](std::int32_t a, std::int32_t b) {
+                        if (pulse.goes_on()) visit(part, a, b);
+                      });
         }
       }
     });

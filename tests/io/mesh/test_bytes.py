@@ -33,14 +33,25 @@ def refused(path, content):
 
 
 def test_flags_of_a_ply_file_stand_at_the_corner_opposite_the_edge(tmp_path):
-    tin = kite([[True, False, False], [False, True, False]])
+    tin = kite([[True, False, False], [False, False, False]])  # on one side only
     ply.write(tin, tmp_path / "a.ply")
     content = (tmp_path / "a.ply").read_bytes()
     head, body = content.split(b"end_header\n", 1)
     names = [line.split()[-1] for line in head.decode().splitlines() if "uchar c" in line]
     assert names == ["constrained_0", "constrained_1", "constrained_2"]
     rows = [struct.unpack_from("<B3i3B", body, 4 * 24 + k * 16) for k in range(2)]
-    assert rows == [(3, 0, 1, 2, 1, 0, 0), (3, 1, 3, 2, 0, 1, 0)]
+    assert rows == [(3, 0, 1, 2, 1, 0, 0), (3, 1, 3, 2, 0, 0, 0)]
+
+
+def test_edges_of_a_ply_file_are_the_constrained_ones(tmp_path):
+    tin = kite([[True, False, False], [False, True, False]])
+    ply.write(tin, tmp_path / "a.ply")
+    head, body = (tmp_path / "a.ply").read_bytes().split(b"end_header\n", 1)
+    assert b"\ncomment edges: constrained\n" in head
+    assert b"element edge 1\nproperty int vertex1\nproperty int vertex2\n" in head
+    assert b"constrained_0" not in head
+    assert struct.unpack_from("<2i", body, 4 * 24 + 2 * 13) == (1, 2)
+    assert (read(tmp_path / "a.ply").constrained == tin.constrained).all()
 
 
 def test_flags_of_a_foreign_ply_file_mean_the_opposite_edge(tmp_path):
@@ -100,7 +111,7 @@ HEAD = "ply\nformat ascii 1.0\nelement vertex 3\nproperty {0} x\nproperty {0} y\
         (HEAD.format("double") + "format ascii 1.0\nend_header\n", "no line of a PLY header"),
         (HEAD.format("double").replace("vertex 3", "vertex -3") + "end_header\n", "'element"),
         (HEAD.format("double").replace("vertex 3", "vertex 3.0") + "end_header\n", "'element"),
-        (HEAD.format("double") + "comment " + "x" * 2_000_000 + "\nend_header\n", "end_header"),
+        (HEAD.format("double") + "comment " + "x" * 20_000_000 + "\nend_header\n", "end_header"),
         (HEAD.format("double") + "end_header\n1 2 3\n4 5 6\n7 8 1e400\n", "not finite"),
         (HEAD.format("double") + "end_header\n1 2 3\n4 5 6\n7 8 nan\n", "1 point is not finite"),
         (

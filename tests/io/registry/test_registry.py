@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import stat
-from importlib.metadata import EntryPoint
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +12,6 @@ import pytest
 import tinsmith as ts
 from tinsmith._atomic import replacing, replacing_path
 from tinsmith.io import (
-    Format,
     FormatError,
     ReadError,
     WriteError,
@@ -23,7 +21,7 @@ from tinsmith.io import (
     write,
 )
 from tinsmith.io.reading import detect
-from tinsmith.io.registry import lookup as formats
+from tinsmith.io.registry.plug_in_formats import find_fault
 
 SURVEY = "x,y,z\n1,2,3\n4,5,6\n7,8.5,9\n"
 TABLE = b"1.5 2.5 3.5\n4.5 5.5 6.5\n"
@@ -202,6 +200,8 @@ def test_writers_are_found_by_suffix(tmp_path):
 
 def test_every_reader_and_writer_is_there():
     for one in known_formats():
+        assert find_fault(one) == ""
+        assert one.is_built_in
         assert one.read or one.write
         assert all(suffix == suffix.lower() and suffix[0] == "." for suffix in one.suffixes)
         for action in ("read", "write"):
@@ -212,60 +212,6 @@ def test_every_reader_and_writer_is_there():
 def test_formats_by_name_or_suffix():
     assert find_format("raster") is find_format(".TIF") is find_format("tiff")
     assert find_format("vtu").name == "vtk"
-
-
-MINE = Format(
-    name="mine",
-    description="A format of a plug-in",
-    suffixes=(".mine",),
-    read=f"{__name__}:read_mine",
-    sniff=lambda head: head.startswith(b"MINE"),
-)
-
-
-def read_mine(path, *, crs=None, shift=0.0):
-    return ts.Survey(points=np.full((1, 3), shift), crs=crs, source=path.name)
-
-
-@pytest.fixture
-def plug_in(monkeypatch):
-    """Return a function that makes objects of this module the installed plug-ins."""
-
-    def install(**objects):
-        entries = []
-        for name, one in objects.items():
-            monkeypatch.setattr(f"{__name__}.plugged_{name}", one, raising=False)
-            entries.append(EntryPoint(name, f"{__name__}:plugged_{name}", "tinsmith.formats"))
-        monkeypatch.setattr(formats, "entry_points", lambda group: entries)
-        known_formats.cache_clear()
-
-    yield install
-    known_formats.cache_clear()
-
-
-def test_plug_in_reads_its_files(plug_in, tmp_path):
-    plug_in(mine=MINE)
-    (tmp_path / "a.csv").write_bytes(b"MINE")
-    survey = read(tmp_path / "a.csv", shift=2.5, crs="epsg:32616")
-    assert survey.points.tolist() == [[2.5, 2.5, 2.5]]
-    assert survey.crs == "EPSG:32616"
-    assert find_format("mine").options("read") == ("shift",)
-
-
-@pytest.mark.parametrize(
-    "faulty", [3, Format(name="raster", description="Twice", suffixes=(".tif",))]
-)
-def test_faulty_plug_ins_are_named(plug_in, faulty):
-    plug_in(broken=faulty)
-    assert "broken" in fault(FormatError, known_formats)
-
-
-def test_plug_in_that_cannot_be_loaded(monkeypatch):
-    entry = EntryPoint("gone", "no_such_module:thing", "tinsmith.formats")
-    monkeypatch.setattr(formats, "entry_points", lambda group: [entry])
-    known_formats.cache_clear()
-    assert "gone" in fault(FormatError, known_formats)
-    known_formats.cache_clear()
 
 
 # ------------------------------------------------------------------ whole files or none

@@ -7,7 +7,7 @@ import pytest
 
 import tinsmith as ts
 from tinsmith.tin import PointsError, _kernel, check
-from tinsmith.tin.validation.points import as_points, as_xy
+from tinsmith.tin.validation.points import as_points, as_xy, require_exact_range
 
 GOOD = np.array([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8], [1, 2, 9]], float)
 
@@ -267,3 +267,33 @@ def test_errors_keep_the_first_five_rows_of_many():
     with pytest.raises(PointsError, match="Triangle 0 has the vertices"):
         ts.TIN.from_triangles(points, [[0, 1, -1]])
     assert len(ts.TIN.from_triangles(points, [[0, 1, 8]]).triangles) == 1
+
+
+@pytest.mark.parametrize("value", [0.0, -0.0, np.nan, 1.0, *_kernel.EXACT_RANGE])
+def test_exact_range_holds_its_ends_zero_and_what_is_no_number(value):
+    xy = np.array([[1.0, 2.0], [-value, 3.0], [4.0, value]])
+    assert _kernel.are_in_exact_range(xy)
+    require_exact_range(xy[::2], "Points")
+    require_exact_range(xy[:, ::-1], "Points")
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        np.inf,
+        -np.inf,
+        np.nextafter(_kernel.EXACT_RANGE[0], 0),
+        2.0 * _kernel.EXACT_RANGE[1],
+        5e-324,
+    ],
+)
+@pytest.mark.parametrize("place", [(0, 0), (2, 1)])
+def test_one_coordinate_outside_the_exact_range_is_found(value, place):
+    xy = np.ones((3, 2))
+    xy[place] = value
+    assert not _kernel.are_in_exact_range(xy)
+    for same in (xy, np.repeat(xy, 2, axis=1)[:, ::2]):
+        with pytest.raises(
+            PointsError, match=f"1 row outside the exact range .first: row {place[0]}"
+        ):
+            require_exact_range(same, "Points")

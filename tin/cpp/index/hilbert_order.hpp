@@ -71,12 +71,15 @@ inline constexpr HilbertCurve kHilbertCurve;
 class HilbertOrder {
  public:
   // Points that are not finite are allowed: they come somewhere.
-  HilbertOrder(const Point* points, std::int32_t count)
-      : HilbertOrder(count, [points](std::int32_t i) { return points[i]; }) {}
+  HilbertOrder(const Point* points, std::int32_t count, int cells_per_point = kCellsPerPoint)
+      : HilbertOrder(count, [points](std::int32_t i) { return points[i]; }, cells_per_point) {}
 
   template <typename PointOf>
-  HilbertOrder(std::int32_t count, PointOf&& point_of)
-      : count_(count), entries_(scratch_array<Entry>(count)), spare_(scratch_array<Entry>(count)) {
+  HilbertOrder(std::int32_t count, PointOf&& point_of, int cells_per_point = kCellsPerPoint)
+      : count_(count),
+        cells_per_point_(cells_per_point),
+        entries_(scratch_array<Entry>(count)),
+        spare_(scratch_array<Entry>(count)) {
     for (std::int32_t i = 0; i < count; ++i) entries_[i].item = i;
     crowded_.push_back({0, count});
     while (!crowded_.empty()) {
@@ -127,12 +130,12 @@ class HilbertOrder {
     return value < kLast ? static_cast<std::uint32_t>(value) : kLast;
   }
 
-  // At least kCellsPerPoint, and as many as fill the digits.
-  static int position_bits(std::int32_t count) {
+  // At least so many cells a point, and as many as fill the digits.
+  int position_bits(std::int32_t count) const {
     if (count <= kShort) return 2 * HilbertCurve::kBits;
     int bits = kDigitBits;
     while (bits < 2 * HilbertCurve::kBits &&
-           (std::int64_t{1} << bits) < std::int64_t{kCellsPerPoint} * count) {
+           (std::int64_t{1} << bits) < std::int64_t{cells_per_point_} * count) {
       bits += kDigitBits;
     }
     return std::min(bits, 2 * HilbertCurve::kBits);
@@ -176,6 +179,7 @@ class HilbertOrder {
   }
 
   std::int32_t count_;
+  int cells_per_point_;
   ScratchArray<Entry> entries_, spare_;
   std::vector<Range> crowded_;
 };

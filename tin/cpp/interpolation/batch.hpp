@@ -9,8 +9,8 @@
 
 namespace tinsmith {
 
-// make() gives each thread an evaluate(point, triangle) of its own. NaN outside. Every result is
-// the same for any number of threads. Check `team.is_stopped()` afterwards.
+// make() gives each thread an evaluate(point, triangle of locator.ordered()) of its own. NaN outside.
+// Every result is the same for any number of threads. Check `team.is_stopped()` afterwards.
 template <typename Make>
 void interpolate_all(const Locator& locator, const Point* points, std::int64_t count,
                      double* result, Team& team, Make&& make) {

@@ -12,116 +12,34 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <vector>
 
 #include "../base/ids.hpp"
 #include "../index/box_tree.hpp"
 #include "../index/hilbert_order.hpp"
-#include "../predicates/expansion.hpp"
 #include "../predicates/predicates.hpp"
+#include "ordered_surface.hpp"
+#include "surface.hpp"
 
 namespace tinsmith {
-
-// Triangles by number, as the caller holds them.
-struct Surface {
-  const double* points;  // x, y, z
-  const std::int32_t* corners;
-  const std::int32_t* neighbors;
-  std::int32_t point_count;
-  std::uint32_t triangle_count;
-
-  Point corner(Triangle t, std::uint32_t k) const {
-    const double* row = points + 3 * static_cast<std::size_t>(number(vertex(t, k)));
-    return {row[0], row[1]};
-  }
-  double elevation(Triangle t, std::uint32_t k) const {
-    return points[3 * static_cast<std::size_t>(number(vertex(t, k))) + 2];
-  }
-  Vertex vertex(Triangle t, std::uint32_t k) const { return Vertex{corners[entry_of(t, k)]}; }
-  Triangle neighbor(Triangle t, std::uint32_t k) const {
-    return Triangle{static_cast<std::uint32_t>(neighbors[entry_of(t, k)])};
-  }
-  bool is_triangle(Triangle t) const { return number(t) < triangle_count; }
-
-  bool has_sound_corners() const {
-    bool sound = true;
-    for (std::int64_t i = 0; i < std::int64_t{3} * triangle_count; ++i) {
-      sound &= corners[i] >= 0 && corners[i] < point_count;
-    }
-    return sound;
-  }
-
-  // The predicates must not be given what they cannot compute with.
-  bool has_sound_points() const {
-    bool sound = true;
-    for (std::int64_t i = 0; i < std::int64_t{3} * point_count; i += 3) {
-      sound &= std::fabs(points[i]) <= kLargestCoordinate;
-      sound &= std::fabs(points[i + 1]) <= kLargestCoordinate;
-    }
-    return sound;
-  }
-
-  Box box_of(Triangle t) const {
-    Box box;
-    for (std::uint32_t k = 0; k < 3; ++k) box.include(corner(t, k));
-    return box;
-  }
-};
-
-// Twice the areas opposite the corners of the parts into which p divides a triangle; their signs
-// are exact.
-struct CornerWeights {
-  double of[3];
-
-  static CornerWeights at(Point p, Point a, Point b, Point c) {
-    return {
-        {detail::twice_area(b, c, p), detail::twice_area(c, a, p), detail::twice_area(a, b, p)}};
-  }
-
-  double total() const { return of[0] + of[1] + of[2]; }
-  std::uint32_t heaviest() const {
-    const std::uint32_t main = of[1] > of[0];
-    return of[2] > of[main] ? 2 : main;
-  }
-
-  // The mean of three elevations, one of a corner each. Differences from the corner of largest
-  // weight keep the digits that the elevations share, and give a vertex exactly its own elevation;
-  // differences of halves cannot overflow.
-  double mean_of(const double (&elevations)[3]) const {
-    const std::uint32_t main = heaviest(), next = (main + 1) % 3, last = (main + 2) % 3;
-    const double sum = total();
-    const double z = elevations[main], z_next = elevations[next], z_last = elevations[last];
-    const double half_rise =
-        of[next] / sum * (0.5 * z_next - 0.5 * z) + of[last] / sum * (0.5 * z_last - 0.5 * z);
-    const double lowest = std::min({z, z_next, z_last});
-    const double highest = std::max({z, z_next, z_last});
-    return std::min(std::max(z + 2.0 * half_rise, lowest), highest);
-  }
-};
-
-// The elevation of the plane through a triangle's corners at a point that the triangle holds.
-inline double elevation_at(const Surface& surface, Point p, Triangle t) {
-  const double elevations[3] = {surface.elevation(t, 0), surface.elevation(t, 1),
-                                surface.elevation(t, 2)};
-  return CornerWeights::at(p, surface.corner(t, 0), surface.corner(t, 1), surface.corner(t, 2))
-      .mean_of(elevations);
-}
 
 class Locator {
  public:
   // The surface's arrays must outlive the locator, and its points and corners be sound.
   explicit Locator(const Surface& surface)
-      : surface_(surface),
-        triangles_(in_spatial_order(surface)),
+      : given_(surface),
+        copy_(surface),
+        surface_(copy_.surface()),
         tree_(static_cast<std::int32_t>(surface.triangle_count),
-              [&](std::int32_t i) { return surface.box_of(triangles_[i]); }) {}
+              [&](std::int32_t i) { return surface_.box_of(triangle_at(i)); }) {}
 
   // Triangle of each query, -1 outside. False if asked to stop.
   template <typename KeepGoing>
   bool locate(const Point* queries, std::int64_t count, std::int32_t* result,
               KeepGoing&& keep_going) const {
     return visit_queries(queries, count, keep_going, [&](std::int64_t i, Point, Triangle triangle) {
-      result[i] = static_cast<std::int32_t>(number(triangle));
+      result[i] = triangle == kNoTriangle
+                      ? kNoNeighbor
+                      : static_cast<std::int32_t>(number(copy_.given_number(triangle)));
     });
   }
 
@@ -136,22 +54,22 @@ class Locator {
         });
   }
 
-  // Every triangle whose box a band may meet, and some more, in no order.
+  // Every triangle whose box a band may meet, and some more, in no order, as the caller calls them.
   template <typename Near, typename Visit>
   void visit_near(const Near& band, Visit&& visit) const {
     const auto wanted = [&](const Box& box, std::int64_t) { return band.meets(box); };
     tree_.visit_leaves_if(wanted, [&](std::int32_t begin, std::int32_t end) {
-      for (std::int32_t i = begin; i < end; ++i) visit(triangles_[i]);
+      for (std::int32_t i = begin; i < end; ++i) visit(copy_.given_number(triangle_at(i)));
       return false;
     });
   }
 
   double elevation_at(Point p, Triangle triangle) const {
-    return tinsmith::elevation_at(surface_, p, triangle);
+    return tinsmith::elevation_at(given_, p, triangle);
   }
 
-  // visit(i, point, triangle) of each query, kNoTriangle outside: in an order in which neighbours in
-  // the plane follow each other. False if asked to stop.
+  // visit(i, point, triangle of ordered()) of each query, kNoTriangle outside: in an order in which
+  // neighbours in the plane follow each other. False if asked to stop.
   template <typename KeepGoing, typename Visit>
   bool visit_queries(const Point* all_queries, std::int64_t count, KeepGoing&& keep_going,
                      Visit&& visit) const {
@@ -159,7 +77,7 @@ class Locator {
     for (std::int64_t begin = 0; begin < count; begin += kQueriesAtATime) {
       const auto size = static_cast<std::int32_t>(std::min(kQueriesAtATime, count - begin));
       const Point* queries = all_queries + begin;
-      const HilbertOrder order(queries, size);
+      const HilbertOrder order(queries, size, kCellsPerQuery);
       for (std::int32_t first = 0; first < size; first += kBlock) {
         if (!keep_going()) return false;
         const std::int32_t end = std::min(first + kBlock, size);
@@ -176,26 +94,18 @@ class Locator {
     return true;
   }
 
-  const Surface& surface() const { return surface_; }
+  // As the caller numbers triangles and vertices,
+  const Surface& surface() const { return given_; }
+  // and as they lie in the plane.
+  const OrderedSurface& ordered() const { return copy_; }
 
  private:
   static constexpr std::int64_t kQueriesAtATime = std::int64_t{1} << 22;  // bounds the memory
+  static constexpr int kCellsPerQuery = 1;      // within one the order matters little
   static constexpr std::int32_t kBlock = 4096;  // fits the first-level cache
   static constexpr int kLongestWalk = 24;       // as costly as a search
 
-  static std::vector<Triangle> in_spatial_order(const Surface& surface) {
-    std::vector<Point> centers(surface.triangle_count);
-    for (const Triangle t : Ids<Triangle>(surface.triangle_count)) {
-      centers[number(t)] = surface.box_of(t).center();
-    }
-    const auto count = static_cast<std::int32_t>(surface.triangle_count);
-    const HilbertOrder order(centers.data(), count);
-    std::vector<Triangle> triangles(surface.triangle_count);
-    for (std::int32_t i = 0; i < count; ++i) {
-      triangles[i] = Triangle{static_cast<std::uint32_t>(order[i])};
-    }
-    return triangles;
-  }
+  static Triangle triangle_at(std::int32_t i) { return Triangle{static_cast<std::uint32_t>(i)}; }
 
   Triangle find(Point p, Triangle start) const {
     const Triangle guess = start == kNoTriangle ? kNoTriangle : walk(p, start);
@@ -227,16 +137,18 @@ class Locator {
     return kNoTriangle;
   }
 
-  // The smallest triangle that holds p, boundary included; exact and complete.
+  // The triangle that holds p, boundary included, and of several the one that the caller calls by
+  // the smallest number; exact and complete.
   Triangle search(Point p) const {
-    Triangle best = kNoTriangle;
+    Triangle best = kNoTriangle, smallest = kNoTriangle;  // the largest number of all
     tree_.visit_leaves(p, [&](std::int32_t begin, std::int32_t end) {
       for (std::int32_t i = begin; i < end; ++i) {
-        const Triangle triangle = triangles_[i];
-        if (triangle > best) continue;  // kNoTriangle is the largest
+        const Triangle triangle = triangle_at(i), given = copy_.given_number(triangle);
+        if (given > smallest) continue;
         const Within within = position(p, triangle);
         if (within == Within::kOutside) continue;
         best = triangle;
+        smallest = given;
         if (within == Within::kInside) return true;  // then no other triangle holds p
       }
       return false;
@@ -261,8 +173,9 @@ class Locator {
     return positive == 3 ? Within::kInside : Within::kBoundary;
   }
 
-  Surface surface_;
-  std::vector<Triangle> triangles_;  // in spatial order
+  Surface given_;
+  OrderedSurface copy_;
+  Surface surface_;  // of the copy
   BoxTree tree_;
 };
 

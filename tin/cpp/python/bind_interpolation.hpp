@@ -32,43 +32,45 @@ inline const bool* barriers_of(const HeldLocator& locator, const GivenFlags& bar
 class HeldNaturalNeighbors {
  public:
   HeldNaturalNeighbors(const HeldLocator& locator, const GivenFlags& barriers)
-      : given_(locator.locator()), given_barriers_(barriers) {
+      : given_(locator.locator()) {
     const bool* flags = barriers_of(locator, barriers);
     unlocked(1, [&](Team& team) {
       flipped_.build(given_.surface(), flags, [&] { return team.keeps_going(0); });
       if (flipped_.is_flipped()) own_ = std::make_unique<Locator>(flipped_.surface());
+      barriers_ = now().ordered().order_flags(own_ ? flipped_.barriers() : flags);
       return 0;
     });
   }
 
   Elevations interpolate(const GivenXy& xy, NaturalWeights kind, int threads) const {
-    const Locator& locator = own_ ? *own_ : given_;
-    const bool* barriers = own_ ? flipped_.barriers() : given_barriers_.data();
-    return elevations_at(locator, xy, threads,
-                         [&] { return NaturalNeighbors(locator.surface(), barriers, kind); });
+    return elevations_at(now(), xy, threads, [&] {
+      return NaturalNeighbors(now().ordered().surface(), barriers_.get(), kind);
+    });
   }
 
   bool is_flipped() const { return own_ != nullptr; }
 
  private:
+  const Locator& now() const { return own_ ? *own_ : given_; }
+
   const Locator& given_;
-  GivenFlags given_barriers_;
   FlippedTriangles flipped_;
   std::unique_ptr<Locator> own_;
+  ScratchArray<bool> barriers_;  // in the locator's order
 };
 
 class HeldSmoothPatches {
  public:
   HeldSmoothPatches(const HeldLocator& locator, const GivenFlags& barriers, int threads)
       : locator_(locator.locator()),
-        barriers_(barriers),
-        flags_(barriers_of(locator, barriers)),
+        ordered_(locator_.ordered().numbers()),
+        barriers_(locator_.ordered().order_flags(barriers_of(locator, barriers))),
         gradients_(unlocked(threads,
                             [&](Team& team) {
-                              return std::make_unique<VertexGradients>(locator_.surface(), flags_,
-                                                                       team);
+                              return std::make_unique<VertexGradients>(locator_.ordered().surface(),
+                                                                       barriers_.get(), team);
                             })),
-        patches_(locator_.surface(), flags_, *gradients_) {}
+        patches_(locator_.ordered().surface(), barriers_.get(), *gradients_) {}
 
   Elevations interpolate(const GivenXy& xy, int threads) const {
     return elevations_at(locator_, xy, threads, [&] { return patches_; });
@@ -82,8 +84,7 @@ class HeldSmoothPatches {
     for (std::size_t i = 0; i < count; ++i) {
       const std::int32_t edge = edges.data()[i];
       if (edge < 0 || edge >= entries) throw std::invalid_argument("there is no such edge");
-      result[i] = patches_.on_edge(Triangle{static_cast<std::uint32_t>(edge / 3)}, edge % 3,
-                                   shares.data()[i]);
+      result[i] = patches_.on_edge(ordered_[edge / 3], edge % 3, shares.data()[i]);
     }
     return hand_over<Elevations>(std::move(result), {count});
   }
@@ -93,7 +94,7 @@ class HeldSmoothPatches {
     auto result = streamed_array<double>(std::size_t{6} * count);
     for (const Triangle t : Ids<Triangle>(count)) {
       for (std::uint32_t k = 0; k < 3; ++k) {
-        const Gradient gradient = gradients_->at(t, k);
+        const Gradient gradient = gradients_->at(ordered_[number(t)], k);
         result[2 * entry_of(t, k)] = gradient.x;
         result[2 * entry_of(t, k) + 1] = gradient.y;
       }
@@ -103,8 +104,8 @@ class HeldSmoothPatches {
 
  private:
   const Locator& locator_;
-  GivenFlags barriers_;
-  const bool* flags_;
+  ScratchArray<Triangle> ordered_;  // the locator's number of each triangle
+  ScratchArray<bool> barriers_;     // in the locator's order
   std::unique_ptr<VertexGradients> gradients_;
   SmoothPatches patches_;
 };
@@ -142,9 +143,10 @@ class HeldNearestBoundary {
 
 // Vertex numbers of a Delaunay triangulation, as doubles; NaN outside.
 inline Elevations nearest_vertices(const HeldLocator& locator, const GivenXy& xy, int threads) {
-  return elevations_at(locator.locator(), xy, threads, [&] {
-    return [search = NearestVertex(locator.surface())](Point p, Triangle t) mutable {
-      return static_cast<double>(number(search.find(p, t)));
+  const Locator& known = locator.locator();
+  return elevations_at(known, xy, threads, [&] {
+    return [&known, search = NearestVertex(known.surface())](Point p, Triangle t) mutable {
+      return static_cast<double>(number(search.find(p, known.ordered().given_number(t))));
     };
   });
 }

@@ -17,7 +17,7 @@
 
 namespace tinsmith::python {
 
-// The elevation at each point; make() gives each thread an evaluate(point, triangle).
+// The elevation at each point; make() gives each thread an evaluate(point, triangle of ordered()).
 template <typename Make>
 Elevations elevations_at(const Locator& locator, const GivenXy& xy, int threads, Make&& make) {
   const std::size_t count = xy.shape(0);
@@ -49,7 +49,9 @@ class HeldLocator {
 
   Elevations interpolate(const GivenXy& xy, int threads) const {
     return elevations_at(locator_, xy, threads, [&] {
-      return [&](Point p, Triangle triangle) { return elevation_at(surface(), p, triangle); };
+      return [surface = locator_.ordered().surface()](Point p, Triangle triangle) {
+        return elevation_at(surface, p, triangle);
+      };
     });
   }
 

@@ -40,6 +40,18 @@ inline Numbers snap(const GivenXyz& points, double distance) {
   return hand_over(kept_row);
 }
 
+// Whether predicates are exact for every coordinate but those that are not a number.
+inline bool are_in_exact_range(const GivenXy& xy) {
+  nb::gil_scoped_release release;
+  bool are_exact = true;
+  const std::size_t count = 2 * xy.shape(0);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double size = std::fabs(xy.data()[i]);
+    are_exact &= !(size > kLargestCoordinate) & !((size < kSmallestCoordinate) & (size > 0.0));
+  }
+  return are_exact;
+}
+
 // The expansions of the exact stage hold finite numbers only.
 inline void require_finite(const GivenXy& xy) {
   const double* end = xy.data() + 2 * xy.shape(0);
@@ -69,6 +81,8 @@ inline void bind_points(nb::module_& m) {
   m.attr("LARGEST_COORDINATE") = kLargestCoordinate;
   m.def("clean", &clean, "points"_a.noconvert(), "threads"_a = 1,
         "A copy without -0.0, and whether the growth can work with it.");
+  m.def("are_in_exact_range", &are_in_exact_range, "xy"_a.noconvert(),
+        "Whether predicates are exact for every coordinate but those that are not a number.");
   m.def("snap", &snap, "points"_a.noconvert(), "distance"_a,
         "For each row the row that it is merged into.");
   m.def(

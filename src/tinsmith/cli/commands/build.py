@@ -75,7 +75,12 @@ def build(
 
     started = perf_counter()
     planned = plan_outputs(
-        outputs, writing, inputs=list_inputs(points, how), console=console, report=report
+        outputs,
+        writing,
+        inputs=list_inputs(points, how),
+        console=console,
+        report=report,
+        kinds=("TIN",),
     )
     survey = add_lines(_require_survey(read_input(points, reading, console), points), how, console)
     tin = build_tin(survey, how, console)
@@ -149,7 +154,11 @@ def _describe_build(
         "counts": count_lines(tin.report),
         "report": describe_report(tin.report, survey, gaps),
         "outputs": [
-            {"path": str(one.path), "format": one.format.name, "bytes": one.path.stat().st_size}
+            {
+                "path": str(one.path),
+                "format": one.formats["TIN"].name,
+                "bytes": one.path.stat().st_size,
+            }
             for one in outputs
         ],
         "seconds": round(seconds, 3),

@@ -92,6 +92,7 @@ def edit(
         inputs=list_inputs(file, how, script=script),
         console=console,
         report=report,
+        kinds=("TIN",),
     )
     edits = _read_script(script)
     tin, _ = read_tin(file, reading, how, console)

@@ -90,7 +90,9 @@ def refine(
     from ..output.line_summaries import mesh_counts
 
     started = perf_counter()
-    planned = plan_outputs(outputs, writing, inputs=list_inputs(file, how), console=console)
+    planned = plan_outputs(
+        outputs, writing, inputs=list_inputs(file, how), console=console, kinds=("TIN",)
+    )
     tin, _ = read_tin(file, reading, how, console)
     _require_lengths(tin, file)
     triangles = counted(len(tin.triangles), "triangle")

@@ -21,7 +21,7 @@ from ..flags import find_given_flag, name_flags
 from .streams import Terminated, escape_unprintable, silence, tell
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
     from ...errors import OptionError
@@ -32,6 +32,7 @@ __all__ = [
     "note_written",
     "refuse_option",
     "show_failure",
+    "tell_warning",
     "translate_failures",
 ]
 
@@ -109,8 +110,17 @@ def _wants_json(arguments: Sequence[str]) -> bool:
 
 
 @contextmanager
-def translate_failures(ctx: click.Context) -> Iterator[None]:
-    """Turn exceptions into :class:`Failure`, and warnings into one line each."""
+def translate_failures(
+    ctx: click.Context, find_owner: Callable[[], str] = lambda: "tinsmith"
+) -> Iterator[None]:
+    """Turn exceptions into :class:`Failure`, and warnings into one line each.
+
+    Parameters
+    ----------
+    ctx : click.Context
+    find_owner : callable
+        Whose fault an exception is that nobody expected.
+    """
     if os.environ.get(DEBUG):
         yield
         return
@@ -127,7 +137,7 @@ def translate_failures(ctx: click.Context) -> Iterator[None]:
         except Terminated as ended:
             raise _translate(_make_interruption(ctx, ended.number), ctx) from None
         except Exception as error:
-            raise _translate(_make_failure(error), ctx) from error
+            raise _translate(_make_failure(error, find_owner()), ctx) from error
 
 
 def _translate(error: click.ClickException, ctx: click.Context) -> click.ClickException:
@@ -144,7 +154,7 @@ def _make_interruption(ctx: click.Context, number: int) -> Interruption:
     return Interruption(f"Interrupted; {outcome}.", number)
 
 
-def _make_failure(error: Exception) -> click.ClickException:
+def _make_failure(error: Exception, owner: str) -> click.ClickException:
     from ...errors import OptionError, TinsmithError
 
     if isinstance(error, OptionError):
@@ -158,7 +168,7 @@ def _make_failure(error: Exception) -> click.ClickException:
         return Failure(f"The system refuses{where}: {error.strerror}.")
     what = " ".join(f"{type(error).__name__}: {error}".split())
     return Failure(
-        f"A bug in tinsmith: {what} (set {DEBUG}=1 to see the traceback, and please report it)."
+        f"A bug in {owner}: {what} (set {DEBUG}=1 to see the traceback, and please report it)."
     )
 
 
@@ -181,5 +191,10 @@ def refuse_option(error: OptionError, **renamed: str) -> click.ClickException:
 
 
 def _show_warning(message: Warning | str, *_: object, **__: object) -> None:
+    tell_warning(name_flags(" ".join(str(message).split())))
+
+
+def tell_warning(text: str) -> None:
+    """Write a warning to stderr."""
     label = click.style("Warning: ", fg="yellow", bold=True)
-    tell(f"{label}{escape_unprintable(name_flags(' '.join(str(message).split())))}")
+    tell(f"{label}{escape_unprintable(text)}")

@@ -1,0 +1,144 @@
+"""The tables of a GeoPackage of a TIN, as the child process reads them: nothing but tables."""
+
+from __future__ import annotations
+
+import re
+import sqlite3
+from contextlib import closing
+from itertools import islice
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...isolated import Answer, Refusal
+from .digests import digest_lines
+from .geometries import POINT
+from .schema import RECORD
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["read_tables"]
+
+_TYPE = re.compile(r"[<|][bif][148]|\|u1")
+_SHAPE = re.compile(r"[0-9]{1,12}( [0-9]{1,12}){0,2}")
+_TRIANGLE = np.dtype([("corners", "i8", (3,)), ("flags", "i8")])
+_READ_ONLY = {sqlite3.SQLITE_SELECT, sqlite3.SQLITE_READ, sqlite3.SQLITE_FUNCTION}
+
+
+def read_tables(path: str, shown: str) -> Answer:
+    """Return points, triangles, flags and record of a file.
+
+    Parameters
+    ----------
+    path : str
+    shown : str
+        The path as the user wrote it, for sentences.
+
+    Returns
+    -------
+    Answer
+        The value holds the ``document`` and the ``digests`` as text, that of the ``lines``, and
+        the names of the record's arrays; the arrays are ``points``, ``triangles``, ``flags`` and
+        those of the record, each behind a space.
+    """
+    try:
+        with closing(_open(path)) as file:
+            _require_plain_tables(file, shown)
+            return _read(file, Path(path).stat().st_size, shown)
+    except (sqlite3.Error, OverflowError, UnicodeError) as error:
+        raise Refusal(f"'{shown}' is a damaged GeoPackage ({error}).") from error
+
+
+def _open(path: str) -> sqlite3.Connection:
+    file = sqlite3.connect(f"{Path(path).as_uri()}?mode=ro&immutable=1", uri=True)
+    file.execute("PRAGMA trusted_schema = OFF")
+    file.execute("PRAGMA cell_size_check = ON")
+    return file
+
+
+def _require_plain_tables(file: sqlite3.Connection, shown: str) -> None:
+    """Refuse views and virtual tables in place of tables; then allow reading only."""
+    rows = file.execute("SELECT name, type, sql FROM sqlite_master").fetchall()
+    plain = {
+        name
+        for name, kind, sql in rows
+        if kind == "table" and isinstance(sql, str) and re.match(r"CREATE\s+TABLE\b", sql, re.I)
+    }
+    missing = {"vertices", "triangles", "lines", RECORD} - plain
+    if missing:
+        raise Refusal(f"'{shown}' is no GeoPackage of a TIN: it has no table '{min(missing)}'.")
+    file.set_authorizer(
+        lambda action, *_: sqlite3.SQLITE_OK if action in _READ_ONLY else sqlite3.SQLITE_DENY
+    )
+
+
+def _read(file: sqlite3.Connection, size: int, shown: str) -> Answer:
+    texts, arrays = _read_record(file, shown)
+    lines = file.execute("SELECT geom, kind, name FROM lines ORDER BY fid")
+    rows = [row for row in lines if [type(one) for one in row] == [bytes, str, str]]
+    triangles = _read_triangles(file, size, shown)
+    return Answer(
+        {**texts, "lines": digest_lines(rows)},
+        {
+            "points": _read_points(file, shown),
+            "triangles": triangles["corners"].copy(),
+            "flags": triangles["flags"].copy(),
+            **{f" {name}": array for name, array in arrays.items()},
+        },
+    )
+
+
+def _read_points(file: sqlite3.Connection, shown: str) -> NDArray[np.float64]:
+    blobs = []
+    found = file.execute("SELECT vertex, geom FROM vertices ORDER BY vertex")
+    for count, (number, blob) in enumerate(found):
+        if number != count or not isinstance(blob, bytes) or len(blob) != POINT.itemsize:
+            raise Refusal(f"'{shown}': layer 'vertices' has no point with z of number {count}.")
+        blobs.append(blob)
+    rows = np.frombuffer(b"".join(blobs), POINT)
+    is_point = (rows["magic"] == b"GP") & (rows["order"] == 1) & (rows["kind"] == 1001)
+    if not is_point.all():
+        number = int(np.argmin(is_point))
+        raise Refusal(f"'{shown}': layer 'vertices' has no point with z of number {number}.")
+    return np.ascontiguousarray(rows["xyz"])
+
+
+def _read_triangles(file: sqlite3.Connection, size: int, shown: str) -> NDArray[Any]:
+    rows = file.execute("SELECT a, b, c, constrained FROM triangles ORDER BY fid")
+    found = (((a, b, c), flags) for a, b, c, flags in islice(rows, size))
+    try:
+        return np.fromiter(found, _TRIANGLE)
+    except (TypeError, ValueError) as error:
+        raise Refusal(
+            f"'{shown}': layer 'triangles' has a column a, b, c or constrained that is no whole "
+            "number."
+        ) from error
+
+
+def _read_record(
+    file: sqlite3.Connection, shown: str
+) -> tuple[dict[str, str], dict[str, NDArray[Any]]]:
+    texts, arrays = {}, {}
+    for name, kind, shape, data in file.execute(f"SELECT name, type, shape, data FROM {RECORD}"):
+        if kind == "json" and name in ("digests", "document") and isinstance(data, bytes):
+            texts[name] = data.decode()
+        elif _is_array(kind, shape, data):
+            arrays[str(name)] = np.frombuffer(data, kind).reshape([int(n) for n in shape.split()])
+        else:
+            raise Refusal(f"'{shown}': the table '{RECORD}' is damaged at '{name}'.")
+    if len(texts) < 2:
+        raise Refusal(f"'{shown}': the table '{RECORD}' has no document.")
+    return texts, arrays
+
+
+def _is_array(kind: Any, shape: Any, data: Any) -> bool:
+    if not (isinstance(kind, str) and isinstance(shape, str) and isinstance(data, bytes)):
+        return False
+    if not (_TYPE.fullmatch(kind) and _SHAPE.fullmatch(shape)):
+        return False
+    count = 1
+    for axis in shape.split():
+        count *= int(axis)
+    return len(data) == count * np.dtype(kind).itemsize

@@ -1,0 +1,147 @@
+"""Read the TIN of a GeoPackage: in a child process, and compared with its digests."""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ....errors import PointsError, ReadError
+from ....tin import TIN
+from ....tin.storage import Record, unpack_tin
+from ...isolated import run_isolated
+from ..common import choose_reference, make_tin
+from .digests import digest_arrays
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from ....crs import CrsLike, UnitLike
+    from ...isolated import Answer
+    from ..common import Reference
+
+__all__ = ["read"]
+
+_CHANGED = (
+    "Layers of the file were changed by another program since it was written: the TIN is made of "
+    "its vertices and triangles, and what was known of lines, rows and edits is left out."
+)
+
+
+def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN:
+    """Read the TIN of a GeoPackage that :func:`write` wrote, with all that was known of it.
+
+    Parameters
+    ----------
+    path : Path
+    crs : CRS, str, int or pyproj.CRS, optional
+        Declares the CRS where the file has none.
+    z_unit : Unit or str, optional
+        Declares the unit of the elevations where the file has none.
+
+    Returns
+    -------
+    TIN
+        Equal to the one that was written, edits and what undoing them needs included. Where
+        another program changed the layers since, that of the vertices and triangles there are,
+        and the report's notes say so.
+
+    Raises
+    ------
+    ReadError
+        If the file is damaged, or its triangles are no TIN.
+    CrsError, OptionError
+        If the file has another CRS or unit.
+
+    Notes
+    -----
+    SQLite reads the file in a child process, with limits of time and memory; only tables are
+    read, no view, trigger or function of the file takes part.
+    """
+    journal = path.with_name(path.name + "-wal")
+    if journal.exists() and journal.stat().st_size:
+        raise ReadError(
+            f"'{path}' is open in another program, as '{journal.name}' beside it shows: close it "
+            "there first.",
+            path=path,
+        )
+    answer = run_isolated(
+        f"{__package__}.child:read_tables",
+        {"path": os.path.abspath(path), "shown": str(path)},  # noqa: PTH100
+        path=path,
+    )
+    points, triangles, constrained = _take_mesh(answer, path)
+    record = Record(_load_json(answer, "document", path), _take_arrays(answer))
+    digests = _load_json(answer, "digests", path)
+    text = answer.value["document"]
+    if digest_arrays(*record.arrays.values(), text=text) != digests.get("record"):
+        raise ReadError(f"'{path}' is damaged: its record of the TIN is not as written.", path=path)
+    reference = _choose_reference(record, crs, z_unit, path)
+    mesh = digest_arrays(points, triangles, constrained)
+    if (mesh, answer.value["lines"]) != (digests.get("mesh"), digests.get("lines")):
+        tin = make_tin(points, triangles, path, constrained=constrained, reference=reference)
+        return _add_note(tin)
+    try:
+        return unpack_tin(_declare(record, reference), points, triangles, constrained)
+    except PointsError as error:
+        raise ReadError(f"'{path}' holds no TIN. {error}", path=path) from error
+
+
+def _take_mesh(
+    answer: Answer, path: Path
+) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.bool_]]:
+    points, triangles, flags = (answer.arrays[name] for name in ("points", "triangles", "flags"))
+    wrong = ((triangles < 0) | (triangles >= len(points))).any(axis=1) | (flags < 0) | (flags > 7)
+    if wrong.any() or not len(triangles):
+        row = int(np.argmax(wrong)) if len(wrong) else 0
+        raise ReadError(
+            f"'{path}': row {row + 1} of the layer 'triangles' names no three of the "
+            f"{len(points)} vertices.",
+            path=path,
+        )
+    constrained = (flags[:, None] & np.array([1, 2, 4])) != 0
+    return points, triangles.astype(np.int32), constrained
+
+
+def _take_arrays(answer: Answer) -> dict[str, NDArray[Any]]:
+    found = {name[1:]: array for name, array in answer.arrays.items() if name[0] == " "}
+    return dict(sorted(found.items(), key=lambda item: int(item[0]) if item[0].isdecimal() else -1))
+
+
+def _load_json(answer: Answer, name: str, path: Path) -> dict[str, Any]:
+    try:
+        found = json.loads(answer.value[name])
+    except (ValueError, RecursionError):
+        found = None
+    if not isinstance(found, dict):
+        raise ReadError(f"'{path}' is damaged: its {name} is no JSON object.", path=path)
+    return found
+
+
+def _choose_reference(
+    record: Record, crs: CrsLike | None, z_unit: UnitLike | None, path: Path
+) -> Reference:
+    found = {}
+    for name, key in (("crs", "crs"), ("elevation_unit", "unit")):
+        tree = record.document.get(name)
+        found[key] = tree.get(key) if isinstance(tree, dict) else None
+    return choose_reference(crs, z_unit, path, found_crs=found["crs"], found_unit=found["unit"])
+
+
+def _declare(record: Record, reference: Reference) -> Record:
+    """Return the record with the reference that the file or else a caller names."""
+    crs, unit = reference
+    named = {
+        "crs": None if crs is None else {"crs": str(crs)},
+        "elevation_unit": None if unit is None else {"unit": unit.text},
+    }
+    return record._replace(document=record.document | named)
+
+
+def _add_note(tin: TIN) -> TIN:
+    return tin.replace(report=replace(tin.report, notes=[*tin.report.notes, _CHANGED]))

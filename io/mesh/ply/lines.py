@@ -1,0 +1,143 @@
+"""Lines of a TIN in a PLY file: edges, and in the header what they are.
+
+The element ``edge`` has the constrained edges, first those of the lines, one line after the other,
+then those of no line. The header line ``comment edges: constrained`` says so, and for each line one
+such as ``comment line: hard 0 12 "kerb"`` tells its kind, source, number of edges and name. QGIS
+takes edges for what they are; properties of faces would be data sets there, and unknown elements
+are refused.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from typing import TYPE_CHECKING, NamedTuple, get_args
+
+import numpy as np
+
+from ....errors import ReadError
+from ....policies import LineKind
+from ....tin import topology
+from ....tin.constraints.breaklines import Lines
+
+if TYPE_CHECKING:
+    from pathlib import Path
+    from typing import Any
+
+    from numpy.typing import NDArray
+
+    from ....tin import TIN
+    from .body import Table
+    from .header import Header
+
+__all__ = [
+    "ENDS",
+    "LineComment",
+    "flag_edges",
+    "format_line_comments",
+    "parse_line_comment",
+    "read_lines",
+    "require_edges",
+    "take_edges",
+]
+
+ENDS = ("vertex1", "vertex2")
+"""Properties of an edge, as other programs call them."""
+
+_COMMENT = re.compile(r'(hard|soft|boundary|hole|water) (-?[0-9]{1,10}) ([0-9]{1,10}) (".*")')
+
+
+class LineComment(NamedTuple):
+    """What the header says of a line."""
+
+    kind: LineKind
+    source: int
+    count: int
+    name: str
+
+
+def take_edges(tin: TIN) -> NDArray[np.int32]:
+    """Return the edges of all lines in order, then the constrained ones of no line, (k, 2)."""
+    segments = tin.lines.segments()
+    flagged = topology.edges_at(tin.triangles, tin.constrained)
+    edges = np.unique(np.sort(flagged, axis=1), axis=0)
+    n = len(tin.points)
+    keys = topology.edge_keys(edges, n)
+    others = edges[~np.isin(keys, topology.edge_keys(segments, n))]
+    return np.concatenate([segments, others]).astype(np.int32)
+
+
+def flag_edges(triangles: NDArray[Any], edges: NDArray[Any], n_vertices: int) -> NDArray[np.bool_]:
+    """Return which edges of triangles, each opposite a corner, are among some, (m, 3) flags."""
+    sides = np.stack([np.roll(triangles, -1, axis=1), np.roll(triangles, -2, axis=1)], axis=2)
+    keys = topology.edge_keys(sides.reshape(-1, 2), n_vertices)
+    found = np.isin(keys, topology.edge_keys(edges, n_vertices))
+    return found.reshape(len(triangles), 3)
+
+
+def format_line_comments(tin: TIN) -> list[str]:
+    """Return the lines of the header that tell what the edges are."""
+    lines = tin.lines
+    counts = np.diff(lines.offsets) - 1
+    rows = zip(lines.kinds, lines.sources.tolist(), counts.tolist(), lines.names, strict=True)
+    told = [
+        f"comment line: {kind} {source} {n} {json.dumps(name)}" for kind, source, n, name in rows
+    ]
+    return ["comment edges: constrained", *told]
+
+
+def parse_line_comment(text: str) -> LineComment | None:
+    """Return what a comment says of a line; None if it says nothing that can be understood."""
+    found = _COMMENT.fullmatch(text)
+    if found is None or found[1] not in get_args(LineKind):
+        return None
+    try:
+        name = json.loads(found[4])
+    except ValueError:
+        return None
+    kind: Any = found[1]
+    return LineComment(kind, int(found[2]), int(found[3]), name)
+
+
+def require_edges(table: Table, path: Path, n_vertices: int) -> NDArray[np.int64]:
+    """Return the edges of a file of ours as (k, 2) vertex numbers."""
+    columns = [table.columns.get(name) for name in ENDS]
+    if columns[0] is None or columns[1] is None:
+        raise ReadError(f"'{path}' has edges without vertex1 and vertex2.", path=path)
+    ends = np.stack([np.asarray(column, np.float64) for column in columns], axis=1)
+    wrong = ~((ends >= 0) & (ends < n_vertices) & (ends == np.floor(ends))).all(axis=1)
+    if wrong.any():
+        row = int(np.argmax(wrong))
+        raise ReadError(f"'{path}': edge {row} does not join two of the vertices.", path=path)
+    return ends.astype(np.int64)
+
+
+def read_lines(header: Header, edges: NDArray[np.int64], path: Path) -> Lines:
+    """Return the lines that the header tells of, as chains of vertices.
+
+    Raises
+    ------
+    ReadError
+        If the edges of a line do not follow each other.
+    """
+    counts = np.array([one.count for one in header.lines], np.int64)
+    if counts.sum() > len(edges) or (counts < 1).any():
+        raise ReadError(
+            f"'{path}': its lines have {counts.sum()} edges, and there are {len(edges)}.", path=path
+        )
+    starts = np.cumsum(counts) - counts
+    own = edges[: counts.sum()]
+    follows = np.ones(len(own), np.bool_)
+    follows[1:] = own[1:, 0] == own[:-1, 1]
+    follows[starts] = True
+    if not follows.all():
+        row = int(np.argmin(follows))
+        raise ReadError(f"'{path}': edge {row} does not go on where its line is.", path=path)
+    vertices = np.insert(own[:, 1], starts, own[starts, 0])
+    return Lines(
+        vertices=vertices.astype(np.int32),
+        offsets=topology.find_offsets(counts + 1).astype(np.int32),
+        kinds=tuple(one.kind for one in header.lines),
+        sources=np.array([one.source for one in header.lines], np.int32),
+        names=tuple(one.name for one in header.lines),
+    )

@@ -1,0 +1,76 @@
+"""Plug-ins: what other distributions add through entry points, loaded so that none can do harm."""
+
+from __future__ import annotations
+
+import warnings
+from importlib.metadata import entry_points
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from ._sentences import printable
+from .errors import PlugInWarning
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from importlib.metadata import EntryPoint
+
+__all__ = ["PlugIn", "describe_failure", "find_plug_ins", "name_distribution", "warn_of_plug_in"]
+
+
+class PlugIn(NamedTuple):
+    """An entry point of another distribution, not loaded yet.
+
+    Attributes
+    ----------
+    name : str
+        Of the entry point.
+    distribution : str
+        Name and version of the distribution that has it.
+    load : callable
+        Load what the entry point names.
+    """
+
+    name: str
+    distribution: str
+    load: Callable[[], Any]
+
+
+def find_plug_ins(group: str) -> list[PlugIn]:
+    """Return the plug-ins of a group of entry points, by name and distribution.
+
+    Parameters
+    ----------
+    group : str
+        Such as ``"tinsmith.formats"``.
+    """
+    found = [
+        PlugIn(one.name, name_distribution(one), one.load) for one in entry_points(group=group)
+    ]
+    return sorted(found, key=lambda one: (one.name, one.distribution))
+
+
+def name_distribution(entry: EntryPoint) -> str:
+    """Return name and version of the distribution that an entry point belongs to."""
+    found = entry.dist
+    return "an unknown distribution" if found is None else f"{found.name} {found.version}"
+
+
+def describe_failure(error: BaseException) -> str:
+    """Return what went wrong as a plug-in was loaded or ran, in one line."""
+    text = " ".join(str(error).split()).rstrip(".")
+    return f"{type(error).__name__}: {text}" if text else type(error).__name__
+
+
+def warn_of_plug_in(what: str, distribution: str, reason: str) -> None:
+    """Warn that a plug-in is left out, or a part of it.
+
+    Parameters
+    ----------
+    what : str
+        Such as ``"format 'mine'"``.
+    distribution : str
+        Name and version of the distribution that is to be mended or removed.
+    reason : str
+        End of the sentence.
+    """
+    text = f"Plug-in {distribution}, {what}: {reason}."
+    warnings.warn(printable(text), PlugInWarning, stacklevel=3)

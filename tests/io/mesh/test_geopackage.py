@@ -1,0 +1,289 @@
+"""A whole TIN as a GeoPackage: it comes back bit for bit, and damaged files are refused."""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+from contextlib import closing
+
+import numpy as np
+import pytest
+from support.same_tins import find_differences
+
+import tinsmith as ts
+from tinsmith.io.mesh.geopackage.digests import digest_arrays
+
+CRSES = [
+    "EPSG:32616",
+    "EPSG:2274+6360",  # compound, in feet
+    None,
+    "EPSG:4326",
+    "+proj=tmerc +lat_0=10.1 +lon_0=3 +k=0.9996 +x_0=123.25 +units=m +type=crs",  # no code
+    'ENGCRS["Site",EDATUM["Site"],CS[Cartesian,2],AXIS["x",east],AXIS["y",north],'
+    'LENGTHUNIT["metre",1]]',
+]
+
+
+def make_tin(seed=1, **more):
+    """Return a TIN with every kind of line, merges, crossings and rows left out."""
+    points = np.random.default_rng(seed).integers(0, 60, (300, 3)).astype(float)
+    given = {
+        "breaklines": [
+            ts.Breakline([[1, 1, 3], [50, 40, 5.0]], name="kerb & wall", priority=2),
+            ts.Breakline([[1, 50], [55, 2.0]], kind="soft", name="Böschung"),
+            ts.Breakline([[5, 30, 1], [45, 31, 1 / 3]]),
+        ],
+        "water": [ts.Water([[10, 10], [20, 10], [20, 20], [10, 20]], 0.1, name="pond")],
+        "boundary": [[[0, 0], [58, 0], [58, 58], [0, 58]]],
+        "holes": [[[40, 45], [50, 45], [45, 52]]],
+        "erase": [[[30, 5], [35, 5], [33, 9]]],
+        "snap": 0.5,
+    }
+    return ts.triangulate(points, **(given | more))
+
+
+def edit(tin):
+    tin.insert([[30.5, 30.5, 9], [31.25, 12.125, 1e-9]], duplicates="mean")
+    tin.add_breakline([[5, 5, 1], [40, 6, 2.0]], name="new", crossing="split")
+    tin.set_elevation([3, 7], [77, -1])
+    tin.remove_breakline(2)
+
+
+def reread(tin, path):
+    return ts.read(ts.write(tin, path))
+
+
+@pytest.fixture
+def path(tmp_path):
+    return tmp_path / "a.gpkg"
+
+
+@pytest.mark.parametrize("crs", CRSES)
+def test_all_comes_back_bit_for_bit(path, crs):
+    tin = make_tin(crs=crs, z_unit=None if crs and "+" in crs[:10] else "US survey foot")
+    found = reread(tin, path)
+    assert find_differences(tin, found) == []
+    assert found.report.to_dict() == tin.report.to_dict()
+    assert (found.crs, found.elevation_unit) == (tin.crs, tin.elevation_unit)
+    assert found.lines.names == tin.lines.names
+    assert len(found.report.notes) == len(tin.report.notes)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_edits_go_on_as_they_would_have(path, seed):
+    tin = make_tin(seed, crossing="split", max_edge=None if seed % 2 else 30.0)
+    found = reread(tin, path)
+    for one in (tin, found):
+        edit(one)
+    assert find_differences(tin, found) == []
+    again = reread(found, path)
+    assert find_differences(tin, again) == []
+    assert [one.to_dict() for one in again.edits] == [one.to_dict() for one in tin.edits]
+    for count in (1, 3):
+        tin.undo(count)
+        again.undo(count)
+        assert find_differences(tin, again) == []
+
+
+def test_existing_triangles_and_their_edits_come_back(path):
+    built = ts.triangulate([[0, 0, 1], [4, 0, 2], [4, 4, 3], [0, 5, 4.0]])
+    tin = ts.TIN.from_triangles(built.points, built.triangles[:, [1, 2, 0]], crs=32616)
+    assert find_differences(tin, reread(tin, path)) == []
+    tin.insert([[1, 2, 3.0]])
+    found = reread(tin, path)
+    assert find_differences(tin, found) == []
+    tin.undo()
+    found.undo()
+    assert find_differences(tin, found) == []
+
+
+def test_a_refined_and_a_clipped_surface_come_back(path):
+    tin = ts.refine(make_tin(), min_angle=25)
+    assert find_differences(tin, reread(tin, path)) == []
+
+
+def test_masked_rows_and_what_a_survey_says_come_back(path):
+    rows = np.ma.masked_equal([[0, 0, 1], [4, 0, 2], [4, 4, 9], [0, 5, 4], [9, 9, 9.0]], 9.0)
+    survey = ts.Survey(points=rows, notes=["guessed"], skipped={"nodata cells": 3})
+    for tin in (ts.triangulate(survey), ts.triangulate(rows)):
+        assert find_differences(tin, reread(tin, path)) == []
+
+
+def test_copies_of_what_was_read_are_edited_alike(path):
+    import copy
+    import pickle
+
+    tin = make_tin()
+    edit(tin)
+    found = reread(tin, path)
+    for twin in (copy.copy(found), pickle.loads(pickle.dumps(found))):
+        twin.undo(4)
+        assert find_differences(make_tin(), twin) == []
+    assert len(found.edits) == 4
+
+
+def test_the_same_tin_gives_the_same_bytes(tmp_path):
+    for name in ("a.gpkg", "b.gpkg"):
+        ts.write(make_tin(), tmp_path / name)
+    assert (tmp_path / "a.gpkg").read_bytes() == (tmp_path / "b.gpkg").read_bytes()
+
+
+def test_reference_can_be_declared_where_there_is_none(path):
+    ts.write(make_tin(), path)
+    found = ts.read(path, crs=32616, z_unit="ft")
+    assert (found.crs, found.elevation_unit) == ("EPSG:32616", ts.Unit.of("ft"))
+    edit(found)
+    ts.write(make_tin(crs=32616), path)
+    with pytest.raises(ts.CrsError, match="another CRS"):
+        ts.read(path, crs=32617)
+
+
+# ------------------------------------------------------------------ changed and damaged files
+
+
+def change(path, *statements):
+    with closing(sqlite3.connect(path)) as file, file:
+        for one in statements:
+            file.execute(*one) if isinstance(one, tuple) else file.execute(one)
+
+
+def load(path, name):
+    with closing(sqlite3.connect(path)) as file:
+        query = "SELECT data FROM tinsmith_tin WHERE name = ?"
+        return json.loads(file.execute(query, (name,)).fetchone()[0])
+
+
+def rewrite_document(path, alter):
+    """Alter the document as one would who knows how digests are made."""
+    document, digests = load(path, "document"), load(path, "digests")
+    alter(document)
+    text = json.dumps(document)
+    with closing(sqlite3.connect(path)) as file:
+        rows = file.execute("SELECT type, shape, data FROM tinsmith_tin WHERE type <> 'json'")
+        arrays = [
+            np.frombuffer(data, kind).reshape([int(axis) for axis in shape.split()])
+            for kind, shape, data in rows
+        ]
+    digests["record"] = digest_arrays(*arrays, text=text)
+    update = "UPDATE tinsmith_tin SET data = ? WHERE name = ?"
+    change(path, (update, (text.encode(), "document")))
+    change(path, (update, (json.dumps(digests).encode(), "digests")))
+
+
+def test_what_another_program_changed_is_read_and_told(path):
+    tin = make_tin(crs=32616)
+    ts.write(tin, path)
+    change(path, "DELETE FROM triangles WHERE fid = 5")
+    found = ts.read(path)
+    assert len(found.triangles) == len(tin.triangles) - 1
+    assert len(found.lines) == 0
+    assert found.crs == tin.crs
+    assert "changed by another program" in found.report.notes[-1]
+    ts.write(tin, path)
+    change(path, "UPDATE lines SET name = 'other'")
+    assert "changed by another program" in ts.read(path).report.notes[-1]
+
+
+@pytest.mark.parametrize(
+    ("statement", "reason"),
+    [
+        ("DELETE FROM vertices WHERE vertex = 5", "no point with z of number 5"),
+        ("UPDATE vertices SET geom = x'00' WHERE vertex = 3", "no point with z of number 3"),
+        ("UPDATE triangles SET a = 9999 WHERE fid = 2", "row 2 of the layer 'triangles'"),
+        ("UPDATE triangles SET a = -1 WHERE fid = 2", "row 2 of the layer 'triangles'"),
+        ("UPDATE triangles SET a = 'x' WHERE fid = 2", "no whole number"),
+        ("UPDATE triangles SET b = a WHERE fid = 2", "holds no TIN"),
+        ("DELETE FROM triangles", "'triangles'"),
+        ("DELETE FROM tinsmith_tin", "has no document"),
+        ("UPDATE tinsmith_tin SET data = x'00' WHERE name = '0'", "damaged at '0'"),
+        ("UPDATE tinsmith_tin SET shape = '99999999999' WHERE name = '0'", "damaged at '0'"),
+        ("UPDATE tinsmith_tin SET type = 'O' WHERE name = '0'", "damaged at '0'"),
+        ("UPDATE tinsmith_tin SET data = x'7b7d' WHERE name = 'document'", "not as written"),
+        ("UPDATE tinsmith_tin SET data = x'5b' WHERE name = 'document'", "no JSON object"),
+        ("DROP TABLE lines", "no table 'lines'"),
+    ],
+)
+def test_damaged_files_are_refused(path, statement, reason):
+    ts.write(make_tin(), path)
+    change(path, statement)
+    with pytest.raises(ts.ReadError) as caught:
+        ts.read(path)
+    assert reason in str(caught.value)
+    assert str(path) in str(caught.value)
+
+
+def test_a_view_in_place_of_a_table_is_refused(path):
+    ts.write(make_tin(), path)
+    change(
+        path,
+        "ALTER TABLE vertices RENAME TO moved",
+        "CREATE VIEW vertices AS SELECT vertex, geom FROM moved",
+    )
+    with pytest.raises(ts.ReadError, match="no table 'vertices'"):
+        ts.read(path)
+
+
+@pytest.mark.parametrize(
+    "alter",
+    [
+        lambda document: document["lines"].update(type="BuildInputs"),
+        lambda document: document["lines"].update(type="os"),
+        lambda document: document.update(vertex_of=document["lines"]["offsets"]),
+        lambda document: document["report"].update(n_rows=3),
+        lambda document: document["report"].update(merged_rows=document["vertex_of"]),
+        lambda document: document.pop("report"),
+        lambda document: document["lines"].update(vertices={"array": "nothing"}),
+        lambda document: document["lines"].update(kinds={"tuple": ["river"] * 9}),
+        lambda document: document["inputs"]["lines"].update(offsets=document["vertex_of"]),
+        lambda document: document["inputs"].update(lines=document["lines"]),
+        lambda document: document.update(n_rows=10**9),
+        lambda document: document.update(edits={"tuple": ["x"]}),
+    ],
+)
+def test_a_record_that_does_not_fit_is_refused(path, alter):
+    ts.write(make_tin(), path)
+    rewrite_document(path, alter)
+    with pytest.raises(ts.ReadError, match="holds no TIN"):
+        ts.read(path)
+
+
+def test_a_deep_document_is_refused(path):
+    ts.write(make_tin(), path)
+    tree = 1
+    for _ in range(200):
+        tree = {"list": [tree]}
+    rewrite_document(path, lambda document: document.update(vertex_of=tree))
+    with pytest.raises(ts.ReadError, match="too deep"):
+        ts.read(path)
+
+
+def test_edits_that_lead_elsewhere_are_not_done_again(path):
+    tin = make_tin()
+    edit(tin)
+    ts.write(tin, path)
+    rewrite_document(path, lambda document: document["edits"]["tuple"].pop())
+    found = ts.read(path)
+    with pytest.raises(ts.PointsError, match="do not lead to it"):
+        found.undo()
+
+
+def test_cut_files_are_refused(path):
+    tin = make_tin()
+    ts.write(tin, path)
+    whole = path.read_bytes()
+    for size in (100, 5000, 40_000, len(whole) // 2, len(whole) * 3 // 4):
+        path.write_bytes(whole[:size])
+        with pytest.raises(ts.TinsmithError):
+            ts.read(path)
+    path.write_bytes(whole[:-1])  # a byte that no table uses
+    assert find_differences(tin, ts.read(path)) == []
+
+
+def test_a_file_that_is_open_elsewhere_is_neither_read_nor_written(path):
+    tin = make_tin()
+    ts.write(tin, path)
+    path.with_name("a.gpkg-wal").write_bytes(b"x")
+    with pytest.raises(ts.ReadError, match="open in another program"):
+        ts.read(path)
+    with pytest.raises(ts.WriteError, match="open in another program"):
+        ts.write(tin, path)

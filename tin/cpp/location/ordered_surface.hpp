@@ -1,0 +1,108 @@
+// A copy of a surface in which neighbours in the plane are neighbours in memory.
+//
+// Points that came in any order lie anywhere in memory, and so do their triangles: a walk over them
+// waits for memory at each step. Here vertices are numbered along Hilbert's curve, and triangles by
+// the first of their vertices. A triangle keeps the order of its corners, so that what is computed
+// from it is the same to the last bit.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+#include "../base/arrays.hpp"
+#include "../base/ids.hpp"
+#include "../index/hilbert_order.hpp"
+#include "surface.hpp"
+
+namespace tinsmith {
+
+class OrderedSurface {
+ public:
+  // Corners must be sound; a neighbour that is no triangle becomes none.
+  explicit OrderedSurface(const Surface& given)
+      : points_(scratch_array<double>(3 * std::size_t(given.point_count))),
+        corners_(scratch_array<std::int32_t>(3 * std::size_t{given.triangle_count})),
+        neighbors_(scratch_array<std::int32_t>(3 * std::size_t{given.triangle_count})),
+        given_(scratch_array<Triangle>(given.triangle_count)),
+        point_count_(given.point_count),
+        triangle_count_(given.triangle_count) {
+    const ScratchArray<std::int32_t> rank = order_points(given);
+    const ScratchArray<Triangle> ordered = order_triangles(given, rank.get());
+    for (const Triangle t : Ids<Triangle>(triangle_count_)) {
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const Triangle beyond = given.neighbor(given_number(t), k);
+        corners_[entry_of(t, k)] = rank[number(given.vertex(given_number(t), k))];
+        neighbors_[entry_of(t, k)] =
+            given.is_triangle(beyond) ? static_cast<std::int32_t>(number(ordered[number(beyond)]))
+                                      : kNoNeighbor;
+      }
+    }
+  }
+
+  Surface surface() const {
+    return {points_.get(), corners_.get(), neighbors_.get(), point_count_, triangle_count_};
+  }
+  // What the caller calls a triangle.
+  Triangle given_number(Triangle t) const { return given_[number(t)]; }
+  // The number here of each of the caller's triangles.
+  ScratchArray<Triangle> numbers() const {
+    auto numbers = scratch_array<Triangle>(triangle_count_);
+    for (const Triangle t : Ids<Triangle>(triangle_count_)) numbers[number(given_number(t))] = t;
+    return numbers;
+  }
+  // The caller's flags of corners, three a triangle, as they stand here.
+  ScratchArray<bool> order_flags(const bool* given) const {
+    auto flags = scratch_array<bool>(3 * std::size_t{triangle_count_});
+    for (const Triangle t : Ids<Triangle>(triangle_count_)) {
+      std::copy_n(given + entry_of(given_number(t), 0), 3, flags.get() + entry_of(t, 0));
+    }
+    return flags;
+  }
+
+ private:
+  // Returns the new number of each point.
+  ScratchArray<std::int32_t> order_points(const Surface& given) {
+    const HilbertOrder order(point_count_, [&](std::int32_t i) {
+      const double* row = given.points + 3 * static_cast<std::size_t>(i);
+      return Point{row[0], row[1]};
+    });
+    auto rank = scratch_array<std::int32_t>(point_count_);
+    for (std::int32_t i = 0; i < point_count_; ++i) {
+      const double* row = given.points + 3 * static_cast<std::size_t>(order[i]);
+      std::copy(row, row + 3, points_.get() + 3 * static_cast<std::size_t>(i));
+      rank[order[i]] = i;
+    }
+    return rank;
+  }
+
+  // By their first vertices (counting sort). Returns the new number of each triangle.
+  ScratchArray<Triangle> order_triangles(const Surface& given, const std::int32_t* rank) {
+    auto first = scratch_array<std::int32_t>(triangle_count_);
+    auto end = scratch_array<std::uint32_t>(std::size_t(point_count_));
+    std::fill(end.get(), end.get() + point_count_, 0u);
+    for (const Triangle t : Ids<Triangle>(triangle_count_)) {
+      const auto rank_of = [&](std::uint32_t k) { return rank[number(given.vertex(t, k))]; };
+      first[number(t)] = std::min({rank_of(0), rank_of(1), rank_of(2)});
+      ++end[first[number(t)]];
+    }
+    std::uint32_t total = 0;
+    for (std::int32_t i = 0; i < point_count_; ++i) total += std::exchange(end[i], total);
+    auto ordered = scratch_array<Triangle>(triangle_count_);
+    for (const Triangle t : Ids<Triangle>(triangle_count_)) {
+      const std::uint32_t place = end[first[number(t)]]++;
+      ordered[number(t)] = Triangle{place};
+      given_[place] = t;
+    }
+    return ordered;
+  }
+
+  ScratchArray<double> points_;
+  ScratchArray<std::int32_t> corners_, neighbors_;
+  ScratchArray<Triangle> given_;  // the caller's number of each triangle
+  std::int32_t point_count_;
+  std::uint32_t triangle_count_;
+};
+
+}  // namespace tinsmith
