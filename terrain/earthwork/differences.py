@@ -27,8 +27,10 @@ if TYPE_CHECKING:
 
 __all__ = ["Difference", "difference"]
 
-_SHARE_OF_ROUNDING = 1e-7
-"""Of the area times the largest difference: so much of a volume vertices' roundings may change."""
+_SHARE_OF_VOLUME = 1e-7
+"""Of the area times the largest difference: so much the volumes of the TIN may be off."""
+_ROUNDINGS = 4.0
+"""Or what so many roundings of every coordinate change: surfaces that agree differ by no more."""
 
 _SHARES = {"p05": 5.0, "p25": 25.0, "median": 50.0, "p75": 75.0, "p95": 95.0}
 
@@ -203,11 +205,12 @@ def difference(tin: TIN, other: TIN) -> Difference:
     sums = _sum_differences(first, second)
     if not sums["area"] > 0.0:
         raise PointsError("The surfaces overlap only in what is thinner than coordinates can tell.")
-    triangles, _ = fan_out(made.offsets, made.corners)
+    triangles, cells = fan_out(made.offsets, made.corners)
+    slack = _measure_rounding(first, second, made.vertices, triangles, made.triangles[cells])
     given = cut_at_zero(made.vertices, triangles)
     points, triangles = mend(*given) or _rebuild(*given, _make_holder(tin, other))
     surface = as_mesh(points, triangles, crs=reference.crs, elevation_unit=reference.elevation_unit)
-    _require_agreement(surface, sums)
+    _require_agreement(surface, sums, slack)
     return Difference(surface, reference.notes, reference, sums)
 
 
@@ -221,12 +224,51 @@ def _sum_differences(first: Surface, second: Surface) -> dict[str, float]:
     return dict(zip(_kernel.SUMS, sums[0].tolist(), strict=True))
 
 
-def _require_agreement(surface: TIN, sums: dict[str, float]) -> None:
+def _measure_rounding(
+    first: Surface,
+    second: Surface,
+    vertices: NDArray[np.float64],
+    triangles: NDArray[np.int32],
+    pairs: NDArray[np.int32],
+) -> float:
+    """Return how much a volume changes if the surfaces move by a rounding of their coordinates.
+
+    That is the rounding times the rise over run of both, summed over the area of their overlay.
+    """
+    areas = np.abs(_double_areas(vertices, triangles)) / 2
+    rises = [_measure_rises(one)[pairs[:, k]] for k, one in enumerate((first, second))]
+    with np.errstate(invalid="ignore", over="ignore"):
+        total = np.nan_to_num(areas * (rises[0] + rises[1])).sum()
+        moved = float(np.spacing(np.abs(vertices[:, :2]).max()) * total)
+    return moved if np.isfinite(moved) else 0.0
+
+
+def _double_areas(points: NDArray[np.float64], triangles: NDArray[np.int32]) -> NDArray[np.float64]:
+    xy = points[triangles, :2]
+    (ux, uy), (vx, vy) = (xy[:, 1] - xy[:, 0]).T, (xy[:, 2] - xy[:, 0]).T
+    doubled: NDArray[np.float64] = ux * vy - uy * vx
+    return doubled
+
+
+def _measure_rises(surface: Surface) -> NDArray[np.float64]:
+    """Return the rise over run of each triangle, in the units that it has."""
+    corners = surface.points[surface.triangles]
+    (ux, uy, uz), (vx, vy, vz) = (
+        (corners[:, 1] - corners[:, 0]).T,
+        (corners[:, 2] - corners[:, 0]).T,
+    )
+    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+        steep = np.hypot(uy * vz - uz * vy, uz * vx - ux * vz) / np.abs(ux * vy - uy * vx)
+    rises: NDArray[np.float64] = steep
+    return rises
+
+
+def _require_agreement(surface: TIN, sums: dict[str, float], slack: float) -> None:
     """Refuse a TIN whose volumes are not those of the surfaces: rounding has moved a wall."""
     found = _sum_classes(surface)
     most = max(sums["highest"], -sums["lowest"])
     apart = max(abs(found[name] - sums[name]) for name in ("cut", "fill"))
-    if apart > _SHARE_OF_ROUNDING * sums["area"] * most:
+    if apart > _SHARE_OF_VOLUME * sums["area"] * most + _ROUNDINGS * slack:
         raise PointsError(
             "The surfaces have walls that are thinner than coordinates can tell: the volume of "
             f"their difference as a TIN would be off by {apart:.3g}. Round the points of both to "
