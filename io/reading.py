@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
+from .._atomic import as_path
 from .._plug_ins import describe_failure, warn_of_plug_in
 from .._sentences import printable
 from ..crs import CRS, Unit
@@ -91,8 +92,8 @@ def read(
     ...     ts.read(Path(folder, "surface.ply"))
     <TIN: 3 vertices, 1 triangle, z 5 to 8, crs EPSG:32616>
     """
+    file = as_path(path)
     require_local(path)
-    file = Path(path)
     declared = _collect_declared(crs, z_unit)
     with open_ordinary_file(file) as local:
         found = _read_file(local, format, declared, options)

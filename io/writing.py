@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from .._atomic import as_path
 from .._plug_ins import describe_failure
 from ..errors import FormatError, TinsmithError, WriteError
 from ..terrain.results import Features, Raster, Table
@@ -67,7 +68,7 @@ def write(
     ...     ts.read(Path(folder, "surface.ply"))
     <TIN: 3 vertices, 1 triangle, z 5 to 8, crs EPSG:32616>
     """
-    file = Path(path)
+    file = as_path(path)
     chosen = find_writer(file, format, (find_kind(obj, file),))
     writer = chosen.load("write")
     require_options(chosen, "write", writer, options)

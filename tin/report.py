@@ -85,7 +85,13 @@ class Merge(NamedTuple):
         return self.elevation
 
     def to_dict(self) -> dict[str, Any]:
-        """Return plain Python values, ready for JSON."""
+        """Return plain Python values, ready for JSON.
+
+        Examples
+        --------
+        >>> Merge(0, (0, 3), (5.0, 7.0), (0.0, 0.0), 6.0).to_dict()["rows"]
+        (0, 3)
+        """
         return {
             "vertex": self.vertex,
             "rows": self.rows,
@@ -322,7 +328,16 @@ class Report(Frozen):
     def after_edits(
         self, vertex_of: NDArray[np.int32], n_vertices: int, n_triangles: int, edits: Sequence[Edit]
     ) -> Report:
-        """Return the report of a TIN that was not built by us, whose rows have these vertices."""
+        """Return the report of a TIN that was not built by us, whose rows have these vertices.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> points = [[0, 0, 5], [4, 0, 6], [0, 3, 8], [0, 0, 7]]
+        >>> report = ts.triangulate(points).report
+        >>> report.after_edits(np.array([0, 1, 2, -1]), 3, 1, []).to_dict()["left_out"]
+        {'removed by an edit': [3]}
+        """
         report = replace(
             self,
             n_rows=len(vertex_of),
@@ -335,7 +350,16 @@ class Report(Frozen):
         return report.with_removed(vertex_of)
 
     def with_removed(self, vertex_of: NDArray[np.int32]) -> Report:
-        """Return the report with the rows that have no vertex; what is new is due to an edit."""
+        """Return the report with the rows that have no vertex; what is new is due to an edit.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> points = [[0, 0, 5], [4, 0, 6], [0, 3, 8], [0, 0, 7]]
+        >>> report = ts.triangulate(points).report
+        >>> report.with_removed(np.array([0, 1, 2, -1])).left_out_rows.tolist()
+        [3]
+        """
         lost = np.flatnonzero(vertex_of < 0).astype(np.int32)
         why = np.full(len(lost), LEFT_OUT.index("removed by an edit"), np.int8)
         before = np.isin(lost, self.left_out_rows)
@@ -343,7 +367,16 @@ class Report(Frozen):
         return replace(self, left_out_rows=lost, left_out_why=why)
 
     def with_rows(self, rows: NDArray[np.int64], n_rows: int) -> Report:
-        """Return the report with row ``i`` called ``rows[i]``; those between were removed."""
+        """Return the report with row ``i`` called ``rows[i]``; those between were removed.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> points = [[0, 0, 5], [4, 0, 6], [0, 3, 8], [0, 0, 7]]
+        >>> report = ts.triangulate(points).report
+        >>> report.with_rows(np.array([0, 1, 2, 4]), 5).merged_rows.tolist()
+        [0, 4]
+        """
         if len(rows) == n_rows:
             return self
         is_lost = np.ones(n_rows, np.bool_)
@@ -357,14 +390,32 @@ class Report(Frozen):
         ).with_removed(np.where(is_lost, np.int32(-1), np.int32(0)))
 
     def with_merges(self, merges: Report | None) -> Report:
-        """Return the report with the merges of another one, or with none."""
+        """Return the report with the merges of another one, or with none.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> points = [[0, 0, 5], [4, 0, 6], [0, 3, 8], [0, 0, 7]]
+        >>> report = ts.triangulate(points).report
+        >>> list(report.with_merges(None).merges())
+        []
+        """
         names = [f.name for f in fields(self) if f.name.startswith("merged_")]
         account = Report(n_rows=0, n_vertices=0, n_triangles=0) if merges is None else merges
         own = {name: getattr(account, name) for name in [*names, "vertex_elevations"]}
         return replace(self, **own)
 
     def with_lines(self, labels: Sequence[str]) -> Report:
-        """Return the report with all lines, when some that meet no others have been added."""
+        """Return the report with all lines, when some that meet no others have been added.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> points = [[0, 0, 5], [4, 0, 6], [0, 3, 8], [0, 0, 7]]
+        >>> report = ts.triangulate(points).report
+        >>> report.with_lines(["breakline 'kerb'"]).n_lines
+        1
+        """
         return replace(self, n_lines=len(labels), line_labels=tuple(labels))
 
     @property
@@ -378,7 +429,16 @@ class Report(Frozen):
         return self.vertex_elevations
 
     def describe_crossings(self, label: str) -> list[str]:
-        """Return where a line crosses others, a sentence each."""
+        """Return where a line crosses others, a sentence each.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> lines = [ts.Breakline([[0, 0, 5], [4, 4, 5]]), ts.Breakline([[0, 4, 7], [4, 0, 7]])]
+        >>> report = ts.triangulate([[0, 0, 5], [4, 0, 7], [0, 4, 7]], breaklines=lines).report
+        >>> print(report.describe_crossings(report.line_labels[0])[0])
+        The breakline crosses breakline 1 at x 2.000000, y 2.000000: its elevation there is 5, ...
+        """
         own = [i for i, name in enumerate(self.line_labels) if name == label]
         is_own = np.isin(self.crossings.lines, own).any(axis=1)
         return [self._describe_crossing(row, own) for row in np.flatnonzero(is_own).tolist()]
@@ -403,7 +463,16 @@ class Report(Frozen):
     def renumber(
         self, number: NDArray[np.int32], n_rows: int, n_vertices: int, n_triangles: int
     ) -> Report:
-        """Return the report with vertex ``v`` of the lines' account called ``number[v]``."""
+        """Return the report with vertex ``v`` of the lines' account called ``number[v]``.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> points = [[0, 0, 5], [4, 0, 6], [0, 3, 8], [0, 0, 7]]
+        >>> report = ts.triangulate(points).report
+        >>> report.renumber(np.array([2, 0, 1]), 4, 3, 1).n_vertices
+        3
+        """
         crossings, overruled = self.crossings, self.overruled
         return replace(
             self,

@@ -17,6 +17,7 @@ from ...errors import OptionError, ReadError
 from ...terrain.nodata import describe_suspects, find_suspect_elevations, parse_nodata
 from ...tin import Bounds, Survey
 from ..isolated import Limits, choose_limits, run_isolated, stream_isolated
+from ..isolated.free_memory import measure_free_memory
 from ..reprojection.placement import place, settle_unit
 from .virtual import is_virtual, require_plain_sources
 from .voids import trace_rings
@@ -448,7 +449,7 @@ def _cut_bounds(dataset: _Header, bounds: Bounds, path: Path) -> tuple[int, int,
 def _require_few_cells(cells: _Cells, path: Path) -> None:
     """Refuse more cells than can be read, before memory is asked for."""
     count = -(-cells.width // cells.stride) * -(-cells.height // cells.stride)
-    memory = _measure_free_memory()
+    memory = measure_free_memory()
     most = min(LARGEST_RASTER, memory // BYTES_PER_CELL)
     if count > most:
         raise ReadError(
@@ -457,16 +458,6 @@ def _require_few_cells(cells: _Cells, path: Path) -> None:
             + " can hold: read a part of it (window) or every n-th row and column (stride).",
             path=path,
         )
-
-
-def _measure_free_memory() -> int:
-    """Return the bytes of memory that are available, where the system tells."""
-    try:
-        with Path("/proc/meminfo").open(encoding="ascii") as file:
-            found = next(line for line in file if line.startswith("MemAvailable:"))
-        return int(found.split()[1]) * 1024
-    except (OSError, StopIteration, ValueError, IndexError):
-        return LARGEST_RASTER * BYTES_PER_CELL
 
 
 # ------------------------------------------------------------------ points

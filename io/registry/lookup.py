@@ -13,7 +13,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from ..._sentences import shown
-from ...errors import FormatError
+from ...errors import FormatError, choice
 from .format import Format
 from .plug_in_formats import load_plug_in_formats
 
@@ -34,7 +34,7 @@ __all__ = [
     "list_suffixes",
 ]
 
-_FAMILIES = ("delimited", "raster", "mesh", "vector", "tables")
+_FAMILIES = ("delimited", "raster", "mesh", "vector", "cad", "tables", "lidar")
 """Packages of ``tinsmith.io`` with a module ``formats``, in the order in which they are asked."""
 
 _ONE = {
@@ -90,6 +90,8 @@ def find_format(name: str, action: str | None = None) -> Format:
     >>> find_format("csv").name
     'delimited'
     """
+    if action is not None:
+        choice("action", action, ("read", "write"))
     wanted = name.strip().lower() if isinstance(name, str) else ""
     suffix = wanted if wanted.startswith(".") else f".{wanted}"
     called = [one for one in known_formats() if one.name == wanted or suffix in one.suffixes]
@@ -254,6 +256,8 @@ def _describe_no_writer(path: Path, name: str | None, kinds: Sequence[str]) -> F
         what = f"{known.description} can be read, not written"
     else:
         what = f"{known.description} holds {_listed(known.writes)}, not {_listed(kinds)}"
+        if "TIN" in known.writes and [*kinds] == ["Survey"]:
+            what += "; triangulate it first"
     return FormatError(
         f"Cannot write '{path}': {what}; {_listed(kinds)} can be written to "
         f"{', '.join(suffixes) or 'no format'}.",

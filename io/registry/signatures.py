@@ -54,7 +54,6 @@ _FOREIGN_STARTS = {
     b"PK\x03\x04": "a ZIP archive (such as an Excel workbook or KMZ)",
     b"\x1f\x8b": "a gzip archive",
     b"%PDF": "a PDF document",
-    b"LASF": "a LAS/LAZ point cloud",
     b"SQLite format 3": "an SQLite database (such as a GeoPackage)",
     b"\xd0\xcf\x11\xe0": "an old Office document (such as .xls)",
     b"\x00\x00\x27\x0a": "a shapefile",
@@ -72,9 +71,7 @@ _REFERENCES = (
 _FOREIGN_TEXTS = (
     *_REFERENCES,
     (re.compile(rb"<(?:!doctype )?html", re.I), "an HTML page"),
-    (re.compile(rb"<LandXML"), "a LandXML file"),
     (re.compile(rb"<[?!]?[A-Za-z_-]"), "an XML document"),
-    (re.compile(rb"0\r?\n\s*SECTION\r?\n"), "a DXF drawing"),
 )
 
 

@@ -12,6 +12,7 @@ from ... import _optional
 from ..._sentences import counted
 from ...crs import CRS
 from ...errors import CrsError, ReadError
+from ..cad.signatures import is_dxf
 from ..isolated import choose_limits, run_isolated
 from ..isolated.local_files import require_local
 from ..isolated.spooling import describe_system_error, open_ordinary_file
@@ -27,6 +28,7 @@ __all__ = ["Features", "read_features"]
 _FOLDERS = (".gdb",)
 """Suffixes of formats that are folders."""
 
+_DRAWING = ".dxf"
 _SHAPEFILE = b"\x00\x00\x27\x0a"
 
 
@@ -59,7 +61,9 @@ class Features(NamedTuple):
         return f"'{self.path}': feature {self.numbers[row]}"
 
 
-def read_features(path: Path, *, layer: str | None = None, where: str | None = None) -> Features:
+def read_features(
+    path: Path, *, layer: str | None = None, where: str | None = None, lines_only: bool = False
+) -> Features:
     """Read the features of one layer of a vector file that GDAL reads.
 
     Parameters
@@ -69,26 +73,32 @@ def read_features(path: Path, *, layer: str | None = None, where: str | None = N
         Needed if several layers have geometry.
     where : str, optional
         Condition on the columns, as in SQL.
+    lines_only : bool
+        Leave the points and texts of a drawing aside.
 
     Raises
     ------
     MissingExtraError
-        If pyogrio is not installed.
+        If pyogrio, or for a drawing ezdxf, is not installed.
     ReadError
         If the file or layer is missing, damaged, empty, or no vector file.
     """
     require_local(path)
     with open_ordinary_file(path) as local:
-        features = _read_layer(local, layer, where)
+        features = _read_layer(local, layer, where, lines_only=lines_only)
     if local == path:
         return features
     notes = tuple(note.replace(local.name, path.name) for note in features.notes)
     return features._replace(path=path, notes=notes)
 
 
-def _read_layer(path: Path, layer: str | None, where: str | None) -> Features:
-    _optional.require("pyogrio", "Reading vector files")
-    _require_whole_file(path)
+def _read_layer(path: Path, layer: str | None, where: str | None, *, lines_only: bool) -> Features:
+    if path.suffix.lower() != _DRAWING:
+        _optional.require("pyogrio", "Reading vector files")
+    if _require_whole_file(path):
+        from .drawings import read_drawing_features
+
+        return read_drawing_features(path, layer=layer, where=where, lines_only=lines_only)
     where_it_is = {"path": os.path.abspath(path), "shown": str(path)}  # noqa: PTH100 - links stay
     value, arrays = run_isolated(
         f"{__package__}.gdal_child:read_features",
@@ -138,12 +148,18 @@ def _measure_folder(path: Path) -> int:
     return sum(file.stat().st_size for file in path.iterdir() if file.is_file())
 
 
-def _require_whole_file(path: Path) -> None:
-    """Refuse a file that is missing, empty, or a shapefile shorter than it says."""
+def _require_whole_file(path: Path) -> bool:
+    """Refuse a file that is missing, empty, or a shapefile shorter than it says.
+
+    Returns
+    -------
+    bool
+        Whether it is a drawing.
+    """
     try:
         if path.is_dir():
             if path.suffix.lower() in _FOLDERS:
-                return
+                return False
             raise ReadError(f"'{path}' is a folder: name a file in it.", path=path)
         size = path.stat().st_size
         with path.open("rb") as file:
@@ -163,6 +179,7 @@ def _require_whole_file(path: Path) -> None:
             raise ReadError(
                 f"'{path}' is cut short: it has {size} of {2 * words} bytes.", path=path
             )
+    return is_dxf(head) or path.suffix.lower() == _DRAWING
 
 
 def _describe_part(layer: str, where: str | None) -> str:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._atomic import as_path
 from ...crs import CRS
 from ...errors import ReadError
 from ...terrain.results import Features
@@ -65,7 +65,7 @@ def read_geometries(
     """
     import shapely
 
-    read = read_features(Path(path), layer=layer)
+    read = read_features(as_path(path), layer=layer)
     wanted = Wanted(CRS.of(crs))
     shapes = shapely.orient_polygons(shapely.force_2d(read.geometries))
     kind = _kind_of(shapes, read)

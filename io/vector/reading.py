@@ -6,11 +6,11 @@ heights keeps them; without, it is draped on the surface.
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, get_args
 
 import numpy as np
 
+from ..._atomic import as_path
 from ...crs import CRS, Unit
 from ...errors import ReadError
 from ...policies import BreaklineKind
@@ -90,8 +90,20 @@ def read_lines(
         If the lines cannot be brought into the CRS.
     OptionError
         If a unit is unknown, or not that of the file's CRS.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> line = [[0, 0, 5], [4, 3, 6]]
+    >>> given = ts.Features(kind="lines", coordinates=line, offsets=[[0, 2]])
+    >>> with TemporaryDirectory() as folder:
+    ...     path = ts.write(given, Path(folder, "lines.gpkg"))
+    ...     [line.coords.tolist() for line in ts.read_lines(path)]
+    [[[0.0, 0.0, 5.0], [4.0, 3.0, 6.0]]]
     """
-    features = read_features(Path(path), layer=layer, where=where)
+    features = read_features(as_path(path), layer=layer, where=where, lines_only=True)
     parts = split_into_parts(
         features, _parse_wanted(crs, elevation_unit, z_unit), drape=drape, notes=notes
     )
@@ -134,8 +146,20 @@ def read_rings(
         As :func:`read_lines`; ReadError also if a line is not closed.
     LinesError
         If a ring has fewer than three corners.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> ring = [[0, 0, 5], [4, 0, 5], [0, 3, 5], [0, 0, 5]]
+    >>> given = ts.Features(kind="polygons", coordinates=ring, offsets=[[0, 4], [0, 1]])
+    >>> with TemporaryDirectory() as folder:
+    ...     path = ts.write(given, Path(folder, "lines.gpkg"))
+    ...     [len(ring) for ring in ts.read_rings(path)]
+    [3]
     """
-    features = read_features(Path(path), layer=layer, where=where)
+    features = read_features(as_path(path), layer=layer, where=where, lines_only=True)
     parts = split_into_parts(
         features, _parse_wanted(crs, elevation_unit, z_unit), drape=drape, notes=notes
     )
@@ -169,8 +193,20 @@ def read_polygons(
     ------
     MissingExtraError, ReadError, CrsError, LinesError
         As :func:`read_rings`.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> ring = [[0, 0, 5], [4, 0, 5], [0, 3, 5], [0, 0, 5]]
+    >>> given = ts.Features(kind="polygons", coordinates=ring, offsets=[[0, 4], [0, 1]])
+    >>> with TemporaryDirectory() as folder:
+    ...     path = ts.write(given, Path(folder, "lines.gpkg"))
+    ...     [[len(ring) for ring in rings] for rings in ts.read_polygons(path)]
+    [[3]]
     """
-    features = read_features(Path(path), layer=layer, where=where)
+    features = read_features(as_path(path), layer=layer, where=where, lines_only=True)
     polygons: list[list[NDArray[np.float64]]] = []
     wanted = _parse_wanted(crs, elevation_unit, z_unit)
     for part in split_into_parts(features, wanted, drape=drape, notes=notes):
@@ -210,8 +246,20 @@ def read_water(
     ------
     MissingExtraError, ReadError, CrsError, LinesError
         As :func:`read_rings`; ReadError also if a height is missing, or a polygon has islands.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> ring = [[0, 0, 5], [4, 0, 5], [0, 3, 5], [0, 0, 5]]
+    >>> given = ts.Features(kind="polygons", coordinates=ring, offsets=[[0, 4], [0, 1]])
+    >>> with TemporaryDirectory() as folder:
+    ...     path = ts.write(given, Path(folder, "lines.gpkg"))
+    ...     [pond.z for pond in ts.read_water(path)]
+    [5.0]
     """
-    features = read_features(Path(path), layer=layer, where=where)
+    features = read_features(as_path(path), layer=layer, where=where, lines_only=True)
     wanted = _parse_wanted(crs, elevation_unit, z_unit)
     parts = split_into_parts(features, wanted, drape=False, notes=notes)
     island = next((part for part in parts if part.ring > 0), None)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 from itertools import chain
 from pathlib import Path
@@ -9,8 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...errors import ReadError
-from ...tin import Bounds, Breakline, Water
+from ..._atomic import as_path
+from ...errors import OptionError, ReadError
+from ...tin import Bounds, Breakline, Survey, Water
+from ...tin.validation.options import require_type
 from .nesting import note_nesting
 from .reading import read_lines, read_polygons, read_water
 
@@ -77,6 +80,7 @@ def with_lines(
     >>> with_lines(Survey(points=np.zeros((3, 3))))
     <Survey: 3 points, crs unknown>
     """
+    require_type("survey", survey, Survey)
     notes = list(survey.notes)
     units: dict[str, Any] = {
         "crs": survey.crs,
@@ -86,7 +90,7 @@ def with_lines(
 
     def read(reader: Callable[..., list[Any]], sources: Iterable[Source], **how: Any) -> list[Any]:
         found = []
-        for source in sources:
+        for source in _as_sources(sources):
             path, layer = split_layer(source)
             lines = reader(path, layer=layer, notes=notes, **units, **how)
             _require_near(survey, [xy for line in lines for xy in _list_coords(line)], path)
@@ -110,6 +114,13 @@ def with_lines(
     )
 
 
+def _as_sources(sources: Any) -> list[Any]:
+    """Return files, whose names are judged one by one."""
+    if isinstance(sources, str | bytes) or not isinstance(sources, Iterable):
+        raise OptionError("files of lines", sources, "a list of files")
+    return list(sources)
+
+
 def _unwrap_ring(
     rings: list[NDArray[np.float64]],
 ) -> NDArray[np.float64] | list[NDArray[np.float64]]:
@@ -119,7 +130,7 @@ def _unwrap_ring(
 
 def split_layer(source: Source) -> tuple[Path, str | None]:
     """Split a layer's name off a path, unless a file of the whole name exists."""
-    path = Path(source)
+    path = as_path(source)
     before, colon, layer = str(source).rpartition(":")
     if not path.exists() and colon and layer and Path(before).exists():
         return Path(before), layer

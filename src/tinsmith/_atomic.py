@@ -7,18 +7,30 @@ import secrets
 import shutil
 from contextlib import contextmanager
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Literal, overload
+from typing import IO, TYPE_CHECKING, Any, Literal, overload
 
-from .errors import TinsmithError, WriteError
+from .errors import OptionError, TinsmithError, WriteError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from contextlib import AbstractContextManager
 
-__all__ = ["replacing", "replacing_files", "replacing_path", "require_writable"]
+__all__ = ["as_path", "replacing", "replacing_files", "replacing_path", "require_writable"]
 
 _STEM = 40
 """Letters of a name that the name of the file beside it begins with: names have 255 bytes."""
+
+
+def as_path(path: Any, option: str = "path") -> Path:
+    """Return the path of a file, or refuse what is none.
+
+    Raises
+    ------
+    OptionError
+    """
+    if not isinstance(path, str | os.PathLike) or isinstance(os.fspath(path), bytes):
+        raise OptionError(option, path, "the name of a file, as text or Path")
+    return Path(path)
 
 
 @overload

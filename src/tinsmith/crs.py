@@ -420,7 +420,7 @@ def _parse(value: object) -> pyproj.CRS:
     try:
         parsed = pyproj.CRS.from_user_input(value)
     except (CRSError, TypeError, ValueError, AttributeError) as error:
-        text = shown(value) if hasattr(value, "__array__") else f"'{_shortened(str(value))}'"
+        text = f"'{_shortened(value)}'" if isinstance(value, str) else shown(value)
         raise CrsError(
             f"Unknown CRS {text}: an authority code such as EPSG:32616, "
             "its number, a WKT or a PROJ text is needed.",

@@ -12,12 +12,15 @@ __all__ = [
     "CrossingPolicy",
     "CurvatureKind",
     "DistanceRule",
+    "DrawingContent",
+    "DrawingVersion",
     "DuplicatePolicy",
     "EmptyCircleRule",
     "Extrapolation",
     "FeatureKind",
     "InterpolationMethod",
     "LineKind",
+    "LineReading",
     "LineRole",
     "OutsidePolicy",
     "OverviewMethod",
@@ -45,6 +48,9 @@ LineKind: TypeAlias = Literal["hard", "soft", "boundary", "hole", "water"]
 
 LineRole: TypeAlias = Literal["hard", "soft", "boundary", "hole", "erase", "water"]
 """What the line of a survey code becomes."""
+
+LineReading: TypeAlias = Literal["points", "breaklines"]
+"""What the lines of a file of points are taken for: their vertices, or lines of the surface."""
 
 FeatureKind: TypeAlias = Literal["triangles", "points", "edges", "lines", "hull"]
 """What a GeoJSON file shows of a surface."""
@@ -80,3 +86,9 @@ CurvatureKind: TypeAlias = Literal["profile", "plan", "tangential", "mean", "gau
 """In which direction a surface is curved."""
 OutsidePolicy: TypeAlias = Literal["error", "nan", "cut"]
 """What becomes of parts of features where there is no surface."""
+
+DrawingContent: TypeAlias = Literal["surface", "source", "points"]
+"""What is read of a drawing: triangles, the points and lines that make a surface, or points."""
+
+DrawingVersion: TypeAlias = Literal["R2010", "R12"]
+"""Which version of DXF is written."""

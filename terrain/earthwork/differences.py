@@ -235,11 +235,14 @@ def _measure_rounding(
 
     That is the rounding times the rise over run of both, summed over the area of their overlay.
     """
-    areas = np.abs(_double_areas(vertices, triangles)) / 2
-    rises = [_measure_rises(one)[pairs[:, k]] for k, one in enumerate((first, second))]
-    with np.errstate(invalid="ignore", over="ignore"):
-        total = np.nan_to_num(areas * (rises[0] + rises[1])).sum()
-        moved = float(np.spacing(np.abs(vertices[:, :2]).max()) * total)
+    areas = np.abs(_double_areas(vertices, triangles))
+    total = 0.0
+    for k, surface in enumerate((first, second)):
+        whole = np.abs(_double_areas(surface.points, surface.triangles))[pairs[:, k]]
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            shares = np.fmin(areas / whole, 1.0)  # of a triangle thinner than its rounding, all
+            total += float((shares * _measure_rises(surface)[pairs[:, k]]).sum())
+    moved = float(np.spacing(np.abs(vertices[:, :2]).max())) * total
     return moved if np.isfinite(moved) else 0.0
 
 
@@ -251,15 +254,12 @@ def _double_areas(points: NDArray[np.float64], triangles: NDArray[np.int32]) -> 
 
 
 def _measure_rises(surface: Surface) -> NDArray[np.float64]:
-    """Return the rise over run of each triangle, in the units that it has."""
+    """Return the rise over run of each triangle times its area, in the units that it has."""
     corners = surface.points[surface.triangles]
-    (ux, uy, uz), (vx, vy, vz) = (
-        (corners[:, 1] - corners[:, 0]).T,
-        (corners[:, 2] - corners[:, 0]).T,
-    )
-    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-        steep = np.hypot(uy * vz - uz * vy, uz * vx - ux * vz) / np.abs(ux * vy - uy * vx)
-    rises: NDArray[np.float64] = steep
+    u, v = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    (ux, uy, uz), (vx, vy, vz) = u.T, v.T
+    with np.errstate(invalid="ignore", over="ignore"):
+        rises: NDArray[np.float64] = 0.5 * np.hypot(uy * vz - uz * vy, uz * vx - ux * vz)
     return rises
 
 

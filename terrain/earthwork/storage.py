@@ -10,6 +10,7 @@ import numpy as np
 from ...crs import CRS
 from ...errors import OptionError, PointsError
 from ...tin import topology
+from ...tin.validation.options import is_finite_number
 from .. import _kernel
 from ..georeference import require_same_crs
 from ..results import Features, Table
@@ -162,8 +163,7 @@ def _as_given_levels(levels: Sequence[float]) -> NDArray[np.float64]:
 
 
 def _as_interval(interval: Any) -> float:
-    is_number = isinstance(interval, int | float | np.number) and not isinstance(interval, bool)
-    if not is_number or not math.isfinite(interval) or interval <= 0:
+    if not is_finite_number(interval) or interval <= 0:
         raise OptionError("interval", interval, allowed="a number above 0")
     return float(interval)
 

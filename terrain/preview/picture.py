@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ... import _optional
+from ..._atomic import as_path
 from ...errors import OptionError, RenderError
 from ...tin import Bounds
 from ..lift import parse_exaggeration
@@ -101,6 +102,16 @@ def preview(
     picture. Light falls from the northwest at 45 degrees, fixed to the ground. Tints span the
     lowest to the highest elevation; perceived lightness rises evenly with elevation. The same TIN
     and options give the same bytes on the same machine.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8]], crs="EPSG:32616")
+    >>> with TemporaryDirectory() as folder:
+    ...     ts.preview(tin, output=Path(folder, "site.png"), size=(400, 300)).name
+    'site.png'
     """
     path = None if output is None else _require_picture_path(output)
     _check_options(size, view)
@@ -222,13 +233,13 @@ def _check_options(size: tuple[int, int], view: str) -> None:
     if view not in VIEWS:
         raise OptionError("view", view, " or ".join(map(repr, VIEWS)))
     low, high = _SIZE_RANGE
-    whole = all(isinstance(side, Integral) for side in size)
-    if len(size) != 2 or not whole or not all(low <= side <= high for side in size):
+    whole = isinstance(size, tuple | list) and all(isinstance(side, Integral) for side in size)
+    if not whole or len(size) != 2 or not all(low <= side <= high for side in size):
         raise OptionError("size", size, f"width and height, {low} to {high} pixels each")
 
 
 def _require_picture_path(output: str | os.PathLike[str]) -> Path:
-    path = Path(output)
+    path = as_path(output, "output")
     if path.suffix.lower() not in PICTURE_SUFFIXES:
         raise RenderError(
             f"Cannot write a picture to '{path}': its name must end in "

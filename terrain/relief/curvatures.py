@@ -9,6 +9,7 @@ import numpy as np
 from ...errors import choice
 from ...policies import CurvatureKind, SurfacePart
 from ...tin.topology import gather
+from ...tin.validation.options import require_tin
 from ..units import find_scales
 
 if TYPE_CHECKING:
@@ -85,6 +86,7 @@ def curvature(
     >>> ts.curvature(bowl, kind="mean")[12].round(9)
     np.float64(-0.1)
     """
+    require_tin(tin)
     choice("kind", kind, CurvatureKind)
     choice("per", per, SurfacePart)
     offsets, neighbors = _vertex_neighbors(tin)

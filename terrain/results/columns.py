@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Generic, TypeAlias, TypeVar
 
 import numpy as np
@@ -198,6 +198,10 @@ def as_name(name: Any) -> str:
 
 def as_notes(notes: Any) -> tuple[str, ...]:
     """Return notes as a tuple of sentences."""
-    if isinstance(notes, str) or not all(isinstance(note, str) for note in notes):
+    if (
+        isinstance(notes, str)
+        or not isinstance(notes, Iterable)
+        or not all(isinstance(note, str) for note in notes)
+    ):
         raise OptionError("notes", notes, allowed="a sequence of texts")
     return tuple(notes)

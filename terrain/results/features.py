@@ -377,8 +377,10 @@ def _as_coordinates(given: Any) -> NDArray[np.float64]:
 
 def _as_levels(kind: Any, levels: Any, count: int) -> tuple[NDArray[np.int64], ...]:
     """Return the offsets of every level, each of which must cover the level below."""
-    if kind not in _LEVELS:
+    if not isinstance(kind, str) or kind not in _LEVELS:
         raise OptionError("kind", kind, allowed="one of points, lines, polygons")
+    if not isinstance(levels, tuple | list | np.ndarray):
+        raise OptionError("offsets", levels, allowed="a sequence of arrays")
     least = _LEAST.get(kind, 1)
     checked = []
     for number, level in enumerate(levels):

@@ -78,7 +78,7 @@ def test_hillshade(site, tmp_path):
 @pytest.mark.parametrize(
     ("command", "code", "words"),
     [
-        (["slope", "--breaks", "5,x"], 2, "'5,x' are no numbers"),
+        (["slope", "--breaks", "5,x"], 2, "Invalid --breaks '5,x': it must be numbers"),
         (["slope", "--breaks", "5,3"], 2, "--breaks"),
         (["slope", "--breaks", "5", "--aspect"], 2, "--breaks is for slopes"),
         (["slope", "--unit", "radians"], 2, "radians"),

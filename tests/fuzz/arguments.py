@@ -15,6 +15,7 @@ from .campaign import Campaign, Case
 XYZ = [[0, 0, 1], [4, 0, 2], [4, 3, 3], [0, 3, 4], [2, 1, 9]]
 LINE = [[0, 0, 1], [4, 3, 2]]
 RING = [[1, 1], [3, 1], [2, 2]]
+TIN = ts.triangulate(XYZ)
 
 # What is given as a value: names, so that a case can be written down.
 VALUES: dict[str, Any] = {
@@ -75,39 +76,44 @@ VALUES: dict[str, Any] = {
     "other code": "EPSG:2240",
     "format": "ply",
     "shape": (2, 2),
-    "tin": ts.triangulate(XYZ),
+    "kind": "points",
+    "xy line": [[1, 1], [3, 2]],
+    "columns": {"a": np.arange(5.0)},
+    "grids": {"elevation": np.zeros((2, 2))},
+    "grid": ts.Grid(ts.Bounds(0.0, 0.0, 2.0, 2.0), (2, 2), 1.0),
+    "tin": TIN,
+    "features": ts.contours(TIN, interval=1.0),
+    "table": ts.profile(TIN, [[1, 1], [3, 2]]),
+    "raster": ts.rasterize(TIN, spacing=1.0),
+    "difference": ts.difference(TIN, TIN),
+    "quality": ts.quality(TIN),
+    "comparison": ts.compare(XYZ),
 }
 
+READS_OR_SHOWS = {"read", "write", "preview"}  # their own campaigns give them files
 FUNCTIONS: dict[str, Any] = {
-    "triangulate": ts.triangulate,
-    "check": ts.check,
+    name: getattr(ts, name)
+    for name in ts.__all__
+    if inspect.isfunction(getattr(ts, name)) and name not in READS_OR_SHOWS
+} | {
     "Breakline": ts.Breakline,
     "Water": ts.Water,
-    "from_triangles": ts.TIN.from_triangles,
-    "tin.refine": ts.tin.refine,
-    "tin.quality": ts.tin.quality,
-    "tin.compare": ts.tin.compare,
-    "paper.original": ts.tin.paper.original,
-    "paper.improved": ts.tin.paper.improved,
-    "voronoi": ts.voronoi,
-    "slope": ts.slope,
-    "aspect": ts.aspect,
-    "lift": ts.lift,
+    "Survey": ts.Survey,
     "Bounds": ts.Bounds,
     "Bounds.of": ts.Bounds.of,
     "Grid": ts.Grid,
     "CRS": ts.CRS,
     "CRS.of": ts.CRS.of,
     "Unit.of": ts.Unit.of,
-    "length_unit": ts.length_unit,
-    "transform_points": ts.transform_points,
-    "lines_from_codes": ts.lines_from_codes,
-    "find_format": ts.find_format,
+    "Features": ts.Features,
+    "Raster": ts.Raster,
+    "Table": ts.Table,
+    "from_triangles": ts.TIN.from_triangles,
+    "paper.original": ts.tin.paper.original,
+    "paper.improved": ts.tin.paper.improved,
 }
-METHODS = (
-    *("insert", "remove", "move", "set_z", "flip", "add_breakline", "remove_breakline", "undo"),
-    *("set_elevation", "locate", "interpolate", "voronoi", "closest_vertex", "is_edge"),
-    *("edge_triangles", "vertex_triangles", "vertex_neighbors"),
+METHODS = tuple(
+    name for name, _ in inspect.getmembers(ts.TIN, inspect.isfunction) if not name.startswith("_")
 )
 USUAL: dict[str, str] = {  # what is mostly given, so that the rest is reached
     "points": "xyz",
@@ -132,6 +138,22 @@ USUAL: dict[str, str] = {  # what is mostly given, so that the rest is reached
     "bounds": "bounds",
     "shape": "shape",
     "spacing": "0.5",
+    "other": "tin",
+    "lines": "features",
+    "features": "features",
+    "cloud": "xyz",
+    "line": "xy line",
+    "centreline": "xy line",
+    "interval": "0.5",
+    "quality": "quality",
+    "difference": "difference",
+    "comparison": "comparison",
+    "table": "table",
+    "columns": "columns",
+    "bands": "grids",
+    "grid": "grid",
+    "kind": "kind",
+    "coordinates": "xyz",
 }
 
 

@@ -10,14 +10,19 @@ import numpy as np
 
 from ..._sentences import counted
 from ...crs import CRS, Unit, require_one_unit, shorten_crs
+from ...errors import OptionError
 from ..constraints.breaklines import Breakline, Water
+from ..constraints.constraint_set import as_sequence
 from ..types import Bounds
-from ..validation.tables import as_table
+from ..validation.tables import Table, as_table
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 __all__ = ["Survey"]
+
+
+_LINES = ("breaklines", "boundary", "holes", "erase", "water", "extent")
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -63,7 +68,10 @@ class Survey:
     CrsError
         If the CRS is unknown.
     OptionError
-        If the unit is unknown, or another than that of the CRS's vertical axis.
+        If the unit is unknown, or another than that of the CRS's vertical axis, or something has
+        another type.
+    LinesError
+        If lines are no sequence.
 
     Examples
     --------
@@ -91,21 +99,24 @@ class Survey:
         object.__setattr__(self, "crs", crs)
         unit = require_one_unit(crs, Unit.of(self.elevation_unit))
         object.__setattr__(self, "elevation_unit", unit)
-        if not _is_plain(self.points):
-            self._clean_points()
-
-    def _clean_points(self) -> None:
-        """Take columns by their names, and leave out what is masked."""
-        table = as_table(self.points, "Points")
-        points, attributes = table.values, self.attributes
+        for name in _LINES:
+            object.__setattr__(self, name, _as_lines(name, getattr(self, name)))
+        object.__setattr__(self, "skipped", _as_mapping("skipped", self.skipped))
+        object.__setattr__(self, "skipped_lines", _as_mapping("skipped_lines", self.skipped_lines))
+        _require_texts(self)
+        table = Table(self.points) if _is_plain(self.points) else as_table(self.points, "Points")
+        object.__setattr__(self, "points", table.values)
+        columns = _as_columns(self.attributes, table.values.shape[:1])
+        object.__setattr__(self, "attributes", columns)
         if table.is_masked is not None:
-            keep = ~table.is_masked
-            points = points[keep]
-            attributes = {name: np.asarray(v)[keep] for name, v in attributes.items()}
-            masked = {"masked points": int(table.is_masked.sum())}
-            object.__setattr__(self, "skipped", {**self.skipped, **masked})
-        object.__setattr__(self, "points", points)
-        object.__setattr__(self, "attributes", attributes)
+            self._leave_out(table.is_masked)
+
+    def _leave_out(self, is_masked: NDArray[np.bool_]) -> None:
+        columns = {name: values[~is_masked] for name, values in self.attributes.items()}
+        object.__setattr__(self, "points", self.points[~is_masked])
+        object.__setattr__(self, "attributes", columns)
+        masked = {"masked points": int(is_masked.sum())}
+        object.__setattr__(self, "skipped", {**self.skipped, **masked})
 
     @property
     def bounds(self) -> Bounds:
@@ -126,6 +137,45 @@ class Survey:
         return (
             f"<Survey: {counted(len(self), 'point')}{origin}{names}, crs {shorten_crs(self.crs)}>"
         )
+
+
+def _as_lines(name: str, lines: Any) -> Sequence[Any]:
+    """Return several lines or rings as a sequence; one alone is told from several."""
+    return lines if isinstance(lines, tuple | list) else as_sequence(lines, name)
+
+
+def _as_columns(attributes: Any, shape: tuple[int, ...]) -> Mapping[str, NDArray[Any]]:
+    """Return columns as arrays of one value a point; those of a data frame too."""
+    if hasattr(attributes, "columns") and not isinstance(attributes, Mapping):
+        attributes = {name: attributes[name] for name in attributes.columns}
+    given = _as_mapping("attributes", attributes)
+    return {name: _as_column(name, values, shape) for name, values in given.items()}
+
+
+def _as_column(name: str, values: Any, shape: tuple[int, ...]) -> NDArray[Any]:
+    try:
+        column = np.asarray(values)
+    except Exception:
+        column = np.empty(())
+    if column.ndim != 1 or column.shape != shape:
+        raise OptionError(f"attribute '{name}'", values, "an array of one value for each point")
+    return column
+
+
+def _as_mapping(name: str, given: Any) -> Mapping[str, Any]:
+    """Return what gives values by their names."""
+    if not isinstance(given, Mapping) or not all(isinstance(key, str) for key in given):
+        raise OptionError(name, given, "a mapping whose keys are text")
+    return given
+
+
+def _require_texts(survey: Survey) -> None:
+    """Refuse a source that is no text, and notes that are no sequence of texts."""
+    notes = survey.notes
+    if not isinstance(notes, tuple | list) or not all(isinstance(note, str) for note in notes):
+        raise OptionError("notes", notes, "a list of sentences")
+    if not isinstance(survey.source, str | None):
+        raise OptionError("source", survey.source, "text or None")
 
 
 def _is_plain(points: Any) -> bool:

@@ -105,6 +105,11 @@ class Water:
     ------
     LinesError
         For another shape or coordinates that are not finite.
+
+    Examples
+    --------
+    >>> Water([[0, 0], [4, 0], [0, 3]], 7.5, name="pond")
+    <Water: 3 corners at 7.5, 'pond'>
     """
 
     ring: NDArray[np.float64]
@@ -148,6 +153,14 @@ class Lines(Frozen):
         holes and water.
     names : tuple of str
         Of each chain, ``""`` if it has none.
+
+    Examples
+    --------
+    >>> from tinsmith import Breakline, triangulate
+    >>> square = [[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8]]
+    >>> tin = triangulate(square, breaklines=[[[0, 0], [4, 3]]])
+    >>> tin.lines
+    <Lines: 1 hard, 0 soft, 0 boundary, 0 hole, 0 water; 3 vertices>
     """
 
     vertices: NDArray[np.int32] = field(default_factory=_no_numbers)
@@ -160,15 +173,36 @@ class Lines(Frozen):
         return len(self.kinds)
 
     def chains(self) -> Iterator[NDArray[np.int32]]:
-        """Walk the chains, as vertex numbers."""
+        """Walk the chains, as vertex numbers.
+
+        Examples
+        --------
+        >>> lines = Lines(vertices=np.array([0, 1, 2, 5, 4]), offsets=np.array([0, 3, 5]))
+        >>> [chain.tolist() for chain in lines.chains()]
+        [[0, 1, 2], [5, 4]]
+        """
         return iter(self._polylines)
 
     def segments(self) -> NDArray[np.int32]:
-        """Return the edges along which the chains run, (s, 2) vertex pairs in order."""
+        """Return the edges along which the chains run, (s, 2) vertex pairs in order.
+
+        Examples
+        --------
+        >>> lines = Lines(vertices=np.array([0, 1, 2, 5, 4]), offsets=np.array([0, 3, 5]))
+        >>> lines.segments().tolist()
+        [[0, 1], [1, 2], [5, 4]]
+        """
         return self._polylines.segments()
 
     def segment_chains(self) -> NDArray[np.int64]:
-        """Return the chain of each of the segments."""
+        """Return the chain of each of the segments.
+
+        Examples
+        --------
+        >>> lines = Lines(vertices=np.array([0, 1, 2, 5, 4]), offsets=np.array([0, 3, 5]))
+        >>> lines.segment_chains().tolist()
+        [0, 0, 1]
+        """
         return self._polylines.segment_owners()
 
     steps, step_chains = segments, segment_chains  # their names at first
@@ -178,14 +212,29 @@ class Lines(Frozen):
         return Polylines.whole(self.vertices, self.offsets)
 
     def has_breakline(self, source: int) -> bool:
-        """Tell whether some of a breakline is there."""
+        """Tell whether some of a breakline is there.
+
+        Examples
+        --------
+        >>> from tinsmith import Breakline, triangulate
+        >>> square = [[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8]]
+        >>> tin = triangulate(square, breaklines=[[[0, 0], [4, 3]]])
+        >>> tin.lines.has_breakline(0), tin.lines.has_breakline(1)
+        (True, False)
+        """
         return any(
             kind in ("hard", "soft") and own == source
             for kind, own in zip(self.kinds, self.sources.tolist(), strict=True)
         )
 
     def with_breakline(self, vertices: list[int], line: Breakline) -> Lines:
-        """Return the lines, all of them breaklines, and a further one through some vertices."""
+        """Return the lines, all of them breaklines, and a further one through some vertices.
+
+        Examples
+        --------
+        >>> Lines().with_breakline([3, 7, 4], Breakline([[0, 0], [1, 1]], kind="soft"))
+        <Lines: 0 hard, 1 soft, 0 boundary, 0 hole, 0 water; 3 vertices>
+        """
         return Lines(
             vertices=np.append(self.vertices, np.array(vertices, np.int32)),
             offsets=np.append(self.offsets, np.int32(len(self.vertices) + len(vertices))),
@@ -195,7 +244,14 @@ class Lines(Frozen):
         )
 
     def renumber(self, number: NDArray[np.int32]) -> Lines:
-        """Return the same lines with vertex ``v`` called ``number[v]``."""
+        """Return the same lines with vertex ``v`` called ``number[v]``.
+
+        Examples
+        --------
+        >>> lines = Lines(vertices=np.array([0, 2]), offsets=np.array([0, 2]))
+        >>> lines.renumber(np.array([5, 6, 7])).vertices.tolist()
+        [5, 7]
+        """
         return replace(self, vertices=number[self.vertices])
 
     renumbered = renumber

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -257,13 +258,12 @@ def as_sequence(lines: Any, what: str) -> list[Any]:
         return [lines]
     if isinstance(lines, np.ndarray) and lines.ndim == 2 and lines.dtype != object:
         return [lines]
-    try:
-        return list(lines)
-    except TypeError:
-        raise LinesError(
-            f"Invalid {what} {shown(lines)}: a sequence of lines is needed, each an array of "
-            "vertices."
-        ) from None
+    if not isinstance(lines, str | bytes | Mapping):
+        with suppress(TypeError):
+            return list(lines)
+    raise LinesError(
+        f"Invalid {what} {shown(lines)}: a sequence of lines is needed, each an array of vertices."
+    )
 
 
 def _gather_rings_of_kind(

@@ -9,15 +9,16 @@ import numpy as np
 
 from ..._sentences import shown
 from ...errors import PointsError
-from ..validation.points import as_elevations, clean_points
+from ..validation.points import as_elevations, as_points, clean_points
 from ..validation.tables import Table, as_table
-from ..validation.vertices import require_vertices
+from ..validation.vertices import as_vertex_array
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 __all__ = [
     "as_ends",
+    "as_new_points",
     "as_point",
     "as_vertex_elevations",
     "as_vertices",
@@ -36,7 +37,7 @@ def copy_argument(value: Any) -> Any:
 
 
 def as_vertices(vertices: ArrayLike, count: int) -> NDArray[np.int64]:
-    """Return vertex numbers below ``count``.
+    """Return vertex numbers below ``count``; none of an empty list.
 
     Raises
     ------
@@ -46,13 +47,17 @@ def as_vertices(vertices: ArrayLike, count: int) -> NDArray[np.int64]:
     only = vertices[0] if isinstance(vertices, list) and len(vertices) == 1 else vertices
     if type(only) is int and 0 <= only < count:  # most edits: no arrays for one number
         return np.array([only], np.int64)
-    try:
-        numbers = np.atleast_1d(np.asarray(vertices))
-    except Exception:
-        numbers = np.empty(0, np.float64)
+    numbers = np.atleast_1d(as_vertex_array(vertices, count))
     if numbers.ndim != 1:
         raise PointsError(f"Invalid vertices {shown(vertices)}: whole numbers are needed.")
-    return require_vertices(numbers, vertices, count)
+    return numbers
+
+
+def as_new_points(points: ArrayLike) -> NDArray[np.float64]:
+    """Return points to insert; an empty list is none."""
+    return as_points(
+        np.empty((0, 3)) if isinstance(points, list | tuple) and not points else points
+    )
 
 
 def as_ends(a: int, b: int, count: int) -> NDArray[np.int64]:

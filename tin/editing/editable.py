@@ -251,6 +251,16 @@ class Editable:
             If there is no such inner edge, or the triangles are no convex quadrilateral.
         LinesError
             If it is the edge of another line.
+
+        Examples
+        --------
+        >>> from tinsmith import triangulate
+        >>> tin = triangulate([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8]])
+        >>> tin.is_edge([1, 0], [3, 2]).tolist()
+        [True, False]
+        >>> tin.flip(1, 3)
+        >>> tin.is_edge([1, 0], [3, 2]).tolist()
+        [False, True]
         """
         self._edit("flip", a=a, b=b)
 

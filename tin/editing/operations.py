@@ -13,9 +13,9 @@ from ...policies import CrossingPolicy, DuplicatePolicy
 from ..constraints.breaklines import Breakline
 from ..report import Edit
 from ..validation.options import is_whole_number
-from ..validation.points import as_points
 from .arguments import (
     as_ends,
+    as_new_points,
     as_point,
     as_vertex_elevations,
     as_vertices,
@@ -142,7 +142,7 @@ class Insert(MeshOperation):
 
     def apply(self, tin: Edited) -> Done:
         """Build the TIN of the changed inputs."""
-        xyz = as_points(self.points)
+        xyz = as_new_points(self.points)
         state, inputs = tin.now(), tin.inputs()
         there = state.vertices_at(xyz[:, :2])
         own = np.where(there < 0, np.nan, state.triangulation.points[there, 2])
@@ -156,7 +156,7 @@ class Insert(MeshOperation):
     def apply_to_mesh(self, editor: Editor) -> Done:
         """Change the mesh, if no line is near."""
         slots, change = editor.insert(
-            as_points(self.points), choice("duplicates", self.duplicates, DuplicatePolicy)
+            as_new_points(self.points), choice("duplicates", self.duplicates, DuplicatePolicy)
         )
         return Done(change, result=editor.numbers(slots))
 

@@ -18,6 +18,7 @@ __all__ = [
     "require_distance",
     "require_positive",
     "require_tin",
+    "require_type",
 ]
 
 
@@ -59,6 +60,12 @@ def require_distance(name: str, value: Any) -> None:
     """Refuse what is no finite number from 0 on."""
     if not (is_finite_number(value) and value >= 0):
         raise OptionError(name, value, "a distance >= 0 in CRS units")
+
+
+def require_type(name: str, value: Any, kind: type, *, or_none: bool = False) -> None:
+    """Refuse what is not of a class of the toolkit."""
+    if not isinstance(value, kind) and not (or_none and value is None):
+        raise OptionError(name, value, f"a {kind.__name__}{', or None' if or_none else ''}")
 
 
 def require_tin(tin: Any) -> None:

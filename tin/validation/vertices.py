@@ -14,7 +14,7 @@ from .tables import is_masked_array
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["as_vertex", "as_vertex_pairs", "require_vertices"]
+__all__ = ["as_vertex", "as_vertex_array", "as_vertex_pairs"]
 
 
 def as_vertex(vertex: Any, n_vertices: int) -> int:
@@ -34,7 +34,7 @@ def as_vertex(vertex: Any, n_vertices: int) -> int:
     return int(vertex)
 
 
-def _as_vertices(vertices: Any, n_vertices: int) -> NDArray[np.int64]:
+def as_vertex_array(vertices: Any, n_vertices: int) -> NDArray[np.int64]:
     """Return vertex numbers as an array of the shape given; an empty list is no vertices.
 
     Raises
@@ -47,19 +47,8 @@ def _as_vertices(vertices: Any, n_vertices: int) -> NDArray[np.int64]:
     except Exception:
         numbers = np.empty(1, np.float64)
     numbers = numbers.astype(np.int64) if numbers.size == 0 else numbers
-    return require_vertices(numbers, vertices, n_vertices)
-
-
-def require_vertices(numbers: NDArray[Any], given: Any, n_vertices: int) -> NDArray[np.int64]:
-    """Return an array of vertex numbers, which was made of what a caller gave.
-
-    Raises
-    ------
-    PointsError
-        If they are not whole numbers, or one of them is no vertex.
-    """
-    if is_masked_array(given) or numbers.dtype.kind not in "iu":
-        raise PointsError(f"Invalid vertices {shown(given)}: whole numbers are needed.")
+    if is_masked_array(vertices) or numbers.dtype.kind not in "iu":
+        raise PointsError(f"Invalid vertices {shown(vertices)}: whole numbers are needed.")
     wrong = (numbers < 0) | (numbers >= n_vertices)
     if wrong.any():
         raise PointsError(
@@ -77,7 +66,7 @@ def as_vertex_pairs(a: Any, b: Any, n_vertices: int) -> tuple[NDArray[np.int64],
     PointsError
         If one of them is no vertex, or the shapes do not fit.
     """
-    first, second = _as_vertices(a, n_vertices), _as_vertices(b, n_vertices)
+    first, second = as_vertex_array(a, n_vertices), as_vertex_array(b, n_vertices)
     try:
         first_of, second_of = np.broadcast_arrays(first, second)
     except ValueError:

@@ -115,7 +115,7 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     if flags is None:
         flags = flag_edges(made.triangles, edges, len(points))
     tin = make_tin(points, made.triangles, path, constrained=flags, reference=reference)
-    lines = read_lines(header, edges, path)
+    lines = read_lines(header.lines, edges, path)
     _require_edges_of_tin(tin, lines, path)
     return tin.replace(lines=lines)
 

@@ -21,6 +21,7 @@ from ....tin import topology
 from ....tin.constraints.breaklines import Lines
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
     from typing import Any
 
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
 
     from ....tin import TIN
     from .body import Table
-    from .header import Header
 
 __all__ = [
     "ENDS",
@@ -52,7 +52,7 @@ class LineComment(NamedTuple):
 
     kind: LineKind
     source: int
-    count: int
+    n_edges: int
     name: str
 
 
@@ -112,7 +112,7 @@ def require_edges(table: Table, path: Path, n_vertices: int) -> NDArray[np.int64
     return ends.astype(np.int64)
 
 
-def read_lines(header: Header, edges: NDArray[np.int64], path: Path) -> Lines:
+def read_lines(told: Sequence[LineComment], edges: NDArray[np.int64], path: Path) -> Lines:
     """Return the lines that the header tells of, as chains of vertices.
 
     Raises
@@ -120,7 +120,7 @@ def read_lines(header: Header, edges: NDArray[np.int64], path: Path) -> Lines:
     ReadError
         If the edges of a line do not follow each other.
     """
-    counts = np.array([one.count for one in header.lines], np.int64)
+    counts = np.array([one.n_edges for one in told], np.int64)
     if counts.sum() > len(edges) or (counts < 1).any():
         raise ReadError(
             f"'{path}': its lines have {counts.sum()} edges, and there are {len(edges)}.", path=path
@@ -137,7 +137,7 @@ def read_lines(header: Header, edges: NDArray[np.int64], path: Path) -> Lines:
     return Lines(
         vertices=vertices.astype(np.int32),
         offsets=topology.find_offsets(counts + 1).astype(np.int32),
-        kinds=tuple(one.kind for one in header.lines),
-        sources=np.array([one.source for one in header.lines], np.int32),
-        names=tuple(one.name for one in header.lines),
+        kinds=tuple(one.kind for one in told),
+        sources=np.array([one.source for one in told], np.int32),
+        names=tuple(one.name for one in told),
     )

@@ -162,15 +162,11 @@ def read_tin(
     return build_tin(survey, how, console), survey
 
 
-def list_inputs(
-    file: Path, how: Triangulating | None = None, *, script: Path | None = None
-) -> list[Named]:
+def list_inputs(file: Path, how: Triangulating | None = None) -> list[Named]:
     """Return all files that a command reads."""
     from ..io.vector.survey_lines import split_layer
 
     inputs = [Named(file, "the input")]
-    if script is not None:
-        inputs.append(Named(script, "the script"))
     given = {} if how is None else how.line_files
     for flag, paths in given.items():
         inputs += [Named(split_layer(path)[0], f"the file of {flag}") for path in paths]

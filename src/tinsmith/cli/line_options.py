@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any, get_args
+from typing import Any
 
 import click
 
 from ..policies import CrossingPolicy, TrimPolicy
+from .parameters import choice_option, number_option
 from .paths import LINES
 
 __all__ = ["LINE_OPTIONS"]
@@ -70,27 +71,20 @@ LINE_OPTIONS = (
         is_flag=True,
         help="Make lines of the points' own codes, such as EP1 BEG, EP1, EP1 END, BLDG1 CLS.",
     ),
-    click.option(
+    choice_option(
         "--crossing",
-        type=click.Choice(get_args(CrossingPolicy)),
+        CrossingPolicy,
+        "Where lines cross: make a vertex there, or refuse.",
         default="split",
-        show_default=True,
-        help="Where lines cross: make a vertex there, or refuse.",
     ),
     click.option(
         "--conforming", is_flag=True, help="Split lines until every edge is Delaunay by itself."
     ),
-    click.option(
-        "--max-edge",
-        metavar="LENGTH",
-        type=float,
-        help="Drop triangles with longer edges, in CRS units.",
-    ),
-    click.option(
+    number_option("--max-edge", "LENGTH", "Drop triangles with longer edges, in CRS units."),
+    choice_option(
         "--trim",
-        type=click.Choice(get_args(TrimPolicy)),
+        TrimPolicy,
+        "Where --max-edge drops them: from the outside inwards, or everywhere.",
         default="perimeter",
-        show_default=True,
-        help="Where --max-edge drops them: from the outside inwards, or everywhere.",
     ),
 )

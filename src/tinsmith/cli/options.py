@@ -6,23 +6,22 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass, fields
 from functools import wraps
 from pathlib import Path
-from typing import Any, TypeVar, get_args
+from typing import Any, TypeVar
 
 import click
 
-from ..policies import DuplicatePolicy, FeatureKind
+from ..policies import DrawingContent, DuplicatePolicy, FeatureKind, LineReading
 from .flags import note_given
 from .line_options import LINE_OPTIONS
 from .output.console import Console
-from .paths import INPUT
+from .parameters import Decorator, choice_option, number_option
 
 __all__ = [
     "Reading",
     "Triangulating",
     "Writing",
     "console_options",
-    "input_file",
-    "output_files",
+    "format_options",
     "product_options",
     "reading_options",
     "triangulating_options",
@@ -30,7 +29,6 @@ __all__ = [
 ]
 
 Function = TypeVar("Function", bound=Callable[..., Any])
-Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
 _METHOD = ("duplicates", "snap", "threads", "crossing", "conforming", "max_edge", "trim")
 _FILES = ("breaklines", "soft_breaklines", "boundary", "holes", "erase", "water")
@@ -53,6 +51,17 @@ class Reading:
     stride: int | None = None
     nodata: tuple[float, ...] | None = None
     fill: bool | None = None
+    classes: str | None = None
+    returns: str | None = None
+    resolution: float | None = None
+    every: int | None = None
+    layer: str | None = None
+    z_field: str | None = None
+    lines_as: str | None = None
+    unit: str | None = None
+    surface: str | None = None
+    content: str | None = None
+    texts: bool | None = None
 
 
 @dataclass(frozen=True)
@@ -165,23 +174,6 @@ def _parse_given(
     return value or None
 
 
-def input_file(name: str) -> Decorator:
-    """Return the argument for the file to read."""
-    return click.argument(name, type=INPUT)
-
-
-output_files: Decorator = click.option(
-    "-o",
-    "--output",
-    "outputs",
-    metavar="FILE",
-    type=INPUT,
-    multiple=True,
-    required=True,
-    help="File to write; its suffix chooses the format, and one that is there is replaced. "
-    "- is standard output, with --output-format. May be given several times.",
-)
-
 reading_options = _gather(
     "reading",
     Reading,
@@ -218,82 +210,117 @@ reading_options = _gather(
         default=None,
         help="Leave out the rows of a text file that cannot be read, and name them.",
     ),
-    click.option("--band", metavar="N", type=int, help="Band of a raster, counted from 1."),
+    number_option("--band", "N", "Band of a raster, counted from 1.", type=int),
     click.option(
         "--window",
         metavar="XMIN YMIN XMAX YMAX",
         type=(float, float, float, float),
-        help="Part of a raster to read, in the units of its own CRS.",
+        help="Part of a raster or of lidar to read, in the units of its own CRS.",
     ),
-    click.option("--stride", metavar="N", type=int, help="Take every Nth cell of a raster."),
-    click.option(
+    number_option("--stride", "N", "Take every Nth cell of a raster.", type=int),
+    number_option(
         "--nodata",
-        metavar="ELEVATION",
-        type=float,
+        "ELEVATION",
+        "Elevation that stands for no data, such as -9999. May be given several times.",
         multiple=True,
         callback=_parse_given,
-        help="Elevation that stands for no data, such as -9999. May be given several times.",
     ),
     click.option(
         "--fill", is_flag=True, default=None, help="Let the surface span the voids of a raster."
+    ),
+    click.option(
+        "--unit",
+        metavar="UNIT",
+        help="Unit of the coordinates and elevations of a LandXML or DXF file, where it does not "
+        "say, or says another one than its CRS.",
+    ),
+    click.option(
+        "--surface",
+        metavar="NAME",
+        help="Surface of a LandXML file that has several: its name, or its number from 1.",
+    ),
+    choice_option(
+        "--content",
+        DrawingContent,
+        "What to read of a LandXML or DXF file: the triangles of a surface, the points and lines "
+        "that make one, or points alone.",
+    ),
+    click.option(
+        "--texts",
+        is_flag=True,
+        default=None,
+        help="Read texts of a DXF file that are numbers as points of that elevation.",
+    ),
+    click.option(
+        "--classes", metavar="N,N", help="Classes of lidar points to take, such as 2 (ground)."
+    ),
+    click.option(
+        "--returns",
+        metavar="NAME,N",
+        help="Returns of lidar points to take: first, last, only, or numbers.",
+    ),
+    click.option(
+        "--resolution",
+        metavar="DISTANCE",
+        type=float,
+        help="Of COPC lidar take the levels down to this distance of points.",
+    ),
+    click.option("--every", metavar="N", type=int, help="Take every Nth point of lidar."),
+    click.option(
+        "--layer",
+        metavar="NAME",
+        help="Layer of a vector file; of a DXF file layers, names or patterns with commas between, "
+        "such as 'TOPO*,BREAK?'.",
+    ),
+    click.option(
+        "--z-field",
+        metavar="NAME",
+        help="Column of a vector file that holds the elevations; 'geometry' for its coordinates.",
+    ),
+    choice_option(
+        "--lines-as",
+        LineReading,
+        "Take the lines of a vector file as breaklines, or their vertices as points.",
     ),
 )
 
 triangulating_options = _gather(
     "how",
     Triangulating,
-    click.option(
+    choice_option(
         "--duplicates",
-        type=click.Choice(get_args(DuplicatePolicy)),
+        DuplicatePolicy,
+        "Elevation where several points share one place.",
         default="mean",
-        show_default=True,
-        help="Elevation where several points share one place.",
     ),
-    click.option(
-        "--snap",
-        metavar="DISTANCE",
-        type=float,
-        default=0.0,
-        show_default=True,
-        help="Merge points no further apart than this, in CRS units.",
+    number_option(
+        "--snap", "DISTANCE", "Merge points no further apart than this, in CRS units.", default=0.0
     ),
-    click.option(
+    number_option(
         "--threads",
-        metavar="N",
+        "N",
+        "Number of threads; default every core. The result is the same.",
         type=click.IntRange(min=1),
-        help="Number of threads; default every core. The result is the same.",
     ),
     *LINE_OPTIONS,
 )
 
-writing_options = _gather(
-    "writing",
-    Writing,
-    click.option(
-        "--output-format", metavar="NAME", help="Format of the output, whatever its suffix."
-    ),
-    click.option(
-        "--kind", type=click.Choice(get_args(FeatureKind)), help="What a GeoJSON file shows."
-    ),
-    click.option(
-        "--projected",
-        is_flag=True,
-        help="Leave the coordinates of a GeoJSON file in the CRS of the points.",
-    ),
+_format_option = click.option(
+    "--output-format", metavar="NAME", help="Format of the output, whatever its suffix."
 )
+_kind_option = choice_option("--kind", FeatureKind, "What a GeoJSON file shows.")
 
-product_options = _gather(
-    "writing",
-    Writing,
-    click.option(
-        "--output-format", metavar="NAME", help="Format of the output, whatever its suffix."
-    ),
-    click.option(
-        "--projected",
-        is_flag=True,
-        help="Leave the coordinates of a GeoJSON file in the CRS of the TIN.",
-    ),
+
+def _make_projected_option(whose: str) -> Decorator:
+    words = f"Leave the coordinates of a GeoJSON file in the CRS of the {whose}."
+    return click.option("--projected", is_flag=True, help=words)
+
+
+writing_options = _gather(
+    "writing", Writing, _format_option, _kind_option, _make_projected_option("points")
 )
+product_options = _gather("writing", Writing, _format_option, _make_projected_option("TIN"))
+format_options = _gather("writing", Writing, _format_option)
 
 console_options = _gather(
     "console",

@@ -1074,3 +1074,19 @@ def test_one_comma_far_down_the_file_is_no_decimal_mark_by_itself(survey, delimi
     rows[3000][2] = "0,5"
     content = "".join(delimiter.join(row) + "\n" for row in rows)
     assert survey(content).points[2345].tolist() == [2345.0, 0.0, 1.234]
+
+
+def test_words_between_tabs_are_one_text(tmp_path):
+    """A header and rows that blanks part into equally many words, too."""
+    survey = ts.Survey(
+        points=[[1, 2, 3], [4, 5.5, 6], [7, 8, 9]],
+        attributes={
+            "number": np.array([1, 2, 3]),
+            "description": np.array(["TOP BANK", "TOE OF", "ROAD CL"]),
+        },
+        elevation_unit="ft",
+    )
+    found = ts.read(ts.write(survey, tmp_path / "a.tsv"))
+    assert list(found.attributes["description"]) == ["TOP BANK", "TOE OF", "ROAD CL"]
+    assert found.points.tolist() == survey.points.tolist()
+    assert found.elevation_unit == survey.elevation_unit

@@ -9,7 +9,7 @@ import pytest
 
 from tinsmith import OptionError, ReadError
 from tinsmith.crs import CRS, FOOT, METRE, US_SURVEY_FOOT
-from tinsmith.io.isolated import Limits
+from tinsmith.io.isolated import Limits, free_memory
 from tinsmith.io.raster import dem
 from tinsmith.tin import Bounds
 
@@ -175,9 +175,9 @@ def test_a_stride_leaves_two_rows_and_columns_at_least(window, stride, most):
 def test_no_more_cells_are_read_than_memory_holds(monkeypatch, width, height, stride):
     cells = dem._Cells(0, 0, width, height, stride)
     count = -(-width // stride) * -(-height // stride)
-    monkeypatch.setattr(dem, "_measure_free_memory", lambda: 48 * count)
+    monkeypatch.setattr(dem, "measure_free_memory", lambda: 48 * count)
     dem._require_few_cells(cells, PATH)
-    monkeypatch.setattr(dem, "_measure_free_memory", lambda: 48 * count - 1)
+    monkeypatch.setattr(dem, "measure_free_memory", lambda: 48 * count - 1)
     said = sentence_of(ReadError, dem._require_few_cells, cells, PATH)
     assert said == (
         f"'ground.tif': {count:,} cells are to be read, and {count - 1:,} are the most that 0.0 "
@@ -186,7 +186,7 @@ def test_no_more_cells_are_read_than_memory_holds(monkeypatch, width, height, st
 
 
 def test_no_more_cells_are_read_than_a_tin_holds(monkeypatch):
-    monkeypatch.setattr(dem, "_measure_free_memory", lambda: 1 << 60)
+    monkeypatch.setattr(dem, "measure_free_memory", lambda: 1 << 60)
     dem._require_few_cells(dem._Cells(0, 0, 2**31 - 1, 1, 1), PATH)
     said = sentence_of(ReadError, dem._require_few_cells, dem._Cells(0, 0, 2**31, 1, 1), PATH)
     assert "2,147,483,648 cells are to be read, and 2,147,483,647 are the most that a TIN" in said
@@ -201,10 +201,10 @@ def test_free_memory_is_what_the_system_tells(monkeypatch, tmp_path):
     }
     for text, expected in files.items():
         (tmp_path / "meminfo").write_text(text)
-        monkeypatch.setattr(dem, "Path", lambda _: tmp_path / "meminfo")
-        assert dem._measure_free_memory() == expected
-    monkeypatch.setattr(dem, "Path", lambda _: tmp_path / "nowhere")
-    assert dem._measure_free_memory() == 48 * (2**31 - 1)
+        monkeypatch.setattr(free_memory, "Path", lambda _: tmp_path / "meminfo")
+        assert free_memory.measure_free_memory() == expected
+    monkeypatch.setattr(free_memory, "Path", lambda _: tmp_path / "nowhere")
+    assert free_memory.measure_free_memory() == 48 * (2**31 - 1)
 
 
 # ------------------------------------------------------------------- points

@@ -243,7 +243,7 @@ def test_window_that_the_raster_does_not_have(raster, window):
 
 @pytest.mark.parametrize("stride", [1, 3])
 def test_cells_are_no_more_than_an_int32_can_number(monkeypatch, stride):
-    monkeypatch.setattr(reading, "_measure_free_memory", lambda: 1 << 60)
+    monkeypatch.setattr(reading, "measure_free_memory", lambda: 1 << 60)
     most = np.iinfo(np.int32).max
     reading._require_few_cells(
         SimpleNamespace(width=stride * most, height=1, stride=stride), Path("a")

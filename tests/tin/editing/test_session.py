@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import json
 
 import numpy as np
@@ -709,3 +710,26 @@ def test_a_corner_of_the_boundary_that_moves_takes_the_boundary_along():
     assert tin.vertex_of[3] >= 0
     assert tin.report.left_out_rows.tolist() == fresh.report.left_out_rows.tolist()
     assert tin.report.left_out_why.tolist() == fresh.report.left_out_why.tolist()
+
+
+@pytest.mark.parametrize("lines", [[], [[[0, 0], [4, 3]]]])
+@pytest.mark.parametrize(
+    "edit",
+    [
+        lambda tin: tin.remove([]),
+        lambda tin: tin.remove(np.array([])),
+        lambda tin: tin.insert([]),
+        lambda tin: tin.insert(np.empty((0, 3))),
+        lambda tin: tin.set_elevation([], []),
+        lambda tin: tin.set_z((), 5),
+    ],
+)
+def test_an_edit_of_nothing_changes_nothing(edit, lines):
+    tin = ts.triangulate([[0, 0, 1], [4, 0, 2], [4, 3, 3], [0, 3, 4], [2, 1, 9]], breaklines=lines)
+    before = copy.copy(tin)
+    made = edit(tin)
+    assert made is None or made.tolist() == []
+    assert np.array_equal(tin.points, before.points)
+    assert np.array_equal(tin.triangles, before.triangles)
+    tin.undo()
+    assert len(tin.edits) == 0

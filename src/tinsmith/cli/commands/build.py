@@ -2,29 +2,24 @@
 
 from __future__ import annotations
 
+from functools import partial
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..options import (
-    console_options,
-    input_file,
-    output_files,
-    reading_options,
-    triangulating_options,
-    writing_options,
-)
-from ..output.console import format_json
-from ..paths import OUTPUT, name_file
+from ..options import writing_options
+from ..parameters import input_file, output_files, report_option
+from ..paths import name_file
+from ..request import surface_options
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from ...tin import TIN, Survey
-    from ..files import Output
-    from ..options import Reading, Triangulating, Writing
-    from ..output.console import Console, Row
+    from ..output.console import Row
+    from ..products import Products
+    from ..request import Request
 
 __all__ = ["build"]
 
@@ -32,24 +27,14 @@ __all__ = ["build"]
 @click.command(short_help="Build a TIN from elevation points.")
 @input_file("points")
 @output_files
-@reading_options
-@triangulating_options
-@writing_options
-@click.option(
-    "--report",
-    metavar="FILE",
-    type=OUTPUT,
-    help="JSON file that accounts for every row merged or left out, and every crossing of lines.",
+@report_option(
+    "JSON file that accounts for every row merged or left out, and every crossing of lines."
 )
-@console_options
+@surface_options(writing_options)
 def build(
     points: Path,
-    outputs: tuple[Path, ...],
-    reading: Reading,
-    how: Triangulating,
-    writing: Writing,
     report: Path | None,
-    console: Console,
+    request: Request,
 ) -> None:
     """Build the exact Delaunay TIN of the elevation points in POINTS, and of lines.
 
@@ -62,45 +47,31 @@ def build(
       tinsmith build sample_data/site_survey.csv --crs EPSG:32616 --codes -o site.geojson
       tinsmith build sample_data/jacksboro.tif --stride 4 -o hills.ply -o hills.stl
     """  # noqa: D301 - click reads the control character
-    from ..files import (
-        add_lines,
-        build_tin,
-        list_inputs,
-        plan_outputs,
-        read_input,
-        write_outputs,
-        write_text,
-    )
+    from ..files import add_lines, build_tin, read_input, write_text
+    from ..output.console import format_json
     from ..output.summaries import describe_report
 
-    started = perf_counter()
-    planned = plan_outputs(
-        outputs,
-        writing,
-        inputs=list_inputs(points, how),
-        console=console,
-        report=report,
-        kinds=("TIN",),
-    )
-    survey = add_lines(_require_survey(read_input(points, reading, console), points), how, console)
+    how, console = request.how, request.console
+    planned = request.plan(request.list_inputs(points), "TIN", report=report)
+    found = read_input(points, request.reading, console)
+    survey = add_lines(_require_survey(found, points), how, console)
     tin = build_tin(survey, how, console)
-    gaps = _warn_of_gaps(tin, how, console)
-    write_outputs(tin, planned, console)
+    gaps = _find_gaps(tin, request)
+    planned.write("TIN", tin)
     if report is not None:
         write_text(report, format_json(describe_report(tin.report, survey, gaps)) + "\n")
-    seconds = perf_counter() - started
-    console.summarise(_summarise_build(points, survey, tin, gaps, planned, seconds))
-    if console.as_json:
-        console.emit(format_json(_describe_build(points, survey, tin, gaps, planned, seconds)))
+    rows = _summarise_build(points, survey, tin, gaps)
+    describe = partial(_describe_build, points, survey, tin, gaps, planned, request.started)
+    request.finish(planned, rows, describe)
 
 
-def _warn_of_gaps(tin: TIN, how: Triangulating, console: Console) -> list[str]:
-    """Tell of gaps that the surface spans, unless the user has said how far it may."""
+def _find_gaps(tin: TIN, request: Request) -> list[str]:
+    """Describe gaps that the surface spans, unless the user has said how far it may."""
     from ...terrain.gaps import describe_gaps
 
-    if how.max_edge is not None:
+    if request.how.max_edge is not None:
         return []
-    with console.steps() as steps, steps.step("Looking for gaps"):
+    with request.step("Looking for gaps"):
         return describe_gaps(tin)
 
 
@@ -115,10 +86,7 @@ def _require_survey(found: Survey | TIN, path: Path) -> Survey:
     return found
 
 
-def _summarise_build(
-    points: Path, survey: Survey, tin: TIN, gaps: list[str], outputs: list[Output], seconds: float
-) -> list[Row]:
-    from ..files import describe_written
+def _summarise_build(points: Path, survey: Survey, tin: TIN, gaps: list[str]) -> list[Row]:
     from ..output.line_summaries import describe_counts, summarise_lines
     from ..output.summaries import (
         summarise_crs,
@@ -136,13 +104,11 @@ def _summarise_build(
         *(("Gaps", gap) for gap in gaps),
         *summarise_extent(tin),
         summarise_crs(tin.crs),
-        ("Written", describe_written(outputs)),
-        ("Time", f"{seconds:.2f} s"),
     ]
 
 
 def _describe_build(
-    points: Path, survey: Survey, tin: TIN, gaps: list[str], outputs: list[Output], seconds: float
+    points: Path, survey: Survey, tin: TIN, gaps: list[str], planned: Products, started: float
 ) -> dict[str, Any]:
     from ..output.line_summaries import count_lines
     from ..output.summaries import describe_report, describe_survey, describe_tin
@@ -159,7 +125,7 @@ def _describe_build(
                 "format": one.formats["TIN"].name,
                 "bytes": one.path.stat().st_size,
             }
-            for one in outputs
+            for one in planned.outputs["TIN"]
         ],
-        "seconds": round(seconds, 3),
+        "seconds": round(perf_counter() - started, 3),
     }

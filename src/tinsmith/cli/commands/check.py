@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 import click
 
 from ..._sentences import counted
-from ..options import console_options, input_file, reading_options, triangulating_options
+from ..options import console_options, reading_options, triangulating_options
 from ..output.failures import Failure
+from ..parameters import input_file
 from ..paths import name_file
 
 if TYPE_CHECKING:

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..._sentences import counted
-from ..options import console_options, input_file, reading_options
+from ..options import console_options, reading_options
 from ..output.failures import Failure
-from ..paths import OUTPUT, make_title, name_file
+from ..parameters import input_file, number_option, picture_option
+from ..paths import make_title, name_file
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -28,18 +29,12 @@ _COLUMN = 16
 
 @click.command(short_help="Compare the paper's algorithms with the exact kernel.")
 @input_file("file")
-@click.option(
-    "-o",
-    "--output",
-    metavar="FILE",
-    type=OUTPUT,
-    help="Picture to write (.png): the triangles side by side, faults marked.",
-)
-@click.option(
+@picture_option("Picture to write (.png): the triangles side by side, faults marked.")
+@number_option(
     "--sample",
-    metavar="N",
+    "N",
+    "Take N of the points at random, the same every time.",
     type=click.IntRange(min=3),
-    help="Take N of the points at random, the same every time.",
 )
 @reading_options
 @console_options

@@ -2,30 +2,23 @@
 
 from __future__ import annotations
 
-from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from ..._sentences import counted
-from ..options import (
-    console_options,
-    input_file,
-    output_files,
-    reading_options,
-    triangulating_options,
-    writing_options,
-)
-from ..output.console import format_json
+from ..options import writing_options
+from ..parameters import input_file, number_option, output_files, parse_numbers
 from ..paths import make_title
+from ..request import surface_options
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from ...terrain import Features
     from ...tin import TIN
-    from ..options import Reading, Triangulating, Writing
-    from ..output.console import Console, Row
+    from ..output.console import Row
+    from ..request import Request
 
 __all__ = ["contours"]
 
@@ -33,56 +26,40 @@ __all__ = ["contours"]
 @click.command(short_help="Draw contour lines, bands or labels of a TIN.")
 @input_file("file")
 @output_files
+@number_option("--interval", "HEIGHT", "Between levels, in the unit of elevations.")
 @click.option(
-    "--interval", metavar="HEIGHT", type=float, help="Between levels, in the unit of elevations."
+    "--levels",
+    metavar="Z,Z,...",
+    callback=parse_numbers,
+    help="Explicit levels instead of an interval, with commas.",
 )
-@click.option(
-    "--levels", metavar="Z,Z,...", help="Explicit levels instead of an interval, with commas."
-)
-@click.option(
-    "--base",
-    metavar="ELEVATION",
-    type=float,
-    default=0.0,
-    show_default=True,
-    help="A level from which the others are counted.",
-)
-@click.option(
+@number_option("--base", "ELEVATION", "A level from which the others are counted.", default=0.0)
+@number_option(
     "--index",
-    metavar="N",
+    "N",
+    "Every Nth contour is an index contour, counted from the base; 0 for none.",
     type=click.IntRange(min=0),
     default=5,
-    show_default=True,
-    help="Every Nth contour is an index contour, counted from the base; 0 for none.",
 )
-@click.option(
+@number_option(
     "--smooth",
-    metavar="HEIGHT",
-    type=float,
-    help="Round the corners, as far as the surface stays within this much of the level.",
+    "HEIGHT",
+    "Round the corners, as far as the surface stays within this much of the level.",
 )
-@click.option("--simplify", metavar="HEIGHT", type=float, help="Drop points, likewise.")
+@number_option("--simplify", "HEIGHT", "Drop points, likewise.")
 @click.option("--bands", is_flag=True, help="Write the bands between levels, as polygons.")
 @click.option(
     "--labels", is_flag=True, help="Write labels of the lines, as points with a rotation."
 )
-@click.option(
+@number_option(
     "--label-spacing",
-    metavar="DISTANCE",
-    type=float,
-    help="Between labels of a line, in CRS units; default a third of the extent.",
+    "DISTANCE",
+    "Between labels of a line, in CRS units; default a third of the extent.",
 )
-@reading_options
-@triangulating_options
-@writing_options
-@console_options
+@surface_options(writing_options)
 def contours(
     file: Path,
-    outputs: tuple[Path, ...],
-    reading: Reading,
-    how: Triangulating,
-    writing: Writing,
-    console: Console,
+    request: Request,
     **options: Any,
 ) -> None:
     """Draw contours of the TIN in FILE, or that of the points in it, at an interval or at levels.
@@ -96,30 +73,15 @@ def contours(
       tinsmith contours sample_data/site_survey.csv --crs EPSG:32616 --interval 0.5 -o site.png
       tinsmith contours sample_data/site_survey.csv --crs EPSG:32616 --interval 1 --bands -o b.gpkg
     """  # noqa: D301 - click reads the control character
-    from ..files import list_inputs, read_tin
-    from ..surfaces import plan_products
-
-    started = perf_counter()
     _require_one_product(options)
-    options["levels"] = _numbers(options["levels"])
-    inputs, kinds = list_inputs(file, how), ["Features", "picture"]
-    planned = plan_products(outputs, writing, inputs=inputs, console=console, kinds=kinds)
-    tin, _ = read_tin(file, reading, how, console)
-    with console.steps() as steps, steps.step("Tracing contours"):
-        made = _product(tin, options)
-    planned.write("Features", made, console)
-    planned.draw(lambda: _draw(tin, made, options, make_title(file)), console)
-    written = [str(path) for path in planned.paths]
-    console.summarise(
-        [
-            *_fields(made),
-            *(("Note", note) for note in made.notes),
-            ("Written", planned.text),
-            ("Time", f"{perf_counter() - started:.2f} s"),
-        ]
-    )
-    if console.as_json:
-        console.emit(format_json(_facts(file, made, written)))
+    planned = request.plan_products(request.list_inputs(file), "Features", "picture")
+    tin = request.read_tin(file)
+    with request.step("Tracing contours"):
+        made = _make_product(tin, options)
+    planned.write("Features", made)
+    planned.draw(lambda: _draw(tin, made, options, make_title(file)))
+    rows = [*_summarise_contours(made), *(("Note", note) for note in made.notes)]
+    request.finish(planned, rows, lambda: _describe_contours(file, made))
 
 
 def _require_one_product(options: dict[str, Any]) -> None:
@@ -136,18 +98,7 @@ def _require_one_product(options: dict[str, Any]) -> None:
         raise click.UsageError("Either --interval or --levels is needed, and not both.")
 
 
-def _numbers(text: str | None) -> list[float] | None:
-    if text is None:
-        return None
-    try:
-        return [float(part) for part in text.split(",")]
-    except ValueError:
-        raise click.UsageError(
-            f"Invalid --levels '{text}': it must be numbers with commas between them."
-        ) from None
-
-
-def _product(tin: TIN, options: dict[str, Any]) -> Features:
+def _make_product(tin: TIN, options: dict[str, Any]) -> Features:
     from ...terrain import contour_bands, contour_labels
     from ...terrain import contours as trace
 
@@ -173,22 +124,26 @@ def _draw(tin: TIN, made: Features, options: dict[str, Any], title: str) -> Any:
     if options["bands"]:
         return contour_map(tin, bands=made, title=title)
     is_labels = options["labels"]
-    lines = _product(tin, options | {"labels": False}) if is_labels else made
+    lines = _make_product(tin, options | {"labels": False}) if is_labels else made
     labels = made if is_labels else contour_labels(lines)
     return contour_map(tin, lines, labels=labels, title=title)
 
 
-def _fields(made: Features) -> list[Row]:
+def _summarise_contours(made: Features) -> list[Row]:
     if made.kind == "polygons":
         return [("Bands", counted(len(made), "band"))]
     if made.kind == "points":
         return [("Labels", counted(len(made), "label"))]
     closed = int(made.columns["is_closed"].sum())
     counts = f"{counted(len(made), 'line')}, {closed:,} of them closed"
-    return [("Contours", counts), ("Points", f"{len(made.coordinates):,}"), *_level_fields(made)]
+    return [
+        ("Contours", counts),
+        ("Points", f"{len(made.coordinates):,}"),
+        *_summarise_levels(made),
+    ]
 
 
-def _level_fields(made: Features) -> list[Row]:
+def _summarise_levels(made: Features) -> list[Row]:
     from ...terrain.results.columns import unit_text
 
     levels = sorted(set(made.columns["elevation"].tolist()))
@@ -199,7 +154,7 @@ def _level_fields(made: Features) -> list[Row]:
     return [("Levels", f"{len(levels):,}, from {levels[0]:g} to {levels[-1]:g}{shown}")]
 
 
-def _facts(file: Path, made: Features, outputs: list[str]) -> dict[str, Any]:
+def _describe_contours(file: Path, made: Features) -> dict[str, Any]:
     from ...terrain.results.columns import unit_text
 
     record: dict[str, Any] = {
@@ -209,7 +164,6 @@ def _facts(file: Path, made: Features, outputs: list[str]) -> dict[str, Any]:
         "points": len(made.coordinates),
         "units": {name: unit_text(made.units, name) for name in made.columns},
         "notes": list(made.notes),
-        "outputs": outputs,
     }
     if made.kind == "lines":
         record["levels"] = sorted(set(made.columns["elevation"].tolist()))

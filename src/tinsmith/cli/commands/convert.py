@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 import click
 
 from ..._sentences import counted
-from ..options import console_options, input_file, output_files, reading_options, writing_options
+from ..options import console_options, reading_options, writing_options
 from ..output.console import format_json
+from ..parameters import input_file, output_files
 from ..paths import name_file
 
 if TYPE_CHECKING:

@@ -3,27 +3,18 @@
 from __future__ import annotations
 
 from pathlib import Path
-from time import perf_counter
-from typing import TYPE_CHECKING, get_args
+from typing import TYPE_CHECKING
 
 import click
 
 from ...policies import OutsidePolicy
-from ..options import (
-    console_options,
-    input_file,
-    output_files,
-    product_options,
-    reading_options,
-    triangulating_options,
-)
-from ..output.console import format_json
+from ..parameters import choice_option, input_file, output_files
 from ..paths import LINES, Named
+from ..request import surface_options
 
 if TYPE_CHECKING:
     from ...terrain import Features
-    from ..options import Reading, Triangulating, Writing
-    from ..output.console import Console
+    from ..request import Request
 
 __all__ = ["drape"]
 
@@ -32,26 +23,18 @@ __all__ = ["drape"]
 @input_file("file")
 @click.argument("features", type=LINES)
 @output_files
-@click.option(
+@choice_option(
     "--outside",
-    type=click.Choice(get_args(OutsidePolicy)),
+    OutsidePolicy,
+    "What lies outside the surface: refuse, keep without elevations, or leave out.",
     default="error",
-    show_default=True,
-    help="What lies outside the surface: refuse, keep without elevations, or leave out.",
 )
-@reading_options
-@triangulating_options
-@product_options
-@console_options
+@surface_options()
 def drape(
     file: Path,
     features: Path,
-    outputs: tuple[Path, ...],
     outside: str,
-    reading: Reading,
-    how: Triangulating,
-    writing: Writing,
-    console: Console,
+    request: Request,
 ) -> None:
     """Lay the FEATURES of a vector file on the TIN in FILE, or on that of the points in it.
 
@@ -65,39 +48,35 @@ def drape(
     from ...io.vector.geometries import read_geometries
     from ...io.vector.survey_lines import split_layer
     from ...terrain import drape as drape_features
-    from ..files import describe_written, list_inputs, plan_outputs, read_tin, write_outputs
     from ..output.line_summaries import mesh_counts
 
-    started = perf_counter()
     path, layer = split_layer(features)
-    inputs = [*list_inputs(file, how), Named(path, "the file of features")]
-    planned = plan_outputs(outputs, writing, inputs=inputs, console=console, kinds=("Features",))
-    tin, _ = read_tin(file, reading, how, console)
-    with console.steps() as steps, steps.step("Draping"):
+    inputs = request.list_inputs(file, more=[Named(path, "the file of features")])
+    planned = request.plan(inputs, "Features")
+    tin = request.read_tin(file)
+    with request.step("Draping"):
         given = read_geometries(path, crs=tin.crs, layer=layer)
         draped = drape_features(tin, given, outside=outside)  # type: ignore[arg-type]
-    write_outputs(draped, planned, console)
-    console.summarise(
-        [
-            ("Surface", mesh_counts(tin)),
-            ("Draped", _counts(given, draped)),
-            *[("Note", note) for note in draped.notes],
-            ("Written", describe_written(planned)),
-            ("Time", f"{perf_counter() - started:.2f} s"),
-        ]
-    )
-    if console.as_json:
-        facts = {"input": str(file), "features": str(features), "kind": draped.kind}
-        counts = {"given": len(given), "draped": len(draped)}
-        vertices = {
-            "vertices_given": len(given.coordinates),
-            "vertices_draped": len(draped.coordinates),
-        }
-        notes = {"notes": list(draped.notes), "outputs": [str(one.path) for one in planned]}
-        console.emit(format_json(facts | counts | vertices | notes))
+    planned.write("Features", draped)
+    rows = [
+        ("Surface", mesh_counts(tin)),
+        ("Draped", _count_draped(given, draped)),
+        *[("Note", note) for note in draped.notes],
+    ]
+    record = {
+        "input": str(file),
+        "features": str(features),
+        "kind": draped.kind,
+        "given": len(given),
+        "draped": len(draped),
+        "vertices_given": len(given.coordinates),
+        "vertices_draped": len(draped.coordinates),
+        "notes": list(draped.notes),
+    }
+    request.finish(planned, rows, lambda: record)
 
 
-def _counts(given: Features, draped: Features) -> str:
+def _count_draped(given: Features, draped: Features) -> str:
     from ..._sentences import counted
 
     vertices = (

@@ -4,29 +4,21 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from ..._sentences import counted
-from ..options import (
-    console_options,
-    input_file,
-    output_files,
-    reading_options,
-    triangulating_options,
-    writing_options,
-)
-from ..output.console import format_json
-from ..paths import INPUT, OUTPUT, STANDARD, name_file
+from ..options import writing_options
+from ..parameters import input_file, output_files, report_option
+from ..paths import INPUT, STANDARD, Named, name_file
+from ..request import surface_options
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from ...tin import TIN
-    from ..options import Reading, Triangulating, Writing
-    from ..output.console import Console
+    from ..request import Request
 
 __all__ = ["edit"]
 
@@ -35,25 +27,13 @@ __all__ = ["edit"]
 @input_file("file")
 @click.argument("script", type=INPUT)
 @output_files
-@reading_options
-@triangulating_options
-@writing_options
-@click.option(
-    "--report",
-    metavar="FILE",
-    type=OUTPUT,
-    help="JSON file that accounts for every row and every edit.",
-)
-@console_options
+@report_option("JSON file that accounts for every row and every edit.")
+@surface_options(writing_options)
 def edit(
     file: Path,
     script: Path,
-    outputs: tuple[Path, ...],
-    reading: Reading,
-    how: Triangulating,
-    writing: Writing,
     report: Path | None,
-    console: Console,
+    request: Request,
 ) -> None:
     """Change the TIN in FILE, or that of the points in it, by the edits in SCRIPT.
 
@@ -75,47 +55,27 @@ def edit(
        {"op": "add_breakline", "coords": [[752650, 4024200, 321], [752700, 4024300, 323]]}]
     """  # noqa: D301 - click reads the control character
     from ...tin.editing.history import apply_edits
-    from ..files import (
-        describe_written,
-        list_inputs,
-        plan_outputs,
-        read_tin,
-        write_outputs,
-        write_text,
-    )
+    from ..files import write_text
+    from ..output.console import format_json
     from ..output.line_summaries import mesh_counts
 
-    started = perf_counter()
-    planned = plan_outputs(
-        outputs,
-        writing,
-        inputs=list_inputs(file, how, script=script),
-        console=console,
-        report=report,
-        kinds=("TIN",),
-    )
+    inputs = request.list_inputs(file, more=[Named(script, "the script")])
+    planned = request.plan(inputs, "TIN", report=report)
     edits = _read_script(script)
-    tin, _ = read_tin(file, reading, how, console)
+    tin = request.read_tin(file)
     before = mesh_counts(tin)
-    with console.steps() as steps, steps.step(f"Making {counted(len(edits), 'edit')}"):
+    with request.step(f"Making {counted(len(edits), 'edit')}"):
         apply_edits(tin, edits)
-    write_outputs(tin, planned, console)
+    planned.write("TIN", tin)
     if report is not None:
         write_text(report, format_json(tin.report.to_dict()) + "\n")
-    console.summarise(
-        [
-            ("Read", f"a TIN of {before} from {name_file(file)}"),
-            ("Edits", _count_edits(tin)),
-            ("TIN", mesh_counts(tin)),
-            *(("Note", note) for one in tin.edits for note in one.notes),
-            ("Written", describe_written(planned)),
-            ("Time", f"{perf_counter() - started:.2f} s"),
-        ]
-    )
-    if console.as_json:
-        console.emit(
-            format_json(_describe_edits(file, script, tin, [str(one.path) for one in planned]))
-        )
+    rows = [
+        ("Read", f"a TIN of {before} from {name_file(file)}"),
+        ("Edits", _count_edits(tin)),
+        ("TIN", mesh_counts(tin)),
+        *(("Note", note) for one in tin.edits for note in one.notes),
+    ]
+    request.finish(planned, rows, lambda: _describe_edits(file, script, tin))
 
 
 def _count_edits(tin: TIN) -> str:
@@ -124,7 +84,7 @@ def _count_edits(tin: TIN) -> str:
     return f"{len(tin.edits):,} ({named})" if named else "none"
 
 
-def _describe_edits(file: Path, script: Path, tin: TIN, outputs: list[str]) -> dict[str, Any]:
+def _describe_edits(file: Path, script: Path, tin: TIN) -> dict[str, Any]:
     from ..output.summaries import describe_tin
 
     return {
@@ -132,7 +92,6 @@ def _describe_edits(file: Path, script: Path, tin: TIN, outputs: list[str]) -> d
         "script": str(script),
         "tin": describe_tin(tin),
         "report": tin.report.to_dict(),
-        "outputs": outputs,
     }
 
 

@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..options import console_options, input_file, reading_options
+from ..options import console_options, reading_options
 from ..output.failures import Failure
+from ..parameters import input_file
 from ..paths import OUTPUT, make_title, name_file
 
 if TYPE_CHECKING:

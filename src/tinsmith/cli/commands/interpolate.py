@@ -2,24 +2,16 @@
 
 from __future__ import annotations
 
-from time import perf_counter
-from typing import TYPE_CHECKING, Any, get_args
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from ..._sentences import counted
 from ...policies import Extrapolation, InterpolationMethod
-from ..options import (
-    console_options,
-    input_file,
-    output_files,
-    product_options,
-    reading_options,
-    triangulating_options,
-)
-from ..output.console import format_json
 from ..output.failures import Failure
+from ..parameters import choice_option, input_file, output_files
 from ..paths import LINES, Named
+from ..request import surface_options
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -27,9 +19,8 @@ if TYPE_CHECKING:
     from ...io.delimited.places import Places
     from ...terrain import Table
     from ...tin import TIN
-    from ..files import Output
-    from ..options import Reading, Triangulating, Writing
-    from ..output.console import Console
+    from ..output.console import Row
+    from ..request import Request
 
 __all__ = ["interpolate"]
 
@@ -45,17 +36,11 @@ __all__ = ["interpolate"]
     help="CSV file of the places; its first line names the columns, all of which are kept.",
 )
 @output_files
-@click.option(
-    "--method",
-    type=click.Choice(get_args(InterpolationMethod)),
-    default="linear",
-    show_default=True,
-    help="What lies between the vertices.",
-)
-@click.option(
+@choice_option("--method", InterpolationMethod, "What lies between the vertices.", default="linear")
+@choice_option(
     "--extrapolate",
-    type=click.Choice(get_args(Extrapolation)),
-    help="Take the nearest place of the surface outside it; default no elevation.",
+    Extrapolation,
+    "Take the nearest place of the surface outside it; default no elevation.",
 )
 @click.option(
     "--places-columns",
@@ -72,18 +57,11 @@ __all__ = ["interpolate"]
     show_default=True,
     help="Name of the column that is added.",
 )
-@reading_options
-@triangulating_options
-@product_options
-@console_options
+@surface_options()
 def interpolate(
     file: Path,
     places_file: Path,
-    outputs: tuple[Path, ...],
-    reading: Reading,
-    how: Triangulating,
-    writing: Writing,
-    console: Console,
+    request: Request,
     **asked: Any,
 ) -> None:
     """Find the elevations of the TIN in FILE, or that of the points in it, at places.
@@ -95,47 +73,40 @@ def interpolate(
     """  # noqa: D301 - click reads the control character
     from ...io.delimited.places import read_places
     from ...terrain.georeference import describe_unknown
-    from ..files import list_inputs, plan_outputs, read_tin, write_outputs
 
-    started = perf_counter()
-    inputs = [*list_inputs(file, how), Named(places_file, "the file of --at")]
-    planned = plan_outputs(outputs, writing, inputs=inputs, console=console, kinds=("Table",))
-    tin, _ = read_tin(file, reading, how, console)
+    inputs = request.list_inputs(file, more=[Named(places_file, "the file of --at")])
+    planned = request.plan(inputs, "Table")
+    tin = request.read_tin(file)
     places = read_places(
         places_file,
         columns=asked["places_columns"] or None,
         delimiter=asked["places_delimiter"],
     )
     notes = [*describe_unknown(tin.crs, tin.elevation_unit), *places.notes]
-    table = _table(tin, places, notes, how.threads, asked, console)
-    write_outputs(table, planned, console)
-    _tell(table, tin, planned, notes, started, asked, console)
-    if console.as_json:
-        facts = {"input": str(file), "places": len(table), "method": asked["method"]}
-        facts |= {"outside": _outside(table, asked["column"]), "notes": notes}
-        console.emit(format_json(facts | {"outputs": [str(one.path) for one in planned]}))
+    with request.step(f"Interpolating {counted(len(places.xy), 'place')}"):
+        table = _interpolate(tin, places, notes, request.how.threads, asked)
+    planned.write("Table", table)
+    outside = _count_outside(table, asked["column"])
+    record = {"input": str(file), "places": len(table), "method": asked["method"]}
+    record |= {"outside": outside, "notes": notes}
+    rows = _summarise_places(tin, table, outside, notes, asked)
+    request.finish(planned, rows, lambda: record)
 
 
-def _table(
-    tin: TIN,
-    places: Places,
-    notes: list[str],
-    threads: int | None,
-    asked: dict[str, Any],
-    console: Console,
+def _interpolate(
+    tin: TIN, places: Places, notes: list[str], threads: int | None, asked: dict[str, Any]
 ) -> Table:
     from ...terrain import Table
 
     column = asked["column"]
     if column in places.columns:
         raise Failure(f"The places have a column '{column}' already: name another with --column.")
-    with console.steps() as steps, steps.step(f"Interpolating {counted(len(places.xy), 'place')}"):
-        elevations = tin.interpolate(
-            _in_crs_of(tin, places, asked["places_crs"], notes),
-            asked["method"],
-            extrapolate=asked["extrapolate"],
-            threads=threads,
-        )
+    elevations = tin.interpolate(
+        _reproject_places(tin, places, asked["places_crs"], notes),
+        asked["method"],
+        extrapolate=asked["extrapolate"],
+        threads=threads,
+    )
     return Table(
         {**places.columns, column: elevations},
         units={column: tin.elevation_unit},
@@ -144,7 +115,7 @@ def _table(
     )
 
 
-def _in_crs_of(tin: TIN, places: Places, given: str | None, notes: list[str]) -> Any:
+def _reproject_places(tin: TIN, places: Places, given: str | None, notes: list[str]) -> Any:
     """Return the places in the TIN's CRS; degrees and lengths are never mixed."""
     import numpy as np
 
@@ -168,35 +139,23 @@ def _in_crs_of(tin: TIN, places: Places, given: str | None, notes: list[str]) ->
     return transform_points(flat, source.horizontal, tin.crs.horizontal)[:, :2]
 
 
-def _outside(table: Table, column: str) -> int:
+def _count_outside(table: Table, column: str) -> int:
     import numpy as np
 
     return int(np.isnan(table[column]).sum())
 
 
-def _tell(
-    table: Table,
-    tin: TIN,
-    planned: list[Output],
-    notes: list[str],
-    started: float,
-    asked: dict[str, Any],
-    console: Console,
-) -> None:
-    from ..files import describe_written
+def _summarise_places(
+    tin: TIN, table: Table, outside: int, notes: list[str], asked: dict[str, Any]
+) -> list[Row]:
     from ..output.line_summaries import mesh_counts
 
-    outside = _outside(table, asked["column"])
     told = f"{outside:,} outside the surface, without elevation" if outside else "all inside"
     if asked["extrapolate"]:
         told = "elevations outside are those of the nearest place"
-    console.summarise(
-        [
-            ("Surface", mesh_counts(tin)),
-            ("Places", f"{len(table):,}, {told}"),
-            ("Method", asked["method"]),
-            *[("Note", note) for note in notes],
-            ("Written", describe_written(planned)),
-            ("Time", f"{perf_counter() - started:.2f} s"),
-        ]
-    )
+    return [
+        ("Surface", mesh_counts(tin)),
+        ("Places", f"{len(table):,}, {told}"),
+        ("Method", asked["method"]),
+        *[("Note", note) for note in notes],
+    ]

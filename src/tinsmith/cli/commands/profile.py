@@ -4,30 +4,22 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..options import (
-    console_options,
-    output_files,
-    product_options,
-    reading_options,
-    triangulating_options,
-)
-from ..output.console import format_json
 from ..output.failures import Failure
+from ..parameters import number_option, output_files
 from ..paths import INPUT, LINES, Named, make_title
+from ..request import surface_options
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ...terrain import Features, Table
     from ...tin import TIN
-    from ..options import Reading, Triangulating, Writing
-    from ..output.console import Console
-    from ..surfaces import Products
+    from ..products import Products
+    from ..request import Request
 
 __all__ = ["profile"]
 
@@ -55,17 +47,8 @@ class _Line:
 @click.option("--line", "line_file", metavar="FILE", type=LINES, help="Vector file of the lines.")
 @click.option("--from", "begin", metavar="X Y", nargs=2, type=float, help="Where a line begins.")
 @click.option("--to", "end", metavar="X Y", nargs=2, type=float, help="Where it ends.")
-@click.option(
-    "--interval", metavar="LENGTH", type=float, help="Add a row at every multiple of this station."
-)
-@click.option(
-    "--start",
-    metavar="STATION",
-    type=float,
-    default=0.0,
-    show_default=True,
-    help="Station where the line begins.",
-)
+@number_option("--interval", "LENGTH", "Add a row at every multiple of this station.")
+@number_option("--start", "STATION", "Station where the line begins.", default=0.0)
 @click.option(
     "--sections",
     metavar="INTERVAL WIDTH",
@@ -80,25 +63,16 @@ class _Line:
     multiple=True,
     help="Name of a surface, once for each; default its file's.",
 )
-@click.option(
-    "--exaggeration", metavar="FACTOR", type=float, help="Of the picture; chosen if absent."
-)
+@number_option("--exaggeration", "FACTOR", "Of the picture; chosen if absent.")
 @click.option("--title", metavar="TEXT", help="Of the picture; default the first file's name.")
-@reading_options
-@triangulating_options
-@product_options
-@console_options
+@surface_options()
 def profile(
     files: tuple[Path, ...],
-    outputs: tuple[Path, ...],
     line_file: Path | None,
     begin: Pair | None,
     end: Pair | None,
     names: tuple[str, ...],
-    reading: Reading,
-    how: Triangulating,
-    writing: Writing,
-    console: Console,
+    request: Request,
     **asked: Any,
 ) -> None:
     """Cut the TINs in FILES, or those of the points in them, along a line.
@@ -113,33 +87,27 @@ def profile(
         --from 752690 4024225 --to 752850 4024330 -o profile.csv -o profile.png
     """  # noqa: D301 - click reads the control character
     from ..output.line_summaries import mesh_counts
-    from ..surfaces import read_surfaces
 
-    started = perf_counter()
     line = _Line(file=line_file, start=begin, end=end)
     line.require_one()
     chosen, asked["is_named"] = _choose_names(files, names), bool(names)
-    planned = _plan(outputs, files, line_file, how, writing, console, asked["sections"])
-    surfaces = dict(zip(chosen, read_surfaces(files, reading, how, console), strict=True))
+    planned = _plan(request, files, line_file, asked["sections"])
+    surfaces = dict(zip(chosen, request.read_tins(files), strict=True))
     notes: list[str] = []
-    lines = _read_line(line, next(iter(surfaces.values())), notes)
-    table, sections = _cut(surfaces, lines, planned.holds("Features"), console, asked)
+    lines = _read_lines(line, next(iter(surfaces.values())), notes)
+    with request.step("Cutting"):
+        table, sections = _cut(surfaces, lines, planned.holds("Features"), asked)
     figure = _draw(table, surfaces, files, asked) if planned.holds("picture") else None
-    planned.write("Table", table, console)
-    planned.write("Features", sections, console)
-    planned.draw(lambda: figure, console)
+    planned.write("Table", table)
+    planned.write("Features", sections)
+    planned.draw(lambda: figure)
     notes += table.notes
-    console.summarise(
-        [
-            *[("Surface", f"{name}: {mesh_counts(tin)}") for name, tin in surfaces.items()],
-            ("Rows", f"{len(table):,}"),
-            *[("Note", note) for note in notes],
-            ("Written", planned.text),
-            ("Time", f"{perf_counter() - started:.2f} s"),
-        ]
-    )
-    if console.as_json:
-        console.emit(format_json(_as_record(files, table, notes, planned)))
+    rows = [
+        *[("Surface", f"{name}: {mesh_counts(tin)}") for name, tin in surfaces.items()],
+        ("Rows", f"{len(table):,}"),
+        *[("Note", note) for note in notes],
+    ]
+    request.finish(planned, rows, lambda: _describe_profile(files, table, notes))
 
 
 # ---------------------------------------------------------------- what is given
@@ -158,26 +126,19 @@ def _choose_names(files: Sequence[Path], given: Sequence[str]) -> list[str]:
 
 
 def _plan(
-    outputs: Sequence[Path],
-    files: Sequence[Path],
-    line_file: Path | None,
-    how: Triangulating,
-    writing: Writing,
-    console: Console,
-    sections: Pair | None,
+    request: Request, files: Sequence[Path], line_file: Path | None, sections: Pair | None
 ) -> Products:
     """Choose what each output holds, before any work is done."""
     from ...io.vector.survey_lines import split_layer
-    from ..surfaces import plan_products, surface_inputs
 
-    inputs = surface_inputs(files, how)
+    more = []
     if line_file is not None:
-        inputs.append(Named(split_layer(line_file)[0], "the file of --line"))
+        more.append(Named(split_layer(line_file)[0], "the file of --line"))
     kinds = ("Table", "picture") if sections is None else ("Table", "Features", "picture")
-    return plan_products(outputs, writing, inputs=inputs, console=console, kinds=kinds)
+    return request.plan_products(request.list_inputs(*files, more=more), *kinds)
 
 
-def _read_line(line: _Line, tin: TIN, notes: list[str]) -> Any:
+def _read_lines(line: _Line, tin: TIN, notes: list[str]) -> Any:
     """Return the lines to cut along; those of a file, also the rings of polygons, with its CRS."""
     from ...io.vector.geometries import read_geometries
     from ...io.vector.survey_lines import split_layer
@@ -197,7 +158,7 @@ def _read_line(line: _Line, tin: TIN, notes: list[str]) -> Any:
 
 
 def _cut(
-    surfaces: dict[str, TIN], lines: Any, in_space: bool, console: Console, asked: dict[str, Any]
+    surfaces: dict[str, TIN], lines: Any, in_space: bool, asked: dict[str, Any]
 ) -> tuple[Table, Features | None]:
     """Return the rows, and the sections as lines in space if they are wanted."""
     from ...terrain import cross_sections, section_lines
@@ -205,14 +166,13 @@ def _cut(
 
     is_named = len(surfaces) > 1 or asked["is_named"]
     given: Any = surfaces if is_named else next(iter(surfaces.values()))
-    with console.steps() as steps, steps.step("Cutting"):
-        if asked["sections"] is None:
-            rows = cut_profile(given, lines, interval=asked["interval"], start=asked["start"])
-            return rows, None
-        interval, width = asked["sections"]
-        how = {"interval": interval, "width": width, "start": asked["start"]}
-        table = cross_sections(given, lines, **how)
-        return table, section_lines(given, lines, **how) if in_space else None
+    if asked["sections"] is None:
+        rows = cut_profile(given, lines, interval=asked["interval"], start=asked["start"])
+        return rows, None
+    interval, width = asked["sections"]
+    how = {"interval": interval, "width": width, "start": asked["start"]}
+    table = cross_sections(given, lines, **how)
+    return table, section_lines(given, lines, **how) if in_space else None
 
 
 def _draw(
@@ -227,21 +187,18 @@ def _draw(
     return draw(table, exaggeration=asked["exaggeration"], title=title, crs=crs)
 
 
-def _as_record(
-    files: Sequence[Path], table: Table, notes: Sequence[str], planned: Products
-) -> dict[str, Any]:
+def _describe_profile(files: Sequence[Path], table: Table, notes: Sequence[str]) -> dict[str, Any]:
     """Describe the table: its columns, and the least and largest of those that are measured."""
     measured = [name for name, values in table.columns.items() if values.dtype.kind == "f"]
     return {
         "inputs": [str(file) for file in files],
         "rows": len(table),
         "columns": list(table.columns),
-        "ranges": {name: _measure_range(table[name]) for name in measured},
+        "ranges": {name: _find_range(table[name]) for name in measured},
         "notes": list(notes),
-        "outputs": [str(path) for path in planned.paths],
     }
 
 
-def _measure_range(values: Any) -> list[float | None]:
+def _find_range(values: Any) -> list[float | None]:
     known = values[values == values]
     return [float(known.min()), float(known.max())] if len(known) else [None, None]

@@ -2,30 +2,23 @@
 
 from __future__ import annotations
 
-from time import perf_counter
-from typing import TYPE_CHECKING, Any, get_args
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from ...policies import InterpolationMethod, RasterSample, RasterValue
-from ..options import (
-    console_options,
-    input_file,
-    output_files,
-    reading_options,
-    triangulating_options,
-)
-from ..output.console import format_json
+from ..options import format_options
+from ..parameters import choice_option, input_file, number_option, output_files
 from ..paths import LINES, Named
+from ..request import surface_options
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from ...terrain import Raster
     from ...tin import TIN
-    from ..files import Output
-    from ..options import Reading, Triangulating
-    from ..output.console import Console
+    from ..output.console import Row
+    from ..request import Request
 
 __all__ = ["raster"]
 
@@ -33,64 +26,32 @@ __all__ = ["raster"]
 @click.command(short_help="Turn a surface into a raster: elevation, slope, aspect, hillshade.")
 @input_file("file")
 @output_files
-@click.option(
-    "--spacing",
-    metavar="LENGTH",
-    type=float,
-    help="Side of a cell, CRS units; cells are aligned to its multiples.",
+@number_option(
+    "--spacing", "LENGTH", "Side of a cell, CRS units; cells are aligned to its multiples."
 )
 @click.option("--like", metavar="FILE", type=LINES, help="Raster whose cells are taken.")
-@click.option(
+@choice_option(
     "--value",
-    type=click.Choice(get_args(RasterValue)),
+    RasterValue,
+    "What the cells hold; slope and aspect in degrees, hillshade from 1 to 255.",
     default="elevation",
-    show_default=True,
-    help="What the cells hold; slope and aspect in degrees, hillshade from 1 to 255.",
 )
-@click.option(
-    "--method",
-    type=click.Choice(get_args(InterpolationMethod)),
-    default="linear",
-    show_default=True,
-    help="What lies between the vertices.",
-)
-@click.option(
+@choice_option("--method", InterpolationMethod, "What lies between the vertices.", default="linear")
+@choice_option(
     "--at",
-    "sample",
-    type=click.Choice(get_args(RasterSample)),
+    RasterSample,
+    "The value at the centre of each cell, or its mean.",
+    name="sample",
     default="center",
-    show_default=True,
-    help="The value at the centre of each cell, or its mean.",
 )
-@click.option(
-    "--azimuth",
-    metavar="DEGREES",
-    type=float,
-    default=315.0,
-    show_default=True,
-    help="Of the light of hillshade.",
-)
-@click.option(
-    "--altitude",
-    metavar="DEGREES",
-    type=float,
-    default=45.0,
-    show_default=True,
-    help="Of the light of hillshade.",
-)
-@click.option("--output-format", metavar="NAME", help="Format of the output, whatever its suffix.")
-@reading_options
-@triangulating_options
-@console_options
+@number_option("--azimuth", "DEGREES", "Of the light of hillshade.", default=315.0)
+@number_option("--altitude", "DEGREES", "Of the light of hillshade.", default=45.0)
+@surface_options(format_options)
 def raster(
     file: Path,
-    outputs: tuple[Path, ...],
     spacing: float | None,
     like: Path | None,
-    output_format: str | None,
-    reading: Reading,
-    how: Triangulating,
-    console: Console,
+    request: Request,
     **asked: Any,
 ) -> None:
     """Turn the TIN in FILE, or that of the points in it, into a raster.
@@ -103,24 +64,16 @@ def raster(
         --spacing 0.5 -o site.tif
     """  # noqa: D301 - click reads the control character
     from ...io.raster.cells import read_cells
-    from ..files import list_inputs, plan_outputs, read_tin, write_outputs
-    from ..options import Writing
 
     if (spacing is None) == (like is None):
         raise click.UsageError("One of --spacing and --like is needed.")
-    started = perf_counter()
-    inputs = list_inputs(file, how)
-    if like is not None:
-        inputs.append(Named(like, "the raster of --like"))
-    writing = Writing(output_format=output_format)
-    planned = plan_outputs(outputs, writing, inputs=inputs, console=console, kinds=("Raster",))
+    more = [] if like is None else [Named(like, "the raster of --like")]
+    planned = request.plan(request.list_inputs(file, more=more), "Raster")
     cells = None if like is None else read_cells(like)
-    tin, _ = read_tin(file, reading, how, console)
-    made = _rasterize(tin, spacing, cells, how.threads, asked)
-    write_outputs(made, planned, console)
-    _tell(tin, made, planned, started, console)
-    if console.as_json:
-        console.emit(format_json(_as_record(file, made, planned)))
+    tin = request.read_tin(file)
+    made = _rasterize(tin, spacing, cells, request.how.threads, asked)
+    planned.write("Raster", made)
+    request.finish(planned, _summarise_raster(tin, made), lambda: _describe_raster(file, made))
 
 
 def _rasterize(
@@ -142,25 +95,20 @@ def _rasterize(
     )
 
 
-def _tell(tin: TIN, made: Raster, planned: list[Output], started: float, console: Console) -> None:
-    from ..files import describe_written
+def _summarise_raster(tin: TIN, made: Raster) -> list[Row]:
     from ..output.line_summaries import mesh_counts
+    from ..output.summaries import describe_raster_size
 
-    rows, columns = made.shape
     box = made.grid.bounds
-    console.summarise(
-        [
-            ("Surface", mesh_counts(tin)),
-            ("Raster", f"{rows:,} rows by {columns:,} columns of {made.grid.spacing:g}"),
-            ("", f"west {box.xmin:.10g}, north {box.ymax:.10g}"),
-            *(("Note", note) for note in made.notes),
-            ("Written", describe_written(planned)),
-            ("Time", f"{perf_counter() - started:.2f} s"),
-        ]
-    )
+    return [
+        ("Surface", mesh_counts(tin)),
+        ("Raster", describe_raster_size(made)),
+        ("", f"west {box.xmin:.10g}, north {box.ymax:.10g}"),
+        *(("Note", note) for note in made.notes),
+    ]
 
 
-def _as_record(file: Path, made: Raster, planned: list[Output]) -> dict[str, Any]:
+def _describe_raster(file: Path, made: Raster) -> dict[str, Any]:
     from dataclasses import asdict
 
     return {
@@ -172,5 +120,4 @@ def _as_record(file: Path, made: Raster, planned: list[Output]) -> dict[str, Any
         "bands": list(made.bands),
         "crs": None if made.crs is None else str(made.crs),
         "notes": list(made.notes),
-        "outputs": [str(one.path) for one in planned],
     }

@@ -2,78 +2,48 @@
 
 from __future__ import annotations
 
-from time import perf_counter
-from typing import TYPE_CHECKING, Any, get_args
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from ...policies import SlopeUnit
-from ..options import (
-    console_options,
-    input_file,
-    output_files,
-    product_options,
-    reading_options,
-    triangulating_options,
-)
-from ..output.console import format_json
+from ..parameters import choice_option, input_file, output_files, parse_numbers
+from ..request import surface_options
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from ...terrain import Features, Table
     from ...tin import TIN
-    from ..options import Reading, Triangulating, Writing
-    from ..output.console import Console, Row
+    from ..output.console import Row
+    from ..request import Request
 
 __all__ = ["slope"]
-
-
-def _as_breaks(
-    ctx: click.Context,  # noqa: ARG001 - click's signature
-    param: click.Parameter,  # noqa: ARG001 - click's signature
-    value: str | None,
-) -> list[float] | None:
-    """Return limits given with commas."""
-    if value is None:
-        return None
-    try:
-        return [float(part) for part in value.split(",")]
-    except ValueError:
-        raise click.BadParameter(f"'{value}' are no numbers with commas: 5,10,25.") from None
 
 
 @click.command(short_help="Divide a TIN into classes of slope or aspect.")
 @input_file("file")
 @output_files
-@click.option(
+@choice_option(
     "--unit",
-    type=click.Choice(get_args(SlopeUnit)),
+    SlopeUnit,
+    "Of slopes: an angle, or rise over a run of 100 or of 1.",
     default="degrees",
-    show_default=True,
-    help="Of slopes: an angle, or rise over a run of 100 or of 1.",
 )
 @click.option(
     "--breaks",
     metavar="S,S,...",
-    callback=_as_breaks,
+    callback=parse_numbers,
     help="Limits between the classes, in that unit; usual ones if absent.",
 )
 @click.option("--aspect", is_flag=True, help="Classes of the direction in which it falls instead.")
-@reading_options
-@triangulating_options
-@product_options
-@console_options
+@surface_options()
 def slope(
     file: Path,
-    outputs: tuple[Path, ...],
     unit: SlopeUnit,
     breaks: list[float] | None,
     aspect: bool,
-    reading: Reading,
-    how: Triangulating,
-    writing: Writing,
-    console: Console,
+    request: Request,
 ) -> None:
     """Divide the TIN in FILE, or that of the points in it, into classes of slope.
 
@@ -87,37 +57,21 @@ def slope(
     """  # noqa: D301 - click reads the control character
     from ...terrain import aspect_classes, slope_classes, slope_statistics
     from ...terrain.relief.classes import tabulate_classes
-    from ..files import list_inputs, read_tin
-    from ..surfaces import plan_products
 
     if aspect and breaks is not None:
         raise click.UsageError("--breaks is for slopes: aspects have the eight directions.")
-    started = perf_counter()
-    planned = plan_products(
-        outputs,
-        writing,
-        inputs=list_inputs(file, how),
-        console=console,
-        kinds=("Features", "Table"),
-    )
-    tin, _ = read_tin(file, reading, how, console)
-    with console.steps() as steps, steps.step("Classifying"):
+    planned = request.plan_products(request.list_inputs(file), "Features", "Table")
+    tin = request.read_tin(file)
+    with request.step("Classifying"):
         made = aspect_classes(tin) if aspect else slope_classes(tin, breaks=breaks, unit=unit)
         statistics = slope_statistics(tin, unit=unit)
-    planned.write("Features", made, console)
-    planned.write("Table", tabulate_classes(made), console)
-    console.summarise(
-        [
-            *_fields(tin, made, statistics),
-            ("Written", planned.text),
-            ("Time", f"{perf_counter() - started:.2f} s"),
-        ]
-    )
-    if console.as_json:
-        console.emit(format_json(_facts(file, made, statistics, planned.paths)))
+    planned.write("Features", made)
+    planned.write("Table", tabulate_classes(made))
+    rows = _summarise_classes(tin, made, statistics)
+    request.finish(planned, rows, lambda: _describe_classes(file, made, statistics))
 
 
-def _fields(tin: TIN, made: Features, statistics: Table) -> list[Row]:
+def _summarise_classes(tin: TIN, made: Features, statistics: Table) -> list[Row]:
     from ..output.line_summaries import describe_counts
 
     found = {name: f"{statistics[name][0]:.1f}" for name in statistics.columns}
@@ -140,7 +94,7 @@ def _fields(tin: TIN, made: Features, statistics: Table) -> list[Row]:
     ]
 
 
-def _facts(file: Path, made: Features, statistics: Table, paths: list[Path]) -> dict[str, Any]:
+def _describe_classes(file: Path, made: Features, statistics: Table) -> dict[str, Any]:
     from ...terrain.results.columns import unit_text
 
     names = list(made.columns)
@@ -152,5 +106,4 @@ def _facts(file: Path, made: Features, statistics: Table, paths: list[Path]) -> 
         "classes": [dict(zip(names, row, strict=True)) for row in rows],
         "class_units": {name: unit_text(made.units, name) for name in made.units},
         "notes": list(made.notes),
-        "outputs": [str(path) for path in paths],
     }

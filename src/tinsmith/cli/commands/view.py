@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..options import console_options, input_file, reading_options, triangulating_options
+from ..options import console_options, reading_options, triangulating_options
 from ..output.failures import note_written
-from ..paths import OUTPUT, make_title
+from ..parameters import input_file, number_option, picture_option
+from ..paths import make_title
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -21,16 +22,8 @@ __all__ = ["view"]
 
 @click.command(short_help="Show a TIN in 3D, in a window or as a picture.")
 @input_file("file")
-@click.option(
-    "-o",
-    "--output",
-    metavar="FILE",
-    type=OUTPUT,
-    help="Picture to write (.png, .jpg, .tif) instead of opening a window.",
-)
-@click.option(
-    "--exaggeration", metavar="FACTOR", type=float, help="Vertical exaggeration; chosen if absent."
-)
+@picture_option("Picture to write (.png, .jpg, .tif) instead of opening a window.")
+@number_option("--exaggeration", "FACTOR", "Vertical exaggeration; chosen if absent.")
 @click.option("--edges", is_flag=True, help="Draw the edges of the triangles.")
 @click.option(
     "--lines/--no-lines", default=True, show_default=True, help="Draw breaklines and rims."

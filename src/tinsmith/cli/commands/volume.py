@@ -3,28 +3,21 @@
 from __future__ import annotations
 
 from pathlib import Path
-from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..options import (
-    console_options,
-    product_options,
-    reading_options,
-    triangulating_options,
-)
-from ..output.console import format_json
+from ..parameters import number_option, output_option
 from ..paths import INPUT, LINES, Named, make_title
+from ..request import surface_options
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ...terrain import Features, Table
+    from ...terrain import Difference, Features, Table
     from ...tin import TIN
-    from ..options import Reading, Triangulating, Writing
-    from ..output.console import Console, Row
-    from ..surfaces import Products
+    from ..output.console import Row
+    from ..request import Request
 
 __all__ = ["volume"]
 
@@ -34,22 +27,13 @@ _CUBIC_YARD = 27.0
 _FEET = ("ft³", "US ft³")
 
 
-_optional_outputs = click.option(
-    "-o",
-    "--output",
-    "outputs",
-    metavar="FILE",
-    type=INPUT,
-    multiple=True,
-    help="Table (.csv, .json), parts that are cut and filled (.gpkg, .geojson, .shp, .fgb) or map "
-    "(.png) to write. May be given several times.",
-)
-
-
 @click.command(short_help="Measure cut and fill, or how much a pond holds.")
 @click.argument("files", metavar="GROUND [DESIGN]", nargs=-1, required=True, type=INPUT)
-@_optional_outputs
-@click.option("--base", metavar="ELEVATION", type=float, help="Level in place of a design.")
+@output_option(
+    "Table (.csv, .json), parts that are cut and filled (.gpkg, .geojson, .shp, .fgb) or map "
+    "(.png) to write."
+)
+@number_option("--base", "ELEVATION", "Level in place of a design.")
 @click.option(
     "--regions",
     metavar="FILE",
@@ -61,23 +45,14 @@ _optional_outputs = click.option(
     is_flag=True,
     help="Tabulate area and volume of the water that stands in GROUND at each level.",
 )
-@click.option(
-    "--level", "levels", metavar="ELEVATION", type=float, multiple=True, help="Level of the table."
-)
-@click.option("--interval", metavar="LENGTH", type=float, help="Or multiples of this.")
+@number_option("--level", "ELEVATION", "Level of the table.", name="levels", multiple=True)
+@number_option("--interval", "LENGTH", "Or multiples of this.")
 @click.option("--title", metavar="TEXT", help="Of the map; default the names of the files.")
-@reading_options
-@triangulating_options
-@product_options
-@console_options
+@surface_options()
 def volume(
     files: tuple[Path, ...],
-    outputs: tuple[Path, ...],
     regions: Path | None,
-    reading: Reading,
-    how: Triangulating,
-    writing: Writing,
-    console: Console,
+    request: Request,
     **asked: Any,
 ) -> None:
     """Measure cut and fill from the TIN in GROUND to that in DESIGN, or to a level.
@@ -91,29 +66,22 @@ def volume(
       tinsmith volume sample_data/site_survey.csv --crs EPSG:32616 --base 325 -o cut.gpkg
       tinsmith volume sample_data/site_survey.csv --stage-storage --interval 0.5 -o stages.csv
     """  # noqa: D301 - click reads the control character
-    from ..surfaces import plan_products, read_surfaces, surface_inputs
-
-    started = perf_counter()
     _require_one_base(files, asked)
-    inputs = surface_inputs(files, how)
-    if regions is not None:
-        inputs.append(_name_file(regions))
+    inputs = request.list_inputs(*files, more=[] if regions is None else [_name_regions(regions)])
     kinds = ["Table"] if asked["stage_storage"] else ["Table", "Features", "picture"]
-    planned = plan_products(outputs, writing, inputs=inputs, console=console, kinds=kinds)
-    surfaces = read_surfaces(files, reading, how, console)
-    with console.steps() as steps, steps.step("Measuring"):
+    planned = request.plan_products(inputs, *kinds)
+    surfaces = request.read_tins(files)
+    with request.step("Measuring"):
         table = _measure(surfaces, regions, asked)
-    planned.write("Table", table, console)
-    _map(surfaces, files, planned, asked, console)
-    console.summarise(
-        [
-            *_list_fields(table, surfaces),
-            *_describe_output(planned),
-            ("Time", f"{perf_counter() - started:.2f} s"),
-        ]
+    planned.write("Table", table)
+    if planned.holds("Features") or planned.holds("picture"):
+        with request.step("Overlaying"):
+            found = _overlay(surfaces, asked["base"])
+        planned.write("Features", found.zones)
+        planned.draw(lambda: _draw_map(found, surfaces[0], files, asked["title"]))
+    request.finish(
+        planned, _summarise_volumes(table, surfaces), lambda: _describe_volumes(files, table)
     )
-    if console.as_json:
-        console.emit(format_json(_as_record(files, table, planned)))
 
 
 # ---------------------------------------------------------------- what is given
@@ -133,7 +101,7 @@ def _require_one_base(files: Sequence[Path], asked: dict[str, Any]) -> None:
         raise click.UsageError("--level and --interval are both given: choose one.")
 
 
-def _name_file(regions: Path) -> Named:
+def _name_regions(regions: Path) -> Named:
     from ...io.vector.survey_lines import split_layer
 
     return Named(split_layer(regions)[0], "the file of --regions")
@@ -165,33 +133,26 @@ def _measure(surfaces: Sequence[TIN], regions: Path | None, asked: dict[str, Any
     )
 
 
-def _map(
-    surfaces: Sequence[TIN],
-    files: Sequence[Path],
-    planned: Products,
-    asked: dict[str, Any],
-    console: Console,
-) -> None:
-    """Write polygons and pictures, if there are to be some."""
-    from ...terrain import difference, earthwork_map
+def _overlay(surfaces: Sequence[TIN], base: float) -> Difference:
+    """Subtract the ground from the design, or from a level."""
+    from ...terrain import difference
     from ...terrain.earthwork import level_surface
 
-    if not (planned.holds("Features") or planned.holds("picture")):
-        return
-    tin = surfaces[0]
-    other = surfaces[1] if len(surfaces) > 1 else level_surface(tin, asked["base"])
-    with console.steps() as steps, steps.step("Overlaying"):
-        found = difference(tin, other)
-    if planned.holds("Features"):
-        planned.write("Features", found.zones, console)
-    title = asked["title"] or f"Cut and fill: {' to '.join(make_title(file) for file in files)}"
-    planned.draw(lambda: earthwork_map(found, ground=tin, title=title), console)
+    ground = surfaces[0]
+    return difference(ground, surfaces[1] if len(surfaces) > 1 else level_surface(ground, base))
+
+
+def _draw_map(found: Difference, ground: TIN, files: Sequence[Path], title: str | None) -> Any:
+    from ...terrain import earthwork_map
+
+    title = title or f"Cut and fill: {' to '.join(make_title(file) for file in files)}"
+    return earthwork_map(found, ground=ground, title=title)
 
 
 # ---------------------------------------------------------------- for people
 
 
-def _list_fields(table: Table, surfaces: Sequence[TIN]) -> list[Row]:
+def _summarise_volumes(table: Table, surfaces: Sequence[TIN]) -> list[Row]:
     from ..output.line_summaries import mesh_counts
 
     names = ["Ground", "Design"]
@@ -207,19 +168,19 @@ def _list_volumes(table: Table) -> list[Row]:
         if len(table) > 1 or table["region"][row] != "all":
             rows.append(("Region", str(table["region"][row])))
         for name in ("cut", "fill"):
-            moved, area = (_write_quantity(table, one, row) for one in (name, f"{name}_area"))
-            rows.append((name.capitalize(), f"{moved} over {area}"))
-        rows.append(("Net", f"{_write_quantity(table, 'net', row)} (fill less cut)"))
-        rows.append(("Area", _describe_area(table, row)))
+            area = _format_quantity(table, f"{name}_area", row)
+            rows.append((name.capitalize(), f"{_format_quantity(table, name, row)} over {area}"))
+        rows.append(("Net", f"{_format_quantity(table, 'net', row)} (fill less cut)"))
+        rows.append(("Area", _format_area(table, row)))
     return rows
 
 
-def _describe_area(table: Table, row: int) -> str:
-    text = f"{_write_quantity(table, 'area', row)} compared"
+def _format_area(table: Table, row: int) -> str:
+    text = f"{_format_quantity(table, 'area', row)} compared"
     alone = {"area_alone": "of the ground alone", "base_area_alone": "without ground"}
     for name, what in alone.items():
         if name in table.columns and table[name][row] > 0:
-            text += f", {_write_quantity(table, name, row)} {what}"
+            text += f", {_format_quantity(table, name, row)} {what}"
     return text
 
 
@@ -227,12 +188,12 @@ def _list_stages(table: Table) -> list[Row]:
     rows = []
     for row in range(min(len(table), _SHOWN)):
         spills = "" if table["is_contained"][row] else ", reaches the boundary"
-        area, held = _write_quantity(table, "area", row), _write_quantity(table, "volume", row)
-        rows.append(("Level", f"{_write_quantity(table, 'level', row)}: {held}, {area}{spills}"))
+        area, held = _format_quantity(table, "area", row), _format_quantity(table, "volume", row)
+        rows.append(("Level", f"{_format_quantity(table, 'level', row)}: {held}, {area}{spills}"))
     return rows
 
 
-def _write_quantity(table: Table, name: str, row: int) -> str:
+def _format_quantity(table: Table, name: str, row: int) -> str:
     unit = table.units.get(name)
     symbol = getattr(unit, "symbol", unit) or ""
     value = float(table[name][row])
@@ -242,11 +203,7 @@ def _write_quantity(table: Table, name: str, row: int) -> str:
     return text
 
 
-def _describe_output(planned: Products) -> list[Row]:
-    return [("Written", planned.text)] if planned.paths else []
-
-
-def _as_record(files: Sequence[Path], table: Table, planned: Products) -> dict[str, Any]:
+def _describe_volumes(files: Sequence[Path], table: Table) -> dict[str, Any]:
     from ...terrain.results.columns import unit_text
 
     columns = {name: values.tolist() for name, values in table.columns.items()}
@@ -257,5 +214,4 @@ def _as_record(files: Sequence[Path], table: Table, planned: Products) -> dict[s
         ],
         "units": {name: unit_text(table.units, name) for name in table.units},
         "notes": list(table.notes),
-        "outputs": [str(path) for path in planned.paths],
     }

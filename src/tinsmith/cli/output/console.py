@@ -6,6 +6,7 @@ import json
 import math
 import shutil
 import sys
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -17,7 +18,7 @@ from .progress import Steps
 from .streams import escape_unprintable, silence, tell
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
     from pathlib import Path
 
 __all__ = ["Console", "Row", "emit_file", "format_json"]
@@ -46,6 +47,12 @@ class Console:
     def steps(self) -> Steps:
         """Return the context in which long work shows its progress."""
         return Steps(quiet=self.quiet)
+
+    @contextmanager
+    def step(self, text: str) -> Iterator[None]:
+        """Show the progress of one piece of long work."""
+        with self.steps() as steps, steps.step(text):
+            yield
 
     def summarise(self, rows: Iterable[Row]) -> None:
         """Write a summary to stderr."""

@@ -27,11 +27,13 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ...crs import CRS
+    from ...terrain import Raster
     from ...tin import Merge, Quality, Report
     from .console import Row
 
 __all__ = [
     "describe_file_size",
+    "describe_raster_size",
     "describe_report",
     "describe_survey",
     "describe_tin",
@@ -80,6 +82,12 @@ def describe_tin(tin: TIN) -> dict[str, Any]:
         **_describe_ground(tin),
         "notes": list(tin.report.notes),
     }
+
+
+def describe_raster_size(raster: Raster) -> str:
+    """Return rows, columns and spacing for a summary."""
+    rows, columns = raster.shape
+    return f"{rows:,} rows by {columns:,} columns of {raster.grid.spacing:g}"
 
 
 def measure_quality(tin: TIN) -> Quality | None:

@@ -1,20 +1,11 @@
-"""What commands that compare two surfaces share: reading both, and outputs of several kinds."""
+"""Outputs of several kinds: which file holds what, planned before any work is done."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from .files import (
-    add_lines,
-    build_tin,
-    describe_written,
-    list_inputs,
-    plan_outputs,
-    read_input,
-    write_figure,
-    write_outputs,
-)
+from .files import describe_written, plan_outputs, write_figure, write_outputs
 from .output.failures import Failure
 from .paths import STANDARD, Named, require_separate
 
@@ -22,12 +13,11 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
 
-    from ..tin import TIN
     from .files import Output
-    from .options import Reading, Triangulating, Writing
+    from .options import Writing
     from .output.console import Console
 
-__all__ = ["Products", "plan_products", "read_surfaces", "surface_inputs"]
+__all__ = ["Products", "plan_products"]
 
 _PICTURE = ".png"
 _TABLES = (".csv", ".tsv", ".txt", ".json")
@@ -38,21 +28,22 @@ _DOTS = 150
 class Products:
     """Outputs by what they hold: tables, features, TINs and pictures."""
 
+    console: Console
     outputs: dict[str, list[Output]]
-    pictures: list[Path]
+    pictures: list[Path] = field(default_factory=list)
 
     def holds(self, kind: str) -> bool:
         """Whether something of a kind is to be written."""
         return bool(self.pictures if kind == "picture" else self.outputs.get(kind))
 
-    def write(self, kind: str, product: Any, console: Console) -> None:
+    def write(self, kind: str, product: Any) -> None:
         """Write a product to all outputs of its kind."""
-        write_outputs(product, self.outputs.get(kind, []), console)
+        write_outputs(product, self.outputs.get(kind, []), self.console)
 
-    def draw(self, make_figure: Callable[[], Any], console: Console) -> None:
+    def draw(self, make_figure: Callable[[], Any]) -> None:
         """Write the pictures."""
         for path in self.pictures:
-            with console.steps() as steps, steps.step("Drawing"):
+            with self.console.step("Drawing"):
                 write_figure(make_figure(), path, dpi=_DOTS)
 
     @property
@@ -99,7 +90,7 @@ def plan_products(
         kind: plan_outputs(group, writing, inputs=(), console=console, kinds=(kind,))
         for kind, group in groups.items()
     }
-    return Products(outputs=planned, pictures=pictures)
+    return Products(console=console, outputs=planned, pictures=pictures)
 
 
 def _kind_of(path: Path, writing: Writing, kinds: Sequence[str]) -> str:
@@ -117,35 +108,3 @@ def _kind_of(path: Path, writing: Writing, kinds: Sequence[str]) -> str:
         if kind in kinds and any(suffix in (*one.suffixes, f".{one.name}") for one in able):
             return kind
     return next(kind for kind in kinds if kind != "picture")  # whose refusal names what it takes
-
-
-def surface_inputs(files: Sequence[Path], how: Triangulating) -> list[Named]:
-    """Return all files that are read."""
-    return [Named(file, "the input") for file in files] + list_inputs(files[0], how)[1:]
-
-
-def read_surfaces(
-    files: Sequence[Path], reading: Reading, how: Triangulating, console: Console
-) -> list[TIN]:
-    """Read TINs, or points and build theirs; files of lines are for the one file of points.
-
-    Raises
-    ------
-    Failure
-        If it cannot be told for which file an option is.
-    """
-    from ..tin import TIN
-
-    found = [read_input(file, reading, console) for file in files]
-    n_surveys = sum(not isinstance(one, TIN) for one in found)
-    named = [flag for flag in how.shaping if flag != "--codes"]
-    if (named and n_surveys != 1) or (how.codes and n_surveys == 0):
-        flag = (named or ["--codes"])[0]
-        raise Failure(
-            f"{flag} needs {'a' if n_surveys == 0 else 'one'} file of points, and there are "
-            f"{n_surveys}: 'tinsmith build' makes TINs of them first."
-        )
-    return [
-        one if isinstance(one, TIN) else build_tin(add_lines(one, how, console), how, console)
-        for one in found
-    ]

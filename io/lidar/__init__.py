@@ -1,0 +1,1 @@
+"""Lidar: LAS, LAZ and COPC point clouds, read and written through laspy."""

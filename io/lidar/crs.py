@@ -1,0 +1,201 @@
+"""The CRS of a lidar file: WKT, or the keys of GeoTIFF, with the unit of its elevations.
+
+References
+----------
+OGC GeoTIFF Standard 1.1 (2019), for the numbers of the keys. ASPRS, LAS Specification 1.4 - R15,
+section 3.
+"""
+
+from __future__ import annotations
+
+import struct
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from ...crs import CRS, FOOT, METRE, US_SURVEY_FOOT, Unit
+from ...errors import CrsError, MissingExtraError, ReadError
+from ..isolated import run_isolated
+
+if TYPE_CHECKING:
+    from .header import Header
+
+__all__ = ["Reference", "find_reference"]
+
+_PROJECTION = "LASF_Projection"
+_WKT, _KEYS, _DOUBLES, _TEXTS = 2112, 34735, 34736, 34737
+_GEOGRAPHIC_KEY, _PROJECTED_KEY, _LINEAR_UNIT_KEY = 2048, 3072, 3076
+_VERTICAL_KEY, _VERTICAL_UNIT_KEY = 4096, 4099
+_USER_DEFINED = 32767
+_UNITS = {9001: METRE, 9002: FOOT, 9003: US_SURVEY_FOOT}
+_IN_FEET = {(5703, US_SURVEY_FOOT): 6360, (5703, FOOT): 8228}
+"""NAVD 88 in metres, as files name it whose elevations are in feet, and what they mean."""
+
+
+class Reference(NamedTuple):
+    """What the coordinates of a file are measured in.
+
+    Attributes
+    ----------
+    crs : CRS or None
+        None if the file names none.
+    unit : Unit or None
+        Of elevations, if it is told apart from the CRS.
+    notes : tuple of str
+    """
+
+    crs: CRS | None = None
+    unit: Unit | None = None
+    notes: tuple[str, ...] = ()
+
+
+def find_reference(header: Header, *, is_declared: bool) -> Reference:
+    """Return what the variable-length records of a file say of its coordinates.
+
+    Parameters
+    ----------
+    header : Header
+    is_declared : bool
+        Whether the caller names a CRS, which stands in for one that cannot be understood.
+
+    Raises
+    ------
+    CrsError
+        If the file names a CRS that PROJ does not know.
+    ReadError
+        If it names two units for the same.
+    MissingExtraError
+        If only GDAL understands its keys, and rasterio is not installed.
+
+    Notes
+    -----
+    WKT goes before keys of GeoTIFF, which older programs read, where a file has both.
+    """
+    try:
+        return _find_reference(header)
+    except (CrsError, MissingExtraError, ReadError) as error:
+        if not is_declared:
+            raise
+        reason = str(error).partition(": ")[2] or str(error)
+        note = f"'{header.path.name}' names a CRS that was not used: {reason}"
+        return Reference(notes=(note,))
+
+
+def _find_reference(header: Header) -> Reference:
+    wkt = _read_wkt(header)
+    keys = _read_keys(header)
+    if wkt:
+        return Reference(CRS.of(wkt))
+    return Reference() if keys is None else _interpret_keys(header, keys)
+
+
+def _read_wkt(header: Header) -> str:
+    content = header.find(_PROJECTION, _WKT) or b""
+    return content.split(b"\0")[0].decode("utf-8", "replace").strip()
+
+
+def _read_keys(header: Header) -> dict[int, int] | None:
+    """Return the keys whose values are short numbers; None if there are no keys."""
+    rows = _list_keys(header)
+    return {key: value for key, place, _, value in rows if place == 0} if rows else None
+
+
+def _list_keys(header: Header) -> list[tuple[int, int, int, int]]:
+    """Return number, place, count and value of each key; some programs leave empty ones."""
+    content = header.find(_PROJECTION, _KEYS) or b""
+    if len(content) < 8:
+        return []
+    count = min(struct.unpack_from("<4H", content)[3], len(content) // 8 - 1)
+    rows = [struct.unpack_from("<4H", content, 8 * (row + 1)) for row in range(count)]
+    return sorted(row for row in rows if row[0])
+
+
+def _interpret_keys(header: Header, keys: dict[int, int]) -> Reference:
+    code = keys.get(_PROJECTED_KEY) or keys.get(_GEOGRAPHIC_KEY)
+    vertical = keys.get(_VERTICAL_KEY, 0)
+    if code == _USER_DEFINED or (code is None and vertical == _USER_DEFINED):
+        return Reference(CRS.of(_ask_gdal(header)), _UNITS.get(keys.get(_VERTICAL_UNIT_KEY, 0)))
+    if code is None or code == 0:
+        return Reference(unit=_UNITS.get(keys.get(_VERTICAL_UNIT_KEY, 0)))
+    horizontal = CRS.of(f"EPSG:{code}")
+    _require_unit(horizontal, _UNITS.get(keys.get(_LINEAR_UNIT_KEY, 0)), header.path)
+    return _add_vertical(horizontal, vertical, _UNITS.get(keys.get(_VERTICAL_UNIT_KEY, 0)))
+
+
+def _require_unit(crs: CRS, unit: Unit | None, path: Path) -> None:
+    """Refuse a unit of eastings beside a CRS with another one."""
+    if unit is not None and not crs.is_geographic and unit != crs.horizontal_unit:
+        raise ReadError(
+            f"'{path}' names {crs.label}, whose unit is the {crs.horizontal_unit.name}, and the "
+            f"{unit.name} as the unit of its eastings: declare the CRS that is right.",
+            path=path,
+        )
+
+
+def _add_vertical(horizontal: CRS, code: int, unit: Unit | None) -> Reference:
+    """Add the vertical part that a key names, where the unit that is named fits it."""
+    code = code if unit is None else _IN_FEET.get((code, unit), code)
+    if code in (0, _USER_DEFINED):
+        return Reference(horizontal, unit)
+    try:
+        crs = CRS.of(f"{horizontal}+{code}")
+    except CrsError:
+        note = f"The vertical CRS of the file, number {code}, is not known: it was left aside."
+        return Reference(horizontal, unit, (note,))
+    if unit is None or crs.vertical_unit == unit:
+        return Reference(crs)
+    note = (
+        f"The elevations of the file are said to be in {unit}, and its vertical CRS, number "
+        f"{code}, is in another unit: only the unit was taken."
+    )
+    return Reference(horizontal, unit, (note,))
+
+
+def _ask_gdal(header: Header) -> str:
+    """Return the CRS that a GeoTIFF of the same keys would have, as WKT."""
+    with tempfile.TemporaryDirectory(prefix="tinsmith-") as folder:
+        picture = Path(folder, "keys.tif")
+        picture.write_bytes(_make_picture(header))
+        found = _read_crs(picture, header.path)
+    if found is None:
+        raise CrsError(
+            f"'{header.path}': the keys of its CRS describe none that GDAL understands: declare "
+            "the CRS."
+        )
+    return found
+
+
+def _read_crs(picture: Path, path: Path) -> str | None:
+    from ... import _optional
+
+    _optional.require("rasterio", f"Reading the CRS of '{path}'")
+    found = run_isolated("tinsmith.io.raster.gdal_child:read_header", {"path": str(picture)},
+                         path=path)  # fmt: skip
+    text: str | None = found.value["crs"]
+    return text
+
+
+def _make_picture(header: Header) -> bytes:
+    """Return a TIFF of one cell with the keys of the file."""
+    shorts = [(256, 1), (257, 1), (258, 8), (259, 1), (262, 1), (277, 1), (278, 1), (279, 1)]
+    tags = [(tag, 3, 1, struct.pack("<HH", value, 0)) for tag, value in shorts]
+    tags.append((273, 4, 1, struct.pack("<I", 8)))
+    body = b"II*\0" + struct.pack("<I", 0) + b"\0" * 8
+    for number, kind, width in ((_KEYS, 3, 2), (_DOUBLES, 12, 8), (_TEXTS, 2, 1)):
+        content = _pack_keys(header) if number == _KEYS else header.find(_PROJECTION, number)
+        if content:
+            content = content[: len(content) // width * width]
+            tags.append((number, kind, len(content) // width, struct.pack("<I", len(body))))
+            body += content + b"\0" * (-len(content) % 8)
+    tags.append((33550, 12, 3, struct.pack("<I", len(body))))
+    body += struct.pack("<3d", 1, 1, 0)
+    tags.append((33922, 12, 6, struct.pack("<I", len(body))))
+    body += struct.pack("<6d", 0, 0, 0, 1, 1, 0)
+    directory = struct.pack("<H", len(tags))
+    directory += b"".join(struct.pack("<HHI", *one[:3]) + one[3] for one in sorted(tags))
+    return body[:4] + struct.pack("<I", len(body)) + body[8:] + directory + b"\0" * 4
+
+
+def _pack_keys(header: Header) -> bytes:
+    rows = _list_keys(header)
+    return b"".join(struct.pack("<4H", *row) for row in [(1, 1, 0, len(rows)), *rows])

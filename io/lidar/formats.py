@@ -1,0 +1,34 @@
+"""The formats of lidar."""
+
+from ..registry.format import SURFACES, Format
+from .signatures import is_lidar, is_lidar_folder
+
+__all__ = ["FORMATS"]
+
+FORMATS = (
+    Format(
+        name="las",
+        description="Lidar: LAS 1.0 to 1.4, LAZ and COPC",
+        suffixes=(".las", ".laz"),
+        read="tinsmith.io.lidar.reading:read",
+        write="tinsmith.io.lidar.writing:write",
+        writes=SURFACES,
+        precision=(
+            "Coordinates are whole multiples of a power of ten, the coarsest that gives each of "
+            "them back; else of a millionth of a CRS unit, or of what 32 bits hold."
+        ),
+        rounding=5.1e-7,
+        relative_rounding=1.2e-9,
+        losses=(
+            "Of a TIN all but its vertices; texts among the attributes of a survey; the unit of "
+            "elevations where the CRS has no vertical axis."
+        ),
+        loses=(
+            *("elevation unit", "triangles", "constrained", "lines", "attributes", "notes"),
+            "report",
+        ),
+        extra="lidar",
+        sniff=is_lidar,
+        sniff_folder=is_lidar_folder,
+    ),
+)

@@ -1,0 +1,359 @@
+"""LAS, LAZ and COPC files, and folders of tiles, as points of a survey."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ... import _optional
+from ..._sentences import counted
+from ...crs import CRS, Unit
+from ...errors import CrsError, OptionError, ReadError
+from ...tin import Bounds, Survey
+from ..isolated import choose_limits, stream_isolated
+from ..isolated.free_memory import measure_free_memory
+from ..reprojection.placement import Placed, place, settle_unit
+from .crs import Reference, find_reference
+from .header import Header, parse_header
+from .selection import (
+    N_CLASSES,
+    Selection,
+    Tally,
+    describe_classes,
+    describe_marks,
+    parse_selection,
+)
+from .signatures import SUFFIXES, list_tiles
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from ...crs import CrsLike, UnitLike
+
+__all__ = ["read"]
+
+_BYTES_PER_POINT = 24
+_MOST_POINTS = 2**31 - 1
+"""The vertices of a TIN are numbered with 32 bits."""
+
+_SPARSE = 0.5
+"""Share of the points below which those taken are copied, so that memory is given back."""
+
+
+def read(
+    path: Path,
+    *,
+    crs: CrsLike | None = None,
+    z_unit: UnitLike | None = None,
+    classes: int | str | Sequence[int] | None = None,
+    returns: int | str | Sequence[int | str] | None = None,
+    window: Bounds | Sequence[float] | None = None,
+    resolution: float | None = None,
+    every: int = 1,
+    withheld: bool = False,
+    attributes: str | Sequence[str] | None = None,
+) -> Survey:
+    """Read a lidar file, or a folder of tiles as one survey.
+
+    Parameters
+    ----------
+    path : Path
+        Of a folder all files ``.las`` and ``.laz`` in it, in the order of their names.
+    crs : CRS, str, int or pyproj.CRS, optional
+        CRS wanted, to which the points are reprojected. It declares the CRS of a file that names
+        none, or one that is not understood.
+    z_unit : Unit or str, optional
+        Unit of the elevations, if the file does not say.
+    classes : int or sequence of int, optional
+        Classes to take, such as 2, the ground. Default all, as PDAL and LAStools do; a note says
+        which there are.
+    returns : int, str or sequence, optional
+        Returns to take: "first", "last", "only" (the one of a pulse with no other), or numbers.
+    window : Bounds or (4,) sequence of float, optional
+        West, south, east, north, in the file's own CRS; its edges belong to it.
+    resolution : float, optional
+        Of a COPC file take the levels down to the first whose points are no further apart.
+    every : int
+        Take every so manyeth of the points that are left.
+    withheld : bool
+        Take points that are marked as withheld, that is deleted, as well.
+    attributes : str or sequence of str, optional
+        Attributes of the points to keep, by laspy's names; "all". Default classification,
+        intensity, return_number and number_of_returns; an empty sequence keeps none.
+
+    Returns
+    -------
+    Survey
+        Points in the order of the file, those of a part of an octree level after level.
+        ``skipped`` counts points that are withheld, of other classes and of other returns.
+
+    Raises
+    ------
+    ReadError
+        If a file is damaged or cut short, no point is left, or the CRS measures in degrees and no
+        other is wanted.
+    OptionError
+        If an option has a value that it cannot have.
+    CrsError
+        If the CRS of the file is not known, tiles are in several and ``crs`` does not say which is
+        wanted, or the points cannot be transformed.
+    MissingExtraError
+        If laspy is not installed.
+
+    Notes
+    -----
+    Coordinates are whole numbers times a scale plus an offset, bit for bit those of laspy. The
+    header is compared with the size of the file before memory is asked for; a child process
+    decompresses. Memory holds the points once and a chunk of a million: 29 bytes a point with the
+    attributes that are kept without asking, and some 100 MB.
+    """
+    _optional.require("laspy", "Reading lidar")
+    selection = parse_selection(classes, returns, window, resolution, every, withheld, attributes)
+    headers = [parse_header(one) for one in _list_files(path)]
+    _require_levels(headers, selection)
+    target, declared = CRS.of(crs), Unit.of(z_unit)
+    tiles = [_locate(header, target, declared) for header in headers]
+    _require_one_crs(tiles, target, path)
+    gathered = _Gathered.reserve(headers, path)
+    placed = [_read_tile(tile, selection, target, gathered) for tile in tiles]
+    gathered.require_points(path, selection)
+    return Survey(
+        points=gathered.points,
+        attributes=gathered.finish_attributes(),
+        crs=placed[0].crs,
+        elevation_unit=placed[0].elevation_unit,
+        source=path.name,
+        skipped=gathered.tally.skipped,
+        notes=_collect_notes(tiles, placed, gathered.tally, selection),
+    )
+
+
+def _list_files(path: Path) -> list[Path]:
+    if not path.is_dir():
+        return [path]
+    files = list_tiles(path)
+    if not files:
+        raise ReadError(
+            f"'{path}' is a folder without a lidar file ({', '.join(SUFFIXES)}).", path=path
+        )
+    return files
+
+
+def _require_levels(headers: list[Header], selection: Selection) -> None:
+    """Refuse a resolution of files that are no octree."""
+    if selection.resolution is None:
+        return
+    for header in headers:
+        if not header.is_copc:
+            raise OptionError(
+                "resolution",
+                selection.resolution,
+                f"none for '{header.path}', as only COPC files have levels; the option every "
+                "thins others",
+            )
+
+
+# ------------------------------------------------------------------------ the place
+
+
+@dataclass(frozen=True, slots=True)
+class _Tile:
+    """A file, with what its coordinates are measured in."""
+
+    header: Header
+    reference: Reference
+    unit: Unit | None
+
+
+def _locate(header: Header, target: CRS | None, declared: Unit | None) -> _Tile:
+    try:
+        reference = find_reference(header, is_declared=target is not None)
+    except CrsError as error:
+        text = str(error)
+        text = text if str(header.path) in text else f"'{header.path}': {text}"
+        raise CrsError(text, crs=error.crs) from error
+    vertical = None if reference.crs is None else reference.crs.vertical_unit
+    unit = settle_unit(declared, reference.unit or vertical, header.path)
+    middle = header.middle[None, :]
+    wanted = target or reference.crs
+    if wanted is not None and wanted.is_geographic:  # refused before the points are read
+        place(middle, source=reference.crs, target=target, path=header.path, unit=unit)
+    return _Tile(header, reference, unit)
+
+
+def _require_one_crs(tiles: list[_Tile], target: CRS | None, path: Path) -> None:
+    """Refuse tiles in several CRSs or units, unless the caller says which is wanted."""
+    first = tiles[0]
+    for other in tiles[1:]:
+        ours, theirs = first.reference.crs, other.reference.crs
+        names = f"'{first.header.path.name}' and '{other.header.path.name}' in '{path}'"
+        both = ours is not None and theirs is not None
+        same = ours is theirs if ours is None or theirs is None else ours.is_same(theirs)
+        if not same and not (both and target is not None):
+            raise CrsError(
+                f"{names} are not in one CRS: {_name_crs(ours)} and {_name_crs(theirs)}; read them "
+                "one by one, or declare the CRS that is wanted if both name theirs.",
+                crs=theirs,
+            )
+        if first.unit != other.unit and target is None:
+            raise ReadError(
+                f"{names} have elevations in different units: {first.unit or 'unknown'} and "
+                f"{other.unit or 'unknown'}.",
+                path=path,
+            )
+
+
+def _name_crs(crs: CRS | None) -> str:
+    return "none is named" if crs is None else crs.label
+
+
+# ----------------------------------------------------------------------- the points
+
+
+class _Gathered:
+    """Points of one file after the other, in memory that is reserved once."""
+
+    def __init__(self, capacity: int) -> None:
+        self._points = np.empty((capacity, 3))  # the system gives memory to what is filled
+        self._columns: dict[str, NDArray[Any]] = {}
+        self.count = 0
+        self.tally = Tally(np.zeros(N_CLASSES, np.int64))
+
+    @classmethod
+    def reserve(cls, headers: list[Header], path: Path) -> _Gathered:
+        """Reserve room for all points, if there is memory for so many.
+
+        Raises
+        ------
+        ReadError
+            If there is not.
+        """
+        count = sum(header.count for header in headers)
+        memory = measure_free_memory()
+        if count > _MOST_POINTS or count * _BYTES_PER_POINT > memory:
+            most = min(_MOST_POINTS, memory // _BYTES_PER_POINT)
+            raise ReadError(
+                f"'{path}' is said to have {count:,} points, and {most:,} are the most that can be "
+                "read here: read a part of it (window), or tile after tile.",
+                path=path,
+            )
+        return cls(count)
+
+    def append(self, arrays: dict[str, NDArray[Any]], header: Header) -> None:
+        """Add a chunk: coordinates are scaled as laspy does, one rounding after the other."""
+        xyz = arrays["xyz"]
+        start, end = self.count, self.count + len(xyz)
+        if end > len(self._points):
+            raise ReadError(
+                f"'{header.path}' is damaged: it holds more points than it says.", path=header.path
+            )
+        target = self._points[start:end]
+        np.multiply(xyz, header.scales, out=target)
+        target += header.offsets
+        for key, values in arrays.items():
+            if key.startswith("attribute "):
+                self._fill_column(key.removeprefix("attribute "), values, start)
+        self.count = end
+
+    def _fill_column(self, name: str, values: NDArray[Any], start: int) -> None:
+        column = self._columns.get(name)
+        if column is None or column.dtype != np.result_type(column, values):
+            dtype = values.dtype if column is None else np.result_type(column, values)
+            wider = np.zeros(len(self._points), dtype)
+            if column is not None:
+                wider[:start] = column[:start]
+            column = self._columns[name] = wider
+        column[start : start + len(values)] = values
+
+    def replace(self, start: int, points: NDArray[np.float64]) -> None:
+        """Put other coordinates in the place of those from a row on."""
+        if (
+            points.base is not self._points
+            or points.ctypes.data != self._points[start:].ctypes.data
+        ):
+            self._points[start : self.count] = points
+
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """Coordinates of all points."""
+        return self._shrink(self._points)
+
+    def _shrink(self, values: NDArray[Any]) -> NDArray[Any]:
+        part = values[: self.count]
+        return part.copy() if self.count < _SPARSE * len(values) else part
+
+    def finish_attributes(self) -> dict[str, NDArray[Any]]:
+        """Return the attributes of all points."""
+        return {name: self._shrink(column) for name, column in self._columns.items()}
+
+    def require_points(self, path: Path, selection: Selection) -> None:
+        """Refuse a selection that leaves nothing, and say what there is."""
+        if self.count:
+            return
+        tally = self.tally
+        there = ", ".join(describe_classes(tally, selection)).rstrip(".")
+        reasons = {
+            "is withheld": tally.withheld,
+            "is of another class": tally.of_other_classes,
+            "is of another return": tally.of_other_returns,
+            "lies outside the window": tally.outside,
+        }
+        said = [f"{count:,} for that it {why}" for why, count in reasons.items() if count]
+        if not said:
+            raise ReadError(f"'{path}' holds no points.", path=path)
+        raise ReadError(
+            f"'{path}': no point is left; left out were {', '.join(said)}."
+            + (f" {there}." if there else ""),
+            path=path,
+        )
+
+
+def _read_tile(
+    tile: _Tile, selection: Selection, target: CRS | None, gathered: _Gathered
+) -> Placed:
+    """Add the points of a file that are wanted, in the CRS that is wanted."""
+    header, start = tile.header, gathered.count
+    with stream_isolated(
+        f"{__package__}.las_child:read_points",
+        {"path": os.path.abspath(header.path), "shown": str(header.path),  # noqa: PTH100
+         "wanted": selection.to_request()},
+        path=header.path,
+        limits=choose_limits(header.size),
+    ) as parts:  # fmt: skip
+        for part in parts:
+            gathered.tally.add(part.value, part.arrays["classes"])
+            gathered.append(part.arrays, header)
+    own = gathered._points[start : gathered.count]
+    placed = place(own, source=tile.reference.crs, target=target, path=header.path, unit=tile.unit)
+    gathered.replace(start, placed.points)
+    return placed
+
+
+# ------------------------------------------------------------------------- the notes
+
+
+def _collect_notes(
+    tiles: list[_Tile], placed: list[Placed], tally: Tally, selection: Selection
+) -> list[str]:
+    notes = [note for tile in tiles for note in tile.reference.notes]
+    notes += [note for one in placed for note in one.notes]
+    notes += describe_classes(tally, selection) + describe_marks(tally)
+    notes += [note for tile in tiles for note in _describe_surplus(tile.header)]
+    return list(dict.fromkeys(notes))
+
+
+def _describe_surplus(header: Header) -> list[str]:
+    """Tell that a file has room for more points than it says it holds."""
+    more = header.surplus // header.point_bytes
+    if header.is_compressed or more == 0:
+        return []
+    return [
+        f"'{header.path.name}' says it holds {counted(header.count, 'point')}, and has room for "
+        f"{more:,} more behind them, which were not read."
+    ]

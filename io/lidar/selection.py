@@ -1,0 +1,265 @@
+"""Which points of a lidar file are taken, and what is said of the others."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from math import isfinite
+from numbers import Integral, Real
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..._sentences import counted
+from ...errors import OptionError
+from ...tin import Bounds
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+__all__ = [
+    "CHEAP_ATTRIBUTES",
+    "Selection",
+    "Tally",
+    "describe_classes",
+    "describe_marks",
+    "parse_selection",
+]
+
+CHEAP_ATTRIBUTES = ("classification", "intensity", "return_number", "number_of_returns")
+"""Attributes that are kept without asking: five bytes a point."""
+
+N_CLASSES = 256
+_MOST_RETURNS = 15
+_RETURNS = ("first", "last", "only")
+_CLASS_NAMES = {
+    0: "never classified",
+    1: "unclassified",
+    2: "ground",
+    3: "low vegetation",
+    4: "medium vegetation",
+    5: "high vegetation",
+    6: "building",
+    7: "low noise",
+    8: "key points",
+    9: "water",
+    10: "rail",
+    11: "road",
+    12: "overlap",
+    13: "wire guard",
+    14: "wire",
+    15: "tower",
+    16: "wire connector",
+    17: "bridge deck",
+    18: "high noise",
+}
+_UNCLASSIFIED = frozenset({0, 1, 12})
+_GROUND = 2
+
+
+@dataclass(frozen=True, slots=True)
+class Selection:
+    """Which points are taken; None takes all.
+
+    Attributes
+    ----------
+    classes : tuple of int, optional
+    returns : tuple of int or str, optional
+        Numbers of returns, or "first", "last", "only".
+    window : Bounds, optional
+    resolution : float, optional
+        Distance of points that is fine enough.
+    every : int
+    withheld : bool
+        Whether points that are marked as withheld are taken too.
+    attributes : tuple of str, optional
+        None for all.
+    """
+
+    classes: tuple[int, ...] | None
+    returns: tuple[int | str, ...] | None
+    window: Bounds | None
+    resolution: float | None
+    every: int
+    withheld: bool
+    attributes: tuple[str, ...] | None
+
+    def to_request(self) -> dict[str, Any]:
+        """Return it as values that JSON can hold."""
+        box = self.window
+        return {
+            "classes": self.classes,
+            "returns": self.returns,
+            "window": None if box is None else [box.xmin, box.ymin, box.xmax, box.ymax],
+            "resolution": self.resolution,
+            "every": self.every,
+            "withheld": self.withheld,
+            "attributes": self.attributes,
+        }
+
+
+@dataclass(slots=True)
+class Tally:
+    """How many points there are and why some were left out, of one file or several.
+
+    Attributes
+    ----------
+    classes : (256,) int64 array
+        Points of each class, withheld ones apart.
+    withheld, of_other_classes, of_other_returns, outside, thinned : int
+        Points left out, in this order.
+    synthetic, overlap : int
+        Points among those taken that are marked so.
+    """
+
+    classes: NDArray[np.int64]
+    withheld: int = 0
+    of_other_classes: int = 0
+    of_other_returns: int = 0
+    outside: int = 0
+    thinned: int = 0
+    synthetic: int = 0
+    overlap: int = 0
+
+    def add(self, part: dict[str, int], classes: NDArray[np.int64]) -> None:
+        """Add the counts of some points."""
+        self.classes += classes
+        for name, count in part.items():
+            setattr(self, name, getattr(self, name) + count)
+
+    @property
+    def skipped(self) -> dict[str, int]:
+        """What was left out, for a survey."""
+        found = {
+            "points marked as withheld": self.withheld,
+            "points of other classes": self.of_other_classes,
+            "points of other returns": self.of_other_returns,
+        }
+        return {what: count for what, count in found.items() if count}
+
+
+def parse_selection(
+    classes: int | str | Sequence[int] | None,
+    returns: int | str | Sequence[int | str] | None,
+    window: Bounds | Sequence[float] | None,
+    resolution: float | None,
+    every: int,
+    withheld: bool,
+    attributes: str | Sequence[str] | None,
+) -> Selection:
+    """Check what the caller asks for.
+
+    Raises
+    ------
+    OptionError
+        If a value is none that its option can have.
+    """
+    if not isinstance(every, Integral) or isinstance(every, bool) or every < 1:
+        raise OptionError("every", every, "a whole number from 1")
+    return Selection(
+        None if classes is None else _parse_classes(classes),
+        None if returns is None else _parse_returns(returns),
+        None if window is None else _parse_window(window),
+        None if resolution is None else _parse_resolution(resolution),
+        int(every),
+        bool(withheld),
+        _parse_attributes(attributes),
+    )
+
+
+def _split(given: object) -> list[object]:
+    if isinstance(given, str):
+        return [word for word in given.replace(",", " ").split() if word]
+    return list(given) if isinstance(given, Iterable) else [given]
+
+
+def _parse_whole(value: object) -> int | None:
+    if isinstance(value, str) and value.isdecimal():
+        return int(value)
+    return int(value) if isinstance(value, Integral) and not isinstance(value, bool) else None
+
+
+def _parse_classes(given: object) -> tuple[int, ...]:
+    numbers = [_parse_whole(one) for one in _split(given)]
+    if not numbers or not all(one is not None and 0 <= one < N_CLASSES for one in numbers):
+        raise OptionError(
+            "classes", given, "numbers of classes from 0 to 255, such as 2 (ground) or 2, 8, 9"
+        )
+    return tuple(sorted({one for one in numbers if one is not None}))
+
+
+def _parse_returns(given: object) -> tuple[int | str, ...]:
+    found: list[int | str] = []
+    for one in _split(given):
+        number = _parse_whole(one)
+        if one in _RETURNS:
+            found.append(str(one))
+        elif number is not None and 1 <= number <= _MOST_RETURNS:
+            found.append(number)
+        else:
+            raise OptionError("returns", one, f"{', '.join(_RETURNS)}, or a number from 1 to 15")
+    if not found:
+        raise OptionError("returns", given, f"{', '.join(_RETURNS)}, or a number from 1 to 15")
+    return tuple(found)
+
+
+def _parse_window(given: Bounds | Sequence[float]) -> Bounds:
+    allowed = "Bounds, or four finite numbers: west, south, east, north, with some area"
+    if isinstance(given, Bounds):
+        box: list[Any] = [given.xmin, given.ymin, given.xmax, given.ymax]
+    else:
+        box = _split(given)
+    if len(box) != 4 or not all(isinstance(one, Real) and isfinite(one) for one in box):
+        raise OptionError("window", given, allowed)
+    if not (box[0] < box[2] and box[1] < box[3]):
+        raise OptionError("window", tuple(box), allowed)
+    return Bounds(*map(float, box))
+
+
+def _parse_resolution(given: object) -> float:
+    if not isinstance(given, Real) or not isfinite(given) or given <= 0:
+        raise OptionError("resolution", given, "a distance above 0, in units of the CRS")
+    return float(given)
+
+
+def _parse_attributes(given: str | Sequence[str] | None) -> tuple[str, ...] | None:
+    if given is None:
+        return CHEAP_ATTRIBUTES
+    names = given.split(",") if isinstance(given, str) else [str(one) for one in given]
+    names = [name.strip() for name in names]
+    return None if names == ["all"] else tuple(dict.fromkeys(names))
+
+
+# ---------------------------------------------------------------------------- notes
+
+
+def describe_classes(tally: Tally, selection: Selection) -> list[str]:
+    """Tell which classes there are and which were taken, where that matters."""
+    there = np.flatnonzero(tally.classes).tolist()
+    if not there or (set(there) <= _UNCLASSIFIED and selection.classes is None):
+        return []
+    listed = ", ".join(_describe_class(one, int(tally.classes[one])) for one in there)
+    if selection.classes is not None:
+        taken = ", ".join(map(str, selection.classes))
+        return [f"Classes of the points: {listed}; taken: {taken}."]
+    if len(there) == 1:
+        return [f"All points are of one class: {listed}."]
+    advice = f"; {_GROUND} alone is the ground" if _GROUND in there else ""
+    return [
+        f"Classes of the points: {listed}. All were taken, vegetation, buildings and noise too: "
+        f"the option classes takes some{advice}."
+    ]
+
+
+def describe_marks(tally: Tally) -> list[str]:
+    """Tell of marked points among those taken."""
+    marks = {"synthetic": tally.synthetic, "overlap of flight lines": tally.overlap}
+    said = [f"{counted(n, 'point')} as {what}" for what, n in marks.items() if n]
+    return [f"Marked, and taken: {', '.join(said)}."] if said else []
+
+
+def _describe_class(number: int, count: int) -> str:
+    name = _CLASS_NAMES.get(number, "")
+    return f"{number} {name} ({count:,})" if name else f"{number} ({count:,})"

@@ -1,0 +1,316 @@
+"""Points as LAS or LAZ, with scales that hold their coordinates."""
+
+from __future__ import annotations
+
+import datetime as dt
+import warnings
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ... import _optional
+from ..._atomic import replacing
+from ...errors import LossWarning, OptionError, WriteError
+from ...tin import TIN, Survey
+from ..mesh.common import require_writable
+from ..reprojection.crs_kept import require_kept
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from ...crs import CRS
+
+__all__ = ["write"]
+
+_FINEST = 6
+"""Decimals that are written at most: a millionth of a CRS unit is below what anyone surveys."""
+
+_COARSEST = -3
+_LARGEST = 2**31 - 1
+_ROUNDINGS = 4.0
+"""Times the distance of two doubles by which a coordinate may differ and still be the same: the
+product and the sum by which it is read are rounded."""
+
+_POINT_FORMAT, _POINT_FORMAT_OF_COLOURS = 6, 7
+_COLOURS = ("red", "green", "blue")
+_CHUNK = 1_000_000
+_NO_CLOCK = dt.date(1970, 1, 1)
+_STANDARD = {
+    "intensity": (0, 65535),
+    "return_number": (0, 15),
+    "number_of_returns": (0, 15),
+    "synthetic": (0, 1),
+    "key_point": (0, 1),
+    "withheld": (0, 1),
+    "overlap": (0, 1),
+    "scanner_channel": (0, 3),
+    "scan_direction_flag": (0, 1),
+    "edge_of_flight_line": (0, 1),
+    "classification": (0, 255),
+    "user_data": (0, 255),
+    "scan_angle": (-32768, 32767),
+    "point_source_id": (0, 65535),
+    "red": (0, 65535),
+    "green": (0, 65535),
+    "blue": (0, 65535),
+}
+"""Whole numbers that the format has a place for, and their range."""
+
+_NAME_BYTES = 32
+_EXTRA_TYPES = frozenset(("u1", "u2", "u4", "u8", "i1", "i2", "i4", "i8", "f4", "f8"))
+
+
+class _Scaling(NamedTuple):
+    """How coordinates become whole numbers.
+
+    Attributes
+    ----------
+    scales, offsets : (3,) float64 arrays
+    error : (3,) float64 array
+        By how much the coordinates that are read differ most.
+    """
+
+    scales: NDArray[np.float64]
+    offsets: NDArray[np.float64]
+    error: NDArray[np.float64]
+
+
+def write(surface: TIN | Survey, path: Path, *, scale: float | None = None) -> None:
+    """Write the points of a survey, or the vertices of a TIN, as LAS 1.4; ``.laz`` is compressed.
+
+    Parameters
+    ----------
+    surface : Survey or TIN
+    path : Path
+    scale : float, optional
+        Distance of neighbouring coordinates, in CRS units. Default on each axis the coarsest power
+        of ten that gives every coordinate back, else the finest from a millionth on that holds the
+        extent of the points in 32 bits.
+
+    Raises
+    ------
+    MissingExtraError
+        If laspy is not installed.
+    WriteError
+        If there are no points, a coordinate is not finite or has no place with this scale, or an
+        attribute has values that its place in the format does not hold.
+    OptionError
+        If the scale is no positive number.
+
+    Warns
+    -----
+    LossWarning
+        For attributes that are texts, and elevations whose unit the CRS does not tell.
+
+    Notes
+    -----
+    Attributes by the names of laspy take their places in the format, other numbers become extra
+    bytes. The CRS is WKT in a variable-length record. The points of a TIN are its vertices; its
+    triangles are not kept. The same points give the same bytes, and the date is 1970-01-01.
+    """
+    surface = require_writable(surface, path)
+    laspy = _optional.load("laspy", f"Writing '{path}'")
+    _require_points(surface.points, path)
+    scaling = _choose_scaling(surface.points, _parse_scale(scale), path)
+    attributes = surface.attributes if isinstance(surface, Survey) else {}
+    columns = _choose_columns(attributes, path)
+    header = _make_header(laspy, scaling, columns, surface.crs)
+    _warn_of_unit(surface, path)
+    with replacing(path) as file:
+        _write_points(laspy, file, header, surface.points, columns, path)
+    _require_crs(surface.crs, path)
+
+
+def _parse_scale(scale: float | None) -> float | None:
+    if scale is None:
+        return None
+    if not isinstance(scale, int | float) or not np.isfinite(scale) or scale <= 0:
+        raise OptionError("scale", scale, "a number above 0, such as 0.001")
+    return float(scale)
+
+
+def _require_points(points: NDArray[np.float64], path: Path) -> None:
+    if len(points) == 0:
+        raise WriteError(f"Cannot write '{path}': there are no points.", path=path)
+    wrong = ~np.isfinite(points).all(axis=1)
+    if wrong.any():
+        row = int(np.argmax(wrong))
+        raise WriteError(
+            f"Cannot write '{path}': point {row} is not finite, {points[row].tolist()}, and LAS "
+            "has only finite coordinates.",
+            path=path,
+        )
+
+
+# ---------------------------------------------------------------------------- scales
+
+
+def _choose_scaling(points: NDArray[np.float64], scale: float | None, path: Path) -> _Scaling:
+    axes = [_scale_axis(points[:, k], scale, "xyz"[k], path) for k in range(3)]
+    return _Scaling(*(np.array(column) for column in zip(*axes, strict=True)))
+
+
+def _scale_axis(
+    values: NDArray[np.float64], scale: float | None, axis: str, path: Path
+) -> tuple[float, float, float]:
+    """Return scale, offset and the largest error of one axis."""
+    candidates = [10.0**-k for k in range(_COARSEST, _FINEST + 1)] if scale is None else [scale]
+    enough = _ROUNDINGS * float(np.spacing(np.abs(values).max()))
+    best: tuple[float, float, float] | None = None
+    for one in candidates:
+        tried = _try_scale(values, one)
+        if tried is None:
+            break  # a finer one holds even less
+        best = tried
+        if tried[2] <= enough:
+            return tried
+    if best is None:
+        raise WriteError(
+            f"Cannot write '{path}': the {axis} coordinates reach from {values.min():.10g} to "
+            f"{values.max():.10g}, and with the scale {candidates[0]:g} 32 bits hold a length of "
+            f"{2 * _LARGEST * candidates[0]:g}.",
+            path=path,
+        )
+    return best
+
+
+def _try_scale(values: NDArray[np.float64], scale: float) -> tuple[float, float, float] | None:
+    """Return scale, offset and error; None if the numbers would not fit into 32 bits."""
+    low, high = float(values.min()), float(values.max())
+    offset = 0.0
+    if max(abs(low), abs(high)) / scale > _LARGEST:
+        offset = float(np.floor(low / 2 + high / 2))
+    if max(high - offset, offset - low) / scale > _LARGEST - 1:
+        return None
+    error = 0.0
+    for start in range(0, len(values), _CHUNK):
+        part = values[start : start + _CHUNK]
+        again = _round_to_whole(part, scale, offset) * scale + offset
+        error = max(error, float(np.abs(again - part).max()))
+    return scale, offset, error
+
+
+def _round_to_whole(values: NDArray[np.float64], scale: float, offset: float) -> NDArray[np.int32]:
+    return np.rint((values - offset) / scale).astype(np.int32)
+
+
+# ------------------------------------------------------------------------ attributes
+
+
+def _choose_columns(attributes: Mapping[str, NDArray[Any]], path: Path) -> dict[str, NDArray[Any]]:
+    """Return the attributes that the format holds, and tell of the others."""
+    columns, texts = {}, []
+    for name, given in attributes.items():
+        values = np.asarray(given)
+        if values.dtype.kind == "b":
+            values = values.astype(np.uint8)
+        if name == "gps_time" or (name not in _STANDARD and _fits_extra_bytes(name, values)):
+            columns[name] = values
+        elif name in _STANDARD and values.dtype.kind in "iuf":
+            columns[name] = _require_range(name, values, path)
+        else:
+            texts.append(name)
+    if texts:
+        warnings.warn(
+            f"'{path}' does not hold the attributes {', '.join(texts)}: LAS has numbers, "
+            "with names of 32 bytes.",
+            LossWarning,
+            stacklevel=4,
+        )
+    return columns
+
+
+def _fits_extra_bytes(name: str, values: NDArray[Any]) -> bool:
+    is_plain = values.dtype.str[1:] in _EXTRA_TYPES and values.ndim == 1
+    return is_plain and 0 < len(name.encode()) <= _NAME_BYTES and name not in ("X", "Y", "Z")
+
+
+def _require_range(name: str, values: NDArray[Any], path: Path) -> NDArray[Any]:
+    low, high = _STANDARD[name]
+    fits = (values >= low) & (values <= high) & (values == np.rint(values))
+    if not fits.all():
+        row = int(np.argmin(fits))
+        raise WriteError(
+            f"Cannot write '{path}': point {row} has the {name} {values[row]}, and LAS holds whole "
+            f"numbers from {low} to {high} there.",
+            path=path,
+        )
+    return values
+
+
+def _warn_of_unit(surface: TIN | Survey, path: Path) -> None:
+    unit, crs = surface.elevation_unit, surface.crs
+    told = None if crs is None else crs.vertical_unit
+    if unit is not None and told is None:
+        warnings.warn(
+            f"'{path}' does not tell the unit of the elevations, the {unit}: its CRS has no "
+            "vertical axis.",
+            LossWarning,
+            stacklevel=3,
+        )
+
+
+# ---------------------------------------------------------------------------- the file
+
+
+def _make_header(
+    laspy: Any, scaling: _Scaling, columns: Mapping[str, NDArray[Any]], crs: CRS | None
+) -> Any:
+    has_colours = any(name in columns for name in _COLOURS)
+    header = laspy.LasHeader(
+        version="1.4",
+        point_format=_POINT_FORMAT_OF_COLOURS if has_colours else _POINT_FORMAT,
+    )
+    header.scales, header.offsets = scaling.scales, scaling.offsets
+    header.creation_date, header.generating_software = _NO_CLOCK, "tinsmith"
+    header.global_encoding.wkt = True
+    standard = set(header.point_format.dimension_names)
+    for name, values in columns.items():
+        if name not in standard:
+            header.add_extra_dim(laspy.ExtraBytesParams(name=name, type=values.dtype))
+    if crs is not None:
+        header.vlrs.append(laspy.vlrs.known.WktCoordinateSystemVlr(_format_crs(crs)))
+    return header
+
+
+def _format_crs(crs: CRS) -> str:
+    """Return WKT of the first version, as the specification wants, of the second if need be."""
+    text: str | None = crs.to_pyproj().to_wkt("WKT1_GDAL")
+    return text if text is not None and crs.is_same(text) else crs.to_wkt()
+
+
+def _write_points(
+    laspy: Any,
+    file: Any,
+    header: Any,
+    points: NDArray[np.float64],
+    columns: Mapping[str, NDArray[Any]],
+    path: Path,
+) -> None:
+    is_compressed = path.suffix.lower() == ".laz"
+    with laspy.LasWriter(file, header, do_compress=is_compressed, closefd=False) as writer:
+        for start in range(0, len(points), _CHUNK):
+            part = slice(start, start + _CHUNK)
+            record = laspy.ScaleAwarePointRecord.zeros(len(points[part]), header=header)
+            for k, axis in enumerate("XYZ"):
+                scale, offset = float(header.scales[k]), float(header.offsets[k])
+                record[axis] = _round_to_whole(points[part, k], scale, offset)
+            if "number_of_returns" not in columns:
+                ones = np.ones(len(record), np.uint8)
+                record["return_number"], record["number_of_returns"] = ones, ones
+            for name, values in columns.items():
+                record[name] = values[part]
+            writer.write_points(record)
+
+
+def _require_crs(crs: CRS | None, path: Path) -> None:
+    """Read the CRS back as another program would, so that none is lost in silence."""
+    if crs is None:
+        return
+    from .header import parse_header
+
+    content = parse_header(path).find("LASF_Projection", 2112) or b""
+    require_kept(crs, content.split(b"\0")[0].decode(), path)

@@ -1,0 +1,118 @@
+"""Parameters of commands by their kinds: a number, one of several words, a file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, get_args
+
+import click
+
+from .paths import INPUT, OUTPUT
+
+__all__ = [
+    "Decorator",
+    "choice_option",
+    "input_file",
+    "number_option",
+    "output_files",
+    "output_option",
+    "parse_numbers",
+    "picture_option",
+    "report_option",
+]
+
+Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
+
+
+def number_option(
+    flag: str,
+    metavar: str,
+    help: str,  # noqa: A002 - click's name
+    *,
+    name: str | None = None,
+    type: Any = float,  # noqa: A002 - click's name
+    default: float | None = None,
+    **more: Any,
+) -> Decorator:
+    """Return an option for a number; a default is shown."""
+    names = [flag] if name is None else [flag, name]
+    return click.option(
+        *names,
+        metavar=metavar,
+        type=type,
+        default=default,
+        show_default=default is not None,
+        help=help,
+        **more,
+    )
+
+
+def choice_option(
+    flag: str,
+    words: Any,
+    help: str,  # noqa: A002 - click's name
+    *,
+    name: str | None = None,
+    default: str | None = None,
+) -> Decorator:
+    """Return an option for one of the words of a Literal; a default is shown."""
+    names = [flag] if name is None else [flag, name]
+    return click.option(
+        *names,
+        type=click.Choice(get_args(words)),
+        default=default,
+        show_default=default is not None,
+        help=help,
+    )
+
+
+def input_file(name: str) -> Decorator:
+    """Return the argument for the file to read."""
+    return click.argument(name, type=INPUT)
+
+
+def output_option(help: str, *, required: bool = False) -> Decorator:  # noqa: A002 - click's name
+    """Return the option for the files to write."""
+    return click.option(
+        "-o",
+        "--output",
+        "outputs",
+        metavar="FILE",
+        type=INPUT,
+        multiple=True,
+        required=required,
+        help=f"{help} May be given several times.",
+    )
+
+
+output_files = output_option(
+    "File to write; its suffix chooses the format, and one that is there is replaced. "
+    "- is standard output, with --output-format.",
+    required=True,
+)
+
+
+def report_option(help: str) -> Decorator:  # noqa: A002 - click's name
+    """Return the option for a report as JSON."""
+    return click.option("--report", metavar="FILE", type=OUTPUT, help=help)
+
+
+def picture_option(help: str) -> Decorator:  # noqa: A002 - click's name
+    """Return the option for the one picture that a command writes."""
+    return click.option("-o", "--output", metavar="FILE", type=OUTPUT, help=help)
+
+
+def parse_numbers(
+    ctx: click.Context,  # noqa: ARG001 - click's signature
+    param: click.Parameter,
+    value: str | None,
+) -> list[float] | None:
+    """Return numbers that are given with commas between them."""
+    if value is None:
+        return None
+    try:
+        return [float(part) for part in value.split(",")]
+    except ValueError:
+        raise click.UsageError(
+            f"Invalid {param.opts[0]} '{value}': it must be numbers with commas between them."
+        ) from None
