@@ -13,7 +13,8 @@ from ..georeference import describe_unknown, find_plane_units
 from ..results import Features
 from .levels import LevelOptions
 from .measures import measure_ring_areas, sum_parts
-from .mending import PolygonParts, mend_polygons, require_whole
+from .mending import PolygonParts, is_whole, mend_polygons, require_whole
+from .rebuilding import rebuild_wrong_bands
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -78,7 +79,10 @@ def contour_bands(
         *_kernel.fill_bands(tin.points, tin.triangles, tin.neighbors, chosen.values)
     )
     parts, notes = mend_polygons(parts)
-    require_whole(tin, parts)
+    said: tuple[str, ...] = ()
+    if notes or not is_whole(tin, parts):
+        parts, said = rebuild_wrong_bands(tin, chosen.values, parts)
+        require_whole(tin, parts)
     numbers, first = np.unique(parts.band, return_index=True)
     areas = measure_ring_areas(tin.crs, parts.points, parts.ring_offsets)
     rings = sum_parts(areas, parts.polygon_offsets[:-1])
@@ -99,7 +103,7 @@ def contour_bands(
         crs=tin.crs,
         elevation_unit=tin.elevation_unit,
         name="contour bands",
-        notes=[*describe_unknown(tin.crs, tin.elevation_unit), *notes],
+        notes=[*describe_unknown(tin.crs, tin.elevation_unit), *notes, *said],
     )
 
 

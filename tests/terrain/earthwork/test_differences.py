@@ -281,7 +281,7 @@ def test_surfaces_that_overlap_by_less_than_a_rounding_have_no_difference():
 )
 def test_surfaces_that_agree_but_for_rounding_have_a_difference(points, share):
     """What differs is rounding alone, and was measured by itself: it was refused as a wall."""
-    utm = np.array(points) + [512_345.0, 5_403_210.0, 0.0]
+    utm = np.array(points) + np.array([512_345.0, 5_403_210.0, 0.0])
     tin = ts.triangulate(utm)
     corners = tin.points[tin.triangles]
     middle = corners[:, 0] + share * (corners[:, 1] - corners[:, 0])
