@@ -208,7 +208,7 @@ def compute_normals(tin: TIN) -> NDArray[np.float64]:
     components = [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx]
     sizes = np.maximum(np.abs(ux), np.abs(uy)) * np.maximum(np.abs(vx), np.abs(vy))
     for row in np.flatnonzero(~(components[2] > _SLIVER * sizes)).tolist():
-        exact = _exact_normal(*tin.points[tin.triangles[row]])
+        exact = _compute_exact_normal(*tin.points[tin.triangles[row]])
         for component, value in zip(components, exact, strict=True):
             component[row] = value
     east, north, up = find_scales(tin.crs, tin.elevation_unit, _average_northings(tin))
@@ -218,7 +218,7 @@ def compute_normals(tin: TIN) -> NDArray[np.float64]:
     )
 
 
-def _exact_normal(*corners: NDArray[np.float64]) -> list[float]:
+def _compute_exact_normal(*corners: NDArray[np.float64]) -> list[float]:
     """Return the normal of a triangle, each component rounded once.
 
     The corners of a sliver lie nearly in a line, so that the products of its sides cancel.

@@ -112,10 +112,10 @@ def _write_rounded(value: float) -> str:
 
 def _shade_around(ground: TIN, axes: Any) -> Raster:
     """Return the hillshade of the part of the ground that is in view."""
-    return hillshade(ground, grid=_grid_in_view(ground, axes), smooth=True)
+    return hillshade(ground, grid=_choose_grid(ground, axes), smooth=True)
 
 
-def _grid_in_view(tin: TIN, axes: Any) -> Grid:
+def _choose_grid(tin: TIN, axes: Any) -> Grid:
     """Return cells, as many as the picture shows, over the part of a TIN that is in view."""
     bounds = tin.bounds
     (west, east), (south, north) = axes.get_xlim(), axes.get_ylim()
@@ -128,7 +128,7 @@ def _draw_difference(drawn: Map, tin: TIN) -> None:
     colors = _optional.load("matplotlib.colors", _PURPOSE)
     axes, (x, y, height) = drawn.axes, tin.points.T
     most = float(np.abs(height).max()) or 1.0
-    raster = rasterize(tin, grid=_grid_in_view(tin, axes))
+    raster = rasterize(tin, grid=_choose_grid(tin, axes))
     bounds = raster.grid.bounds
     view = axes.get_xlim(), axes.get_ylim()
     image = axes.imshow(

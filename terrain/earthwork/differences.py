@@ -235,10 +235,10 @@ def _measure_rounding(
 
     That is the rounding times the rise over run of both, summed over the area of their overlay.
     """
-    areas = np.abs(_double_areas(vertices, triangles))
+    areas = np.abs(_measure_doubled(vertices, triangles))
     total = 0.0
     for k, surface in enumerate((first, second)):
-        whole = np.abs(_double_areas(surface.points, surface.triangles))[pairs[:, k]]
+        whole = np.abs(_measure_doubled(surface.points, surface.triangles))[pairs[:, k]]
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
             shares = np.fmin(areas / whole, 1.0)  # of a triangle thinner than its rounding, all
             total += float((shares * _measure_rises(surface)[pairs[:, k]]).sum())
@@ -246,7 +246,9 @@ def _measure_rounding(
     return moved if np.isfinite(moved) else 0.0
 
 
-def _double_areas(points: NDArray[np.float64], triangles: NDArray[np.int32]) -> NDArray[np.float64]:
+def _measure_doubled(
+    points: NDArray[np.float64], triangles: NDArray[np.int32]
+) -> NDArray[np.float64]:
     xy = points[triangles, :2]
     (ux, uy), (vx, vy) = (xy[:, 1] - xy[:, 0]).T, (xy[:, 2] - xy[:, 0]).T
     doubled: NDArray[np.float64] = ux * vy - uy * vx

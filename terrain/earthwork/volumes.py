@@ -96,7 +96,7 @@ def volume(
         given = "neither" if other is None else "both"
         raise OptionError("base", given, allowed="a level, a plane, or another TIN, one of them")
     if other is None:
-        return _to_plane(tin, base, regions)
+        return _measure_to_plane(tin, base, regions)
     reference, surface, second = find_common_reference(tin, other, "Volumes")
     names, pieces, parts, notes = _cut_into_regions(surface, regions, tin)
     workers = thread_count(threads, len(tin.points) + len(other.points))
@@ -113,7 +113,7 @@ def volume(
     return _as_table(names, sums, alone, reference, [*notes, *_describe_overlaps(parts, names)])
 
 
-def _to_plane(tin: TIN, base: Any, regions: Any) -> Table:
+def _measure_to_plane(tin: TIN, base: Any, regions: Any) -> Table:
     reference, plane = find_reference(tin, "Volumes"), as_plane(base)
     surface = Surface(tin.triangulation.points, tin.triangulation.triangles)
     names, pieces, parts, notes = _cut_into_regions(surface, regions, tin)

@@ -97,7 +97,7 @@ def slope_classes(
     lower, upper = [0.0, *limits.tolist()], [*limits.tolist(), _STEEPEST[unit]]
     legend = _Legend(
         [
-            _range_label(low, high, symbol, _STEEPEST[unit])
+            _write_range(low, high, symbol, _STEEPEST[unit])
             for low, high in zip(lower, upper, strict=True)
         ],
         lower,
@@ -166,7 +166,7 @@ def _as_breaks(breaks: Any, unit: str) -> NDArray[np.float64]:
     return limits
 
 
-def _range_label(low: float, high: float, symbol: str, most: float) -> str:
+def _write_range(low: float, high: float, symbol: str, most: float) -> str:
     """Write the limits of a class: "5 to 10°", "45° and more"."""
     behind = f" {symbol}" if symbol == "%" else symbol
     if high == most:

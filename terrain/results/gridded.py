@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ...tin.types import Grid
-    from .raster import Raster
+    from .parts import RasterParts
 
 __all__ = ["build_dataset", "locate_centers"]
 
@@ -48,29 +48,29 @@ def _list_numbers(part: slice | None, count: int) -> NDArray[np.float64]:
     return np.arange(chosen.start, chosen.stop, dtype=np.float64)
 
 
-def build_dataset(raster: Raster) -> Any:
+def build_dataset(raster: RasterParts) -> Any:
     """Return a data set of xarray, as :meth:`Raster.to_xarray` describes it."""
     xarray = _optional.load("xarray", "Turning a raster into a data set")
     east, north = locate_centers(raster.grid)
     variables = {
-        name: (("y", "x"), np.array(band[:, :]), _attributes(raster, name))
+        name: (("y", "x"), np.array(band[:, :]), _list_attributes(raster, name))
         for name, band in raster.bands.items()
     }
-    coordinates = {"y": ("y", north), "x": ("x", east), _MAPPING: ((), 0, _reference(raster))}
+    coordinates = {"y": ("y", north), "x": ("x", east), _MAPPING: ((), 0, _write_reference(raster))}
     about = {"title": raster.name, "notes": list(raster.notes)}
     return xarray.Dataset(
         variables, coords=coordinates, attrs={name: value for name, value in about.items() if value}
     )
 
 
-def _attributes(raster: Raster, name: str) -> dict[str, Any]:
+def _list_attributes(raster: RasterParts, name: str) -> dict[str, Any]:
     unit = unit_text(raster.units, name)
     kind = np.dtype(raster.bands[name].dtype).kind
     fill = {} if np.isnan(raster.nodata) and kind != "f" else {"_FillValue": raster.nodata}
     return {"grid_mapping": _MAPPING, **({"units": unit} if unit else {}), **fill}
 
 
-def _reference(raster: Raster) -> dict[str, str]:
+def _write_reference(raster: RasterParts) -> dict[str, str]:
     """Return the attributes of the grid mapping: CRS and georeference."""
     bounds, spacing = raster.grid.bounds, raster.grid.spacing
     numbers = (bounds.xmin, spacing, 0.0, bounds.ymax, 0.0, -spacing)
