@@ -74,7 +74,7 @@ class LevelOptions:
             return self._explicit(lowest, highest)
         numbers, values = self._at_interval(lowest, highest)
         is_within = (values > lowest) & (values <= highest)
-        notes = () if is_within.any() else (self._none_within(lowest, highest),)
+        notes = () if is_within.any() else (self._describe_none(lowest, highest),)
         return Levels(seal(values[is_within]), self._index(numbers[is_within]), notes)
 
     def for_bands(self, tin: TIN) -> Levels:

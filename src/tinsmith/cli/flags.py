@@ -105,4 +105,5 @@ def _list_flags(command: click.Command) -> dict[str, str]:
     for option in command.params:
         if isinstance(option, click.Option) and option.opts[0].startswith("--") and option.name:
             flags[option.opts[0].removeprefix("--").replace("-", "_")] = option.opts[0]
+            flags.setdefault(option.name, option.opts[0])
     return dict(sorted(flags.items(), key=lambda item: -len(item[0])))

@@ -28,6 +28,7 @@ __all__ = ["slope"]
     "--unit",
     SlopeUnit,
     "Of slopes: an angle, or rise over a run of 100 or of 1.",
+    name="slope_unit",
     default="degrees",
 )
 @click.option(
@@ -40,7 +41,7 @@ __all__ = ["slope"]
 @surface_options()
 def slope(
     file: Path,
-    unit: SlopeUnit,
+    slope_unit: SlopeUnit,
     breaks: list[float] | None,
     aspect: bool,
     request: Request,
@@ -63,8 +64,8 @@ def slope(
     planned = request.plan_products(request.list_inputs(file), "Features", "Table")
     tin = request.read_tin(file)
     with request.step("Classifying"):
-        made = aspect_classes(tin) if aspect else slope_classes(tin, breaks=breaks, unit=unit)
-        statistics = slope_statistics(tin, unit=unit)
+        made = aspect_classes(tin) if aspect else slope_classes(tin, breaks=breaks, unit=slope_unit)
+        statistics = slope_statistics(tin, unit=slope_unit)
     planned.write("Features", made)
     planned.write("Table", tabulate_classes(made))
     rows = _summarise_classes(tin, made, statistics)
