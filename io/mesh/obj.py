@@ -16,14 +16,10 @@ import numpy as np
 
 from ..._atomic import replacing, replacing_files
 from ...errors import ReadError, WriteError
+from . import common
 from .common import (
-    choose_reference,
-    cut_into_fans,
     format_crs,
     format_unit,
-    make_survey,
-    make_tin,
-    read_content,
     require_tin,
 )
 from .texture import load_texture
@@ -80,11 +76,11 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     OptionError
         If the unit is unknown, or the file names another.
     """
-    lines = _split_lines(read_content(path))
+    lines = _split_lines(common.read_content(path))
     vertex_lines = [i for i, line in enumerate(lines) if line[:2] in ("v ", "v\t")]
     face_lines = [i for i, line in enumerate(lines) if line[:2] in ("f ", "f\t")]
     points = _parse_points(lines, vertex_lines, path)
-    reference = choose_reference(
+    reference = common.choose_reference(
         crs,
         z_unit,
         path,
@@ -92,10 +88,10 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
         found_unit=_find_comment(lines, "elevation unit"),
     )
     if not face_lines:
-        return make_survey(points, path, reference=reference)
+        return common.make_survey(points, path, reference=reference)
     corners, offsets = _parse_faces(lines, vertex_lines, face_lines, path)
-    triangles = cut_into_fans(corners, offsets, points, path).triangles
-    return make_tin(points, triangles, path, reference=reference)
+    triangles = common.cut_into_fans(corners, offsets, points, path).triangles
+    return common.make_tin(points, triangles, path, reference=reference)
 
 
 def _split_lines(content: bytes) -> list[str]:

@@ -19,7 +19,10 @@ from .campaign import Campaign
 from .mesh_samples import MESH_MAKERS, TILE
 from .samples import MEMORY, sample_files
 
-KINDS = ("ply", "obj", "stl", "vtk", "gmsh", "raster", "vectors", "delimited", *MESH_MAKERS)
+KINDS = (
+    *("ply", "obj", "stl", "vtk", "gmsh", "raster", "vectors", "delimited", "tin", "instruments"),
+    *MESH_MAKERS,
+)
 
 _NUMBER = re.compile(rb"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
 _NUMBERS = (
