@@ -21,6 +21,7 @@ __all__ = [
     "CODE_FLAGS",
     "Coding",
     "Reading",
+    "SurfaceWriting",
     "Triangulating",
     "Writing",
     "coding_options",
@@ -155,6 +156,17 @@ class Writing:
     output_format: str | None = None
     kind: str | None = None
     projected: bool = False
+
+    @property
+    def options(self) -> dict[str, Any]:
+        """All that a writer may take, by the names of its options."""
+        return {name: value for name, value in asdict(self).items() if name != "output_format"}
+
+
+@dataclass(frozen=True)
+class SurfaceWriting(Writing):
+    """How a surface is written; some other commands have flags of these names for themselves."""
+
     texture: Path | None = None
     solid: bool = False
     thickness: float | None = None
@@ -164,11 +176,6 @@ class Writing:
     precision: float | None = None
     max_level: int | None = None
     gzipped: bool = False
-
-    @property
-    def options(self) -> dict[str, Any]:
-        """All that a writer may take, by the names of its options."""
-        return {name: value for name, value in asdict(self).items() if name != "output_format"}
 
 
 def _gather(name: str, factory: type, *options: Decorator) -> Callable[[Function], Function]:
@@ -386,7 +393,7 @@ def _make_projected_option(whose: str) -> Decorator:
 
 
 _VECTOR_WRITING = (_format_option, _kind_option, _make_projected_option("points"))
-writing_options = _gather("writing", Writing, *_VECTOR_WRITING, *MESH_WRITING)
+writing_options = _gather("writing", SurfaceWriting, *_VECTOR_WRITING, *MESH_WRITING)
 vector_options = _gather("writing", Writing, *_VECTOR_WRITING)
 product_options = _gather("writing", Writing, _format_option, _make_projected_option("TIN"))
 format_options = _gather("writing", Writing, _format_option)
