@@ -41,7 +41,7 @@ def convert(*arguments):
 @pytest.mark.parametrize("kind", ["TIN", "Survey", "grid"])
 @pytest.mark.parametrize("one", WRITTEN, ids=lambda one: one.name)
 def test_every_pair_is_written_or_refused_with_the_way_out(inputs, tmp_path, one, kind):
-    path = tmp_path / f"out{one.suffixes[0]}"
+    path = tmp_path / f"out{''.join(one.suffixes[:1])}"
     how = ["--output-format", one.name] + (["--crs", "EPSG:32616"] if kind != "TIN" else [])
     result = convert(inputs[kind], "-o", path, *how)
     own = "TIN" if kind == "TIN" else "Survey"
@@ -60,7 +60,7 @@ def test_every_pair_is_written_or_refused_with_the_way_out(inputs, tmp_path, one
 def test_every_file_of_a_tin_becomes_points(inputs, tmp_path, one):
     if one.read is None or "TIN" not in one.writes:
         return
-    middle = tmp_path / f"middle{one.suffixes[0]}"
+    middle = tmp_path / f"middle{''.join(one.suffixes[:1])}"
     assert convert(inputs["TIN"], "-o", middle, "--output-format", one.name).exit_code == 0
     result = convert(middle, "-o", tmp_path / "points.csv")
     assert result.exit_code == 0, result.output
