@@ -49,17 +49,10 @@ _JOURNALS = ("-wal", "-journal")
 def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None = None) -> None:
     """Write all that a TIN is as a GeoPackage; :func:`read` gives it back, bit for bit.
 
-    Parameters
-    ----------
-    surface : TIN
-    path : Path
-    progress : callable, optional
-        Called with the fraction done.
+    Parameters are those of every writer, see :class:`.Format`.
 
     Raises
     ------
-    FormatError
-        If ``surface`` is no TIN.
     WriteError
         If the file cannot be written, or is open in another program.
 
