@@ -65,7 +65,8 @@ def test_every_file_of_a_tin_becomes_points(inputs, tmp_path, one):
         return
     middle = tmp_path / f"middle{''.join(one.suffixes[:1])}"
     assert convert(inputs["TIN"], "-o", middle, "--output-format", one.name).exit_code == 0
-    result = convert(middle, "-o", tmp_path / "points.csv")
+    in_degrees = ["--crs", "EPSG:32616"] if one.name.startswith("geojson") else []
+    result = convert(middle, "-o", tmp_path / "points.csv", *in_degrees)
     assert result.exit_code == 0, result.output
     assert len(ts.read(tmp_path / "points.csv")) == len(matrix.make_tin().points)
 
