@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 import click
 
 from ..policies import DrawingContent, DuplicatePolicy, FeatureKind, LineReading
+from .flags import note_given
 from .line_options import CODE_OPTIONS, LINE_OPTIONS
 from .mesh_options import MESH_READING, MESH_WRITING
 from .output.console import Console
@@ -177,6 +178,7 @@ def _gather(name: str, factory: type, *options: Decorator) -> Callable[[Function
     def decorate(function: Function) -> Function:
         @wraps(function)
         def gathering(**given: Any) -> Any:
+            note_given(click.get_current_context())
             value = factory(**{key: given.pop(key) for key in names if key in given})
             return function(**given, **{name: value})
 
@@ -275,7 +277,8 @@ reading_options = _gather(
     ),
     *MESH_READING,
     click.option(
-        "--unit",
+        "--file-unit",
+        "unit",
         metavar="UNIT",
         help="Unit of the coordinates and elevations of a LandXML or DXF file, where it does not "
         "say, or says another one than its CRS.",
