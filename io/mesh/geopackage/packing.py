@@ -13,22 +13,22 @@ from typing import TYPE_CHECKING, Any, NamedTuple, get_args
 
 import numpy as np
 
-from ..crs import CRS, Unit
-from ..errors import PointsError, TinsmithError
-from ..policies import LineKind
-from . import topology
-from .building.constrained import LineOptions
-from .building.inputs import BuildInputs
-from .constraints.breaklines import Lines
-from .constraints.constraint_set import LineSet
-from .constraints.constraint_table import ConstraintTable
-from .editing.origin import Origin
-from .editing.version import Version
-from .report import Crossings, Edit, Overruled, Report, Unmended
-from .surface import TIN
-from .triangulation import Triangulation
-from .validation.points import as_points
-from .validation.triangles import as_flags, as_triangles, turn_counter_clockwise
+from ....crs import CRS, Unit
+from ....errors import PointsError, TinsmithError
+from ....policies import LineKind
+from ....tin import topology
+from ....tin.building.constrained import LineOptions
+from ....tin.building.inputs import BuildInputs
+from ....tin.constraints.breaklines import Lines
+from ....tin.constraints.constraint_set import LineSet
+from ....tin.constraints.constraint_table import ConstraintTable
+from ....tin.editing.origin import Origin
+from ....tin.editing.version import Version
+from ....tin.report import Crossings, Edit, Overruled, Report, Unmended
+from ....tin.surface import TIN
+from ....tin.triangulation import Triangulation
+from ....tin.validation.points import as_points
+from ....tin.validation.triangles import as_flags, as_triangles, turn_counter_clockwise
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
