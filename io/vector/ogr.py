@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from ...terrain.results import Features
 
-__all__ = ["describe", "require_int64", "write_layer"]
+__all__ = ["describe", "encode_geometries", "require_int64", "write_layer"]
 
 _NO_CLOCK = "1970-01-01T00:00:00Z"
 """Time that GDAL writes as the present one, so that the same features give the same bytes."""
@@ -66,13 +66,13 @@ def write_layer(
     """
     pyogrio = _optional.load("pyogrio", f"Writing '{shown}'")
     columns = [_as_field(name, values, shown) for name, values in features.columns.items()]
-    with _translate_faults(shown), _fix_clock():
+    with _faults_as_sentences(shown), _without_clock():
         pyogrio.raw.write(
             os.fspath(path),
-            _encode_geometries(features),
+            encode_geometries(features),
             columns,
             list(features.columns) if names is None else list(names),
-            field_mask=[_find_missing(values) for values in columns],
+            field_mask=[_missing(values) for values in columns],
             driver=driver,
             layer=features.name or shown.stem,
             geometry_type=features.geometry_type + (" Z" if features.has_elevations else ""),
@@ -125,7 +125,8 @@ def require_int64(name: str, values: NDArray[Any], path: Path) -> None:
         )
 
 
-def _encode_geometries(features: Features) -> NDArray[np.object_]:
+def encode_geometries(features: Features) -> NDArray[np.object_]:
+    """Return geometries as well-known binary of the ISO kind."""
     import shapely
 
     dimension = 3 if features.has_elevations else 2
@@ -145,7 +146,7 @@ def _as_field(name: str, values: NDArray[Any], path: Path) -> NDArray[Any]:
     return values.astype(narrow.get(values.dtype, values.dtype))
 
 
-def _find_missing(values: NDArray[Any]) -> NDArray[np.bool_] | None:
+def _missing(values: NDArray[Any]) -> NDArray[np.bool_] | None:
     """Return which values are missing, None if none is."""
     if values.dtype.kind == "O":
         gaps = np.array([value is None for value in values], np.bool_)
@@ -154,7 +155,7 @@ def _find_missing(values: NDArray[Any]) -> NDArray[np.bool_] | None:
 
 
 @contextmanager
-def _translate_faults(path: Path) -> Iterator[None]:
+def _faults_as_sentences(path: Path) -> Iterator[None]:
     """Turn what GDAL says into a sentence, also where it only warns that a value was changed."""
     try:
         with warnings.catch_warnings():
@@ -168,7 +169,7 @@ def _translate_faults(path: Path) -> Iterator[None]:
 
 
 @contextmanager
-def _fix_clock() -> Iterator[None]:
+def _without_clock() -> Iterator[None]:
     """Let GDAL write a fixed time."""
     pyogrio = _optional.load("pyogrio", "Writing features")
     before = pyogrio.get_gdal_config_option("OGR_CURRENT_DATE")

@@ -14,7 +14,7 @@ from ....tin import TIN
 from ...isolated import run_isolated
 from ..common import choose_reference, make_tin
 from .digests import digest_arrays
-from .packing import Record, unpack_tin
+from .records import Record, unpack_tin
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -15,7 +15,7 @@ from ....terrain.slope import aspect, slope
 from ..common import format_unit, require_tin
 from .digests import digest_arrays, digest_lines
 from .geometries import make_chain_blobs, make_point_blobs, make_triangle_blobs
-from .packing import pack_tin
+from .records import pack_tin
 from .schema import (
     APPLICATION_ID,
     LAYERS,

@@ -15,7 +15,7 @@ from .coordinates import format_positions, keep_in_crs, project_to_wgs84
 from .values import json_texts, properties_template
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ....terrain.results import Features
     from .coordinates import Places
 
-__all__ = ["write_features"]
+__all__ = ["write_feature_lines", "write_features"]
 
 _BATCH = 16_384
 _HALF_TURN = 180.0
@@ -71,28 +71,45 @@ def write_features(
     the member ``units`` names (``"unknown"`` if they are not known); exterior rings run
     counter-clockwise.
     """
-    located = _locate(features)
+    located = _located(features)
     places = (keep_in_crs if projected else project_to_wgs84)(located)
     if places.crs_member is None:
         _require_one_side(places.xyz, features, path)
-    geometries = _geometries(features, places)
-    template = properties_template(list(features.columns))
     with replacing(path, binary=False) as file:
-        file.write(_format_head(features, places))
+        file.write(_head(features, places))
         separator = "\n"
-        for start in range(0, len(features), _BATCH):
-            part = slice(start, min(start + _BATCH, len(features)))
-            columns = [json_texts(column[part]) for column in features.columns.values()]
-            rows = zip(*columns, strict=True) if columns else [()] * (part.stop - start)
-            written = map(_format_feature, map(template.__mod__, rows), geometries[part])
+        for done, written in _iterate_batches(features, places):
             file.write(separator + ",\n".join(written))
             separator = ",\n"
             if progress is not None:
-                progress(part.stop / len(features))
+                progress(done / len(features))
         file.write("\n]}\n")
 
 
-def _locate(features: Features) -> _Located:
+def write_feature_lines(features: Features, path: Path) -> None:
+    """Write features as a sequence of GeoJSON texts, a line each, with no head around them.
+
+    Parameters, errors and coordinates are those of :func:`write_features`.
+    """
+    places = project_to_wgs84(_located(features))
+    _require_one_side(places.xyz, features, path)
+    with replacing(path, binary=False) as file:
+        for _, written in _iterate_batches(features, places):
+            file.writelines(f"{line}\n" for line in written)
+
+
+def _iterate_batches(features: Features, places: Places) -> Iterator[tuple[int, list[str]]]:
+    """Yield the texts of some features after others, with the number done."""
+    geometries = _geometries(features, places)
+    template = properties_template(list(features.columns))
+    for start in range(0, len(features), _BATCH):
+        part = slice(start, min(start + _BATCH, len(features)))
+        columns = [json_texts(column[part]) for column in features.columns.values()]
+        rows = zip(*columns, strict=True) if columns else [()] * (part.stop - start)
+        yield part.stop, list(map(_feature, map(template.__mod__, rows), geometries[part]))
+
+
+def _located(features: Features) -> _Located:
     """Return coordinates with elevations; 0 stands for those that are not known or not there."""
     points = np.zeros((len(features.coordinates), 3))
     points[:, : features.coordinates.shape[1]] = features.coordinates
@@ -105,7 +122,7 @@ def _locate(features: Features) -> _Located:
     return _Located(points, crs, features.elevation_unit)
 
 
-def _format_head(features: Features, places: Places) -> str:
+def _head(features: Features, places: Places) -> str:
     lines = ['"type":"FeatureCollection"']
     if features.name:
         lines.append(f'"name":{json.dumps(features.name)}')
@@ -125,14 +142,14 @@ def _format_head(features: Features, places: Places) -> str:
     return "{" + ",\n".join(lines) + ',\n"features":['
 
 
-def _format_feature(properties: str, geometry: str) -> str:
+def _feature(properties: str, geometry: str) -> str:
     return f'{{"type":"Feature","properties":{properties},"geometry":{geometry}}}'
 
 
 # ------------------------------------------------------------------------- geometries
 
 
-def _iterate_texts(features: Features, places: Places) -> NDArray[np.object_]:
+def _texts(features: Features, places: Places) -> NDArray[np.object_]:
     """Return each position, with two numbers where its elevation is not known."""
     if not features.has_elevations:
         return format_positions(places.xyz[:, :2])
@@ -144,9 +161,9 @@ def _iterate_texts(features: Features, places: Places) -> NDArray[np.object_]:
 
 def _geometries(features: Features, places: Places) -> list[str]:
     """Return the geometry of each feature."""
-    positions = _iterate_texts(features, places)
+    positions = _texts(features, places)
     if features.kind == "polygons" and places.crs_member is None:
-        positions = positions[_turn_rings(features, places.xyz)]
+        positions = positions[_turned(features, places.xyz)]
     pieces: list[str] = positions.tolist()
     for offsets in features.offsets:
         pieces = [f"[{','.join(pieces[a:b])}]" for a, b in pairwise(offsets.tolist())]
@@ -154,7 +171,7 @@ def _geometries(features: Features, places: Places) -> list[str]:
     return [f'{{"type":"{kind}","coordinates":{piece}}}' for piece in pieces]
 
 
-def _turn_rings(features: Features, xyz: NDArray[np.float64]) -> NDArray[np.int64]:
+def _turned(features: Features, xyz: NDArray[np.float64]) -> NDArray[np.int64]:
     """Return the order of points in which exterior rings run counter-clockwise, holes clockwise.
 
     A map may be mirrored (westings), or a ring turn by rounding.
@@ -165,14 +182,14 @@ def _turn_rings(features: Features, xyz: NDArray[np.float64]) -> NDArray[np.int6
         return order
     is_exterior = np.zeros(len(offsets) - 1, np.bool_)
     is_exterior[polygons[:-1]] = True
-    areas = _measure_rings(xyz[:, :2], offsets)
+    areas = _ring_areas(xyz[:, :2], offsets)
     for ring in np.flatnonzero((areas != 0) & ((areas > 0) != is_exterior)):
         part = slice(offsets[ring], offsets[ring + 1])
         order[part] = order[part][::-1]
     return order
 
 
-def _measure_rings(xy: NDArray[np.float64], offsets: NDArray[np.int64]) -> NDArray[np.float64]:
+def _ring_areas(xy: NDArray[np.float64], offsets: NDArray[np.int64]) -> NDArray[np.float64]:
     """Return twice the signed area of each closed ring, positive counter-clockwise."""
     near = xy - np.repeat(xy[offsets[:-1]], np.diff(offsets), axis=0)
     steps = np.zeros(len(xy))

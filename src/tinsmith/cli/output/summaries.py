@@ -64,6 +64,7 @@ def describe_survey(survey: Survey) -> dict[str, Any]:
         "skipped": dict(survey.skipped),
         "skipped_lines": {what: list(rows) for what, rows in survey.skipped_lines.items()},
         "notes": list(survey.notes),
+        "findings": [finding.to_dict() for finding in survey.findings],
     }
 
 
@@ -100,6 +101,7 @@ def describe_report(report: Report, survey: Survey, gaps: Sequence[str] = ()) ->
     record = report.to_dict()
     record["notes"] += gaps
     record["skipped_lines"] = {what: list(rows) for what, rows in survey.skipped_lines.items()}
+    record["findings"] = [finding.to_dict() for finding in survey.findings]
     numbers = survey.attributes.get("number")
     if numbers is not None:
         for merge in record["merges"]:
