@@ -46,7 +46,7 @@ def refine(
 ) -> None:
     """Add points to the TIN in FILE, or that of the points in it, until its triangles are good.
 
-    Rim, boundary, holes and breaklines stay, and the new points lie on the surface.
+    Boundary, holes and breaklines stay, and the new points lie on the surface.
 
     \b
     Example:
