@@ -123,9 +123,9 @@ def neighbors_of(triangles: NDArray[np.int32], n_vertices: int) -> NDArray[np.in
 
 
 def _require_manifold(triangles: NDArray[np.int32], n_vertices: int) -> None:
-    start, end = directed_edges(triangles)
-    keys = _make_keys(start, end, n_vertices).ravel()
-    forward = (start < end).ravel()
+    starts, ends = directed_edges(triangles)
+    keys = _make_keys(starts, ends, n_vertices).ravel()
+    forward = (starts < ends).ravel()
     order = np.argsort(keys, kind="stable")
     same = keys[order][1:] == keys[order][:-1]
     thrice = same[1:] & same[:-1]
