@@ -71,9 +71,7 @@ _REFERENCES = (
 _FOREIGN_TEXTS = (
     *_REFERENCES,
     (re.compile(rb"<(?:!doctype )?html", re.I), "an HTML page"),
-    (re.compile(rb"<LandXML"), "a LandXML file"),
     (re.compile(rb"<[?!]?[A-Za-z_-]"), "an XML document"),
-    (re.compile(rb"0\r?\n\s*SECTION\r?\n"), "a DXF drawing"),
 )
 
 

@@ -12,6 +12,7 @@ from ... import _optional
 from ..._sentences import counted
 from ...crs import CRS
 from ...errors import CrsError, ReadError
+from ..cad.signatures import is_dxf
 from ..isolated import choose_limits, run_isolated
 from ..isolated.local_files import require_local
 from ..isolated.spooling import describe_system_error, open_ordinary_file
@@ -30,6 +31,7 @@ _FOLDERS = (".gdb",)
 """Suffixes of formats that are folders."""
 
 _PARQUET = (".parquet", ".geoparquet")
+_DRAWING = ".dxf"
 _SHAPEFILE = b"\x00\x00\x27\x0a"
 
 
@@ -68,7 +70,9 @@ class Features(NamedTuple):
         return f"'{self.path}': feature {self.numbers[row]}"
 
 
-def read_features(path: Path, *, layer: str | None = None, where: str | None = None) -> Features:
+def read_features(
+    path: Path, *, layer: str | None = None, where: str | None = None, lines_only: bool = False
+) -> Features:
     """Read the features of one layer of a vector file that GDAL reads.
 
     Parameters
@@ -78,27 +82,33 @@ def read_features(path: Path, *, layer: str | None = None, where: str | None = N
         Needed if several layers have geometry.
     where : str, optional
         Condition on the columns, as in SQL.
+    lines_only : bool
+        Leave the points and texts of a drawing aside.
 
     Raises
     ------
     MissingExtraError
-        If pyogrio is not installed.
+        If pyogrio, or for a drawing ezdxf, is not installed.
     ReadError
         If the file or layer is missing, damaged, empty, or no vector file.
     """
     require_local(path)
     with open_ordinary_file(path) as local:
-        features = _read_layer(local, layer, where)
+        features = _read_layer(local, layer, where, lines_only=lines_only)
     if local == path:
         return features
     notes = tuple(note.replace(local.name, path.name) for note in features.notes)
     return features._replace(path=path, notes=notes)
 
 
-def _read_layer(path: Path, layer: str | None, where: str | None) -> Features:
-    if path.suffix.lower() not in _PARQUET:
+def _read_layer(path: Path, layer: str | None, where: str | None, *, lines_only: bool) -> Features:
+    if path.suffix.lower() not in (*_PARQUET, _DRAWING):
         _optional.require("pyogrio", "Reading vector files")
     content = _require_whole_file(path)
+    if is_dxf(content) or path.suffix.lower() == _DRAWING:
+        from .drawings import read_drawing_features
+
+        return read_drawing_features(path, layer=layer, where=where, lines_only=lines_only)
     library = "pyarrow" if is_parquet(content) else "pyogrio"
     _optional.require(library, "Reading vector files")
     head = read_json_members(content, path)

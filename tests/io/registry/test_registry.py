@@ -67,6 +67,11 @@ def fault(error, action):
         ("a.nothing", b"II*\x00rest", "raster"),
         ("a.hgt", b"\x00\x01\x02\x03" * 9, "raster"),
         ("a.dem", b"ENDWELL", "raster"),
+        ("a.csv", b'<?xml version="1.0"?>\n<!-- by hand -->\n<LandXML version="1.2">', "landxml"),
+        ("a.txt", '\ufeff<LandXML version="1.2">'.encode("utf-16-le"), "landxml"),
+        ("a.txt", b"  0\nSECTION\n  2\nHEADER\n", "dxf"),
+        ("a.txt", b"999\nby hand\n0\nSECTION\n2\nENTITIES\n", "dxf"),
+        ("a.txt", b"AutoCAD Binary DXF\r\n\x1a\x00rest", "dxf"),
     ],
 )
 def test_content_decides_before_the_suffix(name, head, expected):
@@ -80,8 +85,6 @@ def test_content_decides_before_the_suffix(name, head, expected):
         (b"%PDF-1.7", "PDF"),
         (b"\x1f\x8b\x08", "gzip"),
         (b"<!DOCTYPE html><html>", "HTML"),
-        (b'<?xml version="1.0"?>\n<LandXML version="1.2">', "LandXML"),
-        (b"  0\nSECTION\n  2\nHEADER\n", "DXF"),
         (b"SQLite format 3\x00", "SQLite"),
     ],
 )
