@@ -1,4 +1,4 @@
-"""How good a transformation is that PROJ can do here: are grids missing for a better one?"""
+"""How good a transformation is that PROJ can do here, and which grids a better one needs."""
 
 from __future__ import annotations
 

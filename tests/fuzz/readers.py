@@ -18,7 +18,10 @@ from tinsmith.io.isolated import limits
 from .campaign import Campaign
 from .samples import MEMORY, sample_files
 
-KINDS = ("ply", "obj", "stl", "vtk", "gmsh", "raster", "vectors", "delimited")
+KINDS = (
+    *("ply", "obj", "stl", "vtk", "gmsh", "raster", "vectors", "delimited"),
+    *("las", "layers"),
+)
 
 _NUMBER = re.compile(rb"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
 _NUMBERS = (
