@@ -56,6 +56,9 @@ class Format:
     read, write : str, optional
         ``"module:function"``. A reader takes ``(path, *, crs=None, z_unit=None, <options>)``, a CRS
         and a Unit or None, and returns a Survey or a TIN; a writer ``(obj, path, *, <options>)``.
+        One that takes ``progress`` calls it with the fraction done. A writer raises a FormatError
+        for what it cannot hold, a MissingExtraError without the library that it needs, and a
+        WriteError, with the old file left whole, if the new one cannot be written.
     reads, writes : tuple of str
         What the reader gives, what the writer takes: "TIN", "Survey", "Features", "Raster",
         "Table". Several formats may share a suffix, if they hold different things.
@@ -75,6 +78,8 @@ class Format:
     sniff_folder : callable, optional
         Whether a folder is certainly of this format, by the names in it; a format without it is
         of files.
+    part_names : tuple of str
+        Names of files in such a folder, small letters, any of which stands for the folder.
     distribution : str
         Name and version of the plug-in's distribution, set by the registry; else "tinsmith".
 
@@ -100,6 +105,7 @@ class Format:
     extra: str | None = None
     sniff: Callable[[bytes], bool] | None = None
     sniff_folder: Callable[[Path], bool] | None = None
+    part_names: tuple[str, ...] = ()
     distribution: str = _OWN
 
     @property

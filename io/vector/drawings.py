@@ -11,7 +11,7 @@ import numpy as np
 from ..._sentences import counted
 from ...errors import OptionError, ReadError
 from ..cad.dxf.drawing import Drawing, read_drawing
-from .features import Features
+from .layers import Features
 
 if TYPE_CHECKING:
     from pathlib import Path

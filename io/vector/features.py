@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import struct
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,7 +17,9 @@ from ..isolated import choose_limits, run_isolated
 from ..isolated.local_files import require_local
 from ..isolated.spooling import describe_system_error, open_ordinary_file
 from ..registry.signatures import HEAD_BYTES, find_reference_kind
+from .drawings import read_drawing_features
 from .geojson.members import read_json_members
+from .layers import Features
 from .signatures import is_parquet
 
 if TYPE_CHECKING:
@@ -30,44 +32,9 @@ __all__ = ["Features", "read_features"]
 _FOLDERS = (".gdb",)
 """Suffixes of formats that are folders."""
 
-_PARQUET = (".parquet", ".geoparquet")
 _DRAWING = ".dxf"
+_PARQUET = (".parquet", ".geoparquet")
 _SHAPEFILE = b"\x00\x00\x27\x0a"
-
-
-class Features(NamedTuple):
-    """What a layer holds.
-
-    Attributes
-    ----------
-    path : Path
-    numbers : (n,) int64 array
-        Feature numbers as GDAL counts them.
-    geometries : (n,) object array
-        Shapely geometries, none of them missing or empty.
-    columns : dict of str to (n,) array
-        By their names in lower case.
-    crs : CRS or None
-    notes : tuple of str
-        What was left out.
-    names : tuple of str
-        Of the columns, as the file writes them.
-    elevation_unit : str
-        What the file calls the unit of its elevations, apart from its CRS; empty if it does not.
-    """
-
-    path: Path
-    numbers: NDArray[np.int64]
-    geometries: NDArray[np.object_]
-    columns: dict[str, NDArray[Any]]
-    crs: CRS | None
-    notes: tuple[str, ...]
-    names: tuple[str, ...] = ()
-    elevation_unit: str = ""
-
-    def label(self, row: int) -> str:
-        """Return what a feature is called in sentences."""
-        return f"'{self.path}': feature {self.numbers[row]}"
 
 
 def read_features(
@@ -106,8 +73,6 @@ def _read_layer(path: Path, layer: str | None, where: str | None, *, lines_only:
         _optional.require("pyogrio", "Reading vector files")
     content = _require_whole_file(path)
     if is_dxf(content) or path.suffix.lower() == _DRAWING:
-        from .drawings import read_drawing_features
-
         return read_drawing_features(path, layer=layer, where=where, lines_only=lines_only)
     library = "pyarrow" if is_parquet(content) else "pyogrio"
     _optional.require(library, "Reading vector files")

@@ -22,13 +22,14 @@ if TYPE_CHECKING:
     from ..io import Format
     from ..terrain import Features, Raster, Table
     from ..tin import TIN, Survey
-    from .options import Reading, Triangulating, Writing
+    from .options import Coding, Reading, Triangulating, Writing
     from .output.console import Console
 
     Product = TIN | Survey | Features | Raster | Table
 
 __all__ = [
     "Output",
+    "add_coded_lines",
     "add_lines",
     "build_tin",
     "describe_written",
@@ -43,7 +44,7 @@ __all__ = [
     "write_text",
 ]
 
-_TEXT_FORMATS = ("delimited", "geojson", "obj", "csv", "json")
+_TEXT_FORMATS = ("delimited", "geojson", "obj", "off", "2dm", "cityjson", "csv", "json")
 """Formats that a terminal can show."""
 
 
@@ -126,6 +127,21 @@ def open_standard_input() -> IO[bytes]:
     return sys.stdin.buffer
 
 
+def add_coded_lines(survey: Survey, how: Coding) -> Survey:
+    """Add the lines of the points' codes to a survey, if they are asked for.
+
+    Raises
+    ------
+    click.UsageError
+        If there is a tolerance of curves, but no codes.
+    """
+    from ..io import lines_from_codes
+
+    if how.arc_tolerance is not None and not how.has_codes:
+        raise click.UsageError("--arc-tolerance needs --codes, --code-table or --code-style.")
+    return lines_from_codes(survey, **how.coding) if how.has_codes else survey
+
+
 def add_lines(survey: Survey, how: Triangulating, console: Console) -> Survey:
     """Add the lines of the points' codes and of files to a survey, showing progress.
 
@@ -134,13 +150,11 @@ def add_lines(survey: Survey, how: Triangulating, console: Console) -> Survey:
     click.UsageError
         If there is a height of water, but no water.
     """
-    from ..io import lines_from_codes
     from ..io import with_lines as with_lines_of_files
 
     if how.water_z is not None and not how.water:
         raise click.UsageError("--water-z needs --water: a file of the polygons that it is for.")
-    if how.codes:
-        survey = lines_from_codes(survey)
+    survey = add_coded_lines(survey, how)
     if not how.files:
         return survey
     with console.steps() as steps, steps.step("Reading lines"):
@@ -186,12 +200,14 @@ def read_tin(
     return build_tin(survey, how, console), survey
 
 
-def list_inputs(file: Path, how: Triangulating | None = None) -> list[Named]:
+def list_inputs(file: Path, how: Coding | None = None) -> list[Named]:
     """Return all files that a command reads."""
     from ..io.vector.survey_lines import split_layer
 
     inputs = [Named(file, "the input")]
-    given = {} if how is None else how.line_files
+    if how is not None and how.code_table is not None:
+        inputs.append(Named(how.code_table, "the file of --code-table"))
+    given = getattr(how, "line_files", {})
     for flag, paths in given.items():
         inputs += [Named(split_layer(path)[0], f"the file of {flag}") for path in paths]
     return inputs
@@ -230,8 +246,9 @@ def plan_outputs(
     outputs = [Named(path, "--output") for path in paths]
     if report is not None:
         outputs.append(Named(report, "--report"))
-    require_separate(inputs, outputs)
-    given = {name: value for name, value in writing.options.items() if value}
+    texture = [] if writing.texture is None else [Named(writing.texture, "the texture")]
+    require_separate([*inputs, *texture], outputs)
+    given = {name: value for name, value in writing.options.items() if value not in (None, False)}
     planned = [
         Output(path, formats, given, _choose_suffix(formats, writing))
         for path, formats in (
@@ -350,10 +367,13 @@ def _find_format_of(obj: Product, output: Output) -> Format:
     if kind in output.formats:
         return output.formats[kind]
     held = " or ".join(output.formats)
+    ways = {
+        "TIN": ": 'tinsmith build' makes a TIN of points.",
+        "Raster": ": 'tinsmith raster' makes one of a surface.",
+    }
     raise Failure(
         f"Cannot write '{output.path}': {next(iter(output.formats.values())).description} holds a "
-        f"{held}, and there is a {kind}"
-        + (": 'tinsmith build' makes a TIN of points." if held == "TIN" else ".")
+        f"{held}, and there is a {kind}{ways.get(held, '.')}"
     )
 
 
