@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import struct
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,10 +12,15 @@ from ... import _optional
 from ..._sentences import counted
 from ...crs import CRS
 from ...errors import CrsError, ReadError
+from ..cad.signatures import is_dxf
 from ..isolated import choose_limits, run_isolated
 from ..isolated.local_files import require_local
 from ..isolated.spooling import describe_system_error, open_ordinary_file
 from ..registry.signatures import HEAD_BYTES, find_reference_kind
+from .drawings import read_drawing_features
+from .geojson.members import read_json_members
+from .layers import Features
+from .signatures import is_parquet
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -27,39 +32,14 @@ __all__ = ["Features", "read_features"]
 _FOLDERS = (".gdb",)
 """Suffixes of formats that are folders."""
 
+_DRAWING = ".dxf"
+_PARQUET = (".parquet", ".geoparquet")
 _SHAPEFILE = b"\x00\x00\x27\x0a"
 
 
-class Features(NamedTuple):
-    """What a layer holds.
-
-    Attributes
-    ----------
-    path : Path
-    numbers : (n,) int64 array
-        Feature numbers as GDAL counts them.
-    geometries : (n,) object array
-        Shapely geometries, none of them missing or empty.
-    columns : dict of str to (n,) array
-        By their names in lower case.
-    crs : CRS or None
-    notes : tuple of str
-        What was left out.
-    """
-
-    path: Path
-    numbers: NDArray[np.int64]
-    geometries: NDArray[np.object_]
-    columns: dict[str, NDArray[Any]]
-    crs: CRS | None
-    notes: tuple[str, ...]
-
-    def label(self, row: int) -> str:
-        """Return what a feature is called in sentences."""
-        return f"'{self.path}': feature {self.numbers[row]}"
-
-
-def read_features(path: Path, *, layer: str | None = None, where: str | None = None) -> Features:
+def read_features(
+    path: Path, *, layer: str | None = None, where: str | None = None, lines_only: bool = False
+) -> Features:
     """Read the features of one layer of a vector file that GDAL reads.
 
     Parameters
@@ -69,29 +49,38 @@ def read_features(path: Path, *, layer: str | None = None, where: str | None = N
         Needed if several layers have geometry.
     where : str, optional
         Condition on the columns, as in SQL.
+    lines_only : bool
+        Leave the points and texts of a drawing aside.
 
     Raises
     ------
     MissingExtraError
-        If pyogrio is not installed.
+        If pyogrio, or for a drawing ezdxf, is not installed.
     ReadError
         If the file or layer is missing, damaged, empty, or no vector file.
     """
     require_local(path)
     with open_ordinary_file(path) as local:
-        features = _read_layer(local, layer, where)
+        features = _read_layer(local, layer, where, lines_only=lines_only)
     if local == path:
         return features
     notes = tuple(note.replace(local.name, path.name) for note in features.notes)
     return features._replace(path=path, notes=notes)
 
 
-def _read_layer(path: Path, layer: str | None, where: str | None) -> Features:
-    _optional.require("pyogrio", "Reading vector files")
-    _require_whole_file(path)
+def _read_layer(path: Path, layer: str | None, where: str | None, *, lines_only: bool) -> Features:
+    if path.suffix.lower() not in (*_PARQUET, _DRAWING):
+        _optional.require("pyogrio", "Reading vector files")
+    content = _require_whole_file(path)
+    if is_dxf(content) or path.suffix.lower() == _DRAWING:
+        return read_drawing_features(path, layer=layer, where=where, lines_only=lines_only)
+    library = "pyarrow" if is_parquet(content) else "pyogrio"
+    _optional.require(library, "Reading vector files")
+    head = read_json_members(content, path)
     where_it_is = {"path": os.path.abspath(path), "shown": str(path)}  # noqa: PTH100 - links stay
+    child = "parquet_child" if is_parquet(content) else "gdal_child"
     value, arrays = run_isolated(
-        f"{__package__}.gdal_child:read_features",
+        f"{__package__}.{child}:read_features",
         {**where_it_is, "layer": layer, "where": where},
         path=path,
         limits=choose_limits(_measure_folder(path)),
@@ -100,14 +89,19 @@ def _read_layer(path: Path, layer: str | None, where: str | None) -> Features:
         raise ReadError(
             f"'{path}' has no features{_describe_part(value['layer'], where)}.", path=path
         )
+    crs = None if head.names_no_crs else _find_file_crs(value["crs"], path)
+    in_metres = head.is_json and crs is not None and crs.is_geographic  # by RFC 7946
+    unit = value["elevation_unit"] or head.elevation_unit or ("metre" if in_metres else "")
     return _drop_without_geometry(
         Features(
             path,
             arrays["numbers"],
             _parse_shapes(arrays, path),
             _decode_columns(value, arrays),
-            _find_file_crs(value["crs"], path),
+            crs,
             (),
+            tuple(value["names"]),
+            unit,
         )
     )
 
@@ -138,12 +132,12 @@ def _measure_folder(path: Path) -> int:
     return sum(file.stat().st_size for file in path.iterdir() if file.is_file())
 
 
-def _require_whole_file(path: Path) -> None:
-    """Refuse a file that is missing, empty, or a shapefile shorter than it says."""
+def _require_whole_file(path: Path) -> bytes:
+    """Return the first bytes; refuse a file that is missing, empty, or a shapefile cut short."""
     try:
         if path.is_dir():
             if path.suffix.lower() in _FOLDERS:
-                return
+                return b""
             raise ReadError(f"'{path}' is a folder: name a file in it.", path=path)
         size = path.stat().st_size
         with path.open("rb") as file:
@@ -163,6 +157,7 @@ def _require_whole_file(path: Path) -> None:
             raise ReadError(
                 f"'{path}' is cut short: it has {size} of {2 * words} bytes.", path=path
             )
+    return head
 
 
 def _describe_part(layer: str, where: str | None) -> str:

@@ -103,7 +103,7 @@ def read_lines(
     ...     [line.coords.tolist() for line in ts.read_lines(path)]
     [[[0.0, 0.0, 5.0], [4.0, 3.0, 6.0]]]
     """
-    features = read_features(as_path(path), layer=layer, where=where)
+    features = read_features(as_path(path), layer=layer, where=where, lines_only=True)
     parts = split_into_parts(
         features, _parse_wanted(crs, elevation_unit, z_unit), drape=drape, notes=notes
     )
@@ -159,7 +159,7 @@ def read_rings(
     ...     [len(ring) for ring in ts.read_rings(path)]
     [3]
     """
-    features = read_features(as_path(path), layer=layer, where=where)
+    features = read_features(as_path(path), layer=layer, where=where, lines_only=True)
     parts = split_into_parts(
         features, _parse_wanted(crs, elevation_unit, z_unit), drape=drape, notes=notes
     )
@@ -206,7 +206,7 @@ def read_polygons(
     ...     [[len(ring) for ring in rings] for rings in ts.read_polygons(path)]
     [[3]]
     """
-    features = read_features(as_path(path), layer=layer, where=where)
+    features = read_features(as_path(path), layer=layer, where=where, lines_only=True)
     polygons: list[list[NDArray[np.float64]]] = []
     wanted = _parse_wanted(crs, elevation_unit, z_unit)
     for part in split_into_parts(features, wanted, drape=drape, notes=notes):
@@ -259,7 +259,7 @@ def read_water(
     ...     [pond.z for pond in ts.read_water(path)]
     [5.0]
     """
-    features = read_features(as_path(path), layer=layer, where=where)
+    features = read_features(as_path(path), layer=layer, where=where, lines_only=True)
     wanted = _parse_wanted(crs, elevation_unit, z_unit)
     parts = split_into_parts(features, wanted, drape=False, notes=notes)
     island = next((part for part in parts if part.ring > 0), None)

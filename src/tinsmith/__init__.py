@@ -37,6 +37,7 @@ if TYPE_CHECKING:
         read_polygons,
         read_rings,
         read_water,
+        reproject,
         transform_points,
         with_lines,
         write,
@@ -59,7 +60,7 @@ if TYPE_CHECKING:
         contours,
     )
     from .terrain.lift import lift
-    from .terrain.preview.picture import preview
+    from .terrain.preview import Preview, preview
     from .terrain.relief import (
         aspect_classes,
         curvature,
@@ -129,6 +130,7 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "read_polygons",
                 "read_rings",
                 "read_water",
+                "reproject",
                 "transform_points",
                 "with_lines",
                 "write",
@@ -147,6 +149,7 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "earthwork_map",
                 "histogram",
                 "lift",
+                "Preview",
                 "preview",
                 "profile_picture",
                 "relief_map",
@@ -216,6 +219,7 @@ __all__ = [
     "Outcome",
     "PlugInWarning",
     "PointsError",
+    "Preview",
     "Quality",
     "Raster",
     "ReadError",
@@ -266,6 +270,7 @@ __all__ = [
     "read_water",
     "refine",
     "relief_map",
+    "reproject",
     "section_lines",
     "slope",
     "slope_classes",

@@ -14,6 +14,8 @@ __all__ = [
     "CrossingPolicy",
     "CurvatureKind",
     "DistanceRule",
+    "DrawingContent",
+    "DrawingVersion",
     "DuplicatePolicy",
     "EmptyCircleRule",
     "Extrapolation",
@@ -116,3 +118,9 @@ CurvatureKind: TypeAlias = Literal["profile", "plan", "tangential", "mean", "gau
 """In which direction a surface is curved."""
 OutsidePolicy: TypeAlias = Literal["error", "nan", "cut"]
 """What becomes of parts of features where there is no surface."""
+
+DrawingContent: TypeAlias = Literal["surface", "source", "points"]
+"""What is read of a drawing: triangles, the points and lines that make a surface, or points."""
+
+DrawingVersion: TypeAlias = Literal["R2010", "R12"]
+"""Which version of DXF is written."""

@@ -18,7 +18,7 @@ from tinsmith.io.isolated import limits
 from .campaign import Campaign
 from .samples import MEMORY, sample_files
 
-KINDS = ("ply", "obj", "stl", "vtk", "gmsh", "raster", "vectors", "delimited", "instruments")
+KINDS = ("ply", "obj", "stl", "vtk", "gmsh", "raster", "vectors", "delimited", "tin", "instruments")
 
 _NUMBER = re.compile(rb"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
 _NUMBERS = (

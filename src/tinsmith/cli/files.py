@@ -73,19 +73,43 @@ class Output:
 
 
 def read_input(path: Path, reading: Reading, console: Console) -> Survey | TIN:
-    """Read points or a TIN, showing progress."""
-    from ..io import read
-    from ..io.reading import read_stream
+    """Read points or a TIN, showing progress, and reproject them if that is asked for."""
+    from ..io import reproject
     from ..tin import Bounds
 
     options = {name: value for name, value in asdict(reading).items() if value is not None}
+    target = options.pop("to_crs", None)
     if reading.window is not None:
         options["window"] = Bounds(*reading.window)
     with console.steps() as steps, steps.step(f"Reading {name_file(Path(path.name))}"):
+        if target is None:
+            return _read_once(path, options)
+        return reproject(_read_to_reproject(path, options, target), target)
+
+
+def _read_once(path: Path, options: dict[str, Any]) -> Survey | TIN:
+    from ..io import read
+    from ..io.reading import read_stream
+
+    if path == STANDARD:
+        return read_stream(open_standard_input(), name_file(path), **options)
+    found: Survey | TIN = read(path, **options)
+    return found
+
+
+def _read_to_reproject(path: Path, options: dict[str, Any], target: str) -> Survey | TIN:
+    """Read in the input's own CRS; one in degrees, which no TIN has, in the one that is wanted."""
+    from ..io.reprojection.placement import DegreesError
+
+    try:
+        return _read_once(path, options)
+    except DegreesError:
         if path == STANDARD:
-            return read_stream(open_standard_input(), name_file(path), **options)
-        found: Survey | TIN = read(path, **options)
-        return found
+            raise  # it is read only once
+        declared = options.pop("crs", None)
+        if declared is not None:
+            options.setdefault("source_crs", declared)
+        return _read_once(path, options | {"crs": target})
 
 
 def open_standard_input() -> IO[bytes]:
@@ -342,10 +366,13 @@ def _find_format_of(obj: Product, output: Output) -> Format:
     if kind in output.formats:
         return output.formats[kind]
     held = " or ".join(output.formats)
+    ways = {
+        "TIN": ": 'tinsmith build' makes a TIN of points.",
+        "Raster": ": 'tinsmith raster' makes one of a surface.",
+    }
     raise Failure(
         f"Cannot write '{output.path}': {next(iter(output.formats.values())).description} holds a "
-        f"{held}, and there is a {kind}"
-        + (": 'tinsmith build' makes a TIN of points." if held == "TIN" else ".")
+        f"{held}, and there is a {kind}{ways.get(held, '.')}"
     )
 
 

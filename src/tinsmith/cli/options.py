@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 
 import click
 
-from ..policies import DuplicatePolicy, FeatureKind, LineReading
+from ..policies import DrawingContent, DuplicatePolicy, FeatureKind, LineReading
 from .line_options import CODE_OPTIONS, LINE_OPTIONS
 from .output.console import Console
 from .parameters import Decorator, choice_option, number_option
@@ -44,6 +44,7 @@ class Reading:
     crs: str | None = None
     z_unit: str | None = None
     source_crs: str | None = None
+    to_crs: str | None = None
     format: str | None = None
     columns: str | dict[str, str | int] | None = None
     delimiter: str | None = None
@@ -64,6 +65,10 @@ class Reading:
     layer: str | None = None
     z_field: str | None = None
     lines_as: str | None = None
+    unit: str | None = None
+    surface: str | None = None
+    content: str | None = None
+    texts: bool | None = None
 
 
 @dataclass(frozen=True)
@@ -213,6 +218,11 @@ reading_options = _gather(
     click.option(
         "--source-crs", metavar="CRS", help="CRS that the points are in, if it is not --crs."
     ),
+    click.option(
+        "--to-crs",
+        metavar="CRS",
+        help="Reproject what was read to this CRS; the input must name its own, or --crs does.",
+    ),
     click.option("--format", metavar="NAME", help="Format of the input, whatever it looks like."),
     click.option(
         "--columns",
@@ -267,6 +277,29 @@ reading_options = _gather(
         "earth's curvature, such as 0.13; default neither.",
     ),
     click.option(
+        "--unit",
+        metavar="UNIT",
+        help="Unit of the coordinates and elevations of a LandXML or DXF file, where it does not "
+        "say, or says another one than its CRS.",
+    ),
+    click.option(
+        "--surface",
+        metavar="NAME",
+        help="Surface of a LandXML file that has several: its name, or its number from 1.",
+    ),
+    choice_option(
+        "--content",
+        DrawingContent,
+        "What to read of a LandXML or DXF file: the triangles of a surface, the points and lines "
+        "that make one, or points alone.",
+    ),
+    click.option(
+        "--texts",
+        is_flag=True,
+        default=None,
+        help="Read texts of a DXF file that are numbers as points of that elevation.",
+    ),
+    click.option(
         "--classes", metavar="N,N", help="Classes of lidar points to take, such as 2 (ground)."
     ),
     click.option(
@@ -281,7 +314,12 @@ reading_options = _gather(
         help="Of COPC lidar take the levels down to this distance of points.",
     ),
     click.option("--every", metavar="N", type=int, help="Take every Nth point of lidar."),
-    click.option("--layer", metavar="NAME", help="Layer of a vector file."),
+    click.option(
+        "--layer",
+        metavar="NAME",
+        help="Layer of a vector file; of a DXF file layers, names or patterns with commas between, "
+        "such as 'TOPO*,BREAK?'.",
+    ),
     click.option(
         "--z-field",
         metavar="NAME",

@@ -1,0 +1,1 @@
+"""Drawings and design data: LandXML and DXF."""

@@ -1,0 +1,1 @@
+"""DXF drawings through ezdxf: faces, points and lines by layer."""

@@ -1,0 +1,172 @@
+"""A drawing as arrays: what the child process found, and what is told of it."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from .... import _optional
+from ...._sentences import counted
+from ....crs import CRS
+from ....errors import CrsError, OptionError, ReadError
+from ...isolated import Limits, choose_limits, run_isolated
+from ...isolated.spooling import describe_system_error
+from ..reference import Stated
+from .names import CRS_PROPERTY, ELEVATION_PROPERTY, UNKNOWN
+from .units import UNIT_OF_CODE
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+__all__ = ["Drawing", "read_drawing"]
+
+_SLOWNESS = 5
+"""Times the usual time: ezdxf reads about a million bytes in a second, on a busy machine less."""
+
+
+class Drawing(NamedTuple):
+    """What a drawing holds in its model space, blocks taken apart.
+
+    Attributes
+    ----------
+    path : Path
+    value : dict
+        ``layers`` by number, what was left out, and texts, as the child process answers.
+    arrays : dict of str to array
+        ``points`` (n, 3), ``faces`` (m, 4, 3), ``lines`` (k, 3) with ``lengths`` and ``is_flat``
+        of each, ``text_places``, and the layer of each point, face and line.
+    """
+
+    path: Path
+    value: dict[str, Any]
+    arrays: dict[str, NDArray[Any]]
+
+    @property
+    def lines(self) -> list[NDArray[np.float64]]:
+        """Lines as rows, (k, 2) where an elevation of 0 stands for none."""
+        ends = np.cumsum(self.arrays["lengths"]).tolist()
+        starts = [0, *ends[:-1]] if ends else []
+        rows = self.arrays["lines"]
+        flat = self.arrays["is_flat"].tolist()
+        return [
+            rows[start:end, : 2 if is_flat else 3]
+            for start, end, is_flat in zip(starts, ends, flat, strict=True)
+        ]
+
+    @property
+    def stated(self) -> Stated:
+        """What the drawing says of units and CRS."""
+        properties = dict(self.value["properties"])
+        text = properties.get(CRS_PROPERTY) or self.value["epsg"]
+        try:
+            crs = CRS.of(text or None)
+        except CrsError:
+            crs = None
+        unit = UNIT_OF_CODE.get(self.value["unit"])
+        is_unknown = properties.get(ELEVATION_PROPERTY) == UNKNOWN
+        return Stated(crs, unit, None, is_unknown, "its header ($INSUNITS)")
+
+    def describe_left_out(self) -> list[str]:
+        """Tell in sentences what of the drawing was not taken, or needs to be known."""
+        value, notes = self.value, []
+        if value["left_out"]:
+            what = ", ".join(f"{count:,} {kind}" for kind, count in value["left_out"].items())
+            notes.append(f"Left out: {what}.")
+        for layer, count in value["hidden"].items():
+            where = "that are invisible" if layer == "invisible" else f"on the layer '{layer[:60]}'"
+            why = "" if layer == "invisible" else ", which is off or frozen"
+            things = counted(count, "entity", "entities")
+            notes.append(f"Left out: {things} {where}{why}.")
+        if value["missing_blocks"]:
+            names = ", ".join(f"'{name}'" for name in value["missing_blocks"][:5])
+            notes.append(f"Blocks that are not in the file were not followed: {names}.")
+        if value["n_nested_lines"]:
+            notes.append(f"{counted(value['n_nested_lines'], 'line')} come from inserted blocks.")
+        if value["n_curves"]:
+            notes.append(f"{counted(value['n_curves'], 'curve')} became polylines.")
+        return notes
+
+
+def read_drawing(
+    path: Path, *, layer: str | None = None, texts: bool = False, tolerance: float | None = None
+) -> Drawing:
+    """Read the model space of a drawing in a child process.
+
+    Parameters
+    ----------
+    path : Path
+    layer : str, optional
+        Names or patterns of layers, with commas between; default all that are neither off nor
+        frozen.
+    texts : bool
+    tolerance : float, optional
+        How far a curve may lie from its chords, in the unit of the drawing; default a centimetre,
+        or a hundredth of a unit that is not known.
+
+    Raises
+    ------
+    MissingExtraError
+        If ezdxf is not installed.
+    ReadError
+        If the file is damaged, or takes longer or more memory than it may.
+    OptionError
+        If there is no such layer, or the tolerance is no length above 0.
+    """
+    _optional.require("ezdxf", "Reading DXF drawings")
+    _require_options(layer, tolerance)
+    try:
+        size = path.stat().st_size
+    except OSError as error:
+        raise describe_system_error(path, error) from error
+    usual = choose_limits(size)
+    answer = run_isolated(
+        f"{__package__}.dxf_child:read_drawing",
+        {
+            "path": os.path.abspath(path),  # noqa: PTH100 - links stay
+            "shown": str(path),
+            "layer": layer,
+            "texts": texts,
+            "tolerance": tolerance,
+        },
+        path=path,
+        limits=Limits(usual.seconds + (_SLOWNESS - 1) * size / 1e6, usual.memory),
+    )
+    drawing = Drawing(path, answer.value, answer.arrays)
+    _require_layer(drawing, layer)
+    _require_finite(drawing)
+    return drawing
+
+
+def _require_options(layer: object, tolerance: object) -> None:
+    if layer is not None and not (isinstance(layer, str) and layer.strip(", ")):
+        raise OptionError("layer", layer, "names or patterns of layers with commas between")
+    if tolerance is not None:
+        is_number = isinstance(tolerance, int | float) and not isinstance(tolerance, bool)
+        if not is_number or not 0 < float(tolerance) < float("inf"):  # type: ignore[arg-type]
+            raise OptionError("tolerance", tolerance, "a length above 0")
+
+
+def _require_layer(drawing: Drawing, layer: str | None) -> None:
+    if layer is not None and not drawing.value["layers"]:
+        names = drawing.value["all_layers"]
+        shown = ", ".join(f"'{name[:60]}'" for name in names[:20])
+        more = ", ..." if len(names) > 20 else ""
+        raise OptionError(
+            "layer", layer, f"a layer with something in it; '{drawing.path}' has {shown}{more}"
+        )
+
+
+def _require_finite(drawing: Drawing) -> None:
+    for name in ("points", "faces", "lines", "text_places"):
+        rows = drawing.arrays[name].reshape(-1, 3)
+        wrong = ~np.isfinite(rows).all(axis=1)
+        if wrong.any():
+            row = rows[int(np.argmax(wrong))].tolist()
+            raise ReadError(
+                f"'{drawing.path}' has coordinates that are not finite (first: {row}).",
+                path=drawing.path,
+            )

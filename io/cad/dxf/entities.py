@@ -1,0 +1,179 @@
+"""Entities of a drawing as text, many at once; ezdxf makes the rest of the file.
+
+An object of ezdxf for each triangle would take a second for 10,000 of them.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .names import APPLICATION
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+__all__ = ["EntityWriter"]
+
+_LONGEST_TEXT = 250
+"""DXF allows 255 letters in extended data."""
+
+
+class EntityWriter:
+    """Makes the text of entities of one drawing, with handles that count on.
+
+    Parameters
+    ----------
+    is_r12 : bool
+        The version has no subclasses.
+    owner : str
+        Handle of the record of the model space.
+    first_handle : int
+    """
+
+    def __init__(self, *, is_r12: bool, owner: str, first_handle: int) -> None:
+        self._is_r12 = is_r12
+        self._owner = owner
+        self.next_handle = first_handle
+        self.parts: list[str] = []
+
+    def _begin(self, kind: str, layer: str, *subclasses: str, owner: str = "") -> str:
+        """Return the head of an entity with the next handle."""
+        handle = self._take_handle()
+        if self._is_r12:
+            return f"0\n{kind}\n5\n{handle}\n8\n{layer}\n"
+        marks = "".join(f"100\n{name}\n" for name in subclasses)
+        return (
+            f"0\n{kind}\n5\n{handle}\n330\n{owner or self._owner}\n100\nAcDbEntity\n8\n{layer}\n"
+            f"{marks}"
+        )
+
+    def _take_handle(self) -> str:
+        self.next_handle += 1
+        return f"{self.next_handle - 1:X}"
+
+    # ------------------------------------------------------------------ entities
+
+    def add_faces(self, layer: str, corners: NDArray[np.float64]) -> None:
+        """Add triangles, (m, 3, 3), the last corner repeated as the format asks for."""
+        rows = corners[:, [0, 1, 2, 2]].reshape(-1, 12).tolist()
+        coordinates = "".join(f"{axis}{k}\n%r\n" for k in range(4) for axis in (1, 2, 3))
+        if self._is_r12:
+            head = f"0\n3DFACE\n5\n%X\n8\n{layer}\n"
+        else:
+            head = f"0\n3DFACE\n5\n%X\n330\n{self._owner}\n100\nAcDbEntity\n8\n{layer}\n"
+            head += "100\nAcDbFace\n"
+        template = head + coordinates
+        first = self.next_handle
+        self.parts += [template % (first + k, *row) for k, row in enumerate(rows)]
+        self.next_handle += len(rows)
+
+    def add_points(
+        self, layer: str, points: NDArray[np.float64], told: Sequence[Sequence[str]]
+    ) -> None:
+        """Add points with texts of their extended data."""
+        for row, texts in zip(points.tolist(), told, strict=True):
+            head = self._begin("POINT", layer, "AcDbPoint")
+            self.parts.append(f"{head}{_format_place(row)}{format_told(texts)}")
+
+    def add_line(self, layer: str, rows: NDArray[np.float64], told: Sequence[str] = ()) -> None:
+        """Add a polyline: in space, or in the plane if it has no elevations or just one."""
+        is_closed = len(rows) > 3 and bool((rows[0] == rows[-1]).all())
+        if is_closed:
+            rows = rows[:-1]
+        is_flat = rows.shape[1] == 2
+        if is_flat:
+            self._add_plane_line(layer, rows, 0.0, is_closed=is_closed, told=told)
+        else:
+            self._add_space_line(layer, rows, is_closed=is_closed, told=told)
+
+    def add_contour(self, layer: str, rows: NDArray[np.float64]) -> None:
+        """Add a line of one elevation as a polyline in the plane."""
+        is_closed = len(rows) > 3 and bool((rows[0] == rows[-1]).all())
+        plane = rows[:-1, :2] if is_closed else rows[:, :2]
+        self._add_plane_line(layer, plane, float(rows[0, 2]), is_closed=is_closed, told=())
+
+    def _add_space_line(
+        self, layer: str, rows: NDArray[np.float64], *, is_closed: bool, told: Sequence[str]
+    ) -> None:
+        handle = f"{self.next_handle:X}"
+        head = self._begin("POLYLINE", layer, "AcDb3dPolyline")
+        flags = 8 | is_closed
+        self.parts.append(
+            f"{head}66\n1\n10\n0.0\n20\n0.0\n30\n0.0\n70\n{flags}\n{format_told(told)}"
+        )
+        for row in rows.tolist():
+            vertex = self._begin(
+                "VERTEX", layer, "AcDbVertex", "AcDb3dPolylineVertex", owner=handle
+            )
+            self.parts.append(f"{vertex}{_format_place(row)}70\n32\n")
+        self.parts.append(self._begin("SEQEND", layer, owner=handle))
+
+    def _add_plane_line(
+        self,
+        layer: str,
+        rows: NDArray[np.float64],
+        elevation: float,
+        *,
+        is_closed: bool,
+        told: Sequence[str],
+    ) -> None:
+        if self._is_r12:
+            self._add_old_plane_line(layer, rows, elevation, is_closed=is_closed, told=told)
+            return
+        head = self._begin("LWPOLYLINE", layer, "AcDbPolyline")
+        places = "".join(f"10\n{x!r}\n20\n{y!r}\n" for x, y in rows.tolist())
+        self.parts.append(
+            f"{head}90\n{len(rows)}\n70\n{int(is_closed)}\n38\n{elevation!r}\n{places}"
+            f"{format_told(told)}"
+        )
+
+    def _add_old_plane_line(
+        self,
+        layer: str,
+        rows: NDArray[np.float64],
+        elevation: float,
+        *,
+        is_closed: bool,
+        told: Sequence[str],
+    ) -> None:
+        head = self._begin("POLYLINE", layer)
+        self.parts.append(
+            f"{head}66\n1\n10\n0.0\n20\n0.0\n30\n{elevation!r}\n70\n{int(is_closed)}\n"
+            f"{format_told(told)}"
+        )
+        for x, y in rows.tolist():
+            self.parts.append(f"{self._begin('VERTEX', layer)}{_format_place([x, y, elevation])}")
+        self.parts.append(self._begin("SEQEND", layer))
+
+    def add_texts(
+        self, layer: str, points: NDArray[np.float64], texts: Sequence[str], height: float
+    ) -> None:
+        """Add a text at each point; none where it is empty."""
+        for row, text in zip(points.tolist(), texts, strict=True):
+            plain = clean_text(text)
+            if plain:
+                head = self._begin("TEXT", layer, "AcDbText")
+                end = "" if self._is_r12 else "100\nAcDbText\n"
+                self.parts.append(f"{head}{_format_place(row)}40\n{height!r}\n1\n{plain}\n{end}")
+
+
+def _format_place(row: Sequence[float]) -> str:
+    return f"10\n{row[0]!r}\n20\n{row[1]!r}\n30\n{row[2]!r}\n"
+
+
+def format_told(texts: Sequence[str]) -> str:
+    """Return texts as extended data; nothing if all are empty."""
+    if not any(texts):
+        return ""
+    lines = "".join(f"1000\n{clean_text(text)}\n" for text in texts)
+    return f"1001\n{APPLICATION}\n{lines}"
+
+
+def clean_text(text: str) -> str:
+    """Return a text of one line that a drawing can hold."""
+    plain = "".join(one if one.isprintable() else " " for one in text).strip()
+    return plain.encode("utf-8", "replace").decode("utf-8")[:_LONGEST_TEXT]

@@ -1,0 +1,187 @@
+"""Write a drawing: triangles, lines, points with labels and contours, each on a layer of its own.
+
+Header, tables and layers are made by ezdxf. The CRS stands among the properties of the drawing,
+where programs show it; the names and kinds of lines, numbers and descriptions of points in extended
+data.
+"""
+
+from __future__ import annotations
+
+import io
+import warnings
+from contextlib import contextmanager
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from .... import _optional
+from ...._atomic import replacing
+from ....errors import FormatError, LossWarning, OptionError, choice
+from ....policies import DrawingVersion
+from ....terrain.results import Features
+from ....tin import TIN, Survey
+from ..lengths import choose_length_unit
+from .content import add_features, add_survey, add_tin
+from .entities import EntityWriter
+from .names import APPLICATION, CRS_PROPERTY, ELEVATION_PROPERTY, LAYERS, UNKNOWN
+from .units import find_code
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from pathlib import Path
+
+    from ....crs import Unit, UnitLike
+
+__all__ = ["write"]
+
+_CHUNK = 10_000
+
+
+def write(
+    obj: TIN | Survey | Features,
+    path: Path,
+    *,
+    version: DrawingVersion = "R2010",
+    unit: UnitLike | None = None,
+    labels: bool = True,
+    progress: Callable[[float], None] | None = None,
+) -> None:
+    """Write a TIN, a survey, or features as a DXF drawing.
+
+    Parameters
+    ----------
+    obj : TIN, Survey or Features
+        Triangles become 3DFACEs on the layer TIN, lines 3D polylines on BREAKLINES, BOUNDARY and
+        so on, contours plane polylines with an elevation on CONTOURS and INDEX_CONTOURS, points
+        POINTs.
+    path : Path
+    version : {"R2010", "R12"}
+        R12 is read by nearly every program, and has no units and no CRS.
+    unit : Unit or str, optional
+        Unit of coordinates and elevations, where the CRS does not tell.
+    labels : bool
+        Write number, elevation and description of points as texts on layers of their own.
+    progress : callable, optional
+        Called with the fraction done.
+
+    Raises
+    ------
+    FormatError
+        If it is neither.
+    OptionError
+        If there is no such version, or the unit is not that of the CRS.
+    MissingExtraError
+        If ezdxf is not installed.
+    WriteError
+        If the file cannot be written, or the unit is one that DXF does not have.
+    CrsError
+        If coordinates are angles.
+
+    Warns
+    -----
+    LossWarning
+        If elevations are converted, as a drawing has one unit for all lengths, or none are known.
+    """
+    if not isinstance(obj, TIN | Survey | Features):
+        raise FormatError(f"Cannot write '{path}': a {type(obj).__name__} is no surface or survey.")
+    choice("version", version, DrawingVersion)
+    if not isinstance(labels, bool):
+        raise OptionError("labels", labels, "True or False")
+    ezdxf = _optional.load("ezdxf", "Writing DXF drawings")
+    along, factor = choose_length_unit(
+        obj, unit, path, is_known=lambda one: find_code(one) > 0, format_name="DXF"
+    )
+    if version == "R12" and obj.crs is not None:
+        warnings.warn(
+            f"'{path}' keeps no CRS and no unit: R12 has no place for them.",
+            LossWarning,
+            stacklevel=3,
+        )
+    with _fix_dates():
+        document = _make_document(ezdxf, obj, version, along)
+        head, tail, encoding, writer = _split(document, version)
+    _add_content(writer, obj, factor, labels=labels)
+    with replacing(path) as file:
+        file.write(_encode(_count_handles(head, writer), encoding))
+        for start in range(0, len(writer.parts), _CHUNK):
+            file.write(_encode("".join(writer.parts[start : start + _CHUNK]), encoding))
+            if progress is not None:
+                progress(start / len(writer.parts))
+        file.write(_encode(tail, encoding))
+    if progress is not None:
+        progress(1.0)
+
+
+def _encode(text: str, encoding: str) -> bytes:
+    return text.encode(encoding, "dxfreplace" if encoding != "utf-8" else "replace")
+
+
+def _add_content(
+    writer: EntityWriter, obj: TIN | Survey | Features, factor: float, *, labels: bool
+) -> None:
+    if isinstance(obj, TIN):
+        add_tin(writer, obj, factor)
+    elif isinstance(obj, Survey):
+        add_survey(writer, obj, factor, labels=labels)
+    else:
+        add_features(writer, obj, factor, labels=labels)
+
+
+# ------------------------------------------------------------------ the file around it
+
+
+def _make_document(
+    ezdxf: Any, obj: TIN | Survey | Features, version: str, unit: Unit | None
+) -> Any:
+    """Return an empty drawing with units, layers and properties, the same at any time."""
+    document = ezdxf.new(version)
+    document.header["$INSUNITS"] = find_code(unit)
+    document.header["$MEASUREMENT"] = int(unit is None or unit.name.endswith("metre"))
+    document.appids.add(APPLICATION)
+    for name, colour in LAYERS.items():
+        document.layers.add(name, color=colour)
+    points = obj.coordinates if isinstance(obj, Features) else obj.points
+    if len(points):
+        low, high = points.min(axis=0), points.max(axis=0)
+        document.header["$EXTMIN"] = (*low.tolist(), 0.0)[:3]
+        document.header["$EXTMAX"] = (*high.tolist(), 0.0)[:3]
+    if obj.crs is not None:
+        document.header.custom_vars.append(CRS_PROPERTY, " ".join(str(obj.crs).split()))
+        if obj.elevation_unit is None:
+            document.header.custom_vars.append(ELEVATION_PROPERTY, UNKNOWN)
+    return document
+
+
+def _split(document: Any, version: str) -> tuple[str, str, str, EntityWriter]:
+    """Return the text before and after the entities, its encoding, and their writer."""
+    stream = io.StringIO(newline="\n")
+    document.write(stream)
+    text = stream.getvalue().replace("\r\n", "\n")
+    start = text.index("ENTITIES\n") + len("ENTITIES\n")
+    end = text.index("  0\nENDSEC\n", start)
+    owner = document.modelspace().layout_key
+    first = int(str(document.entitydb.handles), 16)
+    writer = EntityWriter(is_r12=version == "R12", owner=owner, first_handle=first)
+    encoding = "utf-8" if version != "R12" else str(document.output_encoding)
+    return text[:start], text[end:], encoding, writer
+
+
+@contextmanager
+def _fix_dates() -> Iterator[None]:
+    """Let ezdxf write the same dates and identifiers at any time."""
+    options = import_module("ezdxf").options
+    before = options.write_fixed_meta_data_for_testing
+    options.write_fixed_meta_data_for_testing = True
+    try:
+        yield
+    finally:
+        options.write_fixed_meta_data_for_testing = before
+
+
+def _count_handles(head: str, writer: EntityWriter) -> str:
+    """Let the header name the first handle that is free."""
+    before, mark, after = head.partition("$HANDSEED\n")
+    if not mark:
+        return head
+    code, _, rest = after.partition("\n")
+    _, _, rest = rest.partition("\n")
+    return f"{before}{mark}{code}\n{writer.next_handle + 1:X}\n{rest}"

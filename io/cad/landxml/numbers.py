@@ -1,0 +1,149 @@
+"""Numbers in the texts of elements: batches at once, and the element at fault by its line."""
+
+from __future__ import annotations
+
+import re
+import warnings
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ....errors import ReadError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+__all__ = ["LARGEST_ID", "fault", "parse_list", "parse_rows", "parse_words"]
+
+LARGEST_ID = 2**63 - 2
+"""NumPy makes the next number of all larger ones."""
+
+_SHOWN_LETTERS = 60
+_PLAIN = {
+    "f": re.compile(r"[-+0-9.eE\s]*", re.ASCII),
+    "i": re.compile(r"[-+0-9\s]*", re.ASCII),
+}
+_WORD = {
+    "f": re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?", re.ASCII),
+    "i": re.compile(r"[-+]?[0-9]{1,18}", re.ASCII),
+}
+_NAMES = {"f": "numbers", "i": "whole numbers of at most 18 digits"}
+
+
+def parse_rows(
+    texts: Sequence[str],
+    lines: Sequence[int],
+    *,
+    width: int,
+    kind: type[np.generic],
+    what: str,
+    path: Path,
+) -> NDArray[Any]:
+    """Return the numbers of elements, a row each.
+
+    Parameters
+    ----------
+    texts : sequence of str
+    lines : sequence of int
+        Of the file, where each element begins.
+    width : int
+        Numbers in each.
+    kind : type
+        ``numpy.float64`` or ``numpy.int64``.
+    what : str
+        Name of the elements, for sentences.
+    path : Path
+
+    Raises
+    ------
+    ReadError
+        If an element has fewer or more numbers, or what is no number.
+    """
+    letter = np.dtype(kind).kind
+    if len(texts) != len(lines):
+        raise fault(path, lines[-1], f"{what} holds another one")
+    joined = " ".join(texts)
+    if _PLAIN[letter].fullmatch(joined) and all(len(text.split()) == width for text in texts):
+        found = _parse_plain(joined, kind)
+        if found is not None and found.size == width * len(texts) and _is_in_range(found):
+            return found.reshape(-1, width)
+    for text, line in zip(texts, lines, strict=True):
+        _require_row(text, line, width, letter, what, path)
+    raise fault(path, lines[0], f"{what} cannot be read as {_NAMES[letter]}")
+
+
+def parse_list(text: str, line: int, *, width: int, what: str, path: Path) -> NDArray[np.float64]:
+    """Return the points of a list as rows.
+
+    Raises
+    ------
+    ReadError
+        If it has a number of numbers that rows do not have, or what is no number.
+    """
+    found = _parse_plain(text, np.float64) if _PLAIN["f"].fullmatch(text) else None
+    count = len(text.split())
+    if found is None or found.size != count:
+        for word in text.split():
+            _require_word(word, line, "f", what, path)
+        raise fault(path, line, f"{what} cannot be read as numbers")
+    if count % width:
+        raise fault(
+            path, line, f"{what} has {count} numbers, and {width} for each point are needed"
+        )
+    return found.reshape(-1, width)
+
+
+def parse_words(text: str, line: int, *, what: str, path: Path) -> list[float]:
+    """Return the few numbers of one element.
+
+    Raises
+    ------
+    ReadError
+        If there is what is no number.
+    """
+    words = text.split()
+    for word in words:
+        _require_word(word, line, "f", what, path)
+    return [float(word) for word in words]
+
+
+def fault(path: Path, line: int, what: str) -> ReadError:
+    """Return the error that names a line."""
+    return ReadError(f"'{path}', line {line}: {what}.", path=path, lines=[line])
+
+
+def _parse_plain(text: str, kind: type[np.generic]) -> NDArray[Any] | None:
+    if not text.strip():
+        return np.empty(0, kind)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", DeprecationWarning)
+        try:
+            return np.fromstring(text, kind, sep=" ")
+        except (DeprecationWarning, ValueError):
+            return None
+
+
+def _is_in_range(found: NDArray[Any]) -> bool:
+    """Whether whole numbers are none that NumPy has clamped."""
+    return found.dtype.kind == "f" or not len(found) or int(np.abs(found).max()) <= LARGEST_ID
+
+
+def _require_row(text: str, line: int, width: int, letter: str, what: str, path: Path) -> None:
+    words = text.split()
+    for word in words:
+        _require_word(word, line, letter, what, path)
+    if len(words) != width:
+        shown = _shorten(" ".join(words))
+        raise fault(path, line, f"{what} has {len(words)} numbers ('{shown}'), not {width}")
+
+
+def _require_word(word: str, line: int, letter: str, what: str, path: Path) -> None:
+    if not _WORD[letter].fullmatch(word):
+        raise fault(path, line, f"{what} has '{_shorten(word)}', not {_NAMES[letter]}")
+
+
+def _shorten(text: str) -> str:
+    return text if len(text) <= _SHOWN_LETTERS else f"{text[:_SHOWN_LETTERS]}..."

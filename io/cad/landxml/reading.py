@@ -1,0 +1,253 @@
+"""Read LandXML: a surface with its own triangles, its source data, or the survey points."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...._sentences import counted, shown
+from ....errors import OptionError, ReadError, choice
+from ....policies import DrawingContent
+from ..reference import Declared, Measures, choose_measures, require_own_crs
+from ..surfaces import make_tin, merge_equal_points
+from .content import Content, Surface
+from .parser import parse
+from .source import make_survey_of_points, make_survey_of_source
+from .surface import make_mesh, select_edge_lines
+from .units import find_stated
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from ....crs import CrsLike, UnitLike
+    from ....tin import TIN, Survey
+
+__all__ = ["read"]
+
+_SAMPLE = 64
+
+
+def read(
+    path: Path,
+    *,
+    crs: CrsLike | None = None,
+    z_unit: UnitLike | None = None,
+    unit: UnitLike | None = None,
+    surface: str | int | None = None,
+    content: DrawingContent | None = None,
+) -> TIN | Survey:
+    """Read a LandXML file, version 1.0 to 2.0.
+
+    Parameters
+    ----------
+    path : Path
+    crs : CRS, str, int or pyproj.CRS, optional
+        Declares the CRS; default the one of the file. Points of a survey are reprojected to it.
+    z_unit : Unit or str, optional
+        Declares the unit of the elevations, where the file does not say.
+    unit : Unit or str, optional
+        Declares the unit of coordinates and elevations, where the file does not say, or where it
+        says another one than its CRS.
+    surface : str or int, optional
+        Name of the surface, or its number in the file, from 1; needed if several have faces.
+    content : {"surface", "source", "points"}, optional
+        The triangles of a surface; the data that it was made of, with breaklines and boundaries;
+        or the survey points (CgPoints). Default the first of these that the file has.
+
+    Returns
+    -------
+    TIN or Survey
+        A TIN has the file's own triangles; source data and points are a survey. What was assumed
+        or left out is in the notes.
+
+    Raises
+    ------
+    ReadError
+        If the file is damaged, has nothing of the kind, several surfaces and no name is given, a
+        grid surface, no units and none are declared, or units that its CRS does not have; if the
+        triangles are no TIN.
+    CrsError
+        If PROJ does not know the CRS, or a TIN is in another one.
+    OptionError
+        If there is no such surface or content, or a unit is unknown or not that of the file.
+
+    Notes
+    -----
+    Read as a stream, without document types, entities and references to other files. Invisible
+    faces are skipped.
+    """
+    if content is not None:
+        choice("content", content, DrawingContent)
+    wanted = _as_wanted(surface)
+    declared = Declared.of(crs, unit, z_unit)
+    found = parse(path, surface=wanted, points_only=content == "points")
+    chosen = None if content == "points" else _choose_surface(found, wanted, content, path)
+    kind = content or _choose_content(found, chosen, path)
+    notes = _describe_rest(found, chosen, kind)
+    if kind == "surface" and chosen is not None:
+        return _read_tin(found, chosen, declared, path, notes)
+    if kind != "points" and chosen is None:
+        has = "source data" if kind == "source" else "visible faces"
+        raise ReadError(f"'{path}' has no surface with {has}.", path=path)
+    source = chosen if kind == "source" else None
+    measures = _choose_measures(found, source, declared, path)
+    measures.notes[:0] = notes
+    if source is not None:
+        return make_survey_of_source(found, source, measures, declared, path)
+    return make_survey_of_points(found.points, measures, declared, path)
+
+
+def _as_wanted(surface: str | int | None) -> str | int | None:
+    if surface is None or (isinstance(surface, int) and not isinstance(surface, bool)):
+        return surface
+    if isinstance(surface, str) and surface.strip():
+        return surface.strip()
+    raise OptionError("surface", surface, "the name of a surface, or its number from 1")
+
+
+def _read_tin(
+    found: Content, chosen: Surface, declared: Declared, path: Path, notes: list[str]
+) -> TIN:
+    mesh = make_mesh(found, chosen, path)
+    measures = _choose_measures(found, chosen, declared, path)
+    require_own_crs(measures, declared.crs, path)
+    points = measures.apply(mesh.points[:, [1, 0, 2]])
+    mesh = merge_equal_points(
+        mesh._replace(points=points, notes=[*notes, *measures.notes, *mesh.notes])
+    )
+    return make_tin(
+        mesh,
+        select_edge_lines(chosen, measures),
+        path,
+        crs=measures.source,
+        elevation_unit=measures.elevation_unit,
+    )
+
+
+# ------------------------------------------------------------------ what is read
+
+
+def _choose_surface(
+    found: Content, wanted: str | int | None, content: str | None, path: Path
+) -> Surface | None:
+    """Return the surface wanted, else the only one that has what is wanted; None if none has."""
+    if wanted is not None:
+        return _find_surface(found, wanted, path)
+    with_faces = [one for one in found.surfaces if one.n_visible]
+    with_source = [one for one in found.surfaces if one.has_source]
+    if content == "source":
+        fitting = with_source
+    else:
+        fitting = with_faces or (with_source if content is None else [])
+    if len(fitting) > 1:
+        raise ReadError(
+            f"'{path}' has {len(fitting)} surfaces ({_list_surfaces(fitting)}): name the one to "
+            "read by the option surface.",
+            path=path,
+        )
+    return fitting[0] if fitting else None
+
+
+def _find_surface(found: Content, wanted: str | int, path: Path) -> Surface:
+    named = [one for one in found.surfaces if one.name == wanted]
+    if len(named) > 1:
+        numbers = ", ".join(str(one.number) for one in named)
+        raise ReadError(
+            f"'{path}' has {len(named)} surfaces of the name {shown(wanted)}: choose one by its "
+            f"number in the file ({numbers}).",
+            path=path,
+        )
+    numbered = [one for one in found.surfaces if str(one.number) == str(wanted)]
+    if named or numbered:
+        return (named or numbered)[0]
+    allowed = _list_surfaces(found.surfaces) or "none: the file has no surface"
+    raise OptionError("surface", wanted, f"one of those in '{path}', {allowed}")
+
+
+def _list_surfaces(surfaces: list[Surface]) -> str:
+    names = [one.label for one in surfaces[:20]]
+    return ", ".join(names) + (", ..." if len(surfaces) > len(names) else "")
+
+
+def _choose_content(found: Content, chosen: Surface | None, path: Path) -> str:
+    if chosen is not None and (chosen.n_visible or not chosen.has_source):
+        return "surface"
+    has_points = len(found.points) > 0
+    if chosen is not None and has_points and _has_own_points(chosen):
+        raise ReadError(
+            f"'{path}' has no faces, but the source data of a surface and "
+            f"{counted(len(found.points), 'survey point')}: choose content='source' or "
+            "content='points'.",
+            path=path,
+        )
+    if chosen is not None:
+        return "source"
+    if has_points:
+        return "points"
+    raise ReadError(
+        f"'{path}' has neither a surface with visible faces, nor source data or survey points.",
+        path=path,
+    )
+
+
+def _has_own_points(surface: Surface) -> bool:
+    return any(line.element in ("DataPoints", "Contour") for line in surface.lines)
+
+
+def _describe_rest(found: Content, chosen: Surface | None, kind: str) -> list[str]:
+    """Tell what else there is, and is not read."""
+    notes = []
+    others = [one for one in found.surfaces if one is not chosen]
+    if kind != "points" and others:
+        notes.append(f"Not read: {counted(len(others), 'surface')} ({_list_surfaces(others)}).")
+    if kind == "points" and found.surfaces:
+        notes.append(f"Not read: {counted(len(found.surfaces), 'surface')}.")
+    if kind == "surface" and len(found.points):
+        notes.append(
+            f"Not read: {counted(len(found.points), 'survey point')}, which content='points' gives."
+        )
+    if kind == "source" and chosen is not None and not chosen.n_visible:
+        notes.append("There are no visible faces: the source data were read.")
+    return notes
+
+
+# ------------------------------------------------------------------ reference
+
+
+def _choose_measures(
+    found: Content, chosen: Surface | None, declared: Declared, path: Path
+) -> Measures:
+    sample = _take_sample(found, chosen)
+    stated, notes = find_stated(
+        found, path, sample=sample, is_crs_declared=declared.crs is not None
+    )
+    system = stated.crs or declared.crs
+    told = (stated.unit, declared.unit, declared.elevation_unit)
+    if all(one is None for one in told) and (system is None or system.vertical_unit is None):
+        raise ReadError(
+            f"'{path}' does not say its units: declare that of the elevations, such as "
+            "z_unit='m' or z_unit='US survey foot', or that of all lengths, unit='ft'.",
+            path=path,
+        )
+    measures = choose_measures(stated, declared, path, sample=sample)
+    measures.notes[:0] = notes
+    return measures
+
+
+def _take_sample(found: Content, chosen: Surface | None) -> NDArray[np.float64]:
+    """Return easting and northing of some points, spread over all."""
+    if chosen is None:
+        rows = found.points.rows
+    else:
+        rows = np.concatenate(
+            [np.empty((0, 2))]
+            + [one[:, :2] for one in chosen.points]
+            + [part[:, :2] for line in chosen.lines for part in line.coordinates]
+        )
+        if not len(rows):
+            rows = found.points.rows
+    rows = rows[np.isfinite(rows[:, :2]).all(axis=1)]
+    return rows[:: max(1, len(rows) // _SAMPLE), [1, 0]]

@@ -1,0 +1,259 @@
+"""Survey points and the source data of a surface as surveys."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...._sentences import counted
+from ....errors import LinesError, ReadError
+from ....policies import BreaklineKind
+from ....tin import Breakline, Survey, Water
+from ....tin.constraints.breaklines import as_ring
+from ..placing import Placing, place_rows
+from .numbers import fault
+from .properties import KIND, PRIORITY
+from .surface import NO_ELEVATIONS, describe_point_files, name_line, resolve_references
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from ..reference import Declared, Measures
+    from .content import Content, Line, Points, Surface
+
+__all__ = ["make_survey_of_points", "make_survey_of_source"]
+
+
+# ------------------------------------------------------------------ survey points
+
+
+def make_survey_of_points(
+    points: Points, measures: Measures, declared: Declared, path: Path
+) -> Survey:
+    """Return the survey points that have an elevation.
+
+    Raises
+    ------
+    ReadError
+        If there are none.
+    """
+    kept, skipped = _select_points(points)
+    if not len(kept):
+        why = "; ".join(f"{count:,} {what}" for what, count in skipped.items())
+        raise ReadError(
+            f"'{path}' has no survey point with an elevation{f' ({why})' if why else ''}.",
+            path=path,
+        )
+    placing = place_rows([points.rows[kept][:, [1, 0, 2]]], measures, declared, path)
+    return Survey(
+        points=placing.rows[0],
+        attributes=_gather_attributes(points, kept),
+        crs=placing.crs,
+        elevation_unit=placing.elevation_unit,
+        source=path.name,
+        skipped=skipped,
+        notes=placing.notes,
+    )
+
+
+def _select_points(points: Points) -> tuple[NDArray[np.int64], dict[str, int]]:
+    """Return the rows of points for a surface, and how many others there are."""
+    is_kept = np.asarray(np.isfinite(points.rows).all(axis=1))
+    counts = {"references to other points": len(points.references)}
+    counts["points without elevation"] = int((~is_kept).sum()) - len(points.references)
+    marked = [row for row in points.excluded if is_kept[row]]
+    is_kept[marked] = False
+    counts["points not for the surface"] = len(marked)
+    return np.flatnonzero(is_kept), {what: n for what, n in counts.items() if n}
+
+
+def _gather_attributes(points: Points, kept: NDArray[np.int64]) -> dict[str, NDArray[Any]]:
+    """Return the columns that are there; a code is a description where there is no other."""
+    columns = {
+        "number": points.names,
+        "description": points.descriptions if any(points.descriptions) else points.codes,
+        "code": points.codes,
+        "group": points.groups,
+    }
+    return {name: np.array(values, object)[kept] for name, values in columns.items() if any(values)}
+
+
+# ------------------------------------------------------------------ source data
+
+
+def make_survey_of_source(
+    found: Content, surface: Surface, measures: Measures, declared: Declared, path: Path
+) -> Survey:
+    """Return the data that a surface was made of, with its lines.
+
+    Raises
+    ------
+    ReadError
+        If there are none, or a line is none.
+    """
+    if not surface.has_source:
+        raise ReadError(f"'{path}': surface {surface.label} has no source data.", path=path)
+    own = [part for one in surface.lines if one.element == "DataPoints" for part in one.coordinates]
+    notes = _describe_parts_left_out(surface)
+    points = [_turn(part, path, one="DataPoints") for part in own]
+    attributes: dict[str, NDArray[Any]] = {}
+    if not points and not any(one.element == "Contour" for one in surface.lines):
+        kept, _ = _select_points(found.points)
+        points = [found.points.rows[kept][:, [1, 0, 2]]]
+        attributes = _gather_attributes(found.points, kept) if len(kept) else {}
+        if len(kept):
+            notes.append(f"Its points are the {counted(len(kept), 'survey point')} of the file.")
+    lines = [*_iterate_lines(surface, path), *_resolve_chains(found, surface, path)]
+    placing = place_rows([*points, *(rows for _, rows in lines)], measures, declared, path)
+    rows = placing.rows[: len(points)]
+    survey = Survey(
+        points=np.concatenate([np.empty((0, 3)), *rows]),
+        attributes=attributes,
+        crs=placing.crs,
+        elevation_unit=placing.elevation_unit,
+        source=path.name,
+        notes=[*placing.notes, *notes],
+    )
+    try:
+        return _add_lines(survey, [one for one, _ in lines], placing, len(points))
+    except LinesError as error:
+        raise ReadError(f"'{path}': {error}", path=path) from error
+
+
+def _turn(part: NDArray[np.float64], path: Path, *, one: str) -> NDArray[np.float64]:
+    if part.shape[1] != 3:
+        raise ReadError(f"'{path}': {one} have no elevations.", path=path)
+    return part[:, [1, 0, 2]]
+
+
+def _iterate_lines(surface: Surface, path: Path) -> list[tuple[Line, NDArray[np.float64]]]:
+    """Return the lines as easting, northing, and elevation where it counts."""
+    found = []
+    for line in surface.lines:
+        for part in line.coordinates:
+            rows = part[:, [1, 0, *range(2, part.shape[1])]]
+            if line.element == "Contour":
+                rows = _raise_contour(line, rows, path)
+            elif line.element == "DataPoints":
+                continue
+            elif line.attributes.get("brkType") in NO_ELEVATIONS:
+                rows = rows[:, :2]
+            found.append((line, rows))
+    return found
+
+
+def _raise_contour(line: Line, rows: NDArray[np.float64], path: Path) -> NDArray[np.float64]:
+    try:
+        elevation = float(line.attributes.get("elev", "nan"))
+    except ValueError:
+        elevation = np.nan
+    if not np.isfinite(elevation):
+        shown = line.attributes.get("elev", "")[:60]
+        raise fault(path, line.line, f"a contour has the elevation '{shown}', which is no number")
+    return np.column_stack([rows[:, :2], np.full(len(rows), elevation)])
+
+
+def _resolve_chains(
+    found: Content, surface: Surface, path: Path
+) -> list[tuple[Line, NDArray[np.float64]]]:
+    """Return the lines that are given by the names of survey points."""
+    from .content import Line
+
+    lines = []
+    for text, attributes, number in surface.chains:
+        names = dict(enumerate(text.split()))
+        rows = resolve_references(np.zeros((len(names), 3)), names, found, path)[:, [1, 0, 2]]
+        rows = rows if np.isfinite(rows).all() else rows[:, :2]
+        lines.append((Line("Breakline", attributes, number), rows))
+    return lines
+
+
+def _add_lines(survey: Survey, lines: list[Line], placing: Placing, first: int) -> Survey:
+    breaklines: list[Any] = []
+    water: list[Water] = []
+    rings: dict[str, list[NDArray[np.float64]]] = {"outer": [], "void": [], "island": []}
+    for line, rows in zip(lines, placing.rows[first:], strict=True):
+        name = name_line(line)
+        own = line.properties.get(KIND, "")
+        if line.element == "Boundary":
+            kind = line.attributes.get("bndType", "").strip().lower()
+            rings[{"hide": "void", "show": "island"}.get(kind, kind)].append(
+                as_ring(rows, f"the boundary of line {line.line}")
+            )
+        elif own == "water" and rows.shape[1] == 3:
+            water.append(Water(rows[:, :2], float(rows[0, 2]), name=name))
+        elif len(rows) > 1:
+            breaklines.append(_make_breakline(line, rows, name))
+    holes, left = _join_islands(rings["void"], rings["island"])
+    notes = list(survey.notes)
+    if left:
+        notes.append(
+            f"{counted(left, 'boundary', 'boundaries')} of type island in no void left out."
+        )
+    return replace(
+        survey,
+        breaklines=breaklines,
+        boundary=rings["outer"],
+        holes=holes,
+        water=water,
+        notes=notes,
+    )
+
+
+def _make_breakline(line: Line, rows: NDArray[np.float64], name: str) -> Breakline:
+    kind: BreaklineKind = "hard"
+    if line.element == "Contour" or line.properties.get(KIND) == "soft":
+        kind = "soft"
+    priority = line.properties.get(PRIORITY, "0")
+    number = int(priority) if priority.lstrip("-").isdecimal() and len(priority) < 10 else 0
+    return Breakline(rows, kind=kind, priority=number, name=name)
+
+
+def _join_islands(
+    voids: list[NDArray[np.float64]], islands: list[NDArray[np.float64]]
+) -> tuple[list[Any], int]:
+    """Return each void with the islands in it, and the number of islands in none."""
+    if not islands:
+        return list(voids), 0
+    import shapely
+
+    areas = [shapely.Polygon(ring[:, :2]) for ring in voids]
+    polygons: list[list[Any]] = [[ring] for ring in voids]
+    left = 0
+    for island in islands:
+        place = shapely.Point(island[0, :2])
+        holder = next((k for k, area in enumerate(areas) if area.intersects(place)), None)
+        if holder is None:
+            left += 1
+        else:
+            polygons[holder].append(island)
+    return [one[0] if len(one) == 1 else one for one in polygons], left
+
+
+def _describe_parts_left_out(surface: Surface) -> list[str]:
+    notes = []
+    if surface.point_files:
+        notes.append(f"{describe_point_files(surface)} Their points are missing.")
+    if surface.n_walls:
+        notes.append(f"{counted(surface.n_walls, 'retaining wall')} left out.")
+    soft = sum(line.attributes.get("brkType") in NO_ELEVATIONS for line in surface.lines)
+    if soft:
+        notes.append(
+            f"{counted(soft, 'breakline')} of type proximity or nondestructive draped on the "
+            "surface: their own elevations do not count."
+        )
+    trimmed = sum(
+        line.attributes.get("edgeTrim", "true").strip().lower() in ("false", "0")
+        for line in surface.lines
+        if line.element == "Boundary"
+    )
+    if trimmed:
+        notes.append(
+            f"{counted(trimmed, 'boundary', 'boundaries')} without edgeTrim taken as exact edges "
+            "of the surface."
+        )
+    return notes

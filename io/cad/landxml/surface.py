@@ -1,0 +1,197 @@
+"""The definition of a surface as a mesh, and the lines of its source data along its edges."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, get_args
+
+import numpy as np
+
+from ...._sentences import counted
+from ....errors import ReadError
+from ....policies import LineKind
+from ..surfaces import EdgeLine, Mesh
+from .properties import KIND, LINE, SOURCE
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from ..reference import Measures
+    from .content import Content, Line, Surface
+
+__all__ = [
+    "NO_ELEVATIONS",
+    "describe_point_files",
+    "make_mesh",
+    "name_line",
+    "resolve_references",
+    "select_edge_lines",
+]
+
+NO_ELEVATIONS = frozenset({"nondestructive", "proximity"})
+"""Types of breaklines that take their elevations from the surface."""
+
+_KINDS: dict[str, LineKind] = {"outer": "boundary", "void": "hole"}
+_OPPOSITE = (2, 0, 1)
+"""The corner opposite side 1, 2, 3 of a face: sides join its corners in their order."""
+
+
+def make_mesh(found: Content, surface: Surface, path: Path) -> Mesh:
+    """Return the points, northing first, and the visible triangles of a surface.
+
+    Raises
+    ------
+    ReadError
+        If it has no visible faces or is a grid, a face names a point that there is not, or two
+        points have one id.
+    """
+    if surface.kind.lower() == "grid":
+        raise ReadError(
+            f"'{path}': surface {surface.label} is a grid (surfType='grid'), and only TIN surfaces "
+            "are read.",
+            path=path,
+        )
+    if not surface.faces:
+        hidden = f", but {surface.n_hidden:,} invisible ones" if surface.n_hidden else ""
+        raise ReadError(
+            f"'{path}': surface {surface.label} has no visible faces{hidden}.", path=path
+        )
+    ids, points = np.concatenate(surface.ids or [np.empty(0, np.int64)]), _gather_points(surface)
+    if surface.references:
+        points = resolve_references(points, surface.references, found, path)
+    faces = np.concatenate(surface.faces)
+    triangles = _find_points(ids, points, faces, surface, path)
+    notes = [f"Skipped: {counted(surface.n_hidden, 'invisible face')}."] * bool(surface.n_hidden)
+    if surface.point_files:
+        notes.append(describe_point_files(surface))
+    return Mesh(points, triangles, _find_flags(surface), notes)
+
+
+def _gather_points(surface: Surface) -> NDArray[np.float64]:
+    return np.concatenate(surface.points) if surface.points else np.empty((0, 3))
+
+
+def describe_point_files(surface: Surface) -> str:
+    """Name the files that hold points of the source data."""
+    names = ", ".join(f"'{name[:60]}'" for name in surface.point_files[:5])
+    return f"Its source data name point files, which are not read: {names}."
+
+
+def _find_points(
+    ids: NDArray[np.int64],
+    points: NDArray[np.float64],
+    faces: NDArray[np.int64],
+    surface: Surface,
+    path: Path,
+) -> NDArray[np.int64]:
+    """Return the row of each point that a face names."""
+    order = np.argsort(ids, kind="stable")
+    ordered = ids[order]
+    _require_unique(ordered, points[order], surface, path)
+    at = np.searchsorted(ordered, faces)
+    at = np.minimum(at, max(len(ordered) - 1, 0))
+    wrong = ordered[at] != faces if len(ordered) else np.ones(faces.shape, np.bool_)
+    if wrong.any():
+        row, corner = np.argwhere(wrong)[0].tolist()
+        raise ReadError(
+            f"'{path}': visible face {row + 1} of surface {surface.label} names point "
+            f"{faces[row, corner]}, and there is no point with this id.",
+            path=path,
+        )
+    triangles: NDArray[np.int64] = order[at]
+    return triangles
+
+
+def _require_unique(
+    ids: NDArray[np.int64], points: NDArray[np.float64], surface: Surface, path: Path
+) -> None:
+    twice = ids[1:] == ids[:-1]
+    if not twice.any():
+        return
+    differ = twice & (points[1:] != points[:-1]).any(axis=1)
+    if differ.any():
+        raise ReadError(
+            f"'{path}': in surface {surface.label} the id {ids[1:][np.argmax(differ)]} stands for "
+            "two points.",
+            path=path,
+        )
+
+
+def _find_flags(surface: Surface) -> NDArray[np.bool_] | None:
+    sides = np.frombuffer(surface.sides, np.uint8)
+    if not sides.any():
+        return None
+    flags = np.zeros((len(sides), 3), np.bool_)
+    for side, corner in enumerate(_OPPOSITE):
+        flags[:, corner] = sides >> side & 1 == 1
+    return flags
+
+
+def resolve_references(
+    points: NDArray[np.float64], references: dict[int, str], found: Content, path: Path
+) -> NDArray[np.float64]:
+    """Return points with those that refer to survey points by name.
+
+    Raises
+    ------
+    ReadError
+        If there is no such survey point.
+    """
+    rows, row_of = found.points.rows, {name: k for k, name in enumerate(found.points.names)}
+    points = points.copy()
+    for row, name in references.items():
+        if name not in row_of:
+            raise ReadError(
+                f"'{path}': a point refers to the survey point '{name[:60]}', which there is not.",
+                path=path,
+            )
+        points[row] = rows[row_of[name]]
+    return points
+
+
+def select_edge_lines(surface: Surface, measures: Measures) -> list[EdgeLine]:
+    """Return the breaklines and boundaries that may run along edges, in their order of old."""
+    found = [
+        (
+            _find_number(line, LINE, len(surface.lines)),
+            EdgeLine(
+                measures.apply(_close(line, part)[:, [1, 0]]),
+                kind,
+                name_line(line),
+                _find_number(line, SOURCE, None),
+            ),
+        )
+        for line in surface.lines
+        if (kind := _find_kind(line)) is not None
+        for part in line.coordinates
+        if len(part) > 1
+    ]
+    return [line for _, line in sorted(found, key=lambda one: one[0] or 0)]
+
+
+def _find_number(line: Line, name: str, default: int | None) -> int | None:
+    text = line.properties.get(name, "")
+    return int(text) if text.isascii() and text.isdecimal() and len(text) < 10 else default
+
+
+def _close(line: Line, part: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the ring of a boundary with its first point at the end too."""
+    is_open = line.element == "Boundary" and (part[0, :2] != part[-1, :2]).any()
+    return np.concatenate([part, part[:1]]) if is_open else part
+
+
+def _find_kind(line: Line) -> LineKind | None:
+    own = line.properties.get(KIND, "")
+    if line.element == "Breakline":
+        if own in get_args(LineKind):
+            return next(kind for kind in get_args(LineKind) if kind == own)
+        return None if line.attributes.get("brkType") in NO_ELEVATIONS else "hard"
+    if line.element == "Boundary":
+        return _KINDS.get(line.attributes.get("bndType", ""))
+    return None
+
+
+def name_line(line: Line) -> str:
+    """Return the name of a line, else its description."""
+    return line.attributes.get("name", "").strip() or line.attributes.get("desc", "").strip()

@@ -1,0 +1,281 @@
+"""Write LandXML 1.2: a surface with its lines, survey points, contours.
+
+Bytes depend on nothing but what is written: the date that the schema asks for is a fixed one.
+Northing comes before easting. What LandXML has no place for, the kind and priority of a line and
+that the unit of elevations is not known, stands in elements ``Feature``, as the schema allows.
+"""
+
+from __future__ import annotations
+
+from typing import IO, TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...._atomic import replacing
+from ....crs import CRS
+from ....errors import FormatError, OptionError
+from ....terrain.results import Features
+from ....tin import TIN, Survey
+from ..lengths import choose_length_unit
+from .lines import quote, write_features, write_source_of_survey, write_source_of_tin
+from .properties import ELEVATION_UNIT, FEATURE, UNKNOWN
+from .units import name_unit
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from ....crs import Unit, UnitLike
+
+__all__ = ["write"]
+
+_BATCH = 65_536
+_NAMESPACE = "http://www.landxml.org/schema/LandXML-1.2"
+_ROOT = (
+    '<?xml version="1.0" encoding="UTF-8"?>\n'
+    f'<LandXML xmlns="{_NAMESPACE}" xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" '
+    f'xsi:schemaLocation="{_NAMESPACE} {_NAMESPACE}/LandXML-1.2.xsd" '
+    'date="2000-01-01" time="00:00:00" version="1.2" language="English" readOnly="false">\n'
+)
+_OTHER_UNITS = {
+    "Metric": 'areaUnit="squareMeter" linearUnit="{}" volumeUnit="cubicMeter" '
+    'temperatureUnit="celsius" pressureUnit="milliBars" diameterUnit="millimeter"',
+    "Imperial": 'areaUnit="squareFoot" linearUnit="{}" volumeUnit="cubicYard" '
+    'temperatureUnit="fahrenheit" pressureUnit="inHG" diameterUnit="inch"',
+}
+_ANGLES = 'angularUnit="decimal degrees" directionUnit="decimal degrees"'
+_SIDES = ((2, 1), (0, 2), (1, 4))
+"""Corners, and the bit of the side opposite."""
+
+
+def write(
+    obj: TIN | Survey | Features,
+    path: Path,
+    *,
+    surface: str = "surface",
+    unit: UnitLike | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> None:
+    """Write a TIN, the points and lines of a survey, or contours and other lines.
+
+    Parameters
+    ----------
+    obj : TIN, Survey or Features
+        Of a survey points become CgPoints and lines the source data of a surface; of features
+        points become CgPoints, lines of one elevation contours, other lines breaklines.
+    path : Path
+    surface : str
+        Name of the surface.
+    unit : Unit or str, optional
+        Unit of coordinates and elevations, where the CRS does not tell. Without one the file has
+        no units, and programs guess.
+    progress : callable, optional
+        Called with the fraction done.
+
+    Raises
+    ------
+    FormatError
+        If it is neither, or features are polygons.
+    OptionError
+        If the name is no text, or the unit is not one of LandXML, or not that of the CRS.
+    WriteError
+        If the file cannot be written, or the unit is one that LandXML does not have.
+    CrsError
+        If coordinates are angles.
+
+    Warns
+    -----
+    LossWarning
+        If elevations are converted, as LandXML has one unit for all lengths, or columns are left
+        out.
+    """
+    if not isinstance(obj, TIN | Survey | Features):
+        raise FormatError(f"Cannot write '{path}': a {type(obj).__name__} is no surface or survey.")
+    if not isinstance(surface, str) or not surface.strip():
+        raise OptionError("surface", surface, "the name of a surface")
+    _require_lines(obj, path)
+    along, factor = choose_length_unit(
+        obj, unit, path, is_known=lambda one: name_unit(one) is not None, format_name="LandXML"
+    )
+    with replacing(path, binary=False) as file:
+        file.write(_ROOT)
+        _write_reference(file, obj, along)
+        file.write('<Application name="tinsmith"/>\n')
+        _write_content(file, obj, surface.strip(), factor, progress)
+        file.write("</LandXML>\n")
+    if progress is not None:
+        progress(1.0)
+
+
+def _write_content(
+    file: IO[str],
+    obj: TIN | Survey | Features,
+    surface: str,
+    factor: float,
+    progress: Callable[[float], None] | None,
+) -> None:
+    if isinstance(obj, TIN):
+        points = _scale(obj.points, factor)
+        file.write(f"<Surfaces>\n<Surface name={quote(surface)}>\n")
+        write_source_of_tin(file, obj, points)
+        _write_definition(file, obj, points, progress)
+        file.write("</Surface>\n</Surfaces>\n")
+    elif isinstance(obj, Survey):
+        _write_points(file, _scale(obj.points, factor), obj.attributes)
+        write_source_of_survey(file, obj, surface, factor)
+    elif obj.kind == "points":
+        _write_points(file, _scale(_require_elevations(obj), factor), obj.columns)
+    else:
+        write_features(file, obj, surface, factor)
+
+
+def _scale(points: NDArray[np.float64], factor: float) -> NDArray[np.float64]:
+    return points if factor == 1.0 else points * [1.0, 1.0, factor]
+
+
+def _require_lines(obj: TIN | Survey | Features, path: Path) -> None:
+    if isinstance(obj, Features) and obj.kind == "polygons":
+        raise FormatError(f"Cannot write '{path}': LandXML holds points and lines, not polygons.")
+    if isinstance(obj, Features) and obj.kind == "points":
+        _require_elevations(obj)
+
+
+def _require_elevations(features: Features) -> NDArray[np.float64]:
+    if not features.has_elevations or not np.isfinite(features.coordinates).all():
+        raise FormatError("LandXML needs elevations, and some of these points have none.")
+    return features.coordinates
+
+
+# ------------------------------------------------------------------ units and CRS
+
+
+def _write_reference(file: IO[str], obj: TIN | Survey | Features, unit: Unit | None) -> None:
+    names = None if unit is None else name_unit(unit)
+    if names is not None:
+        system, name = names
+        units = _OTHER_UNITS[system].format(name)
+        file.write(f"<Units>\n<{system} {units} {_ANGLES}/>\n</Units>\n")
+    if obj.crs is None:
+        return
+    file.write(f"<CoordinateSystem {_describe_crs(obj.crs)}")
+    if obj.elevation_unit is not None:
+        file.write("/>\n")
+        return
+    file.write(
+        f'>\n<Feature name="{FEATURE}">\n<Property label="{ELEVATION_UNIT}" value="{UNKNOWN}"/>\n'
+        "</Feature>\n</CoordinateSystem>\n"
+    )
+
+
+def _describe_crs(crs: CRS) -> str:
+    words = [f"name={quote(crs.name)} desc={quote(crs.name)}"]
+    code = crs.horizontal.to_epsg()
+    if code is not None:
+        words.append(f'epsgCode="{code}"')
+    words.append(f"ogcWktCode={quote(_choose_wkt(crs))}")
+    return " ".join(words)
+
+
+def _choose_wkt(crs: CRS) -> str:
+    """Return the older WKT that CAD programs read, where it means the same."""
+    try:
+        older = crs.to_wkt("WKT1_GDAL")
+        if older and CRS(older).is_same(crs):
+            return older
+    except Exception:
+        pass
+    return crs.to_wkt()
+
+
+# ------------------------------------------------------------------ surface
+
+
+def _write_definition(
+    file: IO[str],
+    tin: TIN,
+    points: NDArray[np.float64],
+    progress: Callable[[float], None] | None,
+) -> None:
+    total = len(points) + len(tin.triangles)
+    low, high = float(points[:, 2].min()), float(points[:, 2].max())
+    file.write(
+        f'<Definition surfType="TIN" area2DSurf="{tin.area!r}" elevMax="{high!r}" '
+        f'elevMin="{low!r}">\n<Pnts>\n'
+    )
+    for start in range(0, len(points), _BATCH):
+        rows = points[start : start + _BATCH, [1, 0, 2]]
+        table = np.empty((len(rows), 4), object)
+        table[:, 0] = range(start + 1, start + 1 + len(rows))
+        table[:, 1:] = rows
+        file.write('<P id="%d">%r %r %r</P>\n' * len(rows) % tuple(table.ravel().tolist()))
+        _report(progress, (start + len(rows)) / total)
+    file.write("</Pnts>\n<Faces>\n")
+    for start in range(0, len(tin.triangles), _BATCH):
+        file.write(_format_faces(tin, start, start + _BATCH))
+        _report(progress, (len(points) + min(start + _BATCH, len(tin.triangles))) / total)
+    file.write("</Faces>\n</Definition>\n")
+
+
+def _format_faces(tin: TIN, start: int, end: int) -> str:
+    corners = tin.triangles[start:end].astype(np.int64) + 1
+    flags = tin.constrained[start:end]
+    if not flags.any():
+        return "<F>%d %d %d</F>\n" * len(corners) % tuple(corners.ravel().tolist())
+    sides = sum(flags[:, corner] * bit for corner, bit in _SIDES)
+    return "".join(
+        f"<F>{a} {b} {c}</F>\n" if not side else f'<F b="{side}">{a} {b} {c}</F>\n'
+        for (a, b, c), side in zip(corners.tolist(), np.asarray(sides).tolist(), strict=True)
+    )
+
+
+def _report(progress: Callable[[float], None] | None, done: float) -> None:
+    if progress is not None:
+        progress(done)
+
+
+# ------------------------------------------------------------------ points
+
+
+def _write_points(file: IO[str], points: NDArray[np.float64], attributes: Any) -> None:
+    if len(points) == 0:
+        return
+    names, columns = _choose_names(attributes, len(points)), _choose_columns(attributes)
+    file.write("<CgPoints>\n")
+    for start in range(0, len(points), _BATCH):
+        rows = points[start : start + _BATCH, [1, 0, 2]].tolist()
+        parts = [[f" {key}={quote(text)}" if text else "" for text in values[start:start + _BATCH]]
+                 for key, values in columns.items()]  # fmt: skip
+        extras = ["".join(words) for words in zip(*parts, strict=True)] or [""] * len(rows)
+        file.write(
+            "".join(
+                f"<CgPoint name={quote(name)}{extra}>{n!r} {e!r} {z!r}</CgPoint>\n"
+                for name, extra, (n, e, z) in zip(
+                    names[start : start + _BATCH], extras, rows, strict=True
+                )
+            )
+        )
+    file.write("</CgPoints>\n")
+
+
+def _choose_names(attributes: Any, count: int) -> list[str]:
+    """Return the points' numbers if they differ, as the schema asks for, else 1, 2, 3 ..."""
+    if "number" in attributes:
+        names = [_as_text(one) for one in np.asarray(attributes["number"]).tolist()]
+        if len(set(names)) == count and all(names):
+            return names
+    return [str(number) for number in range(1, count + 1)]
+
+
+def _choose_columns(attributes: Any) -> dict[str, list[str]]:
+    found = {"desc": "description", "code": "code"}
+    return {
+        key: [_as_text(one) for one in np.asarray(attributes[name]).tolist()]
+        for key, name in found.items()
+        if name in attributes
+    }
+
+
+def _as_text(value: object) -> str:
+    return "" if value is None or value != value else str(value).strip()

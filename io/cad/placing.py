@@ -1,0 +1,82 @@
+"""Points and lines of a drawing in the CRS wanted."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ...errors import ReadError
+from ...tin.topology import find_offsets
+from ..reprojection.placement import place
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from ...crs import CRS, Unit
+    from .reference import Declared, Measures
+
+__all__ = ["Placing", "place_rows"]
+
+
+class Placing(NamedTuple):
+    """Coordinates where they are wanted.
+
+    Attributes
+    ----------
+    rows : list of (k, 2) or (k, 3) float64 arrays
+    crs : CRS or None
+    elevation_unit : Unit or None
+    notes : list of str
+    """
+
+    rows: list[NDArray[np.float64]]
+    crs: CRS | None
+    elevation_unit: Unit | None
+    notes: list[str]
+
+
+def place_rows(
+    parts: Sequence[NDArray[np.float64]], measures: Measures, declared: Declared, path: Path
+) -> Placing:
+    """Bring easting, northing and elevation of a file into the CRS wanted, all at once.
+
+    Parameters
+    ----------
+    parts : sequence of (k, 2) or (k, 3) float64 arrays
+        As in the file.
+    measures : Measures
+    declared : Declared
+    path : Path
+
+    Raises
+    ------
+    ReadError
+        If a coordinate is not finite, or would be in degrees.
+    CrsError
+        If they cannot be transformed.
+    """
+    offsets = find_offsets(len(one) for one in parts)
+    together = np.zeros((int(offsets[-1]), 3))
+    for one, start in zip(parts, offsets.tolist(), strict=False):
+        together[start : start + len(one), : one.shape[1]] = one
+    if not np.isfinite(together).all():
+        row = together[np.argmin(np.isfinite(together).all(axis=1))]
+        raise ReadError(
+            f"'{path}' has coordinates that are not finite (first: {row.tolist()}).", path=path
+        )
+    placed = place(
+        measures.apply(together),
+        source=measures.source,
+        target=declared.crs,
+        path=path,
+        unit=measures.elevation_unit,
+    )
+    rows = [
+        placed.points[start : start + len(one), : one.shape[1]]
+        for one, start in zip(parts, offsets.tolist(), strict=False)
+    ]
+    return Placing(rows, placed.crs, placed.elevation_unit, [*measures.notes, *placed.notes])

@@ -1,0 +1,238 @@
+"""What the coordinates of a drawing are measured in: units and CRS, from the file and the caller.
+
+Coordinates are in the unit of the CRS, whatever the file's; elevations keep their own. Where the
+file contradicts itself or its CRS, two readings are plausible, and the caller has to choose.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ...crs import CRS, Unit
+from ...errors import CrsError, OptionError, ReadError
+from ..reprojection.area_of_use import AreaOfUse
+from ..reprojection.placement import settle_unit
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from ...crs import CrsLike, UnitLike
+
+__all__ = ["Declared", "Measures", "Stated", "choose_measures", "require_own_crs"]
+
+
+class Stated(NamedTuple):
+    """What a file says.
+
+    Attributes
+    ----------
+    crs : CRS or None
+    unit : Unit or None
+        Of all lengths.
+    elevation_unit : Unit or None
+        Of elevations, where the file tells it apart from other lengths.
+    is_elevation_unknown : bool
+        The file says that the unit of elevations is not known.
+    what : str
+        Where it says the unit, for sentences.
+    """
+
+    crs: CRS | None = None
+    unit: Unit | None = None
+    elevation_unit: Unit | None = None
+    is_elevation_unknown: bool = False
+    what: str = "the file"
+
+
+class Declared(NamedTuple):
+    """What the caller says: the CRS wanted, the unit of lengths, and that of elevations."""
+
+    crs: CRS | None = None
+    unit: Unit | None = None
+    elevation_unit: Unit | None = None
+
+    @classmethod
+    def of(
+        cls, crs: CrsLike | None, unit: UnitLike | None, elevation_unit: UnitLike | None
+    ) -> Declared:
+        """Return it of whatever names a CRS and units."""
+        return cls(CRS.of(crs), Unit.of(unit), Unit.of(elevation_unit))
+
+
+@dataclass(slots=True)
+class Measures:
+    """How coordinates of a file become those of a survey.
+
+    Attributes
+    ----------
+    source : CRS or None
+        CRS of the coordinates.
+    elevation_unit : Unit or None
+    scale : float
+        From the file's eastings and northings to those of the CRS.
+    elevation_scale : float
+    is_swapped : bool
+        Whether the first of two coordinates is the other one than the format says.
+    notes : list of str
+    """
+
+    source: CRS | None
+    elevation_unit: Unit | None
+    scale: float = 1.0
+    elevation_scale: float = 1.0
+    is_swapped: bool = False
+    notes: list[str] = field(default_factory=list)
+
+    def apply(self, rows: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return easting, northing and, where there is one, elevation as they are wanted."""
+        if self.scale == 1.0 and self.elevation_scale == 1.0 and not self.is_swapped:
+            return rows
+        rows = rows[:, [1, 0, *range(2, rows.shape[1])]] if self.is_swapped else rows.copy()
+        rows[:, :2] *= self.scale
+        rows[:, 2:] *= self.elevation_scale
+        return rows
+
+
+def choose_measures(
+    stated: Stated, declared: Declared, path: Path, *, sample: NDArray[np.float64]
+) -> Measures:
+    """Decide what coordinates and elevations are measured in.
+
+    Parameters
+    ----------
+    stated : Stated
+    declared : Declared
+    path : Path
+    sample : (n, 2) float64 array
+        Easting and northing of some points, as in the file, to be looked for in the area of the
+        CRS; may be empty.
+
+    Raises
+    ------
+    ReadError
+        If the unit of the file is not that of its CRS, and none is declared.
+    OptionError
+        If a unit is declared that neither the file nor the CRS has.
+    """
+    source = stated.crs or declared.crs
+    unit = declared.unit or stated.unit
+    measures = Measures(source, _choose_elevation_unit(stated, declared, unit, path))
+    along = None if source is None or source.is_geographic else source.horizontal_unit
+    if along is not None and along.metres is not None:
+        _require_agreement(stated, declared, along, source, path)
+        if unit is not None and unit.metres is not None and unit != along:
+            measures.scale = unit.metres / along.metres
+            measures.notes.append(
+                f"Coordinates were converted from {unit.name} to {along.name}, the unit of the CRS."
+            )
+    elif source is None and unit is not None:
+        _convert_elevations(measures, unit)
+    if source is not None:
+        _convert_to_vertical_axis(measures, source)
+        _look_at_area(measures, declared.crs, sample)
+    return measures
+
+
+def _choose_elevation_unit(
+    stated: Stated, declared: Declared, unit: Unit | None, path: Path
+) -> Unit | None:
+    if declared.elevation_unit is not None:
+        known = None if declared.unit is not None else stated.elevation_unit or stated.unit
+        if stated.elevation_unit is not None and stated.elevation_unit != stated.unit:
+            known = None  # the file contradicts itself, and the caller knows better
+        return settle_unit(declared.elevation_unit, known, path)
+    if stated.is_elevation_unknown and declared.unit is None:
+        return None
+    different = stated.elevation_unit not in (None, stated.unit)
+    if different and declared.unit is None and stated.elevation_unit and stated.unit:
+        raise ReadError(
+            f"'{path}' gives {stated.unit.name} for lengths and {stated.elevation_unit.name} for "
+            "elevations, which may stand for those of attributes only: declare the unit of the "
+            f"elevations, z_unit='{stated.unit.name}' or z_unit='{stated.elevation_unit.name}'.",
+            path=path,
+        )
+    return unit
+
+
+def _require_agreement(
+    stated: Stated, declared: Declared, along: Unit, source: CRS | None, path: Path
+) -> None:
+    """Refuse a file whose unit is not that of its CRS, until the caller tells which is right."""
+    told, label = stated.unit, "" if source is None else source.label
+    if declared.unit is not None:
+        if told is not None and declared.unit not in (told, along):
+            allowed = f"{told.name}, as '{path}' says, or {along.name}, the unit of {label}"
+            raise OptionError("unit", declared.unit.name, allowed)
+        return
+    if told is not None and told != along:
+        raise ReadError(
+            f"'{path}': {stated.what} says that coordinates are in {told.name}, and {label} "
+            f"measures in {along.name}: tell which is right, unit='{told.name}' or "
+            f"unit='{along.name}'.",
+            path=path,
+        )
+
+
+def _convert_elevations(measures: Measures, unit: Unit) -> None:
+    """Without a CRS nothing else tells the unit of eastings: elevations are brought to it."""
+    known = measures.elevation_unit
+    if known is None or known == unit or known.metres is None or unit.metres is None:
+        return
+    measures.elevation_scale = known.metres / unit.metres
+    measures.elevation_unit = unit
+    measures.notes.append(
+        f"Elevations were converted from {known.name} to {unit.name}, the unit of the coordinates."
+    )
+
+
+def _convert_to_vertical_axis(measures: Measures, source: CRS) -> None:
+    vertical, known = source.vertical_unit, measures.elevation_unit
+    if vertical is None or known is None or known == vertical:
+        measures.elevation_unit = vertical or known
+        return
+    if known.metres is not None and vertical.metres is not None:
+        measures.elevation_scale = known.metres / vertical.metres
+        measures.elevation_unit = vertical
+        measures.notes.append(
+            f"Elevations were converted from {known.name} to {vertical.name}, the unit of the "
+            "vertical axis of the CRS."
+        )
+
+
+def _look_at_area(measures: Measures, target: CRS | None, sample: NDArray[np.float64]) -> None:
+    """Compare coordinates with the area of use; swap them if they only fit so."""
+    area = AreaOfUse.of(measures.source, target)
+    rows = sample[np.isfinite(sample).all(axis=1)] * measures.scale
+    if area is None or len(rows) == 0 or area.covers_most(rows):
+        return
+    if area.covers_most(rows[:, ::-1]):
+        measures.is_swapped = True
+        measures.notes.append(
+            "Easting and northing were taken in the other order than the format says: only so do "
+            f"they lie in the area of {area.label}."
+        )
+    elif not area.is_local(rows):
+        measures.notes.append(f"Most points lie outside the area of {area.label}.")
+
+
+def require_own_crs(measures: Measures, declared: CRS | None, path: Path) -> None:
+    """Refuse to reproject a TIN.
+
+    Raises
+    ------
+    CrsError
+        If another CRS is wanted than that of the file.
+    """
+    own = measures.source
+    if declared is not None and own is not None and not own.is_same(declared):
+        raise CrsError(
+            f"'{path}' is in {own.label}, and {declared.label} is another CRS: a TIN is not "
+            "reprojected, since its triangles would be no Delaunay triangles there; build it anew "
+            "from its points.",
+            crs=declared,
+        )

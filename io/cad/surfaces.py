@@ -1,0 +1,271 @@
+"""A TIN of triangles that a drawing holds, with the lines that run along its edges."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ..._sentences import counted
+from ...errors import PointsError, ReadError
+from ...tin import TIN
+from ...tin.checking.overlaps import describe_overlaps
+from ...tin.constraints.breaklines import Lines
+from ...tin.topology import directed_edges, edge_keys, find_offsets
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from ...crs import CRS, Unit
+    from ...policies import LineKind
+
+__all__ = ["EdgeLine", "Mesh", "make_tin", "merge_equal_points"]
+
+
+_SAME_PLACE = 1e-6
+"""CAD programs write the vertices of surfaces and those of lines with other last digits: at a
+millionth of a metre or foot they are the same."""
+
+
+class EdgeLine(NamedTuple):
+    """A line that may run along edges of a surface.
+
+    Attributes
+    ----------
+    coordinates : (k, 2) or (k, 3) float64 array
+    kind : LineKind or None
+        None for what is constrained, but no line.
+    name : str
+    source : int, optional
+        Its number as ``Lines.sources`` has it; default it is counted.
+    """
+
+    coordinates: NDArray[np.float64]
+    kind: LineKind | None
+    name: str
+    source: int | None = None
+
+
+class Mesh(NamedTuple):
+    """Points and triangles, and what is told of them.
+
+    Attributes
+    ----------
+    points : (n, 3) float64 array
+    triangles : (m, 3) int64 array
+    constrained : (m, 3) bool array or None
+    notes : list of str
+    """
+
+    points: NDArray[np.float64]
+    triangles: NDArray[np.int64]
+    constrained: NDArray[np.bool_] | None
+    notes: list[str]
+
+
+def merge_equal_points(mesh: Mesh) -> Mesh:
+    """Make points of the same three coordinates one, and leave out those of no triangle.
+
+    Of equal points the first stays; the order stays too.
+    """
+    order = np.lexsort(mesh.points.T[::-1])  # stable: of equal ones the first comes first
+    is_first = np.ones(len(order), np.bool_)
+    is_first[1:] = (np.diff(mesh.points[order], axis=0) != 0).any(axis=1)
+    first = order[is_first]
+    stands_for = np.empty(len(order), np.int64)
+    stands_for[order] = first[np.cumsum(is_first) - 1]
+    triangles = stands_for[mesh.triangles]
+    is_used = np.zeros(len(mesh.points), np.bool_)
+    is_used[triangles] = True
+    number = np.cumsum(is_used) - 1
+    notes = list(mesh.notes)
+    n_equal = len(mesh.points) - len(first)
+    n_unused = len(first) - int(is_used.sum())
+    if n_equal:
+        have = "point has" if n_equal == 1 else "points have"
+        notes.append(f"{n_equal:,} {have} the coordinates of another one, and became one with it.")
+    if n_unused:
+        notes.append(f"{counted(n_unused, 'point')} of no visible triangle left out.")
+    return Mesh(mesh.points[is_used], number[triangles], mesh.constrained, notes)
+
+
+def make_tin(
+    mesh: Mesh,
+    lines: Sequence[EdgeLine],
+    path: Path,
+    *,
+    crs: CRS | None,
+    elevation_unit: Unit | None,
+) -> TIN:
+    """Make a TIN; lines that run along its edges become its lines.
+
+    Raises
+    ------
+    ReadError
+        As ``TIN.from_triangles`` raises PointsError.
+    """
+    try:
+        tin = TIN.from_triangles(
+            mesh.points,
+            mesh.triangles,
+            constrained=mesh.constrained,
+            crs=crs,
+            z_unit=elevation_unit,
+        )
+    except PointsError as error:
+        raise ReadError(f"'{path}' holds no TIN. {error}", path=path) from error
+    notes = list(mesh.notes)
+    if lines:
+        tin, told = _add_lines(tin, lines)
+        notes += told
+    notes += describe_overlaps(tin)
+    return tin.replace(report=replace(tin.report, notes=notes)) if notes else tin
+
+
+# ------------------------------------------------------------------ lines along edges
+
+
+def _add_lines(tin: TIN, lines: Sequence[EdgeLine]) -> tuple[TIN, list[str]]:
+    """Return the TIN with the parts of lines that are chains of its edges."""
+    edges = np.stack(directed_edges(tin.triangles), axis=-1)
+    keys = edge_keys(edges, len(tin.points))
+    known = np.unique(keys)
+    vertex_at = _Vertices(tin)
+    chains: list[NDArray[np.int64]] = []
+    owners: list[int] = []
+    n_partly = 0
+    for number, line in enumerate(lines):
+        found = _fill_in(tin, vertex_at.find(line.coordinates), known)
+        runs = _split_into_runs(found, known, len(tin.points))
+        chains += runs
+        owners += [number] * len(runs)
+        n_partly += sum(map(len, runs)) - len(runs) < len(found) - 1
+    notes = []
+    if n_partly:
+        runs_not = "does not run" if n_partly == 1 else "do not run"
+        notes.append(
+            f"{counted(n_partly, 'line')} of {len(lines):,} {runs_not} along edges of the "
+            "triangles all the way: what does not is left out."
+        )
+    return (tin if not chains else _with_chains(tin, lines, chains, owners, keys)), notes
+
+
+def _with_chains(
+    tin: TIN,
+    lines: Sequence[EdgeLine],
+    chains: Sequence[NDArray[np.int64]],
+    owners: Sequence[int],
+    keys: NDArray[np.int64],
+) -> TIN:
+    segments = np.concatenate([np.stack([one[:-1], one[1:]], axis=1) for one in chains])
+    flags = tin.constrained | np.isin(keys, edge_keys(segments, len(tin.points)))
+    sources = _count_within_kinds(lines)
+    kept = [(k, chain) for k, chain in zip(owners, chains, strict=True) if lines[k].kind]
+    held = Lines(
+        vertices=np.concatenate([[], *(chain for _, chain in kept)]).astype(np.int32),
+        offsets=find_offsets(len(chain) for _, chain in kept).astype(np.int32),
+        kinds=tuple(kind for k, _ in kept if (kind := lines[k].kind) is not None),
+        sources=np.array([sources[k] for k, _ in kept], np.int32),
+        names=tuple(lines[k].name for k, _ in kept),
+    )
+    return tin.replace(constrained=flags, lines=held)
+
+
+def _count_within_kinds(lines: Sequence[EdgeLine]) -> list[int]:
+    """Count lines within breaklines, boundary rings, holes and water, as a TIN does."""
+    counts: dict[str, int] = {}
+    numbers = []
+    for line in lines:
+        kind = "breakline" if line.kind in ("hard", "soft") else line.kind or ""
+        count = counts.get(kind, 0)
+        numbers.append(count if line.source is None else line.source)
+        counts[kind] = count + 1
+    return numbers
+
+
+class _Vertices:
+    """Vertices by their place in the plane."""
+
+    def __init__(self, tin: TIN) -> None:
+        self._tin = tin
+        self._order = np.lexsort((tin.points[:, 1], tin.points[:, 0]))
+        sorted_xy = tin.points[self._order, :2] + 0.0
+        self._keys = sorted_xy[:, 0] + 1j * sorted_xy[:, 1]
+
+    def find(self, coordinates: NDArray[np.float64]) -> NDArray[np.int64]:
+        """Return the vertex at each place, -1 where there is none."""
+        wanted = (coordinates[:, 0] + 0.0) + 1j * (coordinates[:, 1] + 0.0)
+        at = np.searchsorted(self._keys, wanted)
+        at = np.minimum(at, len(self._keys) - 1)
+        found = np.where(self._keys[at] == wanted, self._order[at], -1)
+        is_open = found < 0
+        if is_open.any():
+            found[is_open] = self._find_near(coordinates[is_open, :2])
+        return found
+
+    def _find_near(self, xy: NDArray[np.float64]) -> NDArray[np.int64]:
+        nearest = self._tin.closest_vertex(xy).astype(np.int64)
+        apart = np.abs(self._tin.points[nearest, :2] - xy).max(axis=1)
+        return np.where(apart <= _SAME_PLACE, nearest, -1)
+
+
+def _fill_in(tin: TIN, vertices: NDArray[np.int64], known: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the vertices of a line with those between that lie on its segments.
+
+    Programs put the vertices of a surface where a breakline meets other edges.
+    """
+    is_edge = _find_edges(vertices, known, len(tin.points))
+    pairs = zip(vertices[:-1].tolist(), vertices[1:].tolist(), is_edge.tolist(), strict=True)
+    filled = vertices[:1].tolist()
+    for a, b, is_there in pairs:
+        if not is_there and a >= 0 and b >= 0 and a != b:
+            filled += _walk_along(tin, a, b)
+        filled.append(b)
+    return np.array(filled, np.int64)
+
+
+def _walk_along(tin: TIN, a: int, b: int) -> list[int]:
+    """Return the vertices between two others along edges on the line between; none if it fails."""
+    start = tin.points[a, :2]
+    way = tin.points[b, :2] - start
+    length = float(np.hypot(*way))
+    ahead = way / length
+    passed: list[int] = []
+    here, reached = a, 0.0
+    while here != b:
+        near = tin.vertex_neighbors(here)
+        apart = tin.points[near, :2] - start
+        along, aside = apart @ ahead, apart @ np.array([-ahead[1], ahead[0]])
+        is_on = (np.abs(aside) <= _SAME_PLACE) & (along > reached) & (along <= length)
+        if not is_on.any():
+            return []
+        step = int(np.argmin(np.where(is_on, along, np.inf)))
+        here, reached = int(near[step]), float(along[step])
+        passed.append(here)
+    return passed[:-1]
+
+
+def _split_into_runs(
+    vertices: NDArray[np.int64], known: NDArray[np.int64], n_points: int
+) -> list[NDArray[np.int64]]:
+    """Return the longest parts of a line all of whose segments are edges."""
+    is_edge = _find_edges(vertices, known, n_points)
+    steps = np.diff(np.concatenate([[0], is_edge.astype(np.int8), [0]]))
+    starts, ends = np.flatnonzero(steps == 1), np.flatnonzero(steps == -1)
+    return [vertices[a : b + 1] for a, b in zip(starts.tolist(), ends.tolist(), strict=True)]
+
+
+def _find_edges(
+    vertices: NDArray[np.int64], known: NDArray[np.int64], n_points: int
+) -> NDArray[np.bool_]:
+    """Return which segments between vertices, -1 for none, are edges."""
+    pairs = np.stack([vertices[:-1], vertices[1:]], axis=1)
+    is_edge = (pairs >= 0).all(axis=1) & (pairs[:, 0] != pairs[:, 1])
+    keys = edge_keys(np.where(is_edge[:, None], pairs, 0), n_points)
+    at = np.minimum(np.searchsorted(known, keys), len(known) - 1)
+    found: NDArray[np.bool_] = is_edge & (known[at] == keys)
+    return found

@@ -1,0 +1,145 @@
+"""LandXML that we write: what the schema asks for, what a plain reader finds, and round trips."""
+
+import xml.etree.ElementTree as ET
+
+import numpy as np
+import pytest
+
+import tinsmith as ts
+
+SPACE = "{http://www.landxml.org/schema/LandXML-1.2}"
+
+
+@pytest.fixture
+def survey():
+    rng = np.random.default_rng(3)
+    points = rng.random((400, 3)) * [100, 80, 5] + [500_000.1, 4_000_000.2, 300]
+    return ts.Survey(
+        points=points,
+        breaklines=[
+            ts.Breakline(points[[3, 9, 20]] + [0.5, 0.5, 0], name='the "wall" & <kerb>'),
+            ts.Breakline(points[[5, 40]], kind="soft", priority=2),
+            ts.Breakline(points[[7, 30], :2]),
+        ],
+        boundary=[[[500_005, 4_000_005], [500_090, 4_000_005], [500_090, 4_000_070],
+                   [500_005, 4_000_070]]],
+        holes=[[[500_050, 4_000_030], [500_060, 4_000_030], [500_055, 4_000_040]]],
+        water=[ts.Water([[500_020, 4_000_020], [500_030, 4_000_020], [500_025, 4_000_030]], 301.5,
+                        name="pond")],
+        attributes={"number": np.arange(1, 401), "description": np.array(["a<b"] * 400),
+                    "code": np.array(["EP1", ""] * 200)},
+        crs="EPSG:32616",
+        elevation_unit="m",
+    )  # fmt: skip
+
+
+def test_a_tin_comes_back_bit_by_bit_with_its_lines(survey, tmp_path):
+    tin = ts.triangulate(survey)
+    read = ts.read(ts.write(tin, tmp_path / "a.xml"))
+    for name in ("points", "triangles", "constrained", "neighbors"):
+        assert np.array_equal(getattr(read, name), getattr(tin, name)), name
+    assert (read.crs, read.elevation_unit) == (tin.crs, tin.elevation_unit)
+    assert read.lines.kinds == tin.lines.kinds
+    assert read.lines.names == tin.lines.names
+    assert read.lines.sources.tolist() == tin.lines.sources.tolist()
+    assert read.lines.vertices.tolist() == tin.lines.vertices.tolist()
+    assert not read.report.notes
+
+
+def test_a_survey_comes_back_with_its_lines(survey, tmp_path):
+    read = ts.read(ts.write(survey, tmp_path / "a.xml"))
+    assert np.array_equal(read.points, survey.points)
+    assert read.attributes["number"].tolist() == [str(k) for k in range(1, 401)]
+    assert read.attributes["code"].tolist() == survey.attributes["code"].tolist()
+    for one, other in zip(read.breaklines, survey.breaklines, strict=True):
+        assert np.array_equal(one.coords, other.coords)
+        assert (one.kind, one.priority, one.name) == (other.kind, other.priority, other.name)
+    assert np.array_equal(read.boundary[0], survey.boundary[0])
+    assert np.array_equal(read.holes[0], survey.holes[0])
+    assert read.water[0].z == 301.5
+    assert np.array_equal(ts.triangulate(read).triangles, ts.triangulate(survey).triangles)
+
+
+def test_a_plain_reader_finds_northing_first_and_whole_numbers_from_1(survey, tmp_path):
+    tin = ts.triangulate(survey)
+    root = ET.parse(ts.write(tin, tmp_path / "a.xml", surface="EG")).getroot()
+    assert root.tag == f"{SPACE}LandXML"
+    assert root.get("version") == "1.2"
+    assert root.find(f"{SPACE}Units/{SPACE}Metric").get("linearUnit") == "meter"
+    assert root.find(f"{SPACE}CoordinateSystem").get("epsgCode") == "32616"
+    definition = root.find(f"{SPACE}Surfaces/{SPACE}Surface[@name='EG']/{SPACE}Definition")
+    rows = [one.text.split() for one in definition.iter(f"{SPACE}P")]
+    assert np.array_equal(np.array(rows, float)[:, [1, 0, 2]], tin.points)
+    faces = [one.text.split() for one in definition.iter(f"{SPACE}F")]
+    assert np.array_equal(np.array(faces, int) - 1, tin.triangles)
+    kinds = [one.get("bndType") for one in root.iter(f"{SPACE}Boundary")]
+    assert set(kinds) == {"outer", "void"}
+
+
+def test_the_same_bytes_at_any_time(survey, tmp_path):
+    a, b = (ts.write(survey, tmp_path / name).read_bytes() for name in ("a.xml", "b.xml"))
+    assert a == b
+
+
+@pytest.mark.parametrize(
+    ("crs", "system", "name"),
+    [(32616, "Metric", "meter"), (2222, "Imperial", "foot"), (2274, "Imperial", "USSurveyFoot")],
+)
+def test_units_are_those_of_the_crs(tmp_path, crs, system, name):
+    tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [0, 3, 8]], crs=crs)
+    path = ts.write(tin, tmp_path / "a.xml")
+    assert f"<{system} " in path.read_text()
+    assert f'linearUnit="{name}"' in path.read_text()
+    read = ts.read(path)
+    assert (read.crs, read.elevation_unit) == (tin.crs, None)
+
+
+def test_elevations_come_to_the_one_unit_and_that_is_told(tmp_path):
+    tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [0, 3, 8]], crs=32616, z_unit="ft")
+    with pytest.warns(ts.LossWarning, match="converted from foot to metre"):
+        path = ts.write(tin, tmp_path / "a.xml")
+    assert ts.read(path).points[0, 2] == pytest.approx(5 * 0.3048)
+
+
+def test_without_a_unit_it_is_told_and_refused_on_reading(tmp_path):
+    tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [0, 3, 8]])
+    with pytest.warns(ts.LossWarning, match="no units"):
+        path = ts.write(tin, tmp_path / "a.xml")
+    with pytest.raises(ts.ReadError, match="does not say its units"):
+        ts.read(path)
+    path = ts.write(tin, tmp_path / "b.xml", unit="US survey foot")
+    assert ts.read(path).elevation_unit.name == "US survey foot"
+
+
+def test_a_compound_crs_comes_back(tmp_path):
+    tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [0, 3, 8]], crs="EPSG:2274+6360")
+    assert ts.read(ts.write(tin, tmp_path / "a.xml")).crs == "EPSG:2274+6360"
+
+
+@pytest.mark.parametrize(
+    ("crs", "error", "words"),
+    [(4326, ts.CrsError, "degrees"), (3167, ts.WriteError, "no unit")],
+)
+def test_what_landxml_cannot_measure_is_refused(tmp_path, crs, error, words):
+    tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [0, 3, 8]], crs=crs)
+    with pytest.raises(error, match=words):
+        ts.write(tin, tmp_path / "a.xml")
+    assert not list(tmp_path.iterdir())
+
+
+def test_contours_and_other_lines(survey, tmp_path):
+    contours = ts.contours(ts.triangulate(survey), interval=1)
+    read = ts.read(ts.write(contours, tmp_path / "a.xml"))
+    assert len(read.breaklines) == len(contours)
+    assert {line.coords[0, 2] for line in read.breaklines} == set(contours.columns["elevation"])
+    polygons = ts.Features.of_polygons([[0, 0], [1, 0], [0, 1], [0, 0]], [0, 4], [0, 1])
+    with pytest.raises(ts.FormatError, match="not polygons"):
+        ts.write(polygons, tmp_path / "b.xml")
+
+
+def test_names_that_xml_cannot_hold(tmp_path):
+    line = ts.Breakline([[1, 1, 5], [2, 1, 6]], name='a\x00b\n"c"')
+    points = [[0, 0, 5], [4, 0, 6], [0, 3, 8]]
+    tin = ts.triangulate(ts.Survey(points=points, breaklines=[line], elevation_unit="m"))
+    read = ts.read(ts.write(tin, tmp_path / "a.xml"))
+    assert read.lines.names == ('a b "c"',)
