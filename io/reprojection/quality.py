@@ -1,4 +1,4 @@
-"""How good a transformation is that PROJ can do here, and whether grids are missing for a better."""
+"""How good a transformation is that PROJ can do here, and whether a better one lacks its grids."""
 
 from __future__ import annotations
 

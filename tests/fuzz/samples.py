@@ -15,6 +15,8 @@ import numpy as np
 
 import tinsmith as ts
 
+from .mesh_samples import MESH_MAKERS
+
 __all__ = ["MEMORY", "sample_files"]
 
 MEMORY = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
@@ -209,6 +211,20 @@ def _delimited(folder: Path) -> list[tuple[str, bytes]]:
     return [(name, text.encode()) for name, text in texts.items()]
 
 
+def _whole_tin(folder: Path) -> list[tuple[str, bytes]]:
+    """Return GeoPackages of small pages, as dense as SQLite makes them."""
+    edited = _tin()
+    edited.insert([np.add(CORNER, (20.0, 15.0, 3.0))])
+    files = []
+    for name, tin in (("ours.gpkg", _tin()), ("edited.gpkg", edited)):
+        path = ts.write(tin, folder / name)
+        with closing(sqlite3.connect(path, isolation_level=None)) as file:
+            file.execute("PRAGMA page_size = 512")
+            file.execute("VACUUM")
+        files.append((name, path.read_bytes()))
+    return files
+
+
 def _instruments(folder: Path) -> list[tuple[str, bytes]]:
     rows = [
         [round(value, 3) for value in row] for row in (_tin().points - (752_000, 0, 0)).tolist()
@@ -234,20 +250,6 @@ def _instruments(folder: Path) -> list[tuple[str, bytes]]:
     return [(name, text.encode()) for name, text in texts.items()]
 
 
-def _whole_tin(folder: Path) -> list[tuple[str, bytes]]:
-    """Return GeoPackages of small pages, as dense as SQLite makes them."""
-    edited = _tin()
-    edited.insert([np.add(CORNER, (20.0, 15.0, 3.0))])
-    files = []
-    for name, tin in (("ours.gpkg", _tin()), ("edited.gpkg", edited)):
-        path = ts.write(tin, folder / name)
-        with closing(sqlite3.connect(path, isolation_level=None)) as file:
-            file.execute("PRAGMA page_size = 512")
-            file.execute("VACUUM")
-        files.append((name, path.read_bytes()))
-    return files
-
-
 _MAKERS = {
     "tin": _whole_tin,
     "ply": _ply,
@@ -259,4 +261,5 @@ _MAKERS = {
     "vectors": _vectors,
     "delimited": _delimited,
     "instruments": _instruments,
+    **MESH_MAKERS,
 }

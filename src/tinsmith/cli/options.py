@@ -12,6 +12,7 @@ import click
 
 from ..policies import DrawingContent, DuplicatePolicy, FeatureKind, LineReading
 from .line_options import CODE_OPTIONS, LINE_OPTIONS
+from .mesh_options import MESH_READING, MESH_WRITING
 from .output.console import Console
 from .parameters import Decorator, choice_option, number_option
 
@@ -27,6 +28,7 @@ __all__ = [
     "product_options",
     "reading_options",
     "triangulating_options",
+    "vector_options",
     "writing_options",
 ]
 
@@ -69,6 +71,9 @@ class Reading:
     surface: str | None = None
     content: str | None = None
     texts: bool | None = None
+    join: bool | None = None
+    variable: str | None = None
+    tile: str | None = None
 
 
 @dataclass(frozen=True)
@@ -149,6 +154,15 @@ class Writing:
     output_format: str | None = None
     kind: str | None = None
     projected: bool = False
+    texture: Path | None = None
+    solid: bool = False
+    thickness: float | None = None
+    scale: float | None = None
+    size: float | None = None
+    exaggeration: float | None = None
+    precision: float | None = None
+    max_level: int | None = None
+    gzipped: bool = False
 
     @property
     def options(self) -> dict[str, Any]:
@@ -259,6 +273,31 @@ reading_options = _gather(
     click.option(
         "--fill", is_flag=True, default=None, help="Let the surface span the voids of a raster."
     ),
+    *MESH_READING,
+    click.option(
+        "--unit",
+        metavar="UNIT",
+        help="Unit of the coordinates and elevations of a LandXML or DXF file, where it does not "
+        "say, or says another one than its CRS.",
+    ),
+    click.option(
+        "--surface",
+        metavar="NAME",
+        help="Surface of a LandXML, UGRID or CityJSON file that has several: its name, or in "
+        "LandXML its number from 1.",
+    ),
+    choice_option(
+        "--content",
+        DrawingContent,
+        "What to read of a LandXML or DXF file: the triangles of a surface, the points and lines "
+        "that make one, or points alone.",
+    ),
+    click.option(
+        "--texts",
+        is_flag=True,
+        default=None,
+        help="Read texts of a DXF file that are numbers as points of that elevation.",
+    ),
     click.option(
         "--code-blocks",
         type=click.Choice(("before", "after")),
@@ -275,29 +314,6 @@ reading_options = _gather(
         "K",
         "Coefficient by which shots of GSI and SDR files are corrected for refraction and the "
         "earth's curvature, such as 0.13; default neither.",
-    ),
-    click.option(
-        "--unit",
-        metavar="UNIT",
-        help="Unit of the coordinates and elevations of a LandXML or DXF file, where it does not "
-        "say, or says another one than its CRS.",
-    ),
-    click.option(
-        "--surface",
-        metavar="NAME",
-        help="Surface of a LandXML file that has several: its name, or its number from 1.",
-    ),
-    choice_option(
-        "--content",
-        DrawingContent,
-        "What to read of a LandXML or DXF file: the triangles of a surface, the points and lines "
-        "that make one, or points alone.",
-    ),
-    click.option(
-        "--texts",
-        is_flag=True,
-        default=None,
-        help="Read texts of a DXF file that are numbers as points of that elevation.",
     ),
     click.option(
         "--classes", metavar="N,N", help="Classes of lidar points to take, such as 2 (ground)."
@@ -366,9 +382,9 @@ def _make_projected_option(whose: str) -> Decorator:
     return click.option("--projected", is_flag=True, help=words)
 
 
-writing_options = _gather(
-    "writing", Writing, _format_option, _kind_option, _make_projected_option("points")
-)
+_VECTOR_WRITING = (_format_option, _kind_option, _make_projected_option("points"))
+writing_options = _gather("writing", Writing, *_VECTOR_WRITING, *MESH_WRITING)
+vector_options = _gather("writing", Writing, *_VECTOR_WRITING)
 product_options = _gather("writing", Writing, _format_option, _make_projected_option("TIN"))
 format_options = _gather("writing", Writing, _format_option)
 
