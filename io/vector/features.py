@@ -17,6 +17,7 @@ from ..isolated import choose_limits, run_isolated
 from ..isolated.local_files import require_local
 from ..isolated.spooling import describe_system_error, open_ordinary_file
 from ..registry.signatures import HEAD_BYTES, find_reference_kind
+from .drawings import read_drawing_features
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -96,9 +97,8 @@ def _read_layer(path: Path, layer: str | None, where: str | None, *, lines_only:
     if path.suffix.lower() != _DRAWING:
         _optional.require("pyogrio", "Reading vector files")
     if _require_whole_file(path):
-        from .drawings import read_drawing_features
-
-        return read_drawing_features(path, layer=layer, where=where, lines_only=lines_only)
+        found = read_drawing_features(path, layer=layer, where=where, lines_only=lines_only)
+        return Features(path, *found)
     where_it_is = {"path": os.path.abspath(path), "shown": str(path)}  # noqa: PTH100 - links stay
     value, arrays = run_isolated(
         f"{__package__}.gdal_child:read_features",
