@@ -15,6 +15,7 @@ from support import processes
 
 import tinsmith
 import tinsmith.cli
+from tinsmith.tin.editing.operations import MeshOperation
 
 ROOT = Path(__file__).parents[1]
 DRAWN = "tinsmith.terrain.preview.picture"
@@ -199,13 +200,14 @@ def test_readme_commands_run(tmp_path, can_draw):
 
 
 def test_records_are_frozen():
-    """All dataclasses but those that collect while a file is read."""
+    """All but what collects while a file is read, and edits, made a thousand times a second."""
     thawed = {}
     for folder in (tinsmith.tin, tinsmith.io, tinsmith.terrain, tinsmith.cli):
         for found in pkgutil.walk_packages(folder.__path__, f"{folder.__name__}."):
             module = importlib.import_module(found.name)
             for name, value in vars(module).items():
                 how = getattr(value, "__dict__", {}).get("__dataclass_params__")
-                if how is not None and not how.frozen:
+                is_edit = isinstance(value, type) and issubclass(value, MeshOperation)
+                if how is not None and not how.frozen and not is_edit:
                     thawed[name] = value
     assert sorted(thawed) == ["Content", "Line", "Points", "Surface", "_Run", "_Top"]

@@ -98,8 +98,9 @@ class Measures:
         if self.scale == 1.0 and self.elevation_scale == 1.0 and not self.is_swapped:
             return rows
         rows = rows[:, [1, 0, *range(2, rows.shape[1])]] if self.is_swapped else rows.copy()
-        rows[:, :2] *= self.scale
-        rows[:, 2:] *= self.elevation_scale
+        with np.errstate(over="ignore"):  # what becomes infinite is refused later
+            rows[:, :2] *= self.scale
+            rows[:, 2:] *= self.elevation_scale
         return rows
 
 

@@ -11,5 +11,12 @@ FORMATS = (
         suffixes=(".csv", ".txt", ".xyz", ".tsv", ".pts", ".dat", ".pnt"),
         read="tinsmith.io.delimited.survey_text:read",
         write="tinsmith.io.delimited.survey_text:write",
+        precision="Every number comes back bit for bit.",
+        losses="Points alone: of a TIN its vertices, without triangles and lines. The CRS is not "
+        "kept; in .xyz and .pts neither attributes nor the unit of elevations.",
+        loses=(
+            *("crs", "elevation unit", "triangles", "constrained", "lines"),
+            *("attributes", "notes", "report"),
+        ),
     ),
 )

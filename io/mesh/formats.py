@@ -15,6 +15,7 @@ FORMATS = (
         write="tinsmith.io.mesh.geopackage:write",
         writes=("TIN",),
         precision="Every number comes back bit for bit.",
+        losses="",
         sniff=signatures.is_tin_geopackage,
     ),
     Format(
@@ -25,6 +26,10 @@ FORMATS = (
         reads=("TIN",),
         write="tinsmith.io.mesh.ply.file:write",
         sniff=signatures.is_ply,
+        precision="Every number comes back bit for bit.",
+        losses="The report and its notes, and what undoing edits needs; of points, attributes that "
+        "are no numbers.",
+        loses=("attributes", "notes", "report"),
     ),
     Format(
         name="obj",
@@ -34,6 +39,10 @@ FORMATS = (
         reads=("TIN",),
         write="tinsmith.io.mesh.obj:write",
         sniff=signatures.is_obj,
+        writes=("TIN",),
+        precision="Every number comes back bit for bit.",
+        losses="Which edges are constrained, lines and the report.",
+        loses=("constrained", "lines", "notes", "report"),
     ),
     Format(
         name="stl",
@@ -43,6 +52,13 @@ FORMATS = (
         reads=("TIN",),
         write="tinsmith.io.mesh.stl:write",
         sniff=signatures.is_stl,
+        writes=("TIN",),
+        precision="Coordinates are rounded to float32 after an origin is subtracted: to a sixteen "
+        "millionth of the extent.",
+        relative_rounding=6e-8,
+        losses="The order of vertices and triangles, which edges are constrained, lines and the "
+        "report.",
+        loses=("order", "constrained", "lines", "notes", "report"),
     ),
     Format(
         name="vtk",
@@ -53,6 +69,10 @@ FORMATS = (
         write="tinsmith.io.mesh.vtk:write",
         extra="view",
         sniff=signatures.is_vtk_xml,
+        writes=("TIN",),
+        precision="Every number comes back bit for bit.",
+        losses="Names and kinds of lines, and the report.",
+        loses=("lines", "notes", "report"),
     ),
     Format(
         name="gmsh",
@@ -63,5 +83,10 @@ FORMATS = (
         write="tinsmith.io.mesh.gmsh:write",
         extra="mesh",
         sniff=signatures.is_gmsh,
+        writes=("TIN",),
+        precision="Every number comes back bit for bit.",
+        losses="The CRS and the unit of elevations; lines are named groups of edges, which are "
+        "read as constrained edges; the report.",
+        loses=("crs", "elevation unit", "lines", "notes", "report"),
     ),
 )

@@ -24,6 +24,8 @@ FORMATS = (
         suffixes=(".tif", ".tiff"),
         write="tinsmith.io.raster.geotiff:write",
         writes=("Raster",),
+        precision="Every cell comes back bit for bit.",
+        losses="",
         extra="raster",
     ),
     Format(
@@ -32,6 +34,8 @@ FORMATS = (
         suffixes=(".tif", ".tiff"),
         write="tinsmith.io.raster.geotiff:write_cog",
         writes=("Raster",),
+        precision="Every cell comes back bit for bit.",
+        losses="",
         extra="raster",
     ),
 )

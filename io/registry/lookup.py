@@ -256,6 +256,8 @@ def _describe_no_writer(path: Path, name: str | None, kinds: Sequence[str]) -> F
         what = f"{known.description} can be read, not written"
     else:
         what = f"{known.description} holds {_listed(known.writes)}, not {_listed(kinds)}"
+        if "TIN" in known.writes and [*kinds] == ["Survey"]:
+            what += "; triangulate it first"
     return FormatError(
         f"Cannot write '{path}': {what}; {_listed(kinds)} can be written to "
         f"{', '.join(suffixes) or 'no format'}.",

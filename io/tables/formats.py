@@ -11,6 +11,8 @@ FORMATS = (
         suffixes=(".csv", ".tsv", ".txt"),
         write="tinsmith.io.tables.csv_tables:write",
         writes=("Table", "Features"),
+        precision="Every number comes back bit for bit.",
+        losses="Notes and the CRS.",
     ),
     Format(
         name="json",
@@ -18,5 +20,7 @@ FORMATS = (
         suffixes=(".json",),
         write="tinsmith.io.tables.json_tables:write",
         writes=("Table",),
+        precision="Every number comes back bit for bit.",
+        losses="",
     ),
 )

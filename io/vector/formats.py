@@ -13,6 +13,9 @@ FORMATS = (
         write="tinsmith.io.vector.geojson.writing:write",
         writes=(*SURFACES, "Features"),
         sniff=signatures.is_geojson,
+        precision="Longitude and latitude to 9 decimals (0.1 mm), elevations in metres to 6; in "
+        "the CRS of the points (projected) every number bit for bit.",
+        losses="Triangles are separate polygons, without the numbers of their vertices.",
     ),
     Format(
         name="gpkg",
@@ -21,6 +24,8 @@ FORMATS = (
         write="tinsmith.io.vector.geopackage:write",
         writes=("Features",),
         extra="vector",
+        precision="Every number comes back bit for bit.",
+        losses="",
     ),
     Format(
         name="flatgeobuf",
@@ -29,6 +34,8 @@ FORMATS = (
         write="tinsmith.io.vector.flatgeobuf:write",
         writes=("Features",),
         extra="vector",
+        precision="Every number comes back bit for bit.",
+        losses="The order of features: they stand in that of the spatial index.",
     ),
     Format(
         name="shapefile",
@@ -37,5 +44,7 @@ FORMATS = (
         write="tinsmith.io.vector.shapefile:write",
         writes=("Features",),
         extra="vector",
+        precision="Coordinates come back bit for bit; numbers have 15 decimals at most.",
+        losses="Names of columns beyond 10 bytes, texts beyond 254, units and notes.",
     ),
 )

@@ -339,8 +339,22 @@ def test_formats_lists_every_known_format():
         assert (facts["read"], facts["write"]) == (bool(one.read), bool(one.write))
         assert facts["suffixes"] == list(one.suffixes)
         assert (facts["description"], facts["extra"]) == (one.description, one.extra)
-        words = [("yes" if way else "-") for way in (one.read, one.write)]
-        assert re.search(rf"^ ?{one.name} +{words[0]} +{words[1]} ", table, re.MULTILINE)
+        assert facts["reads"] == (list(one.reads) if one.read else [])
+        assert facts["writes"] == (list(one.writes) if one.write else [])
+        assert (facts["precision"], facts["losses"]) == (one.precision, one.losses)
+        assert (facts["needs"], facts["installed"]) == (one.needs, one.is_installed)
+        assert facts["from"] == "tinsmith"
+
+
+@pytest.mark.parametrize("is_there", [True, False])
+def test_formats_tells_what_is_installed(monkeypatch, is_there):
+    if not is_there:
+        monkeypatch.setattr("tinsmith._optional.find_spec", lambda name: None)
+    rows = run("formats").stdout.splitlines()
+    row = next(number for number, row in enumerate(rows) if row.split()[:1] == ["cog"])
+    assert rows[row].split()[:4] == ["cog", "-", "Raster", "tinsmith[raster]"]
+    assert ("not installed" not in rows[row + 1]) == is_there
+    assert " installed" in rows[row + 1]
 
 
 def test_formats_names_the_extras():

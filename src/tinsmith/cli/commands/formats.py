@@ -20,7 +20,10 @@ __all__ = ["formats"]
 @click.command(short_help="List the formats that can be read and written.")
 @console_options
 def formats(console: Console) -> None:
-    """List the formats: what each is, and whether it can be read and written.
+    """List the formats: what each reads and writes, what it needs, and whether that is there.
+
+    A TIN is a surface, a Survey points with their lines, Features are points, lines or polygons.
+    Formats of plug-ins come last. docs/formats.md tells what each format keeps.
 
     \b
     Example:
@@ -41,7 +44,14 @@ def _describe_format(one: Format) -> dict[str, Any]:
         "suffixes": list(one.suffixes),
         "read": one.read is not None,
         "write": one.write is not None,
+        "reads": list(one.reads) if one.read else [],
+        "writes": list(one.writes) if one.write else [],
+        "precision": one.precision,
+        "losses": one.losses,
         "extra": one.extra,
+        "needs": one.needs,
+        "installed": one.is_installed,
+        "from": one.distribution,
     }
 
 
@@ -55,14 +65,15 @@ def _draw_table(known: tuple[Format, ...]) -> str:
     from rich.table import Table
 
     table = Table(box=box.SIMPLE, pad_edge=False, header_style="bold")
-    for heading in ("Name", "Read", "Write", "Format", "Suffixes"):
-        table.add_column(heading, overflow="fold")
+    for heading in ("Name", "Reads", "Writes", "Needs", "Format", "Suffixes"):
+        table.add_column(heading, overflow="fold", no_wrap=heading not in ("Format", "Suffixes"))
     for one in known:
         table.add_row(
             one.name,
-            "yes" if one.read else "-",
-            "yes" if one.write else "-",
-            escape(one.description + (f" (needs tinsmith[{one.extra}])" if one.extra else "")),
+            "\n".join(one.reads) if one.read else "-",
+            "\n".join(one.writes) if one.write else "-",
+            escape(_describe_needs(one)),
+            escape(one.description + ("" if one.is_built_in else f" (plug-in {one.distribution})")),
             " ".join(one.suffixes),
         )
     text = StringIO()
@@ -70,3 +81,10 @@ def _draw_table(known: tuple[Format, ...]) -> str:
         file=text, width=get_terminal_size().columns, force_terminal=sys.stdout.isatty()
     ).print(table)
     return "\n".join(line.rstrip() for line in text.getvalue().strip("\n").splitlines())
+
+
+def _describe_needs(one: Format) -> str:
+    """Return what a format needs, and whether it is there."""
+    if not one.needs:
+        return "-"
+    return f"{one.needs}\n{'installed' if one.is_installed else 'not installed'}"

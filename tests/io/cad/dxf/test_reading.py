@@ -349,6 +349,19 @@ def test_numbers_that_are_none_are_refused(drawing, save, value):
     refused("not finite|damaged", path)
 
 
+@pytest.mark.parametrize("value", ["1e308", "-1.7e308"])
+def test_corners_beyond_any_coordinate_are_refused(drawing, save, value):
+    space = drawing.modelspace()
+    space.add_3dface([(1.25, 0, 0), (9, 0, 1), (9, 9, 2.5), (0, 9, 0)])
+    space.add_3dface([(20, 0, 0), (29, 0, 1), (29, 9, 2.5)])
+    path = save(drawing)
+    for old in ("1.25", "2.5"):
+        text = path.read_text()
+        other = path.with_name("b.dxf")
+        other.write_text(text.replace(f"\n{old}\n", f"\n{value}\n"))
+        refused("holds no TIN", other)
+
+
 def test_a_block_that_inserts_itself_is_refused(drawing, save):
     a, b = drawing.blocks.new("A"), drawing.blocks.new("B")
     a.add_point((0, 0, 1))
