@@ -49,6 +49,17 @@ def test_units_are_told_by_flags(tmp_path):
     assert ts.read(tmp_path / "b.xml").elevation_unit.name == "foot"
 
 
+def test_a_command_with_a_unit_of_its_own_names_that_of_lengths_otherwise(tmp_path):
+    tin = ts.triangulate(ROWS, crs="EPSG:32616", z_unit="m")
+    path = ts.write(tin, tmp_path / "a.xml")
+    path.write_text(path.read_text().replace('linearUnit="meter"', 'linearUnit="millimeter"'))
+    text = run("slope", path, "--unit", "percent", "-o", tmp_path / "s.geojson", code=1).output
+    assert "--length-unit 'millimetre' or --length-unit 'metre'" in text
+    text = run("info", path, code=1).output
+    assert "--unit 'millimetre' or --unit 'metre'" in text
+    run("slope", path, "--unit", "percent", "--length-unit", "m", "-o", tmp_path / "s.geojson")
+
+
 def test_layers_and_content_of_a_drawing(tmp_path):
     document = ezdxf.new()
     document.units = 6

@@ -8,6 +8,9 @@ import click
 
 __all__ = ["name_flags"]
 
+_LENGTH_UNIT = "length_unit"
+"""What the library calls ``unit``."""
+
 
 def name_flags(text: str, **renamed: str) -> str:
     """Return a sentence of the library with flags in place of the names of its options.
@@ -56,4 +59,7 @@ def _list_flags(command: click.Command) -> dict[str, str]:
     for option in command.params:
         if isinstance(option, click.Option) and option.opts[0].startswith("--") and option.name:
             flags[option.opts[0].removeprefix("--").replace("-", "_")] = option.opts[0]
+    for option in command.params:
+        if option.name == _LENGTH_UNIT:  # before any unit that a command has of its own
+            flags["unit"] = option.opts[0]
     return dict(sorted(flags.items(), key=lambda item: -len(item[0])))
