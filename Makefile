@@ -51,6 +51,12 @@ bench: $(READY) ## Time kernel, lines, edits, queries, readers, writers beside t
 gallery: $(READY) ## Draw the pictures of docs/gallery.md anew
 	@set -e; for script in docs/gallery/*.py; do $(BIN)/python $$script; done
 
+.PHONY: page
+page: ## Build the code of the 3D page anew from its sources; needs Node.js
+	cd terrain/preview/page && npm ci --silent && npm run --silent check && npm run --silent build
+	@cd terrain/preview/page && rm -rf node_modules
+	PYTHONPATH=tests $(BIN)/python -m support.pages > terrain/preview/page/viewer.sha256
+
 proof: $(READY) ## Run the long proofs
 	$(BIN)/python -m pytest -q -m proof
 

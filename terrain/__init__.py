@@ -11,7 +11,7 @@ from .earthwork import Difference, difference, stage_storage, volume
 from .gridding import height_above, rasterize
 from .isolines import ContourCheck, check_contours, contour_bands, contour_labels, contours
 from .lift import lift
-from .preview.picture import preview
+from .preview import Preview, preview
 from .relief import aspect_classes, curvature, hillshade, slope_classes, slope_statistics
 from .results import Features, Raster, Table
 from .sections import cross_sections, drape, profile, section_lines
@@ -22,6 +22,7 @@ __all__ = [
     "Difference",
     "Features",
     "OptionError",
+    "Preview",
     "Raster",
     "RenderError",
     "Table",

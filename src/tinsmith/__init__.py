@@ -59,7 +59,7 @@ if TYPE_CHECKING:
         contours,
     )
     from .terrain.lift import lift
-    from .terrain.preview.picture import preview
+    from .terrain.preview import Preview, preview
     from .terrain.relief import (
         aspect_classes,
         curvature,
@@ -147,6 +147,7 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "earthwork_map",
                 "histogram",
                 "lift",
+                "Preview",
                 "preview",
                 "profile_picture",
                 "relief_map",
@@ -216,6 +217,7 @@ __all__ = [
     "Outcome",
     "PlugInWarning",
     "PointsError",
+    "Preview",
     "Quality",
     "Raster",
     "ReadError",

@@ -1,5 +1,5 @@
-"""Preview: a surface in 3D as a picture or in a window."""
+"""Preview: a surface in 3D as a page, as a picture or in a window."""
 
-from .picture import preview
+from .presentation import Preview, preview
 
-__all__ = ["preview"]
+__all__ = ["Preview", "preview"]

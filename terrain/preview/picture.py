@@ -1,4 +1,4 @@
-"""Preview: a picture of a TIN that can be handed to a client, or a window to turn it in."""
+"""A picture of a TIN that can be handed to a client, or a window to turn it in."""
 
 from __future__ import annotations
 
@@ -10,10 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ... import _optional
-from ..._atomic import as_path
 from ...errors import OptionError, RenderError
 from ...tin import Bounds
-from ..lift import parse_exaggeration
 from ..linework import add_lines
 from ..units import find_ground
 from . import opengl
@@ -23,7 +21,6 @@ from .overlay import Overlay
 from .scene import add_lights, add_terrain, choose_exaggeration, fade_edges, place_vertices
 
 if TYPE_CHECKING:
-    import os
     from collections.abc import Iterator
 
     from PIL.Image import Image
@@ -31,7 +28,7 @@ if TYPE_CHECKING:
     from ...tin import TIN
     from ..units import Ground
 
-__all__ = ["PICTURE_SUFFIXES", "preview"]
+__all__ = ["PICTURE_SUFFIXES", "Look", "check_look", "open_window", "write_picture"]
 
 PICTURE_SUFFIXES = (".png", ".jpg", ".jpeg", ".tif", ".tiff")
 """File name endings of pictures that can be written."""
@@ -48,86 +45,40 @@ _SIZE_RANGE = (200, 5000)
 _JPEG_QUALITY = 92
 
 
-def preview(
-    tin: TIN,
-    *,
-    output: str | os.PathLike[str] | None = None,
-    exaggeration: float | None = None,
-    edges: bool = False,
-    lines: bool = True,
-    size: tuple[int, int] = (1600, 1000),
-    title: str | None = None,
-    view: str = "oblique",
-) -> Path | None:
-    """Show a TIN in 3D with hypsometric tints, hillshade, legend, scale bar and north arrow.
+@dataclass(frozen=True, slots=True)
+class Look:
+    """How a surface is shown: the options of :func:`tinsmith.preview`."""
 
-    Parameters
-    ----------
-    tin : TIN
-    output : path, optional
-        Picture to write, off screen: .png, .jpg, .jpeg, .tif or .tiff. Default: open a window.
-    exaggeration : float, optional
-        Factor on heights. Default: a round number that lifts the relief to a tenth of the extent
-        or more, 1 where it is steep enough. It is written in the picture.
-    edges : bool, optional
-        Draw the edges of the triangles.
-    lines : bool, optional
-        Draw the lines in the TIN: hard breaklines dark, soft ones dashed, boundary and holes brown,
-        the water's edge blue.
-    size : tuple of int, optional
-        Width and height, pixels, 200 to 5000 each.
-    title : str, optional
-        Default "Terrain surface".
-    view : {"oblique", "top"}, optional
-        Seen from the south-southwest, 35 degrees above the horizon, or as a map from above.
+    exaggeration: float | None = None
+    edges: bool = False
+    lines: bool = True
+    size: tuple[int, int] = (1600, 1000)
+    title: str = "Terrain surface"
+    view: str = "oblique"
 
-    Returns
-    -------
-    pathlib.Path or None
-        The picture written; None after a window was closed.
 
-    Raises
-    ------
-    OptionError
-        If an option is outside what is allowed.
-    RenderError
-        If the picture cannot be written, or the machine has no OpenGL or, for a window, no
-        display.
-    MissingExtraError
-        If pyvista is not installed.
-
-    Notes
-    -----
-    Both views are parallel projections, in which one scale holds from left to right all over the
-    picture. Light falls from the northwest at 45 degrees, fixed to the ground. Tints span the
-    lowest to the highest elevation; perceived lightness rises evenly with elevation. The same TIN
-    and options give the same bytes on the same machine.
-
-    Examples
-    --------
-    >>> import tinsmith as ts
-    >>> from pathlib import Path
-    >>> from tempfile import TemporaryDirectory
-    >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8]], crs="EPSG:32616")
-    >>> with TemporaryDirectory() as folder:
-    ...     ts.preview(tin, output=Path(folder, "site.png"), size=(400, 300)).name
-    'site.png'
-    """
-    path = None if output is None else _require_picture_path(output)
-    _check_options(size, view)
-    factor = None if exaggeration is None else parse_exaggeration(exaggeration)
-    _optional.load("pyvista", _PURPOSE)
-    (opengl.require_window if path is None else opengl.require_opengl)()
-    ground = find_ground(tin)
-    factor = choose_exaggeration(tin, ground) if factor is None else factor
-    caption = _make_caption(tin, ground, factor, title or "Terrain surface")
-    stage = _Stage(tin, ground, factor, edges, lines, size, caption, VIEWS[view])
+def write_picture(tin: TIN, path: Path, look: Look) -> None:
+    """Draw a surface off screen and write the picture whole or not at all."""
+    opengl.require_opengl()
     with _keep_vtk_plain():
-        if path is None:
-            _Show(stage, size, off_screen=False).open_window()
-        else:
-            _write(path, _render(stage))
-    return path
+        _write(path, _render(_make_stage(tin, look)))
+
+
+def open_window(tin: TIN, look: Look) -> None:
+    """Show a surface in a window, and wait until it is closed."""
+    _optional.load("pyvista", _PURPOSE)
+    opengl.require_window()
+    with _keep_vtk_plain():
+        _Show(_make_stage(tin, look), look.size, off_screen=False).open_window()
+
+
+def _make_stage(tin: TIN, look: Look) -> _Stage:
+    _optional.load("pyvista", _PURPOSE)
+    ground = find_ground(tin)
+    factor = look.exaggeration or choose_exaggeration(tin, ground)
+    caption = _make_caption(tin, ground, factor, look.title)
+    view = VIEWS[look.view]
+    return _Stage(tin, ground, factor, look.edges, look.lines, look.size, caption, view)
 
 
 @dataclass(frozen=True, slots=True)
@@ -229,25 +180,14 @@ def _make_caption(tin: TIN, ground: Ground, factor: float, title: str) -> Captio
     )
 
 
-def _check_options(size: tuple[int, int], view: str) -> None:
+def check_look(size: tuple[int, int], view: str) -> None:
+    """Refuse a size or a view that there is not."""
     if view not in VIEWS:
         raise OptionError("view", view, " or ".join(map(repr, VIEWS)))
     low, high = _SIZE_RANGE
     whole = isinstance(size, tuple | list) and all(isinstance(side, Integral) for side in size)
     if not whole or len(size) != 2 or not all(low <= side <= high for side in size):
         raise OptionError("size", size, f"width and height, {low} to {high} pixels each")
-
-
-def _require_picture_path(output: str | os.PathLike[str]) -> Path:
-    path = as_path(output, "output")
-    if path.suffix.lower() not in PICTURE_SUFFIXES:
-        raise RenderError(
-            f"Cannot write a picture to '{path}': its name must end in "
-            f"{', '.join(PICTURE_SUFFIXES)}."
-        )
-    if not path.parent.is_dir():
-        raise RenderError(f"Cannot write '{path}': there is no folder '{path.parent}'.")
-    return path
 
 
 def _write(path: Path, picture: Image) -> None:

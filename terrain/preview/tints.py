@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
-__all__ = ["compute_lightness", "interpolate_tints"]
+__all__ = ["compute_lightness", "interpolate_tints", "mix_tints"]
 
 # Rungs of the ramp from low to high: hue (degrees) and chroma in Oklch. Moss green, sage,
 # straw, sand, limestone: no blue, which a reader takes for water, and no rainbow.
@@ -49,11 +51,29 @@ def interpolate_tints(count: int = 256) -> NDArray[np.uint8]:
         sRGB. Perceived lightness (Oklab L) rises evenly, so that equal steps of elevation look
         equal, also in grey and to colour-blind eyes.
     """
+    lightness = np.linspace(*_LIGHTNESS, len(_HUES))
+    return mix_tints(list(zip(lightness, _CHROMAS, _HUES, strict=True)), count)
+
+
+def mix_tints(rungs: Sequence[tuple[float, float, float]], count: int) -> NDArray[np.uint8]:
+    """Return a ramp of colours between rungs at even distances.
+
+    Parameters
+    ----------
+    rungs : sequence of (lightness, chroma, hue)
+        In Oklch, hues in degrees.
+    count : int
+        Number of colours, at least 2.
+
+    Returns
+    -------
+    (count, 3) uint8 array
+        sRGB.
+    """
     position = np.linspace(0.0, 1.0, count)
-    rungs = np.linspace(0.0, 1.0, len(_HUES))
-    hue = np.radians(np.interp(position, rungs, _HUES))
-    chroma = np.interp(position, rungs, _CHROMAS)
-    light = np.interp(position, (0.0, 1.0), _LIGHTNESS)
+    at = np.linspace(0.0, 1.0, len(rungs))
+    light, chroma, hue = (np.interp(position, at, values) for values in zip(*rungs, strict=True))
+    hue = np.radians(hue)
     lab = np.column_stack([light, chroma * np.cos(hue), chroma * np.sin(hue)])
     linear = (lab @ _OKLAB_TO_CONES.T) ** 3 @ _CONES_TO_LINEAR.T
     return np.round(255 * _encode_gamma(np.clip(linear, 0.0, 1.0))).astype(np.uint8)

@@ -3,6 +3,7 @@
 import json
 import re
 from pathlib import Path
+from types import SimpleNamespace
 from typing import get_args
 
 import click
@@ -298,14 +299,17 @@ def test_view_passes_on_what_is_asked_for(pyramid, tmp_path, monkeypatch, as_jso
         asked.append((len(tin.points), options))
         if options["output"] is not None:
             options["output"].write_bytes(b"7 bytes")
+        return SimpleNamespace(show=lambda: shown.append(True))
 
+    shown = []
     monkeypatch.setattr("tinsmith.terrain.preview", draw)
     picture = tmp_path / "a.png"
     output = ["-o", picture] if writes else []
     result = run("view", pyramid, *output, *(["--json"] if as_json else []))
     wanted = {"output": picture if writes else None, "view": "oblique", "title": "pyramid"}
-    wanted |= {"exaggeration": None, "edges": False, "lines": True}
+    wanted |= {"exaggeration": None, "edges": False, "lines": True, "survey": None}
     assert asked == [(5, wanted)]
+    assert shown == ([] if writes else [True])
     assert ("(7 bytes)" in result.stderr) is writes
     if writes and as_json:
         assert json.loads(result.stdout) == {"input": str(pyramid), "output": str(picture)}

@@ -221,7 +221,7 @@ class TestPicture:
 
         monkeypatch.setattr(pv, "Plotter", off_screen_plotter)
         monkeypatch.setattr(plotter, "show", turned)
-        assert preview(hill(), size=(800, 500)) is None
+        preview(hill(), size=(800, 500)).show()
 
 
 def test_large_coordinates_do_not_shake_the_picture(tmp_path, can_draw):
@@ -322,7 +322,7 @@ def test_without_a_display_a_window_is_refused(monkeypatch):
     if not sys.platform.startswith("linux"):
         pytest.skip("other systems have a display or say so themselves")
     with pytest.raises(RenderError, match=r"no display.*name a picture file as output"):
-        preview(hill(steps=3))
+        preview(hill(steps=3)).show()
 
 
 @pytest.mark.usefixtures("can_draw")

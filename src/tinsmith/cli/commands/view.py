@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 __all__ = ["view"]
 
 
-@click.command(short_help="Show a TIN in 3D, in a window or as a picture.")
+@click.command(short_help="Show a TIN in 3D: in a window, as a page, as a picture.")
 @input_file("file")
 @picture_option("Picture to write (.png, .jpg, .tif) instead of opening a window.")
 @number_option("--exaggeration", "FACTOR", "Vertical exaggeration; chosen if absent.")
@@ -39,28 +39,31 @@ def view(
     reading: Reading,
     how: Triangulating,
     console: Console,
-    **drawing: object,
+    **drawing: Any,
 ) -> None:
     """Show the TIN in FILE, or of the points in it.
 
     \b
     Example:
-      tinsmith view sample_data/site_survey.csv --crs EPSG:32616 --codes -o site.png
+      tinsmith view sample_data/site_survey.csv --crs EPSG:32616 --codes -o site.html
     """  # noqa: D301 - click reads the control character
     from ...terrain import preview
-    from ...terrain.preview.picture import PICTURE_SUFFIXES
+    from ...terrain.preview.presentation import PREVIEW_SUFFIXES
     from ..files import list_inputs, read_tin, require_picture
 
     if output is not None:
         require_picture(
-            output, place="--output", inputs=list_inputs(file, how), suffixes=PICTURE_SUFFIXES
+            output, place="--output", inputs=list_inputs(file, how), suffixes=PREVIEW_SUFFIXES
         )
 
-    tin, _ = read_tin(file, reading, how, console)
+    tin, survey = read_tin(file, reading, how, console)
     top = drawing.pop("top")
     drawing["title"] = drawing["title"] or make_title(file)
     with console.steps() as steps, steps.step("Drawing"):
-        preview(tin, output=output, view="top" if top else "oblique", **drawing)  # type: ignore[arg-type]
+        seen = "top" if top else "oblique"
+        shown: Any = preview(tin, survey=survey, output=output, view=seen, **drawing)
+        if output is None:
+            shown.show()
     if output is not None:
         note_written(output)
         console.summarise(_summarise_picture(output))

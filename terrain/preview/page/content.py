@@ -1,0 +1,220 @@
+"""What a page shows: surfaces with their lines and points, in whole steps from one origin."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ....errors import OptionError
+from ...linework import EDGE_KINDS, find_line_edges
+from ..tints import interpolate_tints, mix_tints
+from .packing import pack_counts, pack_rows, pack_triangles, sort_in_morton_order
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from ....tin import TIN, Survey
+    from ...units import Ground
+
+__all__ = ["Labels", "describe_page", "find_labels"]
+
+_STEPS = 2**22
+"""Steps of a coordinate from end to end, at least: 0.3 mm in a kilometre."""
+
+_COLOURS = 64
+_MOST_LABELS = 20_000
+_MOST_DECIMALS = 3
+
+_PENS: dict[str, tuple[str, str, bool, float]] = {
+    "soft": ("Soft breaklines", "#40444c", True, 2.0),
+    "hard": ("Breaklines", "#222226", False, 2.0),
+    "hole": ("Holes", "#963a22", False, 2.4),
+    "boundary": ("Boundary", "#963a22", False, 2.4),
+    "water": ("Water", "#185c98", False, 3.0),
+}
+_SLOPE = ((0.93, 0.02, 110.0), (0.83, 0.12, 95.0), (0.66, 0.17, 55.0), (0.42, 0.15, 25.0))
+_CUT_AND_FILL = ((0.50, 0.15, 30.0), (0.72, 0.10, 45.0), (0.96, 0.0, 90.0))
+_FILL = ((0.96, 0.0, 250.0), (0.70, 0.10, 250.0), (0.45, 0.13, 255.0))
+"""Rungs of ramps in Oklch: lightness, chroma, hue in degrees."""
+
+
+class Labels(NamedTuple):
+    """Places of survey points, (k, 3), and what is written at them."""
+
+    points: NDArray[np.float64]
+    texts: tuple[str, ...]
+
+
+class _Steps(NamedTuple):
+    """Coordinates as whole numbers: from an origin, in steps across and up."""
+
+    origin: NDArray[np.float64]
+    scale: NDArray[np.float64]
+    across: float
+    up: float
+
+    def round(self, points: NDArray[np.float64]) -> NDArray[np.int64]:
+        """Return the (n, 3) whole steps of places."""
+        size = np.array([self.across, self.across, self.up]) / self.scale
+        rounded: NDArray[np.int64] = np.rint((points - self.origin) / size).astype(np.int64)
+        return rounded
+
+
+def describe_page(
+    surfaces: Mapping[str, TIN],
+    ground: Ground,
+    *,
+    title: str,
+    exaggeration: float,
+    changes: Mapping[str, NDArray[np.float64]],
+    labels: Labels | None,
+) -> dict[str, Any]:
+    """Return what a page needs, ready for JSON.
+
+    Parameters
+    ----------
+    surfaces : mapping of str to TIN
+        By name, all in one CRS; at least one.
+    ground : Ground
+    title : str
+    exaggeration : float
+    changes : mapping of str to (n,) float64 array
+        Cut and fill at the vertices of surfaces.
+    labels : Labels or None
+    """
+    steps = _choose_steps(list(surfaces.values()), ground)
+    described = [
+        _describe_surface(name, tin, steps, changes.get(name)) for name, tin in surfaces.items()
+    ]
+    if labels is not None:
+        described[-1]["labels"] = _describe_labels(labels, steps)
+    last = list(surfaces.values())[-1]
+    counts = f"{len(last.points):,} points, {len(last.triangles):,} triangles"
+    return {
+        "title": title,
+        "subtitle": f"{counts} \N{MIDDLE DOT} {ground.crs_name}",
+        "crs": ground.crs_name,
+        "units": {
+            "horizontal": ground.unit.symbol,
+            "elevation": "" if last.elevation_unit is None else last.elevation_unit.symbol,
+        },
+        "geographic": last.crs is not None and last.crs.is_geographic,
+        "origin": steps.origin.tolist(),
+        "scale": steps.scale[:2].tolist(),
+        "decimals": [_count_decimals(steps.across), _count_decimals(steps.up)],
+        "elevationScale": float(ground.scale[2]),
+        "exaggeration": exaggeration,
+        "ramps": _make_ramps(),
+        "surfaces": described,
+    }
+
+
+def find_labels(survey: Survey) -> Labels | None:
+    """Return the points of a survey with their numbers, or their elevations if they have none.
+
+    Parameters
+    ----------
+    survey : Survey
+
+    Returns
+    -------
+    Labels or None
+        None where there are more than can be read.
+    """
+    points = survey.points
+    if not 0 < len(points) <= _MOST_LABELS:
+        return None
+    numbers = survey.attributes.get("number")
+    texts = (f"{z:.2f}" for z in points[:, 2]) if numbers is None else map(str, numbers)
+    return Labels(points, tuple(text[:40] for text in texts))
+
+
+def _choose_steps(tins: Sequence[TIN], ground: Ground) -> _Steps:
+    low = np.min([tin.points.min(axis=0) for tin in tins], axis=0)
+    high = np.max([tin.points.max(axis=0) for tin in tins], axis=0)
+    scale = np.array([ground.scale[0], ground.scale[1], 1.0])
+    spans = (high - low) * scale
+    if not np.isfinite(spans).all():
+        raise OptionError("tin", "a surface", "coordinates whose differences are finite")
+    across, up = (_round_step(float(span)) for span in (max(spans[:2]), spans[2]))
+    middle = (low + high) / 2
+    return _Steps(np.array([float(f"{value:.9g}") for value in middle]), scale, across, up)
+
+
+def _round_step(span: float) -> float:
+    """Return the largest power of ten, at most a millimetre, that makes enough steps."""
+    return min(10.0 ** math.floor(math.log10(span / _STEPS)), 1e-3) if span > 0 else 1e-3
+
+
+def _count_decimals(step: float) -> int:
+    return min(max(-math.floor(math.log10(step) + 0.5), 0), _MOST_DECIMALS)
+
+
+def _describe_surface(
+    name: str, tin: TIN, steps: _Steps, change: NDArray[np.float64] | None
+) -> dict[str, Any]:
+    rows = steps.round(tin.points)
+    order = sort_in_morton_order(rows[:, :2])
+    number = np.empty(len(order), np.int64)
+    number[order] = np.arange(len(order))
+    moved = None if change is None else np.rint(change[order] / steps.up).astype(np.int64)
+    return {
+        "name": name,
+        "step": [steps.across, steps.up],
+        "vertices": pack_rows(rows[order]),
+        "triangles": pack_triangles(number[tin.triangles]),
+        "difference": None if moved is None else pack_rows(moved[:, None]),
+        "lines": list(_describe_lines(tin, rows)),
+        "labels": None,
+    }
+
+
+def _describe_lines(tin: TIN, rows: NDArray[np.int64]) -> list[dict[str, Any]]:
+    found = find_line_edges(tin)
+    layers = []
+    for rank, kind in enumerate(EDGE_KINDS):
+        pairs = found.pairs[found.kinds == rank]
+        if len(pairs) == 0:
+            continue
+        title, color, is_dashed, width = _PENS[kind]
+        vertices, counts = _join_pairs(pairs)
+        lines = {"vertices": pack_rows(rows[vertices]), "counts": pack_counts(counts)}
+        layers.append(
+            {"kind": kind, "title": title, "color": color, "dashed": is_dashed, "width": width}
+            | {"lines": lines}
+        )
+    return layers
+
+
+def _join_pairs(pairs: NDArray[np.int32]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return polylines of edges that follow one another: vertices, and the count of each line."""
+    begins = np.append(True, pairs[1:, 0] != pairs[:-1, 1])
+    starts = np.flatnonzero(begins)
+    counts = np.diff(np.append(starts, len(pairs))) + 1
+    firsts = np.where(begins)[0]
+    vertices = np.insert(pairs[:, 1], firsts, pairs[firsts, 0])
+    return vertices.astype(np.int64), counts.astype(np.int64)
+
+
+def _describe_labels(labels: Labels, steps: _Steps) -> dict[str, Any]:
+    rows = steps.round(labels.points)
+    return {"title": "Points", "places": pack_rows(rows), "texts": list(labels.texts)}
+
+
+def _make_ramps() -> dict[str, list[str]]:
+    circle = [(0.72, 0.11, float(hue)) for hue in range(250, 250 + 361, 20)]
+    return {
+        "elevation": _name_colors(interpolate_tints(_COLOURS)),
+        "slope": _name_colors(mix_tints(_SLOPE, _COLOURS)),
+        "aspect": _name_colors(mix_tints(circle, _COLOURS)),
+        "difference": _name_colors(mix_tints(_CUT_AND_FILL, _COLOURS // 2))
+        + _name_colors(mix_tints(_FILL, _COLOURS // 2)),
+    }
+
+
+def _name_colors(colors: NDArray[np.uint8]) -> list[str]:
+    return [f"#{red:02x}{green:02x}{blue:02x}" for red, green, blue in colors.tolist()]

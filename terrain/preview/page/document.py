@@ -1,0 +1,48 @@
+"""The page as one file: markup, style, code and data in a text that asks for nothing else."""
+
+from __future__ import annotations
+
+import json
+from html import escape
+from importlib.resources import files
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+__all__ = ["make_document"]
+
+
+def make_document(content: Mapping[str, Any]) -> str:
+    """Return the HTML of a page.
+
+    Parameters
+    ----------
+    content : mapping
+        As :func:`.content.describe_page` gives it.
+
+    Notes
+    -----
+    Data cannot end its own element or begin another: "<" is written as an escape of JSON, and the
+    words of the title as character references. A content security policy in the page forbids
+    every request.
+    """
+    folder = files(__package__)
+    parts = {
+        "title": escape(content["title"]),
+        "subtitle": escape(content["subtitle"]),
+        "style": folder.joinpath("style.css").read_text("utf-8"),
+        "payload": _write_json(content),
+        "viewer": folder.joinpath("viewer.js").read_text("utf-8"),
+    }
+    pieces = folder.joinpath("template.html").read_text("utf-8").split("{{")
+    filled = [pieces[0]]
+    for piece in pieces[1:]:
+        name, _, rest = piece.partition("}}")
+        filled += [parts[name], rest]
+    return "".join(filled)
+
+
+def _write_json(content: Mapping[str, Any]) -> str:
+    text = json.dumps(content, ensure_ascii=True, separators=(",", ":"), allow_nan=False)
+    return text.replace("<", "\\u003c")

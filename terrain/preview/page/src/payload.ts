@@ -1,0 +1,77 @@
+/** What the page is given: one JSON text with numbers packed as bytes. */
+
+/** Whole numbers, as differences in zigzag coding, by planes of bytes, deflated, in base64. */
+export interface Packed {
+  /** Rows. */
+  rows: number;
+  /** Numbers in a row. */
+  columns: number;
+  /** Bytes of a number that are given; those above are zero. */
+  planes: number;
+  data: string;
+}
+
+/** Polylines: vertices one after the other, and the number of vertices of each. */
+export interface PackedLines {
+  vertices: Packed;
+  counts: Packed;
+}
+
+export interface LineLayer {
+  kind: string;
+  title: string;
+  color: string;
+  dashed: boolean;
+  width: number;
+  lines: PackedLines;
+}
+
+export interface LabelLayer {
+  title: string;
+  places: Packed;
+  texts: string[];
+}
+
+export interface SurfaceData {
+  name: string;
+  /** Size of one step of the numbers: of easting and northing, of elevation. */
+  step: [number, number];
+  vertices: Packed;
+  triangles: Packed;
+  /** Cut (below 0) and fill (above 0) at the vertices, in steps of elevation. */
+  difference: Packed | null;
+  lines: LineLayer[];
+  labels: LabelLayer | null;
+}
+
+export interface UnitNames {
+  horizontal: string;
+  elevation: string;
+}
+
+export interface Payload {
+  title: string;
+  subtitle: string;
+  crs: string;
+  units: UnitNames;
+  /** Easting, northing and elevation of the numbers 0, 0, 0 of all surfaces. */
+  origin: [number, number, number];
+  /** Units on the ground in one unit of easting and of northing. */
+  scale: [number, number];
+  /** Whether eastings and northings are longitudes and latitudes. */
+  geographic: boolean;
+  /** Digits after the point: of eastings and northings, of elevations. */
+  decimals: [number, number];
+  /** Horizontal units in one unit of elevation. */
+  elevationScale: number;
+  exaggeration: number;
+  ramps: Record<"elevation" | "slope" | "aspect" | "difference", string[]>;
+  surfaces: SurfaceData[];
+}
+
+/** Read the payload out of the page. */
+export function readPayload(id: string): Payload {
+  const element = document.getElementById(id);
+  if (element === null) throw new Error(`the page has no element '${id}'`);
+  return JSON.parse(element.textContent ?? "") as Payload;
+}

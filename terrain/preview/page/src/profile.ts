@@ -1,0 +1,81 @@
+/** The profile as a drawing: distance to the right, elevation up, a line for each surface. */
+
+import type { ProfilePoint } from "./surface";
+
+export interface Curve {
+  name: string;
+  color: string;
+  pieces: ProfilePoint[][];
+}
+
+const SIZE = [640, 190];
+const MARGIN = { left: 58, right: 14, top: 12, bottom: 34 };
+const SVG = "http://www.w3.org/2000/svg";
+
+export function drawProfile(curves: Curve[], units: { horizontal: string; elevation: string }): SVGSVGElement {
+  const svg = make("svg", { viewBox: `0 0 ${SIZE[0]} ${SIZE[1]}`, role: "img" }) as SVGSVGElement;
+  const points = curves.flatMap((curve) => curve.pieces.flat());
+  if (points.length === 0) return svg;
+  const right = Math.max(...extent(points, 0)) || 1;
+  let [low, high] = extent(points, 1);
+  if (high - low < 1e-9) [low, high] = [low - 0.5, high + 0.5];
+  const x = (value: number): number =>
+    MARGIN.left + (value / right) * (SIZE[0] - MARGIN.left - MARGIN.right);
+  const y = (value: number): number =>
+    SIZE[1] - MARGIN.bottom - ((value - low) / (high - low)) * (SIZE[1] - MARGIN.top - MARGIN.bottom);
+  for (const tick of chooseTicks(0, right, 7)) addTick(svg, "x", x(tick), tick);
+  for (const tick of chooseTicks(low, high, 5)) addTick(svg, "y", y(tick), tick);
+  for (const { color, pieces } of curves)
+    for (const piece of pieces) {
+      const path = piece.map(([d, z]) => `${x(d).toFixed(2)},${y(z).toFixed(2)}`).join(" ");
+      svg.append(make("polyline", { points: path, class: "curve", stroke: color }));
+    }
+  addText(svg, (MARGIN.left + SIZE[0]) / 2, SIZE[1] - 4, label("distance", units.horizontal));
+  addText(svg, MARGIN.left, MARGIN.top - 2, label("elevation", units.elevation), "start");
+  return svg;
+}
+
+function label(words: string, unit: string): string {
+  return unit === "" ? words : `${words}, ${unit}`;
+}
+
+/** Return round numbers (steps of 1, 2 or 5 times a power of ten) inside a range. */
+export function chooseTicks(low: number, high: number, most: number): number[] {
+  const power = 10 ** Math.floor(Math.log10((high - low) / most));
+  const step = [1, 2, 5, 10].map((n) => n * power).find((n) => (high - low) / n <= most) ?? power;
+  const ticks: number[] = [];
+  for (let k = Math.ceil(low / step); k * step <= high; k += 1) ticks.push(k * step);
+  return ticks;
+}
+
+function extent(points: ProfilePoint[], axis: 0 | 1): [number, number] {
+  let [low, high] = [Infinity, -Infinity];
+  for (const point of points) {
+    low = Math.min(low, point[axis]);
+    high = Math.max(high, point[axis]);
+  }
+  return [low, high];
+}
+
+function addTick(svg: SVGSVGElement, axis: "x" | "y", at: number, value: number): void {
+  const text = String(Number(value.toPrecision(12)));
+  if (axis === "x") {
+    svg.append(make("line", { x1: at, x2: at, y1: MARGIN.top, y2: SIZE[1] - MARGIN.bottom, class: "grid" }));
+    addText(svg, at, SIZE[1] - MARGIN.bottom + 13, text);
+  } else {
+    svg.append(make("line", { x1: MARGIN.left, x2: SIZE[0] - MARGIN.right, y1: at, y2: at, class: "grid" }));
+    addText(svg, MARGIN.left - 6, at + 3.5, text, "end");
+  }
+}
+
+function addText(svg: SVGSVGElement, x: number, y: number, text: string, anchor = "middle"): void {
+  const element = make("text", { x, y, "text-anchor": anchor });
+  element.textContent = text;
+  svg.append(element);
+}
+
+function make(name: string, attributes: Record<string, string | number>): SVGElement {
+  const element = document.createElementNS(SVG, name);
+  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, String(value));
+  return element;
+}

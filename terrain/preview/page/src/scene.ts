@@ -1,0 +1,384 @@
+/** The surfaces, their lines and points as three.js objects, and the camera that looks at them. */
+
+import {
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  Group,
+  LineBasicMaterial,
+  LineSegments,
+  Mesh,
+  PerspectiveCamera,
+  Points,
+  PointsMaterial,
+  Raycaster,
+  Scene,
+  type ShaderMaterial,
+  Vector2,
+  Vector3,
+  WebGLRenderer,
+} from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { LineMaterial } from "three/addons/lines/LineMaterial.js";
+import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
+import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
+
+import { makeRamp, makeTerrainMaterial, type Tint, TINTS } from "./material";
+import type { LineLayer, Payload } from "./payload";
+import type { Hit, Surface, Vector } from "./surface";
+import { type Lines, unpackLines, unpackRows } from "./unpacking";
+
+const FIELD_OF_VIEW = 30;
+const FULL_CIRCLE = 2 * Math.PI;
+
+/** One surface with all that is drawn with it. */
+export class Model {
+  readonly group = new Group();
+  readonly material: ShaderMaterial;
+  readonly layers = new Map<string, LineSegments2>();
+  labels: { places: Float64Array; texts: string[]; marks: Points } | null = null;
+  private edges: LineSegments | null = null;
+
+  constructor(
+    readonly surface: Surface,
+    readonly payload: Payload,
+  ) {
+    this.material = makeTerrainMaterial(payload.elevationScale);
+    this.material.uniforms.base.value = payload.origin[2];
+    const mesh = new Mesh(makeGeometry(surface), this.material);
+    mesh.frustumCulled = false;
+    this.group.add(mesh);
+  }
+
+  async addLayers(): Promise<void> {
+    const [across, up] = this.surface.data.step;
+    for (const layer of this.surface.data.lines) {
+      const object = drawLines(layer, await unpackLines(layer.lines), across, up);
+      this.layers.set(layer.kind, object);
+      this.group.add(object);
+    }
+    const labels = this.surface.data.labels;
+    if (labels === null) return;
+    const numbers = await unpackRows(labels.places);
+    const places = Float64Array.from(numbers, (n, i) => n * (i % 3 === 2 ? up : across));
+    const geometry = new BufferGeometry();
+    geometry.setAttribute("position", new BufferAttribute(new Float32Array(places), 3));
+    const material = new PointsMaterial({ size: 4, sizeAttenuation: false, color: "#20262b" });
+    const marks = new Points(geometry, material);
+    marks.visible = false;
+    this.labels = { places, texts: labels.texts, marks };
+    this.group.add(marks);
+  }
+
+  showEdges(shown: boolean): void {
+    if (shown && this.edges === null) {
+      this.edges = drawEdges(this.surface);
+      this.group.add(this.edges);
+    }
+    if (this.edges !== null) this.edges.visible = shown;
+  }
+
+  paint(tint: Tint, ramps: Record<string, ReturnType<typeof makeRamp>>, range: [number, number]): void {
+    const { uniforms } = this.material;
+    uniforms.tint.value = TINTS.indexOf(tint);
+    uniforms.ramp.value = tint === "plain" ? null : ramps[tint];
+    uniforms.range.value = range;
+  }
+}
+
+/** Renderer, camera and controls; drawn again only when something has changed. */
+export class Stage {
+  readonly scene = new Scene();
+  readonly camera = new PerspectiveCamera(FIELD_OF_VIEW, 1, 1, 1000);
+  readonly renderer: WebGLRenderer;
+  readonly controls: OrbitControls;
+  readonly models: Model[] = [];
+  readonly ramps: Record<string, ReturnType<typeof makeRamp>> = {};
+  /** Called after each picture. */
+  drawn: () => void = () => undefined;
+  private waiting = false;
+  private exaggeration = 1;
+  private readonly low = new Vector3();
+  private readonly high = new Vector3();
+
+  constructor(
+    readonly canvas: HTMLCanvasElement,
+    readonly payload: Payload,
+  ) {
+    this.renderer = new WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    this.camera.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.screenSpacePanning = false;
+    this.controls.zoomToCursor = true;
+    this.controls.maxPolarAngle = 0.495 * Math.PI;
+    this.controls.addEventListener("change", () => this.request());
+    for (const [name, colors] of Object.entries(payload.ramps)) this.ramps[name] = makeRamp(colors);
+  }
+
+  add(model: Model): void {
+    this.models.push(model);
+    this.scene.add(model.group);
+    const { low, high } = model.surface;
+    if (this.models.length === 1) {
+      this.low.set(...low);
+      this.high.set(...high);
+    } else {
+      this.low.min(new Vector3(...low));
+      this.high.max(new Vector3(...high));
+    }
+  }
+
+  /** Horizontal units on the screen for one unit of elevation. */
+  get lift(): number {
+    return this.payload.elevationScale * this.exaggeration;
+  }
+
+  get span(): number {
+    return Math.max(this.high.x - this.low.x, this.high.y - this.low.y) || 1;
+  }
+
+  get elevations(): [number, number] {
+    return [this.low.z, this.high.z];
+  }
+
+  exaggerate(factor: number): void {
+    const target = this.controls.target;
+    target.z *= factor / this.exaggeration;
+    this.exaggeration = factor;
+    for (const model of this.models) {
+      model.group.scale.z = this.lift;
+      model.group.updateMatrixWorld();
+    }
+    this.controls.update();
+    this.request();
+  }
+
+  /** Look at the middle from a compass direction and a height above the horizon, in degrees. */
+  look(azimuth: number, tilt: number): void {
+    const [low, high] = this.boundVisible();
+    const middle = new Vector3().addVectors(low, high).multiplyScalar(0.5);
+    middle.z *= this.lift;
+    const half = new Vector3().subVectors(high, low).multiplyScalar(0.5);
+    half.z *= this.lift;
+    const narrow = Math.min(this.camera.aspect, 1);
+    const away = half.length() / Math.tan(((FIELD_OF_VIEW / 2) * Math.PI) / 180) / narrow;
+    const [a, t] = [(azimuth * Math.PI) / 180, (Math.min(tilt, 89.99) * Math.PI) / 180];
+    this.controls.target.copy(middle);
+    this.camera.position.set(
+      middle.x + away * Math.sin(a) * Math.cos(t),
+      middle.y + away * Math.cos(a) * Math.cos(t),
+      middle.z + away * Math.sin(t),
+    );
+    this.controls.minDistance = away / 5000;
+    this.controls.maxDistance = 6 * away;
+    this.controls.update();
+    this.request();
+  }
+
+  private boundVisible(): [Vector3, Vector3] {
+    const seen = this.models.filter((model) => model.group.visible);
+    const [low, high] = [new Vector3(Infinity, Infinity, Infinity), new Vector3(-Infinity, -Infinity, -Infinity)];
+    for (const { surface } of seen.length > 0 ? seen : this.models) {
+      low.min(new Vector3(...surface.low));
+      high.max(new Vector3(...surface.high));
+    }
+    return [low, high];
+  }
+
+  /** Turn around the middle of the view, and over it. */
+  turn(around: number, over: number): void {
+    const arm = new Vector3().subVectors(this.camera.position, this.controls.target);
+    const length = arm.length();
+    const azimuth = (Math.atan2(arm.x, arm.y) + around + FULL_CIRCLE) % FULL_CIRCLE;
+    const tilt = Math.min(Math.max(Math.asin(arm.z / length) + over, 0.02), Math.PI / 2 - 1e-4);
+    arm.set(
+      length * Math.sin(azimuth) * Math.cos(tilt),
+      length * Math.cos(azimuth) * Math.cos(tilt),
+      length * Math.sin(tilt),
+    );
+    this.camera.position.addVectors(this.controls.target, arm);
+    this.controls.update();
+    this.request();
+  }
+
+  /** Move over the ground by shares of the distance to it. */
+  move(right: number, ahead: number): void {
+    const arm = new Vector3().subVectors(this.camera.position, this.controls.target);
+    const heading = Math.atan2(-arm.x, -arm.y);
+    const far = arm.length();
+    const step = new Vector3(
+      far * (right * Math.cos(heading) + ahead * Math.sin(heading)),
+      far * (ahead * Math.cos(heading) - right * Math.sin(heading)),
+      0,
+    );
+    this.camera.position.add(step);
+    this.controls.target.add(step);
+    this.controls.update();
+    this.request();
+  }
+
+  zoom(factor: number): void {
+    const arm = new Vector3().subVectors(this.camera.position, this.controls.target);
+    this.camera.position.copy(this.controls.target).addScaledVector(arm, 1 / factor);
+    this.controls.update();
+    this.request();
+  }
+
+  /** Return the compass direction in which up on the screen lies, degrees clockwise from north. */
+  get heading(): number {
+    const arm = new Vector3().subVectors(this.controls.target, this.camera.position);
+    return ((Math.atan2(arm.x, arm.y) * 180) / Math.PI + 360) % 360;
+  }
+
+  /** Return horizontal units in one pixel of the page in the middle of the view. */
+  get unitsPerPixel(): number {
+    const far = this.camera.position.distanceTo(this.controls.target);
+    const height = 2 * far * Math.tan(((FIELD_OF_VIEW / 2) * Math.PI) / 180);
+    return height / this.canvas.clientHeight;
+  }
+
+  /** Return what lies under a pixel of the page, of the surfaces that are shown. */
+  pick(px: number, py: number): { model: Model; hit: Hit } | null {
+    const size = [this.canvas.clientWidth, this.canvas.clientHeight];
+    const caster = new Raycaster();
+    caster.setFromCamera(new Vector2((2 * px) / size[0] - 1, 1 - (2 * py) / size[1]), this.camera);
+    const from = caster.ray.origin.toArray() as Vector;
+    const direction = caster.ray.direction.toArray() as Vector;
+    let best: { model: Model; hit: Hit } | null = null;
+    let nearest = Infinity;
+    for (const model of this.models) {
+      if (!model.group.visible) continue;
+      const hit = model.surface.pick(from, direction, this.lift);
+      if (hit === null) continue;
+      const far = Math.hypot(hit.x - from[0], hit.y - from[1], hit.z * this.lift - from[2]);
+      if (far < nearest) [nearest, best] = [far, { model, hit }];
+    }
+    return best;
+  }
+
+  /** Return where a place is on the page, null behind the camera. */
+  project(x: number, y: number, z: number): [number, number, number] | null {
+    const place = new Vector3(x, y, z * this.lift).project(this.camera);
+    if (place.z > 1) return null;
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    return [((place.x + 1) / 2) * width, ((1 - place.y) / 2) * height, place.z];
+  }
+
+  setBackground(color: string): void {
+    this.scene.background = new Color(color);
+    this.request();
+  }
+
+  resize(width: number, height: number): void {
+    this.renderer.setSize(width, height, false);
+    this.camera.aspect = width / height;
+    this.request();
+  }
+
+  request(): void {
+    if (this.waiting) return;
+    this.waiting = true;
+    requestAnimationFrame(() => {
+      this.waiting = false;
+      this.draw();
+    });
+  }
+
+  draw(): void {
+    const far = this.camera.position.distanceTo(this.controls.target);
+    const size = this.span + Math.abs(this.high.z - this.low.z) * this.lift;
+    this.camera.near = Math.max(far - 2 * size, far / 200);
+    this.camera.far = far + 2 * size;
+    this.camera.updateProjectionMatrix();
+    this.renderer.render(this.scene, this.camera);
+    this.drawn();
+  }
+}
+
+function makeGeometry(surface: Surface): BufferGeometry {
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new BufferAttribute(new Float32Array(surface.positions), 3));
+  geometry.setIndex(new BufferAttribute(surface.triangles, 1));
+  const change = surface.difference ?? new Float32Array(surface.positions.length / 3);
+  geometry.setAttribute("change", new BufferAttribute(change, 1));
+  geometry.setAttribute("normal", new BufferAttribute(averageNormals(surface), 3));
+  return geometry;
+}
+
+/** Return the normals of the true surface at the vertices, each triangle counted by its area. */
+function averageNormals(surface: Surface): Float32Array {
+  const { positions: p, triangles, elevationScale: s } = surface;
+  const normals = new Float32Array(p.length);
+  for (let k = 0; k < triangles.length; k += 3) {
+    const [a, b, c] = [3 * triangles[k], 3 * triangles[k + 1], 3 * triangles[k + 2]];
+    const [ux, uy, uz] = [p[b] - p[a], p[b + 1] - p[a + 1], (p[b + 2] - p[a + 2]) * s];
+    const [vx, vy, vz] = [p[c] - p[a], p[c + 1] - p[a + 1], (p[c + 2] - p[a + 2]) * s];
+    const [nx, ny, nz] = [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx];
+    for (const i of [a, b, c]) {
+      normals[i] += nx;
+      normals[i + 1] += ny;
+      normals[i + 2] += nz;
+    }
+  }
+  for (let i = 0; i < normals.length; i += 3) {
+    const length = Math.hypot(normals[i], normals[i + 1], normals[i + 2]) || 1;
+    for (let axis = 0; axis < 3; axis += 1) normals[i + axis] /= length;
+  }
+  return normals;
+}
+
+/** Draw each edge once: of the two triangles at it, the one in which its ends ascend. */
+function drawEdges(surface: Surface): LineSegments {
+  const { triangles } = surface;
+  const seen = new Set<number>();
+  const count = surface.positions.length / 3;
+  const ends: number[] = [];
+  for (let k = 0; k < triangles.length; k += 1) {
+    const a = triangles[k];
+    const b = triangles[k % 3 === 2 ? k - 2 : k + 1];
+    const key = Math.min(a, b) * count + Math.max(a, b);
+    if (seen.delete(key)) continue;
+    seen.add(key);
+    ends.push(a, b);
+  }
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new BufferAttribute(new Float32Array(surface.positions), 3));
+  geometry.setIndex(new BufferAttribute(new Uint32Array(ends), 1));
+  const material = new LineBasicMaterial({ color: "#20262b", transparent: true, opacity: 0.35 });
+  const object = new LineSegments(geometry, material);
+  object.frustumCulled = false;
+  return object;
+}
+
+function drawLines(layer: LineLayer, lines: Lines, across: number, up: number): LineSegments2 {
+  const { vertices, offsets } = lines;
+  const ends: number[] = [];
+  const put = (i: number): void => {
+    ends.push(vertices[3 * i] * across, vertices[3 * i + 1] * across, vertices[3 * i + 2] * up);
+  };
+  for (let k = 0; k + 1 < offsets.length; k += 1) {
+    for (let i = offsets[k]; i + 1 < offsets[k + 1]; i += 1) {
+      put(i);
+      put(i + 1);
+    }
+  }
+  const geometry = new LineSegmentsGeometry();
+  geometry.setPositions(ends);
+  const material = new LineMaterial({ color: layer.color, linewidth: layer.width });
+  const object = new LineSegments2(geometry, material);
+  if (layer.dashed) {
+    object.computeLineDistances();
+    const length = lengthOf(ends) / Math.max(1, ends.length / 6);
+    Object.assign(material, { dashed: true, dashSize: length / 3, gapSize: length / 4 });
+  }
+  object.frustumCulled = false;
+  return object;
+}
+
+function lengthOf(ends: number[]): number {
+  let sum = 0;
+  for (let i = 0; i + 5 < ends.length; i += 6)
+    sum += Math.hypot(ends[i + 3] - ends[i], ends[i + 4] - ends[i + 1]);
+  return sum;
+}

@@ -1,0 +1,334 @@
+/** A surface in numbers: where a place lies on it, what a ray hits, what a line crosses. */
+
+import type { SurfaceData } from "./payload";
+import { unpackRows, unpackTriangles } from "./unpacking";
+
+export type Vector = [number, number, number];
+
+/** A place on the surface, in coordinates from the surface's origin. */
+export interface Hit {
+  triangle: number;
+  x: number;
+  y: number;
+  z: number;
+}
+
+/** A stretch of a profile inside one triangle: distances along the line and elevations. */
+interface Stretch {
+  from: number;
+  to: number;
+  zFrom: number;
+  zTo: number;
+}
+
+export type ProfilePoint = [distance: number, elevation: number];
+
+const TRIANGLES_PER_CELL = 2;
+
+export class Surface {
+  /** x, y, z of each vertex from the origin, in units of the coordinates. */
+  readonly positions: Float64Array;
+  readonly low: Vector = [Infinity, Infinity, Infinity];
+  readonly high: Vector = [-Infinity, -Infinity, -Infinity];
+
+  private columns = 1;
+  private rows = 1;
+  private cell = 1;
+  private starts = new Int32Array(2);
+  private members = new Int32Array(0);
+  private seen: Int32Array;
+  private round = 0;
+
+  private constructor(
+    readonly data: SurfaceData,
+    vertices: Int32Array,
+    readonly triangles: Uint32Array,
+    /** Cut and fill at the vertices. */
+    readonly difference: Float32Array | null,
+    /** Horizontal units in one unit of elevation. */
+    readonly elevationScale: number,
+  ) {
+    const [across, up] = data.step;
+    this.positions = new Float64Array(vertices.length);
+    for (let i = 0; i < vertices.length; i += 1) {
+      const value = vertices[i] * (i % 3 === 2 ? up : across);
+      this.positions[i] = value;
+      this.low[i % 3] = Math.min(this.low[i % 3], value);
+      this.high[i % 3] = Math.max(this.high[i % 3], value);
+    }
+    this.seen = new Int32Array(triangles.length / 3);
+    this.fillCells();
+  }
+
+  static async unpack(data: SurfaceData, elevationScale: number): Promise<Surface> {
+    const vertices = await unpackRows(data.vertices);
+    const triangles = await unpackTriangles(data.triangles);
+    const steps = data.difference === null ? null : await unpackRows(data.difference);
+    const difference = steps === null ? null : Float32Array.from(steps, (n) => n * data.step[1]);
+    return new Surface(data, vertices, triangles, difference, elevationScale);
+  }
+
+  get triangleCount(): number {
+    return this.triangles.length / 3;
+  }
+
+  /** Return the triangle that holds a place and the elevation there, or null off the surface. */
+  locate(x: number, y: number): Hit | null {
+    const cell = this.cellAt(x, y);
+    if (cell < 0) return null;
+    for (let k = this.starts[cell]; k < this.starts[cell + 1]; k += 1) {
+      const z = this.elevationIn(this.members[k], x, y);
+      if (z !== null) return { triangle: this.members[k], x, y, z };
+    }
+    return null;
+  }
+
+  /** Return the steepness of a triangle in degrees, both units taken into account. */
+  slope(triangle: number): number {
+    const [a, b, c] = this.corners(triangle);
+    const s = this.elevationScale;
+    const u = [b[0] - a[0], b[1] - a[1], (b[2] - a[2]) * s];
+    const v = [c[0] - a[0], c[1] - a[1], (c[2] - a[2]) * s];
+    const n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+    return (Math.atan2(Math.hypot(n[0], n[1]), n[2]) * 180) / Math.PI;
+  }
+
+  /** Return the first place that a ray hits; z of both is in horizontal units times ``lift``. */
+  pick(from: Vector, direction: Vector, lift: number): Hit | null {
+    const span = this.clipRay(from, direction, lift);
+    if (span === null) return null;
+    this.round += 1;
+    let best = Infinity;
+    let found = -1;
+    for (const [cell, leave] of this.walk(from, direction, span[0], span[1])) {
+      for (let k = this.starts[cell]; k < this.starts[cell + 1]; k += 1) {
+        const triangle = this.members[k];
+        if (this.seen[triangle] === this.round) continue;
+        this.seen[triangle] = this.round;
+        const t = this.intersect(triangle, from, direction, lift);
+        if (t < best) {
+          best = t;
+          found = triangle;
+        }
+      }
+      if (best <= leave) break;
+    }
+    if (found < 0) return null;
+    const x = from[0] + best * direction[0];
+    const y = from[1] + best * direction[1];
+    const z = (from[2] + best * direction[2]) / lift;
+    return { triangle: found, x, y, z };
+  }
+
+  /** Return the surface along a line: pieces of (distance, elevation), with gaps where it is off. */
+  profile(from: [number, number], to: [number, number]): ProfilePoint[][] {
+    const length = Math.hypot(to[0] - from[0], to[1] - from[1]);
+    if (length === 0) return [];
+    const stretches: Stretch[] = [];
+    const direction: Vector = [to[0] - from[0], to[1] - from[1], 0];
+    this.round += 1;
+    for (const [cell] of this.walk([from[0], from[1], 0], direction, 0, 1)) {
+      for (let k = this.starts[cell]; k < this.starts[cell + 1]; k += 1) {
+        const triangle = this.members[k];
+        if (this.seen[triangle] === this.round) continue;
+        this.seen[triangle] = this.round;
+        const stretch = this.cut(triangle, from, direction);
+        if (stretch !== null) stretches.push(stretch);
+      }
+    }
+    return join(stretches, length);
+  }
+
+  corners(triangle: number): [Vector, Vector, Vector] {
+    return [this.vertex(triangle, 0), this.vertex(triangle, 1), this.vertex(triangle, 2)];
+  }
+
+  private vertex(triangle: number, corner: number): Vector {
+    const i = 3 * this.triangles[3 * triangle + corner];
+    return [this.positions[i], this.positions[i + 1], this.positions[i + 2]];
+  }
+
+  private elevationIn(triangle: number, x: number, y: number): number | null {
+    const [a, b, c] = this.corners(triangle);
+    const u = (b[0] - x) * (c[1] - y) - (c[0] - x) * (b[1] - y);
+    const v = (c[0] - x) * (a[1] - y) - (a[0] - x) * (c[1] - y);
+    const w = (a[0] - x) * (b[1] - y) - (b[0] - x) * (a[1] - y);
+    const area = u + v + w;
+    if (u < 0 || v < 0 || w < 0 || area <= 0) return null;
+    return (u * a[2] + v * b[2] + w * c[2]) / area;
+  }
+
+  /** Moeller and Trumbore (1997): where along the ray the triangle is hit, infinity if it is not. */
+  private intersect(triangle: number, from: Vector, direction: Vector, lift: number): number {
+    const [a, b, c] = this.corners(triangle);
+    const e: Vector = [b[0] - a[0], b[1] - a[1], (b[2] - a[2]) * lift];
+    const f: Vector = [c[0] - a[0], c[1] - a[1], (c[2] - a[2]) * lift];
+    const p = cross(direction, f);
+    const determinant = dot(e, p);
+    if (determinant === 0) return Infinity;
+    const s: Vector = [from[0] - a[0], from[1] - a[1], from[2] - a[2] * lift];
+    const u = dot(s, p) / determinant;
+    if (u < 0 || u > 1) return Infinity;
+    const q = cross(s, e);
+    const v = dot(direction, q) / determinant;
+    if (v < 0 || u + v > 1) return Infinity;
+    const t = dot(f, q) / determinant;
+    return t >= 0 ? t : Infinity;
+  }
+
+  /** Return the stretch of a line (parameter 0 to 1) inside a triangle, seen from above. */
+  private cut(triangle: number, from: [number, number], direction: Vector): Stretch | null {
+    const corners = this.corners(triangle);
+    let low = 0;
+    let high = 1;
+    for (let k = 0; k < 3; k += 1) {
+      const a = corners[k];
+      const b = corners[(k + 1) % 3];
+      const [dx, dy] = [b[0] - a[0], b[1] - a[1]];
+      const side = dx * (from[1] - a[1]) - dy * (from[0] - a[0]);
+      const change = dx * direction[1] - dy * direction[0];
+      if (change === 0) {
+        if (side < 0) return null;
+      } else if (change > 0) low = Math.max(low, -side / change);
+      else high = Math.min(high, -side / change);
+    }
+    if (!(low < high)) return null;
+    const at = (t: number): number => this.planeAt(corners, from, direction, t);
+    return { from: low, to: high, zFrom: at(low), zTo: at(high) };
+  }
+
+  private planeAt(
+    corners: [Vector, Vector, Vector],
+    from: [number, number],
+    direction: Vector,
+    t: number,
+  ): number {
+    const [a, b, c] = corners;
+    const [x, y] = [from[0] + t * direction[0] - a[0], from[1] + t * direction[1] - a[1]];
+    const [ux, uy, vx, vy] = [b[0] - a[0], b[1] - a[1], c[0] - a[0], c[1] - a[1]];
+    const area = ux * vy - uy * vx;
+    const v = (ux * y - uy * x) / area;
+    const u = (x * vy - y * vx) / area;
+    return a[2] + u * (b[2] - a[2]) + v * (c[2] - a[2]);
+  }
+
+  /** Sort the triangles into square cells by the boxes around them. */
+  private fillCells(): void {
+    const width = this.high[0] - this.low[0];
+    const height = this.high[1] - this.low[1];
+    const wanted = Math.max(1, this.triangleCount / TRIANGLES_PER_CELL);
+    this.cell = Math.max(Math.sqrt((width * height) / wanted), Math.max(width, height) / 4096) || 1;
+    this.columns = Math.floor(width / this.cell) + 1;
+    this.rows = Math.floor(height / this.cell) + 1;
+    this.starts = new Int32Array(this.columns * this.rows + 2);
+    this.eachCell((cell) => (this.starts[cell + 2] += 1));
+    for (let k = 2; k < this.starts.length; k += 1) this.starts[k] += this.starts[k - 1];
+    this.members = new Int32Array(this.starts[this.starts.length - 1]);
+    this.eachCell((cell, triangle) => {
+      this.members[this.starts[cell + 1]] = triangle;
+      this.starts[cell + 1] += 1;
+    });
+  }
+
+  private eachCell(take: (cell: number, triangle: number) => void): void {
+    const { triangles, positions: p } = this;
+    for (let t = 0; t < this.triangleCount; t += 1) {
+      const [a, b, c] = [3 * triangles[3 * t], 3 * triangles[3 * t + 1], 3 * triangles[3 * t + 2]];
+      const left = this.columnOf(Math.min(p[a], p[b], p[c]));
+      const right = this.columnOf(Math.max(p[a], p[b], p[c]));
+      const bottom = this.rowOf(Math.min(p[a + 1], p[b + 1], p[c + 1]));
+      const top = this.rowOf(Math.max(p[a + 1], p[b + 1], p[c + 1]));
+      for (let row = bottom; row <= top; row += 1)
+        for (let column = left; column <= right; column += 1) take(row * this.columns + column, t);
+    }
+  }
+
+  private columnOf(x: number): number {
+    return Math.floor((x - this.low[0]) / this.cell);
+  }
+
+  private rowOf(y: number): number {
+    return Math.floor((y - this.low[1]) / this.cell);
+  }
+
+  private cellAt(x: number, y: number): number {
+    const inside =
+      x >= this.low[0] && x <= this.high[0] && y >= this.low[1] && y <= this.high[1];
+    return inside ? this.rowOf(y) * this.columns + this.columnOf(x) : -1;
+  }
+
+  /** Return from where to where along a ray it is inside the box around the surface. */
+  private clipRay(from: Vector, direction: Vector, lift: number): [number, number] | null {
+    const lifted = [lift * this.low[2], lift * this.high[2]];
+    const margin = 1e-6 * (this.high[0] - this.low[0] + this.high[1] - this.low[1]);
+    let near = 0;
+    let far = Infinity;
+    for (let axis = 0; axis < 3; axis += 1) {
+      const low = (axis === 2 ? Math.min(...lifted) : this.low[axis]) - margin;
+      const high = (axis === 2 ? Math.max(...lifted) : this.high[axis]) + margin;
+      if (direction[axis] === 0) {
+        if (from[axis] < low || from[axis] > high) return null;
+        continue;
+      }
+      const ends = [(low - from[axis]) / direction[axis], (high - from[axis]) / direction[axis]];
+      near = Math.max(near, Math.min(...ends));
+      far = Math.min(far, Math.max(...ends));
+    }
+    return near <= far ? [near, far] : null;
+  }
+
+  /** Name the cells under a ray in their order, each with the parameter at which it is left.
+   *  Amanatides and Woo, "A fast voxel traversal algorithm for ray tracing" (1987). */
+  private *walk(
+    from: Vector,
+    direction: Vector,
+    near: number,
+    far: number,
+  ): Generator<[number, number]> {
+    let column = this.columnOf(from[0] + near * direction[0]);
+    let row = this.rowOf(from[1] + near * direction[1]);
+    const [stepX, stepY] = [Math.sign(direction[0]), Math.sign(direction[1])];
+    const border = (k: number, step: number): number => (k + (step > 0 ? 1 : 0)) * this.cell;
+    const next = (axis: 0 | 1, k: number, step: number): number =>
+      step === 0
+        ? Infinity
+        : (this.low[axis] + border(k, step) - from[axis]) / direction[axis];
+    for (;;) {
+      const [tx, ty] = [next(0, column, stepX), next(1, row, stepY)];
+      const leave = Math.min(tx, ty);
+      if (column >= 0 && column < this.columns && row >= 0 && row < this.rows)
+        yield [row * this.columns + column, leave];
+      if (leave >= far || leave === Infinity) return;
+      if (tx <= ty) column += stepX;
+      else row += stepY;
+      if (this.isPast(column, stepX, this.columns) || this.isPast(row, stepY, this.rows)) return;
+    }
+  }
+
+  private isPast(k: number, step: number, count: number): boolean {
+    return (k < 0 && step <= 0) || (k >= count && step >= 0);
+  }
+}
+
+/** Join stretches that follow each other; where the next begins further on there is a gap. */
+function join(stretches: Stretch[], length: number): ProfilePoint[][] {
+  stretches.sort((a, b) => a.from - b.from || a.to - b.to);
+  const pieces: ProfilePoint[][] = [];
+  let end = -1;
+  for (const one of stretches) {
+    if (one.to <= end) continue;
+    const touches = pieces.length > 0 && one.from <= end + 1e-9;
+    if (!touches) pieces.push([[one.from * length, one.zFrom]]);
+    pieces[pieces.length - 1].push([one.to * length, one.zTo]);
+    end = one.to;
+  }
+  return pieces;
+}
+
+function cross(a: Vector, b: Vector): Vector {
+  return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+}
+
+function dot(a: Vector, b: Vector): number {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}

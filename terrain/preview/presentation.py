@@ -1,0 +1,283 @@
+"""Preview: a surface in 3D as a page, as a picture or in a window."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, overload
+
+import numpy as np
+
+from ..._atomic import replacing
+from ...errors import CrsError, OptionError, RenderError
+from ...tin import TIN, Survey
+from ...tin.validation.options import require_tin
+from ..earthwork import difference
+from ..lift import parse_exaggeration
+from ..units import find_ground
+from .page.content import describe_page, find_labels
+from .page.document import make_document
+from .picture import PICTURE_SUFFIXES, Look, check_look, open_window, write_picture
+from .scene import choose_exaggeration
+
+if TYPE_CHECKING:
+    import os
+
+    from numpy.typing import NDArray
+
+__all__ = ["PREVIEW_SUFFIXES", "Preview", "preview"]
+
+PAGE_SUFFIXES = (".html", ".htm")
+PREVIEW_SUFFIXES = (*PICTURE_SUFFIXES, *PAGE_SUFFIXES)
+"""File name endings of what can be written."""
+
+_COMPARED = "Cut and fill"
+_FRAME_HEIGHT = 560
+
+
+class Preview:
+    """One surface or several, ready to be shown; made by :func:`tinsmith.preview`.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [0, 3, 8]], crs="EPSG:32616")
+    >>> with TemporaryDirectory() as folder:
+    ...     ts.preview(tin, title="Yard").save(Path(folder, "yard.html")).name
+    'yard.html'
+    """
+
+    def __init__(self, surfaces: Mapping[str, TIN], look: Look, survey: Survey | None) -> None:
+        self._surfaces = dict(surfaces)
+        self._look = look
+        self._survey = survey
+
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Write a page (.html) or a picture (.png, .jpg, .jpeg, .tif, .tiff).
+
+        Parameters
+        ----------
+        path : path
+
+        Returns
+        -------
+        pathlib.Path
+            The file written: whole, or the old one is left as it was.
+
+        Raises
+        ------
+        RenderError
+            If the file cannot be written, its suffix is another, or for a picture the machine has
+            no OpenGL or there are several surfaces.
+        MissingExtraError
+            If pyvista, which draws pictures, is not installed; a page needs nothing more.
+        """
+        file = _require_path(path)
+        if file.suffix.lower() in PAGE_SUFFIXES:
+            self._write_page(file)
+        else:
+            write_picture(self._require_one("A picture"), file, self._look)
+        return file
+
+    def show(self) -> None:
+        """Open a window, and wait until it is closed.
+
+        Raises
+        ------
+        RenderError
+            If there is no display or no OpenGL, or there are several surfaces.
+        MissingExtraError
+            If pyvista is not installed.
+        """
+        open_window(self._require_one("A window"), self._look)
+
+    def to_html(self) -> str:
+        """Return the page: one HTML document that needs no other file and no network."""
+        tins = list(self._surfaces.values())
+        ground = find_ground(tins[-1])
+        factor = self._look.exaggeration or choose_exaggeration(tins[-1], ground)
+        surfaces, changes = _add_difference(self._surfaces)
+        labels = None if self._survey is None else find_labels(self._survey)
+        content = describe_page(
+            surfaces,
+            ground,
+            title=" ".join(self._look.title.split()),
+            exaggeration=factor,
+            changes=changes,
+            labels=labels,
+        )
+        return make_document(content)
+
+    def _repr_html_(self) -> str:
+        page = escape(self.to_html(), quote=True)
+        style = f"width: 100%; height: {_FRAME_HEIGHT}px; border: 0"
+        return f'<iframe srcdoc="{page}" style="{style}" title="Terrain in 3D"></iframe>'
+
+    def _write_page(self, file: Path) -> None:
+        page = self.to_html()
+        try:
+            with replacing(file) as stream:
+                stream.write(page.encode("utf-8"))
+        except OSError as error:
+            reason = getattr(error, "strerror", None) or error
+            raise RenderError(f"Cannot write '{file}': {reason}.") from error
+
+    def _require_one(self, what: str) -> TIN:
+        if len(self._surfaces) > 1:
+            raise RenderError(
+                f"{what} shows one surface, and there are {len(self._surfaces)}: "
+                "a page (.html) shows several."
+            )
+        return next(iter(self._surfaces.values()))
+
+
+@overload
+def preview(
+    tin: TIN | Mapping[str, TIN],
+    *,
+    output: None = None,
+    exaggeration: float | None = None,
+    edges: bool = False,
+    lines: bool = True,
+    size: tuple[int, int] = (1600, 1000),
+    title: str | None = None,
+    view: str = "oblique",
+    survey: Survey | None = None,
+) -> Preview: ...
+
+
+@overload
+def preview(
+    tin: TIN | Mapping[str, TIN],
+    *,
+    output: str | os.PathLike[str],
+    exaggeration: float | None = None,
+    edges: bool = False,
+    lines: bool = True,
+    size: tuple[int, int] = (1600, 1000),
+    title: str | None = None,
+    view: str = "oblique",
+    survey: Survey | None = None,
+) -> Path: ...
+
+
+def preview(
+    tin: TIN | Mapping[str, TIN],
+    *,
+    output: str | os.PathLike[str] | None = None,
+    title: str | None = None,
+    survey: Survey | None = None,
+    **look: Any,
+) -> Preview | Path:
+    """Show a TIN in 3D with hypsometric tints, hillshade, legend, scale bar and north arrow.
+
+    Parameters
+    ----------
+    tin : TIN or mapping of str to TIN
+        One surface, or several by name in one CRS for a page, the existing ground first; of two
+        the page shows cut and fill too.
+    output : path, optional
+        File to write at once: a page (.html) that turns in any browser, offline, or a picture
+        (.png, .jpg, .jpeg, .tif, .tiff). Default: write nothing, and return a Preview.
+    exaggeration : float, optional
+        Factor on heights. Default: a round number that lifts the relief to a tenth of the extent
+        or more, 1 where it is steep enough. It is written in the picture.
+    edges : bool, optional
+        Draw the edges of the triangles in a picture; a page has a switch for them.
+    lines : bool, optional
+        Draw the lines in the TIN: hard breaklines dark, soft ones dashed, boundary and holes brown,
+        the water's edge blue.
+    size : tuple of int, optional
+        Width and height of a picture or window, pixels, 200 to 5000 each; default (1600, 1000).
+    title : str, optional
+        Default "Terrain surface".
+    view : {"oblique", "top"}, optional
+        Of a picture: seen from the south-southwest, 35 degrees above the horizon, or as a map from
+        above.
+    survey : Survey, optional
+        Points that a page shows with their numbers, up to 20,000.
+
+    Returns
+    -------
+    Preview or pathlib.Path
+        The file written, if ``output`` is given. A Preview has ``save`` and ``show``, a window,
+        and a notebook shows it as a page.
+
+    Raises
+    ------
+    OptionError
+        If an option is outside what is allowed, or there is no surface.
+    CrsError
+        If surfaces have different CRSs.
+    RenderError
+        If the file cannot be written, or the machine has no OpenGL.
+    MissingExtraError
+        If pyvista, which draws pictures, is not installed.
+
+    Notes
+    -----
+    Pictures are parallel projections, in which one scale holds from left to right all over the
+    picture. Light falls from the northwest at 45 degrees, fixed to the ground. Tints span the
+    lowest to the highest elevation; perceived lightness rises evenly with elevation. The same TIN
+    and options give the same bytes on the same machine. Coordinates in a page are rounded to a
+    millimetre, or finer where a surface is small.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [0, 3, 8]], crs="EPSG:32616")
+    >>> page = ts.preview(tin).to_html()
+    >>> page[:15]
+    '<!doctype html>'
+    """
+    chosen = Look(**look, title=title or "Terrain surface")
+    check_look(chosen.size, chosen.view)
+    if chosen.exaggeration is not None:
+        parse_exaggeration(chosen.exaggeration)
+    made = Preview(_as_surfaces(tin), chosen, survey)
+    return made if output is None else made.save(output)
+
+
+def _as_surfaces(tin: TIN | Mapping[str, TIN]) -> dict[str, TIN]:
+    surfaces = dict(tin) if isinstance(tin, Mapping) else {"Surface": tin}
+    if not surfaces:
+        raise OptionError("tin", tin, "a TIN, or a mapping of names to TINs with one at least")
+    for one in surfaces.values():
+        require_tin(one)
+    crs = [one.crs for one in surfaces.values()]
+    if any(one != crs[0] for one in crs):
+        names = ", ".join("none" if one is None else str(one) for one in crs)
+        raise CrsError(f"The surfaces have different CRSs ({names}): one is needed.")
+    return {str(name): one for name, one in surfaces.items()}
+
+
+def _add_difference(
+    surfaces: Mapping[str, TIN],
+) -> tuple[dict[str, TIN], dict[str, NDArray[np.float64]]]:
+    """Return the surfaces and, of two, the second with cut and fill at its vertices."""
+    if len(surfaces) != 2:
+        return dict(surfaces), {}
+    first, second = surfaces.values()
+    change = difference(first, second).tin
+    places = np.array(change.points)
+    differences = places[:, 2].copy()
+    places[:, 2] = second.interpolate(places[:, :2], extrapolate="nearest")
+    shown = TIN.from_triangles(
+        places, change.triangles, crs=second.crs, z_unit=second.elevation_unit
+    )
+    return {**surfaces, _COMPARED: shown}, {_COMPARED: differences}
+
+
+def _require_path(output: str | os.PathLike[str]) -> Path:
+    path = Path(output)
+    if path.suffix.lower() not in PREVIEW_SUFFIXES:
+        raise RenderError(
+            f"Cannot write a picture or a page to '{path}': its name must end in "
+            f"{', '.join(PREVIEW_SUFFIXES)}."
+        )
+    if not path.parent.is_dir():
+        raise RenderError(f"Cannot write '{path}': there is no folder '{path.parent}'.")
+    return path

@@ -1,0 +1,67 @@
+"""Pages in a real browser: the system's Chromium, driven by Playwright, with the network off."""
+
+from __future__ import annotations
+
+import atexit
+import hashlib
+import shutil
+from contextlib import contextmanager
+from functools import cache
+
+import pytest
+
+_WEBGL = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist")
+_NO_WEBGL = ("--disable-gpu", "--disable-3d-apis")
+
+
+@contextmanager
+def open_page(path, *, webgl=True):
+    """Open a page from a file; an error or a warning on its console fails the test."""
+    browser_path = shutil.which("chromium") or shutil.which("chromium-browser")
+    if browser_path is None:
+        pytest.skip("chromium is not installed")
+    said = []
+    arguments = ["--no-sandbox", *(_WEBGL if webgl else _NO_WEBGL)]
+    browser = _start_driver().chromium.launch(executable_path=browser_path, args=arguments)
+    try:
+        context = browser.new_context(offline=True, viewport={"width": 1200, "height": 800})
+        page = context.new_page()
+        page.on("pageerror", lambda error: said.append(str(error)))
+        page.on("console", lambda line: said.append(line.text) if line.type == "error" else None)
+        page.on("request", lambda request: _note_request(request.url, said))
+        page.goto(path.as_uri())
+        page.evaluate("window.terrain.then(() => true)")
+        yield page
+    finally:
+        browser.close()
+    assert [line for line in said if webgl or "WebGL" not in line] == []
+
+
+@cache
+def _start_driver():
+    """Start Playwright's driver, of which a process has one."""
+    from playwright.sync_api import sync_playwright
+
+    driver = sync_playwright().start()
+    atexit.register(driver.stop)
+    return driver
+
+
+def _note_request(url, said):
+    if not url.startswith(("file:", "data:", "blob:")):
+        said.append(f"asked for {url}")
+
+
+def digest_sources(folder):
+    """Return the digest of all from which the bundle is made."""
+    digest = hashlib.sha256()
+    for path in sorted([*folder.glob("src/*.ts"), folder / "package-lock.json"]):
+        digest.update(path.name.encode() + b"\0" + path.read_bytes())
+    return digest.hexdigest()
+
+
+if __name__ == "__main__":
+    from pathlib import Path
+
+    folder = Path(__file__).parents[2] / "terrain" / "preview" / "page"
+    print(digest_sources(folder))  # noqa: T201
