@@ -6,19 +6,19 @@ import argparse
 import shlex
 import sys
 from pathlib import Path
+from typing import Any
 
 from .datasets.lines import LINE_DATASETS
 from .datasets.points import DATASETS
 from .measure import Outcome
 from .report.machine import describe
 from .report.page import write_report
-from .sections import answers, edits, kernel, lines, locate, readers, writers
-from .sections import variants as ways
+from .sections import answers, edits, kernel, lines, locate, readers, variants, writers
 
-SIMPLE = {module.SECTION: module for module in (ways, edits, readers, writers, answers)}
+SIMPLE = {module.SECTION: module for module in (variants, edits, readers, writers, answers)}
 SECTIONS = (
     kernel.SECTION,
-    ways.SECTION,
+    variants.SECTION,
     lines.SECTION,
     edits.SECTION,
     locate.SECTION,
@@ -28,6 +28,49 @@ SECTIONS = (
 )
 RESULTS = Path(__file__).parent / "results"
 LEAST_POINTS = 200
+
+OPTIONS: dict[str, dict[str, Any]] = {
+    "--points": {
+        "type": int,
+        "metavar": "N",
+        "help": "points, rows, places, triangles; default 100,000",
+    },
+    "--full": {
+        "action": "store_true",
+        "help": "1,000,000, and 10,000,000 uniform points for the kernel",
+    },
+    "--only": {
+        "nargs": "+",
+        "choices": (*DATASETS, *LINE_DATASETS),
+        "metavar": "DATASET",
+        "help": f"kernel: of {', '.join(DATASETS)}; lines: of {', '.join(LINE_DATASETS)}; "
+        "default all",
+    },
+    "--tools": {
+        "nargs": "+",
+        "choices": kernel.ALL_TOOLS,
+        "metavar": "TOOL",
+        "default": kernel.ALL_TOOLS,
+        "help": f"kernel: of {', '.join(kernel.ALL_TOOLS)}; default all",
+    },
+    "--repeats": {
+        "type": int,
+        "default": 5,
+        "metavar": "K",
+        "help": "rounds; seconds are their median; default 5",
+    },
+    "--limit": {
+        "type": float,
+        "metavar": "SECONDS",
+        "help": "for one triangulation; default 5, with --full 40",
+    },
+    "--output": {
+        "type": Path,
+        "default": RESULTS,
+        "metavar": "FOLDER",
+        "help": "for benchmarks.md, .json and .png",
+    },
+}
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -50,56 +93,12 @@ def main(arguments: list[str] | None = None) -> None:
 
 def _make_parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
+    names = f"of {', '.join(SECTIONS)}; default all"
     parser.add_argument(
-        "sections",
-        nargs="*",
-        metavar="SECTION",
-        choices=[[], *SECTIONS],
-        help=f"of {', '.join(SECTIONS)}; default all",
+        "sections", nargs="*", metavar="SECTION", choices=[[], *SECTIONS], help=names
     )
-    parser.add_argument(
-        "--points", type=int, metavar="N", help="points, rows, places, triangles; default 100,000"
-    )
-    parser.add_argument(
-        "--full",
-        action="store_true",
-        help="1,000,000, and 10,000,000 uniform points for the kernel",
-    )
-    parser.add_argument(
-        "--only",
-        nargs="+",
-        choices=(*DATASETS, *LINE_DATASETS),
-        metavar="DATASET",
-        help=f"kernel: of {', '.join(DATASETS)}; lines: of {', '.join(LINE_DATASETS)}; default all",
-    )
-    parser.add_argument(
-        "--tools",
-        nargs="+",
-        choices=kernel.ALL_TOOLS,
-        metavar="TOOL",
-        default=kernel.ALL_TOOLS,
-        help=f"kernel: of {', '.join(kernel.ALL_TOOLS)}; default all",
-    )
-    parser.add_argument(
-        "--repeats",
-        type=int,
-        default=5,
-        metavar="K",
-        help="rounds; seconds are their median; default 5",
-    )
-    parser.add_argument(
-        "--limit",
-        type=float,
-        metavar="SECONDS",
-        help="for one triangulation; default 5, with --full 40",
-    )
-    parser.add_argument(
-        "--output",
-        type=Path,
-        default=RESULTS,
-        metavar="FOLDER",
-        help="for benchmarks.md, .json and .png",
-    )
+    for flag, how in OPTIONS.items():
+        parser.add_argument(flag, **how)
     return parser
 
 

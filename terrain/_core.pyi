@@ -1,98 +1,105 @@
 # Types of the compiled core; what it does is said in terrain/_kernel.py.
+from typing import TypeAlias
+
 import numpy as np
 from numpy.typing import NDArray
 
+Doubles: TypeAlias = NDArray[np.float64]
+Ints: TypeAlias = NDArray[np.int32]
+Longs: TypeAlias = NDArray[np.int64]
+Flags: TypeAlias = NDArray[np.bool_]
+
 def values_at_centers(
-    points: NDArray[np.float64],
-    triangles: NDArray[np.int32],
-    x: NDArray[np.float64],
-    y: NDArray[np.float64],
+    points: Doubles,
+    triangles: Ints,
+    x: Doubles,
+    y: Doubles,
     spacing: float,
-    values: NDArray[np.float64] | None,
+    values: Doubles | None,
     threads: int = ...,
-) -> NDArray[np.float64]: ...
+) -> Doubles: ...
 def means_of_cells(
-    points: NDArray[np.float64],
-    triangles: NDArray[np.int32],
-    x: NDArray[np.float64],
-    y: NDArray[np.float64],
+    points: Doubles,
+    triangles: Ints,
+    x: Doubles,
+    y: Doubles,
     spacing: float,
-    x_edges: NDArray[np.float64],
-    y_edges: NDArray[np.float64],
-    values: NDArray[np.float64] | None,
+    x_edges: Doubles,
+    y_edges: Doubles,
+    values: Doubles | None,
     threads: int = ...,
-) -> NDArray[np.float64]: ...
+) -> Doubles: ...
 def trace_contours(
-    points: NDArray[np.float64],
-    triangles: NDArray[np.int32],
-    neighbors: NDArray[np.int32],
-    levels: NDArray[np.float64],
+    points: Doubles,
+    triangles: Ints,
+    neighbors: Ints,
+    levels: Doubles,
 ) -> tuple[
-    NDArray[np.float64],
-    NDArray[np.int64],
-    NDArray[np.int32],
-    NDArray[np.bool_],
-    NDArray[np.float64],
+    Doubles,
+    Longs,
+    Ints,
+    Flags,
+    Doubles,
 ]: ...
 def fill_bands(
-    points: NDArray[np.float64],
-    triangles: NDArray[np.int32],
-    neighbors: NDArray[np.int32],
-    levels: NDArray[np.float64],
-) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64], NDArray[np.int32]]: ...
+    points: Doubles,
+    triangles: Ints,
+    neighbors: Ints,
+    levels: Doubles,
+) -> tuple[Doubles, Longs, Longs, Ints]: ...
 def smooth_contours(
-    points: NDArray[np.float64],
-    triangles: NDArray[np.int32],
-    neighbors: NDArray[np.int32],
-    levels: NDArray[np.float64],
-    xyz: NDArray[np.float64],
-    offsets: NDArray[np.int64],
-    level: NDArray[np.int32],
-    is_closed: NDArray[np.bool_],
-    places: NDArray[np.int32],
+    points: Doubles,
+    triangles: Ints,
+    neighbors: Ints,
+    levels: Doubles,
+    xyz: Doubles,
+    offsets: Longs,
+    level: Ints,
+    is_closed: Flags,
+    places: Ints,
     smooth: float,
     rounds: int,
     simplify: float,
 ) -> tuple[
-    NDArray[np.float64],
-    NDArray[np.int64],
-    NDArray[np.int32],
-    NDArray[np.bool_],
-    NDArray[np.float64],
+    Doubles,
+    Longs,
+    Ints,
+    Flags,
+    Doubles,
 ]: ...
 def sum_between(
-    points: NDArray[np.float64],
-    triangles: NDArray[np.int32],
-    groups: NDArray[np.int32],
+    points: Doubles,
+    triangles: Ints,
+    groups: Ints,
     group_count: int,
-    other_points: NDArray[np.float64],
-    other_triangles: NDArray[np.int32],
+    other_points: Doubles,
+    other_triangles: Ints,
     up: float,
     threads: int = ...,
-) -> NDArray[np.float64]: ...
+) -> Doubles: ...
 def sum_heights(
-    points: NDArray[np.float64],
-    triangles: NDArray[np.int32],
-    heights: NDArray[np.float64],
-    groups: NDArray[np.int32],
+    points: Doubles,
+    triangles: Ints,
+    heights: Doubles,
+    groups: Ints,
     group_count: int,
     up: float,
-) -> NDArray[np.float64]: ...
+) -> Doubles: ...
 def overlay(
-    points: NDArray[np.float64],
-    triangles: NDArray[np.int32],
-    other_points: NDArray[np.float64],
-    other_triangles: NDArray[np.int32],
+    points: Doubles,
+    triangles: Ints,
+    other_points: Doubles,
+    other_triangles: Ints,
 ) -> tuple[
-    NDArray[np.float64],
-    NDArray[np.int32],
-    NDArray[np.int64],
-    NDArray[np.int32],
-    NDArray[np.int32],
+    Doubles,
+    Ints,
+    Longs,
+    Ints,
+    Ints,
 ]: ...
 def stage_sums(
-    points: NDArray[np.float64],
-    triangles: NDArray[np.int32],
-    levels: NDArray[np.float64],
+    points: Doubles,
+    triangles: Ints,
+    levels: Doubles,
     up: float,
-) -> NDArray[np.float64]: ...
+) -> Doubles: ...

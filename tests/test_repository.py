@@ -15,7 +15,7 @@ from support import processes
 
 import tinsmith
 import tinsmith.cli
-from tinsmith.tin.editing.operations import MeshOperation
+from tinsmith.tin.editing.operations import Operation
 
 ROOT = Path(__file__).parents[1]
 
@@ -170,6 +170,59 @@ def test_public_examples_run():
     assert tried > 0
 
 
+MOST_LINES = {".py": 40, ".hpp": 50, ".cpp": 50}
+MOST_USUAL = 8
+FOLDERS = ("tin", "io", "terrain", "src", "tests", "benchmarks", "sample_data")
+
+
+def measure_python_functions(path):
+    """Yield name and lines of every function's body, docstring aside."""
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+            body = node.body[1:] if ast.get_docstring(node) is not None else node.body
+            yield node.name, body[-1].end_lineno - body[0].lineno + 1 if body else 0
+
+
+def measure_cpp_functions(path):
+    """Yield beginning and lines of every function's body: what is between braces of code.
+
+    As clang-format lays it out: a function's last brace stands under its first letter.
+    """
+    lines = path.read_text().splitlines()
+    for start, line in enumerate(lines):
+        head = line.strip()
+        if not re.search(r"\)( const| noexcept| override|( ->[^{]*))* \{$", head):
+            continue
+        if re.match(r"(if|for|while|switch|} else|else|do|catch|} catch)\b", head):
+            continue
+        first = start
+        while lines[first].lstrip().startswith(":") or lines[first - 1].endswith((",", "(")):
+            first -= 1
+        indent = re.match(" *", lines[first])[0]
+        end = next(
+            (row for row in range(start + 1, len(lines)) if lines[row].startswith(f"{indent}}}")),
+            start,
+        )
+        yield head, end - start - 1
+
+
+def test_functions_are_short():
+    measure = {".py": measure_python_functions, ".hpp": measure_cpp_functions}
+    measure[".cpp"] = measure_cpp_functions
+    found = {".py": [], ".hpp": [], ".cpp": []}
+    for folder in FOLDERS:
+        for path in (ROOT / folder).rglob("*.*"):
+            if path.suffix in found:
+                found[path.suffix] += [(n, name, path) for name, n in measure[path.suffix](path)]
+    for suffix, functions in found.items():
+        lengths = sorted(n for n, _, _ in functions)
+        too_long = [one for one in functions if one[0] > MOST_LINES[suffix]]
+        assert not too_long, too_long
+        assert lengths[len(lengths) // 2] <= MOST_USUAL
+    assert len(found[".py"]) > 4000
+    assert len(found[".hpp"]) > 500
+
+
 def test_readme_python_runs(tmp_path, monkeypatch, can_draw):
     """Run the README's Python blocks, one after the other, in a folder with the samples."""
     (tmp_path / "sample_data").symlink_to(ROOT / "sample_data")
@@ -200,7 +253,7 @@ def test_records_are_frozen():
             module = importlib.import_module(found.name)
             for name, value in vars(module).items():
                 how = getattr(value, "__dict__", {}).get("__dataclass_params__")
-                is_edit = isinstance(value, type) and issubclass(value, MeshOperation)
+                is_edit = isinstance(value, type) and issubclass(value, Operation)
                 if how is not None and not how.frozen and not is_edit:
                     thawed[name] = value
     assert sorted(thawed) == ["Content", "Line", "Points", "Surface", "_Run", "_Top"]

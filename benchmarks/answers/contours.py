@@ -40,10 +40,7 @@ Floats = NDArray[np.float64]
 def run(n_points: int, *, repeats: int = 3) -> Outcome:
     """Measure 72 contours of ``n_points`` points on hills, joined lines included.
 
-    Raises
-    ------
-    AssertionError
-        If a peer has other lines.
+    An AssertionError says that a peer has other lines.
     """
     rng = np.random.default_rng(1)
     xy = rng.random((n_points, 2)) * SIZE

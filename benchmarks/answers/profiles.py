@@ -43,10 +43,7 @@ class Tool(NamedTuple):
 def run(n_points: int, *, repeats: int = 3) -> Outcome:
     """Measure a profile across ``n_points`` uniform points, and cross sections of it.
 
-    Raises
-    ------
-    AssertionError
-        If a peer finds other breaks.
+    An AssertionError says that a peer finds other breaks.
     """
     rng = np.random.default_rng(1)
     tin = ts.triangulate(rng.random((n_points, 3)) * [SIZE, SIZE, 50.0])

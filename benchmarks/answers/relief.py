@@ -34,10 +34,7 @@ class Tool(NamedTuple):
 def run(n_points: int, *, repeats: int = 3) -> Outcome:
     """Measure slopes and their classes on ``n_points`` uniform points.
 
-    Raises
-    ------
-    AssertionError
-        If a peer's answer differs from ours.
+    An AssertionError says that a peer's answer differs from ours.
     """
     rng = np.random.default_rng(1)
     xy = rng.random((n_points, 2)) * SIZE

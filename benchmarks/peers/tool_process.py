@@ -15,9 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..cgal import build_harness
+from ..datasets.tasks import write_task
 from .triangulators import is_cgal
 
-__all__ = ["ToolFailedError", "ToolProcess", "make_worker_command"]
+__all__ = ["ToolFailedError", "ToolProcess", "make_task_command", "make_worker_command"]
 
 ROOT = Path(__file__).parents[2]
 START_SECONDS = 120.0
@@ -28,6 +29,14 @@ LEAST_TIMED_SECONDS = 0.02
 def make_worker_command(kind: str, name: str, path: Path) -> list[str]:
     """Return the command for a tool that Python can call, on a task of some kind in a file."""
     return [sys.executable, "-m", "benchmarks.peers.worker", kind, name, str(path)]
+
+
+def make_task_command(kind: str, name: str, task: Any, folder: Path) -> list[str]:
+    """Write a task of arrays, once for all tools; return the command for one of them."""
+    arrays = folder / "task.npz"
+    if not arrays.exists():
+        write_task(task, arrays)
+    return make_worker_command(kind, name, arrays)
 
 
 class ToolFailedError(Exception):

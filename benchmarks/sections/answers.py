@@ -17,10 +17,7 @@ SECTION = "answers"
 def run(n_points: int, *, repeats: int = 3) -> Outcome:
     """Measure all of them on ``n_points`` points.
 
-    Raises
-    ------
-    AssertionError
-        If a peer's answer differs from ours.
+    An AssertionError says that a peer's answer differs from ours.
     """
     outcome = Outcome()
     for found in sorted(module.name for module in pkgutil.iter_modules(answers.__path__)):

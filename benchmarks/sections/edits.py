@@ -20,11 +20,10 @@ from tinsmith.tin import TIN
 
 from ..cgal import build_harness
 from ..datasets.edits import BATCH, EDIT_TASKS, EditTask, label_task, make_edit_task
-from ..datasets.tasks import write_task
 from ..measure import Outcome, Result, find_median
 from ..peers.answers import Verdict, judge_answer, number_corners, rank_triangles
 from ..peers.edit_tools import ALL_EDIT_TOOLS, BUILD, EDIT_TOOLS, OPENED
-from ..peers.tool_process import ToolProcess, make_worker_command
+from ..peers.tool_process import ToolProcess, make_task_command
 from ..peers.triangulators import CGAL, is_cgal
 from .kernel import run_in_turn
 from .lines import find_line_tools
@@ -50,10 +49,7 @@ def run(
     limit : float
         Seconds that a tool may take for building and editing once.
 
-    Raises
-    ------
-    AssertionError
-        If the answer of an exact tool is wrong.
+    An AssertionError says that the answer of an exact tool is wrong.
     """
     outcome = Outcome()
     present = find_line_tools(tools, EDIT_TOOLS, "edits", outcome)
@@ -78,10 +74,7 @@ class EditProcess(ToolProcess):
     def command(self, name: str, task: EditTask, folder: Path) -> list[str]:
         """Write the task for the tool; return what runs it."""
         if not is_cgal(name):
-            arrays = folder / "task.npz"
-            if not arrays.exists():
-                write_task(task, arrays)
-            return make_worker_command("edits", name, arrays)
+            return make_task_command("edits", name, task, folder)
         plane, script = folder / "points.bin", folder / "script.bin"
         task.points[:, :2].tofile(plane)
         task.script[:, CGAL_COLUMNS].tofile(script)

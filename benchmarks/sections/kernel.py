@@ -78,10 +78,7 @@ def run(
     limit : float
         Seconds that a peer may take for one run.
 
-    Raises
-    ------
-    AssertionError
-        If our answer, or that of an exact peer, is wrong.
+    An AssertionError says that our answer, or that of an exact peer, is wrong.
     """
     outcome = Outcome()
     present = find_tools(tools, outcome)

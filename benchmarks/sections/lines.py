@@ -21,11 +21,10 @@ from tinsmith.tin import TIN
 
 from ..cgal import CgalMissingError, build_harness
 from ..datasets.lines import LEAST_POINTS, LINE_DATASETS, LineTask, make_lines
-from ..datasets.tasks import write_task
 from ..measure import Outcome, Result
 from ..peers.answers import Verdict, encode_edges, judge_answer, number_corners, rank_triangles
 from ..peers.line_tools import ALL_LINE_TOOLS, CGAL_INDICES, LINE_TOOLS
-from ..peers.tool_process import ToolFailedError, ToolProcess, make_worker_command
+from ..peers.tool_process import ToolFailedError, ToolProcess, make_task_command
 from ..peers.triangulators import is_cgal
 from .kernel import make_result, run_in_turn
 
@@ -56,10 +55,7 @@ def run(
     limit : float
         Seconds that a tool may take for one run.
 
-    Raises
-    ------
-    AssertionError
-        If our answer, or that of an exact peer, is wrong.
+    An AssertionError says that our answer, or that of an exact peer, is wrong.
     """
     outcome = Outcome()
     present = find_line_tools(tools, LINE_TOOLS, "constrained", outcome)
@@ -90,10 +86,7 @@ class LineProcess(ToolProcess):
     def command(self, name: str, task: LineTask, folder: Path) -> list[str]:
         """Write the task for the tool; return what runs it."""
         if not is_cgal(name):
-            arrays = folder / "task.npz"
-            if not arrays.exists():
-                write_task(task, arrays)
-            return make_worker_command("lines", name, arrays)
+            return make_task_command("lines", name, task, folder)
         plane, segments = folder / "points.bin", folder / "segments.bin"
         task.vertices.tofile(plane)
         task.segments.tofile(segments)

@@ -44,10 +44,7 @@ class Tool(NamedTuple):
 def run(n_points: int = 50_000, n_queries: int = 50_000, *, repeats: int = 3) -> Outcome:
     """Measure every tool on ``n_points`` uniform points and ``n_queries`` uniform places.
 
-    Raises
-    ------
-    AssertionError
-        If a peer's answer differs from ours.
+    An AssertionError says that a peer's answer differs from ours.
     """
     rng = np.random.default_rng(1)
     tin = ts.triangulate(rng.random((n_points, 3)) * [SIZE, SIZE, 50.0])

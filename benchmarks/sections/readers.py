@@ -46,10 +46,7 @@ class Reader(NamedTuple):
 def run(n: int, *, repeats: int = 3) -> Outcome:
     """Measure the reading of a survey, a raster and meshes of ``n`` rows, cells and points.
 
-    Raises
-    ------
-    AssertionError
-        If a reader's numbers differ from ours.
+    An AssertionError says that a reader's numbers differ from ours.
     """
     outcome = Outcome()
     with tempfile.TemporaryDirectory() as name:

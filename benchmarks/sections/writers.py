@@ -51,10 +51,7 @@ class Writer(NamedTuple):
 def run(n_triangles: int, *, repeats: int = 3) -> Outcome:
     """Measure the writing of a TIN of about ``n_triangles`` triangles in several formats.
 
-    Raises
-    ------
-    AssertionError
-        If a peer's file holds something else than ours.
+    An AssertionError says that a peer's file holds something else than ours.
     """
     outcome = Outcome()
     points = make_points("uniform", n_triangles // 2)

@@ -3,31 +3,20 @@
 Run ``python docs/gallery/slope.py [FOLDER]``; needs the extra "plot".
 """
 
-from __future__ import annotations
-
-import io
 import sys
 from pathlib import Path
 
-from PIL import Image
+from pictures import FOLDER, SAMPLES, draw, save
 
 import tinsmith as ts
 
-HERE = Path(__file__).parent
-SURVEY = HERE.parent.parent / "sample_data" / "site_survey.csv"
-COLORS = 224
-DPI = 110
 
-
-def main(folder: Path = HERE) -> None:
+def main(folder: Path = FOLDER) -> None:
     """Write slope.png."""
-    survey = ts.lines_from_codes(ts.read(SURVEY, crs="EPSG:32616", z_unit="m"))
-    tin = ts.triangulate(survey, max_edge=20.0)
+    survey = ts.read(SAMPLES / "site_survey.csv", crs="EPSG:32616", z_unit="m")
+    tin = ts.triangulate(ts.lines_from_codes(survey), max_edge=20.0)
     figure = ts.relief_map(tin, ts.slope_classes(tin), title="Site survey: classes of slope")
-    png = io.BytesIO()
-    figure.savefig(png, format="png", dpi=DPI)
-    picture = Image.open(png).convert("RGB")
-    picture.quantize(COLORS, dither=Image.Dither.NONE).save(folder / "slope.png", optimize=True)
+    save(draw(figure, 110), folder / "slope.png")
 
 
 if __name__ == "__main__":

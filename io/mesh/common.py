@@ -172,20 +172,7 @@ def make_tin(
     except PointsError as error:
         raise ReadError(f"'{path}' holds no TIN. {error}", path=path) from error
     notes = describe_overlaps(tin)
-    return _add_notes(tin, notes) if notes else tin
-
-
-def _add_notes(tin: TIN, notes: list[str]) -> TIN:
-    return TIN(
-        points=tin.points,
-        triangles=tin.triangles,
-        neighbors=tin.neighbors,
-        constrained=tin.constrained,
-        vertex_of=tin.vertex_of,
-        report=replace(tin.report, notes=notes),
-        crs=tin.crs,
-        elevation_unit=tin.elevation_unit,
-    )
+    return tin.replace(report=replace(tin.report, notes=notes)) if notes else tin
 
 
 def make_survey(

@@ -1,56 +1,55 @@
 """The formats of meshes."""
 
+from typing import Any
+
 from ..registry import signatures
 from ..registry.format import Format
 
 __all__ = ["FORMATS"]
 
+_EXACT = "Every number comes back bit for bit."
+
+
+def _make(name: str, description: str, *suffixes: str, module: str, **more: Any) -> Format:
+    """Describe a format that a module here reads and writes."""
+    where = f"{__package__}.{module}"
+    ends: dict[str, Any] = {"read": f"{where}:read", "reads": ("TIN",), "write": f"{where}:write"}
+    return Format(name=name, description=description, suffixes=suffixes, **(ends | more))
+
+
 FORMATS = (
-    Format(
-        name="tin",
-        description="A whole TIN as a GeoPackage (opens in QGIS, ArcGIS, GDAL)",
-        suffixes=(".gpkg",),
-        read="tinsmith.io.mesh.geopackage:read",
-        reads=("TIN",),
-        write="tinsmith.io.mesh.geopackage:write",
+    _make(
+        "tin",
+        "A whole TIN as a GeoPackage (opens in QGIS, ArcGIS, GDAL)",
+        ".gpkg",
+        module="geopackage",
         writes=("TIN",),
-        precision="Every number comes back bit for bit.",
-        losses="",
+        precision=_EXACT,
         sniff=signatures.is_tin_geopackage,
     ),
-    Format(
-        name="ply",
-        description="PLY mesh (opens in QGIS, CloudCompare, MeshLab)",
-        suffixes=(".ply",),
-        read="tinsmith.io.mesh.ply.file:read",
-        reads=("TIN",),
-        write="tinsmith.io.mesh.ply.file:write",
+    _make(
+        "ply",
+        "PLY mesh (opens in QGIS, CloudCompare, MeshLab)",
+        ".ply",
+        module="ply.file",
         sniff=signatures.is_ply,
-        precision="Every number comes back bit for bit.",
+        precision=_EXACT,
         losses="The report and its notes, and what undoing edits needs; of points, attributes that "
         "are no numbers.",
         loses=("attributes", "notes", "report"),
     ),
-    Format(
-        name="obj",
-        description="Wavefront OBJ mesh",
-        suffixes=(".obj",),
-        read="tinsmith.io.mesh.obj:read",
-        reads=("TIN",),
-        write="tinsmith.io.mesh.obj:write",
+    _make(
+        *("obj", "Wavefront OBJ mesh", ".obj"),
+        module="obj",
         sniff=signatures.is_obj,
         writes=("TIN",),
-        precision="Every number comes back bit for bit.",
+        precision=_EXACT,
         losses="Which edges are constrained, lines and the report.",
         loses=("constrained", "lines", "notes", "report"),
     ),
-    Format(
-        name="stl",
-        description="STL mesh",
-        suffixes=(".stl",),
-        read="tinsmith.io.mesh.stl:read",
-        reads=("TIN",),
-        write="tinsmith.io.mesh.stl:write",
+    _make(
+        *("stl", "STL mesh", ".stl"),
+        module="stl",
         sniff=signatures.is_stl,
         writes=("TIN",),
         precision="Coordinates are rounded to float32 after an origin is subtracted: to a sixteen "
@@ -60,31 +59,25 @@ FORMATS = (
         "report.",
         loses=("order", "constrained", "lines", "notes", "report"),
     ),
-    Format(
-        name="vtk",
-        description="VTK XML mesh (opens in ParaView)",
-        suffixes=(".vtp", ".vtu"),
-        read="tinsmith.io.mesh.vtk:read",
-        reads=("TIN",),
-        write="tinsmith.io.mesh.vtk:write",
+    _make(
+        *("vtk", "VTK XML mesh (opens in ParaView)", ".vtp", ".vtu"),
+        module="vtk",
         extra="view",
         sniff=signatures.is_vtk_xml,
         writes=("TIN",),
-        precision="Every number comes back bit for bit.",
+        precision=_EXACT,
         losses="Names and kinds of lines, and the report.",
         loses=("lines", "notes", "report"),
     ),
-    Format(
-        name="gmsh",
-        description="Gmsh mesh, with the edges of rim and lines (for finite element programs)",
-        suffixes=(".msh",),
-        read="tinsmith.io.mesh.gmsh:read",
-        reads=("TIN",),
-        write="tinsmith.io.mesh.gmsh:write",
+    _make(
+        "gmsh",
+        "Gmsh mesh, with the edges of boundary and lines (for finite element programs)",
+        ".msh",
+        module="gmsh",
         extra="mesh",
         sniff=signatures.is_gmsh,
         writes=("TIN",),
-        precision="Every number comes back bit for bit.",
+        precision=_EXACT,
         losses="The CRS and the unit of elevations; lines are named groups of edges, which are "
         "read as constrained edges; the report.",
         loses=("crs", "elevation unit", "lines", "notes", "report"),

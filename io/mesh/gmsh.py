@@ -96,21 +96,7 @@ def _flag_edges(
 def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None = None) -> None:
     """Write a TIN as a Gmsh file, MSH 2.2 in text.
 
-    Parameters
-    ----------
-    surface : TIN
-    path : Path
-    progress : callable, optional
-        Called with 1.0 at the end.
-
-    Raises
-    ------
-    FormatError
-        If ``surface`` is no TIN.
-    MissingExtraError
-        If meshio is not installed.
-    WriteError
-        If the file cannot be written.
+    Parameters and errors are those of every writer, see :class:`.Format`.
     """
     tin = require_tin(surface, path, format_name="Gmsh")
     meshio = _optional.load("meshio", "Writing Gmsh files")

@@ -14,16 +14,7 @@ import numpy as np
 
 from ..._atomic import replacing
 from ...errors import ReadError
-from .common import (
-    choose_reference,
-    cut_into_fans,
-    format_crs,
-    format_unit,
-    make_survey,
-    make_tin,
-    read_content,
-    require_tin,
-)
+from . import common
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -72,11 +63,11 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     OptionError
         If the unit is unknown, or the file names another.
     """
-    lines = _split_lines(read_content(path))
+    lines = _split_lines(common.read_content(path))
     vertex_lines = [i for i, line in enumerate(lines) if line[:2] in ("v ", "v\t")]
     face_lines = [i for i, line in enumerate(lines) if line[:2] in ("f ", "f\t")]
     points = _parse_points(lines, vertex_lines, path)
-    reference = choose_reference(
+    reference = common.choose_reference(
         crs,
         z_unit,
         path,
@@ -84,10 +75,10 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
         found_unit=_find_comment(lines, "elevation unit"),
     )
     if not face_lines:
-        return make_survey(points, path, reference=reference)
+        return common.make_survey(points, path, reference=reference)
     corners, offsets = _parse_faces(lines, vertex_lines, face_lines, path)
-    triangles = cut_into_fans(corners, offsets, points, path).triangles
-    return make_tin(points, triangles, path, reference=reference)
+    triangles = common.cut_into_fans(corners, offsets, points, path).triangles
+    return common.make_tin(points, triangles, path, reference=reference)
 
 
 def _split_lines(content: bytes) -> list[str]:
@@ -190,26 +181,14 @@ def _describe_line_fault(lines: Sequence[str], i: int, what: str, path: Path) ->
 def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None = None) -> None:
     """Write a TIN as OBJ; :func:`read` gives the same vertices and triangles back.
 
-    Parameters
-    ----------
-    surface : TIN
-    path : Path
-    progress : callable, optional
-        Called with the fraction done.
-
-    Raises
-    ------
-    FormatError
-        If ``surface`` is no TIN.
-    WriteError
-        If the file cannot be written.
+    Parameters and errors are those of every writer, see :class:`.Format`.
     """
-    tin = require_tin(surface, path, format_name="OBJ")
+    tin = common.require_tin(surface, path, format_name="OBJ")
     total = len(tin.points) + len(tin.triangles)
     with replacing(path, binary=False) as file:
         if tin.crs is not None:
-            file.write(f"# crs: {format_crs(tin.crs)}\n")
-        if unit := format_unit(tin):
+            file.write(f"# crs: {common.format_crs(tin.crs)}\n")
+        if unit := common.format_unit(tin):
             file.write(f"# elevation unit: {unit}\n")
         done = 0
         for count, batch in _iterate_batches(tin):

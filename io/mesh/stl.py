@@ -127,17 +127,10 @@ def _merge_corners(corners: NDArray[np.float32]) -> tuple[NDArray[np.float64], N
 def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None = None) -> None:
     """Write a TIN as binary STL, relative to an origin that the header records.
 
-    Parameters
-    ----------
-    surface : TIN
-    path : Path
-    progress : callable, optional
-        Called with the fraction done.
+    Parameters are those of every writer, see :class:`.Format`.
 
     Raises
     ------
-    FormatError
-        If ``surface`` is no TIN.
     WriteError
         If the file cannot be written, or the extent is beyond float32.
 

@@ -19,16 +19,7 @@ from ..._atomic import replacing_path
 from ...errors import ReadError, WriteError
 from ...terrain.slope import aspect, slope
 from ..isolated import run_isolated
-from .common import (
-    choose_reference,
-    cut_into_fans,
-    format_crs,
-    format_unit,
-    make_survey,
-    make_tin,
-    read_content,
-    require_tin,
-)
+from . import common
 from .vtk_child import catch_errors, load_vtk_class
 
 if TYPE_CHECKING:
@@ -81,17 +72,19 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     """
     value, arrays = _read_in_child(path)
     points = _restore_points(arrays)
-    reference = choose_reference(
+    reference = common.choose_reference(
         crs, z_unit, path, found_crs=value["crs"], found_unit=value["elevation_unit"]
     )
     cells = arrays["cells"]
     if len(cells) == 0:
         attributes = {name: arrays[f"attribute {k}"] for k, name in enumerate(value["attributes"])}
-        return make_survey(points, path, attributes=attributes, reference=reference)
-    made = cut_into_fans(arrays["corners"], arrays["offsets"], points, path)
+        return common.make_survey(points, path, attributes=attributes, reference=reference)
+    made = common.cut_into_fans(arrays["corners"], arrays["offsets"], points, path)
     flags = arrays.get("flags") if len(cells) == len(made.triangles) else None
     is_flagged = None if flags is None else flags != 0
-    return make_tin(points, made.triangles, path, constrained=is_flagged, reference=reference)
+    return common.make_tin(
+        points, made.triangles, path, constrained=is_flagged, reference=reference
+    )
 
 
 def _restore_points(arrays: Mapping[str, NDArray[Any]]) -> NDArray[np.float64]:
@@ -109,7 +102,7 @@ def _restore_points(arrays: Mapping[str, NDArray[Any]]) -> NDArray[np.float64]:
 def _read_in_child(path: Path) -> Answer:
     """Let a child read the file, once its beginning and end are those of a whole one."""
     _optional.require("pyvista", "Reading VTK files")
-    content = read_content(path)
+    content = common.read_content(path)
     if b"</VTKFile>" not in content[-200:]:
         raise ReadError(f"'{path}' is no whole VTK XML file: '</VTKFile>' is missing.", path=path)
     _require_likely_counts(content, path)
@@ -142,23 +135,9 @@ def _require_likely_counts(content: bytes, path: Path) -> None:
 def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None = None) -> None:
     """Write a TIN as VTK XML: an UnstructuredGrid to ``.vtu``, else PolyData.
 
-    Parameters
-    ----------
-    surface : TIN
-    path : Path
-    progress : callable, optional
-        Called with 1.0 at the end.
-
-    Raises
-    ------
-    FormatError
-        If ``surface`` is no TIN.
-    MissingExtraError
-        If pyvista is not installed.
-    WriteError
-        If the file cannot be written.
+    Parameters and errors are those of every writer, see :class:`.Format`.
     """
-    tin = require_tin(surface, path, format_name="VTK")
+    tin = common.require_tin(surface, path, format_name="VTK")
     pv = _optional.load("pyvista", "Writing VTK files")
     mesh, class_name = _make_poly_data(tin, pv), "vtkXMLPolyDataWriter"
     if path.suffix.lower() == ".vtu":
@@ -187,7 +166,7 @@ def _make_poly_data(tin: TIN, pv: Any) -> Any:
     mesh.cell_data["slope"] = slope(tin)
     mesh.cell_data["aspect"] = aspect(tin)
     mesh.cell_data["constrained"] = tin.constrained.astype(np.uint8)
-    mesh.field_data["crs"] = ["" if tin.crs is None else format_crs(tin.crs)]
-    mesh.field_data["elevation_unit"] = [format_unit(tin)]
+    mesh.field_data["crs"] = ["" if tin.crs is None else common.format_crs(tin.crs)]
+    mesh.field_data["elevation_unit"] = [common.format_unit(tin)]
     mesh.field_data["origin"] = np.zeros(3)
     return mesh

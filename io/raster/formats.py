@@ -1,9 +1,20 @@
 """The formats of rasters."""
 
+from typing import Any
+
 from ..registry import signatures
 from ..registry.format import Format
 
 __all__ = ["FORMATS"]
+
+
+def _make(name: str, description: str, function: str) -> Format:
+    """Describe a kind of GeoTIFF that is written."""
+    write = f"{__package__}.geotiff:{function}"
+    kinds: dict[str, Any] = {"suffixes": (".tif", ".tiff"), "writes": ("Raster",)}
+    kinds["precision"] = "Every cell comes back bit for bit."
+    return Format(name=name, description=description, write=write, extra="raster", **kinds)
+
 
 FORMATS = (
     Format(
@@ -18,24 +29,6 @@ FORMATS = (
         extra="raster",
         sniff=signatures.is_raster,
     ),
-    Format(
-        name="geotiff",
-        description="GeoTIFF",
-        suffixes=(".tif", ".tiff"),
-        write="tinsmith.io.raster.geotiff:write",
-        writes=("Raster",),
-        precision="Every cell comes back bit for bit.",
-        losses="",
-        extra="raster",
-    ),
-    Format(
-        name="cog",
-        description="Cloud optimized GeoTIFF",
-        suffixes=(".tif", ".tiff"),
-        write="tinsmith.io.raster.geotiff:write_cog",
-        writes=("Raster",),
-        precision="Every cell comes back bit for bit.",
-        losses="",
-        extra="raster",
-    ),
+    _make("geotiff", "GeoTIFF", "write"),
+    _make("cog", "Cloud optimized GeoTIFF", "write_cog"),
 )

@@ -56,6 +56,9 @@ class Format:
     read, write : str, optional
         ``"module:function"``. A reader takes ``(path, *, crs=None, z_unit=None, <options>)``, a CRS
         and a Unit or None, and returns a Survey or a TIN; a writer ``(obj, path, *, <options>)``.
+        One that takes ``progress`` calls it with the fraction done. A writer raises a FormatError
+        for what it cannot hold, a MissingExtraError without the library that it needs, and a
+        WriteError, with the old file left whole, if the new one cannot be written.
     reads, writes : tuple of str
         What the reader gives, what the writer takes: "TIN", "Survey", "Features", "Raster",
         "Table". Several formats may share a suffix, if they hold different things.

@@ -23,17 +23,7 @@ _CHUNK_ROWS = 50_000
 def write(table: Table, path: Path, *, progress: Callable[[float], None] | None = None) -> None:
     """Write a table as an object with ``name``, ``notes``, ``units`` and ``rows``.
 
-    Parameters
-    ----------
-    table : Table
-    path : Path
-    progress : callable, optional
-        Called with the fraction done.
-
-    Raises
-    ------
-    WriteError
-        If the file cannot be written.
+    Parameters and errors are those of every writer, see :class:`.Format`.
 
     Notes
     -----

@@ -18,17 +18,7 @@ __all__ = ["write"]
 def write(features: Features, path: Path) -> None:
     """Write features as FlatGeobuf, named after the product.
 
-    Parameters
-    ----------
-    features : Features
-    path : Path
-
-    Raises
-    ------
-    MissingExtraError
-        If pyogrio is not installed.
-    WriteError
-        If the file cannot be written.
+    Parameters and errors are those of every writer, see :class:`.Format`.
 
     Notes
     -----

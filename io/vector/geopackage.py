@@ -23,15 +23,10 @@ _JOURNALS = ("-wal", "-journal")
 def write(features: Features, path: Path) -> None:
     """Write features as a GeoPackage with one layer, named after the product.
 
-    Parameters
-    ----------
-    features : Features
-    path : Path
+    Parameters are those of every writer, see :class:`.Format`.
 
     Raises
     ------
-    MissingExtraError
-        If pyogrio is not installed.
     WriteError
         If the file cannot be written, is open elsewhere, or a column is called ``fid`` or
         ``geom``, as GeoPackage calls its own.

@@ -9,7 +9,7 @@ from typing import get_args
 import click
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from support.commands import run_command as run
 
 import tinsmith as ts
 from tinsmith.cli import group, main
@@ -23,12 +23,6 @@ COMMANDS = (
     *("build", "info", "check", "view", "refine", "compare", "edit", "convert"),
     *("volume", "diff", "formats"),
 )
-
-
-def run(*arguments, code=0):
-    result = CliRunner().invoke(main, [str(one) for one in arguments])
-    assert result.exit_code == code, result.output
-    return result
 
 
 @pytest.fixture

@@ -8,10 +8,9 @@ from typing import get_args
 import numpy as np
 import pytest
 import shapely
-from click.testing import CliRunner
+from support.commands import run_command as run
 
 import tinsmith as ts
-from tinsmith.cli import main
 from tinsmith.cli.options import Triangulating
 from tinsmith.policies import TrimPolicy
 
@@ -21,12 +20,6 @@ SURVEY = Path(__file__).parents[2] / "sample_data" / "site_survey.csv"
 UTM = "EPSG:32616"
 SIDE = np.arange(0.0, 101.0, 10.0)
 CORNER = np.array([752_640.0, 4_024_180.0])
-
-
-def run(*arguments, code=0):
-    result = CliRunner().invoke(main, [str(one) for one in arguments])
-    assert result.exit_code == code, result.output
-    return result
 
 
 def facts(*arguments):

@@ -6,11 +6,9 @@ import json
 
 import click
 import pytest
-from click.testing import CliRunner
 from support import plug_ins
+from support.commands import run_command as run
 from support.plug_ins import Entry
-
-from tinsmith.cli import main
 
 
 @pytest.fixture
@@ -19,12 +17,6 @@ def install(monkeypatch):
     yield lambda *entries: plug_ins.install(monkeypatch, *entries, group="tinsmith.commands")
     monkeypatch.undo()
     plug_ins.forget()
-
-
-def run(*arguments, code=0):
-    result = CliRunner().invoke(main, [str(one) for one in arguments])
-    assert result.exit_code == code, result.output
-    return result
 
 
 def hello():

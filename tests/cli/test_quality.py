@@ -5,20 +5,13 @@ import json
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from support.commands import run_command as run
 
 import tinsmith as ts
-from tinsmith.cli import main
 from tinsmith.terrain import histogram
 from tinsmith.tin import quality
 
 PNG = b"\x89PNG\r\n\x1a\n"
-
-
-def run(*arguments, code=0):
-    result = CliRunner().invoke(main, [str(one) for one in arguments])
-    assert result.exit_code == code, result.output
-    return result
 
 
 @pytest.fixture

@@ -9,21 +9,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapely
-from click.testing import CliRunner
+from support.commands import run_command as run
 
 import tinsmith as ts
-from tinsmith.cli import main
 
 SAMPLES = Path(__file__).parents[2] / "sample_data"
 SITE, PAD = SAMPLES / "site_survey.csv", SAMPLES / "design_pad.csv"
 CRS = ("--crs", "EPSG:32616", "--z-unit", "m")
 PNG = b"\x89PNG"
-
-
-def run(*arguments, code=0):
-    result = CliRunner().invoke(main, [str(one) for one in arguments])
-    assert result.exit_code == code, result.output
-    return result
 
 
 @pytest.fixture(scope="module")

@@ -110,24 +110,33 @@ def generate(rng: np.random.Generator) -> Case:
         "rings": {},
         "options": {},
     }
-    side = np.ptp(np.array(pool), axis=0).max()
     if rng.random() < 0.15:
-        low, high = np.min(pool, axis=0), np.max(pool, axis=0)
-        cut = low + (high - low) * 0.3
-        ring = [[cut[0], cut[1]], [high[0], cut[1]], [high[0], high[1]], [cut[0], high[1]]]
         kind_of_ring = str(rng.choice(["boundary", "holes", "erase", "water"]))
-        case["rings"] = {kind_of_ring: [[[float(x) for x in corner] for corner in ring]]}
-    if rng.random() < 0.1:
-        case["options"]["max_edge"] = float(side * rng.uniform(0.3, 1.0)) or 1.0
-    if rng.random() < 0.1:
-        case["options"]["snap"] = float(side * rng.choice([1e-3, 0.02, 0.1]))
-    if rng.random() < 0.2:
-        case["options"]["duplicates"] = str(rng.choice(["first", "last", "lowest", "error"]))
+        case["rings"] = {kind_of_ring: [_corner_ring(np.array(pool))]}
+    case["options"] = _options(rng, np.ptp(np.array(pool), axis=0).max())
     case["edits"] = [
         _edit(str(rng.choice(OPERATIONS)), rng, points, line)
         for _ in range(int(rng.integers(1, 15)))
     ]
     return case
+
+
+def _corner_ring(xy: np.ndarray) -> list[list[float]]:
+    """Return a rectangle over the upper right of the points."""
+    low, high = xy.min(axis=0), xy.max(axis=0)
+    (left, bottom), (right, top) = (low + (high - low) * 0.3).tolist(), high.tolist()
+    return [[left, bottom], [right, bottom], [right, top], [left, top]]
+
+
+def _options(rng: np.random.Generator, side: float) -> dict[str, Any]:
+    options: dict[str, Any] = {}
+    if rng.random() < 0.1:
+        options["max_edge"] = float(side * rng.uniform(0.3, 1.0)) or 1.0
+    if rng.random() < 0.1:
+        options["snap"] = float(side * rng.choice([1e-3, 0.02, 0.1]))
+    if rng.random() < 0.2:
+        options["duplicates"] = str(rng.choice(["first", "last", "lowest", "error"]))
+    return options
 
 
 def _edit(operation: str, rng: np.random.Generator, points: Any, line: Any) -> dict[str, Any]:

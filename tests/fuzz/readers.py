@@ -18,7 +18,10 @@ from tinsmith.io.isolated import limits
 from .campaign import Campaign
 from .samples import MEMORY, sample_files
 
-KINDS = ("ply", "obj", "stl", "vtk", "gmsh", "raster", "vectors", "delimited", "landxml", "dxf")
+KINDS = (
+    *("ply", "obj", "stl", "vtk", "gmsh", "raster", "vectors", "delimited", "tin"),
+    *("landxml", "dxf"),
+)
 
 _NUMBER = re.compile(rb"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
 _NUMBERS = (

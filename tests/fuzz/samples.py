@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
+import sqlite3
 import tempfile
 import warnings
+from contextlib import closing
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -267,7 +269,22 @@ def _keep_entities(content: bytes) -> bytes:
     return content[start:]
 
 
+def _whole_tin(folder: Path) -> list[tuple[str, bytes]]:
+    """Return GeoPackages of small pages, as dense as SQLite makes them."""
+    edited = _tin()
+    edited.insert([np.add(CORNER, (20.0, 15.0, 3.0))])
+    files = []
+    for name, tin in (("ours.gpkg", _tin()), ("edited.gpkg", edited)):
+        path = ts.write(tin, folder / name)
+        with closing(sqlite3.connect(path, isolation_level=None)) as file:
+            file.execute("PRAGMA page_size = 512")
+            file.execute("VACUUM")
+        files.append((name, path.read_bytes()))
+    return files
+
+
 _MAKERS = {
+    "tin": _whole_tin,
     "ply": _ply,
     "obj": _obj,
     "stl": _stl,

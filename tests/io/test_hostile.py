@@ -177,6 +177,12 @@ def test_a_mosaic_of_anything_else_is_refused(tmp_path, server):
     for source, words in cases.items():
         path.write_text(virtual(source, relative=1))
         assert words in refused(read, path, ReadError), source
+    assert asked == []
+
+
+def test_a_mosaic_with_other_elements_is_refused(tmp_path):
+    geotiff(tmp_path / "a.tif")
+    path = tmp_path / "a.vrt"
     sound = virtual("a.tif", relative=1)
     raw = sound.replace("<VRTRasterBand ", '<VRTRasterBand subClass="VRTRawRasterBand" ')
     warped = sound.replace("<VRTDataset ", '<VRTDataset subClass="VRTWarpedDataset" ')
@@ -196,7 +202,6 @@ def test_a_mosaic_of_anything_else_is_refused(tmp_path, server):
     for text, words in texts.items():
         path.write_text(text)
         assert words in refused(read, path, ReadError)
-    assert asked == []
 
 
 def test_a_mosaic_of_a_large_text_is_not_parsed(tmp_path, monkeypatch):

@@ -10,7 +10,13 @@ from typing import NamedTuple
 import numpy as np
 
 from support.line_oracle import is_inside
-from support.oracles import Place, in_circle_by_rule, orientation, place
+from support.oracles import (
+    Place,
+    counter_clockwise_triples,
+    in_circle_by_rule,
+    orientation,
+    place,
+)
 
 Segment = tuple[int, int]
 Triple = tuple[int, int, int]
@@ -49,11 +55,7 @@ def constrained_delaunay(
     places = [place(p) for p in points]
     walls = [(places[a], places[b]) for a, b in segments]
     found = set()
-    for i, j, k in itertools.combinations(range(len(places)), 3):
-        turn = orientation(places[i], places[j], places[k])
-        if turn == 0:
-            continue
-        triple = (i, j, k) if turn > 0 else (i, k, j)
+    for triple in counter_clockwise_triples(places):
         corners = [places[v] for v in triple]
         inside = [
             p for v, p in enumerate(places) if v not in triple and in_circle_by_rule(*corners, p)

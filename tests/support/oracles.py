@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 
 import numpy as np
@@ -73,6 +73,14 @@ def in_circle_by_rule(a: Place, b: Place, c: Place, d: Place) -> bool:
     return _lifted_determinant(rows) > 0
 
 
+def counter_clockwise_triples(places: list[Place]) -> Iterator[tuple[int, int, int]]:
+    """Walk all triples of places that are not collinear, the smallest index first."""
+    for i, j, k in itertools.combinations(range(len(places)), 3):
+        turn = orientation(places[i], places[j], places[k])
+        if turn != 0:
+            yield (i, j, k) if turn > 0 else (i, k, j)
+
+
 def delaunay(points: Sequence[Sequence[float]]) -> set[tuple[int, int, int]]:
     """Every triple whose circle holds no other point, by brute force over all of them.
 
@@ -80,11 +88,7 @@ def delaunay(points: Sequence[Sequence[float]]) -> set[tuple[int, int, int]]:
     """
     places = [place(p) for p in points]
     found = set()
-    for i, j, k in itertools.combinations(range(len(places)), 3):
-        turn = orientation(places[i], places[j], places[k])
-        if turn == 0:
-            continue
-        triple = (i, j, k) if turn > 0 else (i, k, j)
+    for triple in counter_clockwise_triples(places):
         a, b, c = (places[v] for v in triple)
         others = (p for v, p in enumerate(places) if v not in triple)
         if not any(in_circle_by_rule(a, b, c, p) for p in others):

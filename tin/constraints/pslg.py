@@ -7,7 +7,7 @@ triangulation of its vertices with its segments is unique, so any way to it give
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -174,13 +174,8 @@ def find_lines_in(
         is_edge &= _are_edges(number_of[polylines.segments()], surface)
     left = polylines.keep(is_edge).renumber(number_of)
     table = constraints.take(left.lines)
-    return Lines(
-        vertices=left.vertices,
-        offsets=left.offsets,
-        kinds=table.kinds,
-        sources=table.sources,
-        names=table.names,
-    )
+    told: dict[str, Any] = {"kinds": table.kinds, "sources": table.sources, "names": table.names}
+    return Lines(vertices=left.vertices, offsets=left.offsets, **told)
 
 
 def _are_edges(segments: NDArray[np.int32], surface: Surface) -> NDArray[np.bool_]:

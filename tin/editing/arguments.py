@@ -55,9 +55,8 @@ def as_vertices(vertices: ArrayLike, count: int) -> NDArray[np.int64]:
 
 def as_new_points(points: ArrayLike) -> NDArray[np.float64]:
     """Return points to insert; an empty list is none."""
-    return as_points(
-        np.empty((0, 3)) if isinstance(points, list | tuple) and not points else points
-    )
+    is_empty = isinstance(points, list | tuple) and not points
+    return as_points(np.empty((0, 3)) if is_empty else points)
 
 
 def as_ends(a: int, b: int, count: int) -> NDArray[np.int64]:

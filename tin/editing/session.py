@@ -87,8 +87,14 @@ class Session:
                 report=state.report,
             )
         session = cls(cast("Version", given), origin.inputs)
-        for edit in origin.edits:
-            session.do(edit.operation, dict(edit.arguments))
+        for number, edit in enumerate(origin.edits):
+            try:
+                session.do(edit.operation, dict(edit.arguments))
+            except (TypeError, LookupError, AttributeError) as error:
+                raise PointsError(
+                    f"The TIN cannot be edited: edit {number} ({edit.operation}) of its record has "
+                    "the wrong arguments; triangulate its points first."
+                ) from error
         found, wanted = session.now().triangulation, version.triangulation
         if not (
             _is_same(found.points, wanted.points) and _is_same(found.triangles, wanted.triangles)

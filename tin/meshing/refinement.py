@@ -363,10 +363,7 @@ def _make_refined(
     tin: TIN, pslg: Pslg, surface: Surface, number_of: NDArray[np.int32], found: _Found
 ) -> TIN:
     return TIN(
-        points=surface.points,
-        triangles=surface.triangles,
-        neighbors=surface.neighbors,
-        constrained=surface.constrained,
+        **surface._asdict(),
         vertex_of=tin.vertex_of,
         report=_report(tin, surface, found),
         lines=find_lines_in(pslg.polylines, pslg.constraints, number_of, surface, is_whole=False),

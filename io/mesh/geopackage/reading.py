@@ -11,7 +11,7 @@ import numpy as np
 
 from ....errors import PointsError, ReadError
 from ....tin import TIN
-from ....tin.storage import Record, unpack_tin
+from ....tin.records import Record, unpack_tin
 from ...isolated import run_isolated
 from ..common import choose_reference, make_tin
 from .digests import digest_arrays

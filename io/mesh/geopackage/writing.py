@@ -12,7 +12,7 @@ import numpy as np
 from ...._atomic import replacing_path
 from ....errors import CrsError, WriteError
 from ....terrain.slope import aspect, slope
-from ....tin.storage import pack_tin
+from ....tin.records import pack_tin
 from ..common import format_unit, require_tin
 from .digests import digest_arrays, digest_lines
 from .geometries import make_chain_blobs, make_point_blobs, make_triangle_blobs
@@ -49,17 +49,10 @@ _JOURNALS = ("-wal", "-journal")
 def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None = None) -> None:
     """Write all that a TIN is as a GeoPackage; :func:`read` gives it back, bit for bit.
 
-    Parameters
-    ----------
-    surface : TIN
-    path : Path
-    progress : callable, optional
-        Called with the fraction done.
+    Parameters are those of every writer, see :class:`.Format`.
 
     Raises
     ------
-    FormatError
-        If ``surface`` is no TIN.
     WriteError
         If the file cannot be written, or is open in another program.
 

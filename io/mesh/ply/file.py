@@ -18,16 +18,7 @@ import numpy as np
 from ...._atomic import replacing
 from ....errors import ReadError
 from ....tin import TIN, Survey
-from ..common import (
-    choose_reference,
-    cut_into_fans,
-    format_crs,
-    format_unit,
-    make_survey,
-    make_tin,
-    read_content,
-    require_writable,
-)
+from .. import common
 from .body import Ragged, Table, read_tables
 from .header import parse_header
 from .lines import (
@@ -92,29 +83,31 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     OptionError
         If the unit is unknown, or the file names another.
     """
-    content = read_content(path)
+    content = common.read_content(path)
     header = parse_header(content, path)
     tables = read_tables(content, header, path)
     vertices = tables.get("vertex")
     if vertices is None or not set(_COORDINATES) <= vertices.columns.keys():
         raise ReadError(f"'{path}' has no element 'vertex' with x, y and z.", path=path)
     points = _stack_coordinates(vertices)
-    reference = choose_reference(
+    reference = common.choose_reference(
         crs, z_unit, path, found_crs=header.crs, found_unit=header.elevation_unit
     )
     faces = _find_face_list(tables.get("face"))
     if faces is None or len(faces.offsets) == 1:
-        return make_survey(
+        return common.make_survey(
             points, path, attributes=_find_vertex_attributes(vertices), reference=reference
         )
-    made = cut_into_fans(_require_whole_numbers(faces.items, path), faces.offsets, points, path)
+    made = common.cut_into_fans(
+        _require_whole_numbers(faces.items, path), faces.offsets, points, path
+    )
     flags = _find_edge_flags(tables["face"], len(made.triangles))
     if header.lines is None or "edge" not in tables:
-        return make_tin(points, made.triangles, path, constrained=flags, reference=reference)
+        return common.make_tin(points, made.triangles, path, constrained=flags, reference=reference)
     edges = require_edges(tables["edge"], path, len(points))
     if flags is None:
         flags = flag_edges(made.triangles, edges, len(points))
-    tin = make_tin(points, made.triangles, path, constrained=flags, reference=reference)
+    tin = common.make_tin(points, made.triangles, path, constrained=flags, reference=reference)
     lines = read_lines(header.lines, edges, path)
     _require_edges_of_tin(tin, lines, path)
     return tin.replace(lines=lines)
@@ -190,7 +183,7 @@ def write(
     WriteError
         If the file cannot be written.
     """
-    surface = require_writable(surface, path)
+    surface = common.require_writable(surface, path)
     attributes = surface.attributes if isinstance(surface, Survey) else {}
     body = {"vertex": _pack_vertices(surface.points, attributes)}
     comments: list[str] = []
@@ -213,8 +206,8 @@ def _format_header(
 ) -> bytes:
     lines = ["ply", "format binary_little_endian 1.0"]
     if surface.crs is not None:
-        lines.append(f"comment crs: {format_crs(surface.crs)}")
-    if unit := format_unit(surface):
+        lines.append(f"comment crs: {common.format_crs(surface.crs)}")
+    if unit := common.format_unit(surface):
         lines.append(f"comment elevation unit: {unit}")
     lines += comments
     for name, rows in body.items():

@@ -328,10 +328,13 @@ def _find_format_of(obj: Product, output: Output) -> Format:
     if kind in output.formats:
         return output.formats[kind]
     held = " or ".join(output.formats)
+    ways = {
+        "TIN": ": 'tinsmith build' makes a TIN of points.",
+        "Raster": ": 'tinsmith raster' makes one of a surface.",
+    }
     raise Failure(
         f"Cannot write '{output.path}': {next(iter(output.formats.values())).description} holds a "
-        f"{held}, and there is a {kind}"
-        + (": 'tinsmith build' makes a TIN of points." if held == "TIN" else ".")
+        f"{held}, and there is a {kind}{ways.get(held, '.')}"
     )
 
 

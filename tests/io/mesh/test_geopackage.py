@@ -238,6 +238,13 @@ def test_a_view_in_place_of_a_table_is_refused(path):
         lambda document: document["inputs"].update(lines=document["lines"]),
         lambda document: document.update(n_rows=10**9),
         lambda document: document.update(edits={"tuple": ["x"]}),
+        lambda document: document["report"].update(edits={"tuple": ["x"]}),
+        lambda document: document["report"].update(duplicates="any"),
+        lambda document: document["report"].update(notes=3),
+        lambda document: document["inputs"].update(holes={"list": []}),
+        lambda document: document["inputs"].update(trim="nowhere"),
+        lambda document: document["inputs"]["options"].update(threads=0),
+        lambda document: document["inputs"]["options"].update(snap=-1.0),
     ],
 )
 def test_a_record_that_does_not_fit_is_refused(path, alter):
@@ -255,6 +262,17 @@ def test_a_deep_document_is_refused(path):
     rewrite_document(path, lambda document: document.update(vertex_of=tree))
     with pytest.raises(ts.ReadError, match="too deep"):
         ts.read(path)
+
+
+def test_edits_with_wrong_arguments_are_not_done_again(path):
+    tin = make_tin()
+    edit(tin)
+    ts.write(tin, path)
+    wrong = {"map": {"list": 3}}
+    rewrite_document(path, lambda document: document["edits"]["tuple"][0].update(arguments=wrong))
+    found = ts.read(path)
+    with pytest.raises(ts.PointsError, match=r"edit 0 \(insert\) of its record"):
+        found.undo()
 
 
 def test_edits_that_lead_elsewhere_are_not_done_again(path):

@@ -32,6 +32,10 @@ WRITTEN = [
 ROUND_TRIPS = [
     case for case in WRITTEN if case.values[0].read is not None and case.values[1] in KINDS[:2]
 ]
+IN_DEGREES = ("geojson", "geojsonseq")
+"""Formats of WGS 84, which are read with the CRS that is wanted."""
+LOST_ELSEWHERE = {"elevation unit"}
+"""What some formats lose where elevations have another unit than coordinates; not so here."""
 FINEST_DEGREES = 0.5e-9 + 1e-12
 """Half of the last decimal of GeoJSON."""
 
@@ -51,8 +55,10 @@ def make(kind):
 
 def write_and_read(one, kind, folder, suffix):
     given = make(kind)
-    path = ts.write(given, folder / f"a{suffix}", format=one.name)
-    return given, ts.read(path)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore" if one.losses else "error", ts.LossWarning)
+        path = ts.write(given, folder / f"a{suffix}", format=one.name)
+    return given, ts.read(path, **({"crs": given.crs} if one.name in IN_DEGREES else {}))
 
 
 @pytest.mark.parametrize(("one", "kind"), ROUND_TRIPS)
@@ -79,7 +85,7 @@ def test_nothing_is_said_to_be_lost_that_is_not(one, tmp_path):
             find = matrix.find_losses_of_tin if kind == "TIN" else matrix.find_losses_of_survey
             lost |= find(given, found)
             rounding = max(rounding, matrix.measure_rounding(given.points, found.points))
-    assert lost == set(one.loses)
+    assert lost <= set(one.loses) <= lost | LOST_ELSEWHERE
     assert (rounding > 0) == (one.rounding + one.relative_rounding > 0)
 
 
@@ -96,11 +102,18 @@ def test_every_format_says_what_it_keeps(one):
 # ------------------------------------------------------------------ read by other programs
 
 
+UNKNOWN_TO_GDAL = ("landxml",)
+
+
 def cases(kind):
     return [case.values[0] for case in WRITTEN if case.values[1] == kind]
 
 
-@pytest.mark.parametrize("one", cases("Features"), ids=lambda one: one.name)
+@pytest.mark.parametrize(
+    "one",
+    [one for one in cases("Features") if one.name not in UNKNOWN_TO_GDAL],
+    ids=lambda one: one.name,
+)
 def test_features_are_what_gdal_reads(one, tmp_path):
     features = make("Features")
     if one.name == "csv":  # points alone
@@ -115,7 +128,10 @@ def test_features_are_what_gdal_reads(one, tmp_path):
     if one.name == "csv":
         assert len(path.read_text().splitlines()) == len(features) + 1
         return
-    frame = pyogrio.read_dataframe(path)
+    if one.name == "geoparquet":  # GDAL's wheel has no driver for it
+        frame = pytest.importorskip("geopandas").read_parquet(path)
+    else:
+        frame = pyogrio.read_dataframe(path)
     assert len(frame) == len(features)
     wanted = features.to_geodataframe().geometry
     if one.name == "geojson":

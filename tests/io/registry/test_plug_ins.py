@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from support import plug_ins
+from support.faults import fault
 from support.plug_ins import Entry
 
 import tinsmith as ts
@@ -64,15 +65,6 @@ def install(monkeypatch):
     yield lambda *entries: plug_ins.install(monkeypatch, *entries, group="tinsmith.formats")
     monkeypatch.undo()
     plug_ins.forget()
-
-
-def fault(error, action):
-    with pytest.raises(error) as caught:
-        action()
-    message = str(caught.value)
-    assert "\n" not in message
-    assert message.endswith(".")
-    return message
 
 
 def told():

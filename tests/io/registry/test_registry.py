@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from support.faults import fault
 
 import tinsmith as ts
 from tinsmith._atomic import replacing, replacing_path
@@ -26,15 +27,6 @@ from tinsmith.io.registry.plug_in_formats import find_fault
 SURVEY = "x,y,z\n1,2,3\n4,5,6\n7,8.5,9\n"
 TABLE = b"1.5 2.5 3.5\n4.5 5.5 6.5\n"
 GRID = b"ncols 3\nnrows 2\nxllcorner 0\n"
-
-
-def fault(error, action):
-    with pytest.raises(error) as caught:
-        action()
-    message = str(caught.value)
-    assert "\n" not in message
-    assert message.endswith(".")
-    return message
 
 
 # ------------------------------------------------------------------ content and suffix

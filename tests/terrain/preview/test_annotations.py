@@ -378,14 +378,8 @@ def test_what_an_overlay_draws_is_where_it_was_asked_for(factor, can_draw):
     overlay.draw_rectangle((20, 10), (60, 30), red)
     overlay.draw_polygon([(100, 10), (140, 10), (100, 50)], green)
     overlay.draw_line([(20, 80), (80, 80), (80, 110)], blue, width=3.0)
-    for align in ("left", "center", "right"):
-        overlay.draw_text(
-            (150, {"left": 20, "center": 60, "right": 95}[align]),
-            "HHH",
-            black,
-            size=16,
-            align=align,
-        )
+    for align, low in (("left", 20), ("center", 60), ("right", 95)):
+        overlay.draw_text((150, low), "HHH", black, size=16, align=align)
     width = overlay.measure_text("HHH", size=16)
     shot = plotter.screenshot(return_img=True)[::-1].astype(int)
 

@@ -16,10 +16,15 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ...tin import TIN, Survey
+    from ..files import Output
     from ..options import Reading, Writing
     from ..output.console import Console
 
 __all__ = ["convert"]
+
+
+_KINDS = ("TIN", "Survey", "Raster")
+"""What can be written."""
 
 
 @click.command(short_help="Write points or a TIN in another format.")
@@ -33,18 +38,22 @@ def convert(
 ) -> None:
     """Write what is in FILE in another format: a TIN as a TIN, points as points.
 
-    To make a TIN of points, use 'tinsmith build'.
+    A TIN can be written as points too, or as features (--kind); points that are the cells of a
+    grid, such as those of a DEM, as a raster. To make a TIN of points, use 'tinsmith build'; a
+    raster of any other surface, 'tinsmith raster'.
 
     \b
     Example:
       tinsmith convert sample_data/site_survey.csv -o site.xyz
     """  # noqa: D301 - click reads the control character
-    from ..files import describe_written, list_inputs, plan_outputs, read_input, write_outputs
+    from ..files import describe_written, list_inputs, plan_outputs, read_input
     from ..output.summaries import note_assumed_unit, summarise_reading
 
-    planned = plan_outputs(outputs, writing, inputs=list_inputs(file), console=console)
+    planned = plan_outputs(
+        outputs, writing, inputs=list_inputs(file), console=console, kinds=_KINDS
+    )
     found = read_input(file, reading, console)
-    write_outputs(found, planned, console)
+    _write(found, planned, console)
     notes = summarise_reading(found)
     if note := note_assumed_unit(found):
         notes = [*notes, ("Elevation", note)]
@@ -54,6 +63,21 @@ def convert(
         console.emit(
             format_json({"input": str(file), "outputs": [str(one.path) for one in planned]})
         )
+
+
+def _write(found: TIN | Survey, planned: list[Output], console: Console) -> None:
+    """Write points as a raster where nothing else can be, everything else as it is."""
+    from ...io.raster.gridded import make_raster
+    from ...tin import Survey
+    from ..files import write_outputs
+
+    rasters = [one for one in planned if {*one.formats} == {"Raster"}]
+    if rasters and isinstance(found, Survey):
+        raster = make_raster(found)
+        write_outputs(found, [one for one in planned if one not in rasters], console)
+        write_outputs(raster, rasters, console)
+        return
+    write_outputs(found, planned, console)
 
 
 def _describe_content(found: TIN | Survey) -> str:
