@@ -16,6 +16,7 @@ from tinsmith.tin import TIN
 
 from ..datasets.points import make_points
 from ..measure import OURS, Outcome, Result, alternate, find_median, is_installed
+from ..peers.landxml import read_with_etree
 from ..peers.meshes import MESH_PEERS
 
 __all__ = ["SECTION", "run"]
@@ -23,10 +24,12 @@ __all__ = ["SECTION", "run"]
 SECTION = "readers"
 CRS = "EPSG:32616"
 SURVEY, RASTER, MESH = "survey, PNEZD CSV", "raster, GeoTIFF float32", "surface, binary PLY"
+LANDXML = "surface, LandXML"
 OUR_NOTES = {
     SURVEY: "finds the layout, checks every row",
     RASTER: "points at the cell centres, masks honoured",
     MESH: "checks the triangles, finds their neighbours",
+    LANDXML: "checks the triangles, finds their neighbours",
 }
 
 Floats = NDArray[np.float64]
@@ -41,14 +44,14 @@ class Reader(NamedTuple):
 
 
 def run(n: int, *, repeats: int = 3) -> Outcome:
-    """Measure the reading of a survey, a raster and a mesh of ``n`` rows, cells and points.
+    """Measure the reading of a survey, a raster and meshes of ``n`` rows, cells and points.
 
     An AssertionError says that a reader's numbers differ from ours.
     """
     outcome = Outcome()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        for task in (_measure_survey, _measure_raster, _measure_mesh):
+        for task in (_measure_survey, _measure_raster, _measure_mesh, _measure_landxml):
             print(f"readers: {task.__name__[1:]}, {n:,}", file=sys.stderr, flush=True)
             task(folder, n, repeats, outcome)
     return outcome
@@ -199,3 +202,16 @@ def _measure_mesh(folder: Path, n: int, repeats: int, outcome: Outcome) -> None:
         np.testing.assert_array_equal(theirs[1], ours.triangles)
 
     _measure_readers(MESH, path, n, peers, repeats, outcome, require)
+
+
+def _measure_landxml(folder: Path, n: int, repeats: int, outcome: Outcome) -> None:
+    tin = ts.triangulate(make_points("uniform", n), crs=CRS, z_unit="m")
+    path = ts.write(tin, folder / "surface.xml")
+    peers = {"xml.etree": Reader("xml", read_with_etree, "the numbers only")}
+
+    def require(ours: TIN, theirs: tuple[Floats, Any], _: str) -> None:
+        np.testing.assert_array_equal(ours.points, tin.points)
+        np.testing.assert_array_equal(theirs[0], ours.points)
+        np.testing.assert_array_equal(theirs[1], ours.triangles)
+
+    _measure_readers(LANDXML, path, n, peers, repeats, outcome, require)

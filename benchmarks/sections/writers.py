@@ -22,6 +22,7 @@ from tinsmith.tin import TIN
 
 from ..datasets.points import make_points
 from ..measure import OURS, Outcome, Result, alternate, find_median
+from ..peers.landxml import read_with_etree, write_with_etree
 from ..peers.meshes import MESH_PEERS
 
 __all__ = ["SECTION", "run"]
@@ -48,7 +49,7 @@ class Writer(NamedTuple):
 
 
 def run(n_triangles: int, *, repeats: int = 3) -> Outcome:
-    """Measure the writing of a TIN of about ``n_triangles`` triangles as GeoJSON and as PLY.
+    """Measure the writing of a TIN of about ``n_triangles`` triangles in several formats.
 
     An AssertionError says that a peer's file holds something else than ours.
     """
@@ -56,7 +57,7 @@ def run(n_triangles: int, *, repeats: int = 3) -> Outcome:
     points = make_points("uniform", n_triangles // 2)
     tin = ts.triangulate(points, crs=CRS)
     with tempfile.TemporaryDirectory() as name:
-        for task in (_measure_geojson, _measure_ply):
+        for task in (_measure_geojson, _measure_ply, _measure_landxml):
             print(f"writers: {task.__name__[1:]}, {n_triangles:,}", file=sys.stderr, flush=True)
             task(Path(name), tin, repeats, outcome)
     return outcome
@@ -206,4 +207,16 @@ def _measure_ply(folder: Path, tin: TIN, repeats: int, outcome: Outcome) -> None
     for tool, path in paths.items():
         points, triangles = MESH_PEERS[tool].read(path)
         np.testing.assert_allclose(points, tin.points, rtol=0, atol=MESH_PEERS[tool].write_step)
+        np.testing.assert_array_equal(triangles, tin.triangles)
+
+
+# ----------------------------------------------------------------------- LandXML
+
+
+def _measure_landxml(folder: Path, tin: TIN, repeats: int, outcome: Outcome) -> None:
+    peers = {"xml.etree": Writer("xml", write_with_etree, "no CRS")}
+    paths = _measure_writers("surface, LandXML", ".xml", folder, tin, peers, repeats, outcome)
+    for path in paths.values():
+        points, triangles = read_with_etree(path)
+        np.testing.assert_array_equal(points, tin.points)
         np.testing.assert_array_equal(triangles, tin.triangles)

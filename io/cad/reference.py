@@ -6,8 +6,8 @@ file contradicts itself or its CRS, two readings are plausible, and the caller h
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, NamedTuple
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -64,7 +64,7 @@ class Declared(NamedTuple):
         return cls(CRS.of(crs), Unit.of(unit), Unit.of(elevation_unit))
 
 
-@dataclass(slots=True)
+@dataclass(frozen=True, slots=True)
 class Measures:
     """How coordinates of a file become those of a survey.
 
@@ -78,7 +78,7 @@ class Measures:
     elevation_scale : float
     is_swapped : bool
         Whether the first of two coordinates is the other one than the format says.
-    notes : list of str
+    notes : tuple of str
     """
 
     source: CRS | None
@@ -86,15 +86,21 @@ class Measures:
     scale: float = 1.0
     elevation_scale: float = 1.0
     is_swapped: bool = False
-    notes: list[str] = field(default_factory=list)
+    notes: tuple[str, ...] = ()
+
+    def tell(self, *notes: str, first: bool = False, **changes: Any) -> Measures:
+        """Return them with further notes, at the end or first, and other changes."""
+        told = (*notes, *self.notes) if first else (*self.notes, *notes)
+        return replace(self, notes=told, **changes)
 
     def apply(self, rows: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return easting, northing and, where there is one, elevation as they are wanted."""
         if self.scale == 1.0 and self.elevation_scale == 1.0 and not self.is_swapped:
             return rows
         rows = rows[:, [1, 0, *range(2, rows.shape[1])]] if self.is_swapped else rows.copy()
-        rows[:, :2] *= self.scale
-        rows[:, 2:] *= self.elevation_scale
+        with np.errstate(over="ignore"):  # what becomes infinite is refused later
+            rows[:, :2] *= self.scale
+            rows[:, 2:] *= self.elevation_scale
         return rows
 
 
@@ -126,16 +132,22 @@ def choose_measures(
     if along is not None and along.metres is not None:
         _require_agreement(stated, declared, along, source, path)
         if unit is not None and unit.metres is not None and unit != along:
-            measures.scale = unit.metres / along.metres
-            measures.notes.append(
-                f"Coordinates were converted from {unit.name} to {along.name}, the unit of the CRS."
+            measures = measures.tell(
+                f"Coordinates were converted from {unit.name} to {along.name}, the unit of the "
+                "CRS.",
+                scale=unit.metres / along.metres,
             )
     elif source is None and unit is not None:
-        _convert_elevations(measures, unit)
-    if source is not None:
-        _convert_to_vertical_axis(measures, source)
-        _look_at_area(measures, declared.crs, sample)
-    return measures
+        measures = _convert_elevations(measures, unit, "the unit of the coordinates")
+    if source is None:
+        return measures
+    vertical = source.vertical_unit
+    if vertical is not None:
+        measures = _convert_elevations(
+            measures, vertical, "the unit of the vertical axis of the CRS"
+        )
+        measures = replace(measures, elevation_unit=vertical)
+    return _look_at_area(measures, declared.crs, sample)
 
 
 def _choose_elevation_unit(
@@ -178,46 +190,33 @@ def _require_agreement(
         )
 
 
-def _convert_elevations(measures: Measures, unit: Unit) -> None:
-    """Without a CRS nothing else tells the unit of eastings: elevations are brought to it."""
+def _convert_elevations(measures: Measures, unit: Unit, what: str) -> Measures:
+    """Bring elevations to another unit; nothing else tells that of eastings without a CRS."""
     known = measures.elevation_unit
     if known is None or known == unit or known.metres is None or unit.metres is None:
-        return
-    measures.elevation_scale = known.metres / unit.metres
-    measures.elevation_unit = unit
-    measures.notes.append(
-        f"Elevations were converted from {known.name} to {unit.name}, the unit of the coordinates."
+        return measures
+    return measures.tell(
+        f"Elevations were converted from {known.name} to {unit.name}, {what}.",
+        elevation_scale=known.metres / unit.metres,
+        elevation_unit=unit,
     )
 
 
-def _convert_to_vertical_axis(measures: Measures, source: CRS) -> None:
-    vertical, known = source.vertical_unit, measures.elevation_unit
-    if vertical is None or known is None or known == vertical:
-        measures.elevation_unit = vertical or known
-        return
-    if known.metres is not None and vertical.metres is not None:
-        measures.elevation_scale = known.metres / vertical.metres
-        measures.elevation_unit = vertical
-        measures.notes.append(
-            f"Elevations were converted from {known.name} to {vertical.name}, the unit of the "
-            "vertical axis of the CRS."
-        )
-
-
-def _look_at_area(measures: Measures, target: CRS | None, sample: NDArray[np.float64]) -> None:
+def _look_at_area(measures: Measures, target: CRS | None, sample: NDArray[np.float64]) -> Measures:
     """Compare coordinates with the area of use; swap them if they only fit so."""
     area = AreaOfUse.of(measures.source, target)
     rows = sample[np.isfinite(sample).all(axis=1)] * measures.scale
     if area is None or len(rows) == 0 or area.covers_most(rows):
-        return
+        return measures
     if area.covers_most(rows[:, ::-1]):
-        measures.is_swapped = True
-        measures.notes.append(
+        return measures.tell(
             "Easting and northing were taken in the other order than the format says: only so do "
-            f"they lie in the area of {area.label}."
+            f"they lie in the area of {area.label}.",
+            is_swapped=True,
         )
-    elif not area.is_local(rows):
-        measures.notes.append(f"Most points lie outside the area of {area.label}.")
+    if area.is_local(rows):
+        return measures
+    return measures.tell(f"Most points lie outside the area of {area.label}.")
 
 
 def require_own_crs(measures: Measures, declared: CRS | None, path: Path) -> None:

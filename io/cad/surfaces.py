@@ -74,7 +74,7 @@ def merge_equal_points(mesh: Mesh) -> Mesh:
     """
     order = np.lexsort(mesh.points.T[::-1])  # stable: of equal ones the first comes first
     is_first = np.ones(len(order), np.bool_)
-    is_first[1:] = (np.diff(mesh.points[order], axis=0) != 0).any(axis=1)
+    is_first[1:] = (mesh.points[order[1:]] != mesh.points[order[:-1]]).any(axis=1)
     first = order[is_first]
     stands_for = np.empty(len(order), np.int64)
     stands_for[order] = first[np.cumsum(is_first) - 1]
@@ -208,9 +208,16 @@ class _Vertices:
         return found
 
     def _find_near(self, xy: NDArray[np.float64]) -> NDArray[np.int64]:
-        nearest = self._tin.closest_vertex(xy).astype(np.int64)
-        apart = np.abs(self._tin.points[nearest, :2] - xy).max(axis=1)
-        return np.where(apart <= _SAME_PLACE, nearest, -1)
+        found = np.full(len(xy), -1, np.int64)
+        bounds = self._tin.bounds
+        low = np.array([bounds.xmin, bounds.ymin]) - _SAME_PLACE
+        high = np.array([bounds.xmax, bounds.ymax]) + _SAME_PLACE
+        is_near = ((xy >= low) & (xy <= high)).all(axis=1)  # others may be no coordinates at all
+        if is_near.any():
+            nearest = self._tin.closest_vertex(xy[is_near]).astype(np.int64)
+            apart = np.abs(self._tin.points[nearest, :2] - xy[is_near]).max(axis=1)
+            found[is_near] = np.where(apart <= _SAME_PLACE, nearest, -1)
+        return found
 
 
 def _fill_in(tin: TIN, vertices: NDArray[np.int64], known: NDArray[np.int64]) -> NDArray[np.int64]:

@@ -385,8 +385,8 @@ def test_tools_take_turns():
     ("run", "tasks"),
     [
         (locate.run, 2),
-        (readers.run, 3),
-        (writers.run, 2),
+        (readers.run, 4),
+        (writers.run, 3),
         (profiles.run, 2),
         (interpolation.run, 5),
         (rasters.run, 1),

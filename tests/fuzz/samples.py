@@ -234,6 +234,66 @@ def _layers(folder: Path) -> list[tuple[str, bytes]]:
     return [(one.name, one.read_bytes()) for one in sorted(folder.iterdir())]
 
 
+def _survey() -> Any:
+    tin = _tin()
+    ring = CORNER[:2] + np.array([[1, 1], [35, 2], [34, 27], [2, 26]])
+    return ts.Survey(
+        points=tin.points,
+        breaklines=[ts.Breakline(tin.points[[0, 5]] + 0.25, kind="soft", name="edge")],
+        boundary=[ring],
+        attributes={"description": np.array(["EP1"] * len(tin.points), object)},
+        crs=CRS,
+    )
+
+
+def _landxml(folder: Path) -> list[tuple[str, bytes]]:
+    tin, survey = _tin(), _survey()
+    surface = ts.write(tin, folder / "a.xml").read_bytes()
+    points = ts.write(survey, folder / "b.xml").read_bytes()
+    contours = ts.write(ts.contours(tin, interval=2), folder / "source-c.xml").read_bytes()
+    text = surface.decode()
+    head, tail = text.split("<Surfaces>")
+    bare = f"{head.split('<CoordinateSystem')[0]}<Surfaces>{tail}"
+    grouped = bare.replace("<F>", '<F n="1 2 0">', 3).replace("<F>", '<F i="1">', 2)
+    return [
+        ("surface.xml", surface),
+        ("points.xml", points),
+        ("source-contours.xml", contours),
+        ("source-lines.xml", surface),
+        ("grouped.xml", grouped.encode()),
+        ("wide.xml", text.replace("UTF-8", "UTF-16").encode("utf-16")),
+    ]
+
+
+def _dxf(folder: Path) -> list[tuple[str, bytes]]:
+    import ezdxf
+
+    tin, survey = _tin(), _survey()
+    for version in ("R2010", "R12"):
+        ts.write(tin, folder / f"tin-{version}.dxf", version=version)
+        ts.write(survey, folder / f"survey-{version}.dxf", version=version)
+    document = ezdxf.new("R12")
+    block = document.blocks.new("A")
+    block.add_point((1, 2, 3))
+    block.add_polyline3d([(0, 0, 1), (5, 5, 2)])
+    space = document.modelspace()
+    space.add_blockref("A", (9, 9, 9), dxfattribs={"column_count": 3, "column_spacing": 4})
+    space.add_polyline2d([(0, 0, 1), (9, 0, 0)], format="xyb")
+    space.add_arc((0, 0, 1), 5, 10, 80)
+    space.add_polyface().append_faces([tin.points[one].tolist() for one in tin.triangles[:6]])
+    for name, form in (("blocks", "asc"), ("binary", "bin")):
+        document.saveas(folder / f"{name}.dxf", fmt=form)
+    entities = [_keep_entities(path.read_bytes()) for path in sorted(folder.glob("*-R12.dxf"))]
+    found = [(path.name, path.read_bytes()) for path in sorted(folder.glob("*.dxf"))]
+    return [*found, ("bare-survey.dxf", entities[0]), ("bare-tin.dxf", entities[1])]
+
+
+def _keep_entities(content: bytes) -> bytes:
+    """Return a drawing with nothing but its entities, where damage meets more of them."""
+    start = content.index(b"ENTITIES") - len(b"  0\nSECTION\n  2\n")
+    return content[start:]
+
+
 def _whole_tin(folder: Path) -> list[tuple[str, bytes]]:
     """Return GeoPackages of small pages, as dense as SQLite makes them."""
     edited = _tin()
@@ -287,4 +347,6 @@ _MAKERS = {
     "layers": _layers,
     "instruments": _instruments,
     **MESH_MAKERS,
+    "landxml": _landxml,
+    "dxf": _dxf,
 }

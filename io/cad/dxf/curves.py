@@ -5,7 +5,10 @@ from __future__ import annotations
 import math
 from typing import Any
 
-__all__ = ["follow_bulges"]
+__all__ = ["FRAME_POINT", "follow_bulges"]
+
+FRAME_POINT = 16
+"""Flag of a vertex that is a control point of a smoothed polyline, and not on it."""
 
 _MOST_CHORDS = 100_000
 """Of one arc; more are asked for by a tolerance that is far too small."""
@@ -28,7 +31,9 @@ def follow_bulges(entity: Any, kind: str, distance: float) -> list[Row]:
         elevation, is_closed = float(entity.dxf.elevation), bool(entity.closed)
     else:
         rows = [
-            (*vertex.dxf.location.vec2, vertex.dxf.get("bulge", 0.0)) for vertex in entity.vertices
+            (*vertex.dxf.location.vec2, vertex.dxf.get("bulge", 0.0))
+            for vertex in entity.vertices
+            if not vertex.dxf.get("flags", 0) & FRAME_POINT
         ]
         height = entity.dxf.elevation.z if entity.dxf.hasattr("elevation") else 0.0
         elevation = height or entity.vertices[0].dxf.location.z

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...isolated import Answer, Refusal
-from .curves import follow_bulges
+from .curves import FRAME_POINT, follow_bulges
 from .names import APPLICATION
 
 if TYPE_CHECKING:
@@ -27,8 +27,6 @@ _DEEPEST = 32
 _MOST_NAMES = 20
 _CURVES = frozenset({"ARC", "CIRCLE", "ELLIPSE", "SPLINE", "HELIX"})
 _TEXTS = frozenset({"TEXT", "MTEXT", "ATTRIB"})
-_FRAME_POINT = 16
-"""Flag of a vertex that is a control point of a smoothed polyline, and not on it."""
 
 
 class _NestingError(Exception):
@@ -267,7 +265,7 @@ class _Gathered:
             places = [
                 vertex.dxf.location
                 for vertex in entity.vertices
-                if not vertex.dxf.get("flags", 0) & _FRAME_POINT
+                if not vertex.dxf.get("flags", 0) & FRAME_POINT
             ]
             if not entity.is_3d_polyline:
                 elevation = entity.dxf.elevation.z if entity.dxf.hasattr("elevation") else 0.0

@@ -45,16 +45,17 @@ def make_mesh(faces: NDArray[np.float64], path: Path) -> Mesh:
     kept = counts > 2
     if not kept.any():
         raise ReadError(f"'{path}': none of its faces has three corners.", path=path)
-    notes = []
+    notes: list[str] = []
     if not kept.all():
         lines = counted(int((~kept).sum()), "face")
         notes.append(f"Left out: {lines} with fewer than three different corners.")
     used = corners[kept][is_new[kept]]
     quads = corners[kept & (counts == 4)]
-    if len(quads):
-        notes.append(_describe_quads(points[quads]))
     triangles = cut_into_fans(used, find_offsets(counts[kept]), points, path).triangles
-    is_line = _find_lines(points[triangles])
+    with np.errstate(over="ignore", invalid="ignore"):  # what is too large is refused later
+        if len(quads):
+            notes.append(_describe_quads(points[quads]))
+        is_line = _find_lines(points[triangles])
     if is_line.any() and not is_line.all():
         notes.append(f"Left out: {counted(int(is_line.sum()), 'triangle')} without any area.")
         triangles = triangles[~is_line]
@@ -77,7 +78,7 @@ def _join_corners(
     rows = faces.reshape(-1, 3) + 0.0
     order = np.lexsort(rows.T[::-1])
     is_first = np.ones(len(order), np.bool_)
-    is_first[1:] = (np.diff(rows[order], axis=0) != 0).any(axis=1)
+    is_first[1:] = (rows[order[1:]] != rows[order[:-1]]).any(axis=1)
     stands_for = np.empty(len(order), np.int64)
     stands_for[order] = order[is_first][np.cumsum(is_first) - 1]
     firsts, corners = np.unique(stands_for, return_inverse=True)

@@ -131,9 +131,9 @@ def _choose_measures(drawing: Drawing, declared: Declared) -> Measures:
     sample = rows[:: max(1, len(rows) // _SAMPLE), :2]
     measures = choose_measures(stated, declared, drawing.path, sample=sample)
     if stated.unit is not None and declared.unit is None:
-        measures.notes.insert(0, f"Lengths are in {stated.unit.name}, by $INSUNITS.")
-    elif stated.unit is None and declared.unit is None and measures.elevation_unit is None:
-        measures.notes.insert(0, "The drawing names no unit of lengths ($INSUNITS).")
+        return measures.tell(f"Lengths are in {stated.unit.name}, by $INSUNITS.", first=True)
+    if stated.unit is None and declared.unit is None and measures.elevation_unit is None:
+        return measures.tell("The drawing names no unit of lengths ($INSUNITS).", first=True)
     return measures
 
 

@@ -134,8 +134,9 @@ def _make_document(
 ) -> Any:
     """Return an empty drawing with units, layers and properties, the same at any time."""
     document = ezdxf.new(version)
-    document.header["$INSUNITS"] = find_code(unit)
-    document.header["$MEASUREMENT"] = int(unit is None or unit.name.endswith("metre"))
+    if version != "R12":
+        document.header["$INSUNITS"] = find_code(unit)
+        document.header["$MEASUREMENT"] = int(unit is None or unit.name.endswith("metre"))
     document.appids.add(APPLICATION)
     for name, colour in LAYERS.items():
         document.layers.add(name, color=colour)

@@ -83,7 +83,12 @@ class _Parser:
         self._groups: list[str] = []
         self._fed = 0
         self._batches = {"P": _Batch(), "F": _Batch()}
-        self._starts: dict[str, Callable[[dict[str, str]], None]] = {
+        self._starts = self._list_starts()
+        self._ends = self._list_ends()
+        self._expat = self._make_parser()
+
+    def _list_starts(self) -> dict[str, Callable[[dict[str, str]], None]]:
+        return {
             "P": self._start_point,
             "F": self._start_face,
             **dict.fromkeys(_LIST_WIDTHS, self._start_list),
@@ -100,7 +105,9 @@ class _Parser:
             "PointFile": self._start_point_file,
             "RetWall": self._start_wall,
         }
-        self._ends: dict[str, Callable[[], None]] = {
+
+    def _list_ends(self) -> dict[str, Callable[[], None]]:
+        return {
             "P": self._end_point,
             "F": self._end_face,
             **dict.fromkeys(_LIST_WIDTHS, self._end_list),
@@ -110,7 +117,6 @@ class _Parser:
             "Chain": self._end_chain,
             "Surface": self._end_surface,
         }
-        self._expat = self._make_parser()
 
     def _make_parser(self) -> Any:
         parser = expat.ParserCreate()

@@ -94,7 +94,7 @@ def read(
         raise ReadError(f"'{path}' has no surface with {has}.", path=path)
     source = chosen if kind == "source" else None
     measures = _choose_measures(found, source, declared, path)
-    measures.notes[:0] = notes
+    measures = measures.tell(*notes, first=True)
     if source is not None:
         return make_survey_of_source(found, source, measures, declared, path)
     return make_survey_of_points(found.points, measures, declared, path)
@@ -232,9 +232,7 @@ def _choose_measures(
             "z_unit='m' or z_unit='US survey foot', or that of all lengths, unit='ft'.",
             path=path,
         )
-    measures = choose_measures(stated, declared, path, sample=sample)
-    measures.notes[:0] = notes
-    return measures
+    return choose_measures(stated, declared, path, sample=sample).tell(*notes, first=True)
 
 
 def _take_sample(found: Content, chosen: Surface | None) -> NDArray[np.float64]:

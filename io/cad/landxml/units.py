@@ -170,7 +170,12 @@ def _lie_together(one: CRS, other: CRS, sample: NDArray[np.float64]) -> bool:
     """Whether some points have about the same longitude and latitude in both."""
     if one.horizontal_unit != other.horizontal_unit:
         return False
-    first, second = (np.array(list(_iterate_degrees(crs, sample))) for crs in (one, other))
+    from pyproj.exceptions import ProjError
+
+    try:
+        first, second = (np.array(list(_iterate_degrees(crs, sample))) for crs in (one, other))
+    except ProjError:  # a description that looks like a CRS, and leads nowhere
+        return False
     return bool(np.allclose(first, second, rtol=0, atol=_DEGREES))
 
 

@@ -79,6 +79,8 @@ def read_input(path: Path, reading: Reading, console: Console) -> Survey | TIN:
 
     options = {name: value for name, value in asdict(reading).items() if value is not None}
     target = options.pop("to_crs", None)
+    if reading.length_unit is not None:
+        options["unit"] = options.pop("length_unit")
     if reading.window is not None:
         options["window"] = Bounds(*reading.window)
     with console.steps() as steps, steps.step(f"Reading {name_file(Path(path.name))}"):

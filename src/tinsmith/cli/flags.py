@@ -20,6 +20,9 @@ _FLAGS_OF = {
 }
 """Parameters of commands for options that the library calls otherwise."""
 
+_LENGTH_UNIT = "length_unit"
+"""What the library calls ``unit``."""
+
 
 def name_flags(text: str, **renamed: str) -> str:
     """Return a sentence of the library with flags in place of the names of its options.
@@ -106,4 +109,7 @@ def _list_flags(command: click.Command) -> dict[str, str]:
         if isinstance(option, click.Option) and option.opts[0].startswith("--") and option.name:
             flags[option.opts[0].removeprefix("--").replace("-", "_")] = option.opts[0]
             flags.setdefault(option.name, option.opts[0])
+    for option in command.params:
+        if option.name == _LENGTH_UNIT:  # before any unit that a command has of its own
+            flags["unit"] = option.opts[0]
     return dict(sorted(flags.items(), key=lambda item: -len(item[0])))

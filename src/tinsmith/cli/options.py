@@ -27,6 +27,7 @@ __all__ = [
     "coding_options",
     "console_options",
     "format_options",
+    "make_reading_options",
     "product_options",
     "reading_options",
     "triangulating_options",
@@ -69,7 +70,7 @@ class Reading:
     layer: str | None = None
     z_field: str | None = None
     lines_as: str | None = None
-    unit: str | None = None
+    length_unit: str | None = None
     surface: str | None = None
     content: str | None = None
     texts: bool | None = None
@@ -223,9 +224,7 @@ def _parse_given(
     return value or None
 
 
-reading_options = _gather(
-    "reading",
-    Reading,
+_READING = (
     click.option(
         "--crs",
         metavar="CRS",
@@ -283,13 +282,6 @@ reading_options = _gather(
         "--fill", is_flag=True, default=None, help="Let the surface span the voids of a raster."
     ),
     *MESH_READING,
-    click.option(
-        "--file-unit",
-        "unit",
-        metavar="UNIT",
-        help="Unit of the coordinates and elevations of a LandXML or DXF file, where it does not "
-        "say, or says another one than its CRS.",
-    ),
     click.option(
         "--surface",
         metavar="NAME",
@@ -357,6 +349,27 @@ reading_options = _gather(
         "Take the lines of a vector file as breaklines, or their vertices as points.",
     ),
 )
+
+
+def make_reading_options(*, unit_flag: str = "--unit") -> Callable[[Function], Function]:
+    """Return the decorator that adds the options of reading.
+
+    Parameters
+    ----------
+    unit_flag : str
+        Flag of the unit of lengths, for a command whose own ``--unit`` is another.
+    """
+    unit = click.option(
+        unit_flag,
+        "length_unit",
+        metavar="UNIT",
+        help="Unit of the coordinates and elevations of a LandXML or DXF file, where it does not "
+        "say, or says another one than its CRS.",
+    )
+    return _gather("reading", Reading, *_READING, unit)
+
+
+reading_options = make_reading_options()
 
 triangulating_options = _gather(
     "how",

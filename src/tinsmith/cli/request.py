@@ -128,13 +128,17 @@ class Request:
             self.console.emit(format_json(record))
 
 
-def surface_options(writing_options: Decorator = product_options) -> Decorator:
+def surface_options(
+    writing_options: Decorator = product_options, reading_options: Decorator = reading_options
+) -> Decorator:
     """Return a decorator that adds the shared options, and hands them over as ``request``.
 
     Parameters
     ----------
     writing_options : decorator
         The options of writing: of products, or those that a command has in their place.
+    reading_options : decorator
+        Those of reading likewise.
     """
     groups = (reading_options, triangulating_options, writing_options, console_options)
 

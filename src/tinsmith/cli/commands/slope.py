@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ...policies import SlopeUnit
+from ..options import make_reading_options
 from ..parameters import choice_option, input_file, output_files, parse_numbers
 from ..request import surface_options
 
@@ -38,7 +39,7 @@ __all__ = ["slope"]
     help="Limits between the classes, in that unit; usual ones if absent.",
 )
 @click.option("--aspect", is_flag=True, help="Classes of the direction in which it falls instead.")
-@surface_options()
+@surface_options(reading_options=make_reading_options(unit_flag="--length-unit"))
 def slope(
     file: Path,
     slope_unit: SlopeUnit,

@@ -349,6 +349,19 @@ def test_numbers_that_are_none_are_refused(drawing, save, value):
     refused("not finite|damaged", path)
 
 
+@pytest.mark.parametrize("value", ["1e308", "-1.7e308"])
+def test_corners_beyond_any_coordinate_are_refused(drawing, save, value):
+    space = drawing.modelspace()
+    space.add_3dface([(1.25, 0, 0), (9, 0, 1), (9, 9, 2.5), (0, 9, 0)])
+    space.add_3dface([(20, 0, 0), (29, 0, 1), (29, 9, 2.5)])
+    path = save(drawing)
+    text = path.read_text()
+    path.write_text(text.replace("\n1.25\n", f"\n{value}\n"))
+    refused("holds no TIN", path)
+    path.write_text(text.replace("\n2.5\n", f"\n{value}\n"))  # elevations have no such limit
+    assert abs(ts.read(path).points[:, 2]).max() == abs(float(value))
+
+
 def test_a_block_that_inserts_itself_is_refused(drawing, save):
     a, b = drawing.blocks.new("A"), drawing.blocks.new("B")
     a.add_point((0, 0, 1))

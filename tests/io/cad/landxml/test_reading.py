@@ -282,6 +282,22 @@ def test_two_different_crs_are_refused(write):
     refused("another CRS", path, error=ts.CrsError, crs=32633)
 
 
+def test_a_wkt_that_leads_nowhere_is_another_crs(write):
+    wkt = ts.CRS(32616).to_wkt("WKT1_GDAL").replace("Transverse_Mercator", "Transverse_Nonsense")
+    wkt = wkt.replace('AUTHORITY["EPSG","32616"]', 'AUTHORITY["EPSG","1"]').replace('"', "&quot;")
+    system = f'<CoordinateSystem epsgCode="32616" ogcWktCode="{wkt}"/>'
+    path = write(document(surface(points_of(UTM)), system=system))
+    refused("names two CRSs", path)
+
+
+def test_lines_far_beyond_any_coordinate_are_no_edges(write):
+    line = "<PntList3D>0 0 1 -1e308 4 3</PntList3D>"
+    source = f"<SourceData><Breaklines><Breakline>{line}</Breakline></Breaklines></SourceData>"
+    tin = ts.read(write(document(surface(source=source))))
+    assert len(tin.lines) == 0
+    assert "1 line of 1 does not run along edges" in tin.report.notes[0]
+
+
 def test_units_that_the_crs_does_not_have_are_refused_until_told(write):
     path = write(document(surface(points_of(UTM)), system=SYSTEM, units=FEET))
     refused("unit='foot' or unit='metre'", path)
