@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from .field_survey.field_codes import lines_from_codes
     from .reading import read
     from .registry import Format, find_format, known_formats
+    from .reprojection.surfaces import reproject
     from .reprojection.transformation import LengthUnit, length_unit, transform_points
     from .vector.reading import read_lines, read_polygons, read_rings, read_water
     from .vector.survey_lines import with_lines
@@ -21,6 +22,7 @@ else:  # a type checker takes every name for one that such a __getattr__ has
         {
             ".field_survey": ("field_codes",),  # where the module was before
             ".field_survey.field_codes": ("lines_from_codes",),
+            ".reprojection.surfaces": ("reproject",),
             ".reprojection.transformation": ("LengthUnit", "length_unit", "transform_points"),
             "..errors": ("CrsError", "FormatError", "OptionError", "ReadError", "WriteError"),
             ".reading": ("read",),
@@ -48,6 +50,7 @@ __all__ = [
     "read_polygons",
     "read_rings",
     "read_water",
+    "reproject",
     "transform_points",
     "with_lines",
     "write",

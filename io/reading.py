@@ -12,6 +12,7 @@ from .._sentences import printable
 from ..crs import CRS, Unit
 from ..errors import CrsError, FormatError, MissingExtraError, ReadError, TinsmithError
 from ..tin import TIN, Survey
+from .isolated.archives import unpack
 from .isolated.local_files import require_local
 from .isolated.spooling import describe_system_error, open_ordinary_file, spool
 from .raster.virtual import is_virtual
@@ -50,6 +51,8 @@ def read(
     Parameters
     ----------
     path : path-like
+        A file, or a folder where the format is one (tiles of lidar). What is compressed (``.gz``,
+        ``.zip``) is unpacked, if one set of data is in it.
     format : str, optional
         Name of a format, to choose it whatever the file looks like.
     crs : CRS, str, int or pyproj.CRS, optional
@@ -95,9 +98,9 @@ def read(
     file = as_path(path)
     require_local(path)
     declared = _collect_declared(crs, z_unit)
-    with open_ordinary_file(file) as local:
-        found = _read_file(local, format, declared, options)
-    return found if local == file else _restore_source(found, local, file)
+    with open_ordinary_file(file) as local, unpack(local) as inner:
+        found = _read_file(inner, format, declared, options)
+    return found if inner == file else _restore_source(found, inner, file)
 
 
 def _collect_declared(crs: CrsLike | None, z_unit: UnitLike | None) -> dict[str, Any]:
@@ -125,8 +128,8 @@ def read_stream(
     """
     source = Path(name)
     declared = _collect_declared(crs, z_unit)
-    with spool(stream, source) as local:
-        return _restore_source(_read_file(local, format, declared, options), local, source)
+    with spool(stream, source) as local, unpack(local) as inner:
+        return _restore_source(_read_file(inner, format, declared, options), inner, source)
 
 
 def _read_file(
@@ -173,7 +176,15 @@ def _choose_format(file: Path, name: str | None) -> Format:
     if _is_folder(file):
         return _choose_format_of_folder(file, named)
     head = _read_head(file)
-    return detect(file, head) if named is None else named
+    if named is not None:
+        return named
+    return _find_format_of_part(file) or detect(file, head)
+
+
+def _find_format_of_part(file: Path) -> Format | None:
+    """Return the format of a folder of which a file is a part, as its name tells."""
+    name = file.name.lower()
+    return next((one for one in known_formats() if name in one.part_names), None)
 
 
 def _is_folder(file: Path) -> bool:

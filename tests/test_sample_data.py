@@ -36,6 +36,25 @@ def test_survey_is_made_again_byte_for_byte(tmp_path):
     assert (tmp_path / "again.csv").read_bytes() == (SAMPLES / "site_survey.csv").read_bytes()
 
 
+def test_junction_is_made_again_byte_for_byte(tmp_path):
+    run_script("make_junction.py", tmp_path)
+    made = (tmp_path / "junction.csv").read_bytes()
+    assert made == (SAMPLES / "codes" / "junction.csv").read_bytes()
+
+
+def test_kerbs_of_the_junction_are_arcs_of_12_m():
+    survey = ts.read(SAMPLES / "codes" / "junction.csv", crs="EPSG:32616", z_unit="m")
+    made = ts.lines_from_codes(survey, code_table=SAMPLES / "codes" / "words.toml")
+    lines = {line.name: line.coords[:, :2] - (752_100, 4_024_400) for line in made.breaklines}
+    for name, centre in (("EP1", (38, 42)), ("EP2", (74, 42))):
+        xy = lines[name]
+        is_bent = (xy[:, 1] > 30.001) & (xy[:, 1] < 41.999)
+        assert is_bent.sum() == 19  # 20 chords of 4.5°, which rise by 9 mm
+        assert np.allclose(np.hypot(*(xy[is_bent] - centre).T), 12, atol=1e-6)
+    assert made.findings == []
+    assert ts.check(ts.triangulate(made), points=made).ok
+
+
 def test_survey_has_five_columns_and_lies_on_its_site(rows):
     assert rows[0] == ["Point", "Northing", "Easting", "Elevation", "Description"]
     assert {len(row) for row in rows} == {5}

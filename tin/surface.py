@@ -12,6 +12,8 @@ from ..crs import CRS, Unit, require_one_unit, scale_elevations, shorten_crs
 from ..errors import choice
 from ..policies import Extrapolation, InterpolationMethod
 from . import topology
+from .building.assembly import assemble
+from .building.moving import move_inputs
 from .constraints.breaklines import Lines
 from .editing.editable import Editable
 from .editing.version import Version
@@ -23,6 +25,8 @@ from .validation.triangles import as_flags, as_triangles, turn_counter_clockwise
 from .validation.vertices import as_vertex, as_vertex_pairs
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import ArrayLike, NDArray
 
     from ..crs import CrsLike, UnitLike
@@ -259,6 +263,76 @@ class TIN(Editable):
         given = {name: getattr(version.triangulation, name) for name in _ARGUMENTS[:4]}
         given |= {name: getattr(version, name) for name in _ARGUMENTS[4:7]}
         return type(self)(**(given | self._reference | changes))
+
+    def transform(
+        self,
+        function: Callable[[NDArray[np.float64]], NDArray[np.float64]],
+        *,
+        crs: CrsLike | None = None,
+        z_unit: UnitLike | None = None,
+        length: float = 1.0,
+    ) -> TIN:
+        """Return the TIN of moved points; :func:`tinsmith.reproject` moves them to another CRS.
+
+        Parameters
+        ----------
+        function : callable
+            Takes (n, 3) points and returns where they are then, in the same order.
+        crs : CRS, str, int or pyproj.CRS, optional
+            Of the moved points; default not known.
+        z_unit : Unit or str, optional
+            Unit of their elevations; default that of the CRS's vertical axis, else not known.
+        length : float
+            Factor of lengths in the plane, for ``max_edge`` and ``snap`` of the build.
+
+        Returns
+        -------
+        TIN
+            Where it was built here, edits included, it is built anew of the moved rows and lines
+            with the same options, and is Delaunay there. Existing triangles, such as those of a
+            file, are kept as they are.
+
+        Raises
+        ------
+        CrsError, OptionError
+            If the CRS or unit is unknown.
+        PointsError
+            If a triangle that is kept has no area any more, or covers others.
+        LinesError
+            If a line vanishes, or a ring crosses itself.
+
+        Examples
+        --------
+        >>> tin = TIN.from_triangles([[0, 0, 1], [1, 0, 2], [0, 1, 3]], [[0, 1, 2]])
+        >>> tin.transform(lambda points: points + [10.0, 20.0, 0.0]).bounds.xmin
+        10.0
+        """
+        system = CRS.of(crs)
+        unit = require_one_unit(system, Unit.of(z_unit))
+        inputs = self._gather_inputs()
+        if inputs is None:
+            moved = as_points(function(self.points.copy()))
+            return self._keep_triangles(moved, system, unit)
+        inputs = move_inputs(inputs, function, length=length, crs=system, elevation_unit=unit)
+        built = assemble(inputs)
+        return type(self)(
+            **built.surface._asdict(),
+            vertex_of=built.vertex_of,
+            report=built.report,
+            lines=built.lines,
+            crs=system,
+            elevation_unit=unit,
+            inputs=inputs,
+        )
+
+    def _keep_triangles(
+        self, points: NDArray[np.float64], crs: CRS | None, unit: Unit | None
+    ) -> TIN:
+        """Return the same triangles at other places, all turned round where the map is mirrored."""
+        made = type(self).from_triangles(
+            points, self.triangles, constrained=self.constrained, crs=crs, z_unit=unit
+        )
+        return made.replace(vertex_of=self.vertex_of, report=self.report, lines=self.lines)
 
     # ---------------------------------------------------------------- measures
 

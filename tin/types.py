@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -12,9 +12,30 @@ from ..errors import OptionError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Bounds", "Frozen", "Grid", "seal"]
+__all__ = ["Bounds", "Finding", "Frozen", "Grid", "seal"]
 
 Array = TypeVar("Array", bound="np.ndarray[Any, Any]")
+
+
+class Finding(NamedTuple):
+    """What was found odd in points, and where.
+
+    Attributes
+    ----------
+    kind : str
+        A few words, the same for each of a kind.
+    rows : tuple of int
+        Rows of the points, from 0.
+    sentence : str
+    """
+
+    kind: str
+    rows: tuple[int, ...]
+    sentence: str
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain Python values, ready for JSON."""
+        return {"kind": self.kind, "rows": list(self.rows), "sentence": self.sentence}
 
 
 @dataclass(frozen=True, slots=True)

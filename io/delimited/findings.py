@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...errors import CrsError
+from ...crs import FOOT, Unit
+from ...errors import CrsError, OptionError
 from ...terrain.nodata import describe_suspects, find_suspect_elevations
 from .content import are_plausible_elevations, is_too_steep, measure_relief_and_extent
 
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from ...crs import CRS
     from ..reprojection.area_of_use import AreaOfUse
     from .columns import Columns
     from .table import Fault
@@ -27,11 +29,14 @@ __all__ = [
     "find_odd_elevations",
     "find_repeated_numbers",
     "require_in_area",
+    "require_unit_of_crs",
 ]
 
 _SHOWN = 5
 _SOME = 4_096
 _FEW_POINTS = 3
+_SAME_UNIT = 1e-3
+"""Feet of either kind differ by 2e-6, any other two units by far more."""
 
 
 def require_in_area(
@@ -109,6 +114,57 @@ def _require_no_exchange(
                 f"{area.label}, and read as {right.word} inside it: columns='{right.word}' takes "
                 f"the {', the '.join(places)}."
             )
+
+
+def require_unit_of_crs(
+    columns: Columns, crs: CRS | None, path: Path, *, is_told: bool
+) -> list[str]:
+    """Say where the header gives eastings and northings another unit than their CRS has.
+
+    Parameters
+    ----------
+    columns : Columns
+    crs : CRS or None
+        Of the coordinates in the file.
+    path : Path
+        For sentences.
+    is_told : bool
+        Whether the caller has said what the columns are, against the header.
+
+    Raises
+    ------
+    CrsError
+        If they are not both feet, and the caller has not told the columns.
+    """
+    if crs is None or crs.is_geographic:
+        return []
+    wanted = crs.horizontal_unit
+    for role in ("easting", "northing"):
+        unit = _find_unit(columns.units.get(role))
+        if unit is None or unit.metres is None or wanted.metres is None or unit == wanted:
+            continue
+        is_far = abs(unit.metres / wanted.metres - 1.0) > _SAME_UNIT
+        sentence = (
+            f"the header gives the {role} in {unit.name}, and {crs.label} measures in {wanted.name}"
+        )
+        if is_far and not is_told:
+            raise CrsError(
+                f"'{path}': {sentence}: the options source_crs and crs name the CRS that the "
+                "points are in, and the one that they go to; columns tells the columns whatever "
+                "the header says.",
+                crs=crs,
+            )
+        if is_far or unit != FOOT:  # "ft" is written for feet of either kind
+            return [f"{sentence[0].upper()}{sentence[1:]}, as which they are taken."]
+    return []
+
+
+def _find_unit(word: str | None) -> Unit | None:
+    """Return the unit that the header names; None if the word is no length."""
+    try:
+        return Unit.of(word)
+    except OptionError:
+        return None
 
 
 def find_odd_elevations(points: NDArray[np.float64]) -> list[str]:

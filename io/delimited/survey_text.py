@@ -25,10 +25,12 @@ from .findings import (
     find_odd_elevations,
     find_repeated_numbers,
     require_in_area,
+    require_unit_of_crs,
 )
 from .layout import find_layout
 from .lines import read_lines
 from .table import describe_columns, describe_faults_of_rows, read_cells, read_table
+from .truncation import leave_out_cut_row
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -109,7 +111,8 @@ def read(
         (with ``skip_bad`` more than half of them), no point has an elevation, or the coordinates
         would be in degrees.
     CrsError
-        If a CRS is unknown, or the points lie in its area of use only with coordinates exchanged.
+        If a CRS is unknown, or the points lie in its area of use only with coordinates exchanged;
+        if the header gives eastings and northings another unit than the CRS has.
     OptionError
         If an option has a value that it cannot have; if ``z_unit`` is unknown, or another than the
         header gives.
@@ -137,12 +140,16 @@ def read(
     source = _find_source_crs(layout, declared, target)
     area = AreaOfUse.of(source, target)
     meaning, notes = _find_columns(cells, layout, area, path)
+    told_units = require_unit_of_crs(meaning, source or target, path, is_told=columns is not None)
     table = read_table(cells, layout, meaning, lines)
+    table, told_cut = leave_out_cut_row(table, lines, layout, meaning, path, skip_bad=skip_bad)
     _require_few_faults(table.faults, lines, layout, path, skip_bad=skip_bad)
     told = _account_for_rows(table, left_out, path)
     notes = [
         *layout.notes,
         *notes,
+        *told_units,
+        *told_cut,
         *told.notes,
         *require_in_area(told.points, told.rows, meaning, area, path),
         *find_odd_elevations(told.points),

@@ -1,28 +1,39 @@
 """Lines from survey codes (field to finish): what the field book marks becomes a line.
 
 A description begins with the code of what was shot and the number of the line, and may go on with
-a mark: ``EP1 BEG``, ``EP1``, ``EP 1 END``, ``BLDG2 CLS``. A note may follow, in quotes or behind a
-comma, ``/`` or ``;``. All shots with one code and number are one line, in the order of their point
-numbers; marks begin it, end it or close it to its first point, and a line that has been ended is
-followed by another one of the same name.
+marks: ``EP1 BEG``, ``EP1``, ``EP 1 END``, ``BLDG2 CLS``, ``EP1 PC``, and with further codes:
+``EP1 FL1``. A remark may follow, in quotes or behind a comma, ``/`` or ``;``. All shots with one
+code and number are one line, in the order of their point numbers; marks begin it, end it, bend it
+or close it to its first point, and a line that has been ended is followed by another one of the
+same name. Other ways to write this are styles: docs/field-codes.md has them.
 """
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, get_args
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._sentences import counted
 from ...errors import LinesError, OptionError
-from ...policies import BreaklineKind, LineRole
+from ...policies import BreaklineKind, CodeStyle, LineRole
 from ...tin import Breakline, Survey, Water
+from ...tin.validation.options import is_finite_number
+from .code_table import CodeTable, make_rules, read_code_table
+from .descriptions import Vocabulary
+from .detection import Reading, choose_reading, read_in_style
+from .figures import RINGS, Fault, Figure
+from .geometry import build_polyline
+from .remarks import describe_faults
+from .styles import MARKS, find_style
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    import os
+    from collections.abc import Callable, Iterable, Sequence
 
+    from numpy.typing import NDArray
 
 __all__ = ["MARKS", "RULES", "LineRole", "lines_from_codes"]
 
@@ -37,53 +48,58 @@ RULES: Mapping[str, LineRole] = {
 """Codes that make lines, and what these become. A building is a hard line: the ground around it
 stays one surface, for contours and volumes; who wants the footprint cut out says "hole"."""
 
-MARKS: Mapping[str, str] = {
-    **dict.fromkeys(("B", "BEG", "BEGIN", "ST", "START"), "begin"),
-    **dict.fromkeys(("E", "END"), "end"),
-    **dict.fromkeys(("C", "CLS", "CLO", "CLOSE"), "close"),
-}
-"""Marks behind a code, and what they mean."""
-
 _SHOWN = 5
-_CODE = re.compile(r"\s*(?P<code>[A-Z]+) ?(?P<number>\d*)(?![A-Z0-9])\s*(?P<rest>.*)", re.I | re.S)
-_NOTE = ('"', "'", ",", "/", ";", "(")
+_TOLERANCE_METRES = 0.01
+"""By which chords leave arcs where nobody says: below what a shot is worth."""
+
+_ALLOWED_TOLERANCE = "a length above 0, in units of the CRS"
 
 
-@dataclass
-class _Run:
-    """The rows of one line in the making."""
-
-    name: str
-    role: LineRole
-    rows: list[int]
-    is_closed: bool = False
-
-
-def lines_from_codes(survey: Survey, rules: Mapping[str, LineRole] | None = None) -> Survey:
+def lines_from_codes(
+    survey: Survey,
+    rules: Mapping[str, LineRole] | None = None,
+    *,
+    code_table: CodeTable | str | os.PathLike[str] | Mapping[str, Any] | None = None,
+    code_style: CodeStyle | None = None,
+    arc_tolerance: float | None = None,
+) -> Survey:
     """Make lines of the points whose descriptions begin with a line code.
 
     Parameters
     ----------
     survey : Survey
         With the attribute ``description``; ``number`` gives the order of the points, else the
-        rows do. The points stay as they are.
+        rows do.
     rules : mapping of str to str, optional
         Codes and what their lines become: ``hard``, ``soft``, ``boundary``, ``hole``, ``erase`` or
         ``water``. Default ``RULES``.
+    code_table : path-like or mapping, optional
+        A table of codes in TOML, or what one holds, instead of ``rules``: docs/field-codes.md.
+    code_style : str, optional
+        How codes are written: ``"words"``, ``"civil3d"``, ``"carlson"``, ...; default that of the
+        table, else the one that fits.
+    arc_tolerance : float, optional
+        By which the chords of a curve may leave it, CRS units; default that of the table, else
+        0.01 m (0.01 where the CRS has no unit).
 
     Returns
     -------
     Survey
-        With the lines added to its own. Water is level at the median of its points. ``notes``
-        names marks that are unknown, and are taken for a remark, and lines that are left out, of
-        one point or rings of fewer than three.
+        With the lines added to its own. Water is level at the median of its points. The points stay
+        as they are, but for those that a table excludes from the surface. ``findings`` has what is
+        odd, with the rows of the survey given, and ``notes`` counts it: marks that are unknown,
+        and are taken for a remark, lines of too few points, which are left out, curves that cannot
+        be, rings that are open.
 
     Raises
     ------
     LinesError
-        If there are no descriptions or no line codes.
+        If there are no descriptions or no line codes; if two styles are plausible and lead to
+        different lines; if a curve needs too many vertices, or lies in degrees.
     OptionError
-        If a rule gives a code another role.
+        If a rule gives a code another role, or an option has a value that it cannot have.
+    ReadError
+        If the table cannot be read, or has a key or value that it cannot have.
 
     Examples
     --------
@@ -97,88 +113,45 @@ def lines_from_codes(survey: Survey, rules: Mapping[str, LineRole] | None = None
     """
     if not isinstance(survey, Survey):
         raise OptionError("survey", survey, "a Survey")
-    roles = _require_rules(RULES if rules is None else rules)
-    found, notes = _follow_lines(survey, roles)
-    runs = [run for run in found if len(run.rows) >= _count_least(run)]
-    notes += _note_short_lines(survey, [run for run in found if len(run.rows) < _count_least(run)])
-    ponds = [_make_water(survey, run) for run in runs if run.role == "water"]
-    return replace(
-        survey,
-        breaklines=[
-            *survey.breaklines,
-            *(_make_breakline(survey, r) for r in _select_roles(runs, "hard", "soft")),
-        ],
-        boundary=[
-            *survey.boundary,
-            *(survey.points[r.rows] for r in _select_roles(runs, "boundary")),
-        ],
-        holes=[*survey.holes, *(survey.points[r.rows] for r in _select_roles(runs, "hole"))],
-        erase=[*survey.erase, *(survey.points[r.rows, :2] for r in _select_roles(runs, "erase"))],
-        water=[*survey.water, *ponds],
-        notes=[
-            *survey.notes,
-            *notes,
-            *(_note_water_level(survey, r) for r in _select_roles(runs, "water")),
-        ],
-    )
+    table = _choose_table(rules, code_table)
+    tolerance = _choose_tolerance(survey, table, arc_tolerance)
+    texts = _require_descriptions(survey)
+    order = _order_by_number(survey).tolist()
+    reading, notes = _read(order, texts, table, code_style, _namer(survey))
+    if not reading.figures and not _excludes(table, reading):
+        known = ", ".join(table.rules)
+        raise LinesError(f"No description begins with a line code: {known} are known.")
+    return _Builder(survey, table, reading, tolerance).build(order, texts, notes)
 
 
-def _require_rules(rules: Mapping[str, LineRole]) -> dict[str, LineRole]:
-    if not isinstance(rules, Mapping):
-        raise OptionError("rules", rules, "a mapping of codes to roles")
-    for code, role in rules.items():
-        if role not in get_args(LineRole):
-            roles = ", ".join(get_args(LineRole))
-            raise OptionError("rules", {code: role}, f"a role for each code, one of {roles}")
-    return {code.upper(): role for code, role in rules.items()}
+def _choose_table(
+    rules: Mapping[str, LineRole] | None, code_table: CodeTable | Any | None
+) -> CodeTable:
+    if code_table is None:
+        return CodeTable(make_rules(RULES if rules is None else rules), is_complete=False)
+    if rules is not None:
+        raise OptionError("rules", rules, "left out where there is a code_table")
+    return code_table if isinstance(code_table, CodeTable) else read_code_table(code_table)
 
 
-def _select_roles(runs: Iterable[_Run], *roles: LineRole) -> list[_Run]:
-    return [run for run in runs if run.role in roles]
+def _choose_tolerance(survey: Survey, table: CodeTable, given: float | None) -> float:
+    """Return the tolerance of arcs in units of the CRS."""
+    if given is not None:
+        if not is_finite_number(given) or given <= 0:
+            raise OptionError("arc_tolerance", given, _ALLOWED_TOLERANCE)
+        return float(given)
+    if table.arc_tolerance is not None:
+        return table.arc_tolerance
+    metres = None if survey.crs is None else survey.crs.horizontal_unit.metres
+    return _TOLERANCE_METRES / (metres or 1.0)
 
 
-# ------------------------------------------------------------------------- codes
-
-
-def _follow_lines(survey: Survey, roles: Mapping[str, LineRole]) -> tuple[list[_Run], list[str]]:
-    """Follow every line through the points, in the order of the first point of each.
-
-    Also say which marks are unknown.
-    """
-    runs: list[_Run] = []
-    running: dict[str, _Run] = {}
-    unknown: list[tuple[int, str]] = []
-    for row, name, role, mark in _iterate_coded(survey, roles):
-        meaning = MARKS.get(mark.upper(), "") if mark else ""
-        if mark and not meaning:
-            unknown.append((row, mark))
-        if name not in running or meaning == "begin":
-            running[name] = _Run(name, role, [])
-            runs.append(running[name])
-        running[name].rows.append(row)
-        if meaning in ("end", "close"):
-            running.pop(name).is_closed = meaning == "close"
-    if not runs:
-        raise LinesError(f"No description begins with a line code: {', '.join(roles)} are known.")
-    return runs, _mark_notes(survey, unknown)
-
-
-def _iterate_coded(
-    survey: Survey, roles: Mapping[str, LineRole]
-) -> Iterator[tuple[int, str, LineRole, str]]:
-    """Walk the points of lines: row, name of the line, role and mark."""
+def _require_descriptions(survey: Survey) -> list[str]:
     if "description" not in survey.attributes:
         raise LinesError(
             "The points have no descriptions to read codes from: a column 'description' is needed."
         )
-    descriptions = survey.attributes["description"].tolist()
-    for row in _order_by_number(survey).tolist():
-        found = _CODE.match(str(descriptions[row] or ""))
-        role = None if found is None else roles.get(found["code"].upper())
-        if found is not None and role is not None:
-            rest = found["rest"]
-            mark = "" if rest.startswith(_NOTE) else re.split(r"[\s,/;\"(]", rest, maxsplit=1)[0]
-            yield row, found["code"].upper() + found["number"], role, mark
+    return [str(one or "") for one in np.asarray(survey.attributes["description"]).tolist()]
 
 
 def _order_by_number(survey: Survey) -> NDArray[np.int64]:
@@ -188,61 +161,188 @@ def _order_by_number(survey: Survey) -> NDArray[np.int64]:
     return np.argsort(numbers, kind="stable")
 
 
-# --------------------------------------------------------------------- sentences
-
-
-def _name_point(survey: Survey, row: int) -> str:
+def _namer(survey: Survey) -> Callable[[int], str]:
+    """Return what names a row for a sentence."""
     numbers = survey.attributes.get("number")
-    return f"row {row}" if numbers is None else f"point {numbers[row]}"
+    return lambda row: f"row {row}" if numbers is None else f"point {numbers[row]}"
 
 
-def _mark_notes(survey: Survey, unknown: list[tuple[int, str]]) -> list[str]:
-    if not unknown:
-        return []
-    shown = ", ".join(f"'{mark}' at {_name_point(survey, row)}" for row, mark in unknown[:_SHOWN])
-    more = " ..." if len(unknown) > _SHOWN else ""
-    marks = "mark behind line codes is" if len(unknown) == 1 else "marks behind line codes are"
-    return [
-        f"{len(unknown)} unknown {marks} taken for remarks ({shown}{more}): "
-        f"{', '.join(MARKS)} are known; a remark stands in quotes or behind a comma, / or ;."
-    ]
+def _read(
+    order: Sequence[int],
+    texts: Sequence[str],
+    table: CodeTable,
+    style: CodeStyle | None,
+    name_row: Callable[[int], str],
+) -> tuple[Reading, list[str]]:
+    """Read the descriptions in the style named, that of the table, or the one that fits."""
+    rules = dict(table.rules)
+    named = table.style
+    if style is not None:
+        named = replace(find_style(style), is_exact=table.is_exact)
+    if named is not None:
+        return read_in_style(order, texts, rules, named), []
+    return choose_reading(order, texts, rules, name_row)
 
 
-def _note_short_lines(survey: Survey, short: list[_Run]) -> list[str]:
-    if not short:
-        return []
-    shown = ", ".join(
-        f"{run.name}: {', '.join(_name_point(survey, row) for row in run.rows)}"
-        for run in short[:_SHOWN]
-    )
-    more = " ..." if len(short) > _SHOWN else ""
-    have = "line is left out, which has" if len(short) == 1 else "lines are left out, which have"
-    return [
-        f"{len(short)} {have} too few points ({shown}{more}): a line needs two, a closed one three."
-    ]
-
-
-def _count_least(run: _Run) -> int:
-    return 3 if run.is_closed or run.role not in ("hard", "soft") else 2
-
-
-def _note_water_level(survey: Survey, run: _Run) -> str:
-    z = survey.points[run.rows, 2]
-    return (
-        f"Water {run.name} is level at {np.median(z):.3f}, the median of its {len(z)} points "
-        f"({z.min():.3f} to {z.max():.3f})."
+def _excludes(table: CodeTable, reading: Reading) -> bool:
+    """Whether any shot is excluded from the surface, so that a survey without lines has sense."""
+    return any(
+        table.rules[one.code].kind == "exclude" or "exclude" in one.marks
+        for description in reading.descriptions.values()
+        for one in description.codes
     )
 
 
 # ------------------------------------------------------------------------- lines
 
 
-def _make_breakline(survey: Survey, run: _Run) -> Breakline:
-    rows = [*run.rows, run.rows[0]] if run.is_closed else run.rows
-    kind: BreaklineKind = "soft" if run.role == "soft" else "hard"
-    return Breakline(survey.points[rows], kind=kind, name=run.name)
+class _Builder:
+    """Makes lines of figures, and collects what is odd."""
 
+    def __init__(
+        self, survey: Survey, table: CodeTable, reading: Reading, tolerance: float
+    ) -> None:
+        self.survey = survey
+        self.table = table
+        self.reading = reading
+        self.tolerance = tolerance
+        self.faults: list[Fault] = [
+            Fault("unknown mark", one.word, (one.row,)) for one in reading.unread
+        ]
+        short = [one for one in reading.figures if len(one.shots) < one.least]
+        self.faults += [Fault("too few points", one.name, tuple(one.rows)) for one in short]
+        self.faults += reading.faults
+        self.figures = [one for one in reading.figures if len(one.shots) >= one.least]
 
-def _make_water(survey: Survey, run: _Run) -> Water:
-    points = survey.points[run.rows]
-    return Water(points[:, :2], float(np.median(points[:, 2])), name=run.name)
+    def build(self, order: Sequence[int], texts: Sequence[str], notes: Sequence[str]) -> Survey:
+        """Return the survey with its lines."""
+        self._require_no_degrees()
+        lines = self._build_lines()
+        self._find_unknown_codes(order, texts)
+        survey = self.survey
+        words = self.reading.style.list_words()
+        told, findings = describe_faults(self.faults, _namer(survey), words)
+        made = replace(
+            survey,
+            breaklines=[*survey.breaklines, *(self._make_breakline(*one) for one in lines["line"])],
+            boundary=[*survey.boundary, *(ring for _, ring in lines["boundary"])],
+            holes=[*survey.holes, *(ring for _, ring in lines["hole"])],
+            erase=[*survey.erase, *(ring[:, :2] for _, ring in lines["erase"])],
+            water=[*survey.water, *(self._make_water(*one) for one in lines["water"])],
+            notes=[
+                *survey.notes,
+                *notes,
+                *told,
+                *self._note_curves(),
+                *(self._note_water_level(figure) for figure, _ in lines["water"]),
+            ],
+            findings=[*survey.findings, *findings],
+        )
+        return self._exclude(made, texts)
+
+    def _require_no_degrees(self) -> None:
+        crs = self.survey.crs
+        bent = ("begin_curve", "begin_tangent_curve", "toggle_curve")
+        has_curves = any(
+            meaning in bent for one in self.figures for shot in one.shots for meaning in shot.marks
+        )
+        if crs is not None and crs.is_geographic and has_curves:
+            raise LinesError(f"Curves need a projected CRS: {crs.label} measures in degrees.")
+
+    def _build_lines(self) -> dict[str, list[tuple[Figure, NDArray[np.float64]]]]:
+        """Return figures and their vertices, by what they become."""
+        found: dict[str, list[tuple[Figure, NDArray[np.float64]]]] = {
+            kind: [] for kind in ("line", *RINGS)
+        }
+        for figure in self.figures:
+            tolerance = figure.rule.arc_tolerance or self.tolerance
+            vertices = build_polyline(figure, self.survey.points, tolerance, self.faults.append)
+            if len(vertices) < figure.least:
+                self.faults.append(Fault("too few points", figure.name, tuple(figure.rows)))
+                continue
+            self._find_doubts(figure, vertices)
+            kind = figure.rule.kind
+            found[kind if kind in RINGS else "line"].append((figure, vertices))
+        return found
+
+    def _find_doubts(self, figure: Figure, vertices: NDArray[np.float64]) -> None:
+        """Tell of rings that no mark closes, and of contours that are not level."""
+        rows = tuple(figure.rows)
+        ends = (rows[0], rows[-1])
+        is_back = (self.survey.points[rows[0], :2] == self.survey.points[rows[-1], :2]).all()
+        is_shut = figure.is_closed or figure.is_rectangle or is_back
+        if figure.is_ring and not is_shut:
+            self.faults.append(Fault("open figure", figure.name, ends))
+        elif figure.rule.kind == "building" and not is_shut:
+            self.faults.append(Fault("open building", figure.name, ends))
+        if figure.rule.kind == "contour" and np.ptp(vertices[:, 2]) > 0:
+            self.faults.append(Fault("contour that is not level", figure.name, rows))
+
+    def _find_unknown_codes(self, order: Iterable[int], texts: Sequence[str]) -> None:
+        if not self.table.is_complete:
+            return
+        unknown: dict[str, list[int]] = {}
+        split = Vocabulary(self.table.rules.keys(), self.reading.style).find_first_word
+        for row in order:
+            if texts[row] not in self.reading.descriptions and (first := split(texts[row])):
+                unknown.setdefault(first.rstrip("0123456789"), []).append(row)
+        self.faults += [
+            Fault("unknown code", code or "a number", tuple(rows)) for code, rows in unknown.items()
+        ]
+
+    def _make_breakline(self, figure: Figure, vertices: NDArray[np.float64]) -> Breakline:
+        is_closed = figure.is_closed or figure.rule.is_closed or figure.is_rectangle
+        if is_closed and (vertices[0] != vertices[-1]).any():
+            vertices = np.vstack([vertices, vertices[:1]])
+        kind: BreaklineKind = "soft" if figure.rule.kind in ("soft", "contour") else "hard"
+        return Breakline(vertices, kind=kind, name=figure.name)
+
+    def _make_water(self, figure: Figure, ring: NDArray[np.float64]) -> Water:
+        level = float(np.median(self.survey.points[figure.rows, 2]))
+        return Water(ring[:, :2], level, name=figure.name)
+
+    def _note_curves(self) -> list[str]:
+        """Say that vertices which nobody shot stand for curves."""
+        bent = [one for one in self.figures if one.n_added]
+        if not bent:
+            return []
+        added = sum(one.n_added for one in bent)
+        names = ", ".join(dict.fromkeys(one.name for one in bent[:_SHOWN]))
+        more = " ..." if len(bent) > _SHOWN else ""
+        keeps = sorted({one.rule.arc_tolerance or self.tolerance for one in bent})
+        within = " or ".join(f"{one:.4g}" for one in keeps[:3])
+        verb = "vertex stands" if added == 1 else "vertices stand"
+        return [
+            f"{added:,} {verb} for the curves of {names}{more}, whose chords keep within {within} "
+            "of them; their elevations change evenly from shot to shot."
+        ]
+
+    def _note_water_level(self, figure: Figure) -> str:
+        z = self.survey.points[figure.rows, 2]
+        return (
+            f"Water {figure.name} is level at {np.median(z):.3f}, the median of its "
+            f"{counted(len(z), 'point')} ({z.min():.3f} to {z.max():.3f})."
+        )
+
+    def _exclude(self, survey: Survey, texts: Sequence[str]) -> Survey:
+        """Leave out the points that are not for the surface, unless a line goes through them."""
+        out = {text for text in self.reading.descriptions if self._is_excluded(text)}
+        is_out = np.array([bool(out) and text in out for text in texts], np.bool_)
+        if not is_out.any():
+            return survey
+        kept = ~is_out
+        what = "points not for the surface"
+        attributes = {name: np.asarray(v)[kept] for name, v in survey.attributes.items()}
+        return replace(
+            survey,
+            points=survey.points[kept],
+            attributes=attributes,
+            skipped={**survey.skipped, what: int(is_out.sum())},
+        )
+
+    def _is_excluded(self, text: str) -> bool:
+        codes = self.reading.descriptions[text].codes
+        if not codes:
+            return False
+        rules = self.table.rules
+        return all(rules[one.code].kind == "exclude" or "exclude" in one.marks for one in codes)

@@ -49,6 +49,7 @@ _ENVIRONMENT = {
     "GDAL_HTTP_TIMEOUT": "1",
     "GDAL_HTTP_MAX_RETRY": "0",
     "PROJ_NETWORK": "OFF",
+    "AAIGRID_DATATYPE": "Float64",  # else numbers of text grids have seven digits
     "GDAL_VRT_ENABLE_PYTHON": "NO",
     "GDAL_VRT_ENABLE_RAWRASTERBAND": "NO",
     "GML_DOWNLOAD_SCHEMA": "NO",

@@ -14,7 +14,7 @@ from ...errors import ReadError, TinsmithError
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["describe_system_error", "open_ordinary_file", "spool"]
+__all__ = ["describe_system_error", "open_ordinary_file", "rename_in_error", "spool"]
 
 _CHUNK = 1 << 20
 
@@ -70,7 +70,7 @@ def spool(stream: IO[bytes], path: Path) -> Iterator[Path]:
         try:
             yield copy
         except TinsmithError as error:
-            _rename(error, copy, path)
+            rename_in_error(error, copy, path)
             raise
 
 
@@ -103,10 +103,11 @@ def _translate_errors(path: Path) -> Iterator[None]:
         raise describe_system_error(path, error) from error
 
 
-def _rename(error: TinsmithError, copy: Path, path: Path) -> None:
+def rename_in_error(error: TinsmithError, copy: Path, path: Path) -> None:
     """Let an error about the copy speak of the original."""
     if error.args and isinstance(error.args[0], str):
-        text = error.args[0].replace(str(copy), str(path)).replace(copy.name, path.name)
+        parts = error.args[0].split(str(copy))  # the new name may hold the old one
+        text = str(path).join(part.replace(copy.name, path.name) for part in parts)
         error.args = (text, *error.args[1:])
     if getattr(error, "path", None) == copy:
         error.path = path  # type: ignore[attr-defined]

@@ -31,4 +31,13 @@ FORMATS = (
     ),
     _make("geotiff", "GeoTIFF", "write"),
     _make("cog", "Cloud optimized GeoTIFF", "write_cog"),
+    Format(
+        name="asc",
+        description="Esri ASCII grid, one band as text",
+        suffixes=(".asc",),
+        write="tinsmith.io.raster.ascii_grid:write",
+        writes=("Raster",),
+        precision="Every number is the same double.",
+        losses="Units and notes; all bands but one.",
+    ),
 )

@@ -34,7 +34,7 @@ __all__ = [
     "list_suffixes",
 ]
 
-_FAMILIES = ("delimited", "raster", "mesh", "vector", "cad", "tables", "lidar")
+_FAMILIES = ("delimited", "field_survey", "raster", "mesh", "vector", "cad", "tables", "lidar")
 """Packages of ``tinsmith.io`` with a module ``formats``, in the order in which they are asked."""
 
 _ONE = {

@@ -15,7 +15,9 @@ __all__ = [
     "is_raster",
     "is_stl",
     "is_tin_geopackage",
+    "is_ugrid",
     "is_vtk_xml",
+    "skip_prologue",
 ]
 
 HEAD_BYTES = 65536
@@ -56,7 +58,6 @@ _FOREIGN_STARTS = {
     b"%PDF": "a PDF document",
     b"SQLite format 3": "an SQLite database (such as a GeoPackage)",
     b"\xd0\xcf\x11\xe0": "an old Office document (such as .xls)",
-    b"\x00\x00\x27\x0a": "a shapefile",
     b"AC10": "a DWG drawing",
     b"{\\rtf": "an RTF document",
 }
@@ -77,7 +78,14 @@ _FOREIGN_TEXTS = (
 
 def is_raster(head: bytes) -> bool:
     """Whether the file is certainly a raster: a binary signature or the header of a text grid."""
+    if is_ugrid(head):
+        return False
     return head.startswith(_RASTER_STARTS) or _GRID_HEADER.match(head) is not None
+
+
+def is_ugrid(head: bytes) -> bool:
+    """Whether the file is a UGRID mesh: netCDF that speaks of the topology of a mesh."""
+    return head.startswith((b"CDF", b"\x89HDF")) and b"mesh_topology" in head
 
 
 def is_ply(head: bytes) -> bool:
@@ -124,17 +132,17 @@ def find_foreign_kind(head: bytes) -> str | None:
     for start, kind in _FOREIGN_STARTS.items():
         if head.startswith(start):
             return kind
-    content = _skip_prologue(head)
+    content = skip_prologue(head)
     return next((kind for pattern, kind in _FOREIGN_TEXTS if pattern.match(content)), None)
 
 
 def find_reference_kind(head: bytes) -> str | None:
     """Name a text that tells where data are instead of holding them; None if it is no such."""
-    content = _skip_prologue(head)
+    content = skip_prologue(head)
     return next((kind for pattern, kind in _REFERENCES if pattern.match(content)), None)
 
 
-def _skip_prologue(head: bytes) -> bytes:
+def skip_prologue(head: bytes) -> bytes:
     """Skip the byte order mark, the declaration and the comments before the content of a text."""
     rest = head.removeprefix(b"\xef\xbb\xbf").lstrip()
     while found := next((mark for mark in _PROLOGUE if rest.startswith(mark[0])), None):

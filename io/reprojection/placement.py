@@ -17,9 +17,13 @@ if TYPE_CHECKING:
 
     from ...crs import CRS, Unit
 
-__all__ = ["Placed", "place", "settle_unit"]
+__all__ = ["DegreesError", "Placed", "place", "settle_unit"]
 
 _WGS84 = "EPSG:4326"
+
+
+class DegreesError(ReadError):
+    """The points would be in degrees, as no other CRS was asked for."""
 
 
 class Placed(NamedTuple):
@@ -76,10 +80,10 @@ def place(
     if source is None or wanted is None or source.is_same(wanted):
         return _keep_in_place(points, wanted, unit)
     try:
-        moved, known, note = reproject(points, source, wanted, unit=unit)
+        moved = reproject(points, source, wanted, unit=unit)
     except CrsError as error:
         raise CrsError(f"'{path}': {error}", crs=wanted) from error
-    return Placed(moved, wanted, known, () if note is None else (note,))
+    return Placed(moved.points, wanted, moved.unit, moved.notes)
 
 
 def _keep_in_place(points: NDArray[np.float64], crs: CRS | None, unit: Unit | None) -> Placed:
@@ -107,7 +111,7 @@ def settle_unit(declared: Unit | None, found: Unit | None, path: Path) -> Unit |
 def _refuse_degrees(points: NDArray[np.float64], wanted: CRS, source: CRS, path: Path) -> NoReturn:
     suggestion = _suggest_zone(points, source)
     fitting = f"crs='{suggestion}'" if suggestion else "the option crs"
-    raise ReadError(
+    raise DegreesError(
         f"'{path}': {wanted.label} measures in degrees, and a TIN needs a projected CRS: "
         f"give {fitting} to reproject from longitude and latitude.",
         path=path,

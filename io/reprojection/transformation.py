@@ -13,6 +13,7 @@ from ..._sentences import counted
 from ...crs import CRS, METRE, UNKNOWN, Unit, assume_elevation_unit
 from ...errors import CrsError
 from ...tin.validation.points import as_points
+from .quality import Quality, describe_missing_grids, judge
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -46,11 +47,19 @@ class Reprojected(NamedTuple):
         Of their elevations; None if it is still not known.
     note : str or None
         What was done to the elevations, in a sentence; None if nothing.
+    quality : Quality
+        What the transformation leaves undone.
     """
 
     points: NDArray[np.float64]
     unit: Unit | None
     note: str | None
+    quality: Quality = Quality()
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """All that is to be told, in sentences."""
+        return tuple(one for one in (self.quality.note, self.note) if one)
 
 
 def is_geographic(crs: CrsLike | None) -> bool:
@@ -117,6 +126,7 @@ def reproject(
     *,
     unit: Unit | None,
     wanted: Unit | None = None,
+    needs_datum: bool = True,
 ) -> Reprojected:
     """Transform points, and convert their elevations where the unit changes.
 
@@ -129,11 +139,15 @@ def reproject(
     wanted : Unit, optional
         Unit that they are to have; default the usual one of the target: feet in a CRS in feet,
         metres in one in metres or degrees. A vertical axis of the target goes before it.
+    needs_datum : bool
+        Refuse to change the vertical axis where PROJ lacks the grid for it; else elevations keep
+        their datum, and ``quality`` says so.
 
     Raises
     ------
     CrsError
-        If no transformation exists, or a point lies outside its domain.
+        If no transformation exists, a point lies outside its domain, or elevations cannot be
+        brought to the vertical datum of the target.
 
     Notes
     -----
@@ -146,15 +160,28 @@ def reproject(
     wanted = target.vertical_unit or wanted or target.usual_elevation_unit or had
     if source.vertical_unit is not None and target.vertical_unit is not None:
         points = _scale_elevations(points, known, source.vertical_unit)
-        moved = _transform(points, source, target)
+        moved, quality = _transform(points, source, target)
+        if quality.keeps_datum and needs_datum:
+            raise _describe_missing_datum(source, target)
     else:
         # In the plane alone: PROJ would let the elevation, whatever its unit, move the place.
-        xy = _transform(points[:, :2], source.horizontal, target.horizontal)
+        xy, quality = _transform(points[:, :2], source.horizontal, target.horizontal)
         moved = np.column_stack([xy, points[:, 2]])
         moved = _scale_elevations(moved, had, wanted)
     is_known = known is not None or target.vertical_unit is not None
     note = _note_conversion(source, target, known, wanted)
-    return Reprojected(np.ascontiguousarray(moved), wanted if is_known else None, note)
+    found = np.ascontiguousarray(moved)
+    return Reprojected(found, wanted if is_known else None, note, quality)
+
+
+def _describe_missing_datum(source: CRS, target: CRS) -> CrsError:
+    grids = describe_missing_grids(source, target)
+    return CrsError(
+        f"Elevations cannot be brought from {source.label} to {target.label}: PROJ has no grid for "
+        f"the change of the vertical datum{grids}; name the horizontal part of the CRS alone to "
+        "keep the datum.",
+        crs=target,
+    )
 
 
 def convert_elevations(
@@ -194,7 +221,9 @@ def _note_conversion(
     )
 
 
-def _transform(points: NDArray[np.float64], source: CRS, target: CRS) -> NDArray[np.float64]:
+def _transform(
+    points: NDArray[np.float64], source: CRS, target: CRS
+) -> tuple[NDArray[np.float64], Quality]:
     import pyproj
     from pyproj.exceptions import ProjError
 
@@ -207,7 +236,7 @@ def _transform(points: NDArray[np.float64], source: CRS, target: CRS) -> NDArray
     except ProjError as error:
         raise CrsError(f"No transformation {names} is known.", crs=target) from error
     _require_images(points, moved, names, target)
-    return moved
+    return moved, judge(source, target, transformer) if len(points) else Quality()
 
 
 def _require_images(

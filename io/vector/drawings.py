@@ -4,22 +4,21 @@ from __future__ import annotations
 
 import sqlite3
 from contextlib import closing
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..._sentences import counted
 from ...errors import OptionError, ReadError
 from ..cad.dxf.drawing import Drawing, read_drawing
+from .layers import Features
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from numpy.typing import NDArray
 
-    from ...crs import CRS
-
-__all__ = ["DrawnFeatures", "read_drawing_features"]
+__all__ = ["read_drawing_features"]
 
 _WHOLE = "entities"
 """What GDAL calls the one layer that it takes a drawing for."""
@@ -27,19 +26,9 @@ _WHOLE = "entities"
 _MOST_STEPS = 1_000_000
 
 
-class DrawnFeatures(NamedTuple):
-    """Features of a drawing, as of another layer: numbers, geometries, columns, CRS, notes."""
-
-    numbers: NDArray[np.int64]
-    geometries: NDArray[np.object_]
-    columns: dict[str, NDArray[Any]]
-    crs: CRS | None
-    notes: tuple[str, ...]
-
-
 def read_drawing_features(
     path: Path, *, layer: str | None, where: str | None, lines_only: bool
-) -> DrawnFeatures:
+) -> Features:
     """Read the lines of a drawing, and its points unless they are not wanted.
 
     Parameters
@@ -53,7 +42,7 @@ def read_drawing_features(
 
     Returns
     -------
-    DrawnFeatures
+    Features
         With these columns; lines of plane entities without elevation have none.
 
     Raises
@@ -75,7 +64,8 @@ def read_drawing_features(
     if len(kept) == 0:
         part = f" where {where}" if where is not None else " that are lines" * lines_only
         raise ReadError(f"'{path}' has no features{part}.", path=path)
-    return DrawnFeatures(
+    return Features(
+        path,
         kept,
         shapes[kept],
         {name: column[kept] for name, column in columns.items()},

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import struct
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,6 +18,9 @@ from ..isolated.local_files import require_local
 from ..isolated.spooling import describe_system_error, open_ordinary_file
 from ..registry.signatures import HEAD_BYTES, find_reference_kind
 from .drawings import read_drawing_features
+from .geojson.members import read_json_members
+from .layers import Features
+from .signatures import is_parquet
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -30,36 +33,8 @@ _FOLDERS = (".gdb",)
 """Suffixes of formats that are folders."""
 
 _DRAWING = ".dxf"
+_PARQUET = (".parquet", ".geoparquet")
 _SHAPEFILE = b"\x00\x00\x27\x0a"
-
-
-class Features(NamedTuple):
-    """What a layer holds.
-
-    Attributes
-    ----------
-    path : Path
-    numbers : (n,) int64 array
-        Feature numbers as GDAL counts them.
-    geometries : (n,) object array
-        Shapely geometries, none of them missing or empty.
-    columns : dict of str to (n,) array
-        By their names in lower case.
-    crs : CRS or None
-    notes : tuple of str
-        What was left out.
-    """
-
-    path: Path
-    numbers: NDArray[np.int64]
-    geometries: NDArray[np.object_]
-    columns: dict[str, NDArray[Any]]
-    crs: CRS | None
-    notes: tuple[str, ...]
-
-    def label(self, row: int) -> str:
-        """Return what a feature is called in sentences."""
-        return f"'{self.path}': feature {self.numbers[row]}"
 
 
 def read_features(
@@ -94,14 +69,18 @@ def read_features(
 
 
 def _read_layer(path: Path, layer: str | None, where: str | None, *, lines_only: bool) -> Features:
-    if path.suffix.lower() != _DRAWING:
+    if path.suffix.lower() not in (*_PARQUET, _DRAWING):
         _optional.require("pyogrio", "Reading vector files")
-    if _require_whole_file(path):
-        found = read_drawing_features(path, layer=layer, where=where, lines_only=lines_only)
-        return Features(path, *found)
+    content = _require_whole_file(path)
+    if is_dxf(content) or path.suffix.lower() == _DRAWING:
+        return read_drawing_features(path, layer=layer, where=where, lines_only=lines_only)
+    library = "pyarrow" if is_parquet(content) else "pyogrio"
+    _optional.require(library, "Reading vector files")
+    head = read_json_members(content, path)
     where_it_is = {"path": os.path.abspath(path), "shown": str(path)}  # noqa: PTH100 - links stay
+    child = "parquet_child" if is_parquet(content) else "gdal_child"
     value, arrays = run_isolated(
-        f"{__package__}.gdal_child:read_features",
+        f"{__package__}.{child}:read_features",
         {**where_it_is, "layer": layer, "where": where},
         path=path,
         limits=choose_limits(_measure_folder(path)),
@@ -110,14 +89,19 @@ def _read_layer(path: Path, layer: str | None, where: str | None, *, lines_only:
         raise ReadError(
             f"'{path}' has no features{_describe_part(value['layer'], where)}.", path=path
         )
+    crs = None if head.names_no_crs else _find_file_crs(value["crs"], path)
+    in_metres = head.is_json and crs is not None and crs.is_geographic  # by RFC 7946
+    unit = value["elevation_unit"] or head.elevation_unit or ("metre" if in_metres else "")
     return _drop_without_geometry(
         Features(
             path,
             arrays["numbers"],
             _parse_shapes(arrays, path),
             _decode_columns(value, arrays),
-            _find_file_crs(value["crs"], path),
+            crs,
             (),
+            tuple(value["names"]),
+            unit,
         )
     )
 
@@ -148,18 +132,12 @@ def _measure_folder(path: Path) -> int:
     return sum(file.stat().st_size for file in path.iterdir() if file.is_file())
 
 
-def _require_whole_file(path: Path) -> bool:
-    """Refuse a file that is missing, empty, or a shapefile shorter than it says.
-
-    Returns
-    -------
-    bool
-        Whether it is a drawing.
-    """
+def _require_whole_file(path: Path) -> bytes:
+    """Return the first bytes; refuse a file that is missing, empty, or a shapefile cut short."""
     try:
         if path.is_dir():
             if path.suffix.lower() in _FOLDERS:
-                return False
+                return b""
             raise ReadError(f"'{path}' is a folder: name a file in it.", path=path)
         size = path.stat().st_size
         with path.open("rb") as file:
@@ -179,7 +157,7 @@ def _require_whole_file(path: Path) -> bool:
             raise ReadError(
                 f"'{path}' is cut short: it has {size} of {2 * words} bytes.", path=path
             )
-    return is_dxf(head) or path.suffix.lower() == _DRAWING
+    return head
 
 
 def _describe_part(layer: str, where: str | None) -> str:

@@ -15,15 +15,29 @@ if TYPE_CHECKING:
 __all__ = ["write"]
 
 
-def write(features: Features, path: Path) -> None:
+def write(features: Features, path: Path, *, has_index: bool = True) -> None:
     """Write features as FlatGeobuf, named after the product.
 
-    Parameters and errors are those of every writer, see :class:`.Format`.
+    Parameters
+    ----------
+    features : Features
+    path : Path
+    has_index : bool
+        Whether it gets a spatial index, which gives features another order.
+
+    Raises
+    ------
+    MissingExtraError
+        If pyogrio is not installed.
+    WriteError
+        If the file cannot be written.
 
     Notes
     -----
-    Coordinates and numbers are the same float64. Features stand in the order of the spatial index,
-    not in their own. Units of columns and of elevations, and notes, are metadata of the layer.
+    Coordinates and numbers are the same float64. Features stand in the order of the spatial index
+    if there is one, else in their own. Units of columns and of elevations, and notes, are metadata
+    of the layer.
     """
+    how = {} if has_index else {"SPATIAL_INDEX": "NO"}
     with replacing_files(path) as new:
-        write_layer(features, new, path, driver="FlatGeobuf", metadata=describe(features))
+        write_layer(features, new, path, driver="FlatGeobuf", metadata=describe(features), **how)

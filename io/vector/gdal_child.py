@@ -11,7 +11,14 @@ import numpy as np
 from ..isolated import Answer, Refusal
 from ..isolated.gdal import REFERRING_DRIVERS, VECTOR_DRIVERS, make_environment
 
-__all__ = ["ENVIRONMENT", "prepare", "read_features"]
+__all__ = [
+    "ENVIRONMENT",
+    "convert_to_texts",
+    "is_numeric",
+    "pack_geometries",
+    "prepare",
+    "read_features",
+]
 
 ENVIRONMENT = make_environment()
 
@@ -47,10 +54,12 @@ def read_features(path: str, shown: str, *, layer: str | None, where: str | None
     Returns
     -------
     Answer
-        The value holds ``layer``, ``crs``, ``names`` of the columns, and ``texts``, the columns
-        that are no numbers, by their place. The arrays hold ``numbers`` of the features, ``wkb``
-        of all geometries, ``lengths`` of each (-1 where there is none), and ``column 0`` ...
+        The value holds ``layer``, ``crs``, ``elevation_unit`` if the layer tells it, ``names`` of
+        the columns, and ``texts``, the columns that are no numbers, by their place. The arrays hold
+        ``numbers`` of the features, ``wkb`` of all geometries, ``lengths`` of each (-1 where there
+        is none), and ``column 0`` ...
     """
+    import pyogrio
     from pyogrio import raw
     from pyogrio.errors import DataSourceError
 
@@ -61,20 +70,21 @@ def read_features(path: str, shown: str, *, layer: str | None, where: str | None
             meta, numbers, geometries, values = raw.read(
                 path, layer=chosen, where=where, return_fids=True
             )
+            metadata = pyogrio.read_info(path, layer=chosen)["layer_metadata"] or {}
     except (RuntimeError, ValueError, IndexError) as error:
         if isinstance(error, DataSourceError) and "not recognized" in str(error):
             raise Refusal(f"'{shown}' is no vector file that GDAL knows.") from error
         raise RuntimeError(_shorten_reason(error)) from error
-    arrays = {"numbers": np.asarray(numbers, np.int64), **_pack_geometries(geometries)}
-    arrays |= {f"column {k}": column for k, column in enumerate(values) if _is_numeric(column)}
+    arrays = {"numbers": np.asarray(numbers, np.int64), **pack_geometries(geometries)}
+    arrays |= {f"column {k}": column for k, column in enumerate(values) if is_numeric(column)}
     texts = {
-        str(k): _convert_to_texts(column)
+        str(k): convert_to_texts(column)
         for k, column in enumerate(values)
-        if not _is_numeric(column)
+        if not is_numeric(column)
     }
     names = [str(name) for name in meta["fields"]]
     value = {"layer": chosen, "crs": meta["crs"], "names": names, "texts": texts}
-    return Answer(value, arrays)
+    return Answer(value | {"elevation_unit": metadata.get("elevation_unit")}, arrays)
 
 
 def _choose_layer(path: str, shown: str, layer: str | None) -> str:
@@ -100,7 +110,8 @@ def _shorten_reason(error: Exception) -> str:
     return _GDAL_SOURCE.sub("", text).rstrip(".") or type(error).__name__
 
 
-def _pack_geometries(geometries: Any) -> dict[str, Any]:
+def pack_geometries(geometries: Any) -> dict[str, Any]:
+    """Return well-known binary one after the other, and the length of each, -1 for none."""
     lengths = [-1 if one is None else len(one) for one in geometries]
     wkb = b"".join(one for one in geometries if one is not None)
     return {
@@ -109,10 +120,11 @@ def _pack_geometries(geometries: Any) -> dict[str, Any]:
     }
 
 
-def _is_numeric(column: Any) -> bool:
+def is_numeric(column: Any) -> bool:
+    """Whether a column holds numbers or truth values."""
     return np.asarray(column).dtype.kind in "biuf"
 
 
-def _convert_to_texts(column: Any) -> list[str | None]:
+def convert_to_texts(column: Any) -> list[str | None]:
     """Return values as text: dates, lists and bytes have no other use here."""
     return [None if value is None or value != value else str(value) for value in column.tolist()]

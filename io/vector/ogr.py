@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from ...terrain.results import Features
 
-__all__ = ["describe", "require_int64", "write_layer"]
+__all__ = ["describe", "encode_geometries", "require_int64", "write_layer"]
 
 _NO_CLOCK = "1970-01-01T00:00:00Z"
 """Time that GDAL writes as the present one, so that the same features give the same bytes."""
@@ -69,7 +69,7 @@ def write_layer(
     with _faults_as_sentences(shown), _without_clock():
         pyogrio.raw.write(
             os.fspath(path),
-            _well_known_binary(features),
+            encode_geometries(features),
             columns,
             list(features.columns) if names is None else list(names),
             field_mask=[_missing(values) for values in columns],
@@ -125,7 +125,8 @@ def require_int64(name: str, values: NDArray[Any], path: Path) -> None:
         )
 
 
-def _well_known_binary(features: Features) -> NDArray[np.object_]:
+def encode_geometries(features: Features) -> NDArray[np.object_]:
+    """Return geometries as well-known binary of the ISO kind."""
     import shapely
 
     dimension = 3 if features.has_elevations else 2

@@ -9,6 +9,8 @@ from typing import Literal, TypeAlias
 
 __all__ = [
     "BreaklineKind",
+    "CodeKind",
+    "CodeStyle",
     "CrossingPolicy",
     "CurvatureKind",
     "DistanceRule",
@@ -48,6 +50,36 @@ LineKind: TypeAlias = Literal["hard", "soft", "boundary", "hole", "water"]
 
 LineRole: TypeAlias = Literal["hard", "soft", "boundary", "hole", "erase", "water"]
 """What the line of a survey code becomes."""
+
+CodeKind: TypeAlias = Literal[
+    "hard",
+    "soft",
+    "boundary",
+    "hole",
+    "erase",
+    "water",
+    "building",
+    "contour",
+    "point",
+    "exclude",
+]
+"""What a table of codes says of a code: the line that it makes, or none; "exclude" points are not
+for the surface."""
+
+CodeStyle: TypeAlias = Literal[
+    "words",
+    "dash",
+    "slash",
+    "dot",
+    "star",
+    "star-end",
+    "civil3d",
+    "carlson",
+    "trimble",
+    "leica",
+    "cg",
+]
+"""How field codes are written."""
 
 LineReading: TypeAlias = Literal["points", "breaklines"]
 """What the lines of a file of points are taken for: their vertices, or lines of the surface."""

@@ -163,11 +163,7 @@ def _between(
 
 
 def _areas(pieces: Pieces, count: int) -> NDArray[np.float64]:
-    flat = np.zeros(len(pieces.surface.points))
-    sums = _kernel.sum_heights(
-        pieces.surface.points, pieces.surface.triangles, flat, pieces.groups, count, 1.0
-    )
-    return sums[:, 0]
+    return _kernel.sum_areas(pieces.surface.points, pieces.surface.triangles, pieces.groups, count)
 
 
 def _less(whole: NDArray[np.float64], part: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -9,6 +9,7 @@ from typing import get_args
 import click
 import numpy as np
 import pytest
+from click.testing import CliRunner
 from support.commands import run_command as run
 
 import tinsmith as ts
@@ -411,3 +412,32 @@ def test_sizes_of_files_for_people(tmp_path, size, words):
     with path.open("wb") as file:
         file.truncate(size)
     assert describe_file_size(path) == words
+
+
+# ------------------------------------------------------------------ another CRS
+
+
+def test_to_crs_reprojects_what_was_read(tmp_path):
+    path = tmp_path / "points.csv"
+    path.write_text("x,y,z\n751428,4020862,1032\n751438,4020862,1031\n751428,4020872,1030\n")
+    invoke = CliRunner().invoke
+    out = str(tmp_path / "out.ply")
+    done = invoke(main, ["build", str(path), "--crs", "EPSG:32616", "--to-crs", "32617", "-o", out])
+    assert done.exit_code == 0, done.output
+    tin = ts.read(out)
+    assert tin.crs == "EPSG:32617"
+    expected = ts.transform_points(ts.read(path).points, "EPSG:32616", "EPSG:32617")
+    assert np.abs(tin.points - expected).max() < 1e-6
+    done = invoke(main, ["build", str(path), "--to-crs", "EPSG:32617", "-o", out])
+    assert done.exit_code == 1
+    assert "not known" in done.output
+
+
+def test_to_crs_takes_degrees(tmp_path):
+    path = tmp_path / "degrees.csv"
+    path.write_text("lon,lat,z\n-84.2,36.4,300\n-84.21,36.4,301\n-84.2,36.41,302\n")
+    out = str(tmp_path / "out.ply")
+    given = ["build", str(path), "--crs", "EPSG:4326", "--to-crs", "EPSG:32616", "-o", out]
+    assert CliRunner().invoke(main, given).exit_code == 0
+    expected = ts.transform_points([[-84.2, 36.4, 300.0]], "EPSG:4326", "EPSG:32616")
+    assert ts.read(out).points[0] == pytest.approx(expected[0])

@@ -85,6 +85,9 @@ def test_every_option_of_triangulate_has_its_own():
         "lines_z_unit",
         "drape",
         "codes",
+        "code_table",
+        "code_style",
+        "arc_tolerance",
     }
     defaults = {
         name: inspect.signature(ts.triangulate).parameters[name].default

@@ -16,10 +16,12 @@ from tinsmith.io import read_lines
 from tinsmith.io.isolated import limits
 
 from .campaign import Campaign
+from .mesh_samples import MESH_MAKERS, TILE
 from .samples import MEMORY, sample_files
 
 KINDS = (
-    *("ply", "obj", "stl", "vtk", "gmsh", "raster", "vectors", "delimited", "tin"),
+    *("ply", "obj", "stl", "vtk", "gmsh", "raster", "vectors", "delimited", "tin", "instruments"),
+    *MESH_MAKERS,
     *("landxml", "dxf"),
 )
 
@@ -150,10 +152,10 @@ def examine(case: dict[str, Any]) -> str:
     content = damaged(dict(sample_files(case["kind"]))[case["name"]], case["damages"])
     with tempfile.TemporaryDirectory(dir=MEMORY) as folder, warnings.catch_warnings():
         warnings.simplefilter("error")
-        path = Path(folder, case["name"])
-        path.write_bytes(content)
+        path = _put(Path(folder), case["kind"], case["name"], content)
+        options = {"tile": TILE} if case["kind"] == "terrain" else {}
         try:
-            found = _read(path, case["kind"])
+            found = _read(path, case["kind"], **options)
         except ts.TinsmithError as error:
             require_sentence(str(error), path)
             return f"refused: {'crashed' if 'crashed' in str(error) else type(error).__name__}"
@@ -161,12 +163,24 @@ def examine(case: dict[str, Any]) -> str:
     return "read"
 
 
-def _read(path: Path, kind: str) -> Any:
+def _read(path: Path, kind: str, **options: Any) -> Any:
     if kind == "vectors":
         return read_lines(path)
     if kind == "landxml" and "source" in path.name:
         return ts.read(path, content="source")
-    return ts.read(path)
+    return ts.read(path, **options)
+
+
+def _put(folder: Path, kind: str, name: str, content: bytes) -> Path:
+    """Write a file, and those that lie in its folder; return what to read."""
+    path = folder / name
+    path.parent.mkdir(exist_ok=True)
+    if kind == "esritin":
+        for other, sound in sample_files(kind):
+            if other.startswith(f"{path.parent.name}/"):
+                (folder / other).write_bytes(sound)
+    path.write_bytes(content)
+    return path.parent if kind == "esritin" else path
 
 
 def _hurry() -> None:

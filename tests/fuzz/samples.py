@@ -15,6 +15,8 @@ import numpy as np
 
 import tinsmith as ts
 
+from .mesh_samples import MESH_MAKERS
+
 __all__ = ["MEMORY", "sample_files"]
 
 MEMORY = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
@@ -283,6 +285,31 @@ def _whole_tin(folder: Path) -> list[tuple[str, bytes]]:
     return files
 
 
+def _instruments(folder: Path) -> list[tuple[str, bytes]]:
+    rows = [
+        [round(value, 3) for value in row] for row in (_tin().points - (752_000, 0, 0)).tolist()
+    ]
+    words = [(81, 0), (82, 1), (83, 2)]
+    gsi8 = gsi16 = ""
+    sdr = f"00NM{'SDR33 V04-04.02':<20}{'05-Nov-20 08:00':<16}211111\n"
+    sdr += "".join(f"{cell:<16}" for cell in ("02TPS", "0", "0", "0", "1.5")) + "\n"
+    sdr += "07TP" + "".join(f"{cell:<16}" for cell in ("S", "B", "0", "0")) + "\n03NM1.5\n"
+    reduced = ""
+    for k, row in enumerate(rows, start=1):
+        cells = " ".join(f"{i}..00+{round(row[j] * 1e3) % 10**8:08d}" for i, j in words)
+        gsi8 += f"11{k:04d}+{k:08d} {cells} 71....+00000EP1 \r\n"
+        cells = " ".join(f"{i}..06+{round(row[j] * 1e4):016d}" for i, j in words)
+        gsi16 += f"*11{k:04d}+{k:016d} {cells} \r\n"
+        sdr += "08TP" + "".join(f"{cell:<16}" for cell in (k, row[1], row[0], row[2], "EP1")) + "\n"
+        shot = ("S", 100 + k, 20 + k, 100, 10 * k, "GS")
+        sdr += "09F1" + "".join(f"{cell:<16}" for cell in shot) + "\n"
+        grid = f"<North>{row[1]}</North><East>{row[0]}</East><Elevation>{row[2]}</Elevation>"
+        reduced += f"<Point><Name>{k}</Name><Code>EP1</Code><Grid>{grid}</Grid></Point>\n"
+    jxl = f"<?xml version='1.0'?><JOBFile><Reductions>\n{reduced}</Reductions></JOBFile>\n"
+    texts = {"a.gsi": gsi8, "b.gsi": gsi16, "a.sdr": sdr, "a.jxl": jxl}
+    return [(name, text.encode()) for name, text in texts.items()]
+
+
 _MAKERS = {
     "tin": _whole_tin,
     "ply": _ply,
@@ -293,6 +320,8 @@ _MAKERS = {
     "raster": _raster,
     "vectors": _vectors,
     "delimited": _delimited,
+    "instruments": _instruments,
     "landxml": _landxml,
     "dxf": _dxf,
+    **MESH_MAKERS,
 }

@@ -13,7 +13,7 @@ from ...crs import CRS, Unit, require_one_unit, shorten_crs
 from ...errors import OptionError
 from ..constraints.breaklines import Breakline, Water
 from ..constraints.constraint_set import as_sequence
-from ..types import Bounds
+from ..types import Bounds, Finding
 from ..validation.tables import Table, as_table
 
 if TYPE_CHECKING:
@@ -62,6 +62,8 @@ class Survey:
         Of a text file, the lines of the rows that were left out, counted from 1 as an editor does.
     notes : sequence of str
         What the reader assumed, in sentences.
+    findings : sequence of Finding
+        What was found odd, each with the rows that it is about; ``notes`` counts them.
 
     Raises
     ------
@@ -93,6 +95,7 @@ class Survey:
     skipped: Mapping[str, int] = field(default_factory=dict)
     skipped_lines: Mapping[str, Sequence[int]] = field(default_factory=dict)
     notes: Sequence[str] = ()
+    findings: Sequence[Finding] = ()
 
     def __post_init__(self) -> None:
         crs = CRS.of(self.crs)

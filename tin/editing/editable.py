@@ -77,6 +77,15 @@ class Editable:
                 return version, self._session.origin()
             return version, self._origin or Origin(self._inputs)
 
+    def _gather_inputs(self) -> BuildInputs | None:
+        """Return what the TIN is the build of, edits included; None for existing triangles."""
+        with self._lock:
+            if self._inputs is None:
+                return None
+            if self._session is None and self._origin is None:
+                return self._inputs
+            return self._open_session().inputs().build_inputs
+
     def _resume(self, origin: Origin) -> None:
         """Go on as the TIN did that was stored; its edits are done again when one follows."""
         self._inputs = origin.inputs

@@ -93,11 +93,18 @@ def project_to_wgs84(surface: Located) -> Places:
         )
     has_datum = crs.vertical_unit is not None
     target = CRS.of("EPSG:4979" if has_datum else "OGC:CRS84")
-    moved = reproject(points, crs, target, unit=surface.elevation_unit, wanted=METRE).points
+    found = reproject(
+        points, crs, target, unit=surface.elevation_unit, wanted=METRE, needs_datum=False
+    )
+    moved = found.points
     _require_on_earth(moved, points, crs)
     moved[:, :2] = np.round(moved[:, :2], DEGREE_DECIMALS)
     moved[:, 2] = np.round(moved[:, 2], ELEVATION_DECIMALS)
-    return Places(moved + 0.0, members=_note_assumed_unit(surface))
+    members = _note_assumed_unit(surface)
+    if found.quality.keeps_datum:
+        text = f"metres; their datum is that of {crs.name}, as PROJ has no grid to the ellipsoid"
+        members = (("elevations", text),)
+    return Places(moved + 0.0, members=members)
 
 
 def _note_assumed_unit(surface: Located) -> tuple[tuple[str, str], ...]:

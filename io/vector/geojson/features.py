@@ -15,7 +15,7 @@ from .coordinates import format_positions, keep_in_crs, project_to_wgs84
 from .values import json_texts, properties_template
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ....terrain.results import Features
     from .coordinates import Places
 
-__all__ = ["write_features"]
+__all__ = ["write_feature_lines", "write_features"]
 
 _BATCH = 16_384
 _HALF_TURN = 180.0
@@ -75,21 +75,38 @@ def write_features(
     places = (keep_in_crs if projected else project_to_wgs84)(located)
     if places.crs_member is None:
         _require_one_side(places.xyz, features, path)
-    geometries = _geometries(features, places)
-    template = properties_template(list(features.columns))
     with replacing(path, binary=False) as file:
         file.write(_head(features, places))
         separator = "\n"
-        for start in range(0, len(features), _BATCH):
-            part = slice(start, min(start + _BATCH, len(features)))
-            columns = [json_texts(column[part]) for column in features.columns.values()]
-            rows = zip(*columns, strict=True) if columns else [()] * (part.stop - start)
-            written = map(_feature, map(template.__mod__, rows), geometries[part])
+        for done, written in _iterate_batches(features, places):
             file.write(separator + ",\n".join(written))
             separator = ",\n"
             if progress is not None:
-                progress(part.stop / len(features))
+                progress(done / len(features))
         file.write("\n]}\n")
+
+
+def write_feature_lines(features: Features, path: Path) -> None:
+    """Write features as a sequence of GeoJSON texts, a line each, with no head around them.
+
+    Parameters, errors and coordinates are those of :func:`write_features`.
+    """
+    places = project_to_wgs84(_located(features))
+    _require_one_side(places.xyz, features, path)
+    with replacing(path, binary=False) as file:
+        for _, written in _iterate_batches(features, places):
+            file.writelines(f"{line}\n" for line in written)
+
+
+def _iterate_batches(features: Features, places: Places) -> Iterator[tuple[int, list[str]]]:
+    """Yield the texts of some features after others, with the number done."""
+    geometries = _geometries(features, places)
+    template = properties_template(list(features.columns))
+    for start in range(0, len(features), _BATCH):
+        part = slice(start, min(start + _BATCH, len(features)))
+        columns = [json_texts(column[part]) for column in features.columns.values()]
+        rows = zip(*columns, strict=True) if columns else [()] * (part.stop - start)
+        yield part.stop, list(map(_feature, map(template.__mod__, rows), geometries[part]))
 
 
 def _located(features: Features) -> _Located:

@@ -17,7 +17,13 @@ if TYPE_CHECKING:
 
     from ....tin import TIN
 
-__all__ = ["format_edge_properties", "format_lines", "list_line_vertices", "require_lines"]
+__all__ = [
+    "find_edge_kinds",
+    "format_edge_properties",
+    "format_lines",
+    "list_line_vertices",
+    "require_lines",
+]
 
 _LINE = (
     '{"type":"Feature","properties":{"id":%d,"kind":%s,"name":%s,"source":%s},'
@@ -34,16 +40,29 @@ def format_edge_properties(tin: TIN, flags: NDArray[np.bool_]) -> NDArray[np.obj
     flags : (m, 3) bool array
         Whether the edge is constrained.
     """
-    kinds = np.full(flags.shape, -1, np.int8)
-    if len(tin.lines):
-        kinds[flags] = _find_edge_kinds(tin, edges_at(tin.triangles, flags))
+    kinds = find_edge_kinds(tin, flags)
     texts = ['"constrained":false,"kind":null', '"constrained":true,"kind":null']
     texts += [f'"constrained":true,"kind":"{kind}"' for kind in EDGE_KINDS]
     words: NDArray[np.object_] = np.array(texts, object)[np.where(kinds >= 0, kinds + 2, flags)]
     return words
 
 
-def _find_edge_kinds(tin: TIN, pairs: NDArray[np.int32]) -> NDArray[np.int8]:
+def find_edge_kinds(tin: TIN, flags: NDArray[np.bool_]) -> NDArray[np.int8]:
+    """Return the kind of each edge, a place in ``EDGE_KINDS``; -1 where none is known: (m, 3).
+
+    Parameters
+    ----------
+    tin : TIN
+    flags : (m, 3) bool array
+        Whether the edge is constrained.
+    """
+    kinds = np.full(flags.shape, -1, np.int8)
+    if len(tin.lines):
+        kinds[flags] = _look_kinds_up(tin, edges_at(tin.triangles, flags))
+    return kinds
+
+
+def _look_kinds_up(tin: TIN, pairs: NDArray[np.int32]) -> NDArray[np.int8]:
     """Return the kind of each edge, a place in ``EDGE_KINDS``; -1 where no line is known."""
     known = find_line_edges(tin, guess=False)
     keys = edge_keys(known.pairs, len(tin.points))

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from ....tin import TIN
 
-__all__ = ["Kind", "write"]
+__all__ = ["Kind", "gather_edge_flags", "group_rings", "write"]
 
 Kind = FeatureKind
 
@@ -239,7 +239,7 @@ def _turn_counter_clockwise(
 
 def _format_edges(tin: TIN, places: Places) -> Iterator[tuple[int, str]]:
     positions = format_positions(places.xyz)
-    words = format_edge_properties(tin, _gather_edge_flags(tin))
+    words = format_edge_properties(tin, gather_edge_flags(tin))
     across = np.arange(len(tin.triangles), dtype=np.int32)[:, None]
     once = (tin.neighbors < 0) | (tin.neighbors > across)
     written = 0
@@ -254,7 +254,7 @@ def _format_edges(tin: TIN, places: Places) -> Iterator[tuple[int, str]]:
         written += len(starts)
 
 
-def _gather_edge_flags(tin: TIN) -> NDArray[np.bool_]:
+def gather_edge_flags(tin: TIN) -> NDArray[np.bool_]:
     """Return the flags of the edges, each edge flagged if either of its triangles says so."""
     flags = tin.constrained.copy()
     triangle, corner = np.nonzero(tin.constrained & (tin.neighbors >= 0))
@@ -274,7 +274,7 @@ def _format_lines(tin: TIN, places: Places) -> Iterator[tuple[int, str]]:
 def _format_hull(tin: TIN, places: Places) -> Iterator[tuple[int, str]]:
     positions = format_positions(places.xyz)
     features = []
-    for number, rings in enumerate(_group_rings(tin)):
+    for number, rings in enumerate(group_rings(tin)):
         area = sum(measure_ring_area(tin.crs, tin.points[ring]) for ring in rings)
         turned = [_close_ring(ring, places.xyz, k == 0) for k, ring in enumerate(rings)]
         written = ",".join(f"[{','.join(positions[ring])}]" for ring in turned)
@@ -282,7 +282,7 @@ def _format_hull(tin: TIN, places: Places) -> Iterator[tuple[int, str]]:
     yield len(tin.triangles), ",\n".join(features)
 
 
-def _group_rings(tin: TIN) -> list[list[NDArray[np.int32]]]:
+def group_rings(tin: TIN) -> list[list[NDArray[np.int32]]]:
     """Group the boundary rings: an outer ring followed by its holes."""
     from shapely import Polygon
 

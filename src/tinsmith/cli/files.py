@@ -22,13 +22,14 @@ if TYPE_CHECKING:
     from ..io import Format
     from ..terrain import Features, Raster, Table
     from ..tin import TIN, Survey
-    from .options import Reading, Triangulating, Writing
+    from .options import Coding, Reading, Triangulating, Writing
     from .output.console import Console
 
     Product = TIN | Survey | Features | Raster | Table
 
 __all__ = [
     "Output",
+    "add_coded_lines",
     "add_lines",
     "build_tin",
     "describe_written",
@@ -43,7 +44,7 @@ __all__ = [
     "write_text",
 ]
 
-_TEXT_FORMATS = ("delimited", "geojson", "obj", "csv", "json")
+_TEXT_FORMATS = ("delimited", "geojson", "obj", "off", "2dm", "cityjson", "csv", "json")
 """Formats that a terminal can show."""
 
 
@@ -72,21 +73,45 @@ class Output:
 
 
 def read_input(path: Path, reading: Reading, console: Console) -> Survey | TIN:
-    """Read points or a TIN, showing progress."""
-    from ..io import read
-    from ..io.reading import read_stream
+    """Read points or a TIN, showing progress, and reproject them if that is asked for."""
+    from ..io import reproject
     from ..tin import Bounds
 
     options = {name: value for name, value in asdict(reading).items() if value is not None}
     if reading.length_unit is not None:
         options["unit"] = options.pop("length_unit")
+    target = options.pop("to_crs", None)
     if reading.window is not None:
         options["window"] = Bounds(*reading.window)
     with console.steps() as steps, steps.step(f"Reading {name_file(Path(path.name))}"):
+        if target is None:
+            return _read_once(path, options)
+        return reproject(_read_to_reproject(path, options, target), target)
+
+
+def _read_once(path: Path, options: dict[str, Any]) -> Survey | TIN:
+    from ..io import read
+    from ..io.reading import read_stream
+
+    if path == STANDARD:
+        return read_stream(open_standard_input(), name_file(path), **options)
+    found: Survey | TIN = read(path, **options)
+    return found
+
+
+def _read_to_reproject(path: Path, options: dict[str, Any], target: str) -> Survey | TIN:
+    """Read in the input's own CRS; one in degrees, which no TIN has, in the one that is wanted."""
+    from ..io.reprojection.placement import DegreesError
+
+    try:
+        return _read_once(path, options)
+    except DegreesError:
         if path == STANDARD:
-            return read_stream(open_standard_input(), name_file(path), **options)
-        found: Survey | TIN = read(path, **options)
-        return found
+            raise  # it is read only once
+        declared = options.pop("crs", None)
+        if declared is not None:
+            options.setdefault("source_crs", declared)
+        return _read_once(path, options | {"crs": target})
 
 
 def open_standard_input() -> IO[bytes]:
@@ -104,6 +129,21 @@ def open_standard_input() -> IO[bytes]:
     return sys.stdin.buffer
 
 
+def add_coded_lines(survey: Survey, how: Coding) -> Survey:
+    """Add the lines of the points' codes to a survey, if they are asked for.
+
+    Raises
+    ------
+    click.UsageError
+        If there is a tolerance of curves, but no codes.
+    """
+    from ..io import lines_from_codes
+
+    if how.arc_tolerance is not None and not how.has_codes:
+        raise click.UsageError("--arc-tolerance needs --codes, --code-table or --code-style.")
+    return lines_from_codes(survey, **how.coding) if how.has_codes else survey
+
+
 def add_lines(survey: Survey, how: Triangulating, console: Console) -> Survey:
     """Add the lines of the points' codes and of files to a survey, showing progress.
 
@@ -112,13 +152,11 @@ def add_lines(survey: Survey, how: Triangulating, console: Console) -> Survey:
     click.UsageError
         If there is a height of water, but no water.
     """
-    from ..io import lines_from_codes
     from ..io import with_lines as with_lines_of_files
 
     if how.water_z is not None and not how.water:
         raise click.UsageError("--water-z needs --water: a file of the polygons that it is for.")
-    if how.codes:
-        survey = lines_from_codes(survey)
+    survey = add_coded_lines(survey, how)
     if not how.files:
         return survey
     with console.steps() as steps, steps.step("Reading lines"):
@@ -164,12 +202,14 @@ def read_tin(
     return build_tin(survey, how, console), survey
 
 
-def list_inputs(file: Path, how: Triangulating | None = None) -> list[Named]:
+def list_inputs(file: Path, how: Coding | None = None) -> list[Named]:
     """Return all files that a command reads."""
     from ..io.vector.survey_lines import split_layer
 
     inputs = [Named(file, "the input")]
-    given = {} if how is None else how.line_files
+    if how is not None and how.code_table is not None:
+        inputs.append(Named(how.code_table, "the file of --code-table"))
+    given = getattr(how, "line_files", {})
     for flag, paths in given.items():
         inputs += [Named(split_layer(path)[0], f"the file of {flag}") for path in paths]
     return inputs
@@ -208,8 +248,9 @@ def plan_outputs(
     outputs = [Named(path, "--output") for path in paths]
     if report is not None:
         outputs.append(Named(report, "--report"))
-    require_separate(inputs, outputs)
-    given = {name: value for name, value in writing.options.items() if value}
+    texture = [] if writing.texture is None else [Named(writing.texture, "the texture")]
+    require_separate([*inputs, *texture], outputs)
+    given = {name: value for name, value in writing.options.items() if value not in (None, False)}
     planned = [
         Output(path, formats, given, _choose_suffix(formats, writing))
         for path, formats in (

@@ -6,11 +6,11 @@ from typing import Any
 
 import click
 
-from ..policies import CrossingPolicy, TrimPolicy
+from ..policies import CodeStyle, CrossingPolicy, TrimPolicy
 from .parameters import choice_option, number_option
 from .paths import LINES
 
-__all__ = ["LINE_OPTIONS"]
+__all__ = ["CODE_OPTIONS", "LINE_OPTIONS"]
 
 
 def _make_files_option(name: str, words: str) -> Any:
@@ -36,6 +36,31 @@ def _parse_level(
     except ValueError:
         return value
 
+
+CODE_OPTIONS = (
+    click.option(
+        "--codes",
+        is_flag=True,
+        help="Make lines of the points' own codes, such as EP1 BEG, EP1, EP1 END, BLDG1 CLS.",
+    ),
+    click.option(
+        "--code-table",
+        metavar="FILE",
+        type=LINES,
+        help="As --codes, by a table of codes (TOML): what each becomes, and how they are written.",
+    ),
+    choice_option(
+        "--code-style",
+        CodeStyle,
+        "As --codes, in this style; default that of the table, else the one that fits.",
+    ),
+    number_option(
+        "--arc-tolerance",
+        "LENGTH",
+        "By which the chords of curves among the codes may leave them, in CRS units; default "
+        "0.01 m.",
+    ),
+)
 
 LINE_OPTIONS = (
     _make_files_option(
@@ -66,11 +91,7 @@ LINE_OPTIONS = (
     click.option(
         "--drape", is_flag=True, help="Take the heights of lines in files from the surface."
     ),
-    click.option(
-        "--codes",
-        is_flag=True,
-        help="Make lines of the points' own codes, such as EP1 BEG, EP1, EP1 END, BLDG1 CLS.",
-    ),
+    *CODE_OPTIONS,
     choice_option(
         "--crossing",
         CrossingPolicy,

@@ -11,26 +11,32 @@ from typing import Any, TypeVar
 import click
 
 from ..policies import DrawingContent, DuplicatePolicy, FeatureKind, LineReading
-from .line_options import LINE_OPTIONS
+from .line_options import CODE_OPTIONS, LINE_OPTIONS
+from .mesh_options import MESH_READING, MESH_WRITING
 from .output.console import Console
 from .parameters import Decorator, choice_option, number_option
 
 __all__ = [
+    "CODE_FLAGS",
+    "Coding",
     "Reading",
     "Triangulating",
     "Writing",
+    "coding_options",
     "console_options",
     "format_options",
     "make_reading_options",
     "product_options",
     "reading_options",
     "triangulating_options",
+    "vector_options",
     "writing_options",
 ]
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 _METHOD = ("duplicates", "snap", "threads", "crossing", "conforming", "max_edge", "trim")
+CODE_FLAGS = ("codes", "code_table", "code_style")
 _FILES = ("breaklines", "soft_breaklines", "boundary", "holes", "erase", "water")
 
 
@@ -41,6 +47,7 @@ class Reading:
     crs: str | None = None
     z_unit: str | None = None
     source_crs: str | None = None
+    to_crs: str | None = None
     format: str | None = None
     columns: str | dict[str, str | int] | None = None
     delimiter: str | None = None
@@ -51,6 +58,9 @@ class Reading:
     stride: int | None = None
     nodata: tuple[float, ...] | None = None
     fill: bool | None = None
+    code_blocks: str | None = None
+    oriented: bool | None = None
+    refraction: float | None = None
     classes: str | None = None
     returns: str | None = None
     resolution: float | None = None
@@ -62,10 +72,34 @@ class Reading:
     surface: str | None = None
     content: str | None = None
     texts: bool | None = None
+    join: bool | None = None
+    variable: str | None = None
+    tile: str | None = None
 
 
 @dataclass(frozen=True)
-class Triangulating:
+class Coding:
+    """How the points' own codes become lines."""
+
+    codes: bool = False
+    code_table: Path | None = None
+    code_style: str | None = None
+    arc_tolerance: float | None = None
+
+    @property
+    def has_codes(self) -> bool:
+        """Whether lines are made of codes; a table or a style asks for it, too."""
+        return self.codes or self.code_table is not None or self.code_style is not None
+
+    @property
+    def coding(self) -> dict[str, Any]:
+        """Options of :func:`tinsmith.lines_from_codes`."""
+        names = ("code_table", "code_style", "arc_tolerance")
+        return {name: getattr(self, name) for name in names}
+
+
+@dataclass(frozen=True)
+class Triangulating(Coding):
     """How points become a TIN."""
 
     duplicates: str = "mean"
@@ -84,7 +118,6 @@ class Triangulating:
     water_z: float | str | None = None
     lines_z_unit: str | None = None
     drape: bool = False
-    codes: bool = False
 
     @property
     def method(self) -> dict[str, Any]:
@@ -111,7 +144,7 @@ class Triangulating:
     @property
     def shaping(self) -> list[str]:
         """Names of the options given that need points to build from."""
-        names = ("max_edge", "codes", "conforming", *_FILES)
+        names = ("max_edge", *CODE_FLAGS, "conforming", *_FILES)
         return [f"--{name.replace('_', '-')}" for name in names if getattr(self, name)]
 
 
@@ -122,6 +155,15 @@ class Writing:
     output_format: str | None = None
     kind: str | None = None
     projected: bool = False
+    texture: Path | None = None
+    solid: bool = False
+    thickness: float | None = None
+    scale: float | None = None
+    size: float | None = None
+    exaggeration: float | None = None
+    precision: float | None = None
+    max_level: int | None = None
+    gzipped: bool = False
 
     @property
     def options(self) -> dict[str, Any]:
@@ -189,6 +231,11 @@ _READING = (
     click.option(
         "--source-crs", metavar="CRS", help="CRS that the points are in, if it is not --crs."
     ),
+    click.option(
+        "--to-crs",
+        metavar="CRS",
+        help="Reproject what was read to this CRS; the input must name its own, or --crs does.",
+    ),
     click.option("--format", metavar="NAME", help="Format of the input, whatever it looks like."),
     click.option(
         "--columns",
@@ -225,10 +272,12 @@ _READING = (
     click.option(
         "--fill", is_flag=True, default=None, help="Let the surface span the voids of a raster."
     ),
+    *MESH_READING,
     click.option(
         "--surface",
         metavar="NAME",
-        help="Surface of a LandXML file that has several: its name, or its number from 1.",
+        help="Surface of a LandXML, UGRID or CityJSON file that has several: its name, or in "
+        "LandXML its number from 1.",
     ),
     choice_option(
         "--content",
@@ -241,6 +290,23 @@ _READING = (
         is_flag=True,
         default=None,
         help="Read texts of a DXF file that are numbers as points of that elevation.",
+    ),
+    click.option(
+        "--code-blocks",
+        type=click.Choice(("before", "after")),
+        help="Where the codes of a GSI file stand, seen from their points.",
+    ),
+    click.option(
+        "--oriented",
+        is_flag=True,
+        default=None,
+        help="Take the circle readings of a GSI file for azimuths, to reduce its shots.",
+    ),
+    number_option(
+        "--refraction",
+        "K",
+        "Coefficient by which shots of GSI and SDR files are corrected for refraction and the "
+        "earth's curvature, such as 0.13; default neither.",
     ),
     click.option(
         "--classes", metavar="N,N", help="Classes of lidar points to take, such as 2 (ground)."
@@ -317,6 +383,8 @@ triangulating_options = _gather(
     *LINE_OPTIONS,
 )
 
+coding_options = _gather("how", Coding, *CODE_OPTIONS)
+
 _format_option = click.option(
     "--output-format", metavar="NAME", help="Format of the output, whatever its suffix."
 )
@@ -328,9 +396,9 @@ def _make_projected_option(whose: str) -> Decorator:
     return click.option("--projected", is_flag=True, help=words)
 
 
-writing_options = _gather(
-    "writing", Writing, _format_option, _kind_option, _make_projected_option("points")
-)
+_VECTOR_WRITING = (_format_option, _kind_option, _make_projected_option("points"))
+writing_options = _gather("writing", Writing, *_VECTOR_WRITING, *MESH_WRITING)
+vector_options = _gather("writing", Writing, *_VECTOR_WRITING)
 product_options = _gather("writing", Writing, _format_option, _make_projected_option("TIN"))
 format_options = _gather("writing", Writing, _format_option)
 

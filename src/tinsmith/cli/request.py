@@ -8,7 +8,13 @@ from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 from .files import add_lines, build_tin, list_inputs, plan_outputs, read_input, read_tin
-from .options import console_options, product_options, reading_options, triangulating_options
+from .options import (
+    CODE_FLAGS,
+    console_options,
+    product_options,
+    reading_options,
+    triangulating_options,
+)
 from .output.console import format_json
 from .output.failures import Failure
 from .paths import Named
@@ -100,9 +106,10 @@ class Request:
         ]
 
     def _require_points(self, n_surveys: int) -> None:
-        named = [flag for flag in self.how.shaping if flag != "--codes"]
-        if (named and n_surveys != 1) or (self.how.codes and n_surveys == 0):
-            flag = (named or ["--codes"])[0]
+        of_codes = [f"--{name.replace('_', '-')}" for name in CODE_FLAGS]
+        named = [flag for flag in self.how.shaping if flag not in of_codes]
+        if (named and n_surveys != 1) or (self.how.has_codes and n_surveys == 0):
+            flag = (named or self.how.shaping)[0]
             raise Failure(
                 f"{flag} needs {'a' if n_surveys == 0 else 'one'} file of points, and there are "
                 f"{n_surveys}: 'tinsmith build' makes TINs of them first."

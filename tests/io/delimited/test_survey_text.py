@@ -1090,3 +1090,74 @@ def test_words_between_tabs_are_one_text(tmp_path):
     assert list(found.attributes["description"]) == ["TOP BANK", "TOE OF", "ROAD CL"]
     assert found.points.tolist() == survey.points.tolist()
     assert found.elevation_unit == survey.elevation_unit
+
+
+# ------------------------------------------------------------------ units of the header
+
+
+def _with_units(tmp_path, unit, **options):
+    path = tmp_path / "units.csv"
+    rows = "".join(f"{i},{4024240.5 + i},{752700.5 + i},{5.25 + i}\n" for i in range(4))
+    path.write_text(f"p,n ({unit}),e ({unit}),z (m)\n{rows}")
+    return ts.read(path, **options)
+
+
+@pytest.mark.parametrize("unit", ["ft", "US survey foot", "km", "mm"])
+def test_a_unit_in_the_header_that_the_crs_has_not_is_refused(tmp_path, unit):
+    with pytest.raises(
+        ts.CrsError, match=r"gives the easting in .*, and EPSG:32616 measures in me"
+    ):
+        _with_units(tmp_path, unit, crs="EPSG:32616")
+    with pytest.raises(
+        ts.CrsError, match=r"gives the easting in .*, and EPSG:32616 measures in me"
+    ):
+        _with_units(tmp_path, unit, crs="EPSG:32617", source_crs="EPSG:32616")
+    told = _with_units(tmp_path, unit, crs="EPSG:32616", columns="PNEZ")
+    assert "measures in metre, as which they are taken" in " ".join(told.notes)
+    assert len(_with_units(tmp_path, unit)) == 4
+
+
+@pytest.mark.parametrize(("unit", "crs"), [("m", "EPSG:32616"), ("usft", "EPSG:2274")])
+def test_the_unit_of_the_crs_in_the_header_is_no_doubt(tmp_path, unit, crs):
+    notes = " ".join(_with_units(tmp_path, unit, crs=crs).notes)
+    assert "the header gives" not in notes.lower()
+
+
+def test_feet_of_the_other_kind_are_told(tmp_path):
+    told = " ".join(_with_units(tmp_path, "US survey foot", crs="EPSG:2222").notes)
+    assert "The header gives the easting in US survey foot, and EPSG:2222 measures in foot" in told
+    plain = " ".join(_with_units(tmp_path, "ft", crs="EPSG:2274").notes)
+    assert "header gives" not in plain
+
+
+# ------------------------------------------------------------------ a file that was cut off
+
+
+CUT = "p,n,e,z\n" + "".join(f"{i},{10 + i}.125,{20 + i}.250,{300 + i}.375\n" for i in range(1, 7))
+
+
+@pytest.mark.parametrize("length", range(2, 8))
+def test_a_last_number_that_was_cut_is_no_elevation(tmp_path, length):
+    path = tmp_path / "cut.csv"
+    path.write_text(CUT[:-length])
+    if CUT[:-length].endswith(","):
+        assert len(ts.read(path)) == 5
+        return
+    with pytest.raises(ReadError, match=r"line 7: its last number .*, those above have 3.*truncat"):
+        ts.read(path)
+    survey = ts.read(path, skip_bad=True)
+    assert survey.points[:, 2].tolist() == [301.375, 302.375, 303.375, 304.375, 305.375]
+    assert survey.skipped_lines == {"bad rows": (7,)}
+
+
+def test_a_last_number_with_fewer_decimals_than_any_is_told_or_no_doubt(tmp_path):
+    path = tmp_path / "cut.csv"
+    ragged = CUT.replace("301.375", "301.5").replace("302.375", "302.25")
+    path.write_text(ragged[:-5])
+    assert "Line 7, the last, has no end" in ts.read(path).notes[0]
+    for text in (CUT[:-1], ragged[:-1], ragged[:-2], CUT.replace("306.375\n", "306\n")):
+        path.write_text(text)
+        assert len(ts.read(path)) == 6
+        assert ts.read(path).notes == []
+    path.write_text(CUT.replace("n,e,z", "n,e,z,d").replace("375\n", "375,GS\n")[:-1])
+    assert len(ts.read(path)) == 6

@@ -145,9 +145,9 @@ def test_lines_of_too_few_points_are_left_out_and_named():
 
 
 def test_unknown_marks_are_remarks_and_named():
-    words = "2 unknown marks .* .'X' at point 3, 'STOP' at point 4."
-    assert warned(words, "EP1 X", "EP1 STOP", numbers=[3, 4]) == [("EP1", 2)]
-    assert warned("1 unknown mark behind .* is taken for", "EP1 X", "EP1") == [("EP1", 2)]
+    words = "2 unknown marks .* .'Q' at point 3, 'STOP' at point 4."
+    assert warned(words, "EP1 Q", "EP1 STOP", numbers=[3, 4]) == [("EP1", 2)]
+    assert warned("1 unknown mark behind .* is taken for", "EP1 Q", "EP1") == [("EP1", 2)]
 
 
 def test_a_survey_without_descriptions():

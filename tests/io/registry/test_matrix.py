@@ -134,12 +134,12 @@ def test_features_are_what_gdal_reads(one, tmp_path):
         frame = pyogrio.read_dataframe(path)
     assert len(frame) == len(features)
     wanted = features.to_geodataframe().geometry
-    if one.name == "geojson":
+    if one.name in IN_DEGREES:
         wanted = wanted.to_crs("OGC:CRS84")
     found, wanted = (sorted(shapes, key=_key) for shapes in (frame.geometry, wanted))
     for shape, given in zip(found, wanted, strict=True):
         ends, given_ends = (shapely.get_coordinates(g) for g in (shape, given))
-        if one.name == "geojson":
+        if one.name in IN_DEGREES:
             np.testing.assert_allclose(ends, given_ends, rtol=0, atol=FINEST_DEGREES)
         else:
             assert ends.tobytes() == given_ends.tobytes()
@@ -155,8 +155,10 @@ def _key(shape):
 def test_rasters_are_what_gdal_reads(one, tmp_path):
     rasterio = pytest.importorskip("rasterio")
     raster = make("Raster")
-    path = ts.write(raster, tmp_path / f"a{one.suffixes[0]}", format=one.name)
-    with rasterio.open(path) as found:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore" if one.losses else "error", ts.LossWarning)
+        path = ts.write(raster, tmp_path / f"a{one.suffixes[0]}", format=one.name)
+    with rasterio.Env(AAIGRID_DATATYPE="Float64"), rasterio.open(path) as found:
         cells = found.read(1, masked=True).filled(np.nan)
         assert found.crs.to_epsg() == 32616
     wanted = next(iter(raster.bands.values()))[:]

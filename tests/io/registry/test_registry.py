@@ -160,9 +160,9 @@ def test_format_by_name_prevails(tmp_path):
 
 
 def test_format_that_is_only_written(tmp_path):
-    path = tmp_path / "a.geojson"
-    path.write_text('{"type": "FeatureCollection", "features": []}')
-    message = fault(FormatError, lambda: read(path))
+    path = tmp_path / "a.tif"
+    path.write_bytes(b"II*\0")
+    message = fault(FormatError, lambda: read(path, format="cog"))
     assert "written, not read" in message
     assert ".csv" in message
 
@@ -181,7 +181,7 @@ def test_unknown_option_names_those_there_are(tmp_path):
 def test_writers_are_found_by_suffix(tmp_path):
     survey = ts.Survey(points=np.eye(3))
     assert "'.abc'" in fault(FormatError, lambda: write(survey, tmp_path / "a.abc"))
-    assert "read, not written" in fault(FormatError, lambda: write(survey, tmp_path / "a.asc"))
+    assert "read, not written" in fault(FormatError, lambda: write(survey, tmp_path / "a.hgt"))
     assert "holds a Raster, not a Survey" in fault(
         FormatError, lambda: write(survey, tmp_path / "a.tif")
     )

@@ -8,7 +8,7 @@ import click
 
 from ..._sentences import counted
 from ..flags import name_flags
-from ..options import writing_options
+from ..options import vector_options
 from ..output.failures import Failure
 from ..parameters import input_file, number_option, output_files, parse_numbers
 from ..paths import make_title
@@ -58,7 +58,7 @@ __all__ = ["contours"]
     "DISTANCE",
     "Between labels of a line, in CRS units; default a third of the extent.",
 )
-@surface_options(writing_options)
+@surface_options(vector_options)
 def contours(
     file: Path,
     request: Request,

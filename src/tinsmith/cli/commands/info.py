@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..options import console_options, reading_options
+from ..options import coding_options, console_options, reading_options
 from ..output.failures import Failure
 from ..parameters import input_file
 from ..paths import OUTPUT, make_title, name_file
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ...tin import TIN, Quality
-    from ..options import Reading
+    from ..options import Coding, Reading
     from ..output.console import Console, Row
 
 __all__ = ["info"]
@@ -30,12 +30,13 @@ __all__ = ["info"]
     help="Picture (.png) to write: histograms of angles, aspect ratios and edge lengths of a TIN.",
 )
 @reading_options
+@coding_options
 @console_options
-def info(file: Path, plot: Path | None, reading: Reading, console: Console) -> None:
+def info(file: Path, plot: Path | None, reading: Reading, how: Coding, console: Console) -> None:
     """Describe FILE: survey points, an elevation raster or a TIN.
 
     Counts, extent, elevations and CRS; of a TIN also areas, slopes and the shapes of its
-    triangles.
+    triangles; with --codes the lines that the codes of points make, and what is odd in them.
 
     \b
     Example:
@@ -43,19 +44,22 @@ def info(file: Path, plot: Path | None, reading: Reading, console: Console) -> N
       tinsmith info sample_data/site_survey.csv --crs EPSG:32616 --json
     """  # noqa: D301 - click reads the control character
     from ...tin import TIN
-    from ..files import list_inputs, read_input, require_picture
+    from ..files import add_coded_lines, list_inputs, read_input, require_picture
     from ..output.summaries import describe_survey, summarise_survey
 
     if plot is not None:
-        require_picture(plot, place="--plot", inputs=list_inputs(file))
+        require_picture(plot, place="--plot", inputs=list_inputs(file, how))
     found = read_input(file, reading, console)
     if isinstance(found, TIN):
+        if how.has_codes:
+            raise Failure(f"'{file}' holds a TIN, and codes are those of points.")
         _describe(found, file, plot, console)
         return
     if plot is not None:
         raise Failure(
             f"'{file}' holds points, and --plot needs a TIN: 'tinsmith build' makes one of them."
         )
+    found = add_coded_lines(found, how)
     record = {"input": str(file)} | describe_survey(found)
     console.answer([("File", name_file(file)), *summarise_survey(found)], record)
 

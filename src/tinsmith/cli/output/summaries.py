@@ -64,6 +64,7 @@ def describe_survey(survey: Survey) -> dict[str, Any]:
         "skipped": dict(survey.skipped),
         "skipped_lines": {what: list(rows) for what, rows in survey.skipped_lines.items()},
         "notes": list(survey.notes),
+        "findings": [finding.to_dict() for finding in survey.findings],
     }
 
 
@@ -100,6 +101,7 @@ def describe_report(report: Report, survey: Survey, gaps: Sequence[str] = ()) ->
     record = report.to_dict()
     record["notes"] += gaps
     record["skipped_lines"] = {what: list(rows) for what, rows in survey.skipped_lines.items()}
+    record["findings"] = [finding.to_dict() for finding in survey.findings]
     numbers = survey.attributes.get("number")
     if numbers is not None:
         for merge in record["merges"]:
@@ -317,8 +319,9 @@ def _describe_rows(merge: Merge, survey: Survey) -> str:
 
 
 def describe_file_size(path: Path) -> str:
-    """Return the size of a file for people."""
-    size = float(path.stat().st_size)
+    """Return the size of a file for people; of a folder, that of all files in it."""
+    files = [one for one in path.rglob("*") if one.is_file()] if path.is_dir() else [path]
+    size = float(sum(one.stat().st_size for one in files))
     for unit in ("bytes", "kB", "MB"):
         if size < 1000:
             return f"{size:.0f} {unit}" if unit == "bytes" or size >= 100 else f"{size:.1f} {unit}"

@@ -1,0 +1,256 @@
+"""Which style descriptions are written in: all are tried, and the one that fits is told."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+from ..._sentences import counted
+from ...errors import LinesError
+from .descriptions import Coded, Description, Vocabulary
+from .figures import NO_LINES, Fault, Figure, find_curves, follow_figures
+from .styles import STYLES, Style
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Sequence
+
+    from .code_table import Rule
+
+__all__ = ["Reading", "choose_reading", "read_in_style"]
+
+_HARMLESS = ("curve without an end", "line without an end")
+"""What crews leave out in any style."""
+_COUNTED = "end without a begin"
+"""Such a line is counted for its one shot already."""
+
+
+class Unread(NamedTuple):
+    """A word behind a code that is neither mark nor code."""
+
+    row: int
+    word: str
+
+
+@dataclass(frozen=True)
+class Reading:
+    """Descriptions as they are read in one style.
+
+    Attributes
+    ----------
+    style : Style
+    figures : list of Figure
+    faults : list of Fault
+    unread : list of Unread
+    descriptions : dict of str to Description
+        By their texts; of those that begin with a code.
+    """
+
+    style: Style
+    figures: list[Figure]
+    faults: list[Fault]
+    unread: list[Unread]
+    descriptions: dict[str, Description]
+
+    @property
+    def n_faults(self) -> int:
+        """How much speaks against it: words that are not read, and lines that are odd."""
+        return len(self.unread) + self.n_odd_lines
+
+    @property
+    def n_odd_lines(self) -> int:
+        """How much is odd in the lines themselves."""
+        short = sum(len(one.shots) < one.least for one in self.figures)
+        return short + sum(fault.kind not in (*_HARMLESS, _COUNTED) for fault in self.faults)
+
+    @property
+    def key(self) -> frozenset[tuple[object, ...]]:
+        """What tells its lines from those of another reading."""
+        return frozenset(one.key for one in self.figures if len(one.shots) >= one.least)
+
+
+def read_in_style(
+    order: Sequence[int], texts: Sequence[str], rules: dict[str, Rule], style: Style
+) -> Reading:
+    """Read descriptions in a style.
+
+    Parameters
+    ----------
+    order : sequence of int
+        Rows, in the order in which lines run.
+    texts : sequence of str
+        The descriptions, by row.
+    rules : dict of str to Rule
+    style : Style
+    """
+    descriptions = _parse(_select_coded(set(texts), rules, style), rules, style)
+    descriptions = {text: one for text, one in descriptions.items() if one.codes}
+    coded = [row for row in order if texts[row] in descriptions]
+    return _follow(coded, texts, rules, style, descriptions)
+
+
+def _select_coded(texts: Iterable[str], rules: dict[str, Rule], style: Style) -> list[str]:
+    """Return the texts that may begin with a code: of a million shots most do not."""
+    if style.place == "before":
+        return list(texts)
+    codes = "|".join(re.escape(code) for code in rules)
+    may_begin = re.compile(
+        rf"[\s*{re.escape(style.separators)}]*(?:{codes})", 0 if style.is_exact else re.IGNORECASE
+    ).match
+    return [text for text in texts if may_begin(text)]
+
+
+def _parse(texts: Iterable[str], rules: dict[str, Rule], style: Style) -> dict[str, Description]:
+    parse = Vocabulary(rules.keys(), style).parse
+    return {text: parse(text) for text in texts}
+
+
+def _follow(
+    order: Sequence[int],
+    texts: Sequence[str],
+    rules: dict[str, Rule],
+    style: Style,
+    descriptions: dict[str, Description],
+) -> Reading:
+    coded = [(row, descriptions[texts[row]].codes) for row in order]
+    figures, faults = follow_figures(coded, rules)
+    faults += _find_codes_behind_others(coded, rules)
+    for figure in figures:
+        find_curves(figure, faults.append)
+    unread = [
+        Unread(row, descriptions[texts[row]].unread)
+        for row in order
+        if _has_unread_mark(descriptions[texts[row]], rules)
+    ]
+    return Reading(style, figures, faults, unread, descriptions)
+
+
+def _has_unread_mark(description: Description, rules: dict[str, Rule]) -> bool:
+    """Whether a word that is not understood stands behind the code of a line."""
+    codes = description.codes
+    return bool(description.unread and codes) and rules[codes[-1].code].kind not in NO_LINES
+
+
+def _find_codes_behind_others(
+    coded: Sequence[tuple[int, Sequence[Coded]]], rules: dict[str, Rule]
+) -> list[Fault]:
+    """Tell of lines whose codes have no number and stand behind others only, as remarks do."""
+    first = {codes[0].code for _, codes in coded if codes}
+    found: dict[str, list[int]] = {}
+    for row, codes in coded:
+        for one in codes[1:]:
+            is_doubtful = not one.number and not one.marks and one.code not in first
+            if is_doubtful and rules[one.code].kind not in NO_LINES:
+                found.setdefault(one.code, []).append(row)
+    return [Fault("code behind others", code, tuple(rows)) for code, rows in found.items()]
+
+
+def choose_reading(
+    order: Sequence[int],
+    texts: Sequence[str],
+    rules: dict[str, Rule],
+    name_row: Callable[[int], str],
+) -> tuple[Reading, list[str]]:
+    """Choose the style in which the least is odd, and say so if it is not the default.
+
+    Parameters
+    ----------
+    order, texts, rules
+        As for :func:`read_in_style`.
+    name_row : callable
+        Names a row for a sentence.
+
+    Returns
+    -------
+    reading : Reading
+    notes : list of str
+
+    Raises
+    ------
+    LinesError
+        If two styles fit equally, and lead to different lines.
+
+    Notes
+    -----
+    1. A style is tried if it understands a word that the default leaves, or the default finds
+       something odd. A style of short words that may be remarks needs two of them, or to leave
+       fewer odd lines; where it needs neither, and leaves nothing odd, it is a doubt.
+    2. Those with the fewest oddities are plausible. If all of them lead to the same lines the
+       first is taken.
+    3. If not, and something is odd in each, the default is taken where it is among them, as it
+       is where nothing is said; else the codes are refused.
+    """
+    plain = read_in_style(order, texts, rules, STYLES["words"])
+    coded = [row for row in order if texts[row] in plain.descriptions]
+    found = [plain]
+    for style in list(STYLES.values())[1:]:
+        parsed = _parse(plain.descriptions, rules, style)
+        if parsed != plain.descriptions:
+            reading = _follow(coded, texts, rules, style, parsed)
+            if _is_plausible(reading, plain):
+                found.append(reading)
+    least = min(one.n_faults for one in found)
+    plausible = [one for one in found if one.n_faults == least]
+    first = plausible[0]
+    other = next((one for one in plausible[1:] if one.key != first.key), None)
+    if other is None and first.style.least_words > 1 and plain.n_odd_lines == 0:
+        other = plain if plain.key != first.key and not _is_meant(first, plain) else None
+    if other is not None and (least == 0 or first is not plain):
+        raise _refuse(first, other, name_row)
+    return first, [] if first is plain else [_describe_choice(first, plain)]
+
+
+def _is_plausible(reading: Reading, plain: Reading) -> bool:
+    """Whether a style has enough words of its own there, or the default leaves doubts."""
+    parsed = reading.descriptions
+    if (
+        not _is_meant(reading, plain)
+        and reading.n_odd_lines >= plain.n_odd_lines
+        and reading.n_faults > 0
+    ):
+        return False
+    says_more = any(one.n_words > plain.descriptions[text].n_words for text, one in parsed.items())
+    return plain.n_faults > 0 or says_more
+
+
+def _is_meant(reading: Reading, plain: Reading) -> bool:
+    """Whether enough words of a style's own are there, so that they are no remarks."""
+    parsed = reading.descriptions.values()
+    words = {word for one in parsed for code in one.codes for word in code.words}
+    return len(words - plain.style.marks.keys()) >= reading.style.least_words
+
+
+def _describe_choice(chosen: Reading, plain: Reading) -> str:
+    style = chosen.style.name
+    if plain.n_faults <= chosen.n_faults:
+        return (
+            f"Field codes are read in the style '{style}', which understands more of their words."
+        )
+    left = f"{chosen.n_faults:,}" if chosen.n_faults else "none"
+    return (
+        f"Field codes are read in the style '{style}': {plain.n_faults:,} of their words or "
+        f"lines make no sense in 'words', {left} in '{style}'."
+    )
+
+
+def _refuse(one: Reading, other: Reading, name_row: Callable[[int], str]) -> LinesError:
+    """Return the error that shows where two readings part."""
+    names = f"'{one.style.name}' and '{other.style.name}'"
+    shown = _find_difference(one, other, name_row)
+    return LinesError(
+        f"The field codes can be read in two styles, {names}, and lead to different lines{shown}: "
+        "the option code_style says which is meant."
+    )
+
+
+def _find_difference(one: Reading, other: Reading, name_row: Callable[[int], str]) -> str:
+    """Name the first line that only one of two readings has."""
+    for reading, keys in ((one, other.key), (other, one.key)):
+        for figure in reading.figures:
+            if len(figure.shots) >= figure.least and figure.key not in keys:
+                first, last = name_row(figure.rows[0]), name_row(figure.rows[-1])
+                return (
+                    f" (only '{reading.style.name}' makes {figure.name} of "
+                    f"{counted(len(figure.shots), 'shot')} from {first} to {last})"
+                )
+    return ""

@@ -1,0 +1,242 @@
+"""Figures: the shots of one code and number in their order, from the begin of a line to its end."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from .code_table import Rule
+    from .descriptions import Coded
+    from .styles import Meaning
+
+__all__ = ["NO_LINES", "RINGS", "Curve", "Fault", "Figure", "Shot", "find_curves", "follow_figures"]
+
+RINGS = ("boundary", "hole", "erase", "water")
+NO_LINES = ("point", "exclude")
+"""Kinds whose codes make no line."""
+
+
+class Shot(NamedTuple):
+    """One shot of a figure: its row, and what its marks say."""
+
+    row: int
+    marks: tuple[Meaning, ...] = ()
+
+
+class Curve(NamedTuple):
+    """Shots of a figure, from the first to the last, through which a curve goes."""
+
+    first: int
+    last: int
+    is_tangent: bool
+
+
+class Fault(NamedTuple):
+    """What is odd in the codes, and at which rows.
+
+    ``kind`` is one of the keys of :data:`.remarks.SENTENCES`; ``what`` a line or a word.
+    """
+
+    kind: str
+    what: str
+    rows: tuple[int, ...]
+
+
+@dataclass
+class Figure:
+    """The shots of one line.
+
+    Attributes
+    ----------
+    name : str
+        Code and number.
+    rule : Rule
+    shots : list of Shot
+    is_closed : bool
+        Whether it comes back to its first shot.
+    is_rectangle : bool
+        Whether a fourth corner closes it.
+    is_begun, is_ended : bool
+        Whether marks say so.
+    n_added : int
+        Vertices of its curves that are no shots.
+    """
+
+    name: str
+    rule: Rule
+    shots: list[Shot] = field(default_factory=list)
+    is_closed: bool = False
+    is_rectangle: bool = False
+    is_begun: bool = False
+    is_ended: bool = False
+    n_added: int = 0
+
+    @property
+    def rows(self) -> list[int]:
+        """Rows of its shots."""
+        return [shot.row for shot in self.shots]
+
+    @property
+    def is_ring(self) -> bool:
+        """Whether it bounds an area."""
+        return self.is_closed or self.rule.is_closed or self.rule.kind in RINGS
+
+    @property
+    def least(self) -> int:
+        """How many shots it needs."""
+        return 3 if self.is_ring or self.is_rectangle else 2
+
+    @property
+    def key(self) -> tuple[object, ...]:
+        """What tells it from another one: two readings with equal keys are one line."""
+        curves = tuple(find_curves(self))
+        return (self.rule.kind, tuple(self.rows), self.is_ring, self.is_rectangle, curves)
+
+
+def follow_figures(
+    coded: Iterable[tuple[int, Sequence[Coded]]], rules: dict[str, Rule]
+) -> tuple[list[Figure], list[Fault]]:
+    """Follow every line through the shots, in the order of the first shot of each.
+
+    Parameters
+    ----------
+    coded : iterable of (row, codes)
+        In the order in which lines run.
+    rules : dict of str to Rule
+
+    Returns
+    -------
+    figures : list of Figure
+    faults : list of Fault
+    """
+    follower = _Follower(rules)
+    for row, codes in coded:
+        for one in codes:
+            if rules[one.code].kind not in NO_LINES:
+                follower.add(row, one)
+    follower.finish()
+    return follower.figures, follower.faults
+
+
+class _Follower:
+    """Holds the lines that run."""
+
+    def __init__(self, rules: dict[str, Rule]) -> None:
+        self.rules = rules
+        self.figures: list[Figure] = []
+        self.faults: list[Fault] = []
+        self._running: dict[str, Figure] = {}
+
+    def add(self, row: int, one: Coded) -> None:
+        """Add a shot to its line."""
+        marks = one.marks
+        for word, meaning in zip(one.words, marks, strict=True):
+            if meaning == "other":
+                self.faults.append(Fault("mark not applied", word, (row,)))
+        if "exclude" in marks:
+            return
+        if "begin" in marks and _is_before(marks, ("end", "close"), "begin"):
+            self._append(one, Shot(row, marks[: marks.index("begin")]))
+            marks = marks[marks.index("begin") :]
+        self._append(one, Shot(row, marks))
+
+    def _append(self, one: Coded, shot: Shot) -> None:
+        name, marks = one.name, shot.marks
+        self._tell_doubts(one, shot)
+        if name not in self._running or "begin" in marks:
+            figure = Figure(name, self.rules[one.code], is_begun="begin" in marks)
+            self._running[name] = figure
+            self.figures.append(figure)
+        figure = self._running[name]
+        figure.shots.append(shot)
+        if {"end", "close", "rectangle"} & set(marks):
+            self._running.pop(name)
+            figure.is_ended = True
+            figure.is_closed = "close" in marks
+            figure.is_rectangle = "rectangle" in marks
+
+    def _tell_doubts(self, one: Coded, shot: Shot) -> None:
+        marks = shot.marks
+        is_alone = one.name not in self._running and "begin" not in marks
+        if is_alone and "end" in marks:
+            self.faults.append(Fault("end without a begin", one.name, (shot.row,)))
+        if is_alone and "continue" in marks:
+            self.faults.append(Fault("nothing to continue", one.name, (shot.row,)))
+
+    def finish(self) -> None:
+        """Tell of lines that do not end as others do."""
+        ends = any(figure.is_ended for figure in self.figures)
+        for figure in self.figures:
+            if "continue" in figure.shots[-1].marks:
+                self.faults.append(Fault("nothing to continue", figure.name, (figure.rows[-1],)))
+            if ends and figure.is_begun and not figure.is_ended and len(figure.shots) > 1:
+                ends_at = (figure.rows[0], figure.rows[-1])
+                self.faults.append(Fault("line without an end", figure.name, ends_at))
+
+
+def _is_before(marks: Sequence[Meaning], some: Sequence[Meaning], other: Meaning) -> bool:
+    return any(one in some for one in marks[: marks.index(other)])
+
+
+def _say_nothing(fault: Fault) -> None:
+    """Take a fault that has been told already."""
+    del fault
+
+
+def find_curves(figure: Figure, tell: Callable[[Fault], None] = _say_nothing) -> list[Curve]:
+    """Find the curves of a line, and tell of those that have too few shots, or no begin.
+
+    A curve goes on to its end; without one it is the arc through three shots.
+    """
+    curves: list[Curve] = []
+    begun: tuple[int, bool] | None = None
+    for i, shot in enumerate(figure.shots):
+        for meaning in _order_marks(shot.marks, is_open=begun is not None):
+            if meaning == "end_curve":
+                if begun is None:
+                    tell(Fault("end of no curve", figure.name, (shot.row,)))
+                else:
+                    _close_curve(figure, Curve(begun[0], i, begun[1]), curves, tell)
+                begun = None
+            else:
+                if begun is not None:
+                    _take_three(figure, begun[0], i, curves, tell)
+                begun = (i, meaning == "begin_tangent_curve")
+    if begun is not None:
+        _take_three(figure, begun[0], len(figure.shots) - 1, curves, tell)
+    return curves
+
+
+def _order_marks(marks: Sequence[Meaning], *, is_open: bool) -> list[Meaning]:
+    """Return the marks of curves, the end of one before the begin of the next."""
+    if not marks:
+        return []
+    found: list[Meaning] = [one for one in marks if one == "end_curve"]
+    if "toggle_curve" in marks:
+        found.append("end_curve" if is_open else "begin_curve")
+    return found + [one for one in marks if one in ("begin_curve", "begin_tangent_curve")]
+
+
+def _close_curve(
+    figure: Figure, curve: Curve, curves: list[Curve], tell: Callable[[Fault], None]
+) -> None:
+    least = 1 if curve.is_tangent else 2
+    if curve.last - curve.first < least:
+        rows = tuple(figure.rows[curve.first : curve.last + 1])
+        tell(Fault("curve of too few points", figure.name, rows))
+    else:
+        curves.append(curve)
+
+
+def _take_three(
+    figure: Figure, first: int, last: int, curves: list[Curve], tell: Callable[[Fault], None]
+) -> None:
+    """Take the arc through three shots for a curve that has no end."""
+    rows = tuple(figure.rows[first : min(first + 2, last) + 1])
+    if last - first < 2:
+        tell(Fault("curve of too few points", figure.name, rows))
+        return
+    tell(Fault("curve without an end", figure.name, rows))
+    curves.append(Curve(first, first + 2, is_tangent=False))

@@ -1,0 +1,226 @@
+"""Trimble JobXML files (.jxl): points of the reductions, else those of the field book.
+
+All lengths of JobXML are metres, whatever the job showed in the field. Of the reductions every
+point is read, of the field book the records that are not deleted and have a position in the grid,
+keyed in, computed or observed by GNSS. Circle readings are not reduced here, since corrections of
+the instrument would be missing: a job that is exported with its reductions has all of it.
+
+Reference: Trimble, JobXML schema 5.3.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+from xml.parsers import expat
+
+from ....errors import ReadError
+from ...delimited.cells import is_number
+from .records import Book
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from ....crs import CrsLike, UnitLike
+    from ....tin import Survey
+
+__all__ = ["read"]
+
+_RECORDS: dict[tuple[str, ...], str] = {
+    ("JOBFile", "Reductions", "Point"): "reductions",
+    ("JOBFile", "InventoryData", "Point"): "reductions",
+    ("JOBFile", "FieldBook", "PointRecord"): "field book",
+}
+_LEAVES = ("Name", "Code", "Method", "SurveyMethod", "Classification", "Deleted")
+_GRIDS = ("Grid", "ComputedGrid")
+_AXES = ("East", "North", "Elevation")
+_DEEPEST = 64
+"""Elements within each other; JobXML has about 8."""
+_LONGEST = 10_000
+_CHUNK = 1 << 20
+
+
+def read(
+    path: Path,
+    *,
+    crs: CrsLike | None = None,
+    z_unit: UnitLike | None = None,
+    source_crs: CrsLike | None = None,
+) -> Survey:
+    """Read points of a Trimble JobXML file.
+
+    Parameters
+    ----------
+    path : Path
+    crs : CRS, str, int or pyproj.CRS, optional
+        CRS of the grid coordinates, whose metres are converted to its unit; the file names its
+        coordinate system in words of its own.
+    z_unit : Unit or str, optional
+        Metres; another one is refused.
+    source_crs : CRS, str, int or pyproj.CRS, optional
+        CRS in which the file's coordinates are, if not ``crs``.
+
+    Returns
+    -------
+    Survey
+        With ``number``, ``description`` (the codes), and ``method`` if there are several. Points
+        that are deleted, or have no position in the grid, are left out and counted.
+
+    Raises
+    ------
+    ReadError
+        If it is no well-formed JobXML, declares a document type, has a grid that does not count
+        to north and east, or no point has coordinates.
+    """
+    reader = _Reader(path)
+    parser = expat.ParserCreate()
+    parser.buffer_text = True
+    parser.StartElementHandler = reader.start
+    parser.EndElementHandler = reader.end
+    parser.CharacterDataHandler = reader.add_text
+    parser.StartDoctypeDeclHandler = reader.refuse_declaration
+    reader.parser = parser
+    try:
+        with path.open("rb") as file:
+            while chunk := file.read(_CHUNK):
+                parser.Parse(chunk, False)
+            parser.Parse(b"", True)
+    except expat.ExpatError as error:
+        raise ReadError(
+            f"'{path}', line {error.lineno}: it is no well-formed XML, "
+            f"{expat.ErrorString(error.code)}.",
+            path=path,
+            lines=[error.lineno],
+        ) from error
+    except (ValueError, LookupError) as error:
+        if isinstance(error, ReadError):
+            raise
+        raise ReadError(f"'{path}' is in an encoding that is not read.", path=path) from error
+    return reader.finish().make_survey(crs=crs, z_unit=z_unit, source_crs=source_crs)
+
+
+class _Record:
+    """A point as it is read."""
+
+    def __init__(self, line: int) -> None:
+        self.line = line
+        self.texts: dict[str, str] = {}
+        self.grids: dict[str, dict[str, str]] = {}
+
+
+class _Reader:
+    """Takes elements as they come; keeps those of points."""
+
+    parser: expat.XMLParserType
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.records: dict[str, list[_Record]] = {"reductions": [], "field book": []}
+        self._tags: list[str] = []
+        self._record: _Record | None = None
+        self._depth = 0
+        self._text: list[str] | None = None
+        self._letters = 0
+
+    def refuse_declaration(self, *_: object) -> None:
+        """Refuse a document type, which may define entities or name other files."""
+        raise ReadError(
+            f"'{self.path}' declares a document type, which no JobXML has.", path=self.path
+        )
+
+    def start(self, tag: str, attributes: dict[str, str]) -> None:  # noqa: ARG002 - of expat
+        """Open an element."""
+        self._tags.append(tag.rpartition(":")[2])
+        if len(self._tags) > _DEEPEST:
+            raise ReadError(
+                f"'{self.path}', line {self.parser.CurrentLineNumber}: its elements are nested "
+                f"deeper than {_DEEPEST}.",
+                path=self.path,
+            )
+        if len(self._tags) == 1 and self._tags[0] != "JOBFile":
+            raise ReadError(
+                f"'{self.path}' is <{tag[:40]}>, and JobXML is <JOBFile>.", path=self.path
+            )
+        if self._record is None and tuple(self._tags) in _RECORDS:
+            self._record = _Record(self.parser.CurrentLineNumber)
+            self._depth = len(self._tags)
+        is_value = self._record is not None or self._tags[-1] == "GridOrientation"
+        self._text, self._letters = ([], 0) if is_value else (None, 0)
+
+    def add_text(self, text: str) -> None:
+        """Take a part of the text of an element."""
+        if self._text is not None:
+            self._letters += len(text)
+            if self._letters <= _LONGEST:
+                self._text.append(text)
+
+    def end(self, tag: str) -> None:  # noqa: ARG002 - as expat calls it
+        """Close an element."""
+        name = self._tags[-1]
+        text = "".join(self._text or ()).strip()
+        if self._record is not None:
+            self._keep(self._record, self._tags[self._depth :], text)
+            if len(self._tags) == self._depth:
+                self.records[_RECORDS[tuple(self._tags)]].append(self._record)
+                self._record = None
+        elif name == "GridOrientation":
+            self._require_north_east(text)
+        self._text = None
+        self._tags.pop()
+
+    def _keep(self, record: _Record, tags: list[str], text: str) -> None:
+        if len(tags) == 1 and tags[0] in _LEAVES:
+            record.texts.setdefault(tags[0], text)
+        elif len(tags) == 2 and tags[0] in _GRIDS and tags[1] in _AXES:
+            record.grids.setdefault(tags[0], {}).setdefault(tags[1], text)
+
+    def _require_north_east(self, text: str) -> None:
+        if text and text != "IncreasingNorthEast":
+            raise ReadError(
+                f"'{self.path}': its grid is '{text[:40]}', and only IncreasingNorthEast is read.",
+                path=self.path,
+            )
+
+    def finish(self) -> Book:
+        """Return the points of the reductions, or of the field book where there are none."""
+        book = Book(self.path, "Trimble")
+        reduced, observed = self.records["reductions"], self.records["field book"]
+        for record in reduced or observed:
+            self._add(book, record)
+        names = {record.texts.get("Name", "") for record in reduced}
+        lost = [one for one in observed if reduced and one.texts.get("Name", "") not in names]
+        lost = [one for one in lost if one.texts.get("Deleted", "").lower() != "true"]
+        if lost:
+            book.notes.append(
+                f"{len(lost):,} points of the field book are not in the reductions, and not read: "
+                f"{', '.join(one.texts.get('Name', '?') for one in lost[:5])}"
+                f"{' ...' if len(lost) > 5 else ''}."
+            )
+        return book
+
+    def _add(self, book: Book, record: _Record) -> None:
+        if record.texts.get("Deleted", "").lower() == "true":
+            book.leave_out("points deleted in the field", record.line)
+            return
+        grid = next((record.grids[one] for one in _GRIDS if record.grids.get(one)), None)
+        if grid is None:
+            book.leave_out("points without a position in the grid", record.line)
+            return
+        x, y, z = (self._number(grid.get(axis, ""), record.line) for axis in _AXES)
+        texts = record.texts
+        method = texts.get("SurveyMethod") or texts.get("Method") or ""
+        name = texts.get("Name", "")
+        book.add(name, (x, y, z), texts.get("Code", ""), record.line, method)
+
+    def _number(self, text: str, line: int) -> float:
+        """Return a coordinate in metres, NaN where there is none."""
+        if text in ("", "?"):
+            return math.nan
+        value = float(text) if is_number(text, ".") else math.inf
+        if math.isinf(value):
+            raise ReadError(
+                f"'{self.path}', line {line}: '{text[:30]}' stands where a coordinate must be.",
+                path=self.path,
+                lines=[line],
+            )
+        return value

@@ -1,0 +1,210 @@
+"""Compressed files: what is plainly in them is unpacked into a folder of its own, within limits.
+
+A gzip file holds one file. A ZIP archive is read if it holds one set of data: a file, or a file
+with others of its name beside it, as a shapefile has.
+"""
+
+from __future__ import annotations
+
+import gzip
+import shutil
+import stat
+import tempfile
+import zipfile
+import zlib
+from contextlib import contextmanager
+from pathlib import Path, PurePosixPath
+from typing import IO, TYPE_CHECKING
+
+from ..._sentences import counted
+from ...errors import ReadError, TinsmithError
+from .spooling import describe_system_error, rename_in_error
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+__all__ = ["unpack"]
+
+_GZIP, _ZIP = b"\x1f\x8b", b"PK\x03\x04"
+_STARTS = {".gz": _GZIP, ".gzip": _GZIP, ".zip": _ZIP}
+"""Suffixes of archives, and how they begin: a workbook is a ZIP archive too, and is none here."""
+
+_CHUNK = 1 << 20
+_MOST_FILES = 1000
+_LARGEST_RATIO = 300
+"""Times by which content may be larger than its archive: text of repeated rows comes to about 100,
+zeros to 1,030."""
+
+_LEAST = 1 << 26
+"""Bytes that any archive may unpack to, whatever the ratio."""
+
+_SIDE_FILES = frozenset(
+    (
+        *(".shx", ".dbf", ".prj", ".cpg", ".qpj", ".qix", ".sbn", ".sbx", ".idx", ".qmd", ".qml"),
+        *(".xml", ".tfw", ".wld", ".jgw", ".hdr", ".clr", ".stx", ".ovr", ".aux", ".lox", ".sld"),
+        *(".txt", ".md", ".pdf", ".html", ".htm", ".csvt", ".dat", ".map", ".id", ".rrd", ".qgz"),
+    )
+)
+"""Suffixes of files that stand beside others; ``.txt`` counts where nothing else is there."""
+
+_OFFICE = "[Content_Types].xml"
+
+
+@contextmanager
+def unpack(path: Path) -> Iterator[Path]:
+    """Yield a file that can be read: ``path`` itself, or what is compressed in it.
+
+    Parameters
+    ----------
+    path : Path
+
+    Yields
+    ------
+    Path
+        Removed at the end if it was unpacked; errors speak of ``path`` all the same.
+
+    Raises
+    ------
+    ReadError
+        If the archive is damaged, encrypted, unpacks to far more than it is large, names places
+        outside of itself, or holds several sets of data.
+    """
+    start, suffix = _read_start(path), path.suffix.lower()
+    if not start.startswith(_STARTS.get(suffix, b"no archive")):
+        yield path
+        return
+    with tempfile.TemporaryDirectory(prefix="tinsmith-") as folder:
+        unpacker = _unpack_gzip if start.startswith(_GZIP) else _unpack_zip
+        try:
+            inner = unpacker(path, Path(folder))
+        except OSError as error:
+            if isinstance(error, gzip.BadGzipFile):
+                raise _damaged(path, error) from error
+            raise describe_system_error(path, error) from error
+        except (EOFError, zlib.error, zipfile.BadZipFile, ValueError, RuntimeError) as error:
+            if isinstance(error, TinsmithError):
+                raise
+            raise _damaged(path, error) from error
+        try:
+            yield inner
+        except TinsmithError as error:
+            rename_in_error(error, inner, path)
+            raise
+
+
+def _read_start(path: Path) -> bytes:
+    """Return the first bytes; a reader tells better why there are none."""
+    try:
+        with path.open("rb") as file:
+            return file.read(4)
+    except (OSError, ValueError):
+        return b""
+
+
+def _damaged(path: Path, error: Exception) -> ReadError:
+    reason = " ".join(str(error).split()).rstrip(".") or type(error).__name__
+    return ReadError(f"'{path}' cannot be unpacked, it may be damaged: {reason}.", path=path)
+
+
+class _Budget:
+    """How many bytes may still be unpacked."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._most = max(_LEAST, _LARGEST_RATIO * path.stat().st_size)
+        self._left = self._most
+
+    def copy(self, stream: IO[bytes], target: Path) -> None:
+        """Copy a stream into a file, and stop where it becomes too large."""
+        with target.open("wb") as file:
+            while chunk := stream.read(_CHUNK):
+                self.spend(len(chunk))
+                file.write(chunk)
+
+    def spend(self, count: int) -> None:
+        """Take bytes off, of a folder with room for them."""
+        self._left -= count
+        free = shutil.disk_usage(tempfile.gettempdir()).free
+        if self._left < 0 or count > free:
+            raise ReadError(
+                f"'{self._path}' unpacks to more than {self._most / 1e6:,.0f} MB, the limit for an "
+                "archive of this size: unpack it first, if it is sound.",
+                path=self._path,
+            )
+
+
+def _unpack_gzip(path: Path, folder: Path) -> Path:
+    name = Path(path.stem)
+    inner = folder / (name if name.suffix else f"{name}.txt")
+    budget = _Budget(path)
+    with gzip.open(path, "rb") as stream:
+        budget.copy(stream, inner)  # type: ignore[arg-type]
+    return inner
+
+
+def _unpack_zip(path: Path, folder: Path) -> Path:
+    with zipfile.ZipFile(path) as archive:
+        members = _list_members(archive, path)
+        chosen = _choose_member(members, path)
+        budget = _Budget(path)
+        stem = _strip(PurePosixPath(chosen.filename))
+        for member in members:
+            if _strip(PurePosixPath(member.filename)) == stem:
+                with archive.open(member) as stream:
+                    budget.copy(stream, folder / PurePosixPath(member.filename).name)
+    return folder / PurePosixPath(chosen.filename).name
+
+
+def _list_members(archive: zipfile.ZipFile, path: Path) -> list[zipfile.ZipInfo]:
+    """Return the files of an archive; refuse what reaches outside of it, and what is encrypted."""
+    members = [one for one in archive.infolist() if not one.is_dir()]
+    if len(members) > _MOST_FILES:
+        raise ReadError(
+            f"'{path}' holds {len(members):,} files: unpack it, and name the one to read.",
+            path=path,
+        )
+    for one in members:
+        name = PurePosixPath(one.filename.replace("\\", "/"))
+        is_link = stat.S_ISLNK(one.external_attr >> 16)
+        if name.is_absolute() or ".." in name.parts or ":" in one.filename or is_link:
+            raise ReadError(
+                f"'{path}' holds {one.filename!a}, a place outside of it: it is not unpacked.",
+                path=path,
+            )
+        if one.flag_bits & 1:
+            raise ReadError(f"'{path}' is encrypted: unpack it first with its password.", path=path)
+    return [one for one in members if not _is_hidden(one)]
+
+
+def _is_hidden(member: zipfile.ZipInfo) -> bool:
+    """Whether a file is one that a system adds."""
+    parts = PurePosixPath(member.filename).parts
+    return "__MACOSX" in parts or parts[-1].startswith(".") or parts[-1] == "Thumbs.db"
+
+
+def _strip(name: PurePosixPath) -> str:
+    """Return folder and name without any suffix: ``a/dem.tif.aux.xml`` is beside ``a/dem.tif``."""
+    return str(name.parent / name.name.partition(".")[0]).casefold()
+
+
+def _choose_member(members: Sequence[zipfile.ZipInfo], path: Path) -> zipfile.ZipInfo:
+    """Return the only file that others stand beside, if there is only one."""
+    if any(one.filename == _OFFICE for one in members):
+        raise ReadError(
+            f"'{path}' is an Office document (such as an Excel workbook): save it as CSV.",
+            path=path,
+        )
+    suffixes = [PurePosixPath(one.filename).suffix.lower() for one in members]
+    main = [one for one, suffix in zip(members, suffixes, strict=True) if suffix not in _SIDE_FILES]
+    if not main:
+        main = [one for one, suffix in zip(members, suffixes, strict=True) if suffix == ".txt"]
+    if len(main) == 1:
+        return main[0]
+    if not main:
+        raise ReadError(f"'{path}' holds no data: there is no file in it to read.", path=path)
+    names = ", ".join(one.filename for one in main[:5])
+    more = f" and {counted(len(main) - 5, 'more', 'more')}" if len(main) > 5 else ""
+    raise ReadError(
+        f"'{path}' holds several files ({names}{more}): unpack it, and name the one to read.",
+        path=path,
+    )

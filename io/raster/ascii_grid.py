@@ -1,0 +1,143 @@
+"""Esri ASCII grid: one band as text that any GIS reads, and the CRS in a file beside it."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..._atomic import replacing_files
+from ...errors import LossWarning, OptionError, WriteError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from ...terrain.results import Raster
+
+__all__ = ["write"]
+
+_PARTS = (".prj",)
+_NODATA = -9999.0
+_BLOCK_CELLS = 1 << 20
+
+
+def write(
+    raster: Raster,
+    path: Path,
+    *,
+    band: str | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> None:
+    """Write one band of a raster as an Esri ASCII grid.
+
+    Parameters
+    ----------
+    raster : Raster
+    path : Path
+        The CRS is written beside it, as ``.prj``.
+    band : str, optional
+        Needed if there are several.
+    progress : callable, optional
+        Called with the fraction done.
+
+    Raises
+    ------
+    OptionError
+        If there is no such band, or several and none is named.
+    WriteError
+        If the file cannot be written, or the value for no data is that of a cell.
+
+    Warns
+    -----
+    LossWarning
+        For units and notes, which have no place.
+
+    Notes
+    -----
+    Each number has the fewest digits that give the same double back. Cells without data, NaN and
+    infinite ones have the raster's own value for no data, or -9999 where that is NaN.
+    """
+    name = _choose_band(raster, band)
+    nodata = raster.nodata if math.isfinite(raster.nodata) else _NODATA
+    _warn_of_losses(raster, path)
+    with replacing_files(path, parts=_PARTS) as new:
+        with new.open("w", encoding="ascii", newline="") as file:
+            file.write(_format_head(raster, nodata))
+            for done, lines in _iterate_rows(raster, name, nodata, path):
+                file.write(lines)
+                if progress is not None:
+                    progress(done)
+        if raster.crs is not None:
+            text = raster.crs.to_pyproj().to_wkt("WKT1_ESRI") or raster.crs.to_wkt()
+            new.with_suffix(".prj").write_text(text, encoding="utf-8")
+
+
+def _choose_band(raster: Raster, band: str | None) -> str:
+    names = list(raster.bands)
+    if band is None and len(names) == 1:
+        return names[0]
+    if band not in names:
+        raise OptionError("band", band, f"one of {', '.join(names)}, as a text grid holds one")
+    return band
+
+
+def _warn_of_losses(raster: Raster, path: Path) -> None:
+    lost = [what for what, there in (("units", raster.units), ("notes", raster.notes)) if there]
+    if lost:
+        warnings.warn(
+            f"'{path}' is a text grid, which has no place for {' and '.join(lost)}.",
+            LossWarning,
+            stacklevel=3,
+        )
+
+
+def _format_head(raster: Raster, nodata: float) -> str:
+    grid = raster.grid
+    rows, columns = grid.shape
+    return (
+        f"ncols {columns}\nnrows {rows}\nxllcorner {float(grid.bounds.xmin)!r}\n"
+        f"yllcorner {float(grid.bounds.ymin)!r}\ncellsize {float(grid.spacing)!r}\n"
+        f"NODATA_value {_format_number(nodata)}\n"
+    )
+
+
+def _format_number(value: float) -> str:
+    return str(int(value)) if value == int(value) and abs(value) < 1e15 else repr(float(value))
+
+
+def _iterate_rows(raster: Raster, name: str, nodata: float, path: Path) -> Any:
+    """Yield the fraction done and the text of some rows, from the north."""
+    rows, columns = raster.grid.shape
+    band = raster.bands[name]
+    step = max(1, _BLOCK_CELLS // max(1, columns))
+    for start in range(0, rows, step):
+        stop = min(start + step, rows)
+        values = np.asarray(band[start:stop, 0:columns])
+        texts = [" ".join(line) for line in _format_values(values, raster, nodata, path)]
+        yield stop / rows, "\n".join(texts) + "\n"
+
+
+def _format_values(
+    values: NDArray[Any], raster: Raster, nodata: float, path: Path
+) -> list[list[str]]:
+    if values.dtype.kind == "b":
+        values = values.astype(np.uint8)
+    if values.dtype.kind != "f":
+        return [list(map(str, row)) for row in values.tolist()]
+    empty = ~np.isfinite(values)
+    if not math.isfinite(raster.nodata) and (values == nodata).any():
+        raise WriteError(
+            f"Cannot write '{path}': a cell has the value {nodata:g}, which stands for no data "
+            "there: give the raster another nodata value.",
+            path=path,
+        )
+    if empty.any():
+        values = np.where(empty, nodata, values)
+    if values.dtype.itemsize == 4:  # the digits of single precision, not those of its double
+        return [list(map(str, row)) for row in values]
+    return [list(map(repr, row)) for row in values.astype(np.float64).tolist()]

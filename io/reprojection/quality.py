@@ -1,0 +1,92 @@
+"""How good a transformation is that PROJ can do here, and whether a better one lacks its grids."""
+
+from __future__ import annotations
+
+import warnings
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+if TYPE_CHECKING:
+    from ...crs import CRS
+
+__all__ = ["Quality", "describe_missing_grids", "judge"]
+
+_MOST_NAMES = 2
+
+
+class Quality(NamedTuple):
+    """What the operation that was used leaves undone.
+
+    Attributes
+    ----------
+    keeps_datum : bool
+        Whether elevations went over unchanged although their datums differ.
+    note : str or None
+        What is to be told of the places in the plane.
+    """
+
+    keeps_datum: bool = False
+    note: str | None = None
+
+
+def judge(source: CRS, target: CRS, transformer: Any) -> Quality:
+    """Say how good the operation is that a transformer has just used.
+
+    Parameters
+    ----------
+    source, target : CRS
+    transformer : pyproj.Transformer
+
+    Notes
+    -----
+    PROJ chooses among the operations whose grids are there, by place and accuracy. It calls one
+    "ballpark" that leaves a change of datum out.
+    """
+    from pyproj.exceptions import ProjError
+
+    try:
+        used = transformer.get_last_used_operation()
+    except (ProjError, AttributeError):
+        used = transformer
+    told = str(used.description).lower()
+    keeps_datum = "ballpark vertical" in told
+    names = f"from {source.label} to {target.label}"
+    if "ballpark geographic" in told:
+        return Quality(
+            keeps_datum,
+            f"PROJ knows no transformation {names} without grids{_name_missing(source, target)}: "
+            "the datum was left out, and places may be wrong by metres, up to some hundred.",
+        )
+    missing = _name_missing(source, target)
+    if not missing or keeps_datum:
+        return Quality(keeps_datum)
+    accuracy = float(used.accuracy)
+    within = f"within {accuracy:g} m" if accuracy >= 0 else "of an accuracy that is not known"
+    return Quality(
+        keeps_datum,
+        f"The best transformation {names} needs grids that are not here{missing}: one {within} "
+        "was used.",
+    )
+
+
+def describe_missing_grids(source: CRS, target: CRS) -> str:
+    """Return the grids that PROJ would need, for a sentence; empty if it needs none."""
+    return _name_missing(source, target)
+
+
+@lru_cache(maxsize=64)
+def _name_missing(source: CRS, target: CRS) -> str:
+    from pyproj.transformer import TransformerGroup
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # it tells what is asked here
+        group = TransformerGroup(source.to_pyproj(), target.to_pyproj(), always_xy=True)
+    if group.best_available:
+        return ""
+    grids = dict.fromkeys(
+        grid.short_name
+        for operation in group.unavailable_operations[:_MOST_NAMES]
+        for grid in operation.grids
+        if not grid.available
+    )
+    return f" ({', '.join(grids)})" if grids else ""

@@ -1,0 +1,185 @@
+"""Surveys and TINs in another CRS."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, overload
+
+import numpy as np
+
+from ...crs import CRS, Unit
+from ...errors import CrsError, OptionError
+from ...tin import TIN, Breakline, Survey, Water
+from .transformation import find_conversion_factor
+from .transformation import reproject as reproject_points
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...crs import CrsLike, UnitLike
+
+__all__ = ["reproject"]
+
+_FLAT = 1e-3
+"""By how much the corners of water may differ in elevation after a change of the vertical datum."""
+
+
+@overload
+def reproject(surface: TIN, crs: CrsLike, *, z_unit: UnitLike | None = None) -> TIN: ...
+@overload
+def reproject(surface: Survey, crs: CrsLike, *, z_unit: UnitLike | None = None) -> Survey: ...
+@overload
+def reproject(
+    surface: TIN | Survey, crs: CrsLike, *, z_unit: UnitLike | None = None
+) -> TIN | Survey: ...
+def reproject(
+    surface: TIN | Survey, crs: CrsLike, *, z_unit: UnitLike | None = None
+) -> TIN | Survey:
+    """Return a survey or TIN in another CRS.
+
+    Parameters
+    ----------
+    surface : Survey or TIN
+        Its CRS must be known.
+    crs : CRS, str, int or pyproj.CRS
+        CRS wanted.
+    z_unit : Unit or str, optional
+        Unit of the elevations, where the surface does not know it.
+
+    Returns
+    -------
+    Survey or TIN
+        As was given. A TIN that was built here is built anew of its reprojected rows and lines, so
+        that it is Delaunay in the new CRS; one of existing triangles, such as those of a file,
+        keeps them. Notes tell what was done to elevations, and which grids PROJ lacks.
+
+    Raises
+    ------
+    CrsError
+        If a CRS is not known, no transformation exists, points lie outside its domain, elevations
+        cannot be brought to the vertical datum wanted, or a TIN would be in degrees.
+    OptionError
+        If the unit is unknown, or another than the surface's own.
+
+    Notes
+    -----
+    Where both CRSs have a vertical axis PROJ changes the datum, with the grids that are on this
+    machine; nothing is fetched. Otherwise elevations keep their datum, and only their unit becomes
+    that of the target. ``max_edge`` and ``snap`` of a build are converted where the unit of the
+    eastings changes.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> points = [[751428, 4020862, 1032], [751438, 4020862, 1031], [751428, 4020872, 1030]]
+    >>> survey = ts.Survey(points=points, crs="EPSG:32616", elevation_unit="m")
+    >>> moved = ts.reproject(survey, "EPSG:32617")
+    >>> moved.points[0].round(2).tolist()
+    [213129.88, 4023881.55, 1032.0]
+    """
+    source, target = surface.crs, CRS.of(crs)
+    unit = _settle_unit(surface, Unit.of(z_unit))
+    if source is None or target is None:
+        raise CrsError(
+            "The CRS of these points is not known, so they cannot be reprojected: declare it first."
+        )
+    if isinstance(surface, Survey):
+        return _move_survey(surface, source, target, unit)
+    if target.is_geographic:
+        raise CrsError(
+            f"{target.label} measures in degrees, and a TIN needs a projected CRS.", crs=target
+        )
+    return _move_tin(surface, source, target, unit)
+
+
+def _settle_unit(surface: TIN | Survey, declared: Unit | None) -> Unit | None:
+    own = surface.elevation_unit
+    if own is not None and declared is not None and own != declared:
+        raise OptionError("unit of elevations", declared.name, f"{own.name}, as the points have")
+    return own or declared
+
+
+def _move_tin(tin: TIN, source: CRS, target: CRS, unit: Unit | None) -> TIN:
+    told = reproject_points(tin.points, source, target, unit=unit)
+    along, across = source.horizontal_unit, target.horizontal_unit
+
+    def move(points: NDArray[np.float64]) -> NDArray[np.float64]:
+        return reproject_points(points, source, target, unit=unit).points
+
+    moved = tin.transform(
+        move, crs=target, z_unit=told.unit, length=find_conversion_factor(along, across)
+    )
+    return _add_notes(moved, told.notes)
+
+
+def _add_notes(tin: TIN, notes: tuple[str, ...]) -> TIN:
+    """Add notes to the report, without making another TIN of one that has none to add."""
+    if not notes:
+        return tin
+    report = replace(tin.report, notes=[*tin.report.notes, *notes])
+    return tin.replace(report=report, inputs=tin._gather_inputs())
+
+
+def _move_survey(survey: Survey, source: CRS, target: CRS, unit: Unit | None) -> Survey:
+    told = reproject_points(survey.points, source, target, unit=unit)
+    move = _Mover(source, target, unit)
+    lines: dict[str, Any] = {
+        "breaklines": [move.move_line(line) for line in survey.breaklines],
+        "boundary": [move.move_region(one) for one in survey.boundary],
+        "holes": [move.move_region(one) for one in survey.holes],
+        "erase": [move.move_region(one) for one in survey.erase],
+        "water": [move.move_water(one) for one in survey.water],
+        "extent": [move.move_ring(one) for one in survey.extent],
+    }
+    return replace(
+        survey,
+        points=told.points,
+        crs=target,
+        elevation_unit=told.unit,
+        notes=[*survey.notes, *told.notes],
+        **lines,
+    )
+
+
+class _Mover:
+    """Lines of a survey, moved as its points are."""
+
+    def __init__(self, source: CRS, target: CRS, unit: Unit | None) -> None:
+        self._how: dict[str, Any] = {"source": source, "target": target, "unit": unit}
+
+    def move_ring(self, ring: Any) -> NDArray[np.float64]:
+        """Move an array of two or three columns."""
+        given = np.asarray(ring, np.float64)
+        if given.shape[1] == 3:
+            return reproject_points(given, **self._how).points
+        level = np.column_stack([given, np.zeros(len(given))])
+        return reproject_points(level, **self._how).points[:, :2].copy()
+
+    def move_line(self, line: Any) -> Any:
+        """Move a breakline or its coordinates."""
+        if isinstance(line, Breakline):
+            coords = self.move_ring(line.coords)
+            return Breakline(coords, kind=line.kind, priority=line.priority, name=line.name)
+        return self.move_ring(line)
+
+    def move_region(self, region: Any) -> Any:
+        """Move a ring, a list of rings, or a polygon of shapely."""
+        if hasattr(region, "geom_type"):
+            import shapely
+
+            return shapely.transform(region, self.move_ring, include_z=bool(region.has_z))
+        if isinstance(region, list | tuple) and np.ndim(region[0]) == 2:
+            return [self.move_ring(ring) for ring in region]
+        return self.move_ring(region)
+
+    def move_water(self, water: Water) -> Water:
+        """Move a polygon of water, which must stay flat."""
+        corners = np.column_stack([water.ring, np.full(len(water.ring), water.z)])
+        moved = reproject_points(corners, **self._how).points
+        if np.ptp(moved[:, 2]) > _FLAT:
+            raise CrsError(
+                f"Water at {water.z:g} would not be flat in the vertical datum of "
+                f"{self._how['target'].label}: name the horizontal part of the CRS alone.",
+                crs=self._how["target"],
+            )
+        return Water(moved[:, :2], float(moved[:, 2].mean()), name=water.name)

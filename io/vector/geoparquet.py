@@ -1,0 +1,85 @@
+"""GeoParquet 1.1: features as a table with a column of geometries.
+
+References
+----------
+GeoParquet Specification 1.1.0 (2024), https://geoparquet.org.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ... import _optional
+from ..._atomic import replacing_path
+from ...errors import WriteError
+from .ogr import describe, encode_geometries
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from ...terrain.results import Features
+
+__all__ = ["write"]
+
+_GEOMETRY = "geometry"
+_GROUP_ROWS = 65_536
+
+
+def write(features: Features, path: Path) -> None:
+    """Write features as GeoParquet, geometries as well-known binary.
+
+    Parameters
+    ----------
+    features : Features
+    path : Path
+
+    Raises
+    ------
+    MissingExtraError
+        If pyarrow is not installed.
+    WriteError
+        If the file cannot be written, or a column is called ``geometry``.
+
+    Notes
+    -----
+    Coordinates and numbers are the same. The CRS is PROJJSON, ``null`` if it is not known; units
+    and notes are metadata of the file.
+    """
+    pyarrow = _optional.load("pyarrow", f"Writing '{path}'")
+    parquet = _optional.load("pyarrow.parquet", f"Writing '{path}'")
+    if _GEOMETRY in features.columns:
+        raise WriteError(
+            f"Cannot write '{path}': a column '{_GEOMETRY}' is GeoParquet's own: rename it.",
+            path=path,
+        )
+    columns = {name: _make_column(pyarrow, values) for name, values in features.columns.items()}
+    columns[_GEOMETRY] = pyarrow.array(encode_geometries(features), pyarrow.binary())
+    table = pyarrow.table(columns)
+    metadata = {"geo": json.dumps(_describe_geometry(features)), **describe(features)}
+    with replacing_path(path) as new:
+        parquet.write_table(
+            table.replace_schema_metadata(metadata), new, row_group_size=_GROUP_ROWS
+        )
+
+
+def _make_column(pyarrow: Any, values: NDArray[Any]) -> Any:
+    """Return a column of Arrow; texts and gaps as they are."""
+    if values.dtype.kind in "OU":
+        return pyarrow.array(values.tolist(), pyarrow.string())
+    return pyarrow.array(np.ascontiguousarray(values))
+
+
+def _describe_geometry(features: Features) -> dict[str, Any]:
+    kind = features.geometry_type + (" Z" if features.has_elevations else "")
+    crs = None if features.crs is None else json.loads(features.crs.to_pyproj().to_json())
+    column: dict[str, Any] = {"encoding": "WKB", "geometry_types": [kind], "crs": crs}
+    if len(features.coordinates):
+        low, high = features.coordinates.min(axis=0), features.coordinates.max(axis=0)
+        if np.isfinite([*low, *high]).all():
+            column["bbox"] = [*low.tolist(), *high.tolist()]
+    return {"version": "1.1.0", "primary_column": _GEOMETRY, "columns": {_GEOMETRY: column}}

@@ -1,0 +1,330 @@
+"""Points of vector layers as a survey, lines too if told how, triangles as a TIN.
+
+Elevations are those of the geometry or of a column, never a guess between two that differ.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ..._sentences import counted
+from ...crs import CRS, Unit
+from ...errors import OptionError, ReadError, choice
+from ...policies import LineReading
+from ...tin import TIN, Breakline, Survey
+from ...tin.topology import find_offsets
+from ..mesh.common import Reference, make_tin
+from ..reprojection.placement import place, settle_unit
+from .elevations import find_elevations
+from .features import Features, read_features
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from ...crs import CrsLike, UnitLike
+
+__all__ = ["read"]
+
+_POINT, _LINE, _RING, _POLYGON = range(4)
+_TRIANGLE_CORNERS = 4
+
+
+def read(
+    path: Path,
+    *,
+    crs: CrsLike | None = None,
+    z_unit: UnitLike | None = None,
+    layer: str | None = None,
+    z_field: str | None = None,
+    where: str | None = None,
+    lines_as: LineReading | None = None,
+) -> Survey | TIN:
+    """Read the points of a vector layer, or the triangles that another program wrote as polygons.
+
+    Parameters
+    ----------
+    path : Path
+    crs : CRS, str, int or pyproj.CRS, optional
+        CRS wanted, to which the points are reprojected. It declares that of a file without one.
+    z_unit : Unit or str, optional
+        Unit of the elevations, if the file does not say.
+    layer : str, optional
+        Needed if several layers have geometry.
+    z_field : str, optional
+        Column that holds the elevations; "geometry" for the third coordinate. Needed if both are
+        there and differ, or several columns could be meant.
+    where : str, optional
+        Condition on the columns, as in SQL.
+    lines_as : {"points", "breaklines"}, optional
+        Take the vertices of lines, and of polygons that are no triangles, as points, or the lines
+        as breaklines too. Needed for a layer of them.
+
+    Returns
+    -------
+    Survey or TIN
+        A survey of points has the columns as attributes; points of one feature have its values
+        each. ``skipped`` counts features without an elevation. A layer whose polygons are all
+        triangles with elevations is a TIN: corners at one place are one vertex, triangles are
+        those of the file.
+
+    Raises
+    ------
+    ReadError
+        If the file cannot be read, has several layers, kinds of geometry, or plausible elevations,
+        or none.
+    OptionError
+        If there is no such column, or ``lines_as`` is none of its words.
+    CrsError
+        If the points cannot be brought into the CRS.
+    MissingExtraError
+        If pyogrio is not installed.
+    """
+    role = None if lines_as is None else choice("lines_as", lines_as, LineReading)
+    features = read_features(path, layer=layer, where=where)
+    asked = _Asked(CRS.of(crs), _find_unit(features, Unit.of(z_unit)), z_field)
+    kinds = _list_kinds(features)
+    if kinds == {_POINT}:
+        return _make_survey(_gather_points(features), features, asked)
+    if role is None and kinds == {_POLYGON} and _are_triangles(features):
+        return _make_triangles(features, asked)
+    if _POINT in kinds:
+        raise ReadError(
+            f"'{path}' holds both points and lines or polygons: one kind is needed; the option "
+            "where chooses some features.",
+            path=path,
+        )
+    if role is None:
+        what = "lines" if kinds == {_LINE} else "polygons"
+        raise ReadError(
+            f"'{path}' holds {what}, no points: the option lines_as takes their vertices as "
+            "points, or them as breaklines.",
+            path=path,
+        )
+    return _make_line_survey(_gather_lines(features), features, asked, role)
+
+
+class _Asked(NamedTuple):
+    """What the caller asks for."""
+
+    crs: CRS | None
+    unit: Unit | None
+    z_field: str | None
+
+
+class _Vertices(NamedTuple):
+    """Vertices, the feature of each, and where single lines or rings begin and end."""
+
+    xyz: NDArray[np.float64]
+    rows: NDArray[np.int64]
+    bounds: NDArray[np.int64]
+    has_z: NDArray[np.bool_]
+
+
+def _find_unit(features: Features, declared: Unit | None) -> Unit | None:
+    """Return the unit of elevations that the file or the caller tells."""
+    try:
+        told = Unit.of(features.elevation_unit or None)
+    except OptionError:  # such as "unknown", which is what we write
+        told = None
+    vertical = None if features.crs is None else features.crs.vertical_unit
+    return settle_unit(declared, told or vertical, features.path)
+
+
+# ----------------------------------------------------------------------- the geometry
+
+
+def _list_kinds(features: Features) -> set[int]:
+    """Return the kinds of single geometries, with collections taken apart."""
+    import shapely
+
+    shapes = features.geometries
+    while (shapely.get_type_id(shapes) > _POLYGON).any():
+        shapes = shapely.get_parts(shapes)
+    found = np.unique(shapely.get_type_id(shapes[~shapely.is_empty(shapes)])).tolist()
+    return {_LINE if kind == _RING else int(kind) for kind in found}
+
+
+def _gather_points(features: Features) -> _Vertices:
+    import shapely
+
+    xyz, rows = shapely.get_coordinates(features.geometries, include_z=True, return_index=True)
+    has_z = shapely.has_z(features.geometries)[rows]
+    return _Vertices(xyz, rows, np.arange(len(xyz) + 1), has_z)
+
+
+def _gather_lines(features: Features) -> _Vertices:
+    """Return the vertices of lines and rings; the last of a closed one is left out of no line."""
+    import shapely
+
+    shapes, rows = features.geometries, np.arange(len(features.geometries))
+    while (shapely.get_type_id(shapes) > _POLYGON).any():
+        shapes, index = shapely.get_parts(shapes, return_index=True)
+        rows = rows[index]
+    is_polygon = shapely.get_type_id(shapes) == _POLYGON
+    rings, of_polygon = shapely.get_rings(shapes[is_polygon], return_index=True)
+    lines = np.concatenate([shapes[~is_polygon], rings])
+    of_lines = np.concatenate([rows[~is_polygon], rows[is_polygon][of_polygon]])
+    there = ~shapely.is_empty(lines)
+    lines, of_lines = lines[there], of_lines[there]
+    order = np.argsort(of_lines, kind="stable")
+    lines, of_lines = lines[order], of_lines[order]
+    xyz, line = shapely.get_coordinates(lines, include_z=True, return_index=True)
+    bounds = find_offsets(shapely.get_num_coordinates(lines))
+    return _Vertices(xyz, of_lines[line], bounds, shapely.has_z(lines)[line])
+
+
+def _require_finite(vertices: _Vertices, features: Features) -> None:
+    wrong = ~np.isfinite(vertices.xyz[:, :2]).all(axis=1)
+    if wrong.any():
+        row = int(np.argmax(wrong))
+        raise ReadError(
+            f"{features.label(int(vertices.rows[row]))} has a coordinate that is not finite, "
+            f"{vertices.xyz[row, :2].tolist()}: every coordinate must be a finite number.",
+            path=features.path,
+        )
+
+
+# ------------------------------------------------------------------------ the survey
+
+
+def _make_survey(vertices: _Vertices, features: Features, asked: _Asked) -> Survey:
+    _require_finite(vertices, features)
+    z, notes = find_elevations(
+        features, vertices.xyz[:, 2], vertices.has_z, vertices.rows, asked.z_field
+    )
+    keep = np.isfinite(z)
+    points = np.column_stack([vertices.xyz[keep, :2], z[keep]])
+    placed = place(
+        points, source=features.crs, target=asked.crs, path=features.path, unit=asked.unit
+    )
+    rows = vertices.rows[keep]
+    without = len(np.unique(vertices.rows[~keep]))
+    return Survey(
+        points=placed.points,
+        attributes=_collect_attributes(features, rows),
+        crs=placed.crs,
+        elevation_unit=placed.elevation_unit,
+        source=features.path.name,
+        skipped={"features without an elevation": without} if without else {},
+        notes=[*features.notes, *notes, *placed.notes],
+    )
+
+
+def _collect_attributes(features: Features, rows: NDArray[np.int64]) -> dict[str, NDArray[Any]]:
+    """Return the columns under the names of the file."""
+    names = {name.lower(): name for name in features.names}
+    return {names.get(name, name): column[rows] for name, column in features.columns.items()}
+
+
+def _make_line_survey(
+    vertices: _Vertices, features: Features, asked: _Asked, role: LineReading
+) -> Survey:
+    """Return the vertices as points, those that close a ring once, and the lines if asked for."""
+    is_open = ~_find_closing(vertices)
+    if role == "points":
+        xyz, rows, _, has_z = vertices
+        return _make_survey(
+            _Vertices(xyz[is_open], rows[is_open], vertices.bounds, has_z[is_open]), features, asked
+        )
+    survey = _make_survey(vertices, features, asked)
+    if survey.skipped:
+        raise ReadError(
+            f"'{features.path}': {counted(sum(survey.skipped.values()), 'feature')} without an "
+            "elevation cannot be breaklines: the option where leaves them out.",
+            path=features.path,
+        )
+    breaklines = _make_breaklines(survey.points, vertices, features)
+    return replace(_take_rows(survey, is_open), breaklines=breaklines)
+
+
+def _find_closing(vertices: _Vertices) -> NDArray[np.bool_]:
+    """Return which vertices stand for the first of their line again."""
+    starts, ends = vertices.bounds[:-1], vertices.bounds[1:] - 1
+    closed = (vertices.xyz[starts, :2] == vertices.xyz[ends, :2]).all(axis=1) & (ends > starts)
+    found = np.zeros(len(vertices.xyz), np.bool_)
+    found[ends[closed]] = True
+    return found
+
+
+def _make_breaklines(
+    points: NDArray[np.float64], vertices: _Vertices, features: Features
+) -> list[Breakline]:
+    rows = vertices.rows[vertices.bounds[:-1]]
+    names = features.columns.get("name", np.full(len(features.numbers), None, object))[rows]
+    lines = np.split(points, vertices.bounds[1:-1])
+    return [
+        Breakline(line, name="" if name is None or name != name else str(name))
+        for line, name in zip(lines, names.tolist(), strict=True)
+        if len(line) > 1
+    ]
+
+
+def _take_rows(survey: Survey, keep: NDArray[np.bool_]) -> Survey:
+    attributes = {name: values[keep] for name, values in survey.attributes.items()}
+    return replace(survey, points=survey.points[keep], attributes=attributes)
+
+
+# -------------------------------------------------------------------------- triangles
+
+
+def _are_triangles(features: Features) -> bool:
+    """Whether every polygon has three corners with elevations, and no island."""
+    import shapely
+
+    shapes = shapely.get_parts(features.geometries)
+    return bool(
+        shapely.has_z(shapes).all()
+        and (shapely.get_num_coordinates(shapes) == _TRIANGLE_CORNERS).all()
+        and (shapely.get_num_interior_rings(shapes) == 0).all()
+    )
+
+
+def _make_triangles(features: Features, asked: _Asked) -> TIN:
+    """Return the TIN of triangles; corners at one place, to the last bit, are one vertex."""
+    import shapely
+
+    if asked.z_field not in (None, "geometry"):
+        raise OptionError("z_field", asked.z_field, "geometry, where polygons are triangles")
+    xyz = shapely.get_coordinates(shapely.get_parts(features.geometries), include_z=True)
+    corners = np.delete(xyz.reshape(-1, _TRIANGLE_CORNERS, 3), 3, axis=1).reshape(-1, 3)
+    if not np.isfinite(corners).all():
+        raise ReadError(f"'{features.path}': a corner of a triangle is not finite.",
+                        path=features.path)  # fmt: skip
+    points, triangles = _join_corners(corners)
+    placed = place(
+        points, source=features.crs, target=asked.crs, path=features.path, unit=asked.unit
+    )
+    tin = make_tin(
+        placed.points,
+        triangles,
+        features.path,
+        reference=Reference(placed.crs, placed.elevation_unit),
+    )
+    notes = [*features.notes, *placed.notes]
+    if placed.points is not points:
+        notes.append(f"Vertices were reprojected to {placed.crs}; the triangles are the file's.")
+    return tin.replace(report=replace(tin.report, notes=[*tin.report.notes, *notes]))
+
+
+def _join_corners(
+    corners: NDArray[np.float64],
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Return distinct corners, in the order in which they come, and triangles of their numbers."""
+    corners = corners + 0.0  # -0.0 is the same place
+    order = np.lexsort(corners.T[::-1])
+    near = corners[order]
+    is_new = np.ones(len(near), np.bool_)
+    is_new[1:] = (near[1:] != near[:-1]).any(axis=1)
+    group = np.empty(len(near), np.int64)
+    group[order] = np.cumsum(is_new) - 1
+    first = np.full(int(is_new.sum()), len(near))
+    np.minimum.at(first, group, np.arange(len(near)))
+    ranks = np.empty(len(first), np.int64)
+    by_place = np.argsort(first)
+    ranks[by_place] = np.arange(len(first))
+    return corners[first[by_place]], ranks[group].reshape(-1, 3)

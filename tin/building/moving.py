@@ -1,0 +1,84 @@
+"""Inputs of a TIN at other places: points and lines moved, to be built anew."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from ...crs import CRS, Unit
+    from .inputs import BuildInputs
+
+    Move = Callable[[NDArray[np.float64]], NDArray[np.float64]]
+
+__all__ = ["move_inputs"]
+
+
+def move_inputs(
+    inputs: BuildInputs, move: Move, *, length: float, crs: CRS | None, elevation_unit: Unit | None
+) -> BuildInputs:
+    """Return inputs whose points and lines a function has moved.
+
+    Parameters
+    ----------
+    inputs : BuildInputs
+    move : callable
+        Takes and returns (n, 3) points.
+    length : float
+        Factor of lengths in the plane, for ``max_edge`` and ``snap``.
+    crs, elevation_unit
+        Of the moved points.
+
+    Notes
+    -----
+    Draped vertices have no elevation before and after. Water stays flat, at the mean of what
+    becomes of its corners.
+    """
+    lines = inputs.lines
+    xyz = _move_places(np.column_stack([lines.xy, lines.elevations]), move)
+    _level_water(xyz, lines.offsets, lines.kinds)
+    moved = replace(
+        inputs,
+        points=_move_places(inputs.points, move),
+        erase=[[_move_ring(ring, move) for ring in region] for region in inputs.erase],
+        max_edge=inputs.max_edge * length,
+        options=inputs.options._replace(snap=inputs.options.snap * length),
+        crs=crs,
+        elevation_unit=elevation_unit,
+    )
+    if not lines.kinds:
+        return moved
+    return moved.with_lines(lines._replace(xy=xyz[:, :2].copy(), elevations=xyz[:, 2].copy()))
+
+
+def _move_places(xyz: NDArray[np.float64], move: Move) -> NDArray[np.float64]:
+    """Move what has coordinates; an elevation that is not known stays so."""
+    found = xyz.copy()
+    is_place = np.isfinite(xyz[:, :2]).all(axis=1)
+    if is_place.any():
+        has_elevation = np.isfinite(xyz[is_place, 2])
+        given = np.where(has_elevation, xyz[is_place, 2], 0.0)
+        moved = move(np.column_stack([xyz[is_place, :2], given]))
+        moved[~has_elevation, 2] = np.nan
+        found[is_place] = moved
+    return found
+
+
+def _move_ring(ring: NDArray[np.float64], move: Move) -> NDArray[np.float64]:
+    return move(np.column_stack([ring, np.zeros(len(ring))]))[:, :2].copy()
+
+
+def _level_water(
+    xyz: NDArray[np.float64], offsets: NDArray[np.int64], kinds: tuple[str, ...]
+) -> None:
+    for line, kind in enumerate(kinds):
+        if kind == "water":
+            part = slice(offsets[line], offsets[line + 1])
+            if np.ptp(xyz[part, 2]) > 0:
+                xyz[part, 2] = xyz[part, 2].mean()
