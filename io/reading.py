@@ -176,7 +176,15 @@ def _choose_format(file: Path, name: str | None) -> Format:
     if _is_folder(file):
         return _choose_format_of_folder(file, named)
     head = _read_head(file)
-    return detect(file, head) if named is None else named
+    if named is not None:
+        return named
+    return _find_format_of_part(file) or detect(file, head)
+
+
+def _find_format_of_part(file: Path) -> Format | None:
+    """Return the format of a folder of which a file is a part, as its name tells."""
+    name = file.name.lower()
+    return next((one for one in known_formats() if name in one.part_names), None)
 
 
 def _is_folder(file: Path) -> bool:

@@ -85,6 +85,12 @@ def sum_heights(
     group_count: int,
     up: float,
 ) -> Doubles: ...
+def sum_areas(
+    points: Doubles,
+    triangles: Ints,
+    groups: Ints,
+    group_count: int,
+) -> Doubles: ...
 def overlay(
     points: Doubles,
     triangles: Ints,

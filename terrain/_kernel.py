@@ -21,6 +21,7 @@ __all__ = [
     "overlay",
     "smooth_contours",
     "stage_sums",
+    "sum_areas",
     "sum_between",
     "sum_heights",
     "trace_contours",
@@ -48,6 +49,7 @@ SUMS = (
 )
 """Columns of what :func:`sum_between` and :func:`sum_heights` return, a row for each group."""
 
+sum_areas = _core.sum_areas
 sum_between = _core.sum_between
 sum_heights = _core.sum_heights
 stage_sums = _core.stage_sums

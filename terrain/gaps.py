@@ -71,11 +71,11 @@ def describe_gaps(tin: TIN) -> list[str]:
 
 def _square_lengths(tin: TIN) -> NDArray[np.float64]:
     """Return the squares of the lengths of the edges opposite the corners, (m, 3), in the plane."""
-    x, y = (np.ascontiguousarray(axis) for axis in tin.points[:, :2].T)
+    x, y = (np.ascontiguousarray(axis)[tin.triangles] for axis in tin.points[:, :2].T)
     squares = np.empty(tin.triangles.shape)
     for k in range(3):
-        start, end = tin.triangles[:, (k + 1) % 3], tin.triangles[:, (k + 2) % 3]
-        squares[:, k] = (x[end] - x[start]) ** 2 + (y[end] - y[start]) ** 2
+        start, end = (k + 1) % 3, (k + 2) % 3
+        squares[:, k] = (x[:, end] - x[:, start]) ** 2 + (y[:, end] - y[:, start]) ** 2
     return squares
 
 

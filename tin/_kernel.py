@@ -35,6 +35,7 @@ __all__ = [
     "grow",
     "in_circle",
     "intersections",
+    "join_triangles",
     "nearest_vertices",
     "orientation",
     "places_in_rings",
@@ -42,6 +43,7 @@ __all__ = [
     "regions",
     "snap",
     "touches",
+    "turns_of_triangles",
     "vertices_at",
 ]
 
@@ -66,6 +68,8 @@ compare_distances = _core.compare_distances
 snap = _core.snap
 count_work = _core.count_work
 clean = _core.clean
+join_triangles = _core.join_triangles
+turns_of_triangles = _core.turns_of_triangles
 are_in_exact_range = _core.are_in_exact_range
 contacts = _core.contacts
 crossings = _core.crossings

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ..errors import PointsError
+from . import _kernel
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -115,37 +116,29 @@ def neighbors_of(triangles: NDArray[np.int32], n_vertices: int) -> NDArray[np.in
     PointsError
         If an edge is used by more than two triangles or twice in the same direction.
     """
-    start, end = directed_edges(triangles)
-    keys = _make_keys(start, end, n_vertices).ravel()
-    forward = (start < end).ravel()
+    neighbors, is_sound = _kernel.join_triangles(np.ascontiguousarray(triangles), n_vertices)
+    if not is_sound:
+        _require_manifold(triangles, n_vertices)
+    return neighbors
+
+
+def _require_manifold(triangles: NDArray[np.int32], n_vertices: int) -> None:
+    starts, ends = directed_edges(triangles)
+    keys = _make_keys(starts, ends, n_vertices).ravel()
+    forward = (starts < ends).ravel()
     order = np.argsort(keys, kind="stable")
-    sorted_keys = keys[order]
-    same = sorted_keys[1:] == sorted_keys[:-1]
-    _require_manifold(triangles, order, same, forward)
-    first, second = order[:-1][same], order[1:][same]
-    neighbors = np.full(triangles.size, NO_NEIGHBOR, np.int32)
-    neighbors[first] = second // 3
-    neighbors[second] = first // 3
-    return neighbors.reshape(-1, 3)
-
-
-def _require_manifold(
-    triangles: NDArray[np.int32],
-    order: NDArray[np.int64],
-    same: NDArray[np.bool_],
-    forward: NDArray[np.bool_],
-) -> None:
+    same = keys[order][1:] == keys[order][:-1]
     thrice = same[1:] & same[:-1]
     if thrice.any():
-        start, end = _get_edge(triangles, int(order[np.argmax(thrice)]))
+        a, b = _get_edge(triangles, int(order[np.argmax(thrice)]))
         raise PointsError(
-            f"Edge {start}-{end} belongs to more than two triangles: a TIN allows two at most."
+            f"Edge {a}-{b} belongs to more than two triangles: a TIN allows two at most."
         )
     clash = same & (forward[order[1:]] == forward[order[:-1]])
     if clash.any():
-        start, end = _get_edge(triangles, int(order[np.argmax(clash)]))
+        a, b = _get_edge(triangles, int(order[np.argmax(clash)]))
         raise PointsError(
-            f"The two triangles at edge {start}-{end} lie on the same side of it: "
+            f"The two triangles at edge {a}-{b} lie on the same side of it: "
             "triangles of a TIN must not overlap."
         )
 

@@ -1,12 +1,14 @@
-"""Contours beside matplotlib on the same TIN, and contourpy on a raster of the same surface.
+"""Contours beside matplotlib on the same TIN, and tools of rasters on one of the same surface.
 
 The same lines must come of the TIN: as many, as long. On a raster of as many cells as the TIN has
-points the lines are others, of the same shape.
+points the lines are others, of the same shape. gdal_contour reads and writes files.
 """
 
 from __future__ import annotations
 
+import tempfile
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,6 +18,7 @@ import tinsmith as ts
 from tinsmith.tin import TIN
 
 from ..measure import OURS, Outcome, Result, alternate, find_median
+from ..peers.programs import find_present, run_program
 
 __all__ = ["run"]
 
@@ -24,12 +27,12 @@ SIZE = 10_000.0
 """Side of the square, metres."""
 
 LEVELS = 72
-MODULES = {
-    OURS: "tinsmith",
-    "matplotlib": "matplotlib",
-    "contourpy, on a raster": "contourpy",
+CONTOURPY, GDAL = "contourpy, on a raster", "gdal_contour, on a raster"
+MODULES = {OURS: "tinsmith", "matplotlib": "matplotlib", CONTOURPY: "contourpy"}
+NOTES = {
+    CONTOURPY: "of as many cells; other lines of the same surface",
+    GDAL: "the same raster, from a GeoTIFF to a FlatGeobuf file",
 }
-NOTES = {"contourpy, on a raster": "of as many cells; other lines of the same surface"}
 RELATIVE = 1e-9
 ON_A_RASTER = 0.2
 """Lines through scattered points wind more than those through a raster: by less than this share."""
@@ -48,15 +51,20 @@ def run(n_points: int, *, repeats: int = 3) -> Outcome:
     z = tin.points[:, 2]
     levels = np.linspace(z.min(), z.max(), LEVELS + 2)[1:-1]
     outcome = Outcome()
-    tools = {
-        OURS: lambda: _ours(tin, levels),
-        "matplotlib": _matplotlib(tin, levels),
-        "contourpy, on a raster": _contourpy(n_points, levels),
-    }
-    present = outcome.present(MODULES)
-    answers, runs = alternate({name: tools[name] for name in present}, repeats)
-    for name, lengths in answers.items():
-        _require_same(answers[OURS], lengths, is_raster=name in NOTES)
+    with tempfile.TemporaryDirectory() as folder:
+        tools = {
+            OURS: lambda: lambda: _ours(tin, levels),
+            "matplotlib": lambda: _matplotlib(tin, levels),
+            CONTOURPY: lambda: _contourpy(n_points, levels),
+            GDAL: lambda: _gdal_contour(n_points, levels, Path(folder)),
+        }
+        present = [*outcome.present(MODULES), *find_present({GDAL: "gdal_contour"}, outcome)]
+        calls = {name: tools[name]() for name in present}
+        answers, runs = alternate(calls, repeats)
+        if GDAL in answers:
+            answers[GDAL] = _read_lines(answers[GDAL])
+    for name, lines in answers.items():
+        _require_same(answers[OURS], lines, is_raster=name in NOTES)
         seconds = find_median(runs[name])
         task = f"contours: {LEVELS} levels, {len(tin.triangles):,} triangles"
         note = NOTES.get(name, "")
@@ -94,10 +102,41 @@ def _matplotlib(tin: TIN, levels: Floats) -> Callable[[], list[Floats]]:
 def _contourpy(n_points: int, levels: Floats) -> Callable[[], list[Floats]]:
     from contourpy import contour_generator
 
-    axis = np.linspace(0, SIZE, round(n_points**0.5))
-    x, y = np.meshgrid(axis, axis)
+    x, y = _places(n_points)
     generator: Any = contour_generator(x, y, hills(x, y), name="serial")
     return lambda: [line for level in levels for line in generator.lines(level)]
+
+
+def _places(n_points: int) -> tuple[Floats, Floats]:
+    axis = np.linspace(0, SIZE, round(n_points**0.5))
+    x, y = np.meshgrid(axis, axis)
+    return x, y
+
+
+def _gdal_contour(n_points: int, levels: Floats, folder: Path) -> Callable[[], Path]:
+    x, y = _places(n_points)
+    spacing = float(x[0, 1] - x[0, 0])
+    half = spacing / 2
+    bounds = ts.Bounds(-half, -half, SIZE + half, SIZE + half)
+    grid = ts.Grid(bounds, shape=x.shape, spacing=spacing)
+    ts.write(ts.Raster({"elevation": hills(x, y)[::-1]}, grid, crs="EPSG:32616"), folder / "z.tif")
+    command = ["gdal_contour", "-q", "-f", "FlatGeobuf", "-fl", *map(repr, levels.tolist())]
+
+    def call() -> Path:
+        made = folder / "contours.fgb"
+        made.unlink(missing_ok=True)
+        run_program([*command, folder / "z.tif", made])
+        return made
+
+    return call
+
+
+def _read_lines(path: Path) -> list[Floats]:
+    import pyogrio.raw
+    import shapely
+
+    geometries = shapely.from_wkb(pyogrio.raw.read(path)[2])
+    return [shapely.get_coordinates(line) for line in shapely.get_parts(geometries)]
 
 
 def _require_same(ours: list[Floats], theirs: list[Floats], *, is_raster: bool) -> None:

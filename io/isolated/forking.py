@@ -24,8 +24,9 @@ if TYPE_CHECKING:
 __all__ = ["Fork", "can_fork", "permit_forks"]
 
 _NATIVE = frozenset(
-    {"rasterio", "pyogrio", "osgeo", "fiona", "pyvista", "vtkmodules", "meshio", "lazrs", "pyarrow"}
-)
+    {"rasterio", "pyogrio", "osgeo", "fiona", "pyvista", "vtkmodules", "meshio", "netCDF4",
+     "lazrs", "pyarrow"}
+)  # fmt: skip
 """Libraries that must be loaded by the child itself: they have read their variables, and may have
 threads."""
 

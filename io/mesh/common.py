@@ -11,9 +11,11 @@ from ...crs import CRS, Unit
 from ...errors import CrsError, FormatError, OptionError, PointsError, ReadError
 from ...tin import TIN, Survey
 from ...tin.checking.overlaps import describe_overlaps
+from ...tin.validation.options import is_finite_number
 from ..reprojection.placement import settle_unit
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -23,6 +25,7 @@ if TYPE_CHECKING:
 __all__ = [
     "Fans",
     "Reference",
+    "add_notes",
     "choose_reference",
     "cut_into_fans",
     "format_crs",
@@ -30,6 +33,7 @@ __all__ = [
     "make_survey",
     "make_tin",
     "read_content",
+    "require_factor",
     "require_tin",
     "require_writable",
 ]
@@ -75,6 +79,19 @@ def require_tin(surface: object, path: Path, *, format_name: str) -> TIN:
         f"Cannot write '{path}': {format_name} holds triangles, and a survey has none; "
         "triangulate it first."
     )
+
+
+def require_factor(option: str, value: object, *, or_none: bool = False) -> None:
+    """Refuse an option that is no finite number above 0.
+
+    Raises
+    ------
+    OptionError
+    """
+    if or_none and value is None:
+        return
+    if not is_finite_number(value) or not float(value) > 0:  # type: ignore[arg-type]
+        raise OptionError(option, value, "a finite number above 0")
 
 
 def format_crs(crs: CRS) -> str:
@@ -151,10 +168,12 @@ def make_tin(
     *,
     constrained: NDArray[np.bool_] | None = None,
     reference: Reference,
+    notes: Sequence[str] = (),
 ) -> TIN:
     """Make a TIN of what a file holds; what makes no TIN is a fault of the file.
 
-    What makes one in which triangles overlap, and the like, is told in the notes of its report.
+    What makes one in which triangles overlap, and the like, is told in the notes of its report,
+    behind the ``notes`` given.
 
     Raises
     ------
@@ -171,8 +190,13 @@ def make_tin(
         )
     except PointsError as error:
         raise ReadError(f"'{path}' holds no TIN. {error}", path=path) from error
-    notes = describe_overlaps(tin)
-    return tin.replace(report=replace(tin.report, notes=notes)) if notes else tin
+    told = [*notes, *describe_overlaps(tin)]
+    return add_notes(tin, told) if told else tin
+
+
+def add_notes(tin: TIN, notes: Sequence[str]) -> TIN:
+    """Return a TIN with further notes in its report."""
+    return tin.replace(report=replace(tin.report, notes=[*tin.report.notes, *notes]))
 
 
 def make_survey(

@@ -4,6 +4,14 @@ from typing import Any
 
 from ..registry import signatures
 from ..registry.format import Format
+from .signatures import (
+    TIN_FILES,
+    is_2dm,
+    is_cityjson,
+    is_esri_tin,
+    is_off,
+    is_quantized_mesh,
+)
 
 __all__ = ["FORMATS"]
 
@@ -81,5 +89,99 @@ FORMATS = (
         losses="The CRS and the unit of elevations; lines are named groups of edges, which are "
         "read as constrained edges; the report.",
         loses=("crs", "elevation unit", "lines", "notes", "report"),
+    ),
+    Format(
+        name="2dm",
+        description="2DM mesh of SMS (for hydraulic models; opens in QGIS)",
+        suffixes=(".2dm",),
+        read="tinsmith.io.mesh.sms:read",
+        reads=("TIN",),
+        write="tinsmith.io.mesh.sms:write",
+        writes=("TIN",),
+        precision="Every number comes back bit for bit.",
+        losses="The CRS and the unit of elevations; names and kinds of lines; the report.",
+        loses=("crs", "elevation unit", "lines", "notes", "report"),
+        sniff=is_2dm,
+    ),
+    Format(
+        name="ugrid",
+        description="UGRID mesh in netCDF (for Delft3D FM and xugrid; opens in QGIS)",
+        suffixes=(".nc",),
+        read="tinsmith.io.mesh.ugrid:read",
+        reads=("TIN",),
+        write="tinsmith.io.mesh.ugrid:write",
+        writes=("TIN",),
+        precision="Every number comes back bit for bit.",
+        losses="Names of lines, which are chained anew, and the report.",
+        loses=("lines", "notes", "report"),
+        extra="mesh",
+        sniff=signatures.is_ugrid,
+    ),
+    Format(
+        name="esri-tin",
+        description="Esri TIN (a folder of .adf files, of ArcGIS)",
+        suffixes=(),
+        read="tinsmith.io.mesh.esri_tin:read",
+        reads=("TIN",),
+        sniff_folder=is_esri_tin,
+        part_names=TIN_FILES,
+    ),
+    Format(
+        name="cityjson",
+        description="CityJSON 2.0 with a TINRelief",
+        suffixes=(".city.json", ".cityjson"),
+        read="tinsmith.io.mesh.city_json.reading:read",
+        reads=("TIN",),
+        write="tinsmith.io.mesh.city_json.writing:write",
+        writes=("TIN",),
+        precision="Decimals come back bit for bit, other numbers to the last digit of float64; or "
+        "to the precision asked for.",
+        rounding=2e-9,
+        losses="Which edges are constrained, lines and the report; vertices of no triangle.",
+        loses=("constrained", "lines", "notes", "report"),
+        sniff=is_cityjson,
+    ),
+    Format(
+        name="quantized-mesh",
+        description="Quantized-mesh 1.0 tiles (a folder with layer.json, for Cesium)",
+        suffixes=(),
+        write="tinsmith.io.mesh.quantized_mesh.writing:write",
+        writes=("TIN",),
+        precision="A thousandth of the median edge in the plane, a millimetre or a 32,767th of the "
+        "range of elevations in a tile.",
+        losses="The surface is cut into tiles in longitude and latitude, without lines; one tile "
+        "is read at a time.",
+        loses=("crs", "elevation unit", "triangles", "constrained", "lines", "notes", "report"),
+    ),
+    Format(
+        name="terrain",
+        description="One tile of quantized-mesh 1.0",
+        suffixes=(".terrain",),
+        read="tinsmith.io.mesh.quantized_mesh.reading:read",
+        reads=("TIN",),
+        sniff=is_quantized_mesh,
+    ),
+    Format(
+        name="glb",
+        description="GLB, binary glTF 2.0 (for viewers, browsers, game engines)",
+        suffixes=(".glb",),
+        write="tinsmith.io.mesh.gltf.writing:write",
+        writes=("TIN",),
+        precision="A sixteen millionth of the extent, from an origin that the file tells.",
+        losses="Which edges are constrained, lines and the report; vertices of no triangle.",
+        loses=("constrained", "lines", "notes", "report"),
+    ),
+    Format(
+        name="off",
+        description="Object File Format mesh",
+        suffixes=(".off",),
+        read="tinsmith.io.mesh.off:read",
+        reads=("TIN",),
+        write="tinsmith.io.mesh.off:write",
+        writes=("TIN",),
+        precision="Every number comes back bit for bit.",
+        losses="Which edges are constrained, lines and the report.",
+        loses=("constrained", "lines", "notes", "report"),
+        sniff=is_off,
     ),
 )

@@ -1,33 +1,46 @@
 """Wavefront OBJ: vertices and faces as text, every digit kept, elevation up as it is.
 
 Comments keep the CRS, ``# crs: EPSG:32616``, and the unit of elevations where it is known,
-``# elevation unit: US survey foot``. Which edges are constrained is lost.
+``# elevation unit: US survey foot``. Which edges are constrained is lost. With a texture there are
+two files more, ``site.mtl`` with the material and ``site_texture.jpg`` or ``.png``, the picture.
 """
 
 from __future__ import annotations
 
 import re
 import warnings
+from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._atomic import replacing
-from ...errors import ReadError
+from ..._atomic import replacing, replacing_files
+from ...errors import ReadError, WriteError
 from . import common
+from .common import (
+    format_crs,
+    format_unit,
+    require_tin,
+)
+from .texture import load_texture
 
 if TYPE_CHECKING:
+    import os
     from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
+    from typing import IO
 
     from numpy.typing import NDArray
 
     from ...crs import CrsLike, UnitLike
     from ...tin import TIN, Survey
+    from .texture import Texture
 
 __all__ = ["read", "write"]
 
 _BATCH = 65_536
+_MATERIAL = "terrain"
+_PICTURE = "_texture"
 _SHOWN_LETTERS = 60
 _MOST_DIGITS = 18
 _CLAMPED = 2**63 - 1
@@ -178,30 +191,91 @@ def _describe_line_fault(lines: Sequence[str], i: int, what: str, path: Path) ->
     return ReadError(f"'{path}', line {i + 1}: {what} ('{shown}').", path=path, lines=[i + 1])
 
 
-def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None = None) -> None:
+def write(
+    surface: TIN,
+    path: Path,
+    *,
+    texture: str | os.PathLike[str] | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> None:
     """Write a TIN as OBJ; :func:`read` gives the same vertices and triangles back.
 
-    Parameters and errors are those of every writer, see :class:`.Format`.
+    Parameters
+    ----------
+    surface : TIN
+    path : Path
+    texture : path-like, optional
+        Picture to drape over it: a GeoTIFF, or a PNG or JPEG file with a world file beside it. The
+        material (``.mtl``) and the picture are written beside the file, under its name.
+    progress : callable, optional
+        Called with the fraction done.
+
+    Raises
+    ------
+    FormatError
+        If ``surface`` is no TIN.
+    ReadError
+        If the texture cannot be read, or shows nothing of the surface.
+    CrsError
+        If the texture is in another CRS.
+    WriteError
+        If the file cannot be written, or the texture itself would be overwritten.
     """
-    tin = common.require_tin(surface, path, format_name="OBJ")
+    tin = require_tin(surface, path, format_name="OBJ")
+    if texture is None:
+        with replacing(path, binary=False) as file:
+            _write_body(file, tin, None, progress)
+        return
+    draped = load_texture(texture, tin, stacklevel=4)
+    picture = path.with_name(f"{path.stem}{_PICTURE}{draped.suffix}")
+    _require_other_file(texture, (picture, path, path.with_suffix(".mtl")))
+    with replacing_files(path, parts=(".mtl",)) as beside:
+        beside.with_name(picture.name).write_bytes(draped.content)
+        material = f"newmtl {_MATERIAL}\nKa 1 1 1\nKd 1 1 1\nKs 0 0 0\nmap_Kd {picture.name}\n"
+        beside.with_suffix(".mtl").write_text(material, encoding="utf-8")
+        with beside.open("w", encoding="utf-8", newline="") as file:
+            _write_body(file, tin, draped, progress)
+
+
+def _require_other_file(texture: str | os.PathLike[str], targets: Sequence[Path]) -> None:
+    """Refuse to write over the picture that is read."""
+    for target in targets:
+        if target.exists() and target.samefile(texture):
+            raise WriteError(
+                f"Cannot write '{target}': it is the texture itself; name the output otherwise.",
+                path=target,
+            )
+
+
+def _write_body(
+    file: IO[str], tin: TIN, texture: Texture | None, progress: Callable[[float], None] | None
+) -> None:
+    if tin.crs is not None:
+        file.write(f"# crs: {format_crs(tin.crs)}\n")
+    if unit := format_unit(tin):
+        file.write(f"# elevation unit: {unit}\n")
+    if texture is not None:
+        name = PurePath(file.name).with_suffix(".mtl").name
+        file.write(f"mtllib {name}\nusemtl {_MATERIAL}\n")
+        for start in range(0, len(texture.places), _BATCH):
+            u, v = texture.places[start : start + _BATCH].T
+            rows = np.column_stack([u, 1.0 - v]).ravel().tolist()  # v grows upwards here
+            file.write(("vt %.9g %.9g\n" * len(u)) % tuple(rows))
     total = len(tin.points) + len(tin.triangles)
-    with replacing(path, binary=False) as file:
-        if tin.crs is not None:
-            file.write(f"# crs: {common.format_crs(tin.crs)}\n")
-        if unit := common.format_unit(tin):
-            file.write(f"# elevation unit: {unit}\n")
-        done = 0
-        for count, batch in _iterate_batches(tin):
-            file.write(batch)
-            done += count
-            if progress is not None:
-                progress(done / total)
+    done = 0
+    for count, batch in _iterate_batches(tin, is_textured=texture is not None):
+        file.write(batch)
+        done += count
+        if progress is not None:
+            progress(done / total)
 
 
-def _iterate_batches(tin: TIN) -> Iterator[tuple[int, str]]:
+def _iterate_batches(tin: TIN, *, is_textured: bool) -> Iterator[tuple[int, str]]:
     for start in range(0, len(tin.points), _BATCH):
         rows = tin.points[start : start + _BATCH]
         yield len(rows), ("v %r %r %r\n" * len(rows)) % tuple(rows.ravel().tolist())
+    face = "f %d/%d %d/%d %d/%d\n" if is_textured else "f %d %d %d\n"
     for start in range(0, len(tin.triangles), _BATCH):
-        faces = tin.triangles[start : start + _BATCH].astype(np.int64) + 1
-        yield len(faces), ("f %d %d %d\n" * len(faces)) % tuple(faces.ravel().tolist())
+        corners = tin.triangles[start : start + _BATCH].astype(np.int64).ravel() + 1
+        numbers = np.repeat(corners, 2 if is_textured else 1).tolist()
+        yield len(corners) // 3, (face * (len(corners) // 3)) % tuple(numbers)

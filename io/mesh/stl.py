@@ -6,6 +6,10 @@ the header, with the CRS and the unit of elevations if they are known and short 
 ``origin 745000.0 4033000.0 198.0 crs EPSG:32616 z foot``.
 Add the origin to get coordinates in the CRS. What float32 rounds off then is about a sixteen
 millionth of the extent. Which edges are constrained is lost.
+
+A model is written for 3D printing instead where a size, a scale, an exaggeration or a solid is
+asked for: in millimetres or CRS units from its own corner, elevations in the same unit, and closed
+by a base and walls.
 """
 
 from __future__ import annotations
@@ -16,8 +20,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..._atomic import replacing
-from ...errors import ReadError, WriteError
-from .common import choose_reference, format_unit, make_tin, read_content, require_tin
+from ...crs import scale_elevations
+from ...errors import CrsError, OptionError, ReadError, WriteError
+from ...tin.validation.options import as_flag
+from .common import (
+    choose_reference,
+    format_unit,
+    make_tin,
+    read_content,
+    require_factor,
+    require_tin,
+)
+from .solid import build_solid
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -33,6 +47,9 @@ __all__ = ["read", "write"]
 _HEADER_BYTES = 80
 _FACET = np.dtype([("normal", "<f4", (3,)), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 _BATCH = 131_072
+_MILLIMETRES = 1000.0
+_BASE_SHARE = 20.0
+"""The longer side of a model through the thickness of its base, where none is given."""
 _RECORD = re.compile(r"origin (\S+) (\S+) (\S+)(?: crs (\S+))?(?: z (\S+))?")
 
 
@@ -124,33 +141,119 @@ def _merge_corners(corners: NDArray[np.float32]) -> tuple[NDArray[np.float64], N
     return corners[first].astype(np.float64), numbers.reshape(-1, 3).astype(np.int64)
 
 
-def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None = None) -> None:
+def write(
+    surface: TIN,
+    path: Path,
+    *,
+    solid: bool = False,
+    thickness: float | None = None,
+    scale: float | None = None,
+    size: float | None = None,
+    exaggeration: float = 1.0,
+    progress: Callable[[float], None] | None = None,
+) -> None:
     """Write a TIN as binary STL, relative to an origin that the header records.
 
-    Parameters are those of every writer, see :class:`.Format`.
+    Parameters
+    ----------
+    surface : TIN
+    path : Path
+    solid : bool
+        Close it with a flat base and walls, for 3D printing.
+    thickness : float, optional
+        Of the base below the lowest vertex, millimetres with ``scale`` or ``size``, else CRS units;
+        default a twentieth of the longer side of the model.
+    scale : float, optional
+        Make a model of 1 : scale in millimetres, such as 500.
+    size : float, optional
+        Make a model whose longer side has so many millimetres.
+    exaggeration : float
+        Factor on the elevations of a model.
+    progress : callable, optional
+        Called with the fraction done.
 
     Raises
     ------
+    FormatError
+        If ``surface`` is no TIN.
+    OptionError
+        If a factor is not positive, scale and size are both given, or a thickness without a solid.
+    CrsError
+        If a model is asked for and coordinates are longitude and latitude; if ``scale`` is given
+        and the unit of the eastings is not known.
     WriteError
         If the file cannot be written, or the extent is beyond float32.
 
     Notes
     -----
     Vertices closer together than the rounding of float32 fall together, and :func:`read` then
-    finds a facet without area; PLY keeps every digit.
+    finds a facet without area; PLY keeps every digit. A model does not record where it comes from.
     """
     tin = require_tin(surface, path, format_name="STL")
-    origin = np.floor(tin.points.min(axis=0))
-    if np.ptp(tin.points, axis=0).max() > np.finfo(np.float32).max / 4:
+    is_solid = as_flag("solid", solid)
+    _require_model_options(is_solid, thickness, scale, size, exaggeration)
+    if is_solid or scale is not None or size is not None or exaggeration != 1.0:
+        points, record = _make_model(tin, scale, size, exaggeration)
+        triangles = tin.triangles.astype(np.int64)
+        if is_solid:
+            side = float(np.ptp(points[:, :2], axis=0).max())
+            closed = build_solid(tin, points, thickness or side / _BASE_SHARE, path)
+            points, triangles = closed
+    else:
+        origin = np.floor(tin.points.min(axis=0))
+        points, record = tin.points - origin, _format_record(origin, tin)
+        triangles = tin.triangles.astype(np.int64)
+    if np.ptp(points, axis=0).max() > np.finfo(np.float32).max / 4:
         raise WriteError(f"Cannot write '{path}': the TIN is too large for float32.", path=path)
     with replacing(path) as file:
-        file.write(_format_record(origin, tin))
-        file.write(len(tin.triangles).to_bytes(4, "little"))
-        for start in range(0, len(tin.triangles), _BATCH):
-            part = tin.triangles[start : start + _BATCH]
-            file.write(_pack_facets(tin.points[part] - origin).data)
+        file.write(record)
+        file.write(len(triangles).to_bytes(4, "little"))
+        for start in range(0, len(triangles), _BATCH):
+            part = triangles[start : start + _BATCH]
+            file.write(_pack_facets(points[part]).data)
             if progress is not None:
-                progress(min(1.0, (start + len(part)) / len(tin.triangles)))
+                progress(min(1.0, (start + len(part)) / len(triangles)))
+
+
+def _require_model_options(
+    is_solid: bool,
+    thickness: float | None,
+    scale: float | None,
+    size: float | None,
+    exaggeration: float,
+) -> None:
+    for name, value in (("thickness", thickness), ("scale", scale), ("size", size)):
+        require_factor(name, value, or_none=True)
+    require_factor("exaggeration", exaggeration)
+    if scale is not None and size is not None:
+        raise OptionError("size", size, "left out where a scale is given, which sets the size")
+    if thickness is not None and not is_solid:
+        raise OptionError("thickness", thickness, "left out where no solid is asked for")
+
+
+def _make_model(
+    tin: TIN, scale: float | None, size: float | None, exaggeration: float
+) -> tuple[NDArray[np.float64], bytes]:
+    """Return the vertices of a model, from its own corner, and what the header tells of it."""
+    used = tin.points[np.unique(tin.triangles)]
+    points = (tin.points - used.min(axis=0)) * (1.0, 1.0, exaggeration * scale_elevations(
+        tin.crs, tin.elevation_unit))  # fmt: skip
+    unit = "CRS units"
+    if size is not None:
+        points *= size / float(np.ptp(used[:, :2], axis=0).max())
+        unit = "millimetres"
+    if scale is not None:
+        metres = None if tin.crs is None else tin.crs.horizontal_unit.metres
+        if metres is None:
+            raise CrsError(
+                "A scale needs the unit of the eastings, and the CRS of the TIN is not known: give "
+                "the size of the model instead.",
+                crs=tin.crs,
+            )
+        points *= _MILLIMETRES * metres / scale
+        unit = f"millimetres, 1:{scale:g}"
+    record = f"Model of a TIN, {unit}, exaggeration {exaggeration:g}"
+    return points, record.encode()[:_HEADER_BYTES].ljust(_HEADER_BYTES, b" ")
 
 
 def _format_record(origin: NDArray[np.float64], tin: TIN) -> bytes:
@@ -167,6 +270,7 @@ def _pack_facets(corners: NDArray[np.float64]) -> NDArray[Any]:
     """Return STL rows for (m, 3 corners, 3) coordinates."""
     rows = np.zeros(len(corners), _FACET)
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    rows["normal"] = normals / np.linalg.norm(normals, axis=1, keepdims=True)
+    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+    rows["normal"] = np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0)
     rows["corners"] = corners
     return rows

@@ -78,6 +78,8 @@ class Format:
     sniff_folder : callable, optional
         Whether a folder is certainly of this format, by the names in it; a format without it is
         of files.
+    part_names : tuple of str
+        Names of files in such a folder, small letters, any of which stands for the folder.
     distribution : str
         Name and version of the plug-in's distribution, set by the registry; else "tinsmith".
 
@@ -103,6 +105,7 @@ class Format:
     extra: str | None = None
     sniff: Callable[[bytes], bool] | None = None
     sniff_folder: Callable[[Path], bool] | None = None
+    part_names: tuple[str, ...] = ()
     distribution: str = _OWN
 
     @property

@@ -15,6 +15,7 @@ __all__ = [
     "is_raster",
     "is_stl",
     "is_tin_geopackage",
+    "is_ugrid",
     "is_vtk_xml",
     "skip_prologue",
 ]
@@ -77,7 +78,14 @@ _FOREIGN_TEXTS = (
 
 def is_raster(head: bytes) -> bool:
     """Whether the file is certainly a raster: a binary signature or the header of a text grid."""
+    if is_ugrid(head):
+        return False
     return head.startswith(_RASTER_STARTS) or _GRID_HEADER.match(head) is not None
+
+
+def is_ugrid(head: bytes) -> bool:
+    """Whether the file is a UGRID mesh: netCDF that speaks of the topology of a mesh."""
+    return head.startswith((b"CDF", b"\x89HDF")) and b"mesh_topology" in head
 
 
 def is_ply(head: bytes) -> bool:

@@ -15,7 +15,14 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from contextlib import AbstractContextManager
 
-__all__ = ["as_path", "replacing", "replacing_files", "replacing_path", "require_writable"]
+__all__ = [
+    "as_path",
+    "replacing",
+    "replacing_files",
+    "replacing_folder",
+    "replacing_path",
+    "require_writable",
+]
 
 _STEM = 40
 """Letters of a name that the name of the file beside it begins with: names have 255 bytes."""
@@ -205,3 +212,64 @@ def _move(folder: Path, target: Path, parts: Sequence[str]) -> None:
         one.unlink(missing_ok=True)
     for one in made:
         one.replace(target.with_name(one.name))
+
+
+@contextmanager
+def replacing_folder(path: Path, *, marker: str) -> Iterator[Path]:
+    """Yield a new folder that takes the place of ``path`` when the block ends without an error.
+
+    Parameters
+    ----------
+    path : Path
+        A folder, if there is one, that is empty or holds a file ``marker``; of another one nothing
+        is touched.
+    marker : str
+        File that tells that a folder was written by this program's kind of writer.
+
+    Yields
+    ------
+    Path
+        Beside ``path``; removed where the block ends with an error.
+
+    Raises
+    ------
+    WriteError
+        If the folder cannot be written, or holds something else.
+    """
+    with _faults_as_sentences(path):
+        target = _target(path)
+        _require_replaceable_folder(path, target, marker)
+        fresh = target.with_name(f".{target.name[:_STEM]}-{secrets.token_hex(4)}")
+        old = target.with_name(f".{target.name[:_STEM]}-{secrets.token_hex(4)}")
+        try:
+            fresh.mkdir()
+            yield fresh
+            if target.exists():
+                target.rename(old)
+            try:
+                fresh.rename(target)
+            except OSError:
+                if old.exists():
+                    old.rename(target)
+                raise
+        finally:
+            shutil.rmtree(fresh, ignore_errors=True)
+            shutil.rmtree(old, ignore_errors=True)
+
+
+def _require_replaceable_folder(path: Path, target: Path, marker: str) -> None:
+    if not target.parent.is_dir():
+        raise WriteError(
+            f"Cannot write '{path}': there is no folder '{path.parent}'; create it first.",
+            path=path,
+        )
+    if target.exists() and not target.is_dir():
+        raise WriteError(
+            f"Cannot write '{path}': a file is there, and a folder is written.", path=path
+        )
+    if target.is_dir() and any(target.iterdir()) and not (target / marker).is_file():
+        raise WriteError(
+            f"Cannot write '{path}': the folder is not empty, and holds no {marker} of an earlier "
+            "one; name a new folder.",
+            path=path,
+        )

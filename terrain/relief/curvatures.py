@@ -13,6 +13,8 @@ from ...tin.validation.options import require_tin
 from ..units import find_scales
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from ...tin import TIN
@@ -123,7 +125,7 @@ def _fit(
     np.maximum.at(reach, owner, np.abs(steps[:, :2]).max(axis=1))
     reach[reach == 0.0] = 1.0
     x, y = (steps[:, axis] / reach[owner] for axis in (0, 1))
-    terms = np.stack([x, y, x * x / 2, x * y, y * y / 2], axis=1)
+    terms = (x, y, x * x / 2, x * y, y * y / 2)
     solved = _least_squares(terms, steps[:, 2], owner, len(rows))
     by_size = solved / np.stack([reach, reach, reach**2, reach**2, reach**2])
     return _Derivatives(*by_size)
@@ -145,15 +147,18 @@ def _within_two_edges(
 
 
 def _least_squares(
-    terms: NDArray[np.float64], values: NDArray[np.float64], owner: NDArray[np.int64], count: int
+    terms: Sequence[NDArray[np.float64]],
+    values: NDArray[np.float64],
+    owner: NDArray[np.int64],
+    count: int,
 ) -> NDArray[np.float64]:
     """Solve the normal equations of each owner, (5, count); NaN where they have no one solution."""
     matrix = np.empty((_TERMS, _TERMS, count))
     right = np.empty((_TERMS, count))
     for i in range(_TERMS):
-        right[i] = np.bincount(owner, terms[:, i] * values, count)
+        right[i] = np.bincount(owner, terms[i] * values, count)
         for j in range(i + 1):
-            matrix[i, j] = np.bincount(owner, terms[:, i] * terms[:, j], count)
+            matrix[i, j] = np.bincount(owner, terms[i] * terms[j], count)
     return _solve(matrix, right)
 
 

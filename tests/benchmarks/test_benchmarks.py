@@ -12,7 +12,7 @@ from support import oracles
 
 import tinsmith as ts
 from benchmarks.__main__ import main
-from benchmarks.answers import interpolation, profiles
+from benchmarks.answers import contours, interpolation, profiles, rasters, volumes
 from benchmarks.cgal import CgalMissingError, build, build_harness
 from benchmarks.datasets.edits import BATCH, EDIT_TASKS, INSERT_ALL, WHAT, make_edit_task
 from benchmarks.datasets.lines import LINE_DATASETS, make_lines
@@ -22,6 +22,7 @@ from benchmarks.measure import OURS, Outcome, Result, alternate, is_installed
 from benchmarks.peers.answers import EQUAL, Verdict, judge_answer, rank_triangles
 from benchmarks.peers.edit_tools import ALL_EDIT_TOOLS, BUILD, EDIT_TOOLS, OPENED, WITH_ARRAYS
 from benchmarks.peers.line_tools import ALL_LINE_TOOLS, CGAL_INDICES, LINE_TOOLS
+from benchmarks.peers.programs import find_present, run_program
 from benchmarks.peers.tool_process import ToolFailedError, ToolProcess
 from benchmarks.peers.triangulators import CGAL, KERNEL, TOOLS
 from benchmarks.report.goals import judge_goals as goals_of
@@ -388,6 +389,9 @@ def test_tools_take_turns():
         (writers.run, 2),
         (profiles.run, 2),
         (interpolation.run, 5),
+        (rasters.run, 1),
+        (volumes.run, 1),
+        (contours.run, 1),
     ],
 )
 def test_section_runs_and_its_answers_agree(run, tasks):
@@ -398,6 +402,32 @@ def test_section_runs_and_its_answers_agree(run, tasks):
     for result in outcome.results:
         assert 450 <= result.count <= 50_000
         assert result.seconds > 0
+
+
+def test_a_missing_program_is_said_and_a_failing_one_too():
+    outcome = Outcome()
+    assert find_present({"A": "sh", "B": "no-such-program"}, outcome) == ["A"]
+    assert outcome.skipped == ["B: skipped, no-such-program is not installed."]
+    with pytest.raises(RuntimeError, match="sh failed: no such thing"):
+        run_program(["sh", "-c", "echo no such thing >&2; exit 3"])
+
+
+def test_volumes_that_do_not_add_up_are_an_error(monkeypatch):
+    measured = volumes._measure_exactly
+    monkeypatch.setattr(
+        volumes, "_measure_exactly", lambda *tins: measured(*tins)._replace(cut=1.0)
+    )
+    with pytest.raises(AssertionError, match="cut and fill are off by"):
+        volumes.run(500, repeats=1)
+
+
+def test_a_raster_with_other_cells_is_an_error():
+    wanted = np.ones((4, 4))
+    rasters._require_same("a tool", wanted, wanted + 1e-9)
+    with pytest.raises(AssertionError, match="Mismatched elements: 16 / 16"):
+        rasters._require_same("a tool", wanted, wanted + 1e-3)
+    with pytest.raises(AssertionError, match="a tool has other cells inside"):
+        rasters._require_same("a tool", wanted, np.where(np.eye(4) > 0, np.nan, wanted))
 
 
 # ------------------------------------------------------------------------- report

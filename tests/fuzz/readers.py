@@ -16,10 +16,13 @@ from tinsmith.io import read_lines
 from tinsmith.io.isolated import limits
 
 from .campaign import Campaign
+from .mesh_samples import MESH_MAKERS, TILE
 from .samples import MEMORY, sample_files
 
 KINDS = (
     *("ply", "obj", "stl", "vtk", "gmsh", "raster", "vectors", "delimited", "tin", "instruments"),
+    *("las", "layers"),
+    *MESH_MAKERS,
 )
 
 _NUMBER = re.compile(rb"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
@@ -147,15 +150,27 @@ def examine(case: dict[str, Any]) -> str:
     content = damaged(dict(sample_files(case["kind"]))[case["name"]], case["damages"])
     with tempfile.TemporaryDirectory(dir=MEMORY) as folder, warnings.catch_warnings():
         warnings.simplefilter("error")
-        path = Path(folder, case["name"])
-        path.write_bytes(content)
+        path = _put(Path(folder), case["kind"], case["name"], content)
+        options = {"tile": TILE} if case["kind"] == "terrain" else {}
         try:
-            found = read_lines(path) if case["kind"] == "vectors" else ts.read(path)
+            found = read_lines(path) if case["kind"] == "vectors" else ts.read(path, **options)
         except ts.TinsmithError as error:
             require_sentence(str(error), path)
             return f"refused: {'crashed' if 'crashed' in str(error) else type(error).__name__}"
     require_sound(found)
     return "read"
+
+
+def _put(folder: Path, kind: str, name: str, content: bytes) -> Path:
+    """Write a file, and those that lie in its folder; return what to read."""
+    path = folder / name
+    path.parent.mkdir(exist_ok=True)
+    if kind == "esritin":
+        for other, sound in sample_files(kind):
+            if other.startswith(f"{path.parent.name}/"):
+                (folder / other).write_bytes(sound)
+    path.write_bytes(content)
+    return path.parent if kind == "esritin" else path
 
 
 def _hurry() -> None:

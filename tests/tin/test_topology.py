@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import tinsmith as ts
+from tinsmith.tin import _kernel
 from tinsmith.tin.topology import (
     NO_NEIGHBOR,
     boundary_rings,
@@ -193,3 +194,22 @@ def test_keys_of_edges_are_the_same_both_ways_and_told_apart():
     assert len(set(keys.tolist())) == 15
     large = np.array([[2**31 - 1, 2**31 - 2]], np.int32)
     assert edge_keys(large, 2**31).tolist() == [(2**31 - 2) * 2**31 + 2**31 - 1]
+
+
+@pytest.mark.parametrize("number", [-1, 5])
+def test_kernel_refuses_vertices_that_are_not_there(number):
+    wrong = np.array([[0, 1, 2], [0, 2, number]], np.int32)
+    with pytest.raises(ValueError, match="vertex numbers from 0 to n - 1"):
+        _kernel.join_triangles(wrong, 5)
+    with pytest.raises(ValueError, match="vertex numbers from 0 to n - 1"):
+        _kernel.turns_of_triangles(np.zeros((5, 3)), wrong)
+
+
+@given(st.integers(0, 1000))
+def test_turns_are_those_of_orientation(seed):
+    rng = np.random.default_rng(seed)
+    points = rng.integers(-3, 4, (12, 3)).astype(float)
+    triangles = np.array([rng.choice(12, 3, replace=False) for _ in range(30)], np.int32)
+    corners = (np.ascontiguousarray(points[triangles[:, k], :2]) for k in range(3))
+    wanted = _kernel.orientation(*corners)
+    np.testing.assert_array_equal(_kernel.turns_of_triangles(points, triangles), wanted)

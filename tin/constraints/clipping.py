@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -256,23 +256,34 @@ def trim(
               `.     `..'
                 d ---- c
     """
-    a, b, c = (surface.points[surface.triangles[:, k], :2] for k in range(3))
-    sides = np.stack([np.hypot(*(c - b).T), np.hypot(*(a - c).T), np.hypot(*(b - a).T)], axis=1)
-    is_long = (sides > max_edge) & ~surface.constrained
-    keep = keep.copy()
     if everywhere:
-        keep &= ~is_long.any(axis=1)
-        return keep
-    candidates = np.flatnonzero(keep & is_long.any(axis=1))
+        return keep & ~_find_long_edges(surface, slice(None), max_edge).any(axis=1)
+    keep = keep.copy()
+    candidates = np.flatnonzero(keep & _find_outer_edges(surface, slice(None), keep).any(axis=1))
     while len(candidates):
-        beside = surface.neighbors[candidates]
-        is_outer = (beside == topology.NO_NEIGHBOR) | ~keep[beside]
-        gone = candidates[(is_long[candidates] & is_outer).any(axis=1)]
+        is_outer = _find_outer_edges(surface, candidates, keep)
+        is_long = _find_long_edges(surface, candidates, max_edge)
+        gone = candidates[(is_long & is_outer).any(axis=1)]
         keep[gone] = False
         near = surface.neighbors[gone].ravel()
         near = near[near != topology.NO_NEIGHBOR]
         candidates = np.unique(near[keep[near]])
     return keep
+
+
+def _find_outer_edges(surface: Surface, chosen: Any, keep: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Tell which edges of some triangles have no kept triangle beyond them."""
+    beside = surface.neighbors[chosen]
+    is_outer: NDArray[np.bool_] = (beside == topology.NO_NEIGHBOR) | ~keep[beside]
+    return is_outer
+
+
+def _find_long_edges(surface: Surface, chosen: Any, max_edge: float) -> NDArray[np.bool_]:
+    """Tell which edges of some triangles are longer, and no lines."""
+    a, b, c = (surface.points[surface.triangles[chosen, k], :2] for k in range(3))
+    sides = np.stack([np.hypot(*(c - b).T), np.hypot(*(a - c).T), np.hypot(*(b - a).T)], axis=1)
+    is_long: NDArray[np.bool_] = (sides > max_edge) & ~surface.constrained[chosen]
+    return is_long
 
 
 def clip(surface: Surface, keep: NDArray[np.bool_]) -> tuple[Surface, NDArray[np.int32]]:

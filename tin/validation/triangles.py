@@ -76,8 +76,7 @@ def turn_counter_clockwise(
     PointsError
         If a triangle has no area.
     """
-    xy = points[:, :2]
-    turn = _kernel.orientation(*(np.ascontiguousarray(xy[triangles[:, k]]) for k in range(3)))
+    turn = _kernel.turns_of_triangles(np.ascontiguousarray(points), np.ascontiguousarray(triangles))
     flat = turn == 0
     if flat.any():
         row, count = int(np.argmax(flat)), int(flat.sum())

@@ -44,7 +44,7 @@ __all__ = [
     "write_text",
 ]
 
-_TEXT_FORMATS = ("delimited", "geojson", "obj", "csv", "json")
+_TEXT_FORMATS = ("delimited", "geojson", "obj", "off", "2dm", "cityjson", "csv", "json")
 """Formats that a terminal can show."""
 
 
@@ -246,8 +246,10 @@ def plan_outputs(
     outputs = [Named(path, "--output") for path in paths]
     if report is not None:
         outputs.append(Named(report, "--report"))
-    require_separate(inputs, outputs)
-    given = {name: value for name, value in writing.options.items() if value}
+    texture = writing.options.get("texture")
+    pictures = [] if texture is None else [Named(texture, "the texture")]
+    require_separate([*inputs, *pictures], outputs)
+    given = {name: value for name, value in writing.options.items() if value not in (None, False)}
     planned = [
         Output(path, formats, given, _choose_suffix(formats, writing))
         for path, formats in (

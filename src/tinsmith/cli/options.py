@@ -11,7 +11,9 @@ from typing import Any, TypeVar
 import click
 
 from ..policies import DrawingContent, DuplicatePolicy, FeatureKind, LineReading
+from .flags import note_given
 from .line_options import CODE_OPTIONS, LINE_OPTIONS
+from .mesh_options import MESH_READING, MESH_WRITING
 from .output.console import Console
 from .parameters import Decorator, choice_option, number_option
 
@@ -19,6 +21,7 @@ __all__ = [
     "CODE_FLAGS",
     "Coding",
     "Reading",
+    "SurfaceWriting",
     "Triangulating",
     "Writing",
     "coding_options",
@@ -27,6 +30,7 @@ __all__ = [
     "product_options",
     "reading_options",
     "triangulating_options",
+    "vector_options",
     "writing_options",
 ]
 
@@ -69,6 +73,9 @@ class Reading:
     surface: str | None = None
     content: str | None = None
     texts: bool | None = None
+    join: bool | None = None
+    variable: str | None = None
+    tile: str | None = None
 
 
 @dataclass(frozen=True)
@@ -156,6 +163,21 @@ class Writing:
         return {name: value for name, value in asdict(self).items() if name != "output_format"}
 
 
+@dataclass(frozen=True)
+class SurfaceWriting(Writing):
+    """How a surface is written; some other commands have flags of these names for themselves."""
+
+    texture: Path | None = None
+    solid: bool = False
+    thickness: float | None = None
+    scale: float | None = None
+    size: float | None = None
+    exaggeration: float | None = None
+    precision: float | None = None
+    max_level: int | None = None
+    gzipped: bool = False
+
+
 def _gather(name: str, factory: type, *options: Decorator) -> Callable[[Function], Function]:
     """Return a decorator that adds options and hands them over as one value called ``name``."""
     names = [one.name for one in fields(factory)]
@@ -163,6 +185,7 @@ def _gather(name: str, factory: type, *options: Decorator) -> Callable[[Function
     def decorate(function: Function) -> Function:
         @wraps(function)
         def gathering(**given: Any) -> Any:
+            note_given(click.get_current_context())
             value = factory(**{key: given.pop(key) for key in names if key in given})
             return function(**given, **{name: value})
 
@@ -259,8 +282,10 @@ reading_options = _gather(
     click.option(
         "--fill", is_flag=True, default=None, help="Let the surface span the voids of a raster."
     ),
+    *MESH_READING,
     click.option(
-        "--unit",
+        "--file-unit",
+        "unit",
         metavar="UNIT",
         help="Unit of the coordinates and elevations of a LandXML or DXF file, where it does not "
         "say, or says another one than its CRS.",
@@ -268,7 +293,8 @@ reading_options = _gather(
     click.option(
         "--surface",
         metavar="NAME",
-        help="Surface of a LandXML file that has several: its name, or its number from 1.",
+        help="Surface of a LandXML, UGRID or CityJSON file that has several: its name, or in "
+        "LandXML its number from 1.",
     ),
     choice_option(
         "--content",
@@ -366,9 +392,9 @@ def _make_projected_option(whose: str) -> Decorator:
     return click.option("--projected", is_flag=True, help=words)
 
 
-writing_options = _gather(
-    "writing", Writing, _format_option, _kind_option, _make_projected_option("points")
-)
+_VECTOR_WRITING = (_format_option, _kind_option, _make_projected_option("points"))
+writing_options = _gather("writing", SurfaceWriting, *_VECTOR_WRITING, *MESH_WRITING)
+vector_options = _gather("writing", Writing, *_VECTOR_WRITING)
 product_options = _gather("writing", Writing, _format_option, _make_projected_option("TIN"))
 format_options = _gather("writing", Writing, _format_option)
 

@@ -116,7 +116,13 @@ def require_separate(inputs: Iterable[Named], outputs: Sequence[Named]) -> None:
             raise click.UsageError(_describe_collision(one, before, is_input=before not in files))
         taken.update(dict.fromkeys(keys, one))
     for one in files:
-        require_writable(one.path)
+        if not _is_tile_folder(one.path):
+            require_writable(one.path)
+
+
+def _is_tile_folder(path: Path) -> bool:
+    """Whether a folder of tiles is there, which only a writer of such folders replaces."""
+    return path.is_dir() and (path / "layer.json").is_file()
 
 
 def _drop_streams(named: Iterable[Named], what: str) -> list[Named]:

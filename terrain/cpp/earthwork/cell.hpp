@@ -56,16 +56,31 @@ class Cell {
     for (int which = 1; which >= 0; --which) {
       const Facet& corners = *facet_[which];
       const Facet& edges = *facet_[1 - which];
+      for (int i = 0; i < 3; ++i) load_areas(edges, corners.corner[i], area_[which][i]);
       for (int j = 0; j < 3; ++j) {
         bool has_left = false;
-        for (int i = 0; i < 3; ++i) {
-          area_[which][i][j] = twice_area(edges.start(j), edges.end(j), corners.corner[i]);
-          has_left |= area_[which][i][j] > 0.0;
-        }
+        for (int i = 0; i < 3; ++i) has_left |= area_[which][i][j] > 0.0;
         if (!has_left) return false;
       }
     }
     return true;
+  }
+
+  // Of a point and the three edges.
+  static void load_areas(const Facet& edges, Point p, double (&area)[3]) {
+    double x[3], y[3];
+    for (int k = 0; k < 3; ++k) {
+      x[k] = edges.corner[k].x - p.x;
+      y[k] = edges.corner[k].y - p.y;
+    }
+    bool are_precise = true;
+    for (int j = 0; j < 3; ++j) {
+      const double left = x[kAfter[j]] * y[kBefore[j]], right = y[kAfter[j]] * x[kBefore[j]];
+      area[j] = left - right;
+      are_precise &= is_precise(left, right);
+    }
+    if (are_precise) return;
+    for (int j = 0; j < 3; ++j) area[j] = twice_area(edges.start(j), edges.end(j), p);
   }
 
   // The part of an edge within the other triangle.
@@ -179,9 +194,8 @@ class Cell {
   CrossingEdge crossing_edge(int which, int edge, int other) const {
     const Facet& facet = *facet_[which];
     const int start = kAfter[edge], end = kBefore[edge];
-    return {facet.corner[start],          facet.corner[end],
-            facet.elevation[start],       facet.elevation[end],
-            area_[which][start][other],   area_[which][end][other]};
+    return {facet.corner[start],  facet.corner[end],          facet.elevation[start],
+            facet.elevation[end], area_[which][start][other], area_[which][end][other]};
   }
 
   static constexpr int kNumbers = kCrossings + 9;

@@ -16,6 +16,7 @@ namespace tinsmith {
 class ExactSum {
  public:
   void add(double value) {
+    if (value == 0.0) return;
     std::uint64_t bits;
     std::memcpy(&bits, &value, sizeof bits);
     const auto exponent = static_cast<std::uint32_t>(bits >> 52) & 0x7ff;

@@ -7,6 +7,7 @@
 
 #include "../../../tin/cpp/base/box.hpp"
 #include "../../../tin/cpp/base/point.hpp"
+#include "../../../tin/cpp/location/ordered_surface.hpp"
 #include "../../../tin/cpp/predicates/predicates.hpp"
 
 namespace tinsmith::earthwork {
@@ -16,6 +17,7 @@ struct Triangles {
   const double* points;  // x, y, z
   const std::int32_t* corners;
   std::int32_t count;
+  std::int32_t point_count;
 
   const double* row(std::int32_t vertex) const {
     return points + 3 * static_cast<std::size_t>(vertex);
@@ -42,9 +44,11 @@ struct Facet {
   Point corner[3];
   double elevation[3];
   std::int32_t vertex[3];
+  std::int32_t triangle;
 
   static Facet of(const Triangles& triangles, std::int32_t triangle) {
     Facet facet;
+    facet.triangle = triangle;
     int first = 0;
     for (int k = 1; k < 3; ++k) {
       if (before(triangles, triangle, k, first)) first = k;
@@ -55,6 +59,18 @@ struct Facet {
       facet.corner[k] = {row[0], row[1]};
       facet.elevation[k] = row[2];
     }
+    return facet;
+  }
+
+  // Of a copy, called as the caller calls it.
+  static Facet of(const OrderedSurface& copy, std::int32_t triangle) {
+    const Surface surface = copy.surface();
+    Facet facet = of({surface.points, surface.corners,
+                      static_cast<std::int32_t>(surface.triangle_count), surface.point_count},
+                     triangle);
+    for (auto& vertex : facet.vertex) vertex = number(copy.given_number(Vertex{vertex}));
+    facet.triangle =
+        static_cast<std::int32_t>(number(copy.given_number(Triangle{std::uint32_t(triangle)})));
     return facet;
   }
 
@@ -90,14 +106,18 @@ inline bool is_measured_along(const Facet& one, const Facet& other) {
   return true;
 }
 
+// The difference of two products, rounded, is good to about 14 digits: 7 of 53 bits are lost.
+inline bool is_precise(double left, double right) {
+  return std::fabs(left - right) > 0x1p-7 * (std::fabs(left) + std::fabs(right));
+}
+
 // Twice the signed area of a, b, c; the sign is exact and the value good to about 14 digits.
 inline double twice_area(Point a, Point b, Point c) {
-  constexpr double kKept = 0x1p-7;        // of the plain value: 7 of 53 bits lost
-  constexpr double kKeptTwice = 0x1p-44;  // of the compensated one, which has some 100 bits
+  constexpr double kKeptTwice = 0x1p-44;  // of the compensated value, which has some 100 bits
   const double ax = a.x - c.x, ay = a.y - c.y, bx = b.x - c.x, by = b.y - c.y;
   const double left = ax * by, right = ay * bx;
+  if (is_precise(left, right)) return left - right;
   const double size = std::fabs(left) + std::fabs(right);
-  if (std::fabs(left - right) > kKept * size) return left - right;
   const TwoDoubles first = exact_product(ax, by), second = exact_product(ay, bx);
   const double ax_low = exact_difference(a.x, c.x).low, ay_low = exact_difference(a.y, c.y).low;
   const double bx_low = exact_difference(b.x, c.x).low, by_low = exact_difference(b.y, c.y).low;

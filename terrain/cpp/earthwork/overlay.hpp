@@ -77,26 +77,24 @@ class Overlay {
     double difference;  // of the second surface above the first
   };
 
-  Overlay(const Triangles& first, std::int32_t first_count, const Triangles& second,
-          std::int32_t second_count, Team& team)
-      : vertex_of_{std::vector<std::int32_t>(first_count, -1),
-                   std::vector<std::int32_t>(second_count, -1)} {
+  Overlay(const Triangles& first, const Triangles& second, Team& team)
+      : vertex_of_{std::vector<std::int32_t>(first.point_count, -1),
+                   std::vector<std::int32_t>(second.point_count, -1)} {
     const Pairs pairs(first, second);
-    pairs.visit(team, [&](int, std::int32_t a, std::int32_t b) {
-      const Facet one = Facet::of(first, a), other = Facet::of(second, b);
+    pairs.visit(team, [&](int, const Facet& one, const Facet& other) {
       const bool is_kept = is_measured_along(one, other);
       Cell cell;
       if (!(is_kept ? cell.cut(one, other) : cell.cut(other, one))) return;
       for (int i = 0; i < cell.size(); ++i) add_corner(one, other, is_kept, cell, i);
       offsets.push_back(static_cast<std::int64_t>(corners.size()));
-      triangles.push_back({a, b});
+      triangles.push_back({one.triangle, other.triangle});
     });
   }
 
   std::vector<OverlayVertex> vertices;
-  std::vector<std::array<std::int32_t, 2>> origins;  // vertex of the first, of the second; -1
-  std::vector<std::int64_t> offsets{0};              // of cells, in corners
-  std::vector<std::int32_t> corners;                 // vertices of cells, counter-clockwise
+  std::vector<std::array<std::int32_t, 2>> origins;    // vertex of the first, of the second; -1
+  std::vector<std::int64_t> offsets{0};                // of cells, in corners
+  std::vector<std::int32_t> corners;                   // vertices of cells, counter-clockwise
   std::vector<std::array<std::int32_t, 2>> triangles;  // of the first and the second, of each cell
 
  private:
@@ -138,13 +136,15 @@ class Overlay {
 
   void add_second_vertex(const Facet& other, int corner, double difference) {
     std::int32_t& number = vertex_of_[1][other.vertex[corner]];
-    if (number < 0) number = new_vertex(other.corner[corner], difference, {-1, other.vertex[corner]});
+    if (number < 0)
+      number = new_vertex(other.corner[corner], difference, {-1, other.vertex[corner]});
     corners.push_back(number);
   }
 
   void add_crossing(const Facet& one, int edge, const Facet& other, int across, double difference) {
     const auto ends = std::minmax(one.vertex[kAfter[edge]], one.vertex[kBefore[edge]]);
-    const auto other_ends = std::minmax(other.vertex[kAfter[across]], other.vertex[kBefore[across]]);
+    const auto other_ends =
+        std::minmax(other.vertex[kAfter[across]], other.vertex[kBefore[across]]);
     const auto next = static_cast<std::int32_t>(vertices.size());
     const std::int32_t number = crossings_.find_or_add(
         {ends.first, ends.second, other_ends.first, other_ends.second}, next);

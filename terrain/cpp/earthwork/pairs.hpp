@@ -13,43 +13,36 @@
 #include "../../../tin/cpp/base/box.hpp"
 #include "../../../tin/cpp/base/parallel.hpp"
 #include "../../../tin/cpp/index/box_tree.hpp"
-#include "../../../tin/cpp/index/hilbert_order.hpp"
+#include "../../../tin/cpp/location/ordered_surface.hpp"
+#include "../pulse.hpp"
 #include "facet.hpp"
 
 namespace tinsmith::earthwork {
 
-inline std::vector<std::int32_t> order_along_curve(const Triangles& triangles) {
-  std::vector<Point> centers(triangles.count);
-  for (std::int32_t t = 0; t < triangles.count; ++t) centers[t] = triangles.box_of(t).center();
-  const HilbertOrder order(centers.data(), triangles.count);
-  std::vector<std::int32_t> numbers(triangles.count);
-  for (std::int32_t i = 0; i < triangles.count; ++i) numbers[i] = order[i];
-  return numbers;
-}
-
 class Pairs {
  public:
   Pairs(const Triangles& first, const Triangles& second)
-      : first_(first), first_order_(order_along_curve(first)) {
-    const std::vector<std::int32_t> order = order_along_curve(second);
-    items_.reserve(order.size());
-    for (const std::int32_t t : order) items_.push_back({second.box_of(t), t});
-    tree_ = BoxTree(second.count, [this](std::int32_t i) { return items_[i].box; });
-  }
+      : first_(surface_of(first)),
+        second_(surface_of(second)),
+        tree_(second.count, [this](std::int32_t i) { return box_of(second_, i); }) {}
 
   // visit(part, triangle, other triangle) for every pair, on all threads of the team.
   template <typename Visit>
   void visit(Team& team, Visit&& visit) const {
     std::atomic<std::int64_t> next{0};
+    const std::int64_t count = first_.surface().triangle_count;
     team.run([&](int part) {
       std::vector<Item> near;
+      Pulse pulse(team, part);  // a single triangle may meet all of the others
       while (team.keeps_going(part)) {
         const std::int64_t begin = next.fetch_add(kBlocksAtATime * kBlock);
-        if (begin >= first_.count) return;
-        const std::int64_t end = std::min<std::int64_t>(begin + kBlocksAtATime * kBlock, first_.count);
+        if (begin >= count) return;
+        const std::int64_t end = std::min<std::int64_t>(begin + kBlocksAtATime * kBlock, count);
         for (std::int64_t at = begin; at < end; at += kBlock) {
           visit_block(at, std::min(at + kBlock, end), near,
-                      [&](std::int32_t a, std::int32_t b) { visit(part, a, b); });
+                      [&](const Facet& a, const Facet& b) {
+                        if (pulse.goes_on()) visit(part, a, b);
+                      });
         }
       }
     });
@@ -62,8 +55,16 @@ class Pairs {
 
   struct Item {
     Box box;
-    std::int32_t triangle;
+    Facet facet;
   };
+
+  static OrderedSurface surface_of(const Triangles& triangles) {
+    return OrderedSurface({triangles.points, triangles.corners, nullptr, triangles.point_count,
+                           static_cast<std::uint32_t>(triangles.count)});
+  }
+  static Box box_of(const OrderedSurface& copy, std::int64_t i) {
+    return copy.surface().box_of(Triangle{static_cast<std::uint32_t>(i)});
+  }
 
   template <typename Visit>
   void visit_block(std::int64_t begin, std::int64_t end, std::vector<Item>& near,
@@ -71,7 +72,7 @@ class Pairs {
     Box boxes[kBlock], all;
     double sum = 0.0;
     for (std::int64_t i = begin; i < end; ++i) {
-      boxes[i - begin] = first_.box_of(first_order_[i]);
+      boxes[i - begin] = box_of(first_, i);
       all.include(boxes[i - begin]);
       sum += boxes[i - begin].width() * boxes[i - begin].height();
     }
@@ -81,8 +82,10 @@ class Pairs {
     for (std::int64_t i = begin; i < end; ++i) {
       const Box& box = boxes[i - begin];
       if (is_scattered) gather(box, near);
+      if (near.empty()) continue;
+      const Facet facet = Facet::of(first_, static_cast<std::int32_t>(i));
       for (const Item& item : near) {
-        if (item.box.meets(box)) visit(first_order_[i], item.triangle);
+        if (item.box.meets(box)) visit(facet, item.facet);
       }
     }
   }
@@ -92,16 +95,15 @@ class Pairs {
     tree_.visit_leaves_if([&](const Box& outer, std::int64_t) { return outer.meets(box); },
                           [&](std::int32_t begin, std::int32_t end) {
                             for (std::int32_t i = begin; i < end; ++i) {
-                              if (items_[i].box.meets(box)) near.push_back(items_[i]);
+                              const Box own = box_of(second_, i);
+                              if (own.meets(box)) near.push_back({own, Facet::of(second_, i)});
                             }
                             return false;
                           });
   }
 
-  Triangles first_;
-  std::vector<std::int32_t> first_order_;
-  std::vector<Item> items_;  // of the second surface, along the curve
-  BoxTree tree_;
+  OrderedSurface first_, second_;
+  BoxTree tree_;  // of the second
 };
 
 }  // namespace tinsmith::earthwork

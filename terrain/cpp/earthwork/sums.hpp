@@ -43,29 +43,44 @@ inline Part positive_part(double a, double b, double c) {
   return b > 0.0 ? part_at_two(a, b, c) : part_at_one(a, b, c);
 }
 
-// Over many triangles; whatever their order, the same to the last bit.
+// Over the few triangles of a cell, in doubles.
+struct CellSums {
+  double area = 0.0, fill_area = 0.0, cut_area = 0.0, fill = 0.0, cut = 0.0, squares = 0.0;
+  double lowest = std::numeric_limits<double>::infinity();
+  double highest = -std::numeric_limits<double>::infinity();
+
+  // `doubled_area` of a triangle in the plane, the differences at its corners.
+  void add(double doubled_area, double a, double b, double c) {
+    const double own = 0.5 * doubled_area;
+    const Part above = positive_part(a, b, c), below = positive_part(-a, -b, -c);
+    area += own;
+    fill_area += own * above.area;
+    cut_area += own * below.area;
+    fill += own * above.volume;
+    cut += own * below.volume;
+    squares += own * ((a * a + b * b + c * c + (a * b + b * c + c * a)) / 6.0);
+    highest = std::max({highest, a, b, c});
+    lowest = std::min({lowest, a, b, c});
+  }
+};
+
+// Over many cells; whatever their order, the same to the last bit.
 class Sums {
  public:
   static constexpr int kColumns = 10;
 
-  // `doubled_area` of a triangle in the plane, `difference` at its corners.
-  void add(double doubled_area, double a, double b, double c) {
-    const double area = 0.5 * doubled_area;
-    const Part fill = positive_part(a, b, c), cut = positive_part(-a, -b, -c);
-    area_.add(area);
-    fill_area_.add(area * fill.area);
-    cut_area_.add(area * cut.area);
-    fill_.add(area * fill.volume);
-    cut_.add(area * cut.volume);
-    squares_.add(area * ((a * a + b * b + c * c + (a * b + b * c + c * a)) / 6.0));
-    highest_ = std::max({highest_, a, b, c});
-    lowest_ = std::min({lowest_, a, b, c});
-  }
-
-  // Areas in space over the same part of the plane.
-  void add_surfaces(double area, double other_area) {
-    surface_.add(area);
-    other_surface_.add(other_area);
+  // A cell, with areas in space over the same part of the plane.
+  void add(const CellSums& cell, double surface, double other_surface) {
+    area_.add(cell.area);
+    fill_area_.add(cell.fill_area);
+    cut_area_.add(cell.cut_area);
+    fill_.add(cell.fill);
+    cut_.add(cell.cut);
+    squares_.add(cell.squares);
+    surface_.add(surface);
+    other_surface_.add(other_surface);
+    highest_ = std::max(highest_, cell.highest);
+    lowest_ = std::min(lowest_, cell.lowest);
   }
 
   void add(const Sums& other) {
@@ -83,9 +98,9 @@ class Sums {
 
   // In the order in which terrain/_kernel.py names them.
   std::array<double, kColumns> values() const {
-    return {area_.value(),    cut_area_.value(), fill_area_.value(), cut_.value(),
-            fill_.value(),    squares_.value(),  surface_.value(),   other_surface_.value(),
-            lowest_,          highest_};
+    return {area_.value(), cut_area_.value(), fill_area_.value(), cut_.value(),
+            fill_.value(), squares_.value(),  surface_.value(),   other_surface_.value(),
+            lowest_,       highest_};
   }
 
  private:

@@ -46,10 +46,9 @@ inline double height_of_plane(const Facet& facet, Point p, double elevation,
     }
   }
   const double total = weight[0] + weight[1] + weight[2];
-  const double sum =
-      detail::weighted_sum(weight, facet.elevation, elevation, [&](int k) {
-        return detail::exact_area(facet.start(k), facet.end(k), p);
-      });
+  const double sum = detail::weighted_sum(weight, facet.elevation, elevation, [&](int k) {
+    return detail::exact_area(facet.start(k), facet.end(k), p);
+  });
   return sum / total;
 }
 

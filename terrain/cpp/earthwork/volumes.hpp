@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "../../../tin/cpp/base/parallel.hpp"
+#include "../pulse.hpp"
 #include "cell.hpp"
 #include "facet.hpp"
 #include "pairs.hpp"
@@ -63,26 +64,17 @@ inline std::vector<Sums> sum_between(const Triangles& first, const std::int32_t*
   const Pairs pairs(first, second);
   const auto steep = all_steepness(first, up), other_steep = all_steepness(second, up);
   std::vector<std::vector<Sums>> parts(team.size(), std::vector<Sums>(group_count));
-  struct Kept {
-    std::int32_t triangle = -1;
-    Facet facet;
-  };
-  std::vector<Kept> kept(team.size());  // the triangle of the pair before is often that of this one
-  pairs.visit(team, [&](int part, std::int32_t a, std::int32_t b) {
-    if (kept[part].triangle != a) kept[part] = {a, Facet::of(first, a)};
-    const Facet& one = kept[part].facet;
-    const Facet other = Facet::of(second, b);
+  pairs.visit(team, [&](int part, const Facet& one, const Facet& other) {
     const bool is_kept = is_measured_along(one, other);
     Cell cell;
     if (!(is_kept ? cell.cut(one, other) : cell.cut(other, one))) return;
-    Sums& sums = parts[part][groups[a]];
     const double sign = is_kept ? 1.0 : -1.0;
-    double doubled_area = 0.0;
+    CellSums sums;
     fan_out(cell, [&](double doubled, double u, double v, double w) {
       sums.add(doubled, sign * u, sign * v, sign * w);
-      doubled_area += doubled;
     });
-    sums.add_surfaces(0.5 * doubled_area * steep[a], 0.5 * doubled_area * other_steep[b]);
+    parts[part][groups[one.triangle]].add(sums, sums.area * steep[one.triangle],
+                                          sums.area * other_steep[other.triangle]);
   });
   return add_up(parts);
 }
@@ -90,16 +82,30 @@ inline std::vector<Sums> sum_between(const Triangles& first, const std::int32_t*
 // Of heights at the vertices, which are linear over each triangle.
 inline std::vector<Sums> sum_heights(const Triangles& triangles, const double* heights,
                                      const std::int32_t* groups, std::int32_t group_count,
-                                     double up) {
+                                     double up, Team& team) {
   std::vector<Sums> sums(group_count);
-  for (std::int32_t t = 0; t < triangles.count; ++t) {
+  Pulse pulse(team);
+  for (std::int32_t t = 0; t < triangles.count && pulse.goes_on(); ++t) {
     const Facet facet = Facet::of(triangles, t);
     const double doubled = twice_area(facet.corner[0], facet.corner[1], facet.corner[2]);
-    Sums& own = sums[groups[t]];
+    CellSums own;
     own.add(doubled, heights[facet.vertex[0]], heights[facet.vertex[1]], heights[facet.vertex[2]]);
-    own.add_surfaces(0.5 * doubled * steepness(facet, up), 0.5 * doubled);
+    sums[groups[t]].add(own, own.area * steepness(facet, up), own.area);
   }
   return sums;
+}
+
+// Areas in the plane.
+inline std::vector<double> sum_areas(const Triangles& triangles, const std::int32_t* groups,
+                                     std::int32_t group_count) {
+  std::vector<ExactSum> sums(group_count);
+  for (std::int32_t t = 0; t < triangles.count; ++t) {
+    const Facet facet = Facet::of(triangles, t);
+    sums[groups[t]].add(0.5 * twice_area(facet.corner[0], facet.corner[1], facet.corner[2]));
+  }
+  std::vector<double> areas;
+  for (const ExactSum& sum : sums) areas.push_back(sum.value());
+  return areas;
 }
 
 }  // namespace tinsmith::earthwork

@@ -21,6 +21,7 @@ namespace tinsmith::python {
 using GivenValues = Given<double, -1>;
 using StageTable = Made<double, -1, 3>;
 using Offsets = Made<std::int64_t, -1>;
+using GroupAreas = Made<double, -1>;
 using SumTable = Made<double, -1, earthwork::Sums::kColumns>;
 
 inline earthwork::Triangles earthwork_triangles(const GivenXyz& points,
@@ -38,7 +39,7 @@ inline earthwork::Triangles earthwork_triangles(const GivenXyz& points,
       throw std::invalid_argument("points must be finite and within the exact range");
     }
   }
-  return {points.data(), triangles.data(), count};
+  return {points.data(), triangles.data(), count, point_count};
 }
 
 inline void require_groups(const GivenNumbers& groups, std::size_t count, std::int32_t limit) {
@@ -77,20 +78,27 @@ inline SumTable sum_heights(const GivenXyz& points, const GivenTriples& triangle
   if (heights.shape(0) != points.shape(0)) {
     throw std::invalid_argument("a height for each point is needed");
   }
+  return hand_over(unlocked(1, [&](Team& team) {
+    return earthwork::sum_heights(given, heights.data(), groups.data(), group_count, up, team);
+  }));
+}
+
+inline GroupAreas sum_areas(const GivenXyz& points, const GivenTriples& triangles,
+                            const GivenNumbers& groups, std::int32_t group_count) {
+  const auto given = earthwork_triangles(points, triangles);
+  require_groups(groups, triangles.shape(0), group_count);
   nb::gil_scoped_release release;
-  const auto sums = earthwork::sum_heights(given, heights.data(), groups.data(), group_count, up);
+  const std::vector<double> areas = earthwork::sum_areas(given, groups.data(), group_count);
   nb::gil_scoped_acquire acquire;
-  return hand_over(sums);
+  return copy_over<GroupAreas, double>(areas, {areas.size()});
 }
 
 inline auto overlay(const GivenXyz& points, const GivenTriples& triangles,
                     const GivenXyz& other_points, const GivenTriples& other_triangles) {
   const auto first = earthwork_triangles(points, triangles);
   const auto second = earthwork_triangles(other_points, other_triangles);
-  const earthwork::Overlay made = unlocked(1, [&](Team& team) {
-    return earthwork::Overlay(first, static_cast<std::int32_t>(points.shape(0)), second,
-                              static_cast<std::int32_t>(other_points.shape(0)), team);
-  });
+  const earthwork::Overlay made =
+      unlocked(1, [&](Team& team) { return earthwork::Overlay(first, second, team); });
   return std::make_tuple(
       copy_over<Xyz, double>(made.vertices, {made.vertices.size(), 3}),
       copy_over<Pairs, std::int32_t>(made.origins, {made.origins.size(), 2}),
@@ -105,9 +113,10 @@ inline StageTable stage_sums(const GivenXyz& points, const GivenTriples& triangl
   if (!std::is_sorted(levels.data(), levels.data() + levels.shape(0))) {
     throw std::invalid_argument("levels must ascend");
   }
-  nb::gil_scoped_release release;
-  const auto rows = earthwork::Storage(given, levels.data(), row_count(levels.shape(0)), up).rows();
-  nb::gil_scoped_acquire acquire;
+  const std::int32_t count = row_count(levels.shape(0));
+  const auto rows = unlocked(1, [&](Team& team) {
+    return earthwork::Storage(given, levels.data(), count, up, team).rows();
+  });
   return copy_over<StageTable, double>(rows, {rows.size(), 3});
 }
 
@@ -119,6 +128,8 @@ inline void bind_earthwork(nb::module_& m) {
   m.def("sum_heights", &sum_heights, "points"_a.noconvert(), "triangles"_a.noconvert(),
         "heights"_a.noconvert(), "groups"_a.noconvert(), "group_count"_a, "up"_a,
         "Cut and fill of heights at the vertices, a row for each group of triangles.");
+  m.def("sum_areas", &sum_areas, "points"_a.noconvert(), "triangles"_a.noconvert(),
+        "groups"_a.noconvert(), "group_count"_a, "The area in the plane of each group.");
   m.def(
       "overlay", &overlay, "points"_a.noconvert(), "triangles"_a.noconvert(),
       "other_points"_a.noconvert(), "other_triangles"_a.noconvert(),

@@ -188,12 +188,12 @@ def test_two_plug_ins_that_know_one_content_are_refused(install, tmp_path):
 
 
 def test_longest_suffix_counts(install, tmp_path):
-    city = replace(MINE, name="city", suffixes=(".city.json",), sniff=None)
-    install(Entry("a", city))
-    assert detect(tmp_path / "a.city.json", b"{}").name == "city"
+    site = replace(MINE, name="site", suffixes=(".site.json",), sniff=None)
+    install(Entry("a", site))
+    assert detect(tmp_path / "a.site.json", b"{}").name == "site"
     assert detect(tmp_path / "a.mine.csv", b"1,2,3\n").name == "delimited"
     tin = ts.triangulate(SQUARE)
-    assert ts.write(tin, tmp_path / "a.CITY.json").read_text() == "MINE"
+    assert ts.write(tin, tmp_path / "a.SITE.json").read_text() == "MINE"
     assert ts.write(tin.replace(crs="EPSG:32616"), tmp_path / "a.json").read_text()[0] == "{"
 
 

@@ -13,10 +13,15 @@ namespace tinsmith {
 // One for a thread.
 class NearestVertex {
  public:
-  explicit NearestVertex(const Surface& surface) : surface_(surface) {}
+  explicit NearestVertex(const OrderedSurface& ordered)
+      : ordered_(ordered), surface_(ordered.surface()) {}
 
-  // The vertex of smallest number among the nearest to p, which the triangle holds.
-  Vertex find(Point p, Triangle t) {
+  // Of the vertices nearest to p, which the triangle holds, the one that the caller calls by the
+  // smallest number; by that number.
+  Vertex find(Point p, Triangle t) { return ordered_.given_number(find_ordered(p, t)); }
+
+ private:
+  Vertex find_ordered(Point p, Triangle t) {
     Vertex nearest = surface_.vertex(t, 0);
     for (std::uint32_t k = 1; k < 3; ++k) nearest = nearer(p, nearest, surface_.vertex(t, k));
     if (point_of(nearest) == p || !ring_.collect(surface_, nullptr, p, t)) return nearest;
@@ -24,7 +29,6 @@ class NearestVertex {
     return nearest;
   }
 
- private:
   Point point_of(Vertex v) const {
     const double* row = surface_.points + 3 * static_cast<std::size_t>(number(v));
     return {row[0], row[1]};
@@ -32,10 +36,13 @@ class NearestVertex {
 
   Vertex nearer(Point p, Vertex one, Vertex other) const {
     const int further = compare_distances(p, point_of(one), point_of(other));
-    if (further == 0) return one < other ? one : other;
+    if (further == 0) {
+      return ordered_.given_number(one) < ordered_.given_number(other) ? one : other;
+    }
     return further < 0 ? one : other;
   }
 
+  const OrderedSurface& ordered_;
   Surface surface_;
   NeighborRing ring_;
 };

@@ -20,11 +20,14 @@ namespace tinsmith {
 
 class OrderedSurface {
  public:
-  // Corners must be sound; a neighbour that is no triangle becomes none.
+  // Corners must be sound; a neighbour that is no triangle becomes none. Without neighbours (null)
+  // there are none here either.
   explicit OrderedSurface(const Surface& given)
       : points_(scratch_array<double>(3 * std::size_t(given.point_count))),
         corners_(scratch_array<std::int32_t>(3 * std::size_t{given.triangle_count})),
-        neighbors_(scratch_array<std::int32_t>(3 * std::size_t{given.triangle_count})),
+        neighbors_(scratch_array<std::int32_t>(
+            given.neighbors == nullptr ? 0 : 3 * std::size_t{given.triangle_count})),
+        given_vertices_(scratch_array<Vertex>(given.point_count)),
         given_(scratch_array<Triangle>(given.triangle_count)),
         point_count_(given.point_count),
         triangle_count_(given.triangle_count) {
@@ -32,20 +35,18 @@ class OrderedSurface {
     const ScratchArray<Triangle> ordered = order_triangles(given, rank.get());
     for (const Triangle t : Ids<Triangle>(triangle_count_)) {
       for (std::uint32_t k = 0; k < 3; ++k) {
-        const Triangle beyond = given.neighbor(given_number(t), k);
         corners_[entry_of(t, k)] = rank[number(given.vertex(given_number(t), k))];
-        neighbors_[entry_of(t, k)] =
-            given.is_triangle(beyond) ? static_cast<std::int32_t>(number(ordered[number(beyond)]))
-                                      : kNoNeighbor;
       }
+      if (given.neighbors != nullptr) join(t, given, ordered.get());
     }
   }
 
   Surface surface() const {
     return {points_.get(), corners_.get(), neighbors_.get(), point_count_, triangle_count_};
   }
-  // What the caller calls a triangle.
+  // What the caller calls a triangle, and a vertex.
   Triangle given_number(Triangle t) const { return given_[number(t)]; }
+  Vertex given_number(Vertex v) const { return given_vertices_[number(v)]; }
   // The number here of each of the caller's triangles.
   ScratchArray<Triangle> numbers() const {
     auto numbers = scratch_array<Triangle>(triangle_count_);
@@ -72,6 +73,7 @@ class OrderedSurface {
     for (std::int32_t i = 0; i < point_count_; ++i) {
       const double* row = given.points + 3 * static_cast<std::size_t>(order[i]);
       std::copy(row, row + 3, points_.get() + 3 * static_cast<std::size_t>(i));
+      given_vertices_[i] = Vertex{order[i]};
       rank[order[i]] = i;
     }
     return rank;
@@ -98,9 +100,19 @@ class OrderedSurface {
     return ordered;
   }
 
+  void join(Triangle t, const Surface& given, const Triangle* ordered) {
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const Triangle beyond = given.neighbor(given_number(t), k);
+      neighbors_[entry_of(t, k)] = given.is_triangle(beyond)
+                                       ? static_cast<std::int32_t>(number(ordered[number(beyond)]))
+                                       : kNoNeighbor;
+    }
+  }
+
   ScratchArray<double> points_;
   ScratchArray<std::int32_t> corners_, neighbors_;
-  ScratchArray<Triangle> given_;  // the caller's number of each triangle
+  ScratchArray<Vertex> given_vertices_;  // the caller's number of each vertex
+  ScratchArray<Triangle> given_;         // and of each triangle
   std::int32_t point_count_;
   std::uint32_t triangle_count_;
 };

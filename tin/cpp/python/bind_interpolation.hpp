@@ -143,10 +143,9 @@ class HeldNearestBoundary {
 
 // Vertex numbers of a Delaunay triangulation, as doubles; NaN outside.
 inline Elevations nearest_vertices(const HeldLocator& locator, const GivenXy& xy, int threads) {
-  const Locator& known = locator.locator();
-  return elevations_at(known, xy, threads, [&] {
-    return [&known, search = NearestVertex(known.surface())](Point p, Triangle t) mutable {
-      return static_cast<double>(number(search.find(p, known.ordered().given_number(t))));
+  return elevations_at(locator.locator(), xy, threads, [&] {
+    return [search = NearestVertex(locator.locator().ordered())](Point p, Triangle t) mutable {
+      return static_cast<double>(number(search.find(p, t)));
     };
   });
 }

@@ -5,15 +5,18 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/tuple.h>
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <stdexcept>
 #include <tuple>
 #include <utility>
 
+#include "../location/surface.hpp"
 #include "../mesh/checked_mesh.hpp"
 #include "../mesh/mesh_arrays.hpp"
 #include "../mesh/regions.hpp"
+#include "../mesh/triangle_joining.hpp"
 #include "arrays.hpp"
 
 namespace tinsmith::python {
@@ -132,7 +135,58 @@ inline auto regions(const GivenXy& xy, const GivenTriples& triangles, const Give
   return std::make_tuple(hand_over(found.region_of), hand_over(found.largest));
 }
 
+inline void require_corners(const GivenTriples& triangles, std::int64_t point_count) {
+  if (triangles.shape(0) > INT32_MAX / 3) {
+    throw std::invalid_argument("more triangles than 32-bit indices can number");
+  }
+  for (std::size_t i = 0; i < 3 * triangles.shape(0); ++i) {
+    if (triangles.data()[i] < 0 || triangles.data()[i] >= point_count) {
+      throw std::invalid_argument("triangles must hold vertex numbers from 0 to n - 1");
+    }
+  }
+}
+
+// The triangle across each edge, and whether the triangles fit together.
+inline auto join_triangles(const GivenTriples& triangles, std::int32_t vertex_count) {
+  require_corners(triangles, vertex_count);
+  auto neighbors = streamed_array<std::int32_t>(3 * triangles.shape(0));
+  const bool is_sound = [&] {
+    nb::gil_scoped_release release;
+    return TriangleJoining(triangles.data(), static_cast<std::uint32_t>(triangles.shape(0)),
+                           vertex_count)
+        .join(neighbors.get());
+  }();
+  return std::make_tuple(hand_over<Triples>(std::move(neighbors), {triangles.shape(0), 3}),
+                         is_sound);
+}
+
+// Signs of the areas of triangles, seen from above.
+inline Signs turns_of_triangles(const GivenXyz& points, const GivenTriples& triangles) {
+  require_corners(triangles, static_cast<std::int64_t>(points.shape(0)));
+  for (std::size_t i = 0; i < 3 * points.shape(0); i += 3) {
+    if (!std::isfinite(points.data()[i]) || !std::isfinite(points.data()[i + 1])) {
+      throw std::invalid_argument("every coordinate must be finite");
+    }
+  }
+  const std::size_t count = triangles.shape(0);
+  auto result = streamed_array<std::int8_t>(count);
+  nb::gil_scoped_release release;
+  const Surface surface{points.data(), triangles.data(), nullptr,
+                        static_cast<std::int32_t>(points.shape(0)),
+                        static_cast<std::uint32_t>(count)};
+  for (const Triangle t : Ids<Triangle>(surface.triangle_count)) {
+    result[number(t)] = static_cast<std::int8_t>(
+        orientation(surface.corner(t, 0), surface.corner(t, 1), surface.corner(t, 2)));
+  }
+  nb::gil_scoped_acquire acquire;
+  return hand_over<Signs>(std::move(result), {count});
+}
+
 inline void bind_mesh(nb::module_& m) {
+  m.def("join_triangles", &join_triangles, "triangles"_a.noconvert(), "vertex_count"_a,
+        "The triangle across each edge, and whether the triangles fit together.");
+  m.def("turns_of_triangles", &turns_of_triangles, "points"_a.noconvert(),
+        "triangles"_a.noconvert(), "+1 for a counter-clockwise triangle, -1 clockwise, 0 flat.");
   m.def("regions", &regions, "xy"_a.noconvert(), "triangles"_a.noconvert(),
         "neighbors"_a.noconvert(), "barrier"_a.noconvert(),
         "The region of each triangle between barrier edges, and each region's largest triangle.");

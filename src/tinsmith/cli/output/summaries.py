@@ -319,8 +319,9 @@ def _describe_rows(merge: Merge, survey: Survey) -> str:
 
 
 def describe_file_size(path: Path) -> str:
-    """Return the size of a file for people."""
-    size = float(path.stat().st_size)
+    """Return the size of a file for people; of a folder, that of all files in it."""
+    files = [one for one in path.rglob("*") if one.is_file()] if path.is_dir() else [path]
+    size = float(sum(one.stat().st_size for one in files))
     for unit in ("bytes", "kB", "MB"):
         if size < 1000:
             return f"{size:.0f} {unit}" if unit == "bytes" or size >= 100 else f"{size:.1f} {unit}"

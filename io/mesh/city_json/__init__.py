@@ -1,0 +1,1 @@
+"""CityJSON: the TIN of a terrain as a TINRelief."""

@@ -1,0 +1,246 @@
+"""Read the TINRelief of a CityJSON file, of the versions 1.0 to 2.0."""
+
+from __future__ import annotations
+
+import json
+import re
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ...._sentences import counted
+from ....errors import ReadError
+from ..common import choose_reference, cut_into_fans, make_tin, read_content
+from .decimals import DecimalGrid
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from ....crs import CrsLike, UnitLike
+    from ....tin import TIN
+
+__all__ = ["read"]
+
+_VERSIONS = ("1.0", "1.1", "2.0")
+_SURFACES = ("CompositeSurface", "MultiSurface")
+_URL = re.compile(
+    r"(?:https?://www\.opengis\.net/def/crs/|urn:ogc:def:crs:)([A-Za-z]+)[/:][^/:]*[/:]([^/:]+)"
+)
+_SHOWN_NAMES = 8
+_LARGEST_EXACT = 2**53
+
+
+class _Relief(NamedTuple):
+    """Polygons of a terrain: the vertices of each, one after the other."""
+
+    corners: NDArray[np.int64]
+    offsets: NDArray[np.int64]
+    attributes: dict[str, Any]
+
+
+def read(
+    path: Path,
+    *,
+    crs: CrsLike | None = None,
+    z_unit: UnitLike | None = None,
+    surface: str | None = None,
+    join: bool = False,
+) -> TIN:
+    """Read the terrain of a CityJSON file.
+
+    Parameters
+    ----------
+    path : Path
+    crs : CRS, str, int or pyproj.CRS, optional
+        Declares the CRS; default the one of the metadata.
+    z_unit : Unit or str, optional
+        Unit of the elevations, which the file cannot tell unless tinsmith wrote it.
+    surface : str, optional
+        Name of the TINRelief; needed where the file has several and they are not joined.
+    join : bool
+        Whether all of them become one TIN.
+
+    Returns
+    -------
+    TIN
+        Vertices at the same place become one. Polygons of more than three corners are cut into
+        triangles, and of several levels of detail the finest is read, which the report tells.
+
+    Raises
+    ------
+    ReadError
+        If the file is damaged, holds no TINRelief, or its triangles are no TIN.
+    CrsError
+        If PROJ does not know the CRS, or the file names another.
+    OptionError
+        If the unit is unknown, or another than that of the file or the CRS.
+    """
+    city = _parse(path)
+    objects = _choose_objects(city, surface, join, path)
+    notes: list[str] = []
+    reliefs = [_collect(name, one, notes, path) for name, one in objects.items()]
+    points = _restore_vertices(city, path)
+    corners = np.concatenate([one.corners for one in reliefs])
+    lengths = np.concatenate([np.diff(one.offsets) for one in reliefs])
+    offsets = np.concatenate([[0], np.cumsum(lengths)])
+    if len(lengths) == 0:
+        raise ReadError(f"'{path}' holds a TINRelief without any triangle.", path=path)
+    triangles = cut_into_fans(corners, offsets, points, path).triangles
+    n_polygons = int((lengths > 3).sum())
+    if n_polygons:
+        notes.append(
+            f"{counted(n_polygons, 'polygon')} of the file {'was' if n_polygons == 1 else 'were'} "
+            "cut into triangles: the file does not tell along which diagonals."
+        )
+    points, triangles = _merge_vertices(points, triangles)
+    found_crs, found_unit = _find_reference(city, reliefs)
+    reference = choose_reference(crs, z_unit, path, found_crs=found_crs, found_unit=found_unit)
+    return make_tin(points, triangles, path, reference=reference, notes=notes)
+
+
+def _damaged(path: Path, what: str) -> ReadError:
+    return ReadError(f"'{path}' is a damaged CityJSON file: {what}.", path=path)
+
+
+def _parse(path: Path) -> dict[str, Any]:
+    try:
+        city = json.loads(read_content(path))
+    except json.JSONDecodeError as error:
+        raise _damaged(path, f"line {error.lineno} is no JSON") from error
+    except (ValueError, RecursionError) as error:  # no UTF-8, endless numbers, endless brackets
+        raise _damaged(path, "its text is no JSON") from error
+    if not isinstance(city, dict) or city.get("type") != "CityJSON":
+        raise ReadError(f"'{path}' is no CityJSON file: its type is not 'CityJSON'.", path=path)
+    version = str(city.get("version", ""))[:20]
+    if not version.startswith(_VERSIONS):
+        raise ReadError(
+            f"'{path}' is CityJSON of version '{version}': {', '.join(_VERSIONS)} are read.",
+            path=path,
+        )
+    return city
+
+
+def _choose_objects(
+    city: dict[str, Any], surface: str | None, join: bool, path: Path
+) -> dict[str, dict[str, Any]]:
+    """Return the terrains to read by their names."""
+    every = city.get("CityObjects")
+    if not isinstance(every, dict):
+        raise _damaged(path, "it has no CityObjects")
+    found = {
+        str(name): one
+        for name, one in every.items()
+        if isinstance(one, dict) and one.get("type") == "TINRelief"
+    }
+    if not found:
+        raise ReadError(f"'{path}' holds no TINRelief among its city objects.", path=path)
+    names = ", ".join(f"'{name[:40]}'" for name in list(found)[:_SHOWN_NAMES])
+    names += ", ..." if len(found) > _SHOWN_NAMES else ""
+    if surface is not None:
+        if surface not in found:
+            raise ReadError(
+                f"'{path}' holds no TINRelief '{surface}': there is {names}.", path=path
+            )
+        return {surface: found[surface]}
+    if len(found) > 1 and not join:
+        raise ReadError(
+            f"'{path}' holds {len(found)} objects TINRelief ({names}): name one as surface, or "
+            "join them.",
+            path=path,
+        )
+    return found
+
+
+def _collect(name: str, relief: dict[str, Any], notes: list[str], path: Path) -> _Relief:
+    """Return the polygons of the finest geometry of a terrain."""
+    geometries = relief.get("geometry")
+    geometries = geometries if isinstance(geometries, list) else []
+    fitting = [one for one in geometries if isinstance(one, dict) and one.get("type") in _SURFACES]
+    attributes = relief.get("attributes")
+    attributes = attributes if isinstance(attributes, dict) else {}
+    if not fitting:
+        raise _damaged(path, f"TINRelief '{name[:40]}' has no CompositeSurface")
+    fitting.sort(key=lambda one: str(one.get("lod", "")))
+    if len(fitting) > 1:
+        notes.append(
+            f"TINRelief '{name[:40]}' has {len(fitting)} levels of detail: "
+            f"{str(fitting[-1].get('lod'))[:20]} was read."
+        )
+    corners, lengths = _flatten(fitting[-1].get("boundaries"), name, path)
+    return _Relief(corners, np.concatenate([[0], np.cumsum(lengths)]), attributes)
+
+
+def _flatten(boundaries: Any, name: str, path: Path) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return the corners of all polygons, and how many each has."""
+    try:
+        rings = [ring for (ring,) in boundaries]
+        lengths = np.array([len(ring) for ring in rings], np.int64)
+        flat = [corner for ring in rings for corner in ring]
+    except (TypeError, ValueError):
+        raise _damaged(
+            path, f"the surfaces of '{name[:40]}' are no lists of one ring each"
+        ) from None
+    if not all(type(corner) is int and 0 <= corner < _LARGEST_EXACT for corner in flat):
+        raise _damaged(
+            path, f"a surface of '{name[:40]}' names a vertex that is no number from 0 on"
+        )
+    return np.array(flat, np.int64), lengths
+
+
+def _restore_vertices(city: dict[str, Any], path: Path) -> NDArray[np.float64]:
+    """Return the coordinates of all vertices."""
+    try:
+        vertices = np.array(city["vertices"], np.float64).reshape(-1, 3)
+    except (KeyError, TypeError, ValueError, OverflowError):
+        raise _damaged(path, "its vertices are no list of three numbers each") from None
+    transform = city.get("transform")
+    if transform is None:
+        return vertices
+    try:
+        scale = np.array(transform["scale"], np.float64).reshape(3)
+        translate = np.array(transform["translate"], np.float64).reshape(3)
+    except (KeyError, TypeError, ValueError, OverflowError):
+        raise _damaged(path, "its transform has no scale and translate of three numbers") from None
+    with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused later
+        return np.column_stack([_scale(vertices[:, k], scale[k], translate[k]) for k in range(3)])
+
+
+def _scale(values: NDArray[np.float64], scale: float, translate: float) -> NDArray[np.float64]:
+    """Return coordinates; exact decimals where the scale is one step of decimals."""
+    digits = int(np.clip(-np.rint(np.log10(scale)), 0, 15)) if 0 < scale <= 1 else -1
+    whole = translate == np.floor(translate) and np.isfinite(translate)
+    largest = np.abs(values).max(initial=0.0) + abs(translate) * 10.0 ** max(digits, 0)
+    if digits < 0 or not whole or scale != float(f"1e-{digits}") or largest >= _LARGEST_EXACT:
+        return values * scale + translate
+    if not (values == np.floor(values)).all():
+        return values * scale + translate
+    return DecimalGrid(digits, int(translate)).restore(values.astype(np.int64))
+
+
+def _merge_vertices(
+    points: NDArray[np.float64], triangles: NDArray[np.int64]
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Return the vertices that triangles have, each place once, in the order of the file."""
+    used = np.unique(triangles)
+    _, first, number = np.unique(points[used], axis=0, return_index=True, return_inverse=True)
+    rank = np.empty(len(first), np.int64)
+    rank[np.argsort(first)] = np.arange(len(first))
+    place = np.zeros(len(points), np.int64)
+    place[used] = rank[number.ravel()]
+    return points[used][np.sort(first)], place[triangles]
+
+
+def _find_reference(
+    city: dict[str, Any], reliefs: Sequence[_Relief]
+) -> tuple[str | None, str | None]:
+    """Return CRS and unit of elevations as the file tells them."""
+    metadata = city.get("metadata")
+    told = str(metadata.get("referenceSystem", "")) if isinstance(metadata, dict) else ""
+    found = _URL.search(told)
+    crs = f"{found[1]}:{found[2]}" if found else told.strip() or None
+    own = reliefs[0].attributes
+    kept = {name: own[name] for name in ("crs", "elevationUnit") if isinstance(own.get(name), str)}
+    return crs or kept.get("crs"), kept.get("elevationUnit")

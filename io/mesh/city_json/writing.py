@@ -1,0 +1,179 @@
+"""Write a TIN as CityJSON 2.0: one TINRelief of one CompositeSurface.
+
+Vertices are whole numbers on a decimal grid that ``transform`` tells. The CRS is its OGC address
+where it has an EPSG number; attributes of the city object keep what CityJSON has no place for, the
+unit of elevations and a CRS without a number.
+"""
+
+from __future__ import annotations
+
+import json
+import warnings
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...._atomic import replacing
+from ...._sentences import counted
+from ....errors import LossWarning, OptionError, WriteError
+from ..common import format_crs, format_unit, require_tin
+from .decimals import DecimalGrid, choose_digits
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from ....tin import TIN
+
+__all__ = ["write"]
+
+_BATCH = 65_536
+_NAME = "terrain"
+_MOST_DIGITS = 15
+
+
+def write(
+    surface: TIN,
+    path: Path,
+    *,
+    precision: float | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> None:
+    """Write a TIN as CityJSON 2.0.
+
+    Parameters
+    ----------
+    surface : TIN
+    path : Path
+    precision : float, optional
+        Step of the coordinates, a power of ten such as 0.001, in the units of each axis; default
+        the coarsest that holds every digit.
+    progress : callable, optional
+        Called with the fraction done.
+
+    Raises
+    ------
+    FormatError
+        If ``surface`` is no TIN.
+    OptionError
+        If ``precision`` is no power of ten from 1e-15 to 1.
+    WriteError
+        If the file cannot be written, or triangles lose their area at this precision.
+
+    Warns
+    -----
+    LossWarning
+        If the CRS has no EPSG number: programs other than this one do not find it.
+    """
+    tin = require_tin(surface, path, format_name="CityJSON")
+    used = np.zeros(len(tin.points), np.bool_)
+    used[tin.triangles] = True
+    points = tin.points[used]
+    triangles = (np.cumsum(used) - 1)[tin.triangles]
+    grids = [_choose_grid(axis, precision) for axis in points.T]
+    counts = np.stack([grid.count(axis) for grid, axis in zip(grids, points.T, strict=True)], 1)
+    _require_areas(counts, triangles, grids, path)
+    total = len(counts) + len(triangles)
+    with replacing(path, binary=False) as file:
+        file.write(_format_head(tin, grids, counts))
+        done = 0
+        for n_rows, text in _iterate_rows(triangles, "[[%d,%d,%d]]"):
+            file.write(text)
+            done += n_rows
+            if progress is not None:
+                progress(done / total)
+        file.write(']}]}},\n"vertices":[\n')
+        for n_rows, text in _iterate_rows(counts, "[%d,%d,%d]"):
+            file.write(text)
+            done += n_rows
+            if progress is not None:
+                progress(done / total)
+        file.write("]}\n")
+
+
+def _choose_grid(values: NDArray[np.float64], precision: float | None) -> DecimalGrid:
+    digits = choose_digits(values) if precision is None else _count_digits(precision)
+    return DecimalGrid(digits, int(np.floor(values.min())))
+
+
+def _count_digits(precision: float) -> int:
+    for digits in range(_MOST_DIGITS + 1):
+        if precision == float(f"1e-{digits}"):
+            return digits
+    raise OptionError("precision", precision, "a power of ten from 1e-15 to 1, such as 0.001")
+
+
+def _require_areas(
+    counts: NDArray[np.int64],
+    triangles: NDArray[np.int64],
+    grids: list[DecimalGrid],
+    path: Path,
+) -> None:
+    """Refuse a grid on which triangles are turned over or lose their area."""
+    places = np.column_stack([grids[k].restore(counts[:, k]) for k in (0, 1)])
+    places -= places.min(axis=0)
+    a, b, c = (places[triangles[:, k]] for k in range(3))
+    u, v = b - a, c - a
+    lost = int((u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0] <= 0).sum())
+    if lost:
+        raise WriteError(
+            f"Cannot write '{path}': at a precision of {grids[0].step:g} "
+            f"{counted(lost, 'triangle')} would have no area; choose a finer one.",
+            path=path,
+        )
+
+
+def _format_head(tin: TIN, grids: list[DecimalGrid], counts: NDArray[np.int64]) -> str:
+    low = [grid.restore(column.min()) for grid, column in zip(grids, counts.T, strict=True)]
+    high = [grid.restore(column.max()) for grid, column in zip(grids, counts.T, strict=True)]
+    metadata: dict[str, Any] = {"geographicalExtent": [float(value) for value in (*low, *high)]}
+    if url := _find_reference(tin):
+        metadata["referenceSystem"] = url
+    transform = {
+        "scale": [grid.step for grid in grids],
+        "translate": [float(grid.origin) for grid in grids],
+    }
+    attributes = _describe_attributes(tin)
+    relief = '"type":"TINRelief",' + (
+        f'"attributes":{json.dumps(attributes)},' if attributes else ""
+    )
+    return (
+        f'{{"type":"CityJSON","version":"2.0",\n"metadata":{json.dumps(metadata)},\n'
+        f'"transform":{json.dumps(transform)},\n"CityObjects":{{"{_NAME}":{{{relief}'
+        '"geometry":[{"type":"CompositeSurface","lod":"1","boundaries":[\n'
+    )
+
+
+def _find_reference(tin: TIN) -> str | None:
+    """Return the OGC address of the CRS."""
+    if tin.crs is None:
+        return None
+    epsg = tin.crs.to_epsg()
+    if epsg is None:
+        warnings.warn(
+            f"CityJSON names a CRS by its EPSG number, and {tin.crs.label} has none: it is kept as "
+            "an attribute that other programs do not look for.",
+            LossWarning,
+            stacklevel=4,
+        )
+        return None
+    return f"https://www.opengis.net/def/crs/EPSG/0/{epsg}"
+
+
+def _describe_attributes(tin: TIN) -> dict[str, str]:
+    attributes = {}
+    if unit := format_unit(tin):
+        attributes["elevationUnit"] = unit
+    if tin.crs is not None and tin.crs.to_epsg() is None:
+        attributes["crs"] = format_crs(tin.crs)
+    return attributes
+
+
+def _iterate_rows(rows: NDArray[np.int64], row: str) -> Iterator[tuple[int, str]]:
+    """Yield rows of a JSON array, with the commas between them."""
+    for start in range(0, len(rows), _BATCH):
+        part = rows[start : start + _BATCH]
+        text = ",\n".join([row] * len(part)) % tuple(part.ravel().tolist())
+        yield len(part), text + ("\n" if start + len(part) == len(rows) else ",\n")

@@ -1,0 +1,228 @@
+"""Esri TIN folders: the binary ``.adf`` files that ArcGIS keeps a TIN in.
+
+All numbers are big-endian. ``tnxy.adf`` and ``tnz.adf`` hold the nodes, ``tnod.adf`` three nodes,
+from 1 on, for each triangle. ``tmsk.adf`` holds a bit for each triangle, 1 where it is masked:
+outside the surface, or in a hole. ``tedg.adf`` holds, for each edge of each triangle, the edge of
+the triangle beside it, or minus the row of ``teval.adf`` where the edge is enforced: the two edges,
+and 2 for a soft, 4 for a hard one. Triangles that reach one of the four superpoints, far outside,
+are masked. ``prj.adf`` holds the CRS.
+
+References
+----------
+The layout is that which MDAL and the Virtual Terrain Project found out; Esri has not published it.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ..._sentences import counted
+from ...errors import ReadError
+from ...tin.topology import NO_NEIGHBOR
+from .common import add_notes, choose_reference, make_tin, read_content
+from .linework import Chain, add_lines, chain_edges
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from ...crs import CrsLike, UnitLike
+    from ...policies import LineKind
+    from ...tin import TIN
+
+__all__ = ["read"]
+
+_FILES = {
+    "tnxy.adf": (">f8", 2),
+    "tnz.adf": (">f4", 1),
+    "tnod.adf": (">i4", 3),
+    "tedg.adf": (">i4", 3),
+    "teval.adf": (">i4", 4),
+}
+_SUPERPOINT = -3.4e38
+"""Elevations below are no data: the least float32, that superpoints have."""
+
+_EDGE_KINDS: dict[int, LineKind] = {2: "soft", 4: "hard"}
+_NO_CRS = ("{B286C06B-0879-11D2-AACA-00C04FA33C20}", "UNKNOWN")
+"""What ``prj.adf`` holds where the CRS is not known: the class of ArcGIS for that."""
+
+
+class _Tables(NamedTuple):
+    places: NDArray[np.float64]
+    elevations: NDArray[np.float64]
+    corners: NDArray[np.int64]
+    beside: NDArray[np.int64]
+    enforced: NDArray[np.int64]
+
+
+def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN:
+    """Read the folder of an Esri TIN.
+
+    Parameters
+    ----------
+    path : Path
+        The folder, or any of the files in it.
+    crs : CRS, str, int or pyproj.CRS, optional
+        Declares the CRS; default the one in ``prj.adf``.
+    z_unit : Unit or str, optional
+        Unit of the elevations, which the files do not tell.
+
+    Returns
+    -------
+    TIN
+        Without masked triangles and the nodes that only they have. Enforced edges become hard and
+        soft lines; one along the boundary of the surface becomes a line of the boundary.
+
+    Raises
+    ------
+    ReadError
+        If a file is missing or damaged, or the triangles are no TIN.
+    CrsError
+        If PROJ does not know the CRS, or the file names another.
+    OptionError
+        If the unit is unknown, or the file names another.
+    """
+    folder = path if path.is_dir() else path.parent
+    tables = _read_tables(folder)
+    _require_sound(tables, folder)
+    triangles = tables.corners - 1
+    wanted = ~_read_mask(folder, len(triangles))
+    used = np.zeros(len(tables.places), np.bool_)
+    used[triangles[wanted]] = True
+    if (used & (tables.elevations < _SUPERPOINT)).any():
+        raise ReadError(
+            f"'{folder}' is a damaged Esri TIN: a triangle that is not masked reaches a "
+            "superpoint, which has no elevation.",
+            path=folder,
+        )
+    number = np.cumsum(used) - 1
+    points = np.column_stack([tables.places, tables.elevations])[used]
+    if not wanted.any():
+        raise ReadError(f"'{folder}' is an Esri TIN whose triangles are all masked.", path=folder)
+    reference = choose_reference(crs, z_unit, folder, found_crs=_read_crs(folder))
+    tin = make_tin(points, number[triangles[wanted]], folder, reference=reference)
+    chains = _gather_chains(tables, triangles, np.where(used, number, -1), tin)
+    tin, lost = add_lines(tin, chains)
+    if not lost:
+        return tin
+    note = f"{counted(lost, 'enforced edge')} of the file lie along no edge and are left out."
+    return add_notes(tin, [note])
+
+
+def _read_tables(folder: Path) -> _Tables:
+    found = {name: _read_numbers(folder / name, *how) for name, how in _FILES.items()
+             if name != "teval.adf" or (folder / name).is_file()}  # fmt: skip
+    enforced = found.get("teval.adf", np.empty((0, 4), np.int64))
+    return _Tables(
+        found["tnxy.adf"],
+        found["tnz.adf"].ravel(),
+        found["tnod.adf"],
+        found["tedg.adf"],
+        enforced,
+    )
+
+
+def _read_numbers(path: Path, dtype: str, width: int) -> NDArray[Any]:
+    content = read_content(path)
+    row = width * np.dtype(dtype).itemsize
+    if len(content) % row:
+        raise ReadError(
+            f"'{path}' is damaged: its {len(content)} bytes are no whole number of rows of {row}.",
+            path=path,
+        )
+    numbers = np.frombuffer(content, dtype).reshape(-1, width)
+    with np.errstate(invalid="ignore"):  # what is not finite is refused later
+        return numbers.astype(np.float64 if dtype[1] == "f" else np.int64)
+
+
+def _require_sound(tables: _Tables, folder: Path) -> None:
+    """Refuse files that do not fit together."""
+    n_nodes, n_triangles = len(tables.places), len(tables.corners)
+    if len(tables.elevations) != n_nodes:
+        raise ReadError(
+            f"'{folder}' is a damaged Esri TIN: tnxy.adf has {counted(n_nodes, 'node')}, and "
+            f"tnz.adf {counted(len(tables.elevations), 'elevation')}.",
+            path=folder,
+        )
+    if len(tables.beside) != n_triangles:
+        raise ReadError(
+            f"'{folder}' is a damaged Esri TIN: tnod.adf has {counted(n_triangles, 'triangle')}, "
+            f"and tedg.adf {len(tables.beside)}.",
+            path=folder,
+        )
+    wrong = (tables.corners < 1) | (tables.corners > n_nodes)
+    if wrong.any():
+        row = int(np.argmax(wrong.any(axis=1)))
+        raise ReadError(
+            f"'{folder}' is a damaged Esri TIN: triangle {row + 1} of tnod.adf has the nodes "
+            f"{tables.corners[row].tolist()}, and there are the nodes 1 to {n_nodes}.",
+            path=folder,
+        )
+
+
+def _read_mask(folder: Path, n_triangles: int) -> NDArray[np.bool_]:
+    """Return which triangles are masked.
+
+    The last number of ``tmsx.adf`` is the length of the mask in 16-bit words; it ends the file
+    ``tmsk.adf``: the number of 32-bit words, one that is not used, the number of bits, and the
+    words, each from its lowest bit on. Triangles behind the last bit are not masked.
+    """
+    index, content = read_content(folder / "tmsx.adf"), read_content(folder / "tmsk.adf")
+    length = 2 * int.from_bytes(index[-4:], "big")
+    if len(index) < 4 or not 12 <= length <= len(content):
+        raise ReadError(
+            f"'{folder}' is a damaged Esri TIN: tmsx.adf promises {length} bytes of mask, and "
+            f"tmsk.adf has {len(content)}.",
+            path=folder,
+        )
+    mask = content[len(content) - length :]
+    n_bits = int.from_bytes(mask[8:12], "big")
+    words = np.frombuffer(mask[12 : len(mask) - len(mask) % 4], ">u4").astype("<u4")
+    bits = np.unpackbits(words.view(np.uint8), bitorder="little")
+    n_words = int.from_bytes(mask[:4], "big")
+    if n_words != len(words) or n_words != -(-n_bits // 32):
+        raise ReadError(
+            f"'{folder}' is a damaged Esri TIN: tmsk.adf promises {n_bits} bits in {n_words} "
+            f"words, and has {len(words)}.",
+            path=folder,
+        )
+    masked = np.zeros(n_triangles, np.bool_)
+    known = min(n_bits, n_triangles)
+    masked[:known] = bits[:known]
+    return masked
+
+
+def _read_crs(folder: Path) -> str | None:
+    """Return the WKT in ``prj.adf``, if there is one."""
+    path = folder / "prj.adf"
+    if not path.is_file():
+        return None
+    lines = read_content(path).decode("utf-8", errors="replace").strip("\0 \r\n").splitlines()
+    text = lines[0].strip() if lines else ""
+    return None if not text or text.upper().startswith(_NO_CRS) else text
+
+
+def _gather_chains(
+    tables: _Tables, triangles: NDArray[np.int64], number: NDArray[np.int64], tin: TIN
+) -> list[Chain]:
+    """Return the enforced edges of the surface, chained by their kind.
+
+    Edge ``k`` of a triangle runs from its corner ``k - 1`` to corner ``k``.
+    """
+    rows = -tables.beside.ravel()
+    slots = np.flatnonzero((rows > 0) & (rows <= len(tables.enforced)))
+    codes = tables.enforced[rows[slots] - 1, 2]
+    edges = np.stack([np.roll(triangles, 1, axis=1).ravel(), triangles.ravel()], axis=1)[slots]
+    edges, codes = number[edges], codes[(number[edges] >= 0).all(axis=1)]
+    edges = edges[(edges >= 0).all(axis=1)]
+    at_boundary = (tin.edge_triangles(edges[:, 0], edges[:, 1]) == NO_NEIGHBOR).sum(axis=1) == 1
+    chains = [
+        Chain(chain, "boundary") for chain in chain_edges(edges[at_boundary], len(tin.points))
+    ]
+    for code, kind in _EDGE_KINDS.items():
+        own = edges[~at_boundary & (codes == code)]
+        chains += [Chain(chain, kind) for chain in chain_edges(own, len(tin.points))]
+    return chains

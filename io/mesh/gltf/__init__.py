@@ -1,0 +1,1 @@
+"""glTF: surfaces for viewers and game engines."""

@@ -1,0 +1,305 @@
+"""GLB, the binary form of glTF 2.0: a surface for viewers, browsers and game engines.
+
+glTF is in metres with Y up: easting becomes X, elevation Y, and northing -Z. Positions are float32
+relative to an origin, the corner of the TIN's bounds rounded down, which is the translation of the
+node and stands in its ``extras`` with the CRS and the units. Vertices have normals, and colours by
+elevation or a texture.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import struct
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ...._atomic import replacing
+from ...._sentences import counted
+from ....crs import assume_elevation_unit
+from ....errors import CrsError, WriteError
+from ....terrain.preview.tints import interpolate_tints
+from ..common import format_crs, format_unit, require_factor, require_tin
+from ..texture import load_texture
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from ....tin import TIN
+    from ..texture import Texture
+
+__all__ = ["write"]
+
+_MAGIC, _VERSION = 0x46546C67, 2
+_JSON_CHUNK, _BINARY_CHUNK = 0x4E4F534A, 0x004E4942
+_ARRAY_BUFFER, _ELEMENT_ARRAY_BUFFER = 34962, 34963
+_COMPONENTS = {"f4": 5126, "u4": 5125, "u2": 5123}
+_SHAPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4"}
+_TRIANGLES = 4
+_LINEAR, _LINEAR_MIPMAP_LINEAR, _CLAMP_TO_EDGE = 9729, 9987, 33071
+_MOST_SHORT_VERTICES = 65_535
+"""The number 65535 restarts primitives: with so many vertices, 0 to 65534, it is none of them."""
+
+_LARGEST_FILE = 2**32 - 1
+_GENERATOR = "tinsmith"
+
+
+class _Mesh(NamedTuple):
+    """What the file holds, in its own axes."""
+
+    positions: NDArray[np.float32]
+    normals: NDArray[np.float32]
+    triangles: NDArray[Any]
+    colors: NDArray[np.uint16] | None
+    texture: Texture | None
+
+
+def write(
+    surface: TIN,
+    path: Path,
+    *,
+    texture: str | os.PathLike[str] | None = None,
+    exaggeration: float = 1.0,
+    progress: Callable[[float], None] | None = None,
+) -> None:
+    """Write a TIN as GLB.
+
+    Parameters
+    ----------
+    surface : TIN
+    path : Path
+    texture : path-like, optional
+        Picture to drape over it: a GeoTIFF, or a PNG or JPEG file with a world file beside it.
+        Default colours by elevation.
+    exaggeration : float
+        Factor on the elevations, which ``extras`` tells.
+    progress : callable, optional
+        Called with 1.0 at the end.
+
+    Raises
+    ------
+    FormatError
+        If ``surface`` is no TIN.
+    CrsError
+        If its coordinates are longitude and latitude, or the texture is in another CRS.
+    OptionError
+        If the exaggeration is not positive.
+    ReadError
+        If the texture cannot be read, or shows nothing of the surface.
+    WriteError
+        If the file cannot be written; if triangles have no area in float32, or the file would be
+        larger than 4 GiB.
+
+    Notes
+    -----
+    Float32 keeps positions to about a sixteen millionth of the extent. Where the CRS is not known
+    its units are taken to be metres, and ``extras`` does not tell any. Lines are lost.
+    """
+    tin = require_tin(surface, path, format_name="GLB")
+    require_factor("exaggeration", exaggeration)
+    if tin.crs is not None and tin.crs.is_geographic:
+        raise CrsError(
+            f"Cannot write '{path}': GLB is in metres, and {tin.crs.label} in degrees; build the "
+            "TIN in a projected CRS.",
+            crs=tin.crs,
+        )
+    draped = None if texture is None else load_texture(texture, tin, stacklevel=4)
+    origin = np.floor(tin.points.min(axis=0))
+    scale = _choose_scale(tin) * (1.0, 1.0, exaggeration)
+    mesh = _make_mesh(tin, origin, scale, draped, path)
+    node = {"translation": _turn_up((origin * scale)[None])[0].tolist(), "extras": _describe(
+        tin, origin, scale, exaggeration)}  # fmt: skip
+    chunks = _pack(mesh, node)
+    length = 12 + sum(8 + len(chunk) for _, chunk in chunks)
+    if length > _LARGEST_FILE:
+        raise WriteError(f"Cannot write '{path}': GLB ends at 4 GiB.", path=path)
+    with replacing(path) as file:
+        file.write(struct.pack("<III", _MAGIC, _VERSION, length))
+        for kind, chunk in chunks:
+            file.write(struct.pack("<II", len(chunk), kind))
+            file.write(chunk)
+    if progress is not None:
+        progress(1.0)
+
+
+def _choose_scale(tin: TIN) -> NDArray[np.float64]:
+    """Return the factors from eastings, northings and elevations to metres."""
+    if tin.crs is None:
+        along, up = 1.0, tin.elevation_unit and tin.elevation_unit.metres
+        return np.array([along, along, up or 1.0])
+    along = tin.crs.horizontal_unit.metres or 1.0
+    unit = assume_elevation_unit(tin.crs, tin.elevation_unit)
+    return np.array([along, along, along if unit is None else unit.metres or along])
+
+
+def _turn_up(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Turn easting, northing, elevation to the axes of glTF: X, Y up, Z towards the viewer."""
+    return np.column_stack([vectors[:, 0], vectors[:, 2], -vectors[:, 1]]) + 0.0
+
+
+def _make_mesh(
+    tin: TIN,
+    origin: NDArray[np.float64],
+    scale: NDArray[np.float64],
+    texture: Texture | None,
+    path: Path,
+) -> _Mesh:
+    used = np.unique(tin.triangles)
+    number = np.zeros(len(tin.points), np.int64)
+    number[used] = np.arange(len(used))
+    places = (tin.points[used] - origin) * scale
+    triangles = number[tin.triangles]
+    positions = _turn_up(places).astype(np.float32)
+    _require_areas(positions, triangles, path)
+    normals = _turn_up(_compute_normals(places, triangles)).astype(np.float32)
+    is_short = len(used) <= _MOST_SHORT_VERTICES
+    colors = _choose_colors(places[:, 2]) if texture is None else None
+    if texture is not None:
+        texture = type(texture)(texture.content, texture.kind, texture.places[used])
+    return _Mesh(
+        positions, normals, triangles.astype(np.uint16 if is_short else np.uint32), colors, texture
+    )
+
+
+def _require_areas(
+    positions: NDArray[np.float32], triangles: NDArray[np.int64], path: Path
+) -> None:
+    """Refuse what float32 cannot hold."""
+    if not np.isfinite(positions).all():
+        raise WriteError(f"Cannot write '{path}': the TIN is too large for float32.", path=path)
+    a, b, c = (positions[triangles[:, k]].astype(np.float64) for k in range(3))
+    empty = int((np.cross(b - a, c - a) == 0.0).all(axis=1).sum())
+    if empty:
+        raise WriteError(
+            f"Cannot write '{path}': {counted(empty, 'triangle')} would have no area in float32, "
+            "whose precision is a sixteen millionth of the extent.",
+            path=path,
+        )
+
+
+def _compute_normals(
+    places: NDArray[np.float64], triangles: NDArray[np.int64]
+) -> NDArray[np.float64]:
+    """Return the unit normal of each vertex, the mean of its triangles by their areas."""
+    a, b, c = (places[triangles[:, k]] for k in range(3))
+    faces = np.cross(b - a, c - a)
+    sums = np.column_stack(
+        [np.bincount(triangles.ravel(), np.repeat(axis, 3), len(places)) for axis in faces.T]
+    )
+    return np.asarray(sums / np.linalg.norm(sums, axis=1, keepdims=True))
+
+
+def _choose_colors(elevations: NDArray[np.float64]) -> NDArray[np.uint16]:
+    """Return hypsometric tints as glTF has colours, in linear light."""
+    low, extent = elevations.min(), np.ptp(elevations)
+    share = (elevations - low) / (extent if extent > 0 else 1.0)
+    encoded = interpolate_tints(256)[np.rint(share * 255).astype(np.int64)] / 255.0
+    linear = np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
+    colors = np.full((len(elevations), 4), 65_535, np.uint16)
+    colors[:, :3] = np.rint(linear * 65_535)
+    return colors
+
+
+def _describe(
+    tin: TIN, origin: NDArray[np.float64], scale: NDArray[np.float64], exaggeration: float
+) -> dict[str, Any]:
+    """Return what leads from the file back to the coordinates."""
+    extras: dict[str, Any] = {
+        "origin": origin.tolist(),
+        "metres": (scale / (1.0, 1.0, exaggeration)).tolist(),
+        "exaggeration": float(exaggeration),
+        "axes": "x = easting, y = elevation, z = -northing, in metres from the origin",
+    }
+    if tin.crs is not None:
+        extras["crs"] = format_crs(tin.crs)
+    if unit := format_unit(tin):
+        extras["elevationUnit"] = unit
+    return extras
+
+
+class _Buffer:
+    """The binary chunk, with the views and accessors into it."""
+
+    def __init__(self) -> None:
+        self.content = bytearray()
+        self.views: list[dict[str, Any]] = []
+        self.accessors: list[dict[str, Any]] = []
+
+    def add_bytes(self, content: bytes, **more: Any) -> int:
+        """Append aligned bytes; return the number of their view."""
+        self.content += bytes(-len(self.content) % 4)
+        view = {"buffer": 0, "byteOffset": len(self.content), "byteLength": len(content), **more}
+        self.views.append(view)
+        self.content += content
+        return len(self.views) - 1
+
+    def add_array(
+        self, array: NDArray[Any], *, target: int, has_bounds: bool = False, **more: Any
+    ) -> int:
+        """Append an array of one row for each element; return the number of its accessor."""
+        rows = array if array.ndim == 2 else array[:, None]
+        content = np.ascontiguousarray(rows, rows.dtype.newbyteorder("<")).tobytes()
+        accessor: dict[str, Any] = {
+            "bufferView": self.add_bytes(content, target=target),
+            "componentType": _COMPONENTS[rows.dtype.str[1:]],
+            "count": len(rows),
+            "type": _SHAPES[rows.shape[1]],
+            **more,
+        }
+        if has_bounds:
+            accessor |= {"min": rows.min(axis=0).tolist(), "max": rows.max(axis=0).tolist()}
+        self.accessors.append(accessor)
+        return len(self.accessors) - 1
+
+
+def _pack(mesh: _Mesh, node: dict[str, Any]) -> list[tuple[int, bytes]]:
+    """Return the chunks of the file."""
+    buffer = _Buffer()
+    attributes = {
+        "POSITION": buffer.add_array(mesh.positions, target=_ARRAY_BUFFER, has_bounds=True),
+        "NORMAL": buffer.add_array(mesh.normals, target=_ARRAY_BUFFER),
+    }
+    surface: dict[str, Any] = {"metallicFactor": 0.0, "roughnessFactor": 1.0}
+    document: dict[str, Any] = {"asset": {"version": "2.0", "generator": _GENERATOR}}
+    if mesh.colors is not None:
+        attributes["COLOR_0"] = buffer.add_array(mesh.colors, target=_ARRAY_BUFFER, normalized=True)
+    if mesh.texture is not None:
+        places = mesh.texture.places.astype(np.float32)
+        attributes["TEXCOORD_0"] = buffer.add_array(places, target=_ARRAY_BUFFER)
+        surface["baseColorTexture"] = {"index": 0}
+        document |= _add_texture(buffer, mesh.texture)
+    indices = buffer.add_array(mesh.triangles.ravel(), target=_ELEMENT_ARRAY_BUFFER)
+    primitive = {"attributes": attributes, "indices": indices, "material": 0, "mode": _TRIANGLES}
+    buffer.content += bytes(-len(buffer.content) % 4)
+    document |= {
+        "scene": 0,
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"name": "terrain", "mesh": 0, **node}],
+        "meshes": [{"name": "terrain", "primitives": [primitive]}],
+        "materials": [{"name": "terrain", "pbrMetallicRoughness": surface, "doubleSided": True}],
+        "buffers": [{"byteLength": len(buffer.content)}],
+        "bufferViews": buffer.views,
+        "accessors": buffer.accessors,
+    }
+    text = json.dumps(document, separators=(",", ":")).encode()
+    text += b" " * (-len(text) % 4)
+    return [(_JSON_CHUNK, text), (_BINARY_CHUNK, bytes(buffer.content))]
+
+
+def _add_texture(buffer: _Buffer, texture: Texture) -> dict[str, Any]:
+    view = buffer.add_bytes(texture.content)
+    sampler = {
+        "magFilter": _LINEAR,
+        "minFilter": _LINEAR_MIPMAP_LINEAR,
+        "wrapS": _CLAMP_TO_EDGE,
+        "wrapT": _CLAMP_TO_EDGE,
+    }
+    return {
+        "images": [{"bufferView": view, "mimeType": f"image/{texture.kind}"}],
+        "samplers": [sampler],
+        "textures": [{"sampler": 0, "source": 0}],
+    }

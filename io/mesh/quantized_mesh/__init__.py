@@ -1,0 +1,1 @@
+"""Quantized-mesh 1.0: terrain tiles for Cesium and other globes."""

@@ -1,0 +1,141 @@
+"""Read one tile of quantized-mesh 1.0: longitude, latitude and height above the ellipsoid."""
+
+from __future__ import annotations
+
+import re
+import zlib
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...._sentences import counted
+from ....errors import OptionError, ReadError
+from ..common import choose_reference, make_tin, read_content
+from .tile import BrokenTileError, TileName, decode_tile
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from ....crs import CrsLike, UnitLike
+    from ....tin import TIN
+
+__all__ = ["read"]
+
+_CRS = "EPSG:4979"
+_NAME = re.compile(r"(\d{1,2})/(\d{1,9})/(\d{1,9})")
+_MOST_LEVEL = 30
+_GZIP = b"\x1f\x8b"
+_LARGEST = 1 << 28
+_HEIGHTMAP_BYTES = 65 * 65 * 2
+
+
+def read(
+    path: Path,
+    *,
+    crs: CrsLike | None = None,
+    z_unit: UnitLike | None = None,
+    tile: str | None = None,
+) -> TIN:
+    """Read a tile, gzipped or not.
+
+    Parameters
+    ----------
+    path : Path
+    crs : CRS, str, int or pyproj.CRS, optional
+        Must be EPSG:4979, if given.
+    z_unit : Unit or str, optional
+        Must be the metre, if given.
+    tile : str, optional
+        Where it lies, "level/column/row", rows from the south; default what the path says.
+
+    Returns
+    -------
+    TIN
+        Longitude, latitude, metres above the ellipsoid. Triangles without area, which programs
+        leave in tiles, are left out and told. Normals, water and other extensions are skipped.
+
+    Raises
+    ------
+    ReadError
+        If the file is damaged or no such tile, the path does not tell where it lies, or its
+        triangles are no TIN.
+    OptionError
+        If ``tile`` is no place of a tile.
+    CrsError
+        If another CRS is declared.
+    """
+    name = _find_name(path, tile)
+    content = _unzip(read_content(path), path)
+    try:
+        found = decode_tile(content)
+    except BrokenTileError as error:
+        raise ReadError(_describe_fault(path, content, str(error)), path=path) from None
+    reference = choose_reference(crs, z_unit, path, found_crs=_CRS)
+    steps, triangles = _merge(found.steps, found.triangles)
+    places = type(found)(steps, triangles, found.lowest, found.highest).place(name)
+    if len(triangles) == 0:
+        raise ReadError(f"'{path}' is a tile without any triangle.", path=path)
+    flat = _measure(steps, triangles) <= 0  # rounding turned some over: their neighbours cover them
+    notes = []
+    if flat.any():
+        count = counted(int(flat.sum()), "triangle")
+        notes.append(f"{count} of the file without area, or turned over by rounding, left out.")
+        triangles = triangles[~flat]
+    if len(triangles) == 0:
+        raise ReadError(f"'{path}' is a tile whose triangles have no area.", path=path)
+    return make_tin(places, triangles, path, reference=reference, notes=notes)
+
+
+def _find_name(path: Path, tile: str | None) -> TileName:
+    text = path.with_suffix("").absolute().as_posix() if tile is None else tile
+    parts = text.rsplit("/", 3)[-3:]
+    found = _NAME.fullmatch("/".join(parts)) if isinstance(tile, str | None) else None
+    if found is not None:
+        level, x, y = (int(number) for number in found.groups())
+        if level <= _MOST_LEVEL and x < 2 ** (level + 1) and y < 2**level:
+            return TileName(level, x, y)
+    if tile is None:
+        raise ReadError(
+            f"'{path}' does not tell where the tile lies: a path that ends in "
+            "level/column/row.terrain does, or tell it as tile.",
+            path=path,
+        )
+    raise OptionError("tile", tile, "level/column/row of a tile, such as '14/17000/12000'")
+
+
+def _unzip(content: bytes, path: Path) -> bytes:
+    """Return the content of a gzipped file, no more than a tile can have."""
+    if not content.startswith(_GZIP):
+        return content
+    opened = zlib.decompressobj(wbits=31)
+    try:
+        plain = opened.decompress(content, _LARGEST)
+    except zlib.error as error:
+        raise ReadError(f"'{path}' is a damaged gzip file: {error}.", path=path) from None
+    if not opened.eof:
+        raise ReadError(f"'{path}' is a gzip file that ends early, or no tile.", path=path)
+    return plain
+
+
+def _describe_fault(path: Path, content: bytes, why: str) -> str:
+    if _HEIGHTMAP_BYTES < len(content) <= _HEIGHTMAP_BYTES + 2 + 65536:
+        why += "; it may be one of the older format heightmap-1.0, which is not read"
+    return f"'{path}' is no sound quantized-mesh tile: {why}."
+
+
+def _merge(
+    steps: NDArray[np.int64], triangles: NDArray[np.int64]
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Make vertices at one place one, where they have one height too."""
+    kept, first, number = np.unique(steps, axis=0, return_index=True, return_inverse=True)
+    rank = np.empty(len(kept), np.int64)
+    rank[np.argsort(first)] = np.arange(len(kept))
+    return steps[np.sort(first)], rank[number.ravel()][triangles]
+
+
+def _measure(steps: NDArray[np.int64], triangles: NDArray[np.int64]) -> NDArray[np.int64]:
+    a, b, c = (steps[triangles[:, k], :2] for k in range(3))
+    u, v = b - a, c - a
+    return np.asarray(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])

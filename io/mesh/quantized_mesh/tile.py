@@ -1,0 +1,240 @@
+"""One tile of quantized-mesh 1.0 as bytes, and back.
+
+A tile is a rectangle of longitude and latitude: at level ``z`` the globe has 2^(z + 1) by 2^z of
+them, counted from the south-west corner (TMS). Within it, places are whole numbers from 0 to 32767,
+and so are heights between the lowest and the highest.
+
+References
+----------
+https://github.com/CesiumGS/quantized-mesh
+"""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .globe import bound_by_sphere, find_horizon_point, to_cartesian
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["STEPS", "BrokenTileError", "Tile", "TileName", "decode_tile", "encode_tile"]
+
+STEPS = 32_767
+"""Whole numbers from one edge of a tile to the other."""
+
+_HEADER = struct.Struct("<3d2f3dd3d")
+_NORMALS = 1
+_MOST_SHORT_VERTICES = 65_536
+
+
+class BrokenTileError(Exception):
+    """What is wrong with the bytes of a tile, for the end of a sentence."""
+
+
+@dataclass(frozen=True)
+class TileName:
+    """Level, column and row of a tile.
+
+    Examples
+    --------
+    >>> TileName(0, 1, 0).bounds
+    (0.0, -90.0, 180.0, 90.0)
+    """
+
+    level: int
+    x: int
+    y: int
+
+    @property
+    def width(self) -> float:
+        """Degrees from edge to edge."""
+        return float(180.0 / 2**self.level)
+
+    @property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """West, south, east, north, degrees."""
+        west, south = -180.0 + self.x * self.width, -90.0 + self.y * self.width
+        return west, south, west + self.width, south + self.width
+
+
+@dataclass(frozen=True)
+class Tile:
+    """A tile as it is stored.
+
+    Attributes
+    ----------
+    steps : (n, 3) int64 array
+        Of each vertex from west to east, south to north, lowest to highest, 0 to 32767.
+    triangles : (m, 3) int64 array
+        Counter-clockwise seen from above.
+    lowest, highest : float
+        Heights of the steps 0 and 32767, metres above the ellipsoid.
+    normals : (n, 3) float64 array, optional
+        Unit vectors in the axes of the globe.
+    """
+
+    steps: NDArray[np.int64]
+    triangles: NDArray[np.int64]
+    lowest: float
+    highest: float
+    normals: NDArray[np.float64] | None = None
+
+    def place(self, name: TileName) -> NDArray[np.float64]:
+        """Return longitude, latitude (degrees) and height (metres) of the vertices."""
+        west, south, _, _ = name.bounds
+        share = self.steps / STEPS
+        heights = (1.0 - share[:, 2]) * self.lowest + share[:, 2] * self.highest
+        plane = np.array([west, south]) + share[:, :2] * name.width
+        return np.column_stack([plane, heights])
+
+
+# ---------------------------------------------------------------------------- writing
+
+
+def encode_tile(tile: Tile, name: TileName) -> bytes:
+    """Return the bytes of a tile.
+
+    Vertices are put in the order in which triangles first use them, which the encoding of indices
+    asks for.
+    """
+    first_use = _order_by_first_use(tile.triangles)
+    number = np.empty(len(tile.steps), np.int64)
+    number[first_use] = np.arange(len(first_use))
+    steps, triangles = tile.steps[first_use], number[tile.triangles]
+    places = Tile(steps, triangles, tile.lowest, tile.highest).place(name)
+    is_long = len(steps) > _MOST_SHORT_VERTICES
+    parts = [
+        _pack_header(places, tile, name),
+        struct.pack("<I", len(steps)),
+        *(_encode_steps(axis) for axis in steps.T),
+    ]
+    if is_long:
+        parts.append(bytes(-sum(len(part) for part in parts) % 4))
+    dtype = "<u4" if is_long else "<u2"
+    parts += [struct.pack("<I", len(triangles)), _encode_indices(triangles).astype(dtype).tobytes()]
+    for edge in _find_edges(steps):
+        parts += [struct.pack("<I", len(edge)), edge.astype(dtype).tobytes()]
+    if tile.normals is not None:
+        normals = _encode_normals(tile.normals[first_use])
+        parts += [struct.pack("<BI", _NORMALS, len(normals)), normals]
+    return b"".join(parts)
+
+
+def _order_by_first_use(triangles: NDArray[np.int64]) -> NDArray[np.int64]:
+    used, first = np.unique(triangles, return_index=True)
+    return np.asarray(used[np.argsort(first)])
+
+
+def _pack_header(places: NDArray[np.float64], tile: Tile, name: TileName) -> bytes:
+    west, south, east, north = name.bounds
+    middle = (float(places[:, 2].min()) + float(places[:, 2].max())) / 2
+    center = to_cartesian(np.array([[(west + east) / 2, (south + north) / 2, middle]]))[0]
+    cartesian = to_cartesian(places)
+    sphere = bound_by_sphere(cartesian)
+    horizon = find_horizon_point(cartesian, sphere.center)
+    return _HEADER.pack(*center, tile.lowest, tile.highest, *sphere.center, sphere.radius, *horizon)
+
+
+def _encode_steps(values: NDArray[np.int64]) -> bytes:
+    """Return differences, small ones near 0 whatever their sign (zig-zag)."""
+    change = np.diff(values, prepend=0)
+    return ((change << 1) ^ (change >> 63)).astype("<u2").tobytes()
+
+
+def _encode_indices(triangles: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return, for each index, how far it lies below the next one that is new (high-water mark)."""
+    flat = triangles.ravel()
+    seen = np.maximum.accumulate(np.concatenate([[-1], flat[:-1]])) + 1
+    return np.asarray(seen - flat)
+
+
+def _find_edges(steps: NDArray[np.int64]) -> list[NDArray[np.int64]]:
+    """Return the vertices on the west, south, east and north edge, along it."""
+    edges = []
+    for axis, value in ((0, 0), (1, 0), (0, STEPS), (1, STEPS)):
+        on = np.flatnonzero(steps[:, axis] == value)
+        edges.append(on[np.argsort(steps[on, 1 - axis], kind="stable")])
+    return edges
+
+
+def _encode_normals(normals: NDArray[np.float64]) -> bytes:
+    """Return two bytes a vector: its place on an octahedron.
+
+    Meyer et al., "On floating-point normal vectors" (2010).
+    """
+    flat = normals / np.abs(normals).sum(axis=1, keepdims=True)
+    sign = np.where(flat[:, :2] < 0, -1.0, 1.0)
+    folded = (1.0 - np.abs(flat[:, 1::-1])) * sign
+    plane = np.where(flat[:, 2:] < 0, folded, flat[:, :2])
+    codes = np.rint((np.clip(plane, -1, 1) * 0.5 + 0.5) * 255).astype(np.uint8)
+    return bytes(codes.tobytes())
+
+
+# ---------------------------------------------------------------------------- reading
+
+
+def decode_tile(content: bytes) -> Tile:
+    """Return a tile from its bytes, unzipped.
+
+    Raises
+    ------
+    BrokenTileError
+        If they are no tile.
+    """
+    if len(content) < _HEADER.size + 4:
+        raise BrokenTileError("it is shorter than a header")
+    header = _HEADER.unpack_from(content)
+    lowest, highest = header[3:5]
+    if not np.isfinite([lowest, highest]).all() or lowest > highest:
+        raise BrokenTileError(f"its heights reach from {lowest:g} to {highest:g}")
+    reader = _Reader(content, _HEADER.size)
+    count = reader.read_count("vertices", 6)
+    axes = [_decode_steps(reader.read("<u2", count)) for _ in range(3)]
+    dtype = "<u2" if count <= _MOST_SHORT_VERTICES else "<u4"
+    if dtype == "<u4":
+        reader.at += -reader.at % 4
+    n_triangles = reader.read_count("triangles", 3 * int(dtype[2]))
+    triangles = _decode_indices(reader.read(dtype, 3 * n_triangles))
+    steps = np.stack(axes, axis=1)
+    if ((steps < 0) | (steps > STEPS)).any():
+        raise BrokenTileError("a vertex lies outside of it")
+    if ((triangles < 0) | (triangles >= count)).any():
+        raise BrokenTileError("a triangle names a vertex that it does not have")
+    return Tile(steps, triangles.reshape(-1, 3), lowest, highest)
+
+
+class _Reader:
+    """Bytes read one array after the other, none longer than the rest of the file."""
+
+    def __init__(self, content: bytes, at: int) -> None:
+        self.content = content
+        self.at = at
+
+    def read_count(self, what: str, size: int) -> int:
+        count = int(self.read("<u4", 1)[0])
+        if count * size > len(self.content) - self.at:
+            raise BrokenTileError(f"it promises {count} {what}, and ends before them")
+        return count
+
+    def read(self, dtype: str, count: int) -> NDArray[np.int64]:
+        size = count * int(dtype[2])
+        if self.at + size > len(self.content):
+            raise BrokenTileError("it ends too early")
+        values = np.frombuffer(self.content, dtype, count, self.at)
+        self.at += size
+        return values.astype(np.int64)
+
+
+def _decode_steps(values: NDArray[np.int64]) -> NDArray[np.int64]:
+    return np.cumsum((values >> 1) ^ -(values & 1))
+
+
+def _decode_indices(codes: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return indices from how far each lies below the next new one, which a 0 is itself."""
+    seen = np.cumsum(codes == 0) - (codes == 0)
+    return np.asarray(seen - codes)

@@ -1,0 +1,71 @@
+"""What the first bytes of a file, or the names in a folder, say about its mesh format."""
+
+from __future__ import annotations
+
+import math
+import re
+import struct
+import zlib
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+__all__ = ["TIN_FILES", "is_2dm", "is_cityjson", "is_esri_tin", "is_off", "is_quantized_mesh"]
+
+TIN_FILES = ("tnxy.adf", "tnz.adf", "tnod.adf", "tedg.adf", "tmsk.adf", "tmsx.adf", "thul.adf",
+             "tdenv.adf", "tdenv9.adf", "tnodinfo.adf", "teval.adf")  # fmt: skip
+"""Names of the files in the folder of an Esri TIN; grids of Esri have others."""
+
+_TILE_HEADER = struct.Struct("<3d2f3dd3d")
+_LEAST_RADIUS, _MOST_RADIUS, _MOST_HEIGHT = 6.2e6, 6.6e6, 1e5
+"""Metres: how far from its centre the surface of the Earth is, and how high above the ellipsoid."""
+
+_OFF = re.compile(rb"\s*(?:ST)?C?N?4?n?OFF\s")
+_CITYJSON = re.compile(rb'"type"\s*:\s*"CityJSON"')
+
+
+def is_2dm(head: bytes) -> bool:
+    """Whether the file is a 2DM mesh."""
+    return head.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"MESH2D")
+
+
+def is_off(head: bytes) -> bool:
+    """Whether the file is an OFF mesh: its keyword."""
+    return _OFF.match(head) is not None
+
+
+def is_cityjson(head: bytes) -> bool:
+    """Whether the file is CityJSON."""
+    return head.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"{") and (
+        _CITYJSON.search(head) is not None
+    )
+
+
+def is_esri_tin(folder: Path) -> bool:
+    """Whether a folder is an Esri TIN."""
+    return all((folder / name).is_file() for name in TIN_FILES[:3])
+
+
+def is_quantized_mesh(head: bytes) -> bool:
+    """Whether the file is a quantized-mesh tile, gzipped or not: its places are those of a globe.
+
+    The header tells the centre of the tile, its heights, and a sphere about it.
+    """
+    if head.startswith(b"\x1f\x8b"):
+        try:
+            head = zlib.decompressobj(wbits=31).decompress(head, _TILE_HEADER.size)
+        except zlib.error:
+            return False
+    if len(head) < _TILE_HEADER.size:
+        return False
+    found = _TILE_HEADER.unpack_from(head)
+    if not all(math.isfinite(value) for value in found):
+        return False
+    lowest, highest, radius = found[3], found[4], found[8]
+    return (
+        _LEAST_RADIUS < math.hypot(*found[:3]) < _MOST_RADIUS
+        and -_MOST_HEIGHT < lowest <= highest < _MOST_HEIGHT
+        and math.hypot(*found[5:8]) < _MOST_RADIUS
+        and 0.0 < radius < 2 * _MOST_RADIUS
+    )

@@ -1,0 +1,272 @@
+"""2DM meshes of SMS (Surface-water Modeling System), which hydraulic models and QGIS read.
+
+A row ``ND`` for each vertex with every digit, ``E3T`` for each triangle, and node strings ``NS``
+along lines. 2DM has no place for CRS and units.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ..._atomic import replacing
+from ..._sentences import counted
+from ...errors import ReadError
+from .common import (
+    add_notes,
+    choose_reference,
+    cut_into_fans,
+    make_survey,
+    make_tin,
+    read_content,
+    require_tin,
+)
+from .linework import Chain, add_lines, list_chains
+from .text_rows import (
+    describe_row_fault,
+    parse_floats,
+    parse_integer_columns,
+    parse_integers,
+    split_rows,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from ...crs import CrsLike, UnitLike
+    from ...tin import TIN, Survey
+
+__all__ = ["read", "write"]
+
+_BATCH = 65_536
+_NODES_IN_A_ROW = 10
+_FACES = {
+    # Corners and midside nodes stand in turn; each element becomes polygons of these.
+    "E3T": (3, ((0, 1, 2),)),
+    "E4Q": (4, ((0, 1, 2, 3),)),
+    "E6T": (6, ((0, 1, 5), (1, 2, 3), (3, 4, 5), (1, 3, 5))),
+    "E8Q": (8, ((0, 1, 7), (1, 2, 3), (3, 4, 5), (5, 6, 7), (1, 3, 5, 7))),
+    "E9Q": (9, ((0, 1, 8, 7), (1, 2, 3, 8), (8, 3, 4, 5), (7, 8, 5, 6))),
+}
+_EDGES = ("E2L", "E3L")
+
+
+class _Rows(NamedTuple):
+    """Rows of one card, and their lines in the file."""
+
+    texts: list[str]
+    lines: list[int]
+
+
+def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN | Survey:
+    """Read a 2DM mesh: nodes in any order with gaps, elements, node strings.
+
+    Parameters
+    ----------
+    path : Path
+    crs : CRS, str, int or pyproj.CRS, optional
+        CRS of the coordinates, which the file cannot tell.
+    z_unit : Unit or str, optional
+        Unit of the elevations, which the file cannot tell.
+
+    Returns
+    -------
+    TIN or Survey
+        A survey where the file has no faces. Quadrilaterals (E4Q, and those within E8Q and E9Q) are
+        cut along a diagonal, which the report tells; elements with midside nodes (E6T, E8Q, E9Q)
+        are cut at these. Node strings along edges become lines: of the boundary if they lie on it,
+        else hard breaklines. Elements that are lines and materials are left out and told.
+
+    Raises
+    ------
+    ReadError
+        If a row cannot be understood, two nodes have one number, an element names a node that is
+        not there, or the elements are no TIN.
+    CrsError
+        If PROJ does not know the CRS.
+    OptionError
+        If the unit is unknown.
+    """
+    cards = _sort_cards(read_content(path), path)
+    numbers, points = _parse_nodes(cards.get("ND", _Rows([], [])), path)
+    reference = choose_reference(crs, z_unit, path)
+    if not any(card in cards for card in _FACES):
+        return make_survey(points, path, reference=reference)
+    faces = [_parse_elements(card, cards[card], numbers, path) for card in _FACES if card in cards]
+    corners = np.concatenate([part[0] for part in faces])
+    lengths = np.concatenate([part[1] for part in faces])
+    offsets = np.concatenate([[0], np.cumsum(lengths)])
+    triangles = cut_into_fans(corners, offsets, points, path).triangles
+    notes = _describe_losses(cards, int((lengths == 4).sum()))
+    tin = make_tin(points, triangles, path, reference=reference, notes=notes)
+    strings = _parse_strings(cards.get("NS", _Rows([], [])), numbers, path)
+    tin, lost = add_lines(tin, strings)
+    if not lost:
+        return tin
+    note = f"{counted(lost, 'segment')} of node strings lie along no edge and are left out."
+    return add_notes(tin, [note])
+
+
+def _sort_cards(content: bytes, path: Path) -> dict[str, _Rows]:
+    """Return the rows of each card, by its name."""
+    rows, lines = split_rows(content)
+    if not rows or not rows[0].startswith("MESH2D"):
+        raise ReadError(f"'{path}' is no 2DM mesh: it must begin with 'MESH2D'.", path=path)
+    cards: dict[str, _Rows] = {}
+    for row, line in zip(rows, lines, strict=True):
+        texts, numbers = cards.setdefault(row.split(None, 1)[0], _Rows([], []))
+        texts.append(row)
+        numbers.append(line)
+    return cards
+
+
+def _parse_nodes(rows: _Rows, path: Path) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """Return the numbers of the nodes as the file calls them, and their coordinates."""
+    what = "a node needs its number, x, y and z"
+    points = parse_floats(rows.texts, rows.lines, path, columns=slice(2, 5), what=what)
+    numbers = parse_integer_columns(
+        rows.texts, rows.lines, path, columns=slice(1, 2), what=what
+    ).ravel()
+    order = np.argsort(numbers, kind="stable")
+    again = np.flatnonzero(np.diff(numbers[order]) == 0)
+    if len(again):
+        row = int(order[again[0] + 1])
+        what = f"there is a node {numbers[row]} already"
+        raise describe_row_fault(rows.texts[row].split(), rows.lines[row], what, path)
+    return numbers, points
+
+
+def _parse_elements(
+    card: str, rows: _Rows, numbers: NDArray[np.int64], path: Path
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return the corners of the polygons that elements of one kind become, and their lengths."""
+    count, polygons = _FACES[card]
+    what = f"an element {card} needs its number and {count} nodes"
+    named = parse_integer_columns(
+        rows.texts, rows.lines, path, columns=slice(2, count + 2), what=what
+    )
+    nodes = _find_nodes(named, numbers, rows, path)
+    corners = nodes[:, [slot for polygon in polygons for slot in polygon]].ravel()
+    return corners, np.tile([len(polygon) for polygon in polygons], len(nodes))
+
+
+def _find_nodes(
+    named: NDArray[np.int64], numbers: NDArray[np.int64], rows: _Rows, path: Path
+) -> NDArray[np.int64]:
+    """Return the rows of nodes that are called by number."""
+    order = np.argsort(numbers)
+    at = np.searchsorted(numbers, named, sorter=order)
+    found = order[np.minimum(at, len(order) - 1)] if len(order) else np.zeros_like(at)
+    wrong = (numbers[found] != named) if len(order) else np.ones(named.shape, np.bool_)
+    if wrong.any():
+        row = int(np.argmax(wrong.reshape(len(named), -1).any(axis=1)))
+        first = int(named[row].ravel()[np.argmax(wrong[row])])
+        what = f"there is no node {first}"
+        raise describe_row_fault(rows.texts[row].split(), rows.lines[row], what, path)
+    return np.asarray(found, np.int64)
+
+
+def _parse_strings(rows: _Rows, numbers: NDArray[np.int64], path: Path) -> list[Chain]:
+    """Return the node strings: a negative number ends one, and the string's own may follow it."""
+    chains: list[Chain] = []
+    open_nodes: list[int] = []
+    for text, line in zip(rows.texts, rows.lines, strict=True):
+        row = text.split()
+        for at, word in enumerate(row[1:], start=1):
+            node = parse_integers([word], line, path)[0]
+            called = np.array([[abs(node)]], np.int64)
+            open_nodes.append(int(_find_nodes(called, numbers, _Rows([text], [line]), path)[0, 0]))
+            if node < 0:
+                name = row[at + 1] if at + 1 < len(row) else ""
+                chains.append(Chain(np.array(open_nodes), None, name))
+                open_nodes = []
+                break
+    if open_nodes:
+        chains.append(Chain(np.array(open_nodes)))
+    return chains
+
+
+def _describe_losses(cards: dict[str, _Rows], n_quadrilaterals: int) -> list[str]:
+    """Tell what of the file the TIN does not hold, and what was chosen."""
+    notes = []
+    if n_quadrilaterals:
+        notes.append(
+            f"{counted(n_quadrilaterals, 'quadrilateral')} of the file "
+            f"{'was' if n_quadrilaterals == 1 else 'were'} cut into triangles along a diagonal: "
+            "the file does not tell which of the two."
+        )
+    n_edges = sum(len(cards[card].texts) for card in _EDGES if card in cards)
+    if n_edges:
+        kinds = " and ".join(card for card in _EDGES if card in cards)
+        notes.append(
+            f"{counted(n_edges, 'element')} of the file that "
+            f"{'is a line' if n_edges == 1 else 'are lines'} ({kinds}) "
+            f"{'is' if n_edges == 1 else 'are'} left out."
+        )
+    materials = {
+        tuple(row.split(None, count + 2)[count + 2 :])
+        for card, (count, _) in _FACES.items()
+        for row in cards.get(card, _Rows([], [])).texts
+    }
+    if len(materials) > 1:
+        notes.append("The materials of the elements are left out.")
+    return notes
+
+
+def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None = None) -> None:
+    """Write a TIN as 2DM, numbers ascending from 1; :func:`read` gives the same TIN back.
+
+    Parameters
+    ----------
+    surface : TIN
+        Its lines become node strings, as do chains of its other constrained edges.
+    path : Path
+    progress : callable, optional
+        Called with the fraction done.
+
+    Raises
+    ------
+    FormatError
+        If ``surface`` is no TIN.
+    WriteError
+        If the file cannot be written.
+    """
+    tin = require_tin(surface, path, format_name="2DM")
+    total = len(tin.points) + len(tin.triangles)
+    with replacing(path, binary=False) as file:
+        file.write("MESH2D\n")
+        done = 0
+        for count, batch in _iterate_batches(tin):
+            file.write(batch)
+            done += count
+            if progress is not None:
+                progress(done / total)
+        for number, chain in enumerate(list_chains(tin), start=1):
+            file.write(_format_string(chain, number))
+
+
+def _iterate_batches(tin: TIN) -> Iterator[tuple[int, str]]:
+    for start in range(0, len(tin.triangles), _BATCH):
+        faces = tin.triangles[start : start + _BATCH].astype(np.int64) + 1
+        numbers = np.arange(start, start + len(faces))[:, None] + 1
+        cells = np.hstack([numbers, faces]).ravel().tolist()
+        yield len(faces), ("E3T %d %d %d %d 1\n" * len(faces)) % tuple(cells)
+    for start in range(0, len(tin.points), _BATCH):
+        rows = tin.points[start : start + _BATCH].tolist()
+        text = [f"ND {number} {x!r} {y!r} {z!r}\n"
+                for number, (x, y, z) in enumerate(rows, start=start + 1)]  # fmt: skip
+        yield len(rows), "".join(text)
+
+
+def _format_string(chain: NDArray[np.int64], number: int) -> str:
+    """Return a node string: the last node is negative, and the number of the string follows it."""
+    words = [str(node + 1) for node in chain.tolist()]
+    words[-1] = f"-{words[-1]} {number}"
+    rows: Sequence[Sequence[str]] = [
+        words[start : start + _NODES_IN_A_ROW] for start in range(0, len(words), _NODES_IN_A_ROW)
+    ]
+    return "".join(f"NS {' '.join(row)}\n" for row in rows)

@@ -1,0 +1,341 @@
+"""UGRID 1.0: unstructured meshes in netCDF, which Delft3D FM, xugrid and QGIS read.
+
+Coordinates and elevations are doubles; elevations have the standard name ``altitude`` and their
+unit. The CRS is a grid-mapping variable with WKT, EPSG number and what CF asks for. Where a TIN
+has lines, its edges have a type: hard, soft, boundary, hole, water, or constrained for those of no
+line.
+"""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ... import _optional
+from ..._atomic import replacing_path
+from ..._sentences import counted
+from ...crs import CRS, Unit
+from ...errors import CrsError, OptionError, ReadError, WriteError
+from ...policies import LineKind
+from ..isolated import run_isolated
+from .common import (
+    add_notes,
+    choose_reference,
+    cut_into_fans,
+    format_unit,
+    make_survey,
+    make_tin,
+    read_content,
+    require_tin,
+)
+from .linework import Chain, add_lines, chain_edges
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from ...crs import CrsLike, UnitLike
+    from ...tin import TIN, Survey
+    from .common import Reference
+
+__all__ = ["read", "write"]
+
+_MESH = "mesh2d"
+_CRS_VARIABLE = "projected_coordinate_system"
+_TYPES = ("none", "constrained", "hard", "soft", "boundary", "hole", "water")
+"""Types of edges, by their number in the file."""
+
+_NO_CRS = ("EPSG:0", "EPSG:-1")
+"""What programs write where they do not know the CRS."""
+
+_LINE_TYPES: dict[int, LineKind] = {2: "hard", 3: "soft", 4: "boundary", 5: "hole", 6: "water"}
+
+
+def read(
+    path: Path,
+    *,
+    crs: CrsLike | None = None,
+    z_unit: UnitLike | None = None,
+    surface: str | None = None,
+    variable: str | None = None,
+) -> TIN | Survey:
+    """Read a mesh of a UGRID file.
+
+    Parameters
+    ----------
+    path : Path
+    crs : CRS, str, int or pyproj.CRS, optional
+        Declares the CRS; default the one of the grid-mapping variable.
+    z_unit : Unit or str, optional
+        Declares the unit of the elevations; default that of their variable.
+    surface : str, optional
+        Name of the mesh; needed where the file has several.
+    variable : str, optional
+        Name of the variable that holds the nodes' elevations; needed where its attributes do not
+        tell. Depths (``positive`` is "down") change their sign, which the report tells.
+
+    Returns
+    -------
+    TIN or Survey
+        A survey where the mesh has no faces. Polygons are cut into triangles, which the report
+        tells. Other variables, and fields that change in time, are left out.
+
+    Raises
+    ------
+    MissingExtraError
+        If netCDF4 is not installed.
+    ReadError
+        If the file is damaged, has no such mesh or no elevations, or its faces are no TIN.
+    CrsError
+        If PROJ does not know the CRS, or the file names another.
+    OptionError
+        If the unit is unknown, or the file names another.
+    """
+    _optional.require("netCDF4", "Reading UGRID files")
+    if not path.is_file():
+        read_content(path)  # says why it cannot be read
+    where: dict[str, Any] = {"path": os.path.abspath(path), "shown": str(path)}  # noqa: PTH100
+    where |= {"surface": surface, "variable": variable}
+    value, arrays = run_isolated(f"{__package__}.ugrid_child:read_mesh", where, path=path)
+    points, notes = arrays["points"], []
+    if value["depth"]:
+        points[:, 2] *= -1.0
+        notes.append(f"Depths '{value['variable']}' grow downwards: their sign was changed.")
+    _require_elevations(points, value["variable"], path)
+    reference = _choose_reference(crs, z_unit, value, path)
+    lengths = np.diff(arrays["offsets"])
+    if len(lengths) == 0:
+        return make_survey(points, path, reference=reference)
+    triangles = cut_into_fans(arrays["corners"], arrays["offsets"], points, path).triangles
+    n_polygons = int((lengths > 3).sum())
+    if n_polygons:
+        notes.append(
+            f"{counted(n_polygons, 'polygon')} of the file {'was' if n_polygons == 1 else 'were'} "
+            "cut into triangles: the file does not tell along which diagonals."
+        )
+    tin = make_tin(points, triangles, path, reference=reference, notes=notes)
+    return _add_edge_types(tin, arrays)
+
+
+def _require_elevations(points: NDArray[np.float64], variable: str, path: Path) -> None:
+    lost = np.isnan(points[:, 2]) & np.isfinite(points[:, :2]).all(axis=1)
+    if lost.any():
+        count = int(lost.sum())
+        raise ReadError(
+            f"'{path}': {counted(count, 'node')} {'has' if count == 1 else 'have'} no elevation in "
+            f"'{variable}' (first: node {int(np.argmax(lost))}).",
+            path=path,
+        )
+
+
+def _choose_reference(
+    crs: CrsLike | None, z_unit: UnitLike | None, value: Mapping[str, Any], path: Path
+) -> Reference:
+    unit = value["unit"] if _is_unit(value["unit"]) else None
+    told = [text for text in value["crs"] if text not in _NO_CRS]
+    found = _find_known_crs(told)
+    if found is None and told and crs is None:
+        raise CrsError(
+            f"'{path}' names the CRS '{told[0][:60]}', which is unknown: declare it.", crs=told[0]
+        )
+    return choose_reference(crs, z_unit, path, found_crs=found, found_unit=unit)
+
+
+def _find_known_crs(texts: Sequence[str]) -> str | None:
+    """Return the first text that names a CRS."""
+    for text in texts:
+        try:
+            return str(CRS.of(text))
+        except CrsError:
+            continue
+    return None
+
+
+def _is_unit(text: str) -> bool:
+    """Whether a unit is a length; files have others, and none ("-", "1")."""
+    try:
+        return Unit.of(text or None) is not None
+    except OptionError:
+        return False
+
+
+def _add_edge_types(tin: TIN, arrays: Mapping[str, NDArray[Any]]) -> TIN:
+    """Return the TIN with the lines and constrained edges of the file."""
+    if "edges" not in arrays:
+        return tin
+    edges, types = arrays["edges"], arrays["types"]
+    chains = [
+        Chain(chain, kind)
+        for number, kind in _LINE_TYPES.items()
+        for chain in chain_edges(edges[types == number], len(tin.points))
+    ]
+    tin, lost = add_lines(tin, chains)
+    flagged = edges[(types > 0) & (types < len(_TYPES))]
+    known = tin.edge_triangles(flagged[:, 0], flagged[:, 1])
+    flags = tin.constrained.copy()
+    for side in known.T:
+        held = side >= 0
+        corner = _find_opposite(tin.triangles[side[held]], flagged[held])
+        flags[side[held], corner] = True
+    tin = tin.replace(constrained=flags)
+    if not lost:
+        return tin
+    return add_notes(tin, [f"{counted(lost, 'typed edge')} of the file lie along no edge."])
+
+
+def _find_opposite(triangles: NDArray[np.int32], edges: NDArray[np.int64]) -> NDArray[np.intp]:
+    """Return the corner of each triangle that is no end of its edge."""
+    is_end = (triangles[:, :, None] == edges[:, None, :]).any(axis=2)
+    return np.asarray(np.argmin(is_end, axis=1))
+
+
+def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None = None) -> None:
+    """Write a TIN as UGRID 1.0 in netCDF 4.
+
+    Parameters
+    ----------
+    surface : TIN
+    path : Path
+    progress : callable, optional
+        Called with 1.0 at the end.
+
+    Raises
+    ------
+    FormatError
+        If ``surface`` is no TIN.
+    MissingExtraError
+        If netCDF4 is not installed.
+    WriteError
+        If the file cannot be written.
+    """
+    tin = require_tin(surface, path, format_name="UGRID")
+    netcdf = _optional.load("netCDF4", "Writing UGRID files")
+    with replacing_path(path) as beside:
+        try:
+            with netcdf.Dataset(str(beside), "w", format="NETCDF4") as data:
+                _write_topology(data, tin)
+                _write_nodes(data, tin)
+                _write_faces(data, tin)
+                if tin.constrained.any():
+                    _write_edges(data, tin)
+        except RuntimeError as error:
+            raise WriteError(f"Cannot write '{path}': {error}.", path=path) from error
+    if progress is not None:
+        progress(1.0)
+
+
+def _write_topology(data: Any, tin: TIN) -> None:
+    data.setncatts({"Conventions": "CF-1.8 UGRID-1.0", "source": "tinsmith"})
+    data.createDimension(f"{_MESH}_nNodes", len(tin.points))
+    data.createDimension(f"{_MESH}_nFaces", len(tin.triangles))
+    data.createDimension(f"{_MESH}_nMax_face_nodes", 3)
+    mesh = data.createVariable(_MESH, "i4")
+    mesh.setncatts(
+        {
+            "cf_role": "mesh_topology",
+            "long_name": "triangulated irregular network",
+            "topology_dimension": np.int32(2),
+            "node_coordinates": f"{_MESH}_node_x {_MESH}_node_y",
+            "node_dimension": f"{_MESH}_nNodes",
+            "face_node_connectivity": f"{_MESH}_face_nodes",
+            "face_dimension": f"{_MESH}_nFaces",
+            "max_face_nodes_dimension": f"{_MESH}_nMax_face_nodes",
+        }
+    )
+    if tin.crs is not None:
+        grid = data.createVariable(_CRS_VARIABLE, "i4")
+        grid.setncatts(_describe_crs(tin.crs))
+
+
+def _describe_crs(crs: CRS) -> dict[str, Any]:
+    """Return the attributes by which CF, GDAL, Delft3D and QGIS know a CRS."""
+    wkt = crs.to_wkt()
+    attributes: dict[str, Any] = {
+        name: value
+        for name, value in crs.to_pyproj().to_cf().items()
+        if value is not None and isinstance(value, str | float | int | list | tuple)
+    }
+    attributes |= {"crs_wkt": wkt, "name": crs.name}
+    epsg = crs.to_epsg()
+    if epsg is None:
+        return attributes | {"wkt": crs.to_wkt("WKT1_GDAL") if _has_wkt1(crs) else wkt}
+    return attributes | {"epsg": np.int32(epsg), "EPSG_code": f"EPSG:{epsg}"}
+
+
+def _has_wkt1(crs: CRS) -> bool:
+    from pyproj.exceptions import CRSError
+
+    try:
+        return bool(crs.to_wkt("WKT1_GDAL"))
+    except CRSError:
+        return False
+
+
+def _write_nodes(data: Any, tin: TIN) -> None:
+    is_geographic = tin.crs is not None and tin.crs.is_geographic
+    unit = "" if tin.crs is None else _format_cf_unit(tin.crs.horizontal_unit)
+    names = ("longitude", "latitude") if is_geographic else (
+        "projection_x_coordinate", "projection_y_coordinate")  # fmt: skip
+    units = ("degrees_east", "degrees_north") if is_geographic else (unit, unit)
+    own = {"mesh": _MESH, "location": "node"}
+    mapping = {} if tin.crs is None else {"grid_mapping": _CRS_VARIABLE}
+    for axis, column, name, unit in zip("xy", tin.points.T[:2], names, units, strict=True):
+        variable = data.createVariable(f"{_MESH}_node_{axis}", "f8", (f"{_MESH}_nNodes",))
+        variable.setncatts({"standard_name": name, **own, **mapping})
+        if unit:
+            variable.setncattr("units", unit)
+        variable[:] = column
+    level = data.createVariable(f"{_MESH}_node_z", "f8", (f"{_MESH}_nNodes",))
+    level.setncatts({"standard_name": "altitude", "long_name": "elevation", "positive": "up"})
+    level.setncatts({**own, "coordinates": f"{_MESH}_node_x {_MESH}_node_y", **mapping})
+    if tin.elevation_unit is not None and format_unit(tin):
+        level.setncattr("units", _format_cf_unit(tin.elevation_unit))
+    level[:] = tin.points[:, 2]
+
+
+def _format_cf_unit(unit: Unit) -> str:
+    """Return a unit as CF's programs know it; the name where it has no such symbol."""
+    known = {"metre": "m", "foot": "ft", "US survey foot": "US_survey_foot"}
+    return known.get(unit.name, unit.name)
+
+
+def _write_faces(data: Any, tin: TIN) -> None:
+    shape = (f"{_MESH}_nFaces", f"{_MESH}_nMax_face_nodes")
+    faces = data.createVariable(f"{_MESH}_face_nodes", "i4", shape, fill_value=np.int32(-999))
+    faces.setncatts({"cf_role": "face_node_connectivity", "mesh": _MESH, "location": "face",
+                     "long_name": "nodes of each face, counter-clockwise",
+                     "start_index": np.int32(0)})  # fmt: skip
+    faces[:] = tin.triangles
+
+
+def _write_edges(data: Any, tin: TIN) -> None:
+    """Write the edges, and the type of each."""
+    from ...tin.topology import edge_keys, ends
+
+    edges, count = tin.edges, len(tin.points)
+    types = np.zeros(len(edges), np.int8)
+    triangle, corner = np.nonzero(tin.constrained)
+    held = np.stack(ends(tin.triangles, triangle, corner), axis=1)
+    keys = edge_keys(edges, count)
+    types[np.isin(keys, edge_keys(held, count))] = _TYPES.index("constrained")
+    own = tin.lines.segments().reshape(-1, 2)
+    kinds = np.array([_TYPES.index(kind) for kind in tin.lines.kinds], np.int8)
+    order = np.argsort(keys)
+    at = order[np.searchsorted(keys, edge_keys(own, count), sorter=order)]
+    types[at] = kinds[tin.lines.segment_chains()] if len(own) else 0
+    data.createDimension(f"{_MESH}_nEdges", len(edges))
+    data.createDimension("Two", 2)
+    data.variables[_MESH].setncatts({"edge_node_connectivity": f"{_MESH}_edge_nodes",
+                                     "edge_dimension": f"{_MESH}_nEdges"})  # fmt: skip
+    nodes = data.createVariable(f"{_MESH}_edge_nodes", "i4", (f"{_MESH}_nEdges", "Two"))
+    nodes.setncatts({"cf_role": "edge_node_connectivity", "start_index": np.int32(0)})
+    nodes[:] = edges
+    flags = data.createVariable(f"{_MESH}_edge_type", "i1", (f"{_MESH}_nEdges",))
+    flags.setncatts({"long_name": "line that the edge is of", "mesh": _MESH, "location": "edge",
+                     "flag_values": np.arange(len(_TYPES), dtype=np.int8),
+                     "flag_meanings": " ".join(_TYPES)})  # fmt: skip
+    flags[:] = types

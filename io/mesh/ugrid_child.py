@@ -1,0 +1,288 @@
+"""UGRID files through netCDF4, as the child process reads them."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..isolated import Answer, Refusal
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from numpy.typing import NDArray
+
+__all__ = ["prepare", "read_mesh"]
+
+_ELEVATIONS = frozenset(
+    {"altitude", "height_above_reference_ellipsoid", "height_above_mean_sea_level",
+     "height_above_geopotential_datum", "surface_altitude", "ground_level_altitude"}
+)  # fmt: skip
+"""Standard names of what grows upwards."""
+
+_DEPTHS = frozenset(
+    {"depth", "sea_floor_depth", "sea_floor_depth_below_geoid",
+     "sea_floor_depth_below_mean_sea_level", "sea_floor_depth_below_sea_surface",
+     "sea_floor_depth_below_geopotential_datum"}
+)  # fmt: skip
+_CRS_NAMES = ("projected_coordinate_system", "wgs84", "crs", "spatial_ref")
+"""What programs call the variable of the CRS where no attribute points to it."""
+
+_CRS_TEXTS = ("crs_wkt", "wkt", "spatial_ref", "EPSG_code")
+_LARGEST_EXACT = 2.0**53
+
+
+def prepare() -> None:
+    """Load the library."""
+    import_module("netCDF4")
+
+
+def read_mesh(path: str, shown: str, *, surface: str | None, variable: str | None) -> Answer:
+    """Return the points and faces of a mesh.
+
+    Parameters
+    ----------
+    path : str
+    shown : str
+        The path as the user wrote it, for sentences.
+    surface : str, optional
+        Name of the mesh, where there are several.
+    variable : str, optional
+        Name of the elevations, default the one that its attributes tell.
+
+    Returns
+    -------
+    Answer
+        The value holds the ``mesh``, the ``variable`` of elevations and whether it is a ``depth``,
+        its ``unit``, and texts of the CRS to try. The arrays hold ``points``, ``corners`` of the
+        faces, their ``offsets``, and where the file has them ``edges`` and their ``types``.
+    """
+    with import_module("netCDF4").Dataset(path) as data:
+        mesh = _find_mesh(data, surface, shown)
+        x, y = _read_coordinates(data, mesh, shown)
+        level = _find_elevations(data, mesh, len(x), variable, shown)
+        z = _read_numbers(level, shown)
+        corners, offsets = _read_faces(data, mesh, shown)
+        value = {
+            "mesh": mesh.name,
+            "variable": level.name,
+            "depth": _is_depth(level),
+            "unit": _get_text(level, "units"),
+            "crs": _find_crs(data, (level, *_find_coordinates(data, mesh, shown))),
+        }
+        arrays = {"points": np.column_stack([x, y, z]), "corners": corners, "offsets": offsets}
+        return Answer(value, arrays | _read_edges(data, mesh, len(x)))
+
+
+def _get_text(variable: Any, name: str) -> str:
+    """Return an attribute as text; "" where there is none."""
+    if name not in variable.ncattrs():
+        return ""
+    value = variable.getncattr(name)
+    return value.strip() if isinstance(value, str) else str(np.asarray(value).ravel()[:1].tolist())
+
+
+def _list_names(names: Iterable[str]) -> str:
+    return ", ".join(f"'{name}'" for name in names)
+
+
+def _find_mesh(data: Any, surface: str | None, shown: str) -> Any:
+    """Return the variable of the topology of the mesh in two dimensions."""
+    meshes = {
+        name: one
+        for name, one in data.variables.items()
+        if _get_text(one, "cf_role") == "mesh_topology" and _get_text(one, "face_node_connectivity")
+    }
+    if not meshes:
+        raise Refusal(
+            f"'{shown}' holds no UGRID mesh of faces: no variable has cf_role 'mesh_topology' and "
+            "face_node_connectivity."
+        )
+    if surface is None and len(meshes) > 1:
+        raise Refusal(
+            f"'{shown}' holds {len(meshes)} meshes: name one as surface, {_list_names(meshes)}."
+        )
+    if surface is not None and surface not in meshes:
+        raise Refusal(
+            f"'{shown}' holds no mesh '{surface}': there {'is' if len(meshes) == 1 else 'are'} "
+            f"{_list_names(meshes)}."
+        )
+    return meshes[next(iter(meshes)) if surface is None else surface]
+
+
+def _get_variable(data: Any, name: str, mesh: Any, role: str, shown: str) -> Any:
+    if name not in data.variables:
+        raise Refusal(
+            f"'{shown}' is a damaged UGRID file: mesh '{mesh.name}' names '{name}' as its {role}, "
+            "and there is no such variable."
+        )
+    return data.variables[name]
+
+
+def _find_coordinates(data: Any, mesh: Any, shown: str) -> tuple[Any, Any]:
+    """Return the variables of eastings and northings of the nodes."""
+    names = _get_text(mesh, "node_coordinates").split()
+    if len(names) < 2:
+        raise Refusal(
+            f"'{shown}' is a damaged UGRID file: mesh '{mesh.name}' names no node_coordinates."
+        )
+    found = [_get_variable(data, name, mesh, "node_coordinates", shown) for name in names]
+    axes = [_tell_axis(one) for one in found]
+    if "x" in axes and "y" in axes:
+        return found[axes.index("x")], found[axes.index("y")]
+    return found[0], found[1]
+
+
+def _tell_axis(variable: Any) -> str:
+    """Return what a variable of coordinates is by its attributes: x, y or z, else nothing."""
+    name, unit = _get_text(variable, "standard_name"), _get_text(variable, "units").lower()
+    if name in ("projection_x_coordinate", "longitude") or unit.startswith(
+        ("degrees_e", "degree_e")
+    ):
+        return "x"
+    if name in ("projection_y_coordinate", "latitude") or unit.startswith(
+        ("degrees_n", "degree_n")
+    ):
+        return "y"
+    return "z" if name in _ELEVATIONS | _DEPTHS else ""
+
+
+def _read_numbers(variable: Any, shown: str) -> NDArray[np.float64]:
+    """Return the numbers of a variable of one dimension, NaN where it has none."""
+    if variable.ndim != 1 or np.dtype(variable.dtype).kind not in "iuf":
+        raise Refusal(
+            f"'{shown}': the variable '{variable.name}' has {variable.ndim} dimensions and type "
+            f"{variable.dtype}: one row of numbers is needed, one for each node."
+        )
+    return np.ma.filled(np.ma.asarray(variable[:]).astype(np.float64), np.nan)
+
+
+def _read_coordinates(
+    data: Any, mesh: Any, shown: str
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    x, y = (_read_numbers(one, shown) for one in _find_coordinates(data, mesh, shown))
+    if len(x) != len(y):
+        raise Refusal(
+            f"'{shown}' is a damaged UGRID file: {len(x)} eastings and {len(y)} northings."
+        )
+    return x, y
+
+
+def _find_elevations(data: Any, mesh: Any, count: int, wanted: str | None, shown: str) -> Any:
+    """Return the variable of the nodes' elevations."""
+    if wanted is not None:
+        if wanted in data.variables and data.variables[wanted].shape == (count,):
+            return data.variables[wanted]
+        fitting = [name for name, one in data.variables.items() if one.shape == (count,)]
+        raise Refusal(
+            f"'{shown}' has no variable '{wanted}' with a number for each of {count} nodes: "
+            f"{_list_names(fitting) or 'nothing'} has."
+        )
+    own = [one for one in data.variables.values()
+           if one.shape == (count,) and _is_at_nodes(one, data, mesh)]  # fmt: skip
+    told = [one for one in own if _get_text(one, "standard_name") == "altitude"]
+    told = told or [one for one in own if _tell_axis(one) == "z" or _get_text(one, "positive")]
+    told = told or [one for one in own if one.name in (f"{mesh.name}_node_z", f"{mesh.name}_z")]
+    if len(told) == 1:
+        return told[0]
+    what = "no elevations of its nodes are told" if not told else (
+        f"{_list_names(one.name for one in told)} may be the elevations")  # fmt: skip
+    others = _list_names(one.name for one in own) or "there is none with one number for each node"
+    raise Refusal(f"'{shown}': {what}: name the variable that they are in ({others}).")
+
+
+def _is_at_nodes(variable: Any, data: Any, mesh: Any) -> bool:
+    """Whether a variable belongs to the nodes of the mesh, and is no coordinate in the plane."""
+    named = _get_text(mesh, "node_coordinates").split()
+    if _tell_axis(variable) in ("x", "y") or variable.name in named[:2]:
+        return False
+    return (
+        variable.dimensions == data.variables[named[0]].dimensions
+        and _get_text(variable, "location") in ("", "node")
+        and _get_text(variable, "mesh") in ("", mesh.name)
+        and np.dtype(variable.dtype).kind in "iuf"
+    )
+
+
+def _is_depth(variable: Any) -> bool:
+    """Whether the numbers grow downwards."""
+    told = _get_text(variable, "positive").lower()
+    return told == "down" if told else _get_text(variable, "standard_name") in _DEPTHS
+
+
+def _read_faces(data: Any, mesh: Any, shown: str) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return the corners of all faces, from 0 on, and the offsets of each."""
+    name = _get_text(mesh, "face_node_connectivity")
+    table = _read_table(_get_variable(data, name, mesh, "faces", shown), shown)
+    if _is_transposed(data, mesh, name):
+        table = table.T
+    held = table >= 0
+    first_gap = np.where(held.all(axis=1), table.shape[1], np.argmin(held, axis=1))
+    corner = np.arange(table.shape[1]) < first_gap[:, None]
+    return table[corner], np.concatenate([[0], np.cumsum(first_gap)])
+
+
+def _is_transposed(data: Any, mesh: Any, name: str) -> bool:
+    """Whether the table of faces has a column for each face, as the mesh tells."""
+    dimension = _get_text(mesh, "face_dimension")
+    return bool(dimension) and data.variables[name].dimensions[1] == dimension
+
+
+def _read_table(variable: Any, shown: str) -> NDArray[np.int64]:
+    """Return a table of node numbers from 0 on; -1 where there is none."""
+    if variable.ndim != 2 or np.dtype(variable.dtype).kind not in "iuf":
+        raise Refusal(
+            f"'{shown}' is a damaged UGRID file: '{variable.name}' is no table of node numbers."
+        )
+    start = _find_start(variable)
+    found = np.ma.filled(np.ma.asarray(variable[:]).astype(np.float64), -np.inf)
+    found = np.where(np.isnan(found), -np.inf, found)
+    beyond = np.isfinite(found) & (
+        (np.abs(found) > _LARGEST_EXACT) | (found != np.floor(found)) | (found < start)
+    )
+    fills = found < 0  # some programs fill with -1 or -999, and do not say so
+    if (beyond & ~fills).any():
+        wrong = found[beyond & ~fills][0]
+        raise Refusal(
+            f"'{shown}' is a damaged UGRID file: '{variable.name}' names the node {wrong:g}, and "
+            f"they are whole numbers from {start} on."
+        )
+    return np.where(fills, -1, np.where(fills, 0, found) - start).astype(np.int64)
+
+
+def _find_start(variable: Any) -> int:
+    if "start_index" not in variable.ncattrs():
+        return 0
+    return int(np.asarray(variable.getncattr("start_index")).ravel()[0])
+
+
+def _read_edges(data: Any, mesh: Any, n_nodes: int) -> dict[str, NDArray[np.int64]]:
+    """Return the edges with a type, as this package writes them; nothing where there are none."""
+    name = _get_text(mesh, "edge_node_connectivity")
+    types = data.variables.get(f"{mesh.name}_edge_type")
+    if name not in data.variables or types is None or not _get_text(types, "flag_meanings"):
+        return {}
+    try:
+        edges = _read_table(data.variables[name], "")
+    except Refusal:
+        return {}
+    sound = edges.shape == (*types.shape[:1], 2) and np.dtype(types.dtype).kind in "iu"
+    if not sound or ((edges < 0) | (edges >= n_nodes)).any():
+        return {}
+    return {"edges": edges, "types": np.ma.filled(np.ma.asarray(types[:]), 0).astype(np.int64)}
+
+
+def _find_crs(data: Any, variables: Sequence[Any]) -> list[str]:
+    """Return the texts that tell the CRS, the best first."""
+    names = [_get_text(one, "grid_mapping").split(":")[0].strip() for one in variables]
+    found = next((name for name in [*names, *_CRS_NAMES] if name in data.variables), None)
+    if found is None:
+        return []
+    variable = data.variables[found]
+    texts = [_get_text(variable, name) for name in _CRS_TEXTS]
+    if "epsg" in variable.ncattrs():
+        number = np.asarray(variable.getncattr("epsg")).ravel()[0]
+        texts.append(f"EPSG:{int(number)}" if np.isreal(number) and number > 0 else "")
+    return [text for text in texts if text]
