@@ -2,11 +2,12 @@
 
 from ..errors import OptionError, RenderError
 from .charts.comparison import comparison_picture
-from .charts.contour_map import contour_map
 from .charts.earthwork import earthwork_map
 from .charts.histogram import histogram
+from .charts.isolines import contour_map
 from .charts.profiles import profile_picture
 from .charts.relief import relief_map
+from .charts.sections import section_picture
 from .earthwork import Difference, difference, stage_storage, volume
 from .gridding import height_above, rasterize
 from .isolines import ContourCheck, check_contours, contour_bands, contour_labels, contours
@@ -49,6 +50,7 @@ __all__ = [
     "rasterize",
     "relief_map",
     "section_lines",
+    "section_picture",
     "slope",
     "slope_classes",
     "slope_statistics",

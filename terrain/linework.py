@@ -67,7 +67,7 @@ def find_line_edges(tin: TIN, *, guess: bool = True) -> LineEdges:
     tin : TIN
     guess : bool
         Take constrained edges of which no line is known, as in a TIN from a file, for hard
-        breaklines within the surface and for boundary on its rim; else leave them out.
+        breaklines within the surface and for rings on its boundary; else leave them out.
 
     Returns
     -------
@@ -100,7 +100,7 @@ def _find_constrained_edges(tin: TIN) -> LineEdges:
 def add_lines(
     plotter: Any, tin: TIN, points: NDArray[np.float64], *, factor: float = 1.0
 ) -> list[Any]:
-    """Draw the lines of a TIN: hard ones dark, soft ones dashed, rims brown, water blue.
+    """Draw the lines of a TIN: hard ones dark, soft ones dashed, rings brown, water blue.
 
     Parameters
     ----------

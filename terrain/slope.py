@@ -22,6 +22,7 @@ __all__ = [
     "aspect",
     "compute_normals",
     "measure_areas",
+    "measure_plane_areas",
     "measure_ring_area",
     "measure_slopes",
     "slope",
@@ -123,8 +124,25 @@ def aspect(tin: TIN, *, per: SurfacePart = "triangle") -> NDArray[np.float64]:
     return azimuth
 
 
+def measure_plane_areas(tin: TIN) -> NDArray[np.float64]:
+    """Measure the area of each triangle in the plane, in the units of `find_plane_units`.
+
+    Parameters
+    ----------
+    tin : TIN
+
+    Returns
+    -------
+    (m,) float64 array
+        In CRS units squared, as all products have it; above longitude and latitude square metres.
+    """
+    scales = find_scales(tin.crs, None, _average_northings(tin))
+    measured: NDArray[np.float64] = tin.triangle_areas * scales.east * scales.north
+    return measured
+
+
 def measure_areas(tin: TIN) -> NDArray[np.float64]:
-    """Measure the area of each triangle in the plane on the ground.
+    """Measure the area of each triangle in the plane in square metres, as GeoJSON tells it.
 
     Parameters
     ----------
@@ -190,7 +208,7 @@ def compute_normals(tin: TIN) -> NDArray[np.float64]:
     components = [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx]
     sizes = np.maximum(np.abs(ux), np.abs(uy)) * np.maximum(np.abs(vx), np.abs(vy))
     for row in np.flatnonzero(~(components[2] > _SLIVER * sizes)).tolist():
-        exact = _exact_normal(*tin.points[tin.triangles[row]])
+        exact = _compute_exact_normal(*tin.points[tin.triangles[row]])
         for component, value in zip(components, exact, strict=True):
             component[row] = value
     east, north, up = find_scales(tin.crs, tin.elevation_unit, _average_northings(tin))
@@ -200,7 +218,7 @@ def compute_normals(tin: TIN) -> NDArray[np.float64]:
     )
 
 
-def _exact_normal(*corners: NDArray[np.float64]) -> list[float]:
+def _compute_exact_normal(*corners: NDArray[np.float64]) -> list[float]:
     """Return the normal of a triangle, each component rounded once.
 
     The corners of a sliver lie nearly in a line, so that the products of its sides cancel.

@@ -10,10 +10,12 @@ import sys
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
+import numpy as np
 import pytest
 from support import processes
 
 import tinsmith
+import tinsmith as ts
 import tinsmith.cli
 from tinsmith.tin.editing.operations import Operation
 
@@ -170,6 +172,19 @@ def test_public_examples_run():
     assert tried > 0
 
 
+MOST_ENTRIES = {"tin": 20, "io": 14, "terrain": 20, "src/tinsmith": 20}
+
+
+@pytest.mark.parametrize("folder", MOST_ENTRIES)
+def test_folders_can_be_taken_in_at_a_glance(folder):
+    names = [path.name for path in (ROOT / folder).iterdir() if path.name != "__pycache__"]
+    assert len(names) <= MOST_ENTRIES[folder], sorted(names)
+
+
+def test_the_architecture_fits_a_minute():
+    assert len((ROOT / "ARCHITECTURE.md").read_text().splitlines()) <= 80
+
+
 MOST_LINES = {".py": 40, ".hpp": 50, ".cpp": 50}
 MOST_USUAL = 8
 FOLDERS = ("tin", "io", "terrain", "src", "tests", "benchmarks", "sample_data")
@@ -232,6 +247,36 @@ def test_readme_python_runs(tmp_path, monkeypatch, can_draw):
     exec("\n".join(blocks), {})
     assert (tmp_path / "surface.geojson").exists()
     assert (tmp_path / "surface.png").exists()
+
+
+PAGES = [path for path in (ROOT / "docs").glob("*.md") if "```python" in path.read_text()]
+
+
+@pytest.fixture
+def names_of_pages(tmp_path, monkeypatch):
+    """Return what the pages speak of without making it, in a folder with the samples."""
+    (tmp_path / "sample_data").symlink_to(ROOT / "sample_data")
+    monkeypatch.chdir(tmp_path)
+    survey = ts.read("sample_data/site_survey.csv", crs="EPSG:32616")
+    ground = ts.triangulate(survey)
+    pad = ts.lines_from_codes(ts.read("sample_data/design_pad.csv", crs="EPSG:32616"))
+    middle = ground.points[:, :2].mean(axis=0)
+    corners = np.array([[-9, -9], [9, -9], [9, 9], [-9, 9]])
+    line = middle + np.array([[-40, -20], [40, 20]])
+    ts.write(ts.rasterize(ground, spacing=2.0), "other.tif")
+    lines = {"line": line, "centreline": line, "roads": ts.contours(ground, interval=2.0)}
+    rings = {"ring": middle + corners, "polygon": middle + corners + np.array([25, 0])}
+    edge = dict(zip("ab", ground.edges[0].tolist(), strict=True))
+    points = {"xy": ground.points[:5, :2], "cloud": ground.points[:9] + np.array([0, 0, 1]), "v": 0}
+    surfaces = {"tin": ground, "ground": ground, "design": ts.triangulate(pad)}
+    return {"ts": ts, "np": np, "survey": survey} | surfaces | lines | rings | edge | points
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_python_of_the_pages_runs(page, names_of_pages):
+    """Run the blocks of a page, one after the other."""
+    blocks = re.findall(r"```python\n(.*?)```", page.read_text(), re.DOTALL)
+    exec("\n".join(blocks), names_of_pages)
 
 
 def test_readme_commands_run(tmp_path, can_draw):

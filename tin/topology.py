@@ -130,15 +130,15 @@ def _require_manifold(triangles: NDArray[np.int32], n_vertices: int) -> None:
     same = keys[order][1:] == keys[order][:-1]
     thrice = same[1:] & same[:-1]
     if thrice.any():
-        start, end = _get_edge(triangles, int(order[np.argmax(thrice)]))
+        a, b = _get_edge(triangles, int(order[np.argmax(thrice)]))
         raise PointsError(
-            f"Edge {start}-{end} belongs to more than two triangles: a TIN allows two at most."
+            f"Edge {a}-{b} belongs to more than two triangles: a TIN allows two at most."
         )
     clash = same & (forward[order[1:]] == forward[order[:-1]])
     if clash.any():
-        start, end = _get_edge(triangles, int(order[np.argmax(clash)]))
+        a, b = _get_edge(triangles, int(order[np.argmax(clash)]))
         raise PointsError(
-            f"The two triangles at edge {start}-{end} lie on the same side of it: "
+            f"The two triangles at edge {a}-{b} lie on the same side of it: "
             "triangles of a TIN must not overlap."
         )
 

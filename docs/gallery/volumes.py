@@ -23,7 +23,7 @@ def main(folder: Path = HERE) -> None:
     figure = ts.earthwork_map(
         ts.difference(ground, design), ground=ground, title="Cut and fill of the building pad"
     )
-    figure.savefig(folder / "volumes.png", dpi=110, metadata={"Software": None})
+    figure.savefig(folder / "volumes.png", dpi=100, metadata={"Software": None})
 
 
 if __name__ == "__main__":

@@ -80,8 +80,8 @@ def read_places(
         If there is no column of a name given, or the delimiter is no single character.
     """
     table = _read_table(path, delimiter)
-    chosen, notes = _coordinates(table.header, columns, path)
-    xy = np.column_stack([_numbers(table, column, path) for column in chosen])
+    chosen, notes = _find_coordinates(table.header, columns, path)
+    xy = np.column_stack([_parse_numbers(table, column, path) for column in chosen])
     cells = np.array(table.rows, object).reshape(len(table.rows), len(table.header))
     names = [table.header[column] for column in chosen]
     return Places(
@@ -104,7 +104,7 @@ def _read_table(path: Path, delimiter: str | None) -> _Table:
         raise ReadError(
             f"'{path}' is empty: a line with the names of columns is needed.", path=path
         )
-    mark = _delimiter(text.partition("\n")[0], delimiter, path)
+    mark = _find_delimiter(text.partition("\n")[0], delimiter, path)
     reader = csv.reader(StringIO(text, newline=""), delimiter=mark, strict=True)
     try:
         found = [(reader.line_num, row) for row in reader if any(cell.strip() for cell in row)]
@@ -124,7 +124,7 @@ def _read_table(path: Path, delimiter: str | None) -> _Table:
     return _Table(header, rows, numbers)
 
 
-def _delimiter(header: str, given: str | None, path: Path) -> str:
+def _find_delimiter(header: str, given: str | None, path: Path) -> str:
     if given is not None:
         if len(given) != 1 or given in '"\r\n':
             raise OptionError("delimiter", given, "a single character")
@@ -150,7 +150,7 @@ def _is_longitude(name: str) -> bool:
     return plain.startswith(_IN_DEGREES) or "longitud" in plain
 
 
-def _coordinates(
+def _find_coordinates(
     header: Sequence[str], named: tuple[str, str] | None, path: Path
 ) -> tuple[tuple[int, int], tuple[str, ...]]:
     """Return the columns of easting and northing, and what was assumed."""
@@ -173,7 +173,7 @@ def _coordinates(
     return (east, north), (note,)
 
 
-def _numbers(table: _Table, column: int, path: Path) -> NDArray[np.float64]:
+def _parse_numbers(table: _Table, column: int, path: Path) -> NDArray[np.float64]:
     values = np.array([_number(row[column]) for row in table.rows], np.float64)
     wrong = np.flatnonzero(~np.isfinite(values))
     if len(wrong):

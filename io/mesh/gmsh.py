@@ -40,7 +40,7 @@ _ODD_LETTERS = re.compile(r'["\r\n]')
 
 
 class _Edges(NamedTuple):
-    """Edges of rim and lines, each once, and the name of the group of each."""
+    """Edges of boundary and lines, each once, and the name of the group of each."""
 
     pairs: NDArray[np.int32]
     names: list[str]

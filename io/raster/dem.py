@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from ...crs import CrsLike, UnitLike
 
-__all__ = ["is_raster", "read"]
+__all__ = ["is_raster", "read", "read_georeference"]
 
 _STRIP_CELLS = 4_000_000
 """Cells read at a time, so that memory holds little but the points."""
@@ -151,6 +151,35 @@ def read(
         notes=[*said, *notes, *placed.notes],
     )
     return survey if fill or valid.all() else _add_void_rings(survey, valid)
+
+
+def read_georeference(
+    path: Path,
+) -> tuple[tuple[float, ...], tuple[int, int], str | None]:
+    """Return where the cells of a raster lie, read in a child from its header.
+
+    Parameters
+    ----------
+    path : Path
+
+    Returns
+    -------
+    transform : (6,) tuple of float
+        As rasterio has it.
+    shape : (2,) tuple of int
+        Rows and columns.
+    crs : str or None
+
+    Raises
+    ------
+    ReadError
+        If GDAL cannot read the file, or it has no georeference.
+    MissingExtraError
+        If rasterio is not installed.
+    """
+    dataset = _read_header(path)
+    _require_position(dataset, path)
+    return tuple(dataset.transform), (dataset.height, dataset.width), dataset.crs
 
 
 def _add_void_rings(survey: Survey, valid: NDArray[np.bool_]) -> Survey:

@@ -72,8 +72,8 @@ def write(
     is a BigTIFF. Blocks of some million cells are asked for and written, so that memory does not
     grow with the raster.
     """
-    resampling = _resampling(raster, overviews)
-    with replacing_files(path, parts=_parts(path)) as new, _faults_as_sentences(path):
+    resampling = _choose_resampling(raster, overviews)
+    with replacing_files(path, parts=_parts(path)) as new, _translate_faults(path):
         _write_tiles(raster, new, path, progress)
         if resampling != "none":
             _add_overviews(raster, new, resampling)
@@ -94,8 +94,8 @@ def write_cog(
     -----
     The driver copies a whole raster: a GeoTIFF is written beside it first, and removed.
     """
-    resampling = _resampling(raster, overviews)
-    with replacing_files(path, parts=_parts(path)) as new, _faults_as_sentences(path):
+    resampling = _choose_resampling(raster, overviews)
+    with replacing_files(path, parts=_parts(path)) as new, _translate_faults(path):
         plain = new.with_name(f"plain-{new.name}")
         _write_tiles(raster, plain, path, progress)
         _optional.load("rasterio.shutil", f"Writing '{path}'").copy(
@@ -117,21 +117,21 @@ def _parts(path: Path) -> tuple[str, ...]:
     return tuple(path.suffix + part for part in _PARTS)
 
 
-def _resampling(raster: Raster, overviews: str | None) -> str:
+def _choose_resampling(raster: Raster, overviews: str | None) -> str:
     if overviews is not None:
         return choice("overviews", overviews, OverviewMethod)
     is_circular = any("aspect" in name.casefold() for name in raster.bands)
-    return "nearest" if is_circular or _dtype(raster).kind != "f" else "average"
+    return "nearest" if is_circular or _choose_dtype(raster).kind != "f" else "average"
 
 
-def _dtype(raster: Raster) -> np.dtype[Any]:
+def _choose_dtype(raster: Raster) -> np.dtype[Any]:
     """Return the type that holds the values of all bands, one that GeoTIFF knows."""
     found = np.result_type(*(np.dtype(band.dtype) for band in raster.bands.values()))
     known = np.dtype(_WIDER.get(found.name, found.name))
     return np.dtype(np.float64) if known.kind == "f" and known.itemsize > 8 else known
 
 
-def _nodata(raster: Raster, dtype: np.dtype[Any], path: Path) -> float | None:
+def _choose_nodata(raster: Raster, dtype: np.dtype[Any], path: Path) -> float | None:
     """Return the value of cells without data; None where there is none."""
     value = raster.nodata
     if dtype.kind == "f":
@@ -154,12 +154,12 @@ def _write_tiles(
     raster: Raster, new: Path, path: Path, progress: Callable[[float], None] | None
 ) -> None:
     rasterio = _optional.load("rasterio", f"Writing '{path}'")
-    with rasterio.open(new, "w", **_profile(raster, path)) as dataset:
+    with rasterio.open(new, "w", **_make_profile(raster, path)) as dataset:
         for number, name in enumerate(raster.bands, 1):
             _describe(dataset, number, raster, name)
         if raster.notes:
             dataset.update_tags(notes=" ".join(raster.notes))
-        blocks = list(_blocks(*raster.shape))
+        blocks = list(_iterate_blocks(*raster.shape))
         for done, (rows, columns) in enumerate(blocks, 1):
             window = rasterio.windows.Window.from_slices(rows, columns)
             for number, band in enumerate(raster.bands.values(), 1):
@@ -169,8 +169,8 @@ def _write_tiles(
                 progress(done / len(blocks))
 
 
-def _profile(raster: Raster, path: Path) -> dict[str, Any]:
-    (rows, columns), bounds, dtype = raster.shape, raster.grid.bounds, _dtype(raster)
+def _make_profile(raster: Raster, path: Path) -> dict[str, Any]:
+    (rows, columns), bounds, dtype = raster.shape, raster.grid.bounds, _choose_dtype(raster)
     affine = _optional.load("rasterio", f"Writing '{path}'").Affine
     spacing = raster.grid.spacing
     tiles = {"tiled": True, "blockxsize": _TILE, "blockysize": _TILE}
@@ -182,7 +182,7 @@ def _profile(raster: Raster, path: Path) -> dict[str, Any]:
         "dtype": dtype.name,
         "crs": _crs(raster, path),
         "transform": affine(spacing, 0.0, bounds.xmin, 0.0, -spacing, bounds.ymax),
-        "nodata": _nodata(raster, dtype, path),
+        "nodata": _choose_nodata(raster, dtype, path),
         "compress": "deflate",
         "predictor": 3 if dtype.kind == "f" else 2,
         "interleave": "band",
@@ -215,7 +215,7 @@ def _require_complete(raster: Raster, new: Path, path: Path) -> None:
     """Read every block: GDAL does not say when a disk is full as it closes a file."""
     rasterio = _optional.load("rasterio", f"Writing '{path}'")
     with rasterio.open(new) as dataset:
-        for rows, columns in _blocks(*raster.shape):
+        for rows, columns in _iterate_blocks(*raster.shape):
             dataset.read(window=rasterio.windows.Window.from_slices(rows, columns))
 
 
@@ -228,7 +228,7 @@ def _describe(dataset: Any, number: int, raster: Raster, name: str) -> None:
         dataset.set_band_unit(number, unit)
 
 
-def _blocks(rows: int, columns: int) -> Iterator[tuple[slice, slice]]:
+def _iterate_blocks(rows: int, columns: int) -> Iterator[tuple[slice, slice]]:
     """Cut a raster into blocks of whole tiles, from the north-west on."""
     width = min(columns, _BLOCK_CELLS // _TILE)
     height = max(1, _BLOCK_CELLS // (width * _TILE)) * _TILE
@@ -251,7 +251,7 @@ def _add_overviews(raster: Raster, new: Path, resampling: str) -> None:
 
 
 @contextmanager
-def _faults_as_sentences(path: Path) -> Iterator[None]:
+def _translate_faults(path: Path) -> Iterator[None]:
     rasterio = _optional.load("rasterio", f"Writing '{path}'")
     try:
         with warnings.catch_warnings():

@@ -115,6 +115,6 @@ def _find_cells(values: NDArray[np.float64], axis: _Axis) -> NDArray[np.int64]:
 
 def _describe_no_grid(why: str, *rows: int) -> PointsError:
     return PointsError(
-        f"The points are not the cells of a grid: {why}; a raster is made of their surface.",
+        f"The points are not the cells of a grid: {why}.",
         rows=rows,
     )

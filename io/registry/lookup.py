@@ -255,11 +255,11 @@ def _describe_no_writer(path: Path, name: str | None, kinds: Sequence[str]) -> F
     if known.write is None:
         what = f"{known.description} can be read, not written"
     else:
-        what = f"{known.description} holds {_listed(known.writes)}, not {_listed(kinds)}"
+        what = f"{known.description} holds {_list_words(known.writes)}, not {_list_words(kinds)}"
         if "TIN" in known.writes and [*kinds] == ["Survey"]:
             what += "; triangulate it first"
     return FormatError(
-        f"Cannot write '{path}': {what}; {_listed(kinds)} can be written to "
+        f"Cannot write '{path}': {what}; {_list_words(kinds)} can be written to "
         f"{', '.join(suffixes) or 'no format'}.",
         known=suffixes,
     )
@@ -269,7 +269,7 @@ def _as_suffix(name: str) -> str:
     return f".{name.strip().lower().lstrip('.')}"
 
 
-def _listed(kinds: Sequence[str]) -> str:
+def _list_words(kinds: Sequence[str]) -> str:
     return " or ".join(_ONE.get(kind, kind) for kind in kinds)
 
 

@@ -37,8 +37,8 @@ def require_kept(crs: CRS | None, found: str | None, path: Path) -> None:
     """
     if crs is None:
         return
-    kept = _parsed(found)
-    if kept is None or _units(kept) != _units(crs):
+    kept = _parse(found)
+    if kept is None or _find_units(kept) != _find_units(crs):
         raise WriteError(
             f"Cannot write '{path}': the format does not keep the CRS {crs.label}, it would be "
             f"{'none' if kept is None else kept.name}; name its horizontal part alone.",
@@ -53,12 +53,12 @@ def require_kept(crs: CRS | None, found: str | None, path: Path) -> None:
         )
 
 
-def _parsed(found: str | None) -> CRS | None:
+def _parse(found: str | None) -> CRS | None:
     try:
         return CRS.of(found or None)
     except CrsError:
         return None
 
 
-def _units(crs: CRS) -> tuple[object, object]:
+def _find_units(crs: CRS) -> tuple[object, object]:
     return crs.horizontal_unit, crs.vertical_unit

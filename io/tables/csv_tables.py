@@ -54,13 +54,13 @@ def write(
     as the same float64; NaN and missing texts are empty. Lines end with CR LF, as RFC 4180 has it.
     Notes and the CRS have no place in a CSV.
     """
-    table = obj if isinstance(obj, Table) else _points_table(obj, path)
+    table = obj if isinstance(obj, Table) else _tabulate_points(obj, path)
     names = [header_text(name, table.units) for name in table.columns]
     columns = list(table.columns.values())
     delimiter = "\t" if path.suffix.lower() == ".tsv" else ","
     with replacing(path, binary=False) as file:
         writer = csv.writer(file, delimiter=delimiter, lineterminator="\r\n")
-        writer.writerows(chain([names], _rows(columns, len(table), progress)))
+        writer.writerows(chain([names], _iterate_rows(columns, len(table), progress)))
 
 
 def header_text(name: str, units: Units) -> str:
@@ -75,7 +75,7 @@ def header_text(name: str, units: Units) -> str:
     return f"{name} ({unit})" if unit else name
 
 
-def _points_table(features: Features, path: Path) -> Table:
+def _tabulate_points(features: Features, path: Path) -> Table:
     """Return points as a table of their coordinates and columns."""
     if features.kind != "points":
         raise FormatError(
@@ -97,17 +97,17 @@ def _points_table(features: Features, path: Path) -> Table:
     )
 
 
-def _rows(
+def _iterate_rows(
     columns: Sequence[NDArray[Any]], count: int, progress: Callable[[float], None] | None
 ) -> Iterator[tuple[Any, ...]]:
     for start in range(0, count, _CHUNK_ROWS):
         stop = min(start + _CHUNK_ROWS, count)
-        yield from zip(*(_cells(column[start:stop]) for column in columns), strict=True)
+        yield from zip(*(_format_cells(column[start:stop]) for column in columns), strict=True)
         if progress is not None:
             progress(stop / count)
 
 
-def _cells(values: NDArray[Any]) -> list[Any]:
+def _format_cells(values: NDArray[Any]) -> list[Any]:
     """Return values as CSV has them: empty where there is none."""
     if values.dtype.kind == "b":
         return [("false", "true")[value] for value in values.tolist()]

@@ -32,7 +32,7 @@ def write(table: Table, path: Path, *, progress: Callable[[float], None] | None 
     and a text that is missing, is ``null``.
     """
     with replacing(path, binary=False) as file:
-        file.write(_head(table))
+        file.write(_format_head(table))
         separator = "\n"
         row = properties_template(list(table.columns))
         for start in range(0, len(table), _CHUNK_ROWS):
@@ -45,7 +45,7 @@ def write(table: Table, path: Path, *, progress: Callable[[float], None] | None 
         file.write("\n]}\n")
 
 
-def _head(table: Table) -> str:
+def _format_head(table: Table) -> str:
     members: dict[str, Any] = {
         "name": table.name,
         "notes": list(table.notes),

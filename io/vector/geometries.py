@@ -68,7 +68,7 @@ def read_geometries(
     read = read_features(as_path(path), layer=layer)
     wanted = Wanted(CRS.of(crs))
     shapes = shapely.orient_polygons(shapely.force_2d(read.geometries))
-    kind = _kind_of(shapes, read)
+    kind = _find_kind(shapes, read)
     columns = read.columns
     if kind == "points":
         shapes, rows = shapely.get_parts(shapes, return_index=True)
@@ -85,7 +85,7 @@ def read_geometries(
     )
 
 
-def _kind_of(shapes: NDArray[np.object_], read: Layer) -> Any:
+def _find_kind(shapes: NDArray[np.object_], read: Layer) -> Any:
     import shapely
 
     types = shapely.get_type_id(shapes).tolist()

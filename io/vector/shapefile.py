@@ -121,11 +121,13 @@ def _require_room(features: Features, path: Path) -> None:
     """Refuse what a shapefile would cut, round away or leave out."""
     size = features.coordinates.nbytes + 100 * len(features)
     if size > _MOST_BYTES:
-        raise _too_much(path, f"{counted(len(features.coordinates), 'point')} take {size:,} bytes")
+        raise _describe_excess(
+            path, f"{counted(len(features.coordinates), 'point')} take {size:,} bytes"
+        )
     if len(features.columns) > _MOST_COLUMNS:
-        raise _too_much(path, f"{counted(len(features.columns), 'column')} are there")
+        raise _describe_excess(path, f"{counted(len(features.columns), 'column')} are there")
     if np.isnan(features.coordinates).any():
-        raise _too_much(path, "some elevations are not known")
+        raise _describe_excess(path, "some elevations are not known")
     for name, values in features.columns.items():
         _require_values(name, values, path)
 
@@ -134,18 +136,18 @@ def _require_values(name: str, values: NDArray[Any], path: Path) -> None:
     if values.dtype.kind in "OU":
         longest = max((len(value.encode()) for value in values if value is not None), default=0)
         if longest > _TEXT_BYTES:
-            raise _too_much(path, f"column '{name}' has a text of {longest} bytes")
+            raise _describe_excess(path, f"column '{name}' has a text of {longest} bytes")
         return
     numbers = values[np.isfinite(values)] if values.dtype.kind == "f" else values
     most = _LARGEST if values.dtype.kind == "f" else _LARGEST_WHOLE
     is_large = (numbers >= most) | (numbers <= -most) if values.dtype.kind != "b" else np.False_
     if np.isinf(values).any() if values.dtype.kind == "f" else False:
-        raise _too_much(path, f"column '{name}' has a number that is not finite")
+        raise _describe_excess(path, f"column '{name}' has a number that is not finite")
     if np.any(is_large):
-        raise _too_much(path, f"column '{name}' has the number {numbers[is_large][0]}")
+        raise _describe_excess(path, f"column '{name}' has the number {numbers[is_large][0]}")
 
 
-def _too_much(path: Path, what: str) -> WriteError:
+def _describe_excess(path: Path, what: str) -> WriteError:
     return WriteError(
         f"Cannot write '{path}': {what}, and a shapefile holds 2 GiB, 255 columns, texts of 254 "
         "bytes, numbers below 1e22 (whole ones 1e18) and elevations that are known; a GeoPackage "

@@ -49,6 +49,7 @@ if TYPE_CHECKING:
         histogram,
         profile_picture,
         relief_map,
+        section_picture,
     )
     from .terrain.earthwork import Difference, difference, stage_storage, volume
     from .terrain.gridding import height_above, rasterize
@@ -153,11 +154,13 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "preview",
                 "profile_picture",
                 "relief_map",
+                "section_picture",
                 "slope",
                 "stage_storage",
                 "volume",
             ),
-            ".terrain.gridding": ("height_above", "rasterize"),
+            ".io.raster.cells": ("rasterize",),  # which reads the file of `like`, too
+            ".terrain.gridding": ("height_above",),
             ".terrain.relief": (
                 "aspect_classes",
                 "curvature",
@@ -272,6 +275,7 @@ __all__ = [
     "relief_map",
     "reproject",
     "section_lines",
+    "section_picture",
     "slope",
     "slope_classes",
     "slope_statistics",

@@ -87,10 +87,10 @@ def replacing_path(path: Path) -> Iterator[Path]:
     WriteError
         As :func:`replacing`.
     """
-    with _faults_as_sentences(path):
-        target = _target(path)
+    with _translate_faults(path):
+        target = _find_target(path)
         _require_replaceable(path, target)
-        beside = _path_beside(target)
+        beside = _choose_path_beside(target)
         try:  # begins before the file is there, so that no signal can come in between
             _create(beside, target)
             yield beside
@@ -108,8 +108,8 @@ def require_writable(path: Path) -> None:
         If there is no such folder, it may not be written to, or what is there is a folder, a
         device or read-only.
     """
-    with _faults_as_sentences(path):
-        target = _target(path)
+    with _translate_faults(path):
+        target = _find_target(path)
         _require_replaceable(path, target)
         if not os.access(target.parent, os.W_OK | os.X_OK):
             raise WriteError(
@@ -119,7 +119,7 @@ def require_writable(path: Path) -> None:
 
 
 @contextmanager
-def _faults_as_sentences(path: Path) -> Iterator[None]:
+def _translate_faults(path: Path) -> Iterator[None]:
     """Turn what the system says into a sentence."""
     try:
         yield
@@ -130,7 +130,7 @@ def _faults_as_sentences(path: Path) -> Iterator[None]:
         raise WriteError(f"Cannot write '{path}': {reason}.", path=path) from error
 
 
-def _target(path: Path) -> Path:
+def _find_target(path: Path) -> Path:
     """Follow links, so that the file itself is replaced and not the link to it."""
     try:
         return Path(os.path.realpath(path))
@@ -154,7 +154,7 @@ def _require_replaceable(path: Path, target: Path) -> None:
         raise WriteError(f"Cannot write '{path}': the file there is read-only.", path=path)
 
 
-def _path_beside(target: Path) -> Path:
+def _choose_path_beside(target: Path) -> Path:
     """Return a new name in the folder of the target: hidden, with its suffix."""
     return target.with_name(f".{target.stem[:_STEM]}-{secrets.token_hex(4)}{target.suffix}")
 
@@ -190,8 +190,8 @@ def replacing_files(path: Path, *, parts: Sequence[str] = ()) -> Iterator[Path]:
     WriteError
         As :func:`replacing`.
     """
-    with _faults_as_sentences(path):
-        target = _target(path)
+    with _translate_faults(path):
+        target = _find_target(path)
         _require_replaceable(path, target)
         folder = target.with_name(f".{target.stem[:_STEM]}-{secrets.token_hex(4)}")
         try:  # begins before the folder is there, so that no signal can come in between

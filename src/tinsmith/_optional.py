@@ -44,7 +44,7 @@ def load(module: str, purpose: str) -> Any:
     try:
         return import_module(module)
     except ImportError as error:
-        raise _missing(module.partition(".")[0], purpose) from error
+        raise _describe_missing(module.partition(".")[0], purpose) from error
 
 
 def require(library: str, purpose: str) -> None:
@@ -56,7 +56,7 @@ def require(library: str, purpose: str) -> None:
         If it is not installed.
     """
     if find_spec(library) is None:
-        raise _missing(library, purpose)
+        raise _describe_missing(library, purpose)
 
 
 def is_installed(extra: str) -> bool:
@@ -71,5 +71,5 @@ def is_installed(extra: str) -> bool:
     return bool(libraries) and all(find_spec(library) is not None for library in libraries)
 
 
-def _missing(library: str, purpose: str) -> MissingExtraError:
+def _describe_missing(library: str, purpose: str) -> MissingExtraError:
     return MissingExtraError(library, extra=_EXTRA_OF[library], purpose=purpose)

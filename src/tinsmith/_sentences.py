@@ -57,14 +57,14 @@ def shown(value: Any) -> str:
         value = value.item()
     if type(value) in (list, tuple) and value:
         more = ", ..." if len(value) > _MOST_ITEMS else ""
-        return _shortened(f"[{', '.join(shown(item) for item in value[:_MOST_ITEMS])}{more}]")
+        return _shorten(f"[{', '.join(shown(item) for item in value[:_MOST_ITEMS])}{more}]")
     if isinstance(value, int) and not isinstance(value, bool) and value.bit_length() > _MOST_BITS:
         return f"{'-' if value < 0 else ''}2^{value.bit_length() - 1} or more"
     try:
         text = " ".join(repr(value).split())
     except Exception:
         text = f"a {type(value).__name__}"
-    return _shortened(text)
+    return _shorten(text)
 
 
 def _is_of_numpy(value: Any) -> bool:
@@ -75,5 +75,5 @@ def _is_of_numpy(value: Any) -> bool:
     )
 
 
-def _shortened(text: str) -> str:
+def _shorten(text: str) -> str:
     return text if len(text) <= _LONGEST else text[: _LONGEST - 3] + "..."

@@ -95,7 +95,7 @@ class Unit:
         """
         if value is None or (isinstance(value, Unit) and value.metres is not None):
             return value
-        found = _unit_named(value) if isinstance(value, str) else None
+        found = _find_unit(value) if isinstance(value, str) else None
         if found is None:
             raise OptionError("unit of elevations", value, _ALLOWED_UNITS)
         return found
@@ -103,7 +103,7 @@ class Unit:
     @property
     def text(self) -> str:
         """Name by which :meth:`of` finds the unit again; "" if there is none."""
-        return self.name if _unit_named(self.name) == self else ""
+        return self.name if _find_unit(self.name) == self else ""
 
     def __str__(self) -> str:
         return self.name
@@ -130,26 +130,26 @@ _UNIT_OF_WORD = {word: unit for unit, words in _WORDS.items() for word in words.
 _ALLOWED_UNITS = "a length such as 'm', 'ft' (0.3048 m), 'US survey foot' (1200/3937 m) or 'cm'"
 
 
-def _unit_named(text: str) -> Unit | None:
+def _find_unit(text: str) -> Unit | None:
     """Look a unit up by the words of people, then by those of EPSG."""
     plain = re.sub(r"[^a-z0-9]", "", text.casefold())
     if plain in _UNIT_OF_WORD:
         return _UNIT_OF_WORD[plain]
-    return None if not plain else _epsg_units().get(plain)
+    return None if not plain else _load_epsg_units().get(plain)
 
 
 @lru_cache(maxsize=1)
-def _epsg_units() -> dict[str, Unit]:
+def _load_epsg_units() -> dict[str, Unit]:
     """Return EPSG's units of length; PROJ's own are left out, its decimetre is a centimetre."""
     from pyproj import get_units_map
 
     return {
-        re.sub(r"[^a-z0-9]", "", name.casefold()): _length(name, unit.conv_factor)
+        re.sub(r"[^a-z0-9]", "", name.casefold()): _make_unit(name, unit.conv_factor)
         for name, unit in get_units_map(auth_name="EPSG", category="linear").items()
     }
 
 
-def _length(name: str, metres: float) -> Unit:
+def _make_unit(name: str, metres: float) -> Unit:
     """Return the unit of a length, under its usual name if it has one."""
     for unit in _WORDS:
         if unit.metres is not None and abs(unit.metres - metres) <= _SAME_LENGTH * metres:
@@ -184,7 +184,7 @@ class CRS:
     __slots__ = ("_text",)
 
     def __init__(self, value: CrsLike) -> None:
-        self._text = _text_for(value)
+        self._text = _find_text(value)
 
     @overload
     @classmethod
@@ -244,13 +244,13 @@ class CRS:
         if self.is_geographic:
             name = str(axes[0].unit_name)
             return Unit(name, "°" if name == "degree" else name, None)
-        return _length(axes[0].unit_name, axes[0].unit_conversion_factor)
+        return _make_unit(axes[0].unit_name, axes[0].unit_conversion_factor)
 
     @property
     def vertical_unit(self) -> Unit | None:
         """Unit of the vertical axis of a compound or 3D CRS; None for others."""
         axes = _parsed(self._text).axis_info
-        return _length(axes[2].unit_name, axes[2].unit_conversion_factor) if axes[2:] else None
+        return _make_unit(axes[2].unit_name, axes[2].unit_conversion_factor) if axes[2:] else None
 
     @property
     def usual_elevation_unit(self) -> Unit | None:
@@ -268,7 +268,7 @@ class CRS:
     @property
     def horizontal(self) -> CRS:
         """The CRS without its vertical part."""
-        return _restored(_horizontal(self._text))
+        return _restore(_take_horizontal(self._text))
 
     # ------------------------------------------------------------------ other forms
 
@@ -335,7 +335,7 @@ class CRS:
         if other is None or self._text == other:
             return other is not None
         try:
-            return self._text == _text_for(other)
+            return self._text == _find_text(other)
         except CrsError:
             return False
 
@@ -343,7 +343,7 @@ class CRS:
         return hash(self._text)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _restored, (self._text,)
+        return _restore, (self._text,)
 
     def __str__(self) -> str:
         return self._text
@@ -355,47 +355,47 @@ class CRS:
         return f"CRS({self._text!r})"
 
 
-def _restored(text: str) -> CRS:
+def _restore(text: str) -> CRS:
     """Return a CRS that was one before, without looking it up."""
     crs = CRS.__new__(CRS)
     crs._text = text
     return crs
 
 
-def _text_for(value: object) -> str:
+def _find_text(value: object) -> str:
     """Return the text that stands for whatever names a CRS."""
     if isinstance(value, CRS):
         return str(value)
     if isinstance(value, Integral) and not isinstance(value, bool):
-        return _looked_up(f"EPSG:{int(value)}")
+        return _look_up(f"EPSG:{int(value)}")
     if isinstance(value, str):
         text = str(value).strip()
-        return _looked_up(f"EPSG:{text}" if text.isdecimal() else text)
-    return _text_of(_parse(value))
+        return _look_up(f"EPSG:{text}" if text.isdecimal() else text)
+    return _write_text(_parse(value))
 
 
 @lru_cache(maxsize=128)
-def _looked_up(text: str) -> str:
-    return _text_of(_parse(text))
+def _look_up(text: str) -> str:
+    return _write_text(_parse(text))
 
 
 @lru_cache(maxsize=128)
-def _horizontal(text: str) -> str:
+def _take_horizontal(text: str) -> str:
     crs = _parsed(text)
     if not crs.axis_info[2:]:
         return text
     if crs.is_compound:
         crs = crs.sub_crs_list[0]
-    return _text_of(crs.to_2d() if crs.axis_info[2:] else crs)
+    return _write_text(crs.to_2d() if crs.axis_info[2:] else crs)
 
 
-def _text_of(parsed: pyproj.CRS) -> str:
+def _write_text(parsed: pyproj.CRS) -> str:
     """Return the authority code of a CRS if it has one that means exactly this, else its WKT."""
-    return _text_of_wkt(parsed.to_wkt())
+    return _write_wkt_text(parsed.to_wkt())
 
 
 @lru_cache(maxsize=128)
-def _text_of_wkt(wkt: str) -> str:
+def _write_wkt_text(wkt: str) -> str:
     """Look for a code in all of PROJ's data base, which takes up to a second."""
     parsed = _parse(wkt)
     authority = parsed.to_authority(min_confidence=100)
@@ -420,7 +420,7 @@ def _parse(value: object) -> pyproj.CRS:
     try:
         parsed = pyproj.CRS.from_user_input(value)
     except (CRSError, TypeError, ValueError, AttributeError) as error:
-        text = f"'{_shortened(value)}'" if isinstance(value, str) else shown(value)
+        text = f"'{_shorten(value)}'" if isinstance(value, str) else shown(value)
         raise CrsError(
             f"Unknown CRS {text}: an authority code such as EPSG:32616, "
             "its number, a WKT or a PROJ text is needed.",
@@ -436,20 +436,20 @@ def _require_map(parsed: pyproj.CRS, value: object) -> None:
     is_flat = parsed.is_geocentric or (parsed.is_vertical and not parsed.is_compound)
     if is_flat or len(axes) == 1:
         raise CrsError(
-            f"'{_shortened(str(value))}' is {parsed.name}, a {parsed.type_name}: one of eastings "
+            f"'{_shorten(str(value))}' is {parsed.name}, a {parsed.type_name}: one of eastings "
             "and northings, or longitude and latitude, is needed.",
             crs=value,
         )
     if len(axes) > 2 and axes[2].direction == "down":
         raise CrsError(
-            f"'{_shortened(str(value))}' is {parsed.name}, whose third axis points down: "
+            f"'{_shorten(str(value))}' is {parsed.name}, whose third axis points down: "
             "elevations must grow upwards; change the sign of the depths, and name the CRS "
             "without its vertical part.",
             crs=value,
         )
 
 
-def _shortened(text: str) -> str:
+def _shorten(text: str) -> str:
     return text if len(text) <= _SHOWN_LETTERS else text[: _SHOWN_LETTERS - 3] + "..."
 
 

@@ -35,10 +35,10 @@ class TinsmithError(Exception):
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Copy and pickle sentence and data, whatever the class is made of."""
-        return _remade, (type(self), self.args), self.__dict__
+        return _remake, (type(self), self.args), self.__dict__
 
 
-def _remade(kind: type[TinsmithError], arguments: tuple[Any, ...]) -> TinsmithError:
+def _remake(kind: type[TinsmithError], arguments: tuple[Any, ...]) -> TinsmithError:
     error = kind.__new__(kind)
     error.args = arguments
     return error

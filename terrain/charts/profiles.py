@@ -8,11 +8,22 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ... import _optional
-from ...crs import CRS, Unit, assume_elevation_unit
+from ...crs import CRS
 from ...errors import OptionError
-from ...tin.validation.options import is_finite_number, is_whole_number
+from ...tin.validation.options import is_whole_number
 from ..results import Table
 from ..rounding import choose_ticks, format_number, round_down
+from .curves import (
+    INK,
+    Curve,
+    as_factor,
+    draw_curves,
+    find_curves,
+    find_marks,
+    find_ratio,
+    read_units,
+    write_elevation,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -22,11 +33,7 @@ if TYPE_CHECKING:
 __all__ = ["profile_picture"]
 
 _PURPOSE = "A picture of a profile"
-_INK = "#333333"
 _FAINT = "#d9d9d9"
-_COLORS = ("#7a5230", "#c0392b", "#1f618d", "#6c3483", "#117864")
-_GROUND = "#efe6da"
-_CUT, _FILL = "#eba694", "#9cc9e4"  # the hues of a map of cut and fill
 _NAME_LETTERS = 20
 _LABELS = 8
 """About so many stations are labelled, twice as many at most."""
@@ -35,34 +42,6 @@ _LABELS = 8
 _PLOT_WIDTH, _LEFT, _RIGHT = 9.4, 1.5, 0.35
 _LEAST_HEIGHT, _MOST_HEIGHT = 2.2, 4.4
 _BELOW, _ABOVE, _BAND = 0.25, 1.15, 0.26
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Curve:
-    """A surface along the line; NaN where it is not."""
-
-    name: str
-    stations: NDArray[np.float64]
-    elevations: NDArray[np.float64]
-    color: str
-
-    def at(self, stations: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Interpolate between rows; NaN beside a row without elevation."""
-        return np.interp(stations, self.stations, self.elevations)
-
-
-@dataclass(frozen=True, slots=True)
-class _Measure:
-    """A unit, and whether it is known or the usual one of the CRS."""
-
-    unit: Unit | None
-    is_known: bool
-
-    def caption(self, name: str) -> str:
-        """Return a name with its unit: "station, m", "elevation, m assumed"."""
-        if self.unit is None or not self.unit.symbol:
-            return name
-        return f"{name}, {self.unit.symbol}{'' if self.is_known else ' assumed'}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,12 +109,12 @@ def profile_picture(
     >>> len(ts.profile_picture(ts.profile(tin, [[1, 2], [5, 2]])).axes)
     2
     """
-    curves, marks = _curves(table, line)
+    curves, marks = _choose_curves(table, line)
     system = CRS.of(crs)
-    along, up = _units(table, system)
-    scale = _scale(curves, _ratio(along, up), exaggeration)
+    along, up = read_units(table, system)
+    scale = _choose_scale(curves, find_ratio(along, up), exaggeration)
     rows = len(curves) + 1 + (len(curves) == 2)
-    figure, axes, band = _figure(scale, rows)
+    figure, axes, band = _start_figure(scale, rows)
     heading = " ".join((title or "Profile").split())
     height = figure.get_figheight()
     figure.text(
@@ -143,20 +122,21 @@ def profile_picture(
         1 - 0.42 / height,
         heading,
         fontsize=15,
-        color=_INK,
+        color=INK,
         parse_math=False,
     )
-    _caption(figure, scale, system)
-    _draw(axes, curves, marks, scale.elevations[0])
+    _write_caption(figure, scale, system)
+    draw_curves(axes, curves, marks, scale.elevations[0])
+    axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=6, frameon=False, fontsize=9)
     _dress(axes, scale, up.caption("elevation"))
-    _fill_band(band, _band_lines(curves, scale, along.caption("station")), scale)
+    _fill_band(band, _list_band_lines(curves, scale, along.caption("station")), scale)
     return figure
 
 
 # ---------------------------------------------------------------- what is drawn
 
 
-def _curves(table: Any, line: Any) -> tuple[list[_Curve], NDArray[np.float64]]:
+def _choose_curves(table: Any, line: Any) -> tuple[list[Curve], NDArray[np.float64]]:
     """Return the surfaces along one line, and the stations where breaklines are crossed."""
     names = set(table.columns) if isinstance(table, Table) else set()
     if not {"line", "station"} <= names or "offset" in names:
@@ -165,38 +145,13 @@ def _curves(table: Any, line: Any) -> tuple[list[_Curve], NDArray[np.float64]]:
         allowed = f"a whole number from 0 to {int(table['line'].max())}"
         raise OptionError("line", line, allowed=allowed)
     own = table["line"] == line
-    measured = [name for name in table.columns if name.partition("_")[0] == "elevation"]
-    stations = table["station"][own]
-    curves = [
-        _Curve(name.partition("_")[2], stations, table[name][own], _COLORS[k % len(_COLORS)])
-        for k, name in enumerate(measured)
-    ]
+    curves = find_curves(table, own, "station")
     if not any(np.isfinite(curve.elevations).any() for curve in curves):
         raise OptionError("line", int(line), allowed="one that meets a surface")
-    crossed = table[f"crossed_{curves[0].name}" if curves[0].name else "crossed"][own]
-    return curves, stations[crossed == "breakline"]
+    return curves, find_marks(table, own, curves[0])
 
 
-def _units(table: Table, crs: CRS | None) -> tuple[_Measure, _Measure]:
-    """Return the units of stations and of elevations, those of the CRS where they are not known."""
-    along = table.units.get("station")
-    up = next((u for n, u in table.units.items() if n.partition("_")[0] == "elevation"), None)
-    usual = None if crs is None else crs.horizontal_unit
-    return (
-        _Measure(along if isinstance(along, Unit) else usual, isinstance(along, Unit)),
-        _Measure(
-            assume_elevation_unit(crs, up if isinstance(up, Unit) else None), isinstance(up, Unit)
-        ),
-    )
-
-
-def _ratio(along: _Measure, up: _Measure) -> float:
-    """Return how long a unit of elevations is in units of stations; 1 if that is not known."""
-    lengths = [one.unit.metres if one.unit is not None else None for one in (up, along)]
-    return 1.0 if lengths[0] is None or lengths[1] is None else lengths[0] / lengths[1]
-
-
-def _scale(curves: list[_Curve], ratio: float, wanted: float | None) -> _Scale:
+def _choose_scale(curves: list[Curve], ratio: float, wanted: float | None) -> _Scale:
     stations = curves[0].stations
     first, last = float(stations[0]), float(stations[-1])
     heights = np.concatenate([curve.elevations for curve in curves])
@@ -204,7 +159,7 @@ def _scale(curves: list[_Curve], ratio: float, wanted: float | None) -> _Scale:
     length = (last - first) or 1.0
     room = max(high - low, 1e-3 * length / ratio, 1e-9 * abs(high))
     inches = _PLOT_WIDTH * room * ratio / length
-    factor = round_down(0.8 * _MOST_HEIGHT / inches) if wanted is None else _as_factor(wanted)
+    factor = round_down(0.8 * _MOST_HEIGHT / inches) if wanted is None else as_factor(wanted)
     height = min(max(1.3 * inches * factor, _LEAST_HEIGHT), _MOST_HEIGHT)
     if wanted is not None:
         height = max(1.15 * inches * factor, _LEAST_HEIGHT)
@@ -216,16 +171,10 @@ def _scale(curves: list[_Curve], ratio: float, wanted: float | None) -> _Scale:
     return _Scale((first, last), (middle - 0.5 * span, middle + 0.5 * span), factor, height)
 
 
-def _as_factor(value: Any) -> float:
-    if not is_finite_number(value) or not float(value) > 0.0:
-        raise OptionError("exaggeration", value, allowed="a finite number above 0")
-    return float(value)
-
-
 # ---------------------------------------------------------------- drawing
 
 
-def _figure(scale: _Scale, rows: int) -> tuple[Any, Any, Any]:
+def _start_figure(scale: _Scale, rows: int) -> tuple[Any, Any, Any]:
     """Return a figure of the size that the scale asks for, the surfaces above, figures below."""
     width = _LEFT + _PLOT_WIDTH + _RIGHT
     band = rows * _BAND
@@ -237,56 +186,11 @@ def _figure(scale: _Scale, rows: int) -> tuple[Any, Any, Any]:
     return figure, axes, below
 
 
-def _caption(figure: Any, scale: _Scale, crs: CRS | None) -> None:
+def _write_caption(figure: Any, scale: _Scale, crs: CRS | None) -> None:
     where = "CRS not known" if crs is None else crs.caption
     text = f"{where}; vertical exaggeration {scale.exaggeration:g}"
     width, height = figure.get_size_inches()
-    figure.text(_LEFT / width, 1 - 0.68 / height, text, fontsize=9, color=_INK, parse_math=False)
-
-
-def _draw(axes: Any, curves: list[_Curve], marks: NDArray[np.float64], floor: float) -> None:
-    ground = curves[0]
-    if len(curves) == 2:
-        _shade(axes, *curves)
-    else:
-        how = {"color": _GROUND, "linewidth": 0, "zorder": 1}
-        axes.fill_between(ground.stations, ground.elevations, floor, **how)
-    for curve in curves:
-        how = {"color": curve.color, "linewidth": 1.6, "zorder": 4}
-        axes.plot(curve.stations, curve.elevations, label=curve.name or "surface", **how)
-    if len(marks):
-        label = f"breakline of {ground.name}" if ground.name else "breakline"
-        how = {"linestyle": "none", "marker": "|", "markersize": 9, "color": _INK, "zorder": 5}
-        axes.plot(marks, ground.at(marks), label=label, **how)
-    axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=6, frameon=False, fontsize=9)
-
-
-def _shade(axes: Any, first: _Curve, second: _Curve) -> None:
-    """Shade what is to be dug off below the first surface, and filled above it."""
-    for words, color, side in (
-        ("cut", _CUT, second.elevations < first.elevations),
-        ("fill", _FILL, second.elevations > first.elevations),
-    ):
-        if side.any():
-            axes.fill_between(
-                first.stations,
-                first.elevations,
-                second.elevations,
-                where=_with_neighbors(side),
-                interpolate=True,
-                color=color,
-                linewidth=0,
-                label=words,
-                zorder=2,
-            )
-
-
-def _with_neighbors(side: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Take in the rows beside those of one side, up to where the surfaces meet."""
-    wide = side.copy()
-    wide[:-1] |= side[1:]
-    wide[1:] |= side[:-1]
-    return wide
+    figure.text(_LEFT / width, 1 - 0.68 / height, text, fontsize=9, color=INK, parse_math=False)
 
 
 def _dress(axes: Any, scale: _Scale, label: str) -> None:
@@ -295,28 +199,28 @@ def _dress(axes: Any, scale: _Scale, label: str) -> None:
     places = choose_ticks(*scale.elevations, count=max(3, round(scale.height * 2)))
     step = places[1] - places[0] if len(places) > 1 else 1.0
     axes.set_yticks(places, [format_number(place, step=step) for place in places])
-    axes.set_ylabel(label, color=_INK)
+    axes.set_ylabel(label, color=INK)
     axes.grid(color=_FAINT, linewidth=0.6)
     axes.set_axisbelow(True)
-    axes.tick_params(colors=_INK)
+    axes.tick_params(colors=INK)
     axes.tick_params(axis="x", length=0, labelbottom=False)
     for spine in axes.spines.values():
-        spine.set_color(_INK)
+        spine.set_color(INK)
 
 
-def _band_lines(curves: list[_Curve], scale: _Scale, station: str) -> list[_BandLine]:
+def _list_band_lines(curves: list[Curve], scale: _Scale, station: str) -> list[_BandLine]:
     """Return what stands below the surfaces: stations, elevations, of two their difference."""
     places = choose_ticks(*scale.stations, count=_LABELS) or [scale.stations[0]]
     step = places[1] - places[0] if len(places) > 1 else 1.0
     at = np.array(places)
-    lines = [_BandLine(station, [format_number(place, step=step) for place in places], _INK)]
+    lines = [_BandLine(station, [format_number(place, step=step) for place in places], INK)]
     for curve in curves:
-        texts = [_write(value) for value in curve.at(at).tolist()]
+        texts = [write_elevation(value) for value in curve.at(at).tolist()]
         lines.append(_BandLine(curve.name or "elevation", texts, curve.color))
     if len(curves) == 2:
         differences = (curves[1].at(at) - curves[0].at(at)).tolist()
-        texts = [_write(value, sign="+") for value in differences]
-        lines.append(_BandLine("difference", texts, _INK))
+        texts = [write_elevation(value, sign="+") for value in differences]
+        lines.append(_BandLine("difference", texts, INK))
     return lines
 
 
@@ -326,7 +230,7 @@ def _fill_band(band: Any, lines: list[_BandLine], scale: _Scale) -> None:
     band.set_xticks(places)
     band.set_ylim(len(lines), 0)
     band.set_yticks([])
-    band.tick_params(colors=_INK, labelbottom=False, length=0)
+    band.tick_params(colors=INK, labelbottom=False, length=0)
     how = {"va": "center", "parse_math": False}
     for row, line in enumerate(lines):
         middle = row + 0.5
@@ -344,7 +248,7 @@ def _fill_band(band: Any, lines: list[_BandLine], scale: _Scale) -> None:
             **how,
         )
         for place, text in zip(places, line.texts, strict=True):
-            at, side, shift = _side(place, scale)
+            at, side, shift = _find_side(place, scale)
             band.annotate(
                 text,
                 (at, middle),
@@ -356,20 +260,13 @@ def _fill_band(band: Any, lines: list[_BandLine], scale: _Scale) -> None:
                 **how,
             )
     for spine in band.spines.values():
-        spine.set_color(_INK)
+        spine.set_color(INK)
 
 
-def _side(place: float, scale: _Scale) -> tuple[float, str, int]:
+def _find_side(place: float, scale: _Scale) -> tuple[float, str, int]:
     """Return where figures of a place stand, and how: those at the ends of the band inside it."""
     first, last = scale.stations
     share = (place - first) / ((last - first) or 1.0)
     if share < 0.025:
         return first, "left", 2
     return (last, "right", -2) if share > 0.975 else (place, "center", 0)
-
-
-def _write(value: float, sign: str = "") -> str:
-    if not np.isfinite(value):
-        return "\N{EN DASH}"
-    text = f"{value:{sign},.2f}"
-    return text.lstrip("+-") if float(text.replace(",", "")) == 0.0 else text

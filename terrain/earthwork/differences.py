@@ -15,7 +15,7 @@ from ..results import Features, Table
 from . import zones as parts
 from .cells import fan_out
 from .meshes import as_mesh, cut_at_zero, mend, rebuild
-from .reference import Reference, Surface, reference_of, require_finite, surfaces_of
+from .reference import Reference, Surface, find_common_reference, require_finite
 from .statistics import percentiles
 
 if TYPE_CHECKING:
@@ -27,8 +27,10 @@ if TYPE_CHECKING:
 
 __all__ = ["Difference", "difference"]
 
-_SHARE_OF_ROUNDING = 1e-7
-"""Of the area times the largest difference: so much of a volume vertices' roundings may change."""
+_SHARE_OF_VOLUME = 1e-7
+"""Of the area times the largest difference: so much the volumes of the TIN may be off."""
+_ROUNDINGS = 4.0
+"""Or what so many roundings of every coordinate change: surfaces that agree differ by no more."""
 
 _SHARES = {"p05": 5.0, "p25": 25.0, "median": 50.0, "p75": 75.0, "p95": 95.0}
 
@@ -79,7 +81,7 @@ class Difference:
         They are closed, or end at the boundary or where three parts meet. Where the surfaces
         agree on an area its border is a line, such as that of a design that meets the ground.
         """
-        return parts.zero_line(self.tin.triangulation, self._reference)
+        return parts.trace_zero_line(self.tin.triangulation, self._reference)
 
     @cached_property
     def zones(self) -> Features:
@@ -88,7 +90,7 @@ class Difference:
         Columns ``kind`` ("cut", "fill", "unchanged"), ``area``, ``volume``, ``lowest``,
         ``highest``.
         """
-        return parts.zones(self.tin.triangulation, self._reference)
+        return parts.find_zones(self.tin.triangulation, self._reference)
 
     @cached_property
     def statistics(self) -> Table:
@@ -97,10 +99,10 @@ class Difference:
         ``mean``, ``rms``, ``standard_deviation``, ``mean_absolute``, ``lowest``, ``highest``,
         percentiles ``p05``, ``p25``, ``median``, ``p75``, ``p95``, and the ``area``.
         """
-        columns = _moments(self._sums)
+        columns = _list_moments(self._sums)
         columns |= dict(zip(_SHARES, self.percentiles(list(_SHARES.values())), strict=True))
         units: dict[str, Any] = dict.fromkeys(columns, self._reference.elevation_unit)
-        units["area"] = self._reference.power(2)
+        units["area"] = self._reference.units.area
         return Table(
             {name: np.array([value]) for name, value in columns.items()},
             units=units,
@@ -140,7 +142,7 @@ class Difference:
         return f"<Difference: {self.tin!r}>"
 
 
-def _moments(sums: dict[str, float]) -> dict[str, float]:
+def _list_moments(sums: dict[str, float]) -> dict[str, float]:
     area = sums["area"]
     mean, square = (sums["fill"] - sums["cut"]) / area, sums["squares"] / area
     return {
@@ -192,29 +194,27 @@ def difference(tin: TIN, other: TIN) -> Difference:
     >>> found.statistics["highest"], sorted(found.zones.columns["kind"])
     (array([1.]), ['cut', 'fill'])
     """
-    reference = reference_of(tin, "Differences")
-    reference_of(other, "Differences")
-    first, second, notes = surfaces_of(tin, other)
+    reference, first, second = find_common_reference(tin, other, "Differences")
     made = _kernel.overlay(first.points, first.triangles, second.points, second.triangles)
     if len(made.triangles) == 0:
         raise PointsError(
-            f"The surfaces do not overlap: one covers {_extent(first)}, the other "
-            f"{_extent(second)}."
+            f"The surfaces do not overlap: one covers {_describe_extent(first)}, the other "
+            f"{_describe_extent(second)}."
         )
     require_finite(made.vertices)
-    sums = _sums_between(first, second)
+    sums = _sum_differences(first, second)
     if not sums["area"] > 0.0:
         raise PointsError("The surfaces overlap only in what is thinner than coordinates can tell.")
-    triangles, _ = fan_out(made.offsets, made.corners)
+    triangles, cells = fan_out(made.offsets, made.corners)
+    slack = _measure_rounding(first, second, made.vertices, triangles, made.triangles[cells])
     given = cut_at_zero(made.vertices, triangles)
-    points, triangles = mend(*given) or _rebuild(*given, _holder(tin, other))
-    surface = as_mesh(points, triangles, crs=tin.crs, elevation_unit=tin.elevation_unit)
-    every = tuple(dict.fromkeys([*reference.notes, *notes]))
-    _require_agreement(surface, sums)
-    return Difference(surface, every, reference, sums)
+    points, triangles = mend(*given) or _rebuild(*given, _make_holder(tin, other))
+    surface = as_mesh(points, triangles, crs=reference.crs, elevation_unit=reference.elevation_unit)
+    _require_agreement(surface, sums, slack)
+    return Difference(surface, reference.notes, reference, sums)
 
 
-def _sums_between(first: Surface, second: Surface) -> dict[str, float]:
+def _sum_differences(first: Surface, second: Surface) -> dict[str, float]:
     groups = np.zeros(len(first.triangles), np.int32)
     workers = thread_count(None, len(first.points) + len(second.points))
     sums = _kernel.sum_between(
@@ -224,12 +224,53 @@ def _sums_between(first: Surface, second: Surface) -> dict[str, float]:
     return dict(zip(_kernel.SUMS, sums[0].tolist(), strict=True))
 
 
-def _require_agreement(surface: TIN, sums: dict[str, float]) -> None:
+def _measure_rounding(
+    first: Surface,
+    second: Surface,
+    vertices: NDArray[np.float64],
+    triangles: NDArray[np.int32],
+    pairs: NDArray[np.int32],
+) -> float:
+    """Return how much a volume changes if the surfaces move by a rounding of their coordinates.
+
+    That is the rounding times the rise over run of both, summed over the area of their overlay.
+    """
+    areas = np.abs(_measure_doubled(vertices, triangles))
+    total = 0.0
+    for k, surface in enumerate((first, second)):
+        whole = np.abs(_measure_doubled(surface.points, surface.triangles))[pairs[:, k]]
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            shares = np.fmin(areas / whole, 1.0)  # of a triangle thinner than its rounding, all
+            total += float((shares * _measure_rises(surface)[pairs[:, k]]).sum())
+    moved = float(np.spacing(np.abs(vertices[:, :2]).max())) * total
+    return moved if np.isfinite(moved) else 0.0
+
+
+def _measure_doubled(
+    points: NDArray[np.float64], triangles: NDArray[np.int32]
+) -> NDArray[np.float64]:
+    xy = points[triangles, :2]
+    (ux, uy), (vx, vy) = (xy[:, 1] - xy[:, 0]).T, (xy[:, 2] - xy[:, 0]).T
+    doubled: NDArray[np.float64] = ux * vy - uy * vx
+    return doubled
+
+
+def _measure_rises(surface: Surface) -> NDArray[np.float64]:
+    """Return the rise over run of each triangle times its area, in the units that it has."""
+    corners = surface.points[surface.triangles]
+    u, v = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    (ux, uy, uz), (vx, vy, vz) = u.T, v.T
+    with np.errstate(invalid="ignore", over="ignore"):
+        rises: NDArray[np.float64] = 0.5 * np.hypot(uy * vz - uz * vy, uz * vx - ux * vz)
+    return rises
+
+
+def _require_agreement(surface: TIN, sums: dict[str, float], slack: float) -> None:
     """Refuse a TIN whose volumes are not those of the surfaces: rounding has moved a wall."""
-    found = _sums_of(surface)
+    found = _sum_classes(surface)
     most = max(sums["highest"], -sums["lowest"])
     apart = max(abs(found[name] - sums[name]) for name in ("cut", "fill"))
-    if apart > _SHARE_OF_ROUNDING * sums["area"] * most:
+    if apart > _SHARE_OF_VOLUME * sums["area"] * most + _ROUNDINGS * slack:
         raise PointsError(
             "The surfaces have walls that are thinner than coordinates can tell: the volume of "
             f"their difference as a TIN would be off by {apart:.3g}. Round the points of both to "
@@ -237,11 +278,11 @@ def _require_agreement(surface: TIN, sums: dict[str, float]) -> None:
         )
 
 
-def _sums_of(surface: TIN) -> dict[str, float]:
+def _sum_classes(surface: TIN) -> dict[str, float]:
     """Return cut and fill in the triangles that count as cut and as filled."""
     mesh = surface.triangulation
     heights = np.ascontiguousarray(mesh.points[:, 2])
-    groups = parts.classes_of(mesh).astype(np.int32) + np.int32(1)
+    groups = parts.classify(mesh).astype(np.int32) + np.int32(1)
     sums = _kernel.sum_heights(mesh.points, mesh.triangles, heights, groups, 3, 1.0)
     column = _kernel.SUMS.index
     return {"cut": float(sums[0, column("cut")]), "fill": float(sums[2, column("fill")])}
@@ -255,12 +296,12 @@ def _rebuild(
     return mend(*cut_at_zero(*found)) or found
 
 
-def _holder(tin: TIN, other: TIN) -> Callable[[Any], Any]:
+def _make_holder(tin: TIN, other: TIN) -> Callable[[Any], Any]:
     """Return a function that tells whether both surfaces hold places."""
     return lambda xy: (tin.locate(xy) >= 0) & (other.locate(xy) >= 0)
 
 
-def _extent(surface: Surface) -> str:
+def _describe_extent(surface: Surface) -> str:
     used = surface.points[surface.triangles.ravel(), :2]
     (west, south), (east, north) = used.min(axis=0), used.max(axis=0)
     return f"{west:.10g} to {east:.10g} east, {south:.10g} to {north:.10g} north"

@@ -36,12 +36,12 @@ def mend(
     What moves is as thin as coordinates can tell.
     """
     try:
-        return _mended(points, triangles)
+        return _mend_rounds(points, triangles)
     except PointsError:  # edges with more than two triangles: lines run through each other
         return None
 
 
-def _mended(
+def _mend_rounds(
     points: NDArray[np.float64], triangles: NDArray[np.int32]
 ) -> tuple[NDArray[np.float64], NDArray[np.int32]] | None:
     merged = _merge_places(points, triangles)
@@ -169,7 +169,7 @@ def _remove_flat(
 ) -> NDArray[np.int32]:
     """Drop the flat triangles along the boundary; if there are none, flip edges of the others."""
     neighbors = topology.neighbors_of(triangles, len(points))
-    longest = _corners_on_edges(points, triangles[flat])
+    longest = _find_corners_on_edges(points, triangles[flat])
     is_outside = neighbors[flat] == topology.NO_NEIGHBOR
     loose = is_outside[np.arange(len(flat)), longest] | (is_outside.sum(axis=1) > 1)
     if loose.any():
@@ -187,7 +187,7 @@ def _remove_flat(
     return corners
 
 
-def _corners_on_edges(
+def _find_corners_on_edges(
     points: NDArray[np.float64], triangles: NDArray[np.int32]
 ) -> NDArray[np.int64]:
     """Return the corner of each triangle that lies opposite its longest edge."""
@@ -224,8 +224,8 @@ def cut_at_zero(
     is_cut = (signs.max(axis=1) > 0) & (signs.min(axis=1) < 0)
     if not is_cut.any():
         return points, triangles
-    corners, signs = _alone_first(triangles[is_cut], signs[is_cut])
-    points, second, third = _zeros_on(points, corners, signs)
+    corners, signs = _turn_alone_first(triangles[is_cut], signs[is_cut])
+    points, second, third = _place_zeros(points, corners, signs)
     a, b, c = corners.T
     whole = signs[:, 1] == 0  # the line runs from corner b: then only a-c is cut
     parts = [
@@ -236,36 +236,36 @@ def cut_at_zero(
     return points, np.concatenate([triangles[~is_cut], *parts]).astype(np.int32)
 
 
-def _alone_first(
+def _turn_alone_first(
     corners: NDArray[np.int32], signs: NDArray[np.int8]
 ) -> tuple[NDArray[np.int32], NDArray[np.int8]]:
     """Turn triangles until corner 0 alone has its sign; one at 0, if there is one, is corner 1."""
-    first = np.argmax(signs * np.sign(-_main_sign(signs))[:, None], axis=1)
+    first = np.argmax(signs * np.sign(-_sum_signs(signs))[:, None], axis=1)
     zero = np.argmin(np.abs(signs), axis=1)
     first = np.where((signs == 0).any(axis=1), (zero + 2) % 3, first)
     turned = (first[:, None] + np.arange(3)) % 3
     return np.take_along_axis(corners, turned, axis=1), np.take_along_axis(signs, turned, axis=1)
 
 
-def _main_sign(signs: NDArray[np.int8]) -> NDArray[np.int64]:
+def _sum_signs(signs: NDArray[np.int8]) -> NDArray[np.int64]:
     total: NDArray[np.int64] = signs.sum(axis=1, dtype=np.int64)
     return total
 
 
-def _zeros_on(
+def _place_zeros(
     points: NDArray[np.float64], corners: NDArray[np.int32], signs: NDArray[np.int8]
 ) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int32]]:
     """Make the vertices at 0 on the edges 0-1 and 0-2; a corner 1 at 0 is one already."""
     is_edge = np.stack([signs[:, 1] != 0, np.ones(len(corners), bool)], axis=1)
     pairs = np.stack([corners[:, [0, 1]], corners[:, [0, 2]]], axis=1)[is_edge]
     keys, inverse = np.unique(topology.edge_keys(pairs, len(points)), return_inverse=True)
-    made = _zeros_between(points, keys // len(points), keys % len(points))
+    made = _interpolate_zeros(points, keys // len(points), keys % len(points))
     vertices = np.repeat(corners[:, [1]], 2, axis=1)
     vertices[is_edge] = len(points) + inverse
     return np.concatenate([points, made]), vertices[:, 0], vertices[:, 1]
 
 
-def _zeros_between(
+def _interpolate_zeros(
     points: NDArray[np.float64], one: NDArray[np.int64], other: NDArray[np.int64]
 ) -> NDArray[np.float64]:
     """Return where the elevation is 0 between vertices, from the lower of them on."""

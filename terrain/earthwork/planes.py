@@ -63,10 +63,10 @@ def as_plane(base: Any) -> Plane:
         raise OptionError("base", base, allowed="finite")
     if given.shape == ():
         return Plane((0.0, 0.0, float(given)))
-    return _through(given)
+    return _fit_plane(given)
 
 
-def _through(points: NDArray[np.float64]) -> Plane:
+def _fit_plane(points: NDArray[np.float64]) -> Plane:
     first, second = points[1] - points[0], points[2] - points[0]
     doubled = first[0] * second[1] - first[1] * second[0]
     if doubled == 0.0:

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...crs import CRS
-from ...errors import CrsError, LinesError, OptionError
+from ...errors import LinesError, OptionError
 from ...tin import triangulate
 from ...tin.constraints.polygons import gather_rings_of_regions
+from ..georeference import require_same_crs
 from ..results import Features
 from .cells import Pieces
 from .reference import Surface
@@ -24,8 +25,8 @@ _NAMES = ("name", "region", "id", "label")
 """Columns that name a region, in this order."""
 
 
-def as_regions(regions: Any, crs: CRS | None) -> tuple[list[str], Pieces]:
-    """Return the names of regions and their triangles, at elevation 0.
+def as_regions(regions: Any, crs: CRS | None) -> tuple[list[str], Pieces, tuple[str, ...]]:
+    """Return the names of regions, their triangles at elevation 0, and what was assumed.
 
     Parameters
     ----------
@@ -37,17 +38,20 @@ def as_regions(regions: Any, crs: CRS | None) -> tuple[list[str], Pieces]:
     Raises
     ------
     CrsError
-        If the regions name another CRS.
+        If the regions name another CRS, or that of the surfaces is not known.
     LinesError
         If one is no sound polygon.
     OptionError
         If there is none.
     """
-    _require_crs(regions, crs)
-    named = list(_named(regions))
+    is_plain = not hasattr(regions, "crs")
+    theirs = CRS.of(getattr(regions, "crs", None))
+    notes = require_same_crs(theirs, crs, "the regions", is_plain=is_plain)
+    notes += tuple(regions.notes) if isinstance(regions, Features) else ()
+    named = list(_name_regions(regions))
     if not named:
         raise OptionError("number of regions", 0, allowed="1 or more")
-    parts = [_triangles(name, shape) for name, shape in named]
+    parts = [_triangulate(name, shape) for name, shape in named]
     first = np.cumsum([0, *(len(points) for points, _ in parts)])[:-1]
     triangles = [corners + start for (_, corners), start in zip(parts, first, strict=True)]
     groups = np.repeat(np.arange(len(parts)), [len(corners) for corners in triangles])
@@ -55,47 +59,34 @@ def as_regions(regions: Any, crs: CRS | None) -> tuple[list[str], Pieces]:
         np.concatenate([points for points, _ in parts]),
         np.concatenate(triangles).astype(np.int32),
     )
-    return [name for name, _ in named], Pieces(surface, groups.astype(np.int32))
+    return [name for name, _ in named], Pieces(surface, groups.astype(np.int32)), notes
 
 
-def _require_crs(regions: Any, crs: CRS | None) -> None:
-    """Refuse regions that name another CRS; those that name none are in that of the surface."""
-    given = CRS.of(getattr(regions, "crs", None))
-    if given is None or (crs is not None and given.horizontal.is_same(crs.horizontal)):
-        return
-    named = "not known" if crs is None else crs.label
-    raise CrsError(
-        f"The regions are in {given.label} and the CRS of the surface is {named}: both must be in "
-        "one CRS.",
-        crs=given,
-    )
-
-
-def _named(regions: Any) -> Iterator[tuple[str, Any]]:
+def _name_regions(regions: Any) -> Iterator[tuple[str, Any]]:
     if isinstance(regions, Features):
-        yield from _of_features(regions)
+        yield from _take_features(regions)
     elif isinstance(regions, Mapping) and "type" not in regions:
         yield from ((str(name), shape) for name, shape in regions.items())
     elif hasattr(regions, "__geo_interface__"):
-        yield from _of_interface(regions.__geo_interface__)
+        yield from _take_interface(regions.__geo_interface__)
     elif isinstance(regions, Mapping):
-        yield from _of_interface(regions)
+        yield from _take_interface(regions)
     elif isinstance(regions, Sequence | np.ndarray) or hasattr(regions, "__iter__"):
         yield from ((str(number), shape) for number, shape in enumerate(regions, start=1))
     else:
         raise OptionError("regions", type(regions).__name__, allowed="polygons")
 
 
-def _of_interface(given: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+def _take_interface(given: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
     if given["type"] != "FeatureCollection":
         yield "1", _Interface(given)
         return
     for number, feature in enumerate(given["features"], start=1):
         properties = feature.get("properties") or {}
-        yield _name_among(properties, number), _Interface(feature["geometry"])
+        yield _find_name(properties, number), _Interface(feature["geometry"])
 
 
-def _name_among(properties: Mapping[str, Any], number: int) -> str:
+def _find_name(properties: Mapping[str, Any], number: int) -> str:
     by_lower = {str(key).lower(): value for key, value in properties.items()}
     found = [by_lower[key] for key in _NAMES if by_lower.get(key) not in (None, "")]
     return str(found[0]) if found else str(number)
@@ -108,7 +99,7 @@ class _Interface:
         self.__geo_interface__ = given
 
 
-def _of_features(features: Features) -> Iterator[tuple[str, Any]]:
+def _take_features(features: Features) -> Iterator[tuple[str, Any]]:
     if features.kind != "polygons":
         raise OptionError("regions", f"{features.kind}", allowed="polygons")
     rings, spans, *multi = features.offsets
@@ -120,10 +111,10 @@ def _of_features(features: Features) -> Iterator[tuple[str, Any]]:
             features.coordinates[rings[j] : rings[j + 1], :2]
             for j in range(int(spans[number]), int(spans[number + 1]))
         ]
-        yield _name_among(properties, number + 1), shape
+        yield _find_name(properties, number + 1), shape
 
 
-def _triangles(name: str, shape: Any) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def _triangulate(name: str, shape: Any) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Triangulate a polygon; inside is what an odd number of its rings holds."""
     what = f"region '{name}'"
     rings = [ring[:, :2] for polygon in gather_rings_of_regions([shape], what) for ring in polygon]

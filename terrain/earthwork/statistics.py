@@ -36,10 +36,10 @@ def percentiles(surface: Surface, shares: Sequence[float]) -> NDArray[np.float64
     function of the elevation: those are found by the areas below vertices, then it is solved.
     """
     values = np.unique(surface.points[surface.triangles.ravel(), 2])
-    wanted = _areas_below(surface, np.array([np.inf]))[0] * np.asarray(shares) / 100.0
+    wanted = _measure_below(surface, np.array([np.inf]))[0] * np.asarray(shares) / 100.0
     low, high = _enclose(surface, values, wanted)
     pairs = zip(values[low].tolist(), values[high].tolist(), wanted.tolist(), strict=True)
-    return np.array([_between(surface, *one) for one in pairs])
+    return np.array([_solve_between(surface, *one) for one in pairs])
 
 
 def _enclose(
@@ -53,7 +53,7 @@ def _enclose(
             np.linspace(a, b, _FAN_OUT + 2).astype(np.int64) for a, b in zip(low, high, strict=True)
         ]
         trial = np.unique(np.concatenate([low, high, *steps]))
-        below = _areas_below(surface, np.nextafter(values[trial], np.inf))
+        below = _measure_below(surface, np.nextafter(values[trial], np.inf))
         for k, area in enumerate(wanted):
             inner = trial[(trial > low[k]) & (trial < high[k])]
             reached = below[np.searchsorted(trial, inner)] >= area
@@ -62,18 +62,18 @@ def _enclose(
     return low, high
 
 
-def _areas_below(surface: Surface, levels: NDArray[np.float64]) -> NDArray[np.float64]:
+def _measure_below(surface: Surface, levels: NDArray[np.float64]) -> NDArray[np.float64]:
     finite = np.minimum(levels, np.finfo(float).max)
     return _kernel.stage_sums(surface.points, surface.triangles, finite, 1.0)[:, 0]
 
 
-def _between(surface: Surface, low: float, high: float, area: float) -> float:
+def _solve_between(surface: Surface, low: float, high: float, area: float) -> float:
     """Solve for the elevation between two between which there is no vertex."""
     after = float(np.nextafter(low, np.inf))
     if after >= high:
-        return high if _areas_below(surface, np.array([after]))[0] < area else low
+        return high if _measure_below(surface, np.array([after]))[0] < area else low
     middle = low + 0.5 * (high - low)
-    at_low, at_middle, at_high = _areas_below(surface, np.array([after, middle, high])).tolist()
+    at_low, at_middle, at_high = _measure_below(surface, np.array([after, middle, high])).tolist()
     if at_low >= area:
         return low
     if at_high <= area:

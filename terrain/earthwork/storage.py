@@ -7,13 +7,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...crs import CRS
 from ...errors import OptionError, PointsError
 from ...tin import topology
 from ...tin.validation.options import is_finite_number
 from .. import _kernel
-from ..results import Table
+from ..georeference import require_same_crs
+from ..results import Features, Table
 from .cells import cut_pieces
-from .reference import Surface, reference_of, require_finite
+from .reference import Surface, find_reference, require_finite
 from .regions import as_regions
 
 if TYPE_CHECKING:
@@ -80,12 +82,12 @@ def stage_storage(
     >>> table["area"], table["volume"].round(3)
     (array([ 4., 16., 36.]), array([ 1.333, 10.667, 36.   ]))
     """
-    reference = reference_of(tin, "Volumes")
+    reference = find_reference(tin, "Volumes")
+    notes = reference.notes
     surface = Surface(tin.triangulation.points, tin.triangulation.triangles)
     if region is not None:
-        surface = cut_pieces(surface, as_regions({"region": region}, tin.crs)[1]).surface
-        if len(surface.triangles) == 0:
-            raise PointsError("The region lies outside the surface: it holds nothing.")
+        surface, said = _cut_out(surface, region, tin.crs)
+        notes += said
     elevations = surface.points[surface.triangles.ravel(), 2]
     lowest, highest = float(elevations.min()), float(elevations.max())
     wanted = _as_levels(levels, interval, lowest, highest)
@@ -99,19 +101,30 @@ def stage_storage(
         "area": sums[:, 0],
         "wetted_area": sums[:, 1],
         "volume": sums[:, 2] * reference.up,
-        "is_contained": wanted <= _spill_level(surface),
+        "is_contained": wanted <= _find_spill_level(surface),
     }
     units = dict.fromkeys(("level", "depth"), reference.elevation_unit)
-    square, cube = reference.power(2), reference.power(3)
+    square, cube = reference.units.area, reference.units.volume
     return Table(
         columns,
         units=units | {"area": square, "wetted_area": square, "volume": cube},
         name="stage and storage",
-        notes=reference.notes,
+        notes=notes,
     )
 
 
-def _spill_level(surface: Surface) -> float:
+def _cut_out(surface: Surface, region: Any, crs: CRS | None) -> tuple[Surface, tuple[str, ...]]:
+    """Return the part of a surface in a region, and what was assumed of it."""
+    theirs = CRS.of(getattr(region, "crs", None))
+    notes = require_same_crs(theirs, crs, "the region", is_plain=not hasattr(region, "crs"))
+    notes += tuple(region.notes) if isinstance(region, Features) else ()
+    pieces = cut_pieces(surface, as_regions({"region": region}, crs)[1]).surface
+    if len(pieces.triangles) == 0:
+        raise PointsError("The region lies outside the surface: it holds nothing.")
+    return pieces, notes
+
+
+def _find_spill_level(surface: Surface) -> float:
     """Return the lowest elevation on the boundary."""
     start, end = topology.directed_edges(surface.triangles)
     edges = np.stack([start.ravel(), end.ravel()], axis=1)
@@ -125,9 +138,9 @@ def _as_levels(levels: Any, interval: Any, lowest: float, highest: float) -> NDA
     if levels is not None:
         if interval is not None:
             raise OptionError("interval", interval, allowed="None where levels are given")
-        return _given_levels(levels)
+        return _as_given_levels(levels)
     if interval is None:
-        interval = _usual_interval(highest - lowest)
+        interval = _choose_interval(highest - lowest)
     step = _as_interval(interval)
     first, last = math.ceil(lowest / step), math.ceil(highest / step)
     if last - first >= _MOST_LEVELS:
@@ -136,7 +149,7 @@ def _as_levels(levels: Any, interval: Any, lowest: float, highest: float) -> NDA
     return np.arange(first, last + 1, dtype=np.float64) * step
 
 
-def _given_levels(levels: Sequence[float]) -> NDArray[np.float64]:
+def _as_given_levels(levels: Sequence[float]) -> NDArray[np.float64]:
     try:
         array = np.atleast_1d(np.asarray(levels, np.float64))
     except (TypeError, ValueError):
@@ -155,7 +168,7 @@ def _as_interval(interval: Any) -> float:
     return float(interval)
 
 
-def _usual_interval(relief: float) -> float:
+def _choose_interval(relief: float) -> float:
     if relief <= 0.0:
         return 1.0
     power = 10.0 ** math.floor(math.log10(relief / _USUAL_LEVELS))

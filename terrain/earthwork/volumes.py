@@ -12,7 +12,7 @@ from .. import _kernel
 from ..results import Table
 from .cells import Pieces, cut_pieces
 from .planes import as_plane
-from .reference import Surface, reference_of, require_finite, surfaces_of
+from .reference import Surface, find_common_reference, find_reference, require_finite
 from .regions import as_regions
 
 if TYPE_CHECKING:
@@ -95,30 +95,28 @@ def volume(
     if (other is None) == (base is None):
         given = "neither" if other is None else "both"
         raise OptionError("base", given, allowed="a level, a plane, or another TIN, one of them")
-    reference = reference_of(tin, "Volumes")
     if other is None:
-        return _to_plane(tin, base, regions, reference)
-    reference_of(other, "Volumes")
-    surface, second, notes = surfaces_of(tin, other)
-    names, pieces, parts = _pieces(surface, regions, tin)
+        return _measure_to_plane(tin, base, regions)
+    reference, surface, second = find_common_reference(tin, other, "Volumes")
+    names, pieces, parts, notes = _cut_into_regions(surface, regions, tin)
     workers = thread_count(threads, len(tin.points) + len(other.points))
-    sums = _between(pieces, len(names), second, reference.up, workers)
-    own = _areas(pieces, len(names))
+    sums = _sum_between(pieces, len(names), second, reference.up, workers)
+    own = _measure_areas(pieces, len(names))
     if parts is None:
-        others = _areas(_whole(second), 1)
+        others = _measure_areas(_take_whole(second), 1)
     else:
-        others = _between(parts, len(names), second, reference.up, workers)[:, 0]
+        others = _sum_between(parts, len(names), second, reference.up, workers)[:, 0]
     alone = {
-        "area_alone": _less(own, sums[:, 0]),
-        "base_area_alone": _less(others, sums[:, 0]),
+        "area_alone": _subtract(own, sums[:, 0]),
+        "base_area_alone": _subtract(others, sums[:, 0]),
     }
-    return _table(names, sums, alone, reference, [*notes, *_overlaps(parts, names)])
+    return _as_table(names, sums, alone, reference, [*notes, *_describe_overlaps(parts, names)])
 
 
-def _to_plane(tin: TIN, base: Any, regions: Any, reference: Reference) -> Table:
-    plane = as_plane(base)
+def _measure_to_plane(tin: TIN, base: Any, regions: Any) -> Table:
+    reference, plane = find_reference(tin, "Volumes"), as_plane(base)
     surface = Surface(tin.triangulation.points, tin.triangulation.triangles)
-    names, pieces, parts = _pieces(surface, regions, tin)
+    names, pieces, parts, notes = _cut_into_regions(surface, regions, tin)
     heights = plane.heights_above(pieces.surface.points)
     sums = _kernel.sum_heights(
         pieces.surface.points,
@@ -131,23 +129,25 @@ def _to_plane(tin: TIN, base: Any, regions: Any, reference: Reference) -> Table:
     sums[:, 7] *= plane.steepness(reference.up)
     alone: dict[str, NDArray[np.float64]] = {}
     if parts is not None:
-        alone["base_area_alone"] = _less(_areas(parts, len(names)), sums[:, 0])
-    return _table(names, sums, alone, reference, _overlaps(parts, names))
+        alone["base_area_alone"] = _subtract(_measure_areas(parts, len(names)), sums[:, 0])
+    return _as_table(names, sums, alone, reference, [*notes, *_describe_overlaps(parts, names)])
 
 
-def _whole(surface: Surface) -> Pieces:
+def _take_whole(surface: Surface) -> Pieces:
     return Pieces(surface, np.zeros(len(surface.triangles), np.int32))
 
 
-def _pieces(surface: Surface, regions: Any, tin: TIN) -> tuple[list[str], Pieces, Pieces | None]:
-    """Return names of groups, the surface in them, and the regions themselves if there are any."""
+def _cut_into_regions(
+    surface: Surface, regions: Any, tin: TIN
+) -> tuple[list[str], Pieces, Pieces | None, tuple[str, ...]]:
+    """Return names of groups, the surface in them, the regions if there are any, and notes."""
     if regions is None:
-        return ["all"], _whole(surface), None
-    names, parts = as_regions(regions, tin.crs)
-    return names, cut_pieces(surface, parts), parts
+        return ["all"], _take_whole(surface), None, ()
+    names, parts, notes = as_regions(regions, tin.crs)
+    return names, cut_pieces(surface, parts), parts, notes
 
 
-def _between(
+def _sum_between(
     pieces: Pieces, count: int, other: Surface, up: float, threads: int
 ) -> NDArray[np.float64]:
     return _kernel.sum_between(
@@ -162,21 +162,21 @@ def _between(
     )
 
 
-def _areas(pieces: Pieces, count: int) -> NDArray[np.float64]:
+def _measure_areas(pieces: Pieces, count: int) -> NDArray[np.float64]:
     return _kernel.sum_areas(pieces.surface.points, pieces.surface.triangles, pieces.groups, count)
 
 
-def _less(whole: NDArray[np.float64], part: NDArray[np.float64]) -> NDArray[np.float64]:
+def _subtract(whole: NDArray[np.float64], part: NDArray[np.float64]) -> NDArray[np.float64]:
     rest = whole - part
     return np.where(rest <= _ROUNDING * whole, 0.0, rest)
 
 
-def _overlaps(parts: Pieces | None, names: list[str]) -> list[str]:
+def _describe_overlaps(parts: Pieces | None, names: list[str]) -> list[str]:
     """Tell how much regions overlap: what lies in several counts in each of them."""
     if parts is None or len(names) < 2:
         return []
-    sums = _between(parts, len(names), parts.surface, 1.0, 1)
-    doubled = _less(sums[:, 0], _areas(parts, len(names)))
+    sums = _sum_between(parts, len(names), parts.surface, 1.0, 1)
+    doubled = _subtract(sums[:, 0], _measure_areas(parts, len(names)))
     if not doubled.any():
         return []
     return [
@@ -185,7 +185,7 @@ def _overlaps(parts: Pieces | None, names: list[str]) -> list[str]:
     ]
 
 
-def _table(
+def _as_table(
     names: list[str],
     sums: NDArray[np.float64],
     alone: dict[str, NDArray[np.float64]],
@@ -199,7 +199,7 @@ def _table(
         mean = (fill - cut) / area
     is_met = area > 0.0
     cut, fill = cut * reference.up, fill * reference.up
-    unchanged = _less(area, by_name["cut_area"] + by_name["fill_area"])
+    unchanged = _subtract(area, by_name["cut_area"] + by_name["fill_area"])
     columns: dict[str, Any] = {"region": np.array(names, object)}
     columns |= {"cut": cut, "fill": fill, "net": fill - cut, "area": area}
     columns |= {name: by_name[name] for name in ("cut_area", "fill_area")}
@@ -208,15 +208,14 @@ def _table(
     for name, values in (*((n, by_name[n]) for n in ("lowest", "highest")), ("mean", mean)):
         columns[name] = np.where(is_met, values, np.nan)
     return Table(
-        columns, units=_units(columns, reference), name="volumes", notes=_notes(reference, notes)
+        columns,
+        units=_list_units(columns, reference),
+        name="volumes",
+        notes=[*reference.notes, *notes],
     )
 
 
-def _notes(reference: Reference, notes: list[str]) -> list[str]:
-    return list(dict.fromkeys([*reference.notes, *notes]))
-
-
-def _units(columns: dict[str, Any], reference: Reference) -> dict[str, Any]:
-    units: dict[str, Any] = {name: reference.power(2) for name in columns if "area" in name}
-    units |= dict.fromkeys(("cut", "fill", "net"), reference.power(3))
+def _list_units(columns: dict[str, Any], reference: Reference) -> dict[str, Any]:
+    units: dict[str, Any] = {name: reference.units.area for name in columns if "area" in name}
+    units |= dict.fromkeys(("cut", "fill", "net"), reference.units.volume)
     return units | dict.fromkeys(("lowest", "highest", "mean"), reference.elevation_unit)

@@ -17,24 +17,24 @@ if TYPE_CHECKING:
     from ...tin.triangulation import Triangulation
     from .reference import Reference
 
-__all__ = ["classes_of", "zero_line", "zones"]
+__all__ = ["classify", "find_zones", "trace_zero_line"]
 
 NAMES = {-1: "cut", 0: "unchanged", 1: "fill"}
 
 
-def classes_of(mesh: Triangulation) -> NDArray[np.int8]:
+def classify(mesh: Triangulation) -> NDArray[np.int8]:
     """Return +1 where triangles are filled, -1 where cut, 0 where nothing changes."""
     # No triangle has both signs, but for roundings, which the mean does not mind.
     classes: NDArray[np.int8] = np.sign(mesh.points[mesh.triangles, 2].sum(axis=1)).astype(np.int8)
     return classes
 
 
-def zero_line(mesh: Triangulation, reference: Reference) -> Features:
+def trace_zero_line(mesh: Triangulation, reference: Reference) -> Features:
     """Return the lines between cut, fill and unchanged parts, what is higher on the left.
 
     Lines end where three parts meet, and at the boundary.
     """
-    classes = classes_of(mesh)
+    classes = classify(mesh)
     across = np.where(mesh.neighbors >= 0, classes[mesh.neighbors], np.int8(127))
     triangle, corner = np.nonzero(across < classes[:, None])
     start, end = topology.ends(mesh.triangles, triangle.astype(np.int64), corner.astype(np.int64))
@@ -44,15 +44,15 @@ def zero_line(mesh: Triangulation, reference: Reference) -> Features:
     return Features.of_lines(
         mesh.points[vertices, :2].reshape(-1, 2),
         offsets,
-        columns={"length": _lengths(mesh.points[vertices, :2], offsets)},
-        units={"length": None if reference.crs is None else reference.crs.horizontal_unit},
+        columns={"length": _measure_lengths(mesh.points[vertices, :2], offsets)},
+        units={"length": reference.units.length},
         crs=reference.crs,
         name="zero line",
         notes=reference.notes,
     )
 
 
-def _lengths(xy: NDArray[np.float64], offsets: NDArray[np.int64]) -> NDArray[np.float64]:
+def _measure_lengths(xy: NDArray[np.float64], offsets: NDArray[np.int64]) -> NDArray[np.float64]:
     steps = np.hypot(*np.diff(xy.reshape(-1, 2), axis=0, prepend=xy[:1].reshape(-1, 2)).T)
     steps[offsets[:-1]] = 0.0
     return np.add.reduceat(steps, offsets[:-1]) if len(steps) else steps
@@ -86,13 +86,13 @@ def _follow(a: int, b: int, following: dict[int, int], inside: set[int]) -> list
     return chain
 
 
-def zones(mesh: Triangulation, reference: Reference) -> Features:
+def find_zones(mesh: Triangulation, reference: Reference) -> Features:
     """Return the connected parts that are cut, filled or unchanged as polygons."""
-    classes = classes_of(mesh)
+    classes = classify(mesh)
     barrier = (mesh.neighbors < 0) | (classes[mesh.neighbors] != classes[:, None])
     part = number_parts(mesh.neighbors, barrier)
     count = int(part.max()) + 1
-    rings, ring_offsets, polygon_offsets = _polygons(mesh, barrier, part, count)
+    rings, ring_offsets, polygon_offsets = _close_rings(mesh, barrier, part, count)
     sums = _kernel.sum_heights(
         mesh.points, mesh.triangles, np.ascontiguousarray(mesh.points[:, 2]), part, count, 1.0
     )
@@ -105,7 +105,7 @@ def zones(mesh: Triangulation, reference: Reference) -> Features:
         "lowest": sums[:, 8],
         "highest": sums[:, 9],
     }
-    units: dict[str, Any] = {"area": reference.power(2), "volume": reference.power(3)}
+    units: dict[str, Any] = {"area": reference.units.area, "volume": reference.units.volume}
     units |= dict.fromkeys(("lowest", "highest"), reference.elevation_unit)
     return Features.of_polygons(
         mesh.points[rings, :2],
@@ -119,14 +119,14 @@ def zones(mesh: Triangulation, reference: Reference) -> Features:
     )
 
 
-def _polygons(
+def _close_rings(
     mesh: Triangulation, barrier: NDArray[np.bool_], part: NDArray[np.int32], count: int
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
     """Return the closed rings of the parts, each part's exterior first."""
     cut = np.where(barrier, np.int32(topology.NO_NEIGHBOR), mesh.neighbors)
     rings = topology.boundary_rings(mesh.triangles, cut)
-    owner = _owners(mesh, barrier, part, rings)
-    is_hole = np.array([_doubled_area(mesh.points[ring, :2]) < 0 for ring in rings])
+    owner = _find_owners(mesh, barrier, part, rings)
+    is_hole = np.array([_measure_doubled_area(mesh.points[ring, :2]) < 0 for ring in rings])
     order = np.lexsort((is_hole, owner))
     closed = [np.append(rings[i], rings[i][0]).astype(np.int64) for i in order]
     return (
@@ -136,7 +136,7 @@ def _polygons(
     )
 
 
-def _owners(
+def _find_owners(
     mesh: Triangulation,
     barrier: NDArray[np.bool_],
     part: NDArray[np.int32],
@@ -153,6 +153,6 @@ def _owners(
     return found
 
 
-def _doubled_area(ring: NDArray[np.float64]) -> float:
+def _measure_doubled_area(ring: NDArray[np.float64]) -> float:
     x, y = (ring - ring[0]).T
     return float((x * np.roll(y, -1) - np.roll(x, -1) * y).sum())

@@ -10,7 +10,8 @@ import numpy as np
 
 from ...tin.validation.threads import thread_count
 from .. import _kernel
-from .grids import as_parts, centers, edges
+from ..results.gridded import locate_centers
+from .grids import as_parts, locate_edges
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -71,27 +72,27 @@ class SurfaceBand:
         if rows.stop <= rows.start or columns.stop <= columns.start:
             return np.empty((max(0, rows.stop - rows.start), max(0, columns.stop - columns.start)))
         if self._method == "linear":
-            return self._scanned(rows, columns)
+            return self._scan(rows, columns)
         block = np.empty((rows.stop - rows.start, columns.stop - columns.start))
-        for strip in _strips(rows, columns):
-            block[strip.start - rows.start : strip.stop - rows.start] = self._asked(strip, columns)
+        for strip in _list_strips(rows, columns):
+            block[strip.start - rows.start : strip.stop - rows.start] = self._ask(strip, columns)
         return block
 
-    def _scanned(self, rows: slice, columns: slice) -> NDArray[np.float64]:
-        surface, (x, y) = self._tin.triangulation, centers(self._grid, rows, columns)
+    def _scan(self, rows: slice, columns: slice) -> NDArray[np.float64]:
+        surface, (x, y) = self._tin.triangulation, locate_centers(self._grid, rows, columns)
         threads = thread_count(self._threads, len(x) * len(y))
         spacing, values = self._grid.spacing, self._values
         if not self._is_mean:
             return _kernel.values_at_centers(
                 surface.points, surface.triangles, x, y, spacing, values, threads
             )
-        x_edges, y_edges = edges(self._grid, rows, columns)
+        x_edges, y_edges = locate_edges(self._grid, rows, columns)
         return _kernel.means_of_cells(
             surface.points, surface.triangles, x, y, spacing, x_edges, y_edges, values, threads
         )
 
-    def _asked(self, rows: slice, columns: slice) -> NDArray[np.float64]:
-        x, y = centers(self._grid, rows, columns)
+    def _ask(self, rows: slice, columns: slice) -> NDArray[np.float64]:
+        x, y = locate_centers(self._grid, rows, columns)
         xy = np.empty((len(y), len(x), 2))
         xy[..., 0], xy[..., 1] = x, y[:, None]
         places = xy.reshape(-1, 2)
@@ -99,7 +100,7 @@ class SurfaceBand:
         return found.reshape(len(y), len(x))
 
 
-def _strips(rows: slice, columns: slice) -> Iterator[slice]:
+def _list_strips(rows: slice, columns: slice) -> Iterator[slice]:
     height = max(1, _STRIP // (columns.stop - columns.start))
     for top in range(rows.start, rows.stop, height):
         yield slice(top, min(top + height, rows.stop))

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import math
-import os
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ... import _optional
 from ...crs import CRS
-from ...errors import CrsError, OptionError
+from ...errors import OptionError, PointsError
 from ...tin.types import Bounds, Grid
 from ...tin.validation.options import is_finite_number
+from ..georeference import require_same_crs
 from ..results import Raster
+from ..results.raster import require_grid
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -22,7 +22,17 @@ if TYPE_CHECKING:
 
     from ...tin import TIN
 
-__all__ = ["MOST_CELLS", "MOST_CELLS_IN_MEMORY", "as_grid", "centers", "edges"]
+__all__ = [
+    "MOST_CELLS",
+    "MOST_CELLS_IN_MEMORY",
+    "Cells",
+    "as_grid",
+    "as_parts",
+    "cover",
+    "describe_extent",
+    "locate_edges",
+    "to_grid",
+]
 
 MOST_CELLS = 10**11
 """Of a raster that is made as it is written: 800 GB."""
@@ -32,21 +42,37 @@ MOST_CELLS_IN_MEMORY = 2**31
 
 _MOST_PER_SIDE = 2**30
 
+_MOST_DRIFT = 1e-3
+"""Of a cell: so much the last cell may be off if cells are taken to be square and even."""
+
 _FINEST = 2.0**9 * np.finfo(np.float64).eps
 """A cell has so much of the largest coordinate at least, so that centres are told apart."""
 
 
+class Cells(NamedTuple):
+    """A grid of another raster, with what is told of it.
+
+    Attributes
+    ----------
+    grid : Grid
+    crs : CRS or None
+    """
+
+    grid: Grid
+    crs: CRS | None
+
+
 def as_grid(
-    tin: TIN, *, spacing: float | None, like: Any, grid: Grid | None, in_memory: bool
-) -> Grid:
-    """Return the one grid that was asked for.
+    tin: TIN, *, spacing: float | None, like: Any = None, grid: Grid | None, in_memory: bool
+) -> tuple[Grid, tuple[str, ...]]:
+    """Return the one grid that was asked for, and what was assumed of it.
 
     Parameters
     ----------
     tin : TIN
     spacing : float or None
         Cells aligned to its multiples, around the surface.
-    like : Raster, str, os.PathLike or None
+    like : Raster, Cells, rasterio data set, object of xarray, or None
     grid : Grid or None
     in_memory : bool
         Whether all cells are to be held at a time.
@@ -57,21 +83,38 @@ def as_grid(
         Unless exactly one is given, or if it has too many, too small or no square cells.
     CrsError
         If the other raster has another CRS.
+    PointsError
+        If the cells are not where the surface is.
     """
     given = {"spacing": spacing, "like": like, "grid": grid}
     named = [name for name, value in given.items() if value is not None]
     if len(named) != 1:
         raise OptionError("grid", named, "one of spacing, like and grid")
+    notes: tuple[str, ...] = ()
     if spacing is not None:
-        found = _around(tin.bounds, spacing)
+        found = cover(tin.bounds, spacing)
+    elif like is not None:
+        found, crs = as_cells(like)
+        notes = require_same_crs(crs, tin.crs, "the other raster")
     else:
-        found = _like(like, tin) if grid is None else grid
+        found = as_one_grid(grid)
     _require_cells(found, in_memory)
-    return found
+    _require_overlap(found.bounds, tin.bounds)
+    return found, notes
 
 
-def _around(bounds: Bounds, spacing: float) -> Grid:
-    """Return the cells that cover bounds, with edges at multiples of the spacing."""
+def cover(bounds: Bounds, spacing: float) -> Grid:
+    """Return the cells that cover bounds, with edges at multiples of the spacing.
+
+    Raises
+    ------
+    OptionError
+
+    Examples
+    --------
+    >>> cover(Bounds(0.5, 0.5, 3.5, 2.0), 1.0)
+    Grid(bounds=Bounds(xmin=0.0, ymin=0.0, xmax=4.0, ymax=2.0), shape=(2, 4), spacing=1.0)
+    """
     if not (is_finite_number(spacing) and spacing > 0):
         raise OptionError("spacing", spacing, "a length > 0 in CRS units")
     size = float(spacing)
@@ -83,6 +126,21 @@ def _around(bounds: Bounds, spacing: float) -> Grid:
     return Grid(Bounds(*around), shape=(rows, columns), spacing=size)
 
 
+def as_one_grid(grid: Any) -> Grid:
+    """Return a Grid whose numbers fit together.
+
+    Raises
+    ------
+    OptionError
+    """
+    if not isinstance(grid, Grid):
+        raise OptionError("grid", grid, "a Grid")
+    if not (is_finite_number(grid.spacing) and grid.spacing > 0):
+        raise OptionError("spacing", grid.spacing, "a length > 0 in CRS units")
+    require_grid(grid)
+    return grid
+
+
 def _require_telling(spacing: float, bounds: Bounds) -> None:
     largest = max(map(abs, (bounds.xmin, bounds.xmax, bounds.ymin, bounds.ymax)))
     least = _FINEST * largest
@@ -92,79 +150,123 @@ def _require_telling(spacing: float, bounds: Bounds) -> None:
         )
 
 
-def _require_cells(grid: Any, in_memory: bool) -> None:
-    if not isinstance(grid, Grid):
-        raise OptionError("grid", grid, "a Grid")
-    if not (is_finite_number(grid.spacing) and grid.spacing > 0):
-        raise OptionError("spacing", grid.spacing, "a length > 0 in CRS units")
+def _require_cells(grid: Grid, in_memory: bool) -> None:
     _require_telling(grid.spacing, grid.bounds)
     rows, columns = (int(side) for side in grid.shape)
-    if rows < 1 or columns < 1:
-        raise OptionError("shape of the grid", grid.shape, "1 or more rows and columns")
     most = MOST_CELLS_IN_MEMORY if in_memory else MOST_CELLS
     if rows * columns > most or max(rows, columns) > _MOST_PER_SIDE:
         size = f"{rows:,} rows by {columns:,} columns"
         raise OptionError("number of cells", rows * columns, f"at most {most:,}, not {size}")
 
 
-def _like(like: Any, tin: TIN) -> Grid:
-    if isinstance(like, Raster):
-        _require_crs(tin, like.crs, "the raster")
-        return like.grid
-    if isinstance(like, str | os.PathLike):
-        return _grid_of_file(os.fspath(like), tin)
-    raise OptionError("like", like, "a Raster or the path of a raster file")
-
-
-def _grid_of_file(path: str, tin: TIN) -> Grid:
-    """Read the grid of a raster file from its header."""
-    rasterio = _optional.load("rasterio", "The grid of a raster file")
-    try:
-        with rasterio.open(path) as file:
-            affine, (rows, columns), crs = file.transform, file.shape, file.crs
-    except rasterio.errors.RasterioError as error:
-        raise OptionError("like", path, "a raster file that can be opened") from error
-    _require_crs(tin, None if crs is None else CRS.of(crs.to_wkt()), f"'{path}'")
-    drift = abs(affine.a + affine.e) * max(rows, columns)
-    if affine.b or affine.d or affine.a <= 0 or drift > 1e-3 * affine.a:
-        size = f"{affine.a:g} by {-affine.e:g}"
-        raise OptionError("like", path, f"a north-up raster of square cells (these are {size})")
-    bounds = Bounds(affine.c, affine.f - rows * affine.a, affine.c + columns * affine.a, affine.f)
-    return Grid(bounds, shape=(rows, columns), spacing=affine.a)
-
-
-def _require_crs(tin: TIN, crs: CRS | None, what: str) -> None:
-    if tin.crs is not None and crs is not None and not tin.crs.horizontal.is_same(crs.horizontal):
-        raise CrsError(
-            f"The CRS of {what} is {crs.label}, that of the TIN {tin.crs.label}: they must be the "
-            "same.",
-            crs=crs,
+def _require_overlap(cells: Bounds, bounds: Bounds) -> None:
+    apart = cells.xmax < bounds.xmin or bounds.xmax < cells.xmin
+    if apart or cells.ymax < bounds.ymin or bounds.ymax < cells.ymin:
+        raise PointsError(
+            f"The cells do not meet the surface: they cover {describe_extent(cells)}, the surface "
+            f"{describe_extent(bounds)}."
         )
 
 
-def centers(
-    grid: Grid, rows: slice, columns: slice
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return eastings of the centres of columns, and northings of the centres of rows."""
-    x = grid.bounds.xmin + (_numbers(columns) + 0.5) * grid.spacing
-    y = grid.bounds.ymax - (_numbers(rows) + 0.5) * grid.spacing
-    return x, y
+def describe_extent(bounds: Bounds) -> str:
+    """Write bounds for a sentence.
+
+    Examples
+    --------
+    >>> describe_extent(Bounds(0.0, 0.0, 4.0, 3.0))
+    '0 to 4 east, 0 to 3 north'
+    """
+    return (
+        f"{bounds.xmin:.10g} to {bounds.xmax:.10g} east, {bounds.ymin:.10g} to "
+        f"{bounds.ymax:.10g} north"
+    )
 
 
-def edges(
+# ---------------------------------------------------------------- other rasters
+
+
+def as_cells(like: Any) -> Cells:
+    """Return the cells of another raster.
+
+    Raises
+    ------
+    OptionError
+        If it is none, or has no north-up square cells.
+    """
+    if isinstance(like, Cells):
+        return like
+    if isinstance(like, Raster):
+        return Cells(like.grid, like.crs)
+    if all(hasattr(like, name) for name in ("transform", "shape", "crs")):
+        affine, crs = like.transform, like.crs
+        return Cells(to_grid(tuple(affine)[:6], like.shape), _as_crs(crs))
+    if all(hasattr(like, name) for name in ("coords", "dims")):
+        return _take_coordinates(like)
+    raise OptionError(
+        "like", like, "a Raster, a data set of rasterio or xarray, or the path of a raster file"
+    )
+
+
+def to_grid(transform: Sequence[float], shape: Sequence[int], what: Any = "raster") -> Grid:
+    """Return the grid of a raster with six numbers of georeference, as rasterio has them.
+
+    Parameters
+    ----------
+    transform : (6,) sequence of float
+        Easting is ``a * column + b * row + c``, northing ``d * column + e * row + f``.
+    shape : (2,) sequence of int
+        Rows and columns.
+    what : object
+        What is refused if its cells are none.
+
+    Raises
+    ------
+    OptionError
+        If cells are turned, not square, or have no finite size.
+    """
+    a, b, west, d, e, north = (float(number) for number in transform)
+    rows, columns = (int(side) for side in shape)
+    drift = abs(a + e) * max(rows, columns)
+    is_upright = b == 0.0 == d and a > 0.0 and math.isfinite(a + west + north)
+    if not (is_upright and drift <= _MOST_DRIFT * a):
+        size = f"{a:g} by {-e:g}"
+        raise OptionError("like", what, f"a north-up raster of square cells (these are {size})")
+    bounds = Bounds(west, north - rows * a, west + columns * a, north)
+    return Grid(bounds, shape=(rows, columns), spacing=a)
+
+
+def _take_coordinates(like: Any) -> Cells:
+    """Return the cells of an object of xarray, whose coordinates x and y are the centres."""
+    names = [name for name in ("x", "y") if name in like.coords]
+    sides = [np.asarray(like.coords[name].values, np.float64) for name in names]
+    if len(names) != 2 or any(side.ndim != 1 or len(side) < 2 for side in sides):
+        raise OptionError("like", like, "a data set of xarray with two or more x and y")
+    x, y = sides
+    steps = [(side[-1] - side[0]) / (len(side) - 1) for side in sides]
+    for side, step in zip(sides, steps, strict=True):
+        off = np.abs(side - (side[0] + np.arange(len(side)) * step)).max()
+        if not off <= _MOST_DRIFT * abs(step):
+            raise OptionError("like", like, "a data set of xarray with even steps of x and y")
+    across, up = (float(step) for step in steps)
+    transform = (across, 0.0, float(x[0]) - across / 2, 0.0, up, float(y[0]) - up / 2)
+    named = like.coords["spatial_ref"].attrs if "spatial_ref" in like.coords else {}
+    return Cells(to_grid(transform, (len(y), len(x)), like), CRS.of(named.get("crs_wkt")))
+
+
+def _as_crs(crs: Any) -> CRS | None:
+    """Return the CRS that rasterio has; an empty one is none."""
+    return CRS.of(crs.to_wkt()) if crs else None
+
+
+def locate_edges(
     grid: Grid, rows: slice, columns: slice
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return eastings of the sides of columns, and northings of the sides of rows."""
-    x = (
-        grid.bounds.xmin
-        + np.arange(columns.start, columns.stop + 1, dtype=np.float64) * grid.spacing
+    x, y = (
+        np.arange(part.start, part.stop + 1, dtype=np.float64) * grid.spacing
+        for part in (columns, rows)
     )
-    y = grid.bounds.ymax - np.arange(rows.start, rows.stop + 1, dtype=np.float64) * grid.spacing
-    return x, y
-
-
-def _numbers(part: slice) -> NDArray[np.float64]:
-    return np.arange(part.start, part.stop, dtype=np.float64)
+    return grid.bounds.xmin + x, grid.bounds.ymax - y
 
 
 def as_parts(key: Any, shape: Sequence[int]) -> tuple[slice, slice]:

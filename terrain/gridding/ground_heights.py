@@ -7,17 +7,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..._sentences import counted
-from ...crs import shorten_crs
-from ...errors import CrsError
 from ...tin import Survey
 from ...tin.validation.options import require_tin
 from ...tin.validation.points import as_points
+from ..georeference import agree, describe_unknown
 from ..results import Table
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from ...crs import CRS
     from ...policies import Extrapolation, InterpolationMethod
     from ...tin import TIN
 
@@ -59,7 +57,8 @@ def height_above(
     Raises
     ------
     CrsError
-        If the cloud has another CRS than the TIN.
+        If the cloud is a survey of another CRS than the TIN's, or one of the two is not known; if
+        it cannot be told whether elevations are in one unit.
     OptionError
         As :meth:`tinsmith.TIN.interpolate`.
     PointsError
@@ -73,13 +72,12 @@ def height_above(
     >>> above["height_above_ground"]
     array([ 6., nan])
     >>> above.notes
-    ('1 of 2 points lies outside the surface (rows 1): it has no height above ground.',)
+    ('The CRS is not known: lengths are in its own unit, elevations taken as the same.',
+     '1 of 2 points lies outside the surface (rows 1): it has no height above ground.')
     """
     require_tin(tin)
-    notes: list[str] = []
-    points = _points_of(cloud, tin, notes)
+    points, notes = _place_points(cloud, tin)
     ground = tin.interpolate(points[:, :2], method, extrapolate=extrapolate, threads=threads)
-    notes += _describe_outside(ground)
     x, y, z = points.T
     vertical = dict.fromkeys(("elevation", "ground", "height_above_ground"), tin.elevation_unit)
     across = None if tin.crs is None else tin.crs.horizontal_unit
@@ -93,43 +91,20 @@ def height_above(
         },
         units={"easting": across, "northing": across, **vertical},
         name="height above ground",
-        notes=notes,
+        notes=[*notes, *_describe_outside(ground)],
     )
 
 
-def _points_of(cloud: Any, tin: TIN, notes: list[str]) -> NDArray[np.float64]:
-    """Return the points in the TIN's CRS and unit, and note what was done or assumed."""
+def _place_points(cloud: Any, tin: TIN) -> tuple[NDArray[np.float64], tuple[str, ...]]:
+    """Return the points in the TIN's unit, and what was done or assumed."""
     if not isinstance(cloud, Survey):
-        return as_points(cloud)
+        return as_points(cloud), describe_unknown(tin.crs, tin.elevation_unit)
+    found = agree((tin, cloud), ("the surface", "the points"))
     points = as_points(cloud.points)
-    if not _may_be_same(cloud.crs, tin.crs):
-        raise CrsError(
-            f"The CRS of the points is {shorten_crs(cloud.crs)}, that of the TIN "
-            f"{shorten_crs(tin.crs)}: they must be the same.",
-            crs=cloud.crs,
-        )
-    own, ground = cloud.elevation_unit, tin.elevation_unit
-    if own is None or ground is None:
-        if own is not ground:
-            known = own or ground
-            notes.append(f"One unit of elevations is not known: both are taken to be {known}.")
-        return points
-    if own == ground:
-        return points
-    if own.metres is None or ground.metres is None:
-        raise CrsError(f"Elevations in {own} and in {ground} cannot be compared.")
-    notes.append(f"Elevations of the points were converted from {own} to {ground}.")
-    points[:, 2] *= own.metres / ground.metres
-    return points
-
-
-def _may_be_same(one: CRS | None, other: CRS | None) -> bool:
-    """Tell whether nothing that is known of two CRSs differs: one may lack a vertical axis."""
-    if one is None or other is None:
-        return True
-    if one.vertical_unit is not None and other.vertical_unit is not None:
-        return one.is_same(other)
-    return one.horizontal.is_same(other.horizontal)
+    factor = found.factors[1] / found.factors[0]
+    if factor != 1.0:
+        points[:, 2] *= factor
+    return points, found.notes
 
 
 def _describe_outside(ground: NDArray[np.float64]) -> list[str]:

@@ -7,14 +7,15 @@ from typing import TYPE_CHECKING, Any
 from ...errors import OptionError, choice
 from ...policies import InterpolationMethod, RasterSample, RasterValue
 from ...tin.validation.options import as_flag, require_count, require_tin
+from ..georeference import describe_unknown
+from ..light import as_light
 from ..results import Raster
 from .bands import SurfaceBand
+from .coverage import require_covered
 from .grids import as_grid
-from .triangle_values import triangle_values
+from .triangle_values import measure_triangles
 
 if TYPE_CHECKING:
-    import os
-
     from ...crs import Unit
     from ...tin import TIN, Grid
 
@@ -27,7 +28,7 @@ def rasterize(
     tin: TIN,
     *,
     spacing: float | None = None,
-    like: Raster | str | os.PathLike[str] | None = None,
+    like: Any = None,
     grid: Grid | None = None,
     method: InterpolationMethod = "linear",
     value: RasterValue = "elevation",
@@ -45,15 +46,16 @@ def rasterize(
     spacing : float, optional
         Side of a square cell, CRS units. The cells' edges lie at its multiples, and they cover the
         bounds of the TIN.
-    like : Raster, str or os.PathLike, optional
-        Take the cells of another raster, or of a raster file.
+    like : Raster, str, os.PathLike, or data set of rasterio or xarray, optional
+        Take the cells of another raster, or of a raster file (a plain local one; of
+        :func:`tinsmith.rasterize` only).
     grid : Grid, optional
         Take these cells. One of the three is needed.
     method : {"linear", "nearest", "laplace", "natural", "c1"}
         As :meth:`tinsmith.TIN.interpolate`; other values than elevations are those of triangles.
     value : {"elevation", "slope", "aspect", "hillshade"}
         Slope and aspect in degrees as :func:`tinsmith.slope` and :func:`tinsmith.aspect`, hillshade
-        from 0 (dark) to 255.
+        from 1 (no light) to 255 as :func:`tinsmith.hillshade`.
     at : {"center", "mean"}
         The value at the centre of each cell, or the mean over the part of it that the surface
         covers.
@@ -70,7 +72,7 @@ def rasterize(
     -------
     Raster
         One band, named as the value; NaN in cells whose centre (whose whole, for means) the
-        surface does not cover.
+        surface does not cover. ``notes`` tell what is not known or was assumed.
 
     Raises
     ------
@@ -79,7 +81,11 @@ def rasterize(
         too small for the coordinates or too many (2^31, lazily 10^11), a mean is asked for that is
         not exact, or another option is none.
     CrsError
-        If the other raster has another CRS.
+        If the other raster has another CRS, or that of the TIN is not known.
+    PointsError
+        If no cell would have a value: the cells are not where the surface is.
+    ReadError
+        If the raster file cannot be read.
     MissingExtraError
         If a raster file is given and rasterio is not installed.
 
@@ -105,12 +111,21 @@ def rasterize(
     require_tin(tin)
     _require_options(method, value, at)
     require_count("threads", threads, or_none=True)
-    is_lazy = as_flag("lazy", lazy)
-    cells = as_grid(tin, spacing=spacing, like=like, grid=grid, in_memory=not is_lazy)
-    values = triangle_values(tin, value, azimuth=azimuth, altitude=altitude)
-    band = SurfaceBand(tin, cells, values, method=method, is_mean=at == "mean", threads=threads)
+    is_lazy, light = as_flag("lazy", lazy), as_light(azimuth, altitude)
+    cells, notes = as_grid(tin, spacing=spacing, like=like, grid=grid, in_memory=not is_lazy)
+    is_mean = at == "mean"
+    require_covered(tin, cells, is_mean=is_mean)
+    values = measure_triangles(tin, value, light)
+    band = SurfaceBand(tin, cells, values, method=method, is_mean=is_mean, threads=threads)
     held: Any = band if is_lazy else band[:, :]
-    return Raster({value: held}, cells, crs=tin.crs, units=_units(tin, value), name=value)
+    return Raster(
+        {value: held},
+        cells,
+        crs=tin.crs if tin.crs is None or value == "elevation" else tin.crs.horizontal,
+        units=_list_units(tin, value),
+        name=value,
+        notes=[*describe_unknown(tin.crs, tin.elevation_unit), *notes],
+    )
 
 
 def _require_options(method: str, value: str, at: str) -> None:
@@ -124,7 +139,7 @@ def _require_options(method: str, value: str, at: str) -> None:
         raise OptionError("at", at, f"center for {what}")
 
 
-def _units(tin: TIN, value: str) -> dict[str, Unit | str | None]:
+def _list_units(tin: TIN, value: str) -> dict[str, Unit | str | None]:
     if value == "elevation":
         return {value: tin.elevation_unit}
     return {value: _UNITS[value]} if value in _UNITS else {}

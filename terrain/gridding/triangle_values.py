@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...errors import OptionError
-from ...tin.validation.options import is_finite_number
+from ..light import shade
 from ..slope import aspect, compute_normals, slope
 
 if TYPE_CHECKING:
@@ -15,38 +14,25 @@ if TYPE_CHECKING:
 
     from ...policies import RasterValue
     from ...tin import TIN
+    from ..light import Light
 
-__all__ = ["triangle_values"]
+__all__ = ["measure_triangles"]
 
 
-def triangle_values(
-    tin: TIN, value: RasterValue, *, azimuth: float, altitude: float
-) -> NDArray[np.float64] | None:
+def measure_triangles(tin: TIN, value: RasterValue, light: Light) -> NDArray[np.float64] | None:
     """Return the value of each triangle; None for elevations, which change within them.
 
     Parameters
     ----------
     tin : TIN
     value : RasterValue
-    azimuth, altitude : float
-        Of the light, degrees; for hillshade.
+    light : Light
+        For hillshade.
     """
     if value == "elevation":
         return None
     if value == "slope":
         return slope(tin)
-    return aspect(tin) if value == "aspect" else _shade(tin, azimuth, altitude)
-
-
-def _shade(tin: TIN, azimuth: float, altitude: float) -> NDArray[np.float64]:
-    """Return how bright triangles are, 0 to 255: the cosine of the angle to the light."""
-    for name, angle, low, high in (("azimuth", azimuth, -360, 360), ("altitude", altitude, 0, 90)):
-        if not (is_finite_number(angle) and low <= angle <= high):
-            raise OptionError(name, angle, f"an angle from {low} to {high} degrees")
-    turn, rise = np.radians(azimuth), np.radians(altitude)
-    light = np.array([np.sin(turn) * np.cos(rise), np.cos(turn) * np.cos(rise), np.sin(rise)])
-    upward = compute_normals(tin)
-    longest = np.abs(upward).max(axis=1, keepdims=True)
-    unit = upward / longest
-    shade: NDArray[np.float64] = 255.0 * (unit @ light) / np.linalg.norm(unit, axis=1)
-    return np.maximum(shade, 0.0)
+    if value == "aspect":
+        return aspect(tin)
+    return shade(compute_normals(tin), light).astype(np.float64)

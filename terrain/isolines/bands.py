@@ -9,10 +9,12 @@ import numpy as np
 from ...tin.types import seal
 from ...tin.validation.options import require_tin
 from .. import _kernel
+from ..georeference import describe_unknown, find_plane_units
 from ..results import Features
 from .levels import LevelOptions
-from .measures import measure_ring_areas, plane_units, sum_parts
-from .mending import PolygonParts, mend_polygons, require_whole
+from .measures import measure_ring_areas, sum_parts
+from .mending import PolygonParts, is_whole, mend_polygons, require_whole
+from .rebuilding import rebuild_wrong_bands
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -77,11 +79,14 @@ def contour_bands(
         *_kernel.fill_bands(tin.points, tin.triangles, tin.neighbors, chosen.values)
     )
     parts, notes = mend_polygons(parts)
-    require_whole(tin, parts)
+    said: tuple[str, ...] = ()
+    if notes or not is_whole(tin, parts):
+        parts, said = rebuild_wrong_bands(tin, chosen.values, parts)
+        require_whole(tin, parts)
     numbers, first = np.unique(parts.band, return_index=True)
     areas = measure_ring_areas(tin.crs, parts.points, parts.ring_offsets)
     rings = sum_parts(areas, parts.polygon_offsets[:-1])
-    bounds = _band_bounds(chosen.values)
+    bounds = _list_bounds(chosen.values)
     columns = {
         "from": bounds[numbers],
         "to": bounds[numbers + 1],
@@ -94,14 +99,14 @@ def contour_bands(
         seal(parts.polygon_offsets),
         seal(np.append(first, len(parts.band)).astype(np.int64)),
         columns={name: seal(values) for name, values in columns.items()},
-        units={**units, "area": plane_units(tin.crs).area},
+        units={**units, "area": find_plane_units(tin.crs).area},
         crs=tin.crs,
         elevation_unit=tin.elevation_unit,
         name="contour bands",
-        notes=notes,
+        notes=[*describe_unknown(tin.crs, tin.elevation_unit), *notes, *said],
     )
 
 
-def _band_bounds(levels: NDArray[np.float64]) -> NDArray[np.float64]:
+def _list_bounds(levels: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return where bands begin and end, from below all levels to above them."""
     return np.concatenate([[np.nan], levels, [np.nan]])

@@ -101,12 +101,12 @@ def check_contours(tin: TIN, lines: Features) -> ContourCheck:
     require_tin(tin)
     if not (isinstance(lines, Features) and lines.kind == "lines" and lines.has_elevations):
         raise OptionError("lines", lines, allowed="contours, as lines with elevations")
-    segments = _segments_of(lines)
+    segments = _list_segments(lines)
     contacts, shared, pairs = _find_contacts(tin, segments)
-    return ContourCheck(contacts, pairs, shared, _largest_deviation(tin, segments))
+    return ContourCheck(contacts, pairs, shared, _find_largest_deviation(tin, segments))
 
 
-def _segments_of(lines: Features) -> _Segments:
+def _list_segments(lines: Features) -> _Segments:
     offsets = lines.offsets[0]
     is_start = np.ones(len(lines.coordinates), np.bool_)
     is_start[offsets[1:] - 1] = False
@@ -118,7 +118,7 @@ def _segments_of(lines: Features) -> _Segments:
 def _find_contacts(tin: TIN, segments: _Segments) -> tuple[int, int, tuple[tuple[int, int], ...]]:
     import shapely
 
-    shapes = _shapes(segments.start, segments.end)
+    shapes = _build_shapes(segments.start, segments.end)
     tree = shapely.STRtree(shapes)
     contacts, shared = 0, 0
     pairs: list[tuple[int, int]] = []
@@ -138,7 +138,7 @@ def _find_contacts(tin: TIN, segments: _Segments) -> tuple[int, int, tuple[tuple
     return contacts, shared, tuple(dict.fromkeys(pairs))[:5]
 
 
-def _shapes(start: NDArray[np.float64], end: NDArray[np.float64]) -> NDArray[np.object_]:
+def _build_shapes(start: NDArray[np.float64], end: NDArray[np.float64]) -> NDArray[np.object_]:
     import shapely
 
     shapes: NDArray[np.object_] = shapely.linestrings(np.stack([start[:, :2], end[:, :2]], axis=1))
@@ -170,24 +170,24 @@ def _meet_in_vertex(segments: _Segments, a: int, b: int, vertices: set[tuple[flo
     return any(end[:2] in vertices for end in ends[0] & ends[1])
 
 
-def _largest_deviation(tin: TIN, segments: _Segments) -> float:
+def _find_largest_deviation(tin: TIN, segments: _Segments) -> float:
     import shapely
 
     places = np.concatenate([segments.start, segments.end])
     off = np.abs(tin.interpolate(places[:, :2]) - places[:, 2])
     largest = float(np.nanmax(off)) if np.isfinite(off).any() else 0.0
     p, q = (tin.points[tin.edges[:, k]] for k in (0, 1))
-    tree = shapely.STRtree(_shapes(p, q))
+    tree = shapely.STRtree(_build_shapes(p, q))
     for first in range(0, len(segments.start), _BLOCK):
         block = slice(first, first + _BLOCK)
         start, end = segments.start[block], segments.end[block]
-        which, edge = tree.query(_shapes(start, end), predicate="intersects")
-        off = _deviations(start[which], end[which], p[edge], q[edge])
+        which, edge = tree.query(_build_shapes(start, end), predicate="intersects")
+        off = _measure_deviations(start[which], end[which], p[edge], q[edge])
         largest = max(largest, float(off.max(initial=0.0)))
     return largest
 
 
-def _deviations(
+def _measure_deviations(
     start: NDArray[np.float64],
     end: NDArray[np.float64],
     p: NDArray[np.float64],

@@ -79,7 +79,7 @@ def contour_labels(
     """
     _require_contours(lines)
     if spacing is None:
-        spacing = _default_spacing(lines)
+        spacing = _choose_spacing(lines)
     if not (is_finite_number(spacing) and spacing > 0):
         raise OptionError("spacing", spacing, "a finite number above 0")
     is_chosen = lines.columns["is_index"]
@@ -95,7 +95,7 @@ def _require_contours(lines: Any) -> None:
         raise OptionError("lines", lines, "contours, as tinsmith.contours returns them")
 
 
-def _default_spacing(lines: Features) -> float:
+def _choose_spacing(lines: Features) -> float:
     if len(lines) == 0:
         return 1.0
     bounds = lines.bounds
@@ -184,7 +184,7 @@ class _TakenPlaces:
 def _as_features(lines: Features, labels: list[_Label]) -> Features:
     numbers = np.array([label.line for label in labels], np.int64)
     levels = lines.columns["elevation"][numbers]
-    decimals = _decimals(lines.columns["elevation"])
+    decimals = _count_decimals(lines.columns["elevation"])
     places = np.array([(label.x, label.y) for label in labels], np.float64).reshape(-1, 2)
     columns: dict[str, NDArray[Any]] = {
         "text": np.array([f"{level:.{decimals}f}" for level in levels] or [], object),
@@ -204,7 +204,7 @@ def _as_features(lines: Features, labels: list[_Label]) -> Features:
     )
 
 
-def _decimals(levels: NDArray[np.float64]) -> int:
+def _count_decimals(levels: NDArray[np.float64]) -> int:
     """Return how many decimals the levels need, all of them the same number."""
     needed = [
         -int(Decimal(str(level)).normalize().as_tuple().exponent) for level in np.unique(levels)

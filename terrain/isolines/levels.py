@@ -74,7 +74,7 @@ class LevelOptions:
             return self._explicit(lowest, highest)
         numbers, values = self._at_interval(lowest, highest)
         is_within = (values > lowest) & (values <= highest)
-        notes = () if is_within.any() else (self._none_within(lowest, highest),)
+        notes = () if is_within.any() else (self._describe_none(lowest, highest),)
         return Levels(seal(values[is_within]), self._index(numbers[is_within]), notes)
 
     def for_bands(self, tin: TIN) -> Levels:
@@ -105,7 +105,7 @@ class LevelOptions:
             )
             raise OptionError("interval", self.interval, allowed=allowed)
         numbers = np.arange(-2, last - first + 3, dtype=object) + first
-        values = np.array([_rounded(base + k * step) for k in numbers], np.float64)
+        values = np.array([_round(base + k * step) for k in numbers], np.float64)
         if (np.diff(values) <= 0).any():
             allowed = "so large that elevations here can differ by it"
             raise OptionError("interval", self.interval, allowed=allowed)
@@ -127,7 +127,7 @@ class LevelOptions:
             return np.zeros(len(numbers), np.bool_)
         return np.array(numbers % int(self.index) == 0, np.bool_)
 
-    def _none_within(self, lowest: float, highest: float) -> str:
+    def _describe_none(self, lowest: float, highest: float) -> str:
         return (
             f"No level at the interval {shown(self.interval)} from base {shown(self.base)} lies "
             f"within the elevations of the surface, above {lowest:g} up to {highest:g}: "
@@ -135,7 +135,7 @@ class LevelOptions:
         )
 
 
-def _rounded(level: Fraction) -> float:
+def _round(level: Fraction) -> float:
     try:
         return float(level)
     except OverflowError:

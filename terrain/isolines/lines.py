@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any
 from ...tin.types import seal
 from ...tin.validation.options import require_tin
 from .. import _kernel
+from ..georeference import describe_unknown, find_plane_units
 from ..results import Features
 from .levels import LevelOptions, Levels
-from .measures import measure_lengths, plane_units
+from .measures import measure_lengths
 from .smoothing import TracedLines, require_tolerance, smooth_lines
 
 if TYPE_CHECKING:
@@ -114,9 +115,9 @@ def _as_features(tin: TIN, lines: TracedLines, chosen: Levels) -> Features:
         seal(xyz),
         seal(offsets),
         columns={name: seal(values) for name, values in columns.items()},
-        units={"elevation": tin.elevation_unit, "length": plane_units(tin.crs).length},
+        units={"elevation": tin.elevation_unit, "length": find_plane_units(tin.crs).length},
         crs=tin.crs,
         elevation_unit=tin.elevation_unit,
         name="contours",
-        notes=chosen.notes,
+        notes=[*describe_unknown(tin.crs, tin.elevation_unit), *chosen.notes],
     )

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...crs import METRE, Unit
 from ..units import find_scales
 
 if TYPE_CHECKING:
@@ -14,22 +13,7 @@ if TYPE_CHECKING:
 
     from ...crs import CRS
 
-__all__ = ["PlaneUnits", "measure_lengths", "measure_ring_areas", "plane_units", "sum_parts"]
-
-
-class PlaneUnits(NamedTuple):
-    """Units of lengths and areas; None if they are not known."""
-
-    length: Unit | None
-    area: str | None
-
-
-def plane_units(crs: CRS | None) -> PlaneUnits:
-    """Return the units that lengths and areas are measured in: metres in a geographic CRS."""
-    if crs is None:
-        return PlaneUnits(None, None)
-    unit = METRE if crs.is_geographic else crs.horizontal_unit
-    return PlaneUnits(unit, f"{unit.symbol}²")
+__all__ = ["measure_lengths", "measure_ring_areas", "sum_parts"]
 
 
 def measure_lengths(

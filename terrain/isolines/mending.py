@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from ...tin import TIN
 
-__all__ = ["PolygonParts", "mend_polygons", "require_whole"]
+__all__ = ["PolygonParts", "as_parts", "is_whole", "mend_polygons", "require_whole", "turn"]
 
 _ROUNDINGS = 32.0
 """So many roundings the boundary of a polygon may be off."""
@@ -54,34 +54,35 @@ def mend_polygons(parts: PolygonParts) -> tuple[PolygonParts, tuple[str, ...]]:
     for band in np.unique(parts.band):
         members = shapes[parts.band == band]
         if band in bands:
-            members = _made_valid(members)
+            members = _make_valid(members)
         pieces.append(members)
         numbers.append(np.full(len(members), band, np.int32))
     note = (
         f"{counted(int(is_bad.sum()), 'polygon')} met themselves within the rounding of "
         "coordinates, where triangles are thinner than it, and were made valid."
     )
-    return _parts_of(np.concatenate(pieces), np.concatenate(numbers)), (note,)
+    return as_parts(np.concatenate(pieces), np.concatenate(numbers)), (note,)
 
 
-def _made_valid(shapes: NDArray[np.object_]) -> NDArray[np.object_]:
+def _make_valid(shapes: NDArray[np.object_]) -> NDArray[np.object_]:
     import shapely
 
     whole = shapely.union_all(shapely.make_valid(shapes))
     found = shapely.get_parts(whole)
     polygons = found[shapely.get_type_id(found) == shapely.GeometryType.POLYGON]
-    kept: NDArray[np.object_] = np.array([_turn(one) for one in polygons], object)
+    kept: NDArray[np.object_] = np.array([turn(one) for one in polygons], object)
     return kept
 
 
-def _turn(polygon: Any) -> Any:
+def turn(polygon: Any) -> Any:
     """Return a polygon whose exterior runs counter-clockwise, and its holes clockwise."""
     from shapely.geometry.polygon import orient
 
     return orient(polygon)
 
 
-def _parts_of(shapes: NDArray[np.object_], band: NDArray[np.int32]) -> PolygonParts:
+def as_parts(shapes: NDArray[np.object_], band: NDArray[np.int32]) -> PolygonParts:
+    """Return polygons of shapely as the kernel returns its own."""
     import shapely
 
     _, points, (rings, polygons) = shapely.to_ragged_array(shapes)
@@ -93,6 +94,14 @@ def _parts_of(shapes: NDArray[np.object_], band: NDArray[np.int32]) -> PolygonPa
     )
 
 
+def is_whole(tin: TIN, parts: PolygonParts) -> bool:
+    """Whether areas add up to that of the surface, but for rounding along all rings."""
+    found = float(measure_ring_areas(None, parts.points, parts.ring_offsets).sum())
+    length = float(measure_lengths(None, parts.points, parts.ring_offsets).sum())
+    rounding = float(np.spacing(np.abs(parts.points).max(initial=0.0)))
+    return bool(abs(found - tin.area) <= _SHARE * tin.area + _ROUNDINGS * rounding * length)
+
+
 def require_whole(tin: TIN, parts: PolygonParts) -> None:
     """Refuse polygons whose areas do not add up to that of the surface.
 
@@ -101,10 +110,8 @@ def require_whole(tin: TIN, parts: PolygonParts) -> None:
     PointsError
         If more is missing than rounding along all rings can account for.
     """
-    found = float(measure_ring_areas(None, parts.points, parts.ring_offsets).sum())
-    length = float(measure_lengths(None, parts.points, parts.ring_offsets).sum())
-    rounding = float(np.spacing(np.abs(parts.points).max(initial=0.0)))
-    if abs(found - tin.area) > _SHARE * tin.area + _ROUNDINGS * rounding * length:
+    if not is_whole(tin, parts):
+        found = float(measure_ring_areas(None, parts.points, parts.ring_offsets).sum())
         raise PointsError(
             f"The bands add up to an area of {found:g}, the surface has {tin.area:g}: its "
             "triangles are too thin for coordinates of this size; subtract an origin from them."

@@ -9,11 +9,12 @@ import numpy as np
 
 from ...errors import OptionError, choice
 from ...policies import SlopeUnit
+from ..georeference import describe_unknown, find_plane_units
 from ..results import Features, Table
-from ..slope import aspect, measure_areas, slope
+from ..slope import aspect, measure_plane_areas, slope
 from .colors import compass_colors, ramp_colors
 from .dissolving import dissolve
-from .statistics import area_unit, slope_symbol, unit_notes
+from .statistics import SYMBOLS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 
     from ...tin import TIN
 
-__all__ = ["aspect_classes", "class_table", "slope_classes"]
+__all__ = ["aspect_classes", "slope_classes", "tabulate_classes"]
 
 _DEGREE_BREAKS = (2.0, 5.0, 10.0, 15.0, 25.0, 35.0, 45.0)
 _PERCENT_BREAKS = (2.0, 5.0, 10.0, 15.0, 30.0, 60.0)
@@ -67,7 +68,7 @@ def slope_classes(
     -------
     Features
         A feature for each class that has a triangle, with the columns ``class`` (from 0 on),
-        ``label``, ``lower``, ``upper``, ``triangles``, ``area`` (in the plane, on the ground),
+        ``label``, ``lower``, ``upper``, ``triangles``, ``area`` (in the plane, CRS units squared),
         ``share`` of it, and ``color`` for a legend.
 
     Raises
@@ -92,11 +93,11 @@ def slope_classes(
     choice("unit", unit, SlopeUnit)
     limits = _as_breaks(_USUAL_BREAKS[unit] if breaks is None else breaks, unit)
     classes = np.searchsorted(limits, slope(tin, unit=unit), side="right")
-    symbol = slope_symbol(unit)
+    symbol = SYMBOLS[unit]
     lower, upper = [0.0, *limits.tolist()], [*limits.tolist(), _STEEPEST[unit]]
     legend = _Legend(
         [
-            _range_label(low, high, symbol, _STEEPEST[unit])
+            _write_range(low, high, symbol, _STEEPEST[unit])
             for low, high in zip(lower, upper, strict=True)
         ],
         lower,
@@ -142,7 +143,7 @@ def aspect_classes(tin: TIN) -> Features:
     return _as_features(tin, classes, legend, "°", "aspect_classes")
 
 
-def class_table(classes: Features) -> Table:
+def tabulate_classes(classes: Features) -> Table:
     """Return the columns of classes as a table, without their polygons."""
     return Table(
         dict(classes.columns), units=dict(classes.units), name=classes.name, notes=classes.notes
@@ -165,7 +166,7 @@ def _as_breaks(breaks: Any, unit: str) -> NDArray[np.float64]:
     return limits
 
 
-def _range_label(low: float, high: float, symbol: str, most: float) -> str:
+def _write_range(low: float, high: float, symbol: str, most: float) -> str:
     """Write the limits of a class: "5 to 10°", "45° and more"."""
     behind = f" {symbol}" if symbol == "%" else symbol
     if high == most:
@@ -177,7 +178,7 @@ def _as_features(
     tin: TIN, classes: NDArray[Any], legend: _Legend, symbol: str, name: str
 ) -> Features:
     found = dissolve(tin, classes.astype(np.int64))
-    ground = measure_areas(tin)
+    ground = measure_plane_areas(tin)
     measured = np.bincount(classes, ground, len(legend.labels))[found.classes]
     columns = {
         "class": found.classes,
@@ -196,8 +197,8 @@ def _as_features(
         found.polygon_offsets,
         found.feature_offsets,
         columns=columns,
-        units={"lower": unit, "upper": unit, "area": area_unit(tin.crs), "share": "%"},
+        units={"lower": unit, "upper": unit, "area": find_plane_units(tin.crs).area, "share": "%"},
         crs=None if tin.crs is None else tin.crs.horizontal,
         name=name,
-        notes=unit_notes(tin),
+        notes=describe_unknown(tin.crs, tin.elevation_unit),
     )

@@ -65,10 +65,10 @@ def dissolve(tin: TIN, classes: NDArray[np.int64]) -> Dissolved:
     if len(wanted) == 0:
         nothing = np.zeros(1, np.int64)
         return Dissolved(nothing[:0], nothing, nothing, nothing, nothing[:0])
-    neighbors = _within_classes(tin.neighbors, classes)
-    parts = _components(neighbors)
-    rings = _rings(tin.triangles, neighbors, parts, classes)
-    return _as_levels(rings, _exteriors_first(rings, classes, tin.points), classes)
+    neighbors = _part_classes(tin.neighbors, classes)
+    parts = _number_components(neighbors)
+    rings = _trace_rings(tin.triangles, neighbors, parts, classes)
+    return _as_levels(rings, _sort_exteriors_first(rings, classes, tin.points), classes)
 
 
 class _Rings(NamedTuple):
@@ -79,13 +79,13 @@ class _Rings(NamedTuple):
     parts: NDArray[np.int64]
 
 
-def _within_classes(neighbors: NDArray[np.int32], classes: NDArray[np.int64]) -> NDArray[np.int32]:
+def _part_classes(neighbors: NDArray[np.int32], classes: NDArray[np.int64]) -> NDArray[np.int32]:
     """Return the neighbours of the same class, ``NO_NEIGHBOR`` for others."""
     is_same = (neighbors != NO_NEIGHBOR) & (classes[neighbors] == classes[:, None])
     return np.where(is_same, neighbors, np.int32(NO_NEIGHBOR))
 
 
-def _components(neighbors: NDArray[np.int32]) -> NDArray[np.int64]:
+def _number_components(neighbors: NDArray[np.int32]) -> NDArray[np.int64]:
     """Return the smallest triangle that each is connected to.
 
     Roots hook onto the smallest root beside them, then every path is halved until it is one step
@@ -108,7 +108,7 @@ def _components(neighbors: NDArray[np.int32]) -> NDArray[np.int64]:
     return root
 
 
-def _rings(
+def _trace_rings(
     triangles: NDArray[np.int32],
     neighbors: NDArray[np.int32],
     parts: NDArray[np.int64],
@@ -123,10 +123,10 @@ def _rings(
     lengths = np.diff(offsets)[is_wanted]
     vertices = triangles[edges // 3, (edges % 3 + 1) % 3].astype(np.int64)
     walks = _Rings(vertices, np.append(0, np.cumsum(lengths)), parts[first])
-    return _without_repeats(walks)
+    return _drop_repeats(walks)
 
 
-def _without_repeats(walks: _Rings) -> _Rings:
+def _drop_repeats(walks: _Rings) -> _Rings:
     """Cut the walks that meet a vertex twice."""
     lengths = np.diff(walks.offsets)
     walk = np.repeat(np.arange(len(lengths)), lengths)
@@ -169,7 +169,7 @@ def _cut_at_repeats(walk: list[int]) -> list[list[int]]:
     return rings
 
 
-def _exteriors_first(
+def _sort_exteriors_first(
     rings: _Rings, classes: NDArray[np.int64], points: NDArray[np.float64]
 ) -> NDArray[np.int64]:
     """Sort rings by class, by polygon, and within it the exterior before the holes."""
@@ -177,11 +177,11 @@ def _exteriors_first(
     rank[np.lexsort((points[:, 1], points[:, 0]))] = np.arange(len(points))
     western = np.minimum.reduceat(rank[rings.vertices], rings.offsets[:-1])
     # Where a hole touches its exterior in the westernmost vertex, the exterior turns left.
-    areas = _ring_areas(points, rings)
+    areas = _measure_ring_areas(points, rings)
     return np.lexsort((-areas, western, rings.parts, classes[rings.parts]))
 
 
-def _ring_areas(points: NDArray[np.float64], rings: _Rings) -> NDArray[np.float64]:
+def _measure_ring_areas(points: NDArray[np.float64], rings: _Rings) -> NDArray[np.float64]:
     """Return twice the signed area of each ring."""
     starts, ends = rings.offsets[:-1], rings.offsets[1:]
     x, y = (np.ascontiguousarray(axis)[rings.vertices] for axis in points[:, :2].T)

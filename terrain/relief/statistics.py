@@ -8,18 +8,19 @@ import numpy as np
 
 from ...errors import OptionError, choice
 from ...policies import SlopeUnit
+from ..georeference import describe_unknown, find_plane_units
 from ..results import Table
-from ..slope import measure_areas, slope
+from ..slope import measure_plane_areas, slope
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from ...crs import CRS
     from ...tin import TIN
 
-__all__ = ["area_unit", "slope_statistics", "slope_symbol", "unit_notes", "weighted_percentiles"]
+__all__ = ["SYMBOLS", "find_weighted_percentiles", "slope_statistics"]
 
-_SYMBOLS = {"degrees": "°", "percent": "%", "ratio": ""}
+SYMBOLS = {"degrees": "°", "percent": "%", "ratio": ""}
+"""What stands behind a slope; nothing for a ratio."""
 _PERCENTILES = (5.0, 25.0, 50.0, 75.0, 95.0)
 
 
@@ -56,7 +57,7 @@ def slope_statistics(
     """
     choice("unit", unit, SlopeUnit)
     shares = _as_percentiles(percentiles)
-    values, weights = slope(tin, unit=unit), measure_areas(tin)
+    values, weights = slope(tin, unit=unit), measure_plane_areas(tin)
     mean = float(np.average(values, weights=weights))
     deviation = float(np.sqrt(np.average((values - mean) ** 2, weights=weights)))
     measured = {
@@ -65,25 +66,26 @@ def slope_statistics(
         "standard deviation": deviation,
         "maximum": values.max(),
     }
-    found = weighted_percentiles(values, weights, shares)
+    found = find_weighted_percentiles(values, weights, shares)
     measured |= {f"p{share:g}": value for share, value in zip(shares, found, strict=True)}
-    symbol = _SYMBOLS[unit] or "ratio"
+    symbol = SYMBOLS[unit] or "ratio"
     return Table(
         {name: np.array([value]) for name, value in {"area": weights.sum(), **measured}.items()},
-        units={"area": area_unit(tin.crs), **dict.fromkeys(measured, symbol)},
+        units={"area": find_plane_units(tin.crs).area, **dict.fromkeys(measured, symbol)},
         name="slope_statistics",
-        notes=unit_notes(tin),
+        notes=describe_unknown(tin.crs, tin.elevation_unit),
     )
 
 
-def weighted_percentiles(
+def find_weighted_percentiles(
     values: NDArray[np.float64], weights: NDArray[np.float64], shares: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Return the least values that so many percent of the weight do not exceed.
 
     Examples
     --------
-    >>> weighted_percentiles(np.array([1.0, 2.0]), np.array([3.0, 1.0]), np.array([75.0, 76.0]))
+    >>> weights, shares = np.array([3.0, 1.0]), np.array([75.0, 76.0])
+    >>> find_weighted_percentiles(np.array([1.0, 2.0]), weights, shares)
     array([1., 2.])
     """
     order = np.argsort(values, kind="stable")
@@ -103,25 +105,3 @@ def _as_percentiles(percentiles: ArrayLike) -> NDArray[np.float64]:
     if shares.ndim != 1 or not ((shares >= 0) & (shares <= 100)).all():
         raise OptionError("percentiles", percentiles, allowed=allowed)
     return shares
-
-
-def area_unit(crs: CRS | None) -> str | None:
-    """Return the symbol of the unit of :func:`measure_areas`; None if it is not known."""
-    if crs is None:
-        return None
-    return "m²" if crs.is_geographic or crs.horizontal_unit.metres is not None else None
-
-
-def slope_symbol(unit: SlopeUnit) -> str:
-    """Return what stands behind a slope; nothing for a ratio."""
-    return _SYMBOLS[unit]
-
-
-def unit_notes(tin: TIN) -> list[str]:
-    """Say what elevations were taken to be measured in, where that is not known."""
-    if tin.elevation_unit is not None:
-        return []
-    usual = None if tin.crs is None else tin.crs.usual_elevation_unit
-    if usual is None:
-        return ["The unit of elevations is not known and taken to be that of the eastings."]
-    return [f"The unit of elevations is not known and taken to be the {usual.name}."]

@@ -19,7 +19,7 @@ from .columns import UNKNOWN_UNIT, unit_text
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .features import Features
+    from .parts import FeatureParts
 
 __all__ = ["build_table"]
 
@@ -36,7 +36,7 @@ _NESTING = {
 _LARGEST_OFFSET = 2**31 - 1
 
 
-def build_table(features: Features) -> Any:
+def build_table(features: FeatureParts) -> Any:
     """Return a ``pyarrow.Table`` of the columns, and of the geometries in column ``geometry``.
 
     Parameters
@@ -57,16 +57,16 @@ def build_table(features: Features) -> Any:
         )
     arrays = [pa.array(values) for values in features.columns.values()]
     fields = [
-        pa.field(name, array.type, metadata=_unit(features, name))
+        pa.field(name, array.type, metadata=_write_unit(features, name))
         for name, array in zip(features.columns, arrays, strict=True)
     ]
-    geometries = _geometries(pa, features)
-    fields.append(pa.field(_GEOMETRY, geometries.type, False, metadata=_extension(features)))
-    schema = pa.schema(fields, metadata=_description(features))
+    geometries = _build_geometries(pa, features)
+    fields.append(pa.field(_GEOMETRY, geometries.type, False, metadata=_write_extension(features)))
+    schema = pa.schema(fields, metadata=_write_description(features))
     return pa.Table.from_arrays([*arrays, geometries], schema=schema)
 
 
-def _geometries(pa: Any, features: Features) -> Any:
+def _build_geometries(pa: Any, features: FeatureParts) -> Any:
     size = features.coordinates.shape[1]
     names = _NESTING[features.geometry_type]
     built = pa.FixedSizeListArray.from_arrays(
@@ -74,11 +74,11 @@ def _geometries(pa: Any, features: Features) -> Any:
         type=pa.list_(pa.field("xyz"[:size], pa.float64(), False), size),
     )
     for name, offsets in zip(names, features.offsets, strict=True):
-        built = _nested(pa, built, name, offsets)
+        built = _nest(pa, built, name, offsets)
     return built
 
 
-def _nested(pa: Any, values: Any, name: str, offsets: NDArray[np.int64]) -> Any:
+def _nest(pa: Any, values: Any, name: str, offsets: NDArray[np.int64]) -> Any:
     """Return lists of values, with offsets of 32 bits where they fit."""
     member = pa.field(name, values.type, False)
     if offsets[-1] > _LARGEST_OFFSET:
@@ -88,7 +88,7 @@ def _nested(pa: Any, values: Any, name: str, offsets: NDArray[np.int64]) -> Any:
     return array.from_arrays(pa.array(numbers), values, type=kind)
 
 
-def _extension(features: Features) -> dict[str, str]:
+def _write_extension(features: FeatureParts) -> dict[str, str]:
     """Return what tells readers that a column has geometries, and their CRS."""
     crs: dict[str, Any] = {}
     if features.crs is not None:
@@ -99,11 +99,11 @@ def _extension(features: Features) -> dict[str, str]:
     }
 
 
-def _unit(features: Features, name: str) -> dict[str, str] | None:
+def _write_unit(features: FeatureParts, name: str) -> dict[str, str] | None:
     return {"unit": unit_text(features.units, name)} if name in features.units else None
 
 
-def _description(features: Features) -> dict[str, str]:
+def _write_description(features: FeatureParts) -> dict[str, str]:
     unit = features.elevation_unit
     heights = {"elevation_unit": UNKNOWN_UNIT if unit is None else unit.name}
     return {

@@ -134,7 +134,7 @@ class Features(Frozen):
         >>> ts.Features.of_points([[0, 0], [4, 3]], columns={"label": ["a", "b"]})
         <Features: 2 points, columns label, crs unknown>
         """
-        return _made(
+        return _make(
             cls, "points", coordinates, (), columns, units, crs, elevation_unit, name, notes
         )
 
@@ -176,8 +176,8 @@ class Features(Frozen):
         >>> ts.Features.of_lines([[0, 0], [1, 0], [1, 1], [2, 2]], [0, 2, 4], [0, 2])
         <Features: 1 feature of 2 lines, crs unknown>
         """
-        levels = _levels(offsets, feature_offsets)
-        return _made(
+        levels = _list_levels(offsets, feature_offsets)
+        return _make(
             cls, "lines", coordinates, levels, columns, units, crs, elevation_unit, name, notes
         )
 
@@ -225,8 +225,8 @@ class Features(Frozen):
         >>> ts.Features.of_polygons(ring, [0, 4], [0, 1])
         <Features: 1 polygon, crs unknown>
         """
-        levels = _levels(ring_offsets, polygon_offsets, feature_offsets)
-        return _made(
+        levels = _list_levels(ring_offsets, polygon_offsets, feature_offsets)
+        return _make(
             cls, "polygons", coordinates, levels, columns, units, crs, elevation_unit, name, notes
         )
 
@@ -329,11 +329,11 @@ class Features(Frozen):
         return stream
 
 
-def _levels(*offsets: ArrayLike | None) -> tuple[Any, ...]:
+def _list_levels(*offsets: ArrayLike | None) -> tuple[Any, ...]:
     return tuple(level for level in offsets if level is not None)
 
 
-def _made(
+def _make(
     cls: type[Features], kind: Kind, coordinates: Any, offsets: tuple[Any, ...], *rest: Any
 ) -> Features:
     columns, units, crs, elevation_unit, name, notes = rest

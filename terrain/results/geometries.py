@@ -13,12 +13,12 @@ from .columns import unit_text
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .features import Features
+    from .parts import FeatureParts
 
 __all__ = ["build_collection", "build_frame", "build_geometries"]
 
 
-def build_geometries(features: Features) -> NDArray[np.object_]:
+def build_geometries(features: FeatureParts) -> NDArray[np.object_]:
     """Return the geometries of shapely, one a feature.
 
     Parameters
@@ -33,7 +33,7 @@ def build_geometries(features: Features) -> NDArray[np.object_]:
     return made
 
 
-def build_frame(features: Features) -> Any:
+def build_frame(features: FeatureParts) -> Any:
     """Return a GeoDataFrame of features, as :meth:`Features.to_geodataframe` describes it."""
     geopandas = _optional.load("geopandas", "Turning features into a GeoDataFrame")
     if "geometry" in features.columns:
@@ -54,12 +54,12 @@ def build_frame(features: Features) -> Any:
     return frame
 
 
-def build_collection(features: Features) -> dict[str, Any]:
+def build_collection(features: FeatureParts) -> dict[str, Any]:
     """Return features as the ``__geo_interface__`` has them."""
     from shapely.geometry import mapping
 
     names = list(features.columns)
-    columns = [_plain_values(values) for values in features.columns.values()]
+    columns = [_as_plain_values(values) for values in features.columns.values()]
     rows = zip(*columns, strict=True) if columns else [()] * len(features)
     return {
         "type": "FeatureCollection",
@@ -74,7 +74,7 @@ def build_collection(features: Features) -> dict[str, Any]:
     }
 
 
-def _plain_values(values: NDArray[Any]) -> list[Any]:
+def _as_plain_values(values: NDArray[Any]) -> list[Any]:
     """Return values of Python, None for NaN."""
     plain: list[Any] = values.tolist()
     if values.dtype.kind == "f" and np.isnan(values).any():

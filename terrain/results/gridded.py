@@ -13,51 +13,64 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ...tin.types import Grid
-    from .raster import Raster
+    from .parts import RasterParts
 
-__all__ = ["build_dataset", "cell_centers"]
+__all__ = ["build_dataset", "locate_centers"]
 
 _MAPPING = "spatial_ref"
 
 
-def cell_centers(grid: Grid) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the eastings of the columns and the northings of the rows, at the cell centres.
+def locate_centers(
+    grid: Grid, rows: slice | None = None, columns: slice | None = None
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the eastings of columns and the northings of rows, at the cell centres.
+
+    Parameters
+    ----------
+    grid : Grid
+    rows, columns : slice, optional
+        From start to stop; default all.
 
     Examples
     --------
     >>> from tinsmith import Bounds, Grid
-    >>> cell_centers(Grid(Bounds(0.0, 0.0, 2.0, 3.0), shape=(3, 2), spacing=1.0))[1]
+    >>> locate_centers(Grid(Bounds(0.0, 0.0, 2.0, 3.0), shape=(3, 2), spacing=1.0))[1]
     array([2.5, 1.5, 0.5])
     """
-    rows, columns = grid.shape
-    east = grid.bounds.xmin + (np.arange(columns, dtype=np.float64) + 0.5) * grid.spacing
-    north = grid.bounds.ymax - (np.arange(rows, dtype=np.float64) + 0.5) * grid.spacing
-    return np.asarray(east, np.float64), np.asarray(north, np.float64)
+    height, width = grid.shape
+    x = grid.bounds.xmin + (_list_numbers(columns, width) + 0.5) * grid.spacing
+    y = grid.bounds.ymax - (_list_numbers(rows, height) + 0.5) * grid.spacing
+    return x, y
 
 
-def build_dataset(raster: Raster) -> Any:
+def _list_numbers(part: slice | None, count: int) -> NDArray[np.float64]:
+    chosen = slice(0, count) if part is None else part
+    return np.arange(chosen.start, chosen.stop, dtype=np.float64)
+
+
+def build_dataset(raster: RasterParts) -> Any:
     """Return a data set of xarray, as :meth:`Raster.to_xarray` describes it."""
     xarray = _optional.load("xarray", "Turning a raster into a data set")
-    east, north = cell_centers(raster.grid)
+    east, north = locate_centers(raster.grid)
     variables = {
-        name: (("y", "x"), np.array(band[:, :]), _attributes(raster, name))
+        name: (("y", "x"), np.array(band[:, :]), _list_attributes(raster, name))
         for name, band in raster.bands.items()
     }
-    coordinates = {"y": ("y", north), "x": ("x", east), _MAPPING: ((), 0, _reference(raster))}
+    coordinates = {"y": ("y", north), "x": ("x", east), _MAPPING: ((), 0, _write_reference(raster))}
     about = {"title": raster.name, "notes": list(raster.notes)}
     return xarray.Dataset(
         variables, coords=coordinates, attrs={name: value for name, value in about.items() if value}
     )
 
 
-def _attributes(raster: Raster, name: str) -> dict[str, Any]:
+def _list_attributes(raster: RasterParts, name: str) -> dict[str, Any]:
     unit = unit_text(raster.units, name)
     kind = np.dtype(raster.bands[name].dtype).kind
     fill = {} if np.isnan(raster.nodata) and kind != "f" else {"_FillValue": raster.nodata}
     return {"grid_mapping": _MAPPING, **({"units": unit} if unit else {}), **fill}
 
 
-def _reference(raster: Raster) -> dict[str, str]:
+def _write_reference(raster: RasterParts) -> dict[str, str]:
     """Return the attributes of the grid mapping: CRS and georeference."""
     bounds, spacing = raster.grid.bounds, raster.grid.spacing
     numbers = (bounds.xmin, spacing, 0.0, bounds.ymax, 0.0, -spacing)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from .columns import Units
 
-__all__ = ["Raster"]
+__all__ = ["Raster", "require_grid"]
 
 _FEWEST_ULPS = 8.0
 """Roundings that the far edge of a grid may be off its spacing times its cells."""
@@ -75,7 +75,7 @@ class Raster(Frozen):
 
     def __post_init__(self) -> None:
         keep = object.__setattr__
-        _require_grid(self.grid)
+        require_grid(self.grid)
         items = dict(named_items("bands", self.bands))
         if not items:
             raise OptionError("number of bands", 0, allowed="1 or more")
@@ -150,7 +150,13 @@ def _as_nodata(value: Any) -> float:
     return float(value)
 
 
-def _require_grid(grid: Any) -> None:
+def require_grid(grid: Any) -> None:
+    """Refuse a grid whose bounds, shape and spacing do not fit together.
+
+    Raises
+    ------
+    OptionError
+    """
     if not isinstance(grid, Grid):
         raise OptionError("grid", type(grid).__name__, allowed="a Grid")
     rows, columns = grid.shape

@@ -9,8 +9,9 @@ import numpy as np
 from ...crs import scale_elevations
 from ...errors import OptionError, PointsError
 from ...tin.validation.points import as_elevations
+from ..georeference import require_same_crs
 from ..results import Features, Table
-from .geometries import as_features, require_same_crs
+from .geometries import as_features
 from .profiles import (
     as_positive,
     lines_to_segments,
@@ -20,7 +21,7 @@ from .profiles import (
     require_surface,
 )
 from .rows import cut_rows
-from .runs import runs_of
+from .runs import find_runs
 from .segments import Segments
 from .surfaces import as_surfaces
 
@@ -178,7 +179,7 @@ def section_lines(
            [1., 1., 2.]])
     """
     cut = _cut(tin, centreline, interval, stations, (width, left, right), start)
-    runs = [runs_of(cut.rows, k) for k in range(len(cut.surfaces.tins))]
+    runs = [find_runs(cut.rows, k) for k in range(len(cut.surfaces.tins))]
     first_rows = np.concatenate([one.first_rows for one in runs])
     section = cut.axes.segments.lines[cut.rows.places.segments[first_rows]]
     columns: dict[str, Any] = {
@@ -214,10 +215,12 @@ def _cut(
     surfaces = as_surfaces(tin)
     scale_elevations(surfaces.crs, surfaces.elevation_unit)  # refuses angles
     features = as_features(centreline, "centreline")
-    notes = surfaces.notes + require_same_crs(features, surfaces.crs, centreline, "lines")
+    notes = surfaces.notes + require_same_crs(
+        features.crs, surfaces.crs, "the centreline", is_plain=not hasattr(centreline, "crs")
+    )
     segments = lines_to_segments(features, start, "centreline")
-    at = _stations(segments, interval, stations)
-    axes = _axes(segments, *at, *_reaches(*widths))
+    at = _choose_stations(segments, interval, stations)
+    axes = _lay_axes(segments, *at, *_as_reaches(*widths))
     rows = cut_rows(surfaces, axes.segments)
     require_surface(surfaces, axes.segments, rows, "section")
     return _Cut(surfaces, axes, rows, notes)
@@ -226,7 +229,7 @@ def _cut(
 # ---------------------------------------------------------------- options
 
 
-def _reaches(width: Any, left: Any, right: Any) -> tuple[float, float]:
+def _as_reaches(width: Any, left: Any, right: Any) -> tuple[float, float]:
     """Return how far sections reach to the left and to the right."""
     if width is not None:
         if left is not None or right is not None:
@@ -247,7 +250,7 @@ def _reaches(width: Any, left: Any, right: Any) -> tuple[float, float]:
     return reach[0], reach[1]
 
 
-def _stations(
+def _choose_stations(
     segments: Segments, interval: Any, given: Any
 ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
     """Return the stations of sections, and the segment of each, the one that begins there."""
@@ -256,9 +259,9 @@ def _stations(
     firsts = np.flatnonzero(np.append(True, np.diff(segments.lines) != 0))
     lasts = np.append(firsts[1:], len(segments.lines)) - 1
     ends = np.stack([segments.start_stations[firsts], segments.end_stations[lasts]], axis=1)
-    wanted = [_on_lines(ends, given)] if given is not None else [np.empty((0, 2))]
+    wanted = [_find_on_lines(ends, given)] if given is not None else [np.empty((0, 2))]
     if interval is not None:
-        wanted.append(_multiples(ends, as_positive("interval", interval)))
+        wanted.append(_list_multiples(ends, as_positive("interval", interval)))
     pairs = np.unique(np.concatenate(wanted), axis=0)
     lines, stations = pairs[:, 0].astype(np.int64), pairs[:, 1]
     segment = np.empty(len(lines), np.int64)
@@ -269,7 +272,7 @@ def _stations(
     return segment, stations
 
 
-def _multiples(ends: NDArray[np.float64], interval: float) -> NDArray[np.float64]:
+def _list_multiples(ends: NDArray[np.float64], interval: float) -> NDArray[np.float64]:
     """Return line and station of every multiple of an interval, and of both ends of each line."""
     require_few("interval", interval, ends[:, 1] - ends[:, 0])
     first, last = np.ceil(ends[:, 0] / interval), np.floor(ends[:, 1] / interval)
@@ -282,7 +285,7 @@ def _multiples(ends: NDArray[np.float64], interval: float) -> NDArray[np.float64
     return np.column_stack([lines, np.concatenate(found)])
 
 
-def _on_lines(ends: NDArray[np.float64], given: Any) -> NDArray[np.float64]:
+def _find_on_lines(ends: NDArray[np.float64], given: Any) -> NDArray[np.float64]:
     """Return line and station of stations, on every line that is long enough for them."""
     try:
         stations = np.atleast_1d(as_elevations(given))
@@ -305,7 +308,7 @@ def _on_lines(ends: NDArray[np.float64], given: Any) -> NDArray[np.float64]:
 # ---------------------------------------------------------------- in the plane
 
 
-def _axes(
+def _lay_axes(
     segments: Segments,
     segment: NDArray[np.int64],
     stations: NDArray[np.float64],
@@ -317,7 +320,7 @@ def _axes(
     share = ((stations - begin) / (end - begin))[:, None]
     start, stop = segments.starts[segment], segments.ends[segment]
     middle = np.where(share == 1.0, stop, start + share * (stop - start))
-    to_left = _directions(segments, segment, stations)[:, ::-1] * (-1.0, 1.0)
+    to_left = _find_directions(segments, segment, stations)[:, ::-1] * (-1.0, 1.0)
     count = len(stations)
     outer = np.stack([middle + left * to_left, middle, middle - right * to_left], axis=1)
     offsets = np.broadcast_to([-left, 0.0, right], (count, 3))
@@ -336,7 +339,7 @@ def _axes(
     return _Axes(axes, segments.lines[segment], stations)
 
 
-def _directions(
+def _find_directions(
     segments: Segments, segment: NDArray[np.int64], stations: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Return unit vectors along the centreline, at its vertices the mean of both segments'."""

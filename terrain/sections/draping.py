@@ -11,11 +11,12 @@ from ..._sentences import counted
 from ...errors import LinesError, OptionError, choice
 from ...policies import OutsidePolicy
 from ...tin.topology import find_offsets, find_owners
+from ..georeference import require_same_crs
 from ..results import Features
-from .geometries import as_features, require_same_crs
+from .geometries import as_features
 from .rows import cut_rows
-from .runs import runs_of
-from .segments import segments_of
+from .runs import find_runs
+from .segments import as_segments
 from .surfaces import as_surfaces
 
 if TYPE_CHECKING:
@@ -76,27 +77,29 @@ def drape(tin: TIN, features: Any, *, outside: OutsidePolicy = "error") -> Featu
            [3., 2., 5.]])
     """
     choice("outside", outside, OutsidePolicy)
-    surfaces = as_surfaces([tin])
+    surfaces = as_surfaces(tin)
     given = as_features(features, "feature")
     if given.kind == "polygons" and outside == "cut":
         raise OptionError("outside", outside, allowed="error or nan for polygons")
-    notes = require_same_crs(given, surfaces.crs, features, "features")
+    notes = require_same_crs(
+        given.crs, surfaces.crs, "the features", is_plain=not hasattr(features, "crs")
+    )
     given = replace(
         given,
-        crs=surfaces.crs if surfaces.crs is not None else given.crs,
+        crs=surfaces.crs,
         elevation_unit=surfaces.elevation_unit,
-        notes=(*given.notes, *notes),
+        notes=(*given.notes, *surfaces.notes, *notes),
     )
     if given.kind == "points":
         return _drape_points(tin, given, outside)
     xy = np.ascontiguousarray(given.coordinates[:, :2]) + 0.0
-    segments = segments_of(xy, given.offsets[0], what=given.kind[:-1])
+    segments = as_segments(xy, given.offsets[0], what=given.kind[:-1])
     rows = cut_rows(surfaces, segments)
     lines = segments.lines[rows.places.segments]
     is_outside = np.zeros(len(given.offsets[0]) - 1, np.bool_)
     is_outside[lines[np.isnan(rows.elevations[:, 0])]] = True
     given = _tell(given, is_outside, outside, rows, lines)
-    return _cut_runs(given, rows, lines) if outside == "cut" else _whole(given, rows, lines)
+    return _cut_runs(given, rows, lines) if outside == "cut" else _keep_whole(given, rows, lines)
 
 
 def _drape_points(tin: TIN, given: Features, outside: OutsidePolicy) -> Features:
@@ -104,11 +107,11 @@ def _drape_points(tin: TIN, given: Features, outside: OutsidePolicy) -> Features
     elevations = tin.interpolate(xy)
     is_outside = np.isnan(elevations)
     if is_outside.any():
-        given = _noted(given, is_outside, outside, xy[np.argmax(is_outside)], "point")
+        given = _note_outside(given, is_outside, outside, xy[np.argmax(is_outside)], "point")
     xyz = np.column_stack([xy, elevations])
     if outside != "cut":
         return replace(given, coordinates=xyz)
-    return _chosen(given, xyz[~is_outside], (), np.flatnonzero(~is_outside))
+    return _choose(given, xyz[~is_outside], (), np.flatnonzero(~is_outside))
 
 
 def _tell(
@@ -123,10 +126,10 @@ def _tell(
         return given
     first = np.flatnonzero(is_outside[lines] & np.isnan(rows.elevations[:, 0]))[0]
     what = "line" if given.kind == "lines" else "ring"
-    return _noted(given, is_outside, outside, rows.places.xy[first], what)
+    return _note_outside(given, is_outside, outside, rows.places.xy[first], what)
 
 
-def _noted(
+def _note_outside(
     given: Features, is_outside: NDArray[np.bool_], outside: OutsidePolicy, place: Any, what: str
 ) -> Features:
     count, first = int(is_outside.sum()), int(np.argmax(is_outside))
@@ -144,21 +147,21 @@ def _noted(
     return replace(given, notes=(*given.notes, f"{text}: they {became}."))
 
 
-def _whole(given: Features, rows: Rows, lines: NDArray[np.int64]) -> Features:
+def _keep_whole(given: Features, rows: Rows, lines: NDArray[np.int64]) -> Features:
     xyz = np.column_stack([rows.places.xy, rows.elevations[:, 0]])
     pieces = find_offsets(np.bincount(lines, minlength=len(given.offsets[0]) - 1))
     return replace(given, coordinates=xyz, offsets=(pieces, *given.offsets[1:]))
 
 
 def _cut_runs(given: Features, rows: Rows, lines: NDArray[np.int64]) -> Features:
-    runs = runs_of(rows)
+    runs = find_runs(rows)
     owner = lines[runs.first_rows]
     if given.is_multi:
         owner = find_owners(given.offsets[1])[owner]
-    return _chosen(given, runs.coordinates, (runs.offsets,), owner)
+    return _choose(given, runs.coordinates, (runs.offsets,), owner)
 
 
-def _chosen(
+def _choose(
     given: Features,
     coordinates: NDArray[np.float64],
     offsets: tuple[NDArray[np.int64], ...],

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..._sentences import shown
 from ...crs import CRS
-from ...errors import CrsError, LinesError, PointsError
+from ...errors import LinesError, PointsError
 from ...tin import Breakline
 from ...tin.constraints.breaklines import as_coords
 from ...tin.topology import find_offsets
@@ -19,7 +19,7 @@ from ..results import Features
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["as_features", "require_same_crs"]
+__all__ = ["as_features"]
 
 _KINDS = {
     "Point": ("points", 0),
@@ -75,64 +75,29 @@ def as_features(given: Any, what: str = "line") -> Features:
     return features
 
 
-def require_same_crs(
-    features: Features, crs: CRS | None, given: Any, what: str = "lines"
-) -> tuple[str, ...]:
-    """Refuse features of another CRS than that of the surface, and tell what was assumed.
-
-    Parameters
-    ----------
-    features : Features
-    crs : CRS or None
-        Of the surface.
-    given : object
-        What the features were made of: plain coordinates are in the CRS of the surface.
-    what : str
-        What the features are called in sentences.
-
-    Raises
-    ------
-    CrsError
-        If both are known and differ in the plane.
-    """
-    theirs = features.crs
-    if crs is None:
-        return () if theirs is None else (f"The surface names no CRS: taken as {theirs.label}.",)
-    if theirs is None:
-        name = f"The {what} given as features name no CRS: taken as {crs.label}."
-        return (name,) if isinstance(given, Features) else ()
-    if not theirs.horizontal.is_same(crs.horizontal):
-        raise CrsError(
-            f"The {what} are in {theirs.label} and the surface in {crs.label}: reproject one of "
-            "them first.",
-            crs=theirs,
-        )
-    return ()
-
-
 # ---------------------------------------------------------------- what is given
 
 
 def _walk(given: Any, what: str) -> Iterator[_Item]:
     """Take apart what is given; a collection's features keep their properties."""
     if isinstance(given, Breakline):
-        yield _line_of(given.coords, what)
+        yield _as_line(given.coords, what)
         return
     interface = given if _is_geometry(given) else getattr(given, "__geo_interface__", None)
     if isinstance(interface, Mapping):
-        yield from _of_geometry(interface, what)
+        yield from _walk_geometry(interface, what)
     elif _is_one_line(given):
-        yield _line_of(given, what)
+        yield _as_line(given, what)
     elif isinstance(given, Iterable) and not isinstance(given, str | bytes | Mapping):
         for one in given:
             if not (_is_one_line(one) or isinstance(one, Breakline) or _is_geometry_like(one)):
-                raise _no_line(one, what)
+                raise _refuse(one, what)
             yield from _walk(one, what)
     else:
-        raise _no_line(given, what)
+        raise _refuse(given, what)
 
 
-def _no_line(given: Any, what: str) -> LinesError:
+def _refuse(given: Any, what: str) -> LinesError:
     return LinesError(
         f"Invalid {what} {shown(given)}: a (k, 2) array, a Breakline, Features, or a geometry "
         "is needed."
@@ -159,32 +124,34 @@ def _is_one_line(given: Any) -> bool:
     return len(first) > 0 and not isinstance(first[0], Sequence | np.ndarray)
 
 
-def _line_of(coords: Any, what: str) -> _Item:
+def _as_line(coords: Any, what: str) -> _Item:
     return _Item("lines", [[as_coords(coords, f"a {what}", least=2)]], {})
 
 
-def _of_geometry(given: Mapping[str, Any], what: str) -> Iterator[_Item]:
+def _walk_geometry(given: Mapping[str, Any], what: str) -> Iterator[_Item]:
     """Take collections apart without recursion; features keep their properties."""
     pending: list[tuple[Mapping[str, Any], Mapping[str, Any]]] = [(given, {})]
     while pending:
         geometry, properties = pending.pop()
         kind = geometry.get("type")
         if kind == "Feature":
-            pending.append((geometry.get("geometry") or {"type": "nothing"}, _properties(geometry)))
+            pending.append(
+                (geometry.get("geometry") or {"type": "nothing"}, _find_properties(geometry))
+            )
         elif kind in _GROUPS:
             members = [(one, properties) for one in geometry[_GROUPS[kind]]]
             pending.extend(reversed(members))
         elif kind in _KINDS:
-            yield _item_of(str(kind), geometry["coordinates"], properties, what)
+            yield _as_item(str(kind), geometry["coordinates"], properties, what)
         else:
             raise LinesError(f"Invalid {what}: a geometry of type {shown(kind)} has no place here.")
 
 
-def _properties(feature: Mapping[str, Any]) -> Mapping[str, Any]:
+def _find_properties(feature: Mapping[str, Any]) -> Mapping[str, Any]:
     return feature.get("properties") or {}
 
 
-def _item_of(kind: str, coordinates: Any, properties: Mapping[str, Any], what: str) -> _Item:
+def _as_item(kind: str, coordinates: Any, properties: Mapping[str, Any], what: str) -> _Item:
     name, is_multi = _KINDS[kind]
     parts = coordinates if is_multi else [coordinates]
     pieces = [
@@ -220,12 +187,12 @@ def _gather(items: list[_Item], crs: CRS | None, what: str) -> Features:
         kind=kinds[0],  # type: ignore[arg-type]
         coordinates=coordinates,
         offsets=(*levels, of_items) if has_parts else levels,
-        columns=_columns([item.properties for item in items]),
+        columns=_gather_columns([item.properties for item in items]),
         crs=crs,
     )
 
 
-def _columns(rows: list[Mapping[str, Any]]) -> dict[str, NDArray[Any]]:
+def _gather_columns(rows: list[Mapping[str, Any]]) -> dict[str, NDArray[Any]]:
     names = dict.fromkeys(str(name) for row in rows for name in row)
     return {name: _as_column([row.get(name) for row in rows]) for name in names}
 

@@ -39,17 +39,17 @@ def measure_grades(surfaces: Surfaces, segments: Segments, rows: Rows) -> NDArra
     grades = np.full(rows.elevations.shape, np.nan)
     for k, (tin, factor) in enumerate(zip(surfaces.tins, surfaces.factors, strict=True)):
         has = np.flatnonzero((rows.triangles[:, k] != NO_NEIGHBOR) & ~rows.is_last)
-        gradient = factor * _gradients(tin, rows.triangles[has, k])
+        gradient = factor * _compute_gradients(tin, rows.triangles[has, k])
         with np.errstate(invalid="ignore", over="ignore", divide="ignore"):
             of_plane = (gradient * directions[has]).sum(axis=1)
             plane_error = np.abs(gradient).sum(axis=1) * np.finfo(float).eps
-            of_rows, row_error = _rise_over_run(rows, has, k)
+            of_rows, row_error = _measure_rise_over_run(rows, has, k)
         is_plane = np.isfinite(of_plane) & ~(row_error < plane_error)
         grades[has, k] = np.where(is_plane, of_plane, of_rows)
     return grades
 
 
-def _rise_over_run(
+def _measure_rise_over_run(
     rows: Rows, has: NDArray[np.int64], k: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the grades from rows to the next ones, and how far off rounding may have them."""
@@ -61,7 +61,7 @@ def _rise_over_run(
     return grade, (heights + places * np.abs(grade)) / run
 
 
-def _gradients(tin: TIN, triangles: NDArray[np.int32]) -> NDArray[np.float64]:
+def _compute_gradients(tin: TIN, triangles: NDArray[np.int32]) -> NDArray[np.float64]:
     """Return the rise of triangles eastwards and northwards, (n, 2).
 
     Counted from the corner opposite the longest side, so that differences lose the least.
@@ -74,30 +74,30 @@ def _gradients(tin: TIN, triangles: NDArray[np.int32]) -> NDArray[np.float64]:
     a, b, c = (corners[row, (first + k) % 3] for k in range(3))
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         (x, y, z), (u, v, w) = (b - a).T, (c - a).T
-        area = _difference_of_products(x, v, y, u)
-        east = _difference_of_products(z, v, y, w) / area
-        north = _difference_of_products(x, w, z, u) / area
+        area = _subtract_products(x, v, y, u)
+        east = _subtract_products(z, v, y, w) / area
+        north = _subtract_products(x, w, z, u) / area
     return np.stack([east, north], axis=1)[inverse.reshape(-1)]
 
 
-def _difference_of_products(
+def _subtract_products(
     a: NDArray[np.float64], b: NDArray[np.float64], c: NDArray[np.float64], d: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Return a b - c d, good to a few roundings: what each product loses is given back."""
     left, right = a * b, c * d
-    mended = (left - right) + (_lost(a, b, left) - _lost(c, d, right))
+    mended = (left - right) + (_find_lost(a, b, left) - _find_lost(c, d, right))
     return np.where(np.isfinite(mended), mended, left - right)
 
 
-def _lost(
+def _find_lost(
     a: NDArray[np.float64], b: NDArray[np.float64], product: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Return what a rounded product is short of the true one."""
-    (p, q), (r, s) = _halves(a), _halves(b)
+    (p, q), (r, s) = _split(a), _split(b)
     return q * s - (((product - p * r) - q * r) - p * s)
 
 
-def _halves(value: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _split(value: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     scaled = _SPLITTER * value
     high = scaled - (scaled - value)
     return high, value - high

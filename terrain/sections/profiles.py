@@ -10,11 +10,12 @@ from ..._sentences import counted
 from ...crs import scale_elevations
 from ...errors import LinesError, OptionError
 from ...tin.validation.options import is_finite_number
+from ..georeference import require_same_crs
 from ..results import Table
-from .geometries import as_features, require_same_crs
+from .geometries import as_features
 from .grades import measure_grades
 from .rows import Places, cut_rows
-from .segments import segments_of
+from .segments import as_segments
 from .surfaces import as_surfaces
 
 if TYPE_CHECKING:
@@ -115,9 +116,15 @@ def profile(
     surfaces = as_surfaces(tin)
     scale_elevations(surfaces.crs, surfaces.elevation_unit)  # refuses angles
     features = as_features(line)
-    notes = surfaces.notes + require_same_crs(features, surfaces.crs, line)
+    notes = surfaces.notes + require_same_crs(
+        features.crs, surfaces.crs, "the lines", is_plain=not hasattr(line, "crs")
+    )
     segments = lines_to_segments(features, start, "profile")
-    extra = None if interval is None else _at_interval(segments, as_positive("interval", interval))
+    extra = (
+        None
+        if interval is None
+        else _place_at_interval(segments, as_positive("interval", interval))
+    )
     rows = cut_rows(surfaces, segments, extra)
     require_surface(surfaces, segments, rows)
     columns = {
@@ -140,9 +147,9 @@ def lines_to_segments(features: Features, start: Any, what: str) -> Segments:
     if features.kind != "lines":
         raise LinesError(f"A {what} runs along lines, and there are {features.kind}.")
     xy = np.ascontiguousarray(features.coordinates[:, :2]) + 0.0
-    segments = segments_of(xy, features.offsets[0])
+    segments = as_segments(xy, features.offsets[0])
     begin = as_start(start, segments)
-    return segments if begin == 0.0 else segments_of(xy, features.offsets[0], start=begin)
+    return segments if begin == 0.0 else as_segments(xy, features.offsets[0], start=begin)
 
 
 def measure_rows(
@@ -259,7 +266,7 @@ def require_number(option: str, value: Any) -> float:
     return float(value)
 
 
-def _at_interval(segments: Segments, interval: float) -> Places:
+def _place_at_interval(segments: Segments, interval: float) -> Places:
     """Return the places within segments whose stations are multiples of an interval."""
     lengths = segments.end_stations - segments.start_stations
     require_few("interval", interval, lengths)

@@ -95,19 +95,19 @@ def cut_rows(surfaces: Surfaces, segments: Segments, extra: Places | None = None
         trace_breaks(tin, segments).scale_elevations(factor)
         for tin, factor in zip(surfaces.tins, surfaces.factors, strict=True)
     ]
-    sources = [_places_of(breaks, segments) for breaks in traced]
+    sources = [_find_places(breaks, segments) for breaks in traced]
     if extra is not None:
         sources.append(extra)
-    turns = [_turns_of(breaks, places) for breaks, places in zip(traced, sources, strict=False)]
+    turns = [_number_turns(breaks, places) for breaks, places in zip(traced, sources, strict=False)]
     turns += [np.zeros(len(extra.xy), np.int64)] if extra is not None else []
     places, own = _merge(sources, turns, segments)
-    keep, is_last = _ends_of_lines(places, segments)
+    keep, is_last = _find_ends(places, segments)
     before = np.stack([np.maximum.accumulate(one) for one in own[: len(traced)]], axis=1)
     rows = Rows(
         places,
         is_last,
-        np.stack([_elevations(b, own[k], places.xy) for k, b in enumerate(traced)], axis=1),
-        np.stack([_crossed(b, own[k]) for k, b in enumerate(traced)], axis=1),
+        np.stack([_interpolate_places(b, own[k], places.xy) for k, b in enumerate(traced)], axis=1),
+        np.stack([_name_crossed(b, own[k]) for k, b in enumerate(traced)], axis=1),
         np.stack([b.triangles[before[:, k]] for k, b in enumerate(traced)], axis=1),
     )
     return _mark_gaps(_choose(rows, keep), traced, before[keep])
@@ -120,11 +120,11 @@ def _choose(rows: Rows, chosen: NDArray[np.bool_]) -> Rows:
     return Rows._make([places, *(array[chosen] for array in rows[1:])])
 
 
-def _places_of(breaks: Breaks, segments: Segments) -> Places:
+def _find_places(breaks: Breaks, segments: Segments) -> Places:
     return Places(breaks.segments, segments.stations(breaks.segments, breaks.ratios), breaks.xy)
 
 
-def _turns_of(breaks: Breaks, places: Places) -> NDArray[np.int64]:
+def _number_turns(breaks: Breaks, places: Places) -> NDArray[np.int64]:
     """Count breaks of a segment that fall together when rounded, so that none is lost."""
     is_new = np.ones(len(places.xy), np.bool_)
     is_new[1:] = (np.diff(places.xy, axis=0) != 0).any(axis=1) | (np.diff(places.segments) != 0)
@@ -174,16 +174,14 @@ def _merge(
     return places, own
 
 
-def _ends_of_lines(
-    places: Places, segments: Segments
-) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+def _find_ends(places: Places, segments: Segments) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Tell which rows stay, all but ends of segments that are continued, and which end a line."""
     is_end = np.append(np.diff(places.segments) != 0, True)
     is_continued = segments.is_continued[places.segments]
     return ~(is_end & is_continued), is_end & ~is_continued
 
 
-def _elevations(
+def _interpolate_places(
     breaks: Breaks, own: NDArray[np.int64], xy: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     found = breaks.elevations[own]
@@ -194,7 +192,7 @@ def _elevations(
     return found
 
 
-def _crossed(breaks: Breaks, own: NDArray[np.int64]) -> NDArray[np.str_]:
+def _name_crossed(breaks: Breaks, own: NDArray[np.int64]) -> NDArray[np.str_]:
     words = np.array([*CROSSED, ""])
     return words[np.where(own >= 0, breaks.crossed[own], -1)]
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from .rows import Rows
 
-__all__ = ["Runs", "runs_of"]
+__all__ = ["Runs", "find_runs"]
 
 
 class Runs(NamedTuple):
@@ -33,7 +33,7 @@ class Runs(NamedTuple):
     first_rows: NDArray[np.int64]
 
 
-def runs_of(rows: Rows, k: int = 0) -> Runs:
+def find_runs(rows: Rows, k: int = 0) -> Runs:
     """Return the runs of surface ``k``; where a line only touches it there is none."""
     goes_on = ~rows.is_gap[:, k] & ~rows.is_last
     comes_on = np.append(False, goes_on[:-1])

@@ -12,7 +12,7 @@ from ...tin.topology import find_owners
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Segments", "segments_of"]
+__all__ = ["Segments", "as_segments"]
 
 
 class Segments(NamedTuple):
@@ -55,7 +55,7 @@ class Segments(NamedTuple):
         return np.where(ratio == 1.0, last, station)
 
 
-def segments_of(
+def as_segments(
     xy: NDArray[np.float64], offsets: NDArray[np.int64], *, start: float = 0.0, what: str = "line"
 ) -> Segments:
     """Return the segments of polylines, each line's stations counted from its first vertex.

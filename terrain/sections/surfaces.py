@@ -5,14 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..._sentences import shown
-from ...crs import CRS, Unit, assume_elevation_unit
-from ...errors import CrsError, OptionError
+from ...crs import CRS, Unit
+from ...errors import OptionError
 from ...tin.validation.options import require_tin
+from ..georeference import agree
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from ...tin import TIN
 
 __all__ = ["Surfaces", "as_surfaces"]
@@ -63,18 +61,17 @@ def as_surfaces(given: Any) -> Surfaces:
     PointsError
         If one is no TIN.
     CrsError
-        If CRSs differ, or a unit of elevations is not known while another one is usual in the CRS
-        than the one that is known.
+        As :func:`tinsmith.terrain.georeference.agree` says.
     """
-    names, tins = _named(given)
+    names, tins = _name_tins(given)
     for tin in tins:
         require_tin(tin)
-    crs, notes = _one_crs(names, tins)
-    unit, factors, more = _one_unit(names, tins, crs)
-    return Surfaces(names, tins, factors, crs, unit, (*notes, *more))
+    phrases = [f"the surface '{name}'" if name else "the surface" for name in names]
+    found = agree(tins, phrases)
+    return Surfaces(names, tins, found.factors, found.crs, found.elevation_unit, found.notes)
 
 
-def _named(given: Any) -> tuple[tuple[str, ...], tuple[TIN, ...]]:
+def _name_tins(given: Any) -> tuple[tuple[str, ...], tuple[TIN, ...]]:
     if isinstance(given, Mapping):
         names = tuple(given)
         for name in names:
@@ -89,65 +86,3 @@ def _named(given: Any) -> tuple[tuple[str, ...], tuple[TIN, ...]]:
     if not tins:
         raise OptionError("surfaces", [], allowed=_ALLOWED)
     return names, tins
-
-
-def _one_crs(names: Sequence[str], tins: Sequence[TIN]) -> tuple[CRS | None, list[str]]:
-    known = next((tin.crs for tin in tins if tin.crs is not None), None)
-    notes = []
-    for name, tin in zip(names, tins, strict=True):
-        if known is None:
-            break
-        if tin.crs is None:
-            notes.append(f"The surface '{name}' names no CRS: taken as {known.label}.")
-        elif not _is_same(tin.crs, known):
-            raise CrsError(
-                f"The surface '{name}' is in {tin.crs.label} and another in {known.label}: "
-                "reproject one of them first.",
-                crs=tin.crs,
-            )
-    return known, notes
-
-
-def _is_same(one: CRS, other: CRS) -> bool:
-    """Whether both are the same in the plane, and above it if both tell of elevations."""
-    if one.vertical_unit is not None and other.vertical_unit is not None:
-        return one.is_same(other)
-    return one.horizontal.is_same(other.horizontal)
-
-
-def _one_unit(
-    names: Sequence[str], tins: Sequence[TIN], crs: CRS | None
-) -> tuple[Unit | None, tuple[float, ...], list[str]]:
-    """Take the first unit that is known for all, and convert those that differ."""
-    known = next((tin.elevation_unit for tin in tins if tin.elevation_unit is not None), None)
-    factors, notes = [], []
-    for name, tin in zip(names, tins, strict=True):
-        factor, note = 1.0, ""
-        if known is not None and tin.elevation_unit is None:
-            note = _assume(name, known, crs)
-        elif known is not None and tin.elevation_unit is not None and tin.elevation_unit != known:
-            factor = _metres(tin.elevation_unit) / _metres(known)
-            note = (
-                f"The elevations of '{name}' were converted from {tin.elevation_unit.name} to "
-                f"{known.name}."
-            )
-        factors.append(factor)
-        notes += [note] if note else []
-    return known, tuple(factors), notes
-
-
-def _metres(unit: Unit) -> float:
-    return 1.0 if unit.metres is None else unit.metres
-
-
-def _assume(name: str, known: Unit, crs: CRS | None) -> str:
-    """Take an unknown unit to be the known one, unless another one is usual in the CRS."""
-    usual = assume_elevation_unit(crs, None)
-    if usual is not None and usual != known:
-        raise CrsError(
-            f"The unit of the elevations of '{name}' is not known: another surface has "
-            f"{known.name}, and {usual.name} is usual in the CRS; declare it "
-            f"(z_unit={shown(known.name)}).",
-            crs=crs,
-        )
-    return f"The unit of the elevations of '{name}' is not known: taken as {known.name}."

@@ -37,6 +37,13 @@ def build(text, *options):
     return result.exit_code, result.stdout, result.stderr
 
 
+def assert_wrong_usage(code, stdout, stderr, *words):
+    assert code == 2, stderr
+    usage, _, sentence = stderr.partition("Error: ")
+    assert usage.startswith("Usage: ")
+    assert_sentence(1, stdout, f"Error: {sentence}", *words)
+
+
 def assert_sentence(code, stdout, stderr, *words):
     assert code == 1, stderr
     assert stdout == ""
@@ -132,8 +139,8 @@ def test_decimal_commas_are_understood(folder):
 
 def test_columns_that_the_file_does_not_have(folder):
     wanted = "easting=x,northing=y,elevation=depth"
-    assert_sentence(*build(SQUARE, "--columns", wanted), "depth", "x, y, z")
-    assert_sentence(*build(SQUARE, "--columns", "PENZD"), "5 columns")
+    assert_wrong_usage(*build(SQUARE, "--columns", wanted), "depth", "x, y, z")
+    assert_wrong_usage(*build(SQUARE, "--columns", "PENZD"), "--columns", "5 columns")
 
 
 def test_columns_by_role_take_names_and_numbers(folder):
@@ -171,7 +178,7 @@ def test_unknown_crs(folder):
 
 
 def test_bad_snap(folder):
-    assert_sentence(*build(SQUARE, "--snap", "-1"), "-1")
+    assert_wrong_usage(*build(SQUARE, "--snap", "-1"), "Invalid --snap -1")
 
 
 def test_raster_option_on_a_text_file(folder):
@@ -351,20 +358,20 @@ def test_no_second_object_follows_the_answer(folder):
 
 
 @pytest.mark.parametrize(
-    ("arguments", "words"),
+    ("arguments", "code", "words"),
     [
-        (["build", "in.csv", "-o", "a.ply", "--snap", "nan"], "Invalid --snap nan"),
-        (["build", "in.csv", "-o", "a.ply", "--max-edge", "0"], "Invalid --max-edge 0.0"),
-        (["refine", "in.csv", "-o", "a.ply", "--max-side", "-1"], "Invalid --max-side -1.0"),
-        (["build", "in.csv", "-o", "a.ply", "--stride", "2"], "its options are --columns, "),
-        (["build", "in.csv", "-o", "a.ply", "--crs", "EPSG:4326"], "give --crs 'EPSG:"),
-        (["build", "in.csv", "-o", "a.geojson"], "with --projected."),
+        (["build", "in.csv", "-o", "a.ply", "--snap", "nan"], 2, "Invalid --snap nan"),
+        (["build", "in.csv", "-o", "a.ply", "--max-edge", "0"], 2, "Invalid --max-edge 0.0"),
+        (["refine", "in.csv", "-o", "a.ply", "--max-side", "-1"], 2, "Invalid --max-side -1.0"),
+        (["build", "in.csv", "-o", "a.ply", "--stride", "2"], 1, "its options are --columns, "),
+        (["build", "in.csv", "-o", "a.ply", "--crs", "EPSG:4326"], 1, "give --crs 'EPSG:"),
+        (["build", "in.csv", "-o", "a.geojson"], 1, "with --projected."),
     ],
 )
-def test_sentences_name_flags_and_no_python(folder, arguments, words):
+def test_sentences_name_flags_and_no_python(folder, arguments, code, words):
     Path("in.csv").write_text(SQUARE)
     result = CliRunner().invoke(main, arguments)
-    assert result.exit_code == 1
+    assert result.exit_code == code
     assert words in result.stderr
     assert "None" not in result.stderr
     assert not re.search(r"\w=", result.stderr)

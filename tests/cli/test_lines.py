@@ -195,7 +195,7 @@ def test_notes_say_what_was_assumed(points, files, tmp_path):
         (("--breaklines", "none.gpkg"), 1, "There is no file 'none.gpkg'."),
         (("--water-z", "3"), 2, "--water-z needs --water"),
         (("--codes",), 1, "no descriptions"),
-        (("--max-edge", "-1"), 1, "Invalid --max-edge"),
+        (("--max-edge", "-1"), 2, "Invalid --max-edge"),
         (("--crossing", "ignore"), 2, "'ignore' is not one of"),
     ],
 )

@@ -104,6 +104,12 @@ def test_sections_are_tables_and_lines_in_space(site, tmp_path):
     assert meta["geometry_type"].endswith("Z")
 
 
+def test_sections_are_drawn_on_a_sheet(site, tmp_path):
+    out = run("profile", site, *LINE, "--sections", 20, 10, "-o", tmp_path / "a.png")
+    assert out.exit_code == 0, out.output
+    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+
+
 def test_points_are_triangulated_with_their_lines(tmp_path):
     out = run("profile", SITE, "--crs", UTM, "--codes", *LINE, "-o", tmp_path / "a.csv")
     assert out.exit_code == 0, out.output
@@ -122,8 +128,8 @@ def test_points_are_triangulated_with_their_lines(tmp_path):
         (("--from", 1, 1, "--to", 2, 2, "-o", "a.csv"), "lies outside the surface"),
         ((*LINE, "--interval", 0, "-o", "a.csv"), "Invalid --interval 0.0"),
         ((*LINE, "--interval", 1e-9, "-o", "a.csv"), "at most 1,000,000"),
-        ((*LINE, "--sections", 10, 0, "-o", "a.csv"), "Invalid width 0.0"),
-        ((*LINE, "--sections", 10, 5, "-o", "a.png"), "has no --sections"),
+        ((*LINE, "--sections", 10, 0, "-o", "a.csv"), "Invalid --sections 0.0"),
+        ((*LINE, "--sections", 1, 5, "-o", "a.png"), "at most 60 on a sheet"),
         ((*LINE, "-o", "a.gpkg"), "a Table can be written to"),
         ((*LINE, "--name", "a", "--name", "b", "-o", "a.csv"), "name each once"),
         ((*LINE, "--exaggeration", -1, "-o", "a.png"), "Invalid --exaggeration"),

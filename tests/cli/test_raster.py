@@ -51,12 +51,12 @@ def test_the_cells_of_another_raster(tmp_path, surface):
     [
         ((), 2, "One of --spacing and --like is needed."),
         (("--spacing", 1, "--like", "x.tif"), 2, "One of --spacing and --like is needed."),
-        (("--spacing", 0), 1, "Invalid --spacing 0.0"),
-        (("--spacing", -1), 1, "Invalid --spacing -1.0"),
-        (("--spacing", "1e-4"), 1, "number of cells"),
-        (("--spacing", 1, "--at", "mean", "--method", "natural"), 1, "Invalid --at"),
+        (("--spacing", 0), 2, "Invalid --spacing 0.0"),
+        (("--spacing", -1), 2, "Invalid --spacing -1.0"),
+        (("--spacing", "1e-4"), 2, "(--spacing)"),
+        (("--spacing", 1, "--at", "mean", "--method", "natural"), 2, "Invalid --at"),
         (("--spacing", 1, "--value", "height"), 2, "height"),
-        (("--like", "missing.tif"), 1, "a raster file that can be opened"),
+        (("--like", "missing.tif"), 1, "There is no file 'missing.tif'"),
     ],
 )
 def test_what_cannot_be_done_is_said(tmp_path, surface, options, code, sentence):
@@ -64,6 +64,22 @@ def test_what_cannot_be_done_is_said(tmp_path, surface, options, code, sentence)
     assert out.exit_code == code, out.output
     assert sentence in out.stderr
     assert "Traceback" not in out.output
+    assert not (tmp_path / "out.tif").exists()
+
+
+def test_like_reads_plain_files_alone_and_cells_elsewhere_are_refused(tmp_path, surface):
+    text = """<GDAL_WMS><Service name="WMS"><ServerUrl>http://127.0.0.1:9/?</ServerUrl></Service>
+        <DataWindow><SizeX>9</SizeX><SizeY>9</SizeY></DataWindow></GDAL_WMS>"""
+    (tmp_path / "like.tif").write_text(text)
+    out = run("raster", surface, "--like", tmp_path / "like.tif", "-o", tmp_path / "out.tif")
+    assert (out.exit_code, "like.tif" in out.stderr) == (1, True), out.output
+    profile = {"width": 2, "height": 2, "count": 1, "dtype": "float32", "crs": "EPSG:32616"}
+    far = rasterio.Affine(1.0, 0.0, 100.0, 0.0, -1.0, 100.0)
+    with rasterio.open(tmp_path / "far.tif", "w", transform=far, **profile) as file:
+        file.write(np.zeros((1, 2, 2), np.float32))
+    out = run("raster", surface, "--like", tmp_path / "far.tif", "-o", tmp_path / "out.tif")
+    assert out.exit_code == 1, out.output
+    assert "The cells do not meet the surface: they cover 100 to 102 east" in out.stderr
     assert not (tmp_path / "out.tif").exists()
 
 

@@ -75,8 +75,8 @@ def test_degrees_are_refused(tmp_path):
 @pytest.mark.parametrize(
     ("options", "code", "words"),
     [
-        (["--min-angle", "40"], 1, "Invalid --min-angle 40.0"),
-        (["--max-area", "-2"], 1, "Invalid --max-area -2.0"),
+        (["--min-angle", "40"], 2, "Invalid --min-angle 40.0"),
+        (["--max-area", "-2"], 2, "Invalid --max-area -2.0"),
         (["--max-area", "1e-9"], 1, "more than 10,000,000 vertices"),
         (["--max-vertices", "2000"], 1, "more than 2,000 vertices"),
         (["--max-side", "x"], 2, "'x' is not a valid float"),

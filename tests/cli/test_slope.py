@@ -79,12 +79,12 @@ def test_hillshade(site, tmp_path):
     ("command", "code", "words"),
     [
         (["slope", "--breaks", "5,x"], 2, "Invalid --breaks '5,x': it must be numbers"),
-        (["slope", "--breaks", "5,3"], 1, "--breaks"),
+        (["slope", "--breaks", "5,3"], 2, "--breaks"),
         (["slope", "--breaks", "5", "--aspect"], 2, "--breaks is for slopes"),
         (["slope", "--unit", "radians"], 2, "radians"),
-        (["hillshade", "--spacing", "0"], 1, "Invalid --spacing 0"),
-        (["hillshade", "--spacing", "1e-9"], 1, "number of cells"),
-        (["hillshade", "--altitude", "100"], 1, "--altitude"),
+        (["hillshade", "--spacing", "0"], 2, "Invalid --spacing 0"),
+        (["hillshade", "--spacing", "1e-9"], 2, "--spacing"),
+        (["hillshade", "--altitude", "100"], 2, "--altitude"),
     ],
 )
 def test_wrong_options(site, tmp_path, command, code, words):

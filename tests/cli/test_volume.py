@@ -76,6 +76,21 @@ def test_volumes_come_by_region(files, tmp_path):
     assert [row["fill"] for row in rows] == pytest.approx([0, 1800], abs=1e-6)
 
 
+@pytest.mark.parametrize("column", ["name", "ID"])
+def test_regions_of_a_file_have_its_names(files, tmp_path, column):
+    x, y = 752_000, 4_024_000
+    ring = [[x, y], [x + 10, y], [x + 10, y + 40], [x, y + 40], [x, y]]
+    rings = np.array([*ring, *([a + 10, b] for a, b in ring)], float)
+    named = {column: np.array(["west", "east"], object)}
+    regions = ts.Features.of_polygons(rings, [0, 5, 10], [0, 1, 2], columns=named, crs="EPSG:32616")
+    ts.write(regions, tmp_path / "regions.gpkg")
+    result = run("volume", *files, "--regions", tmp_path / "regions.gpkg", "--json")
+    assert [row["region"] for row in json.loads(result.stdout)["rows"]] == ["west", "east"]
+    result = run("volume", files[1], "--stage-storage", "--level", 2, "--regions",
+                 tmp_path / "regions.gpkg", "--json")  # fmt: skip
+    assert json.loads(result.stdout)["rows"][0]["volume"] == pytest.approx(2 * 20 * 20 / 2 * 2)
+
+
 def test_stages_are_tabulated(files):
     result = run("volume", files[1], "--stage-storage", "--interval", 2, "--json")
     rows = json.loads(result.stdout)["rows"]
@@ -110,8 +125,8 @@ def test_the_zero_line_is_written_in_place_of_zones(files, tmp_path):
         (["volume", "flat", "ramp", "--base", 3], 2, "One of these is needed"),
         (["volume", "flat", "ramp", "flat"], 2, "3 files are given"),
         (["volume", "flat", "--base", 3, "--interval", 1], 2, "are for --stage-storage"),
-        (["volume", "flat", "--stage-storage", "--interval", 0], 1, "Invalid --interval 0"),
-        (["volume", "ramp", "--stage-storage", "--interval", 1e-9], 1, "at most 100,000"),
+        (["volume", "flat", "--stage-storage", "--interval", 0], 2, "Invalid --interval 0"),
+        (["volume", "ramp", "--stage-storage", "--interval", 1e-9], 2, "at most 100,000"),
         (["volume", "flat", "--stage-storage", "--level", 1, "--interval", 1], 2, "choose one"),
         (["volume", "flat", "ramp", "-o", "x.ply"], 1, "not a Table"),
         (["volume", "flat", "ramp", "--codes"], 1, "--codes needs a file of points"),

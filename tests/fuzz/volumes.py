@@ -82,13 +82,16 @@ def examine_difference(tin: Any, other: Any, table: Any) -> str:
     assert ts.check(found.tin).ok, repr(ts.check(found.tin))
     area, slack = float(table["area"][0]), rounding_of(tin, other)
     relief = float(np.abs(found.tin.points[:, 2]).max())
+    ranges = float(np.ptp(tin.points[:, 2]) + np.ptp(other.points[:, 2]))  # what a rounding moves
     assert abs(found.tin.area - area) <= slack, "area"
     zones = found.zones
     assert abs(zones.columns["area"].sum() - area) <= slack, "zones"
     for kind in ("cut", "fill"):
         volume = zones.columns["volume"][zones.columns["kind"] == kind].sum()
         apart = abs(volume - table[kind][0])
-        assert apart <= slack * relief + 2e-7 * area * relief, f"{kind}: {apart} of {volume}"
+        assert apart <= slack * (relief + ranges) + 2e-7 * area * relief, (
+            f"{kind}: {apart} of {volume}"
+        )
     middle = found.statistics["median"][0]
     assert found.statistics["lowest"][0] <= middle <= found.statistics["highest"][0]
     return "overlaid"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tinsmith.tin.records import pack_tin
+from tinsmith.io.mesh.geopackage.records import pack_tin
 
 ARRAYS = ("points", "triangles", "neighbors", "constrained", "vertex_of")
 

@@ -130,7 +130,7 @@ class Water:
         return f"<Water: {len(self.ring)} corners at {self.z:g}{name}>"
 
 
-def _no_numbers() -> NDArray[np.int32]:
+def _make_no_numbers() -> NDArray[np.int32]:
     return np.empty(0, np.int32)
 
 
@@ -163,10 +163,10 @@ class Lines(Frozen):
     <Lines: 1 hard, 0 soft, 0 boundary, 0 hole, 0 water; 3 vertices>
     """
 
-    vertices: NDArray[np.int32] = field(default_factory=_no_numbers)
+    vertices: NDArray[np.int32] = field(default_factory=_make_no_numbers)
     offsets: NDArray[np.int32] = field(default_factory=lambda: np.zeros(1, np.int32))
     kinds: tuple[LineKind, ...] = ()
-    sources: NDArray[np.int32] = field(default_factory=_no_numbers)
+    sources: NDArray[np.int32] = field(default_factory=_make_no_numbers)
     names: tuple[str, ...] = ()
 
     def __len__(self) -> int:

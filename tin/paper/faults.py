@@ -58,13 +58,13 @@ def find_overlapping(
     for start in range(0, len(triangles), _BLOCK):
         block = np.arange(start, min(start + _BLOCK, len(triangles)))
         block = block[~found[block]]
-        near = _boxes_meet(points[triangles, :2], block)
+        near = _match_boxes(points[triangles, :2], block)
         near[np.arange(len(block)), block] = False
         _mark(xy, triangles, block, near, found)
     return found
 
 
-def _boxes_meet(corners: NDArray[np.float64], block: NDArray[np.int64]) -> NDArray[np.bool_]:
+def _match_boxes(corners: NDArray[np.float64], block: NDArray[np.int64]) -> NDArray[np.bool_]:
     """Tell for each triangle of a block which triangles have a bounding box that meets its own."""
     low, high = corners.min(axis=1), corners.max(axis=1)
     meet = np.ones((len(block), len(corners)), np.bool_)

@@ -21,7 +21,7 @@ Where the paper is silent or contradicts itself, this is what is done:
 - *Order of edges*: triangles in the order of their growth, each triangle's edges in turn.
 - *Angle*: step 4 keeps "lower" degrees, condition 4 "as large as possible". The largest is kept.
 - *Ties*: step 4 replaces the last-found point only by a better one, so the first in the list stays.
-- *Circle*: points on its rim are in it. Within it the distances to the edge and to its line agree.
+- *Circle*: points on it are in it. Within it the distances to the edge and to its line agree.
 - *Distance*: read as deciding among the points in the circle, or only among those of an equal
   angle, as section 5 has it, see :func:`improved`.
 - *Empty circle*: read in two ways, see :func:`improved`.

@@ -92,7 +92,7 @@ def _measure_doubled_area(xy: Columns, *corners: int) -> Fraction:
 
 
 def closest_in_circle(xy: Columns, p1: int, p2: int, qualified: NDArray[np.int64]) -> Choice:
-    """Choose the point closest to p1-p2 in the circle whose diameter it is, rim included.
+    """Choose the point closest to p1-p2 in the circle whose diameter it is, or on it.
 
     The perpendicular from a point of that circle meets the edge itself, so the distances to the
     edge and to its line are the same. Of equals the first in the list is chosen; in doubles, as

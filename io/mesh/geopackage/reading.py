@@ -11,10 +11,10 @@ import numpy as np
 
 from ....errors import PointsError, ReadError
 from ....tin import TIN
-from ....tin.records import Record, unpack_tin
 from ...isolated import run_isolated
 from ..common import choose_reference, make_tin
 from .digests import digest_arrays
+from .records import Record, unpack_tin
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -246,8 +246,9 @@ def plan_outputs(
     outputs = [Named(path, "--output") for path in paths]
     if report is not None:
         outputs.append(Named(report, "--report"))
-    texture = [] if writing.texture is None else [Named(writing.texture, "the texture")]
-    require_separate([*inputs, *texture], outputs)
+    texture = writing.options.get("texture")
+    pictures = [] if texture is None else [Named(texture, "the texture")]
+    require_separate([*inputs, *pictures], outputs)
     given = {name: value for name, value in writing.options.items() if value not in (None, False)}
     planned = [
         Output(path, formats, given, _choose_suffix(formats, writing))

@@ -5,8 +5,20 @@ from __future__ import annotations
 import re
 
 import click
+from click.core import ParameterSource
 
-__all__ = ["name_flags"]
+__all__ = ["find_given_flag", "name_flags", "note_given"]
+
+_CONTEXT = "tinsmith.context"
+_FLAGS_OF = {
+    "cells": ("spacing",),
+    "interval": ("interval", "sections"),
+    "level": ("levels",),
+    "spacing": ("spacing", "label_spacing"),
+    "unit of elevations": ("z_unit", "lines_z_unit"),
+    "width": ("sections",),
+}
+"""Parameters of commands for options that the library calls otherwise."""
 
 
 def name_flags(text: str, **renamed: str) -> str:
@@ -37,6 +49,43 @@ def name_flags(text: str, **renamed: str) -> str:
     return text
 
 
+def note_given(context: click.Context) -> None:
+    """Remember the command that runs, for a failure when only its group is left."""
+    context.find_root().meta[_CONTEXT] = context
+
+
+def find_given_flag(option: str) -> tuple[click.Context, str] | None:
+    """Return the flag by which a value of a library's option came from the command line.
+
+    Parameters
+    ----------
+    option : str
+        As an OptionError names it.
+
+    Returns
+    -------
+    context : click.Context
+        Of the command.
+    flag : str
+        Such as ``--max-edge``; None instead of both if the value came from elsewhere.
+    """
+    root = click.get_current_context(silent=True)
+    context = None if root is None else root.find_root().meta.get(_CONTEXT)
+    if context is None:
+        return None
+    name = option.removeprefix("number of ")
+    names = (name.replace("-", "_"), *_FLAGS_OF.get(name, ()))
+    for one in context.command.params:
+        is_flag = isinstance(one, click.Option) and one.opts[0].startswith("--") and one.name
+        if not is_flag:
+            continue
+        called = {one.name, one.opts[0].removeprefix("--").replace("-", "_")}
+        source = context.get_parameter_source(one.name)
+        if source is ParameterSource.COMMANDLINE and called.intersection(names):
+            return context, one.opts[0]
+    return None
+
+
 def _name_known(names: str, flags: dict[str, str]) -> str:
     """Return the flags of those options in a list that have one here."""
     return ", ".join(flags[name] for name in names.split(", ") if name in flags)
@@ -56,4 +105,5 @@ def _list_flags(command: click.Command) -> dict[str, str]:
     for option in command.params:
         if isinstance(option, click.Option) and option.opts[0].startswith("--") and option.name:
             flags[option.opts[0].removeprefix("--").replace("-", "_")] = option.opts[0]
+            flags.setdefault(option.name, option.opts[0])
     return dict(sorted(flags.items(), key=lambda item: -len(item[0])))

@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 import click
 
 from ..policies import DrawingContent, DuplicatePolicy, FeatureKind, LineReading
+from .flags import note_given
 from .line_options import CODE_OPTIONS, LINE_OPTIONS
 from .mesh_options import MESH_READING, MESH_WRITING
 from .output.console import Console
@@ -20,6 +21,7 @@ __all__ = [
     "CODE_FLAGS",
     "Coding",
     "Reading",
+    "SurfaceWriting",
     "Triangulating",
     "Writing",
     "coding_options",
@@ -154,6 +156,17 @@ class Writing:
     output_format: str | None = None
     kind: str | None = None
     projected: bool = False
+
+    @property
+    def options(self) -> dict[str, Any]:
+        """All that a writer may take, by the names of its options."""
+        return {name: value for name, value in asdict(self).items() if name != "output_format"}
+
+
+@dataclass(frozen=True)
+class SurfaceWriting(Writing):
+    """How a surface is written; some other commands have flags of these names for themselves."""
+
     texture: Path | None = None
     solid: bool = False
     thickness: float | None = None
@@ -164,11 +177,6 @@ class Writing:
     max_level: int | None = None
     gzipped: bool = False
 
-    @property
-    def options(self) -> dict[str, Any]:
-        """All that a writer may take, by the names of its options."""
-        return {name: value for name, value in asdict(self).items() if name != "output_format"}
-
 
 def _gather(name: str, factory: type, *options: Decorator) -> Callable[[Function], Function]:
     """Return a decorator that adds options and hands them over as one value called ``name``."""
@@ -177,6 +185,7 @@ def _gather(name: str, factory: type, *options: Decorator) -> Callable[[Function
     def decorate(function: Function) -> Function:
         @wraps(function)
         def gathering(**given: Any) -> Any:
+            note_given(click.get_current_context())
             value = factory(**{key: given.pop(key) for key in names if key in given})
             return function(**given, **{name: value})
 
@@ -275,7 +284,8 @@ reading_options = _gather(
     ),
     *MESH_READING,
     click.option(
-        "--unit",
+        "--file-unit",
+        "unit",
         metavar="UNIT",
         help="Unit of the coordinates and elevations of a LandXML or DXF file, where it does not "
         "say, or says another one than its CRS.",
@@ -383,7 +393,7 @@ def _make_projected_option(whose: str) -> Decorator:
 
 
 _VECTOR_WRITING = (_format_option, _kind_option, _make_projected_option("points"))
-writing_options = _gather("writing", Writing, *_VECTOR_WRITING, *MESH_WRITING)
+writing_options = _gather("writing", SurfaceWriting, *_VECTOR_WRITING, *MESH_WRITING)
 vector_options = _gather("writing", Writing, *_VECTOR_WRITING)
 product_options = _gather("writing", Writing, _format_option, _make_projected_option("TIN"))
 format_options = _gather("writing", Writing, _format_option)

@@ -82,7 +82,7 @@ def plan_products(
     require_separate(inputs, [Named(path, "--output") for path in paths])
     groups: dict[str, list[Path]] = {}
     for path in paths:
-        groups.setdefault(_kind_of(path, writing, kinds), []).append(path)
+        groups.setdefault(_find_kind(path, writing, kinds), []).append(path)
     pictures = groups.pop("picture", [])
     if sum(path == STANDARD for path in paths) > 1:
         raise Failure("'-o -' is given twice: standard output takes one thing.")
@@ -93,7 +93,7 @@ def plan_products(
     return Products(console=console, outputs=planned, pictures=pictures)
 
 
-def _kind_of(path: Path, writing: Writing, kinds: Sequence[str]) -> str:
+def _find_kind(path: Path, writing: Writing, kinds: Sequence[str]) -> str:
     """Return what a suffix, or a format that is named, is meant for."""
     from ..io import known_formats
 

@@ -14,6 +14,7 @@
 #include "../../../tin/cpp/base/parallel.hpp"
 #include "../../../tin/cpp/index/box_tree.hpp"
 #include "../../../tin/cpp/location/ordered_surface.hpp"
+#include "../pulse.hpp"
 #include "facet.hpp"
 
 namespace tinsmith::earthwork {
@@ -32,13 +33,16 @@ class Pairs {
     const std::int64_t count = first_.surface().triangle_count;
     team.run([&](int part) {
       std::vector<Item> near;
+      Pulse pulse(team, part);  // a single triangle may meet all of the others
       while (team.keeps_going(part)) {
         const std::int64_t begin = next.fetch_add(kBlocksAtATime * kBlock);
         if (begin >= count) return;
         const std::int64_t end = std::min<std::int64_t>(begin + kBlocksAtATime * kBlock, count);
         for (std::int64_t at = begin; at < end; at += kBlock) {
           visit_block(at, std::min(at + kBlock, end), near,
-                      [&](const Facet& a, const Facet& b) { visit(part, a, b); });
+                      [&](const Facet& a, const Facet& b) {
+                        if (pulse.goes_on()) visit(part, a, b);
+                      });
         }
       }
     });

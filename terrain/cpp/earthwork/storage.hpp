@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "../pulse.hpp"
 #include "facet.hpp"
 #include "sums.hpp"
 #include "volumes.hpp"
@@ -21,9 +22,13 @@ class Storage {
   using Row = std::array<double, 3>;  // area in the plane, in space, volume
 
   // `levels` ascend; `up` converts elevations to the unit of the plane for areas in space.
-  Storage(const Triangles& triangles, const double* levels, std::int32_t count, double up)
+  Storage(const Triangles& triangles, const double* levels, std::int32_t count, double up,
+          Team& team)
       : levels_(levels, levels + count), cut_(count), drowned_(count) {
-    for (std::int32_t t = 0; t < triangles.count; ++t) add(Facet::of(triangles, t), up);
+    Pulse pulse(team);
+    for (std::int32_t t = 0; t < triangles.count && pulse.goes_on(); ++t) {
+      add(Facet::of(triangles, t), up, pulse);
+    }
   }
 
   std::vector<Row> rows() const {
@@ -46,13 +51,13 @@ class Storage {
  private:
   using Triple = std::array<ExactSum, 3>;
 
-  void add(const Facet& facet, double up) {
+  void add(const Facet& facet, double up, Pulse& pulse) {
     const double area = 0.5 * twice_area(facet.corner[0], facet.corner[1], facet.corner[2]);
     const double slope = steepness(facet, up);
     const double* z = facet.elevation;
     const auto [lowest, highest] = std::minmax({z[0], z[1], z[2]});
     auto level = std::upper_bound(levels_.begin(), levels_.end(), lowest);
-    for (; level != levels_.end() && *level < highest; ++level) {
+    for (; level != levels_.end() && *level < highest && pulse.goes_on(); ++level) {
       const Part part = positive_part(*level - z[0], *level - z[1], *level - z[2]);
       add(cut_[level - levels_.begin()], area * part.area, slope, area * part.volume);
     }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "../../../tin/cpp/base/parallel.hpp"
+#include "../pulse.hpp"
 #include "cell.hpp"
 #include "facet.hpp"
 #include "pairs.hpp"
@@ -81,9 +82,10 @@ inline std::vector<Sums> sum_between(const Triangles& first, const std::int32_t*
 // Of heights at the vertices, which are linear over each triangle.
 inline std::vector<Sums> sum_heights(const Triangles& triangles, const double* heights,
                                      const std::int32_t* groups, std::int32_t group_count,
-                                     double up) {
+                                     double up, Team& team) {
   std::vector<Sums> sums(group_count);
-  for (std::int32_t t = 0; t < triangles.count; ++t) {
+  Pulse pulse(team);
+  for (std::int32_t t = 0; t < triangles.count && pulse.goes_on(); ++t) {
     const Facet facet = Facet::of(triangles, t);
     const double doubled = twice_area(facet.corner[0], facet.corner[1], facet.corner[2]);
     CellSums own;

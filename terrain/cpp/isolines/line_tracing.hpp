@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "../../../tin/cpp/base/parallel.hpp"
+#include "../pulse.hpp"
 #include "level_surface.hpp"
 
 namespace tinsmith::isolines {
@@ -50,7 +51,7 @@ inline void turn_to_first(ScratchVector<Point>& points, std::size_t begin) {
 // triangle beyond: lines are the cycles of that map and its ways from boundary to boundary.
 class LineTracer {
  public:
-  LineTracer(const LevelSurface& surface, Team& team) : surface_(surface), team_(team) {
+  LineTracer(const LevelSurface& surface, Team& team) : surface_(surface), pulse_(team) {
     const std::int32_t count = surface.arrays().triangle_count;
     first_exit_.resize(std::size_t(count) + 1);
     std::size_t total = 0;
@@ -70,7 +71,7 @@ class LineTracer {
   TracedLines trace() {
     for (const HalfEdge e : boundary_) trace_from_boundary(triangle_of(e), corner_of(e));
     for (const Triangle t : Ids<Triangle>(surface_.arrays().triangle_count)) {
-      if ((number(t) & 0xFFFF) == 0 && !team_.keeps_going(0)) break;
+      if (!pulse_.goes_on()) break;
       const std::uint32_t begin = first_exit_[number(t)];
       const std::uint32_t end = first_exit_[std::size_t{number(t)} + 1];
       for (std::uint32_t exit = begin; exit < end; ++exit) {
@@ -112,7 +113,7 @@ class LineTracer {
 
   // From exit to exit, until the boundary or an exit that the line had before.
   void follow(Triangle t, std::int32_t level, std::size_t begin) {
-    while (t != kNoTriangle) {
+    while (t != kNoTriangle && pulse_.goes_on()) {
       surface_.prefetch_around(t, first_exit_.data());
       Crossed crossed = surface_.crossed(t, level);
       const Triangle beyond = surface_.beyond_ridge(t, crossed.above, level);
@@ -149,7 +150,7 @@ class LineTracer {
   }
 
   const LevelSurface& surface_;
-  Team& team_;
+  Pulse pulse_;
   ScratchVector<std::uint32_t> first_exit_;  // of each triangle, that of its lowest level
   std::vector<HalfEdge> boundary_;           // of crossed triangles
   std::vector<char> is_left_;

@@ -78,10 +78,9 @@ inline SumTable sum_heights(const GivenXyz& points, const GivenTriples& triangle
   if (heights.shape(0) != points.shape(0)) {
     throw std::invalid_argument("a height for each point is needed");
   }
-  nb::gil_scoped_release release;
-  const auto sums = earthwork::sum_heights(given, heights.data(), groups.data(), group_count, up);
-  nb::gil_scoped_acquire acquire;
-  return hand_over(sums);
+  return hand_over(unlocked(1, [&](Team& team) {
+    return earthwork::sum_heights(given, heights.data(), groups.data(), group_count, up, team);
+  }));
 }
 
 inline GroupAreas sum_areas(const GivenXyz& points, const GivenTriples& triangles,
@@ -114,9 +113,10 @@ inline StageTable stage_sums(const GivenXyz& points, const GivenTriples& triangl
   if (!std::is_sorted(levels.data(), levels.data() + levels.shape(0))) {
     throw std::invalid_argument("levels must ascend");
   }
-  nb::gil_scoped_release release;
-  const auto rows = earthwork::Storage(given, levels.data(), row_count(levels.shape(0)), up).rows();
-  nb::gil_scoped_acquire acquire;
+  const std::int32_t count = row_count(levels.shape(0));
+  const auto rows = unlocked(1, [&](Team& team) {
+    return earthwork::Storage(given, levels.data(), count, up, team).rows();
+  });
   return copy_over<StageTable, double>(rows, {rows.size(), 3});
 }
 

@@ -270,3 +270,23 @@ def test_surfaces_that_overlap_by_less_than_a_rounding_have_no_difference():
     assert ts.volume(tin, design)["area"].tolist() == [0.0]
     with pytest.raises(ts.PointsError, match="only in what is thinner than coordinates can tell"):
         ts.difference(tin, design)
+
+
+@pytest.mark.parametrize(
+    ("points", "share"),
+    [
+        ([[0, 0, 10.0], [3.21, 0.4, 871.2], [2.9, 2.7, 33.3], [0.11, 1.9, 412.0]], 1 / 3),
+        ([[0, 0, 10.0], [31.7, 4, 71.2], [29, 27.1, 33.3], [1.1, 19, 41.4]], 0.1),
+    ],
+)
+def test_surfaces_that_agree_but_for_rounding_have_a_difference(points, share):
+    """What differs is rounding alone, and was measured by itself: it was refused as a wall."""
+    utm = np.array(points) + np.array([512_345.0, 5_403_210.0, 0.0])
+    tin = ts.triangulate(utm)
+    corners = tin.points[tin.triangles]
+    middle = corners[:, 0] + share * (corners[:, 1] - corners[:, 0])
+    other = ts.triangulate(np.concatenate([utm, middle]))
+    found = ts.difference(tin, other)
+    assert ts.check(found.tin).ok
+    assert found.tin.area == pytest.approx(tin.area, rel=1e-9)
+    assert max(found.cut, found.fill) < 1e-4

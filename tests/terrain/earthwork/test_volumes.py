@@ -385,9 +385,13 @@ def test_unknown_units_are_written_so():
 @pytest.mark.parametrize(
     ("ours", "theirs", "part"),
     [
-        ({"crs": "EPSG:32616"}, {}, "CRS of the other is not known"),
-        ({}, {"crs": "EPSG:32616"}, "CRS of the other is not known"),
-        ({"crs": "EPSG:32616"}, {"crs": "EPSG:32617"}, "EPSG:32616 and the other in EPSG:32617"),
+        ({"crs": "EPSG:32616"}, {}, "CRS of the other surface is not known"),
+        ({}, {"crs": "EPSG:32616"}, "CRS of the first surface is not known"),
+        (
+            {"crs": "EPSG:32616"},
+            {"crs": "EPSG:32617"},
+            "EPSG:32616 and the other surface in EPSG:32617",
+        ),
         ({"crs": "EPSG:4326"}, {"crs": "EPSG:4326"}, "cannot be measured in degrees"),
         (
             {"crs": "EPSG:2274", "elevation_unit": "m"},

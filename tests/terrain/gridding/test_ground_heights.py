@@ -28,12 +28,12 @@ def test_heights_are_elevations_less_those_of_the_ground():
 def test_what_lies_outside_is_told():
     cloud = np.full((2000, 3), 99.0)
     cloud[::2] = [1, 1, 20]
-    (note,) = ts.height_above(ground(), cloud).notes
+    assumed, note = ts.height_above(ground(), cloud).notes
     assert note == (
         "1,000 of 2,000 points lie outside the surface (rows 1, 3, 5, 7, 9, ...): they have no "
         "height above ground."
     )
-    assert ts.height_above(ground(), cloud, extrapolate="nearest").notes == ()
+    assert ts.height_above(ground(), cloud, extrapolate="nearest").notes == (assumed,)
 
 
 def test_units_are_converted_and_said():
@@ -49,12 +49,12 @@ def test_units_are_converted_and_said():
 def test_an_unknown_unit_is_assumed_loudly():
     survey = ts.Survey(points=[[1, 1, 100.0]], crs="EPSG:32616")
     (note,) = ts.height_above(ground(crs="EPSG:32616", elevation_unit="m"), survey).notes
-    assert note == "One unit of elevations is not known: both are taken to be metre."
+    assert note == "The unit of the elevations of the points is not known: taken to be the metre."
 
 
 def test_another_crs_is_refused():
     survey = ts.Survey(points=[[1, 1, 100.0]], crs="EPSG:32617")
-    with pytest.raises(CrsError, match=r"EPSG:32617.*EPSG:32616.*must be the same"):
+    with pytest.raises(CrsError, match=r"EPSG:32616 and the points in EPSG:32617"):
         ts.height_above(ground(crs="EPSG:32616"), survey)
 
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 import tinsmith as ts
 from tinsmith.terrain.relief.dissolving import dissolve
-from tinsmith.terrain.slope import measure_areas
+from tinsmith.terrain.slope import measure_plane_areas
 
 
 def dissolved(tin, classes):
@@ -175,7 +175,9 @@ def test_units_of_both_axes_are_taken_into_account():
     steep = ts.slope_classes(feet, unit="percent").columns["lower"]
     steeper = ts.slope_classes(metres, unit="percent").columns["lower"]
     assert steeper.max() > steep.max() or len(steeper) < len(steep)
-    assert ts.slope_classes(feet).columns["area"].sum() == pytest.approx(measure_areas(feet).sum())
+    assert ts.slope_classes(feet).columns["area"].sum() == pytest.approx(
+        measure_plane_areas(feet).sum()
+    )
     assert "foot" in ts.slope_classes(feet).notes[0]
     assert ts.slope_classes(metres).notes == ()
 

@@ -83,7 +83,7 @@ def test_without_elevations_the_line_stays_whole():
         np.isnan(draped.coordinates[:, 2]).tolist()
         == [False] * 2 + [True] + [False] * 4 + [True] * 2
     )
-    assert "2 of 3 lines" in draped.notes[0]
+    assert "2 of 3 lines" in draped.notes[1]
 
 
 def test_cut_lines_have_parts_and_lost_features_are_told():

@@ -1,4 +1,4 @@
-// The door for points: a copy of the caller's rows, and whether the kernel can work with it.
+// Points as they come in: a copy of the caller's rows, and whether the kernel can work with it.
 #pragma once
 
 #include <atomic>

@@ -7,9 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..._sentences import counted
-from ..flags import name_flags
 from ..options import vector_options
-from ..output.failures import Failure
 from ..parameters import input_file, number_option, output_files, parse_numbers
 from ..paths import make_title
 from ..request import surface_options
@@ -101,7 +99,6 @@ def _require_one_product(options: dict[str, Any]) -> None:
 
 
 def _make_product(tin: TIN, options: dict[str, Any]) -> Features:
-    from ...errors import OptionError
     from ...terrain import contour_bands, contour_labels
     from ...terrain import contours as trace
 
@@ -117,10 +114,7 @@ def _make_product(tin: TIN, options: dict[str, Any]) -> Features:
     )
     if not options["labels"]:
         return lines
-    try:
-        return contour_labels(lines, spacing=options["label_spacing"])
-    except OptionError as error:
-        raise Failure(name_flags(str(error), spacing="--label-spacing")) from error
+    return contour_labels(lines, spacing=options["label_spacing"])
 
 
 def _draw(tin: TIN, made: Features, options: dict[str, Any], title: str) -> Any:

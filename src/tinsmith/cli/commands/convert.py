@@ -15,6 +15,7 @@ from ..paths import name_file
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from ...terrain import Raster
     from ...tin import TIN, Survey
     from ..files import Output
     from ..options import Reading, Writing
@@ -67,17 +68,28 @@ def convert(
 
 def _write(found: TIN | Survey, planned: list[Output], console: Console) -> None:
     """Write points as a raster where nothing else can be, everything else as it is."""
-    from ...io.raster.gridded import make_raster
     from ...tin import Survey
     from ..files import write_outputs
 
     rasters = [one for one in planned if {*one.formats} == {"Raster"}]
     if rasters and isinstance(found, Survey):
-        raster = make_raster(found)
+        raster = _make_raster(found, rasters[0].path)
         write_outputs(found, [one for one in planned if one not in rasters], console)
         write_outputs(raster, rasters, console)
         return
     write_outputs(found, planned, console)
+
+
+def _make_raster(survey: Survey, path: Path) -> Raster:
+    from ...errors import PointsError
+    from ...io.raster.gridded import make_raster
+    from ..output.failures import Failure
+
+    try:
+        return make_raster(survey)
+    except PointsError as error:
+        way = "'tinsmith raster' makes one of their surface."
+        raise Failure(f"Cannot write '{path}': {error} {way}") from error
 
 
 def _describe_content(found: TIN | Survey) -> str:

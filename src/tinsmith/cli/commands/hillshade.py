@@ -7,8 +7,6 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..flags import name_flags
-from ..output.failures import Failure
 from ..parameters import input_file, number_option, output_files
 from ..request import surface_options
 
@@ -49,25 +47,22 @@ def hillshade(
       tinsmith hillshade sample_data/site_survey.csv --crs EPSG:32616 --spacing 0.5 -o shade.tif
     """  # noqa: D301 - click reads the control character
     from ... import terrain
-    from ...errors import OptionError
     from ..output.summaries import describe_raster_size
 
     planned = request.plan(request.list_inputs(file), "Raster")
     tin = request.read_tin(file)
-    try:
-        with request.step("Shading"):
-            made = terrain.hillshade(
-                tin,
-                spacing=spacing,
-                azimuth=azimuth,
-                altitude=altitude,
-                exaggeration=exaggeration,
-                smooth=smooth,
-            )
-    except OptionError as error:
-        raise Failure(name_flags(str(error))) from error
+    with request.step("Shading"):
+        made = terrain.hillshade(
+            tin,
+            spacing=spacing,
+            azimuth=azimuth,
+            altitude=altitude,
+            exaggeration=exaggeration,
+            smooth=smooth,
+        )
     planned.write("Raster", made)
     raster = {"shape": list(made.shape), "spacing": made.grid.spacing}
     raster["bounds"] = asdict(made.grid.bounds)
-    rows = [("Raster", describe_raster_size(made))]
-    request.finish(planned, rows, lambda: {"input": str(file), "raster": raster})
+    rows = [("Raster", describe_raster_size(made)), *(("Note", note) for note in made.notes)]
+    record = {"input": str(file), "raster": raster, "notes": list(made.notes)}
+    request.finish(planned, rows, lambda: record)

@@ -72,6 +72,7 @@ def interpolate(
         --at places.csv --method natural -o elevations.csv
     """  # noqa: D301 - click reads the control character
     from ...io.delimited.places import read_places
+    from ...terrain.georeference import describe_unknown
 
     inputs = request.list_inputs(file, more=[Named(places_file, "the file of --at")])
     planned = request.plan(inputs, "Table")
@@ -81,7 +82,7 @@ def interpolate(
         columns=asked["places_columns"] or None,
         delimiter=asked["places_delimiter"],
     )
-    notes = list(places.notes)
+    notes = [*describe_unknown(tin.crs, tin.elevation_unit), *places.notes]
     with request.step(f"Interpolating {counted(len(places.xy), 'place')}"):
         table = _interpolate(tin, places, notes, request.how.threads, asked)
     planned.write("Table", table)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ..output.failures import Failure
 from ..parameters import number_option, output_files
 from ..paths import INPUT, LINES, Named, make_title
 from ..request import surface_options
@@ -78,7 +79,7 @@ def profile(
 
     A row wherever the line crosses an edge of a TIN, with the elevations of all of them. Tables go
     to .csv or .json, a picture to .png; cross sections also to .gpkg, .geojson and others as lines
-    in space. Lines in another CRS are reprojected.
+    in space; their picture is a sheet of them. Lines in another CRS are reprojected.
 
     \b
     Example:
@@ -134,20 +135,23 @@ def _plan(
     if line_file is not None:
         more.append(Named(split_layer(line_file)[0], "the file of --line"))
     kinds = ("Table", "picture") if sections is None else ("Table", "Features", "picture")
-    planned = request.plan_products(request.list_inputs(*files, more=more), *kinds)
-    if planned.pictures and sections is not None:
-        raise click.UsageError(f"'{planned.pictures[0]}' shows a profile: it has no --sections.")
-    return planned
+    return request.plan_products(request.list_inputs(*files, more=more), *kinds)
 
 
 def _read_lines(line: _Line, tin: TIN, notes: list[str]) -> Any:
-    from ...io import read_lines
+    """Return the lines to cut along; those of a file, also the rings of polygons, with its CRS."""
+    from ...io.vector.geometries import read_geometries
     from ...io.vector.survey_lines import split_layer
+    from ...terrain import Features
 
     if line.file is None:
         return [line.start, line.end]
     path, layer = split_layer(line.file)
-    return read_lines(path, crs=tin.crs, layer=layer, drape=True, notes=notes)
+    found = read_geometries(path, crs=tin.crs, layer=layer)
+    notes += found.notes
+    if found.kind == "points":
+        raise Failure(f"'{path}' has points: a profile runs along lines.")
+    return Features.of_lines(found.coordinates, found.offsets[0], crs=found.crs)
 
 
 # ---------------------------------------------------------------- what is made
@@ -174,11 +178,13 @@ def _cut(
 def _draw(
     table: Table, surfaces: dict[str, TIN], files: Sequence[Path], asked: dict[str, Any]
 ) -> Any:
-    from ...terrain import profile_picture
+    from ...terrain import profile_picture, section_picture
 
     crs = next((tin.crs for tin in surfaces.values() if tin.crs is not None), None)
-    title = asked["title"] or f"Profile: {make_title(files[0])}"
-    return profile_picture(table, exaggeration=asked["exaggeration"], title=title, crs=crs)
+    is_profile = asked["sections"] is None
+    what, draw = ("Profile", profile_picture) if is_profile else ("Cross sections", section_picture)
+    title = asked["title"] or f"{what}: {make_title(files[0])}"
+    return draw(table, exaggeration=asked["exaggeration"], title=title, crs=crs)
 
 
 def _describe_profile(files: Sequence[Path], table: Table, notes: Sequence[str]) -> dict[str, Any]:

@@ -8,7 +8,6 @@ import click
 
 from ...policies import InterpolationMethod, RasterSample, RasterValue
 from ..options import format_options
-from ..output.failures import Failure
 from ..parameters import choice_option, input_file, number_option, output_files
 from ..paths import LINES, Named
 from ..request import surface_options
@@ -34,7 +33,7 @@ __all__ = ["raster"]
 @choice_option(
     "--value",
     RasterValue,
-    "What the cells hold; slope and aspect in degrees, hillshade from 0 to 255.",
+    "What the cells hold; slope and aspect in degrees, hillshade from 1 to 255.",
     default="elevation",
 )
 @choice_option("--method", InterpolationMethod, "What lies between the vertices.", default="linear")
@@ -64,37 +63,36 @@ def raster(
       tinsmith raster sample_data/site_survey.csv --crs EPSG:32616 --codes
         --spacing 0.5 -o site.tif
     """  # noqa: D301 - click reads the control character
+    from ...io.raster.cells import read_cells
+
     if (spacing is None) == (like is None):
         raise click.UsageError("One of --spacing and --like is needed.")
     more = [] if like is None else [Named(like, "the raster of --like")]
     planned = request.plan(request.list_inputs(file, more=more), "Raster")
+    cells = None if like is None else read_cells(like)
     tin = request.read_tin(file)
-    made = _rasterize(tin, spacing, like, request.how.threads, asked)
+    made = _rasterize(tin, spacing, cells, request.how.threads, asked)
     planned.write("Raster", made)
     request.finish(planned, _summarise_raster(tin, made), lambda: _describe_raster(file, made))
 
 
 def _rasterize(
-    tin: TIN, spacing: float | None, like: Path | None, threads: int | None, asked: dict[str, Any]
+    tin: TIN, spacing: float | None, cells: Any, threads: int | None, asked: dict[str, Any]
 ) -> Raster:
-    from ...errors import OptionError
     from ...terrain import rasterize
 
-    try:
-        return rasterize(
-            tin,
-            spacing=spacing,
-            like=like,
-            value=asked["value"],
-            method=asked["method"],
-            at=asked["sample"],
-            azimuth=asked["azimuth"],
-            altitude=asked["altitude"],
-            lazy=True,
-            threads=threads,
-        )
-    except OptionError as error:
-        raise Failure(str(error)) from error
+    return rasterize(
+        tin,
+        spacing=spacing,
+        like=cells,
+        value=asked["value"],
+        method=asked["method"],
+        at=asked["sample"],
+        azimuth=asked["azimuth"],
+        altitude=asked["altitude"],
+        lazy=True,
+        threads=threads,
+    )
 
 
 def _summarise_raster(tin: TIN, made: Raster) -> list[Row]:
@@ -106,6 +104,7 @@ def _summarise_raster(tin: TIN, made: Raster) -> list[Row]:
         ("Surface", mesh_counts(tin)),
         ("Raster", describe_raster_size(made)),
         ("", f"west {box.xmin:.10g}, north {box.ymax:.10g}"),
+        *(("Note", note) for note in made.notes),
     ]
 
 
@@ -120,4 +119,5 @@ def _describe_raster(file: Path, made: Raster) -> dict[str, Any]:
         "bounds": asdict(made.grid.bounds),
         "bands": list(made.bands),
         "crs": None if made.crs is None else str(made.crs),
+        "notes": list(made.notes),
     }

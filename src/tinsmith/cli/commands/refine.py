@@ -9,7 +9,7 @@ import click
 from ..._sentences import counted
 from ..flags import name_flags
 from ..options import writing_options
-from ..output.failures import Failure
+from ..output.failures import Failure, refuse_option
 from ..parameters import input_file, number_option, output_files
 from ..request import surface_options
 
@@ -46,13 +46,13 @@ def refine(
 ) -> None:
     """Add points to the TIN in FILE, or that of the points in it, until its triangles are good.
 
-    Rim, boundary, holes and breaklines stay, and the new points lie on the surface.
+    Boundary, holes and breaklines stay, and the new points lie on the surface.
 
     \b
     Example:
       tinsmith refine sample_data/site_survey.csv --codes --max-area 20 -o site.msh -o site.vtu
     """  # noqa: D301 - click reads the control character
-    from ...errors import TinsmithError
+    from ...errors import OptionError, TinsmithError
     from ...tin import quality
     from ...tin import refine as refine_tin
     from ..output.line_summaries import mesh_counts
@@ -71,7 +71,9 @@ def refine(
                 max_vertices=max_vertices,
                 threads=request.how.threads,
             )
-        except TinsmithError as error:  # its max_edge is not --max-edge, which trims
+        except OptionError as error:  # its max_edge is not --max-edge, which trims
+            raise refuse_option(error, max_edge="max_side") from error
+        except TinsmithError as error:
             raise Failure(name_flags(str(error), max_edge="--max-side")) from error
     planned.write("TIN", refined)
     shapes = quality(refined)

@@ -28,6 +28,7 @@ __all__ = ["slope"]
     "--unit",
     SlopeUnit,
     "Of slopes: an angle, or rise over a run of 100 or of 1.",
+    name="slope_unit",
     default="degrees",
 )
 @click.option(
@@ -40,7 +41,7 @@ __all__ = ["slope"]
 @surface_options()
 def slope(
     file: Path,
-    unit: SlopeUnit,
+    slope_unit: SlopeUnit,
     breaks: list[float] | None,
     aspect: bool,
     request: Request,
@@ -56,17 +57,17 @@ def slope(
       tinsmith slope sample_data/jacksboro.tif --unit percent --breaks 5,15,30 -o slope.geojson
     """  # noqa: D301 - click reads the control character
     from ...terrain import aspect_classes, slope_classes, slope_statistics
-    from ...terrain.relief.classes import class_table
+    from ...terrain.relief.classes import tabulate_classes
 
     if aspect and breaks is not None:
         raise click.UsageError("--breaks is for slopes: aspects have the eight directions.")
     planned = request.plan_products(request.list_inputs(file), "Features", "Table")
     tin = request.read_tin(file)
     with request.step("Classifying"):
-        made = aspect_classes(tin) if aspect else slope_classes(tin, breaks=breaks, unit=unit)
-        statistics = slope_statistics(tin, unit=unit)
+        made = aspect_classes(tin) if aspect else slope_classes(tin, breaks=breaks, unit=slope_unit)
+        statistics = slope_statistics(tin, unit=slope_unit)
     planned.write("Features", made)
-    planned.write("Table", class_table(made))
+    planned.write("Table", tabulate_classes(made))
     rows = _summarise_classes(tin, made, statistics)
     request.finish(planned, rows, lambda: _describe_classes(file, made, statistics))
 

@@ -26,7 +26,10 @@ __all__ = ["view"]
 @number_option("--exaggeration", "FACTOR", "Vertical exaggeration; chosen if absent.")
 @click.option("--edges", is_flag=True, help="Draw the edges of the triangles.")
 @click.option(
-    "--lines/--no-lines", default=True, show_default=True, help="Draw breaklines and rims."
+    "--lines/--no-lines",
+    default=True,
+    show_default=True,
+    help="Draw breaklines and rings.",
 )
 @click.option("--top", is_flag=True, help="Look straight down, north up.")
 @click.option("--title", metavar="TEXT", help="Title in the picture; default the file's name.")

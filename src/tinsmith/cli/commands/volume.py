@@ -14,7 +14,7 @@ from ..request import surface_options
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ...terrain import Difference, Table
+    from ...terrain import Difference, Features, Table
     from ...tin import TIN
     from ..output.console import Row
     from ..request import Request
@@ -35,7 +35,10 @@ _FEET = ("ft³", "US ft³")
 )
 @number_option("--base", "ELEVATION", "Level in place of a design.")
 @click.option(
-    "--regions", metavar="FILE", type=LINES, help="Vector file of polygons to measure in."
+    "--regions",
+    metavar="FILE",
+    type=LINES,
+    help="Vector file of polygons to measure in; a column name, region, id or label names them.",
 )
 @click.option(
     "--stage-storage",
@@ -104,14 +107,13 @@ def _name_regions(regions: Path) -> Named:
     return Named(split_layer(regions)[0], "the file of --regions")
 
 
-def _read_regions(path: Path, tin: TIN) -> dict[str, Any]:
-    """Read polygons, in the CRS of the TIN, by their numbers."""
-    from ...io import read_polygons
+def _read_regions(path: Path, tin: TIN) -> Features:
+    """Read polygons with their columns, in the CRS of the TIN."""
+    from ...io.vector.geometries import read_geometries
     from ...io.vector.survey_lines import split_layer
 
     file, layer = split_layer(path)
-    polygons = read_polygons(file, crs=tin.crs, layer=layer, drape=True)
-    return {str(number): rings for number, rings in enumerate(polygons, start=1)}
+    return read_geometries(file, crs=tin.crs, layer=layer)
 
 
 # ---------------------------------------------------------------- what is made
@@ -126,9 +128,8 @@ def _measure(surfaces: Sequence[TIN], regions: Path | None, asked: dict[str, Any
     if not asked["stage_storage"]:
         base = asked["base"] if len(surfaces) == 1 else None
         return measure(tin, *surfaces[1:], base=base, regions=chosen)
-    inside = None if chosen is None else [ring for rings in chosen.values() for ring in rings]
     return stage_storage(
-        tin, levels=asked["levels"] or None, interval=asked["interval"], region=inside
+        tin, levels=asked["levels"] or None, interval=asked["interval"], region=chosen
     )
 
 

@@ -1,6 +1,7 @@
 """Failures as sentences: whatever goes wrong, the user reads one line and no traceback.
 
-Exit codes: 1 the data cannot do it, 2 wrong usage, 128 + n ended by signal n (130 is Ctrl-C). With
+Exit codes: 1 the data cannot do it, 2 wrong usage (such as a value of an option that the library
+refuses), 128 + n ended by signal n (130 is Ctrl-C). With
 ``--json`` the sentence is on stdout too, as an object.
 """
 
@@ -16,17 +17,20 @@ from typing import IO, TYPE_CHECKING, Any
 
 import click
 
-from ..flags import name_flags
+from ..flags import find_given_flag, name_flags
 from .streams import Terminated, escape_unprintable, silence, tell
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
+    from ...errors import OptionError
+
 __all__ = [
     "Failure",
     "note_answer",
     "note_written",
+    "refuse_option",
     "show_failure",
     "tell_warning",
     "translate_failures",
@@ -150,9 +154,11 @@ def _make_interruption(ctx: click.Context, number: int) -> Interruption:
     return Interruption(f"Interrupted; {outcome}.", number)
 
 
-def _make_failure(error: Exception, owner: str) -> Failure:
-    from ...errors import TinsmithError
+def _make_failure(error: Exception, owner: str) -> click.ClickException:
+    from ...errors import OptionError, TinsmithError
 
+    if isinstance(error, OptionError):
+        return refuse_option(error)
     if isinstance(error, TinsmithError):
         return Failure(str(error))
     if isinstance(error, MemoryError):
@@ -164,6 +170,24 @@ def _make_failure(error: Exception, owner: str) -> Failure:
     return Failure(
         f"A bug in {owner}: {what} (set {DEBUG}=1 to see the traceback, and please report it)."
     )
+
+
+def refuse_option(error: OptionError, **renamed: str) -> click.ClickException:
+    """Return wrong usage, if the value was given on the command line, else a failure.
+
+    Parameters
+    ----------
+    error : OptionError
+    **renamed : str
+        Parameters of the command for options that the library calls by another name.
+    """
+    found = find_given_flag(renamed.get(error.option, error.option))
+    if found is None:
+        return Failure(str(error))
+    context, flag = found
+    is_option = not error.option.startswith("number of ")
+    text = name_flags(str(error), **({error.option: flag} if is_option else {}))
+    return click.UsageError(text if flag in text else f"{text} ({flag})", ctx=context)
 
 
 def _show_warning(message: Warning | str, *_: object, **__: object) -> None:

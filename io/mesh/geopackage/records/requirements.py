@@ -6,15 +6,15 @@ from typing import Any, get_args
 
 import numpy as np
 
-from ...errors import PointsError
-from ...policies import CrossingPolicy, DuplicatePolicy, LineKind, TrimPolicy
-from ..building.constrained import LineOptions
-from ..building.inputs import BuildInputs
-from ..constraints.breaklines import Lines
-from ..constraints.constraint_set import LineSet
-from ..constraints.constraint_table import ConstraintTable
-from ..editing.operations import OPERATIONS
-from ..report import LEFT_OUT, UNMENDED_WHY, Crossings, Edit, Overruled, Report, Unmended
+from .....errors import PointsError
+from .....policies import CrossingPolicy, DuplicatePolicy, LineKind, TrimPolicy
+from .....tin.building.constrained import LineOptions
+from .....tin.building.inputs import BuildInputs
+from .....tin.constraints.breaklines import Lines
+from .....tin.constraints.constraint_set import LineSet
+from .....tin.constraints.constraint_table import ConstraintTable
+from .....tin.editing.operations import OPERATIONS
+from .....tin.report import LEFT_OUT, UNMENDED_WHY, Crossings, Edit, Overruled, Report, Unmended
 
 __all__ = [
     "require",

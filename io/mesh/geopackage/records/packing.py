@@ -8,19 +8,19 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...crs import CRS, Unit
-from ..building.constrained import LineOptions
-from ..building.inputs import BuildInputs
-from ..constraints.breaklines import Lines
-from ..constraints.constraint_set import LineSet
-from ..constraints.constraint_table import ConstraintTable
-from ..report import Crossings, Edit, Overruled, Report, Unmended
+from .....crs import CRS, Unit
+from .....tin.building.constrained import LineOptions
+from .....tin.building.inputs import BuildInputs
+from .....tin.constraints.breaklines import Lines
+from .....tin.constraints.constraint_set import LineSet
+from .....tin.constraints.constraint_table import ConstraintTable
+from .....tin.report import Crossings, Edit, Overruled, Report, Unmended
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from ..editing.version import Version
-    from ..surface import TIN
+    from .....tin.editing.version import Version
+    from .....tin.surface import TIN
 
 __all__ = ["CLASSES", "Record", "pack_tin", "take_rows"]
 

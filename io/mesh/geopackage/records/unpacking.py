@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...crs import CRS, Unit
-from ...errors import PointsError, TinsmithError
-from .. import topology
-from ..editing.origin import Origin
-from ..editing.version import Version
-from ..surface import TIN
-from ..triangulation import Triangulation
-from ..validation.points import as_points
-from ..validation.triangles import as_flags, as_triangles, turn_counter_clockwise
+from .....crs import CRS, Unit
+from .....errors import PointsError, TinsmithError
+from .....tin import topology
+from .....tin.editing.origin import Origin
+from .....tin.editing.version import Version
+from .....tin.surface import TIN
+from .....tin.triangulation import Triangulation
+from .....tin.validation.points import as_points
+from .....tin.validation.triangles import as_flags, as_triangles, turn_counter_clockwise
 from .packing import CLASSES, take_rows
 from .requirements import (
     require,
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from ..building.inputs import BuildInputs
+    from .....tin.building.inputs import BuildInputs
     from .packing import Record
 
 __all__ = ["unpack_tin"]

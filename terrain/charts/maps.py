@@ -1,0 +1,181 @@
+"""Maps: what pictures of a surface in plan share: their frame, light, and paths of polygons."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ... import _optional
+from ..relief.shading import hillshade
+from ..rounding import choose_ticks
+from ..units import find_ground
+
+if TYPE_CHECKING:
+    from ...tin import TIN
+    from ..results import Features, Raster
+    from ..units import Ground
+
+__all__ = [
+    "INK",
+    "PIXELS",
+    "Map",
+    "draw_scale",
+    "draw_shade",
+    "find_paths",
+    "shade_for_map",
+    "start_map",
+]
+
+INK = "#333333"
+PIXELS = 1400
+"""Of shading, along the longer side."""
+
+_WIDTH = 9.0
+"""Of the picture, inches."""
+_LEFT, _TOP, _BOTTOM, _EDGE = 1.0, 0.58, 0.72, 0.25
+"""Inches beside the map: for northings, the title, eastings with the CRS, and nothing."""
+_LEAST, _MOST = 0.3, 1.5
+"""How tall a map is by its width."""
+_SHADES = (1, 255)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Map:
+    """A figure with axes that are true to scale.
+
+    Attributes
+    ----------
+    figure : matplotlib.figure.Figure
+    axes : matplotlib.axes.Axes
+    ground : Ground
+        How the coordinates are measured.
+    beside : tuple of float
+        Left, bottom, width and height of the room on the right of the map, shares of the figure.
+    """
+
+    figure: Any
+    axes: Any
+    ground: Ground
+    beside: tuple[float, float, float, float]
+
+
+def start_map(
+    tin: TIN,
+    title: str,
+    *,
+    purpose: str,
+    pad: float = 0.02,
+    beside: float = 0.0,
+    has_caption: bool = False,
+) -> Map:
+    """Return a figure as tall as the map asks for, with a title and labelled axes.
+
+    Parameters
+    ----------
+    tin : TIN
+    title : str
+    purpose : str
+        What matplotlib is needed for.
+    pad : float
+        Of the ground around the TIN, as a share of its extent.
+    beside : float
+        Inches on the right of the map for a scale or a legend.
+    has_caption : bool
+        Whether there is a line between title and map.
+    """
+    ground, bounds = find_ground(tin), tin.bounds
+    east, north, _ = ground.scale
+    around = pad * max(bounds.width, bounds.height)
+    across, up = bounds.width + 2 * around, bounds.height + 2 * around
+    tall = float(np.clip(up * north / (across * east), _LEAST, _MOST))
+    top = _TOP + 0.12 * has_caption
+    inner = _WIDTH - _LEFT - beside - _EDGE
+    height = inner * tall + top + _BOTTOM
+    figure = _optional.load("matplotlib.figure", purpose).Figure(figsize=(_WIDTH, height))
+    box = (_LEFT / _WIDTH, _BOTTOM / height, inner / _WIDTH, inner * tall / height)
+    axes = figure.add_axes(box)
+    axes.set_aspect(north / east, anchor="NW")
+    axes.set_xlim(bounds.xmin - around, bounds.xmax + around)
+    axes.set_ylim(bounds.ymin - around, bounds.ymax + around)
+    _write_title(figure, title)
+    _label_axes(axes, tin, ground)
+    right = (box[0] + box[2] + 0.15 / _WIDTH, box[1], (beside - 0.15) / _WIDTH, box[3])
+    return Map(figure, axes, ground, right)
+
+
+def _write_title(figure: Any, title: str) -> None:
+    height = figure.get_figheight()
+    figure.text(
+        _LEFT / _WIDTH,
+        1.0 - 0.18 / height,
+        " ".join(title.split()),
+        fontsize=15,
+        va="top",
+        color=INK,
+        parse_math=False,
+    )
+
+
+def _label_axes(axes: Any, tin: TIN, ground: Ground) -> None:
+    symbol = "" if tin.crs is None else tin.crs.horizontal_unit.symbol
+    unit = f", {symbol}" if symbol else ""
+    axes.set_xlabel(f"easting{unit}\n{ground.crs_name}", color=INK, parse_math=False)
+    axes.set_ylabel(f"northing{unit}", color=INK)
+    axes.ticklabel_format(style="plain", useOffset=False)
+    axes.set_xticks(choose_ticks(*axes.get_xlim(), count=5))
+    axes.set_yticks(choose_ticks(*axes.get_ylim(), count=5))
+    axes.tick_params(colors=INK, labelsize=8)
+    for spine in axes.spines.values():
+        spine.set_color(INK)
+
+
+def shade_for_map(tin: TIN, *, smooth: bool = True) -> Raster:
+    """Return the hillshade of a TIN in as many cells as a map shows."""
+    bounds = tin.bounds
+    return hillshade(tin, spacing=max(bounds.width, bounds.height) / PIXELS, smooth=smooth)
+
+
+def draw_shade(axes: Any, shade: Raster, *, limits: tuple[float, float] = _SHADES) -> None:
+    """Draw a hillshade; ``limits`` are what is black and what is white."""
+    bounds, band = shade.grid.bounds, next(iter(shade.bands.values()))
+    view = axes.get_xlim(), axes.get_ylim()
+    axes.imshow(
+        np.ma.masked_equal(band[:, :], shade.nodata),
+        extent=(bounds.xmin, bounds.xmax, bounds.ymin, bounds.ymax),
+        cmap="gray",
+        vmin=limits[0],
+        vmax=limits[1],
+        aspect=axes.get_aspect(),
+        interpolation="bilinear",
+        zorder=0,
+    )
+    axes.set_xlim(view[0])  # images bring limits of their own
+    axes.set_ylim(view[1])
+
+
+def draw_scale(drawn: Map, mapped: Any, name: str, **how: Any) -> None:
+    """Draw a scale of colours on the right of the map, with the unit of elevations."""
+    left, low, width, height = drawn.beside
+    inner = drawn.figure.add_axes((left, low + 0.1 * height, 0.22 * width, 0.8 * height))
+    bar = drawn.figure.colorbar(mapped, cax=inner, spacing="proportional", **how)
+    unit = drawn.ground.elevation_caption
+    bar.set_label(f"{name}, {unit}" if unit else name, color=INK)
+    bar.ax.tick_params(colors=INK, labelsize=8)
+
+
+def find_paths(features: Features, purpose: str) -> list[Any]:
+    """Return one path of matplotlib for each feature of polygons, of all its rings."""
+    path = _optional.load("matplotlib.path", purpose).Path
+    rings, polygons, *parts = features.offsets
+    made = []
+    for first, last in pairwise(parts[0] if parts else np.arange(len(polygons))):
+        begin, end = rings[polygons[first]], rings[polygons[last]]
+        codes = np.full(end - begin, path.LINETO, path.code_type)
+        starts = rings[polygons[first] : polygons[last] + 1] - begin
+        codes[starts[:-1]] = path.MOVETO
+        codes[starts[1:] - 1] = path.CLOSEPOLY
+        made.append(path(features.coordinates[begin:end, :2], codes))
+    return made

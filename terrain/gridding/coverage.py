@@ -1,0 +1,74 @@
+"""Coverage: whether the cells of a raster hold any of a surface at all."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...errors import PointsError
+from .bands import SurfaceBand
+from .grids import describe_extent
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...tin import TIN, Grid
+
+__all__ = ["require_covered"]
+
+_SAMPLE = 1000
+"""Triangles that are looked at first."""
+_BLOCK_CELLS = 1 << 22
+
+
+def require_covered(tin: TIN, grid: Grid, *, is_mean: bool = False) -> None:
+    """Refuse a raster no cell of which would have a value.
+
+    Parameters
+    ----------
+    tin : TIN
+    grid : Grid
+    is_mean : bool
+        Whether a cell has a value if any part of it is covered, and not its centre.
+
+    Raises
+    ------
+    PointsError
+    """
+    if _sample_covers(tin, grid, is_mean):
+        return
+    level = np.zeros(len(tin.triangles))
+    band = SurfaceBand(tin, grid, level, method="linear", is_mean=is_mean, threads=None)
+    rows, columns = grid.shape
+    height = max(1, _BLOCK_CELLS // columns)
+    for top in range(0, rows, height):
+        block = band[slice(top, min(top + height, rows)), slice(0, columns)]
+        if np.isfinite(block).any():
+            return
+    what = "part of a cell" if is_mean else "centre of a cell"
+    raise PointsError(
+        f"No {what} lies on the surface: the cells are {grid.spacing:g} wide and cover "
+        f"{describe_extent(grid.bounds)}, the surface {describe_extent(tin.bounds)}."
+    )
+
+
+def _sample_covers(tin: TIN, grid: Grid, is_mean: bool) -> bool:
+    """Whether the cells at the middle of some triangles hold a part of the surface."""
+    chosen = tin.triangles[:: max(1, len(tin.triangles) // _SAMPLE)]
+    xy = tin.points[chosen, :2].mean(axis=1)
+    at = _find_cells(grid, xy)
+    rows, columns = grid.shape
+    at = at[((at >= 0) & (at < (columns, rows))).all(axis=1)]
+    if is_mean or len(at) == 0:
+        return len(at) > 0
+    x = grid.bounds.xmin + (at[:, 0] + 0.5) * grid.spacing
+    y = grid.bounds.ymax - (at[:, 1] + 0.5) * grid.spacing
+    return bool((tin.locate(np.column_stack([x, y])) >= 0).any())
+
+
+def _find_cells(grid: Grid, xy: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return column and row of places."""
+    bounds = grid.bounds
+    from_corner = np.column_stack([xy[:, 0] - bounds.xmin, bounds.ymax - xy[:, 1]])
+    return np.asarray(np.floor(from_corner / grid.spacing), np.float64)

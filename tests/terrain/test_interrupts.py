@@ -1,0 +1,86 @@
+"""Ctrl-C reaches the long kernels of products."""
+
+from __future__ import annotations
+
+import signal
+from time import perf_counter
+
+import numpy as np
+import pytest
+
+import tinsmith as ts
+from tinsmith.terrain import _kernel
+
+pytestmark = pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="needs timers of POSIX")
+
+SOON = 0.1
+"""Seconds until the signal, long before any of these is done."""
+
+
+class Pressed(Exception):
+    """Ctrl-C, as a test can raise it."""
+
+
+def press(*_):
+    raise Pressed
+
+
+@pytest.fixture
+def soon():
+    before = signal.signal(signal.SIGALRM, press)
+    signal.setitimer(signal.ITIMER_REAL, SOON)
+    yield
+    signal.setitimer(signal.ITIMER_REAL, 0.0)
+    signal.signal(signal.SIGALRM, before)
+
+
+def tall(count):
+    """Return many triangles, each of which reaches over all levels."""
+    rng = np.random.default_rng(0)
+    xy = rng.random((count, 3, 2)) * 100
+    (ax, ay), (bx, by) = ((xy[:, k] - xy[:, 0]).T for k in (1, 2))
+    turned = ax * by - ay * bx < 0
+    xy[turned] = xy[turned][:, ::-1]
+    points = np.concatenate([xy, np.tile([[0.0], [50], [100]], (count, 1, 1))], axis=2)
+    return points.reshape(-1, 3), np.arange(3 * count, dtype=np.int32).reshape(-1, 3)
+
+
+CALLS = {
+    "stage_sums": lambda: _kernel.stage_sums(*tall(5000), np.linspace(1, 99, 100_000), 1.0),
+    "sum_between": lambda: _kernel.sum_between(
+        *tall(20_000), np.zeros(20_000, np.int32), 1, *tall(20_000), 1.0, 1
+    ),
+}
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_a_kernel_ends_soon_after_the_signal(name, soon):
+    began = perf_counter()
+    with pytest.raises(Pressed):
+        CALLS[name]()
+    assert perf_counter() - began < 10.0
+
+
+def test_sums_of_heights_end_soon_after_the_signal():
+    """One triangle eight million times: what takes long must not wait for its end."""
+    points = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]])
+    triangles = np.tile(np.arange(3, dtype=np.int32), (8_000_000, 1))
+    given = points, triangles, np.ones(3), np.zeros(len(triangles), np.int32), 1, 1.0
+    began = perf_counter()
+    _kernel.sum_heights(*given)
+    whole = perf_counter() - began
+    before = signal.signal(signal.SIGALRM, press)
+    signal.setitimer(signal.ITIMER_REAL, 0.2 * whole)
+    began = perf_counter()
+    with pytest.raises(Pressed):
+        _kernel.sum_heights(*given)
+    assert perf_counter() - began < 0.8 * whole
+    signal.signal(signal.SIGALRM, before)
+
+
+def test_lines_of_many_levels_end_soon_after_the_signal(soon):
+    x, y = np.meshgrid(np.arange(60.0), np.arange(60.0))
+    z = np.random.default_rng(1).random(x.size)
+    tin = ts.triangulate(np.column_stack([x.ravel(), y.ravel(), z]))
+    with pytest.raises(Pressed):
+        ts.contours(tin, levels=np.linspace(0.001, 0.999, 100_000))
