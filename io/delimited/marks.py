@@ -28,7 +28,7 @@ __all__ = [
 _TOP_LINES = 100
 _DELIMITERS = ("\t", ";", "|", ",", BLANKS)
 _VISIBLE = (",", ";", "|")
-_COMMA_WITH_BLANK = re.compile(r"[ \t]+,[ \t]*|,[ \t]+")
+_COMMA_WITH_OTHER = re.compile(r"[ \t]+,[ \t]*|,[ \t]+|,[ \t]*[|;]|[|;][ \t]*,")
 _SPOKEN = {
     "comma": ",",
     "semicolon": ";",
@@ -116,21 +116,22 @@ def find_delimiter(sample: Sequence[str]) -> str | None:
 
 
 def require_one_kind_of_comma(sample: Sequence[str]) -> None:
-    """Raise if commas with blanks beside them separate columns, and others may group digits.
+    """Raise if commas with others beside them separate columns, and single ones may group digits.
 
     Raises
     ------
     ReadError
-        "1, 2, 3,456" may be three columns, with thousands in the last, or four.
+        "1, 2, 3,456" may be three columns, with thousands in the last, or four; "1,|2,|3,456" too.
     """
-    rows = [_COMMA_WITH_BLANK.split(line.strip(" \t,")) for line in sample]
+    rows = [_COMMA_WITH_OTHER.split(line.strip(" \t,|;")) for line in sample]
     count = Counter(map(len, rows)).most_common(1)[0][0]
     cells = [cell for row in rows if len(row) == count >= 3 for cell in row]
     grouped = next((cell for cell in cells if _is_grouped_by_commas(cell)), None)
     if grouped is not None:
         raise ReadError(
-            f"its commas may separate columns or thousands ('{grouped}', without the blank that "
-            "the other commas have beside them): delimiter=',' takes each as a delimiter."
+            f"its commas may separate columns or thousands ('{grouped}', without the blank or "
+            "other letter that the other commas have beside them): delimiter=',' takes each as a "
+            "delimiter."
         )
 
 

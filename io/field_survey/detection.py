@@ -177,8 +177,10 @@ def choose_reading(
        fewer odd lines; where it needs neither, and leaves nothing odd, it is a doubt.
     2. Those with the fewest oddities are plausible. If all of them lead to the same lines the
        first is taken.
-    3. If not, and something is odd in each, the default is taken where it is among them, as it
-       is where nothing is said; else the codes are refused.
+    3. What the default takes for remarks is never odd to it: where the style "slash" understands
+       every word of them, and makes other lines, the codes are refused.
+    4. Where several are plausible and lead to different lines, and something is odd in each, the
+       default is taken if it is among them; else the codes are refused.
     """
     plain = read_in_style(order, texts, rules, STYLES["words"])
     coded = [row for row in order if texts[row] in plain.descriptions]
@@ -197,6 +199,9 @@ def choose_reading(
         other = plain if plain.key != first.key and not _is_meant(first, plain) else None
     if other is not None and (least == 0 or first is not plain):
         raise _refuse(first, other, name_row)
+    hidden = next((one for one in found[1:] if _reads_remarks(one, plain)), None)
+    if first is plain and hidden is not None:
+        raise _refuse(plain, hidden, name_row)
     return first, [] if first is plain else [_describe_choice(first, plain)]
 
 
@@ -218,6 +223,12 @@ def _is_meant(reading: Reading, plain: Reading) -> bool:
     parsed = reading.descriptions.values()
     words = {word for one in parsed for code in one.codes for word in code.words}
     return len(words - plain.style.marks.keys()) >= reading.style.least_words
+
+
+def _reads_remarks(reading: Reading, plain: Reading) -> bool:
+    """Whether a style understands every word of what the default takes for remarks."""
+    is_open = set(plain.style.comments) - set(reading.style.comments)
+    return bool(is_open) and not reading.unread and reading.key != plain.key
 
 
 def _describe_choice(chosen: Reading, plain: Reading) -> str:

@@ -21,6 +21,7 @@ from .samples import MEMORY, sample_files
 
 KINDS = (
     *("ply", "obj", "stl", "vtk", "gmsh", "raster", "vectors", "delimited", "tin", "instruments"),
+    *("las", "layers"),
     *MESH_MAKERS,
 )
 

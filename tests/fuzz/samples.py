@@ -211,6 +211,29 @@ def _delimited(folder: Path) -> list[tuple[str, bytes]]:
     return [(name, text.encode()) for name, text in texts.items()]
 
 
+def _las(folder: Path) -> list[tuple[str, bytes]]:
+    from support.lidar_files import make_cloud, write_copc
+
+    for name, version, form in (("old.las", "1.2", 1), ("new.las", "1.4", 6), ("old.laz", "1.2", 3),
+                                ("new.laz", "1.4", 7)):  # fmt: skip
+        make_cloud(60, version=version, point_format=form).write(folder / name)
+    ts.write(ts.Survey(points=_tin().points, crs=CRS), folder / "ours.laz")
+    write_copc(folder / "tree.copc.laz", make_cloud(60))
+    return [(one.name, one.read_bytes()) for one in sorted(folder.iterdir())]
+
+
+def _layers(folder: Path) -> list[tuple[str, bytes]]:
+    tin = _tin()
+    survey = ts.Survey(points=tin.points, crs=CRS, attributes={"k": np.arange(len(tin.points))})
+    for name in ("s.gpkg", "s.fgb", "s.parquet"):
+        ts.write(survey, folder / name)
+    for name in ("t.fgb", "t.parquet"):
+        ts.write(tin, folder / name)
+    ts.write(survey, folder / "s.geojson", projected=True)
+    ts.write(tin, folder / "t.geojson", projected=True)
+    return [(one.name, one.read_bytes()) for one in sorted(folder.iterdir())]
+
+
 def _whole_tin(folder: Path) -> list[tuple[str, bytes]]:
     """Return GeoPackages of small pages, as dense as SQLite makes them."""
     edited = _tin()
@@ -260,6 +283,8 @@ _MAKERS = {
     "raster": _raster,
     "vectors": _vectors,
     "delimited": _delimited,
+    "las": _las,
+    "layers": _layers,
     "instruments": _instruments,
     **MESH_MAKERS,
 }

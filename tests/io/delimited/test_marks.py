@@ -6,6 +6,7 @@ import math
 
 import pytest
 
+import tinsmith as ts
 from tinsmith.io import OptionError, ReadError
 from tinsmith.io.delimited import cells
 from tinsmith.io.delimited.cells import BLANKS
@@ -293,3 +294,13 @@ def test_infinity_stands_where_a_number_should():
 )
 def test_lines_are_split_by_the_rules_of_csv(line, delimiter, parts):
     assert cells.split_line(line, delimiter) == parts
+
+
+@pytest.mark.parametrize("separator", [",|", "|,", ";,", ",;", ", |"])
+def test_commas_beside_other_letters_that_may_group_digits_are_refused(tmp_path, separator):
+    rows = [separator.join((f"2,500,00{i}", f"600,0{i}3", "1,032", f"{i}")) for i in range(1, 9)]
+    path = tmp_path / "a.txt"
+    path.write_text("\n".join(rows))
+    for options in ({}, {"columns": "ENZ"}, {"columns": "ENZ", "crs": "EPSG:2274"}):
+        with pytest.raises(ts.TinsmithError):
+            ts.read(path, **options)

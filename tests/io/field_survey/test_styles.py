@@ -83,6 +83,11 @@ def test_a_slash_parts_words_or_begins_a_remark_and_is_refused():
     assert lines(*rows, code_style="slash") == TWO
 
 
+def test_a_slash_is_a_doubt_whatever_else_is_odd():
+    for rows in (("EP1/B", "EP1", "EP1/E", "EP1"), ("EP1/B", "EP1", "CL1", "EP1/E", "EP1", "EP1")):
+        refused("two styles, 'words' and 'slash'", *rows)
+
+
 def test_a_remark_behind_a_slash_is_no_doubt():
     for remark in ("EP1 / SEE SKETCH", "EP1/SEALED", "EP1 / E SIDE", "EP1/END OF SEAL"):
         assert lines(remark, "EP1", "EP1") == [("EP1", [0, 1, 2])], remark
