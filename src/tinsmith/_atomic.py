@@ -237,7 +237,7 @@ def replacing_folder(path: Path, *, marker: str) -> Iterator[Path]:
         If the folder cannot be written, or holds something else.
     """
     with _translate_faults(path):
-        target = _target(path)
+        target = _find_target(path)
         _require_replaceable_folder(path, target, marker)
         fresh = target.with_name(f".{target.name[:_STEM]}-{secrets.token_hex(4)}")
         old = target.with_name(f".{target.name[:_STEM]}-{secrets.token_hex(4)}")
