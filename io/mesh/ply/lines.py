@@ -69,6 +69,8 @@ def take_edges(tin: TIN) -> NDArray[np.int32]:
 
 def flag_edges(triangles: NDArray[Any], edges: NDArray[Any], n_vertices: int) -> NDArray[np.bool_]:
     """Return which edges of triangles, each opposite a corner, are among some, (m, 3) flags."""
+    if len(edges) == 0:
+        return np.zeros((len(triangles), 3), np.bool_)
     sides = np.stack([np.roll(triangles, -1, axis=1), np.roll(triangles, -2, axis=1)], axis=2)
     keys = topology.edge_keys(sides.reshape(-1, 2), n_vertices)
     found = np.isin(keys, topology.edge_keys(edges, n_vertices))
