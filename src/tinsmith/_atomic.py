@@ -236,8 +236,8 @@ def replacing_folder(path: Path, *, marker: str) -> Iterator[Path]:
     WriteError
         If the folder cannot be written, or holds something else.
     """
-    with _faults_as_sentences(path):
-        target = _target(path)
+    with _translate_faults(path):
+        target = _find_target(path)
         _require_replaceable_folder(path, target, marker)
         fresh = target.with_name(f".{target.name[:_STEM]}-{secrets.token_hex(4)}")
         old = target.with_name(f".{target.name[:_STEM]}-{secrets.token_hex(4)}")
