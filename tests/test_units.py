@@ -223,7 +223,8 @@ def test_a_declared_unit_that_is_none_is_refused_before_any_work(tmp_path):
         ts.read(tmp_path / "missing.csv", z_unit="parsec")
     with pytest.raises(OptionError, match="parsec"):
         ts.triangulate([[0, 0, 0]], z_unit="parsec")
-    assert "parsec" in invoke("info", "missing.csv", "--z-unit", "parsec", code=1).stderr
+    said = invoke("info", "missing.csv", "--z-unit", "parsec", code=2).stderr
+    assert "Invalid --z-unit 'parsec'" in said
 
 
 # ------------------------------------------------------------------ reading

@@ -13,8 +13,13 @@ import pytest
 import tinsmith
 from tinsmith.tin.editing.operations import OPERATIONS
 
-WORKED_ON = {"_Top", "_Run"}
-"""Filled in step by step within one function."""
+WORKED_ON = {
+    "io.delimited.layout._Top", "io.field_survey.figures.Figure", "io.field_survey.geometry._Line",
+    "io.field_survey.instruments.gsi._Block", "io.field_survey.instruments.records.Book",
+    "io.lidar.selection.Tally", "io.cad.landxml.content.Content", "io.cad.landxml.content.Line",
+    "io.cad.landxml.content.Points", "io.cad.landxml.content.Surface",
+}  # fmt: skip
+"""Filled in step by step while a file is read."""
 
 SHORT_LIVED = {"Operation", *(one.__name__ for one in OPERATIONS.values())}
 """Made for one edit and gone; a frozen one takes three times as long to make."""
@@ -39,7 +44,9 @@ CLASSES = [one for module in modules() for one in dataclasses_of(module)]
 
 @pytest.mark.parametrize("one", CLASSES, ids=lambda one: one.__name__)
 def test_a_value_cannot_be_changed(one):
-    assert one.__dataclass_params__.frozen != (one.__name__ in WORKED_ON | SHORT_LIVED)
+    place = f"{one.__module__.removeprefix('tinsmith.')}.{one.__name__}"
+    is_changed = place in WORKED_ON or one.__name__ in SHORT_LIVED
+    assert one.__dataclass_params__.frozen != is_changed
 
 
 @pytest.mark.parametrize("one", CLASSES, ids=lambda one: one.__name__)

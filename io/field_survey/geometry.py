@@ -100,7 +100,7 @@ def _find_span(curve: Curve, kept: Sequence[int]) -> tuple[int, int]:
     return first_place, min(sum(i <= curve.last for i in kept) - 1, last)
 
 
-@dataclass
+@dataclass(eq=False)
 class _Line:
     """Shots, and the arcs between them."""
 

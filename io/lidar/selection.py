@@ -100,7 +100,7 @@ class Selection:
         }
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class Tally:
     """How many points there are and why some were left out, of one file or several.
 

@@ -42,7 +42,7 @@ _OUTSIDE = 1e-6
 """Share of the picture beyond its edge that rounding of a world file explains."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Texture:
     """A picture with its places.
 

@@ -76,7 +76,7 @@ def test_layers_and_content_of_a_drawing(tmp_path):
     assert len(ts.read(tmp_path / "a.ply").points) == 5
     run("convert", path, "--content", "surface", "-o", tmp_path / "b.ply")
     assert len(ts.read(tmp_path / "b.ply").triangles) == 1
-    assert "TOPO-0" in run("info", path, "--layer", "ROAD", code=1).output
+    assert "TOPO-0" in run("info", path, "--layer", "ROAD", code=2).output
 
 
 def test_breaklines_come_from_a_layer_of_a_drawing(tmp_path):

@@ -57,7 +57,7 @@ def test_findings_are_in_the_report(tmp_path):
     ("arguments", "code", "words"),
     [
         (("--arc-tolerance", 1), 2, "--arc-tolerance needs --codes, --code-table or --code-style."),
-        (("--codes", "--arc-tolerance", -1), 1, "Invalid --arc-tolerance -1"),
+        (("--codes", "--arc-tolerance", -1), 2, "Invalid --arc-tolerance -1"),
         (("--code-style", "nope"), 2, "'nope' is not one of 'words'"),
         (("--code-table", "none.toml"), 1, "Cannot read 'none.toml': No such file"),
         (("--code-table", JUNCTION), 1, "is no TOML"),

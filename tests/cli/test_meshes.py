@@ -92,9 +92,9 @@ def test_the_texture_cannot_be_the_output(site, tmp_path):
     [
         (("-o", "a.off", "--solid"), 2, "only stl can"),
         (("-o", "a.2dm", "--texture", "x.png"), 2, "only glb, obj can|only obj, glb can"),
-        (("-o", "a.stl", "--scale", "500", "--size", "9"), 1, "Invalid --size"),
+        (("-o", "a.stl", "--scale", "500", "--size", "9"), 2, "Invalid --size"),
         (("-o", "a.glb", "--texture", "none.tif"), 1, "Cannot read"),
-        (("-o", "a.city.json", "--precision", "0.3"), 1, "Invalid --precision"),
+        (("-o", "a.city.json", "--precision", "0.3"), 2, "Invalid --precision"),
     ],
 )
 def test_flags_that_do_not_fit(site, tmp_path, monkeypatch, arguments, code, sentence):

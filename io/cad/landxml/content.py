@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 __all__ = ["Content", "Line", "Points", "Surface"]
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class Line:
     """A breakline, boundary or contour.
 
@@ -38,7 +38,7 @@ class Line:
     properties: dict[str, str] = field(default_factory=dict)
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class Surface:
     """A surface: its definition and its source data.
 

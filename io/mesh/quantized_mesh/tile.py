@@ -62,7 +62,7 @@ class TileName:
         return west, south, west + self.width, south + self.width
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Tile:
     """A tile as it is stored.
 

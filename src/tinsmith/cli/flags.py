@@ -44,7 +44,7 @@ def name_flags(text: str, **renamed: str) -> str:
     text = re.sub(r"(?<=its options are )[\w, ]+", lambda found: _name_known(found[0], flags), text)
     for name, flag in flags.items():
         text = re.sub(rf"\b[Tt]he option '?{name}\b'?", flag, text)
-        text = re.sub(rf"\b(Invalid|Unknown option) '?{name}\b'?", rf"\1 {flag}", text)
+        text = re.sub(rf"\b(Invalid|Unknown option) '?{name}\b'?(?! of\b)", rf"\1 {flag}", text)
         text = re.sub(rf"(?<![\w-]){name}=True\b", flag, text)
         text = re.sub(rf"(?<![\w-]){name}=(?=['\"\w.-])", f"{flag} ", text)
         if "_" in name:

@@ -28,14 +28,10 @@ def decode(content, name):
     at = 88
     (count,) = struct.unpack_from("<I", content, at)
     at += 4
-    axes = []
-    for _ in range(3):
-        value, axis = 0, []
-        for code in struct.unpack_from(f"<{count}H", content, at):
-            value += (code >> 1) ^ -(code & 1)
-            axis.append(value)
-        axes.append(axis)
-        at += 2 * count
+    axes = [
+        _sum_zigzag(struct.unpack_from(f"<{count}H", content, at + 2 * count * k)) for k in range(3)
+    ]
+    at += 6 * count
     form = "H" if count <= 65536 else "I"
     at += -at % struct.calcsize(form)
     (n_triangles,) = struct.unpack_from("<I", content, at)
@@ -66,6 +62,14 @@ def decode(content, name):
         "edges": edges,
         "normals": _unfold(codes),
     }
+
+
+def _sum_zigzag(codes):
+    value, sums = 0, []
+    for code in codes:
+        value += (code >> 1) ^ -(code & 1)
+        sums.append(value)
+    return sums
 
 
 def _unfold(codes):
