@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -118,6 +119,12 @@ def _choose_rings(lines: LineSet, kind: str) -> list[NDArray[np.float64]]:
     ]
 
 
+@cache
+def _make_empty_survey() -> Survey:
+    """Return what there is besides points that are given alone."""
+    return Survey(points=np.empty((0, 3)))
+
+
 def gather_inputs(
     points: Survey | ArrayLike,
     *,
@@ -145,7 +152,7 @@ def gather_inputs(
     """
     _require_options(duplicates, snap, trim, crossing, max_edge)
     survey = points if isinstance(points, Survey) else None
-    own = survey if survey is not None else Survey(points=np.empty((0, 3)))
+    own = survey if survey is not None else _make_empty_survey()
     system, unit = _settle_reference(own, CRS.of(crs), Unit.of(z_unit))
     xyz, is_masked = as_masked_points(
         points.points if isinstance(points, Survey) else points, threads=threads

@@ -254,6 +254,8 @@ def gather_water(water: Sequence[Water]) -> list[Water]:
 
 def as_sequence(lines: Any, what: str) -> list[Any]:
     """Return several lines; one line alone is told apart by its rows being numbers."""
+    if type(lines) in (tuple, list):
+        return list(lines)
     if isinstance(lines, Breakline | Water) or hasattr(lines, "__geo_interface__"):
         return [lines]
     if isinstance(lines, np.ndarray) and lines.ndim == 2 and lines.dtype != object:
