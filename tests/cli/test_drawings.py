@@ -98,3 +98,15 @@ def test_contours_are_written_as_a_drawing(tmp_path):
     layers = {one.dxf.layer for one in ezdxf.readfile(tmp_path / "c.dxf").modelspace()}
     assert layers <= {"CONTOURS", "INDEX_CONTOURS"}
     assert layers
+
+
+def test_a_drawing_of_lines_alone_is_described(tmp_path):
+    document = ezdxf.new()
+    document.units = 6
+    document.modelspace().add_lwpolyline([(0, 0), (9, 0), (9, 5)])
+    path = tmp_path / "a.dxf"
+    document.saveas(path)
+    assert "Points      0" in run("info", path).output
+    told = json.loads(run("info", path, "--json").stdout)
+    assert told["bounds"] is None
+    assert told["elevation"] is None

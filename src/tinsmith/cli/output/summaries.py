@@ -114,18 +114,23 @@ def _convert_to_python(value: Any) -> Any:
 
 
 def _describe_place(found: Survey | TIN) -> dict[str, Any]:
-    z, crs = found.points[:, 2], found.crs
+    crs, is_empty = found.crs, len(found.points) == 0
     return {
-        "bounds": asdict(Bounds.of(found.points)),
-        "elevation": {
-            "min": float(z.min()),
-            "max": float(z.max()),
-            "mean": float(z.mean()),
-            "unit_assumed": _name_assumed_unit(found),
-        },
+        "bounds": None if is_empty else asdict(Bounds.of(found.points)),
+        "elevation": None if is_empty else _describe_elevations(found),
         "crs": None if crs is None else str(crs),
         "crs_name": None if crs is None else crs.name,
         "units": _name_units(found),
+    }
+
+
+def _describe_elevations(found: Survey | TIN) -> dict[str, Any]:
+    z = found.points[:, 2]
+    return {
+        "min": float(z.min()),
+        "max": float(z.max()),
+        "mean": float(z.mean()),
+        "unit_assumed": _name_assumed_unit(found),
     }
 
 
@@ -225,7 +230,9 @@ def _format_ratio(value: float) -> str:
 
 
 def summarise_extent(found: Survey | TIN) -> list[Row]:
-    """Describe where points lie, and how high."""
+    """Describe where points lie, and how high; a file of lines alone has none."""
+    if len(found.points) == 0:
+        return []
     across, up = find_symbols(found)
     in_degrees = is_geographic(found.crs)
     digits = 7 if in_degrees else 3
