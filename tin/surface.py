@@ -13,7 +13,7 @@ from ..errors import choice
 from ..policies import Extrapolation, InterpolationMethod
 from . import topology
 from .building.assembly import assemble
-from .building.moving import move_inputs
+from .building.moving import move_inputs, move_points, require_move
 from .constraints.breaklines import Lines
 from .editing.editable import Editable
 from .editing.version import Version
@@ -295,9 +295,10 @@ class TIN(Editable):
         Raises
         ------
         CrsError, OptionError
-            If the CRS or unit is unknown.
+            If the CRS or unit is unknown, the function is none, or the length is no number above 0.
         PointsError
-            If a triangle that is kept has no area any more, or covers others.
+            If the function does not return as many points, or a triangle that is kept has no area
+            any more or covers others.
         LinesError
             If a line vanishes, or a ring crosses itself.
 
@@ -309,9 +310,10 @@ class TIN(Editable):
         """
         system = CRS.of(crs)
         unit = require_one_unit(system, Unit.of(z_unit))
+        require_move(function, length)
         inputs = self._gather_inputs()
         if inputs is None:
-            moved = as_points(function(self.points.copy()))
+            moved = move_points(self.points.copy(), function)
             return self._keep_triangles(moved, system, unit)
         inputs = move_inputs(inputs, function, length=length, crs=system, elevation_unit=unit)
         built = assemble(inputs)

@@ -59,7 +59,7 @@ def reproject(
         If a CRS is not known, no transformation exists, points lie outside its domain, elevations
         cannot be brought to the vertical datum wanted, or a TIN would be in degrees.
     OptionError
-        If the unit is unknown, or another than the surface's own.
+        If the unit is unknown, or another than the surface's own, or the surface is none.
 
     Notes
     -----
@@ -75,8 +75,10 @@ def reproject(
     >>> survey = ts.Survey(points=points, crs="EPSG:32616", elevation_unit="m")
     >>> moved = ts.reproject(survey, "EPSG:32617")
     >>> moved.points[0].round(2).tolist()
-    [213129.88, 4023881.55, 1032.0]
+    [212642.56, 4021976.76, 1032.0]
     """
+    if not isinstance(surface, TIN | Survey):
+        raise OptionError("surface", surface, "a TIN or a Survey")
     source, target = surface.crs, CRS.of(crs)
     unit = _settle_unit(surface, Unit.of(z_unit))
     if source is None or target is None:

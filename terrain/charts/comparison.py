@@ -7,11 +7,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ... import _optional
+from ...tin.paper.comparison import Comparison
+from ...tin.validation.options import require_type
+from .arguments import parse_title
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from ...tin.paper.comparison import Comparison, Outcome
+    from ...tin.paper.comparison import Outcome
 
 __all__ = ["comparison_picture"]
 
@@ -53,6 +56,8 @@ def comparison_picture(comparison: Comparison, *, title: str | None = None) -> A
 
     Raises
     ------
+    OptionError
+        If it is no comparison, or the title is no text.
     MissingExtraError
         If matplotlib is not installed.
 
@@ -63,6 +68,8 @@ def comparison_picture(comparison: Comparison, *, title: str | None = None) -> A
     >>> len(comparison_picture(found).axes)
     5
     """
+    require_type("comparison", comparison, Comparison)
+    heading = parse_title(title, f"{len(comparison.points):,} points")
     xy = comparison.points[:, :2] - comparison.points[:, :2].min(axis=0)
     width, height = xy.max(axis=0)
     panel = _WIDTH / _COLUMNS * min(max(height / width, 0.3), 1.5)
@@ -71,7 +78,6 @@ def comparison_picture(comparison: Comparison, *, title: str | None = None) -> A
         figsize=size, layout="constrained"
     )
     figure.get_layout_engine().set(h_pad=_PADDING)
-    heading = " ".join((title or f"{len(xy):,} points").split())
     figure.suptitle(heading, fontsize=15, color=_INK, parse_math=False)
     *grid, last = figure.subplots(2, _COLUMNS).ravel()
     last.remove()

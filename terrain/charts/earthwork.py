@@ -8,17 +8,19 @@ import numpy as np
 
 from ... import _optional
 from ...tin import Bounds
+from ...tin.validation.options import require_tin, require_type
+from ..earthwork import Difference
 from ..gridding import rasterize
 from ..gridding.grids import cover
 from ..relief.shading import hillshade
 from ..rounding import round_down
+from .arguments import parse_title
 from .maps import INK, PIXELS, draw_scale, draw_shade, start_map
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ...tin import TIN, Grid
-    from ..earthwork import Difference
     from ..results import Raster
     from .maps import Map
 
@@ -60,6 +62,10 @@ def earthwork_map(
 
     Raises
     ------
+    OptionError
+        If the difference is none, or the title is no text.
+    PointsError
+        If the ground is no TIN.
     MissingExtraError
         If matplotlib is not installed.
 
@@ -72,9 +78,12 @@ def earthwork_map(
     >>> figure.axes[0].get_ylabel()
     'northing'
     """
+    require_type("difference", difference, Difference)
+    if ground is not None:
+        require_tin(ground)
     drawn = start_map(
         difference.tin,
-        title or "Cut and fill",
+        parse_title(title, "Cut and fill"),
         purpose=_PURPOSE,
         pad=_PAD,
         beside=_SCALE,

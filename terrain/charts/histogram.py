@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ... import _optional
+from ...tin import Quality
+from ...tin.validation.options import require_type
 from ..rounding import choose_ticks
+from .arguments import parse_text, parse_title
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-    from ...tin import Quality
 
 __all__ = ["histogram"]
 
@@ -64,6 +65,8 @@ def histogram(quality: Quality, *, title: str | None = None, unit: str = "") -> 
 
     Raises
     ------
+    OptionError
+        If the quality is none, or the title or unit is no text.
     MissingExtraError
         If matplotlib is not installed.
 
@@ -81,15 +84,16 @@ def histogram(quality: Quality, *, title: str | None = None, unit: str = "") -> 
     >>> len(histogram(quality(tin), unit="m").axes)
     4
     """
+    require_type("quality", quality, Quality)
+    heading, symbol = parse_title(title, "Triangle quality"), parse_text("unit", unit)
     figure = _optional.load("matplotlib.figure", _PURPOSE).Figure(
         figsize=_SIZE, layout="constrained"
     )
-    heading = " ".join((title or "Triangle quality").split())
     figure.suptitle(heading, fontsize=15, color=_INK, parse_math=False)
     where = "in space" if quality.space else "in the plane"
     figure.supxlabel(f"{len(quality):,} triangles, measured {where}", fontsize=10, color=_INK)
     grid = figure.subplots(2, 2)
-    for axes, panel in zip(grid.ravel(), _choose_panels(quality, unit), strict=True):
+    for axes, panel in zip(grid.ravel(), _choose_panels(quality, symbol), strict=True):
         _draw_panel(axes, panel)
     return figure
 

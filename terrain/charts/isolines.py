@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ... import _optional
+from ...tin.validation.options import require_tin
 from ..isolines.labels import contour_labels
 from ..preview.tints import interpolate_tints
+from .arguments import parse_title, require_features
 from .maps import INK, draw_scale, draw_shade, find_paths, shade_for_map, start_map
 
 if TYPE_CHECKING:
@@ -58,6 +60,10 @@ def contour_map(
 
     Raises
     ------
+    PointsError
+        If the TIN is none.
+    OptionError
+        If lines, bands or labels are not such features, or the title is no text.
     MissingExtraError
         If matplotlib is not installed.
 
@@ -69,10 +75,13 @@ def contour_map(
     >>> figure.axes[0].get_ylabel()
     'northing'
     """
+    require_tin(tin)
+    _require_isolines(lines, bands, labels)
     has_bands = bands is not None and len(bands) > 0
+    usual = "Bands of elevation" if has_bands and lines is None else "Contours"
     drawn = start_map(
         tin,
-        title or ("Bands of elevation" if has_bands and lines is None else "Contours"),
+        parse_title(title, usual),
         purpose=_PURPOSE,
         beside=_SCALE if has_bands else 0.0,
         has_caption=True,
@@ -87,6 +96,16 @@ def contour_map(
     caption = _write_caption(lines, drawn.ground)
     axes.set_title(caption, loc="left", fontsize=9, color=INK, parse_math=False)
     return drawn.figure
+
+
+def _require_isolines(lines: Any, bands: Any, labels: Any) -> None:
+    """Refuse what is not drawn as contours, as bands or as labels."""
+    for option, features, kind, columns, source in (
+        ("lines", lines, "lines", ("elevation", "is_index"), "contours"),
+        ("bands", bands, "polygons", ("from", "to"), "contour_bands"),
+        ("labels", labels, "points", ("text", "rotation"), "contour_labels"),
+    ):
+        require_features(option, features, kind=kind, columns=columns, source=source)
 
 
 def _write_caption(lines: Features | None, ground: Ground) -> str:

@@ -111,7 +111,7 @@ def _write_title(figure: Any, title: str) -> None:
     figure.text(
         _LEFT / _WIDTH,
         1.0 - 0.18 / height,
-        " ".join(title.split()),
+        title,
         fontsize=15,
         va="top",
         color=INK,

@@ -13,6 +13,7 @@ from ...errors import OptionError
 from ...tin.validation.options import is_whole_number
 from ..results import Table
 from ..rounding import choose_ticks, format_number, round_down
+from .arguments import parse_title
 from .curves import (
     INK,
     Curve,
@@ -97,7 +98,8 @@ def profile_picture(
     Raises
     ------
     OptionError
-        If the table is no profile, has no such line, or the exaggeration is no number above 0.
+        If the table is no profile, has no such line, the exaggeration is no number above 0, or
+        the title is no text.
     MissingExtraError
         If matplotlib is not installed.
 
@@ -109,13 +111,13 @@ def profile_picture(
     >>> len(ts.profile_picture(ts.profile(tin, [[1, 2], [5, 2]])).axes)
     2
     """
+    heading = parse_title(title, "Profile")
     curves, marks = _choose_curves(table, line)
     system = CRS.of(crs)
     along, up = read_units(table, system)
     scale = _choose_scale(curves, find_ratio(along, up), exaggeration)
     rows = len(curves) + 1 + (len(curves) == 2)
     figure, axes, band = _start_figure(scale, rows)
-    heading = " ".join((title or "Profile").split())
     height = figure.get_figheight()
     figure.text(
         _LEFT / figure.get_figwidth(),

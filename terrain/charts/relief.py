@@ -5,16 +5,21 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from ... import _optional
+from ...tin.validation.options import require_tin, require_type
+from ..results import Raster
+from .arguments import parse_title, require_features
 from .maps import draw_shade, find_paths, shade_for_map, start_map
 
 if TYPE_CHECKING:
     from ...tin import TIN
-    from ..results import Features, Raster
+    from ..results import Features
 
 __all__ = ["relief_map"]
 
 _PURPOSE = "A relief map"
 _VEIL = 0.72
+_COLUMNS = ("color", "label", "share")
+_SOURCE = "slope_classes or aspect_classes"
 _LEGEND = 1.8
 """Inches beside the map."""
 
@@ -45,6 +50,10 @@ def relief_map(
 
     Raises
     ------
+    PointsError
+        If the TIN is none.
+    OptionError
+        If classes are not such features, the shade is no raster, or the title is no text.
     MissingExtraError
         If matplotlib is not installed.
 
@@ -56,10 +65,13 @@ def relief_map(
     >>> figure.axes[0].get_legend().get_texts()[0].get_text()
     '45° and more, 100.0 %'
     """
+    require_tin(tin)
+    require_features("classes", classes, kind="polygons", columns=_COLUMNS, source=_SOURCE)
+    require_type("shade", shade, Raster, or_none=True)
     has_classes = classes is not None and len(classes) > 0
     drawn = start_map(
         tin,
-        title or _choose_title(classes),
+        parse_title(title, _choose_title(classes)),
         purpose=_PURPOSE,
         beside=_LEGEND if has_classes else 0.0,
     )

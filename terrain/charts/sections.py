@@ -14,6 +14,7 @@ from ...errors import OptionError
 from ...tin.validation.options import is_whole_number
 from ..results import Table
 from ..rounding import choose_ticks, format_number, round_down
+from .arguments import parse_title
 from .curves import (
     INK,
     Curve,
@@ -125,8 +126,8 @@ def section_picture(
     Raises
     ------
     OptionError
-        If the table has no cross sections, no such line or more than 60 of them, or a number is
-        out of range.
+        If the table has no cross sections, no such line or more than 60 of them, a number is out
+        of range, or the title is no text.
     MissingExtraError
         If matplotlib is not installed.
 
@@ -138,12 +139,13 @@ def section_picture(
     >>> len(ts.section_picture(table).axes)
     4
     """
+    heading = parse_title(title, "Cross sections")
     sections = _choose_sections(table, line)
     system = CRS.of(crs)
     along, up = read_units(table, system)
     sheet = _plan_sheet(sections, find_ratio(along, up), exaggeration, _as_columns(columns))
     figure = _start_figure(sheet)
-    _write_heading(figure, title, sheet, system)
+    _write_heading(figure, heading, sheet, system)
     for number, section in enumerate(sections):
         axes = figure.add_axes(_find_box(figure, sheet, number))
         _draw_section(axes, section, sheet, station=along.unit.symbol if along.unit else "")
@@ -226,10 +228,9 @@ def _find_box(figure: Any, sheet: _Sheet, number: int) -> tuple[float, float, fl
     return left / width, low / height, sheet.width / width, sheet.height / height
 
 
-def _write_heading(figure: Any, title: str | None, sheet: _Sheet, crs: CRS | None) -> None:
+def _write_heading(figure: Any, heading: str, sheet: _Sheet, crs: CRS | None) -> None:
     width, height = figure.get_size_inches()
     how = {"color": INK, "parse_math": False, "va": "top"}
-    heading = " ".join((title or "Cross sections").split())
     figure.text(_LEFT / width, 1 - 0.18 / height, heading, fontsize=15, **how)
     where = "CRS not known" if crs is None else crs.caption
     text = f"{where}; vertical exaggeration {sheet.exaggeration:g}; left is left of the centreline"

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
-from ..._atomic import replacing
+from ..._atomic import as_path, replacing
 from ...errors import CrsError, OptionError, RenderError
 from ...tin import TIN, Survey
-from ...tin.validation.options import require_tin
+from ...tin.validation.options import require_tin, require_type
 from ..earthwork import difference
 from ..lift import parse_exaggeration
 from ..units import find_ground
@@ -69,11 +69,22 @@ class Preview:
 
         Raises
         ------
+        OptionError
+            If the path is none.
         RenderError
             If the file cannot be written, its suffix is another, or for a picture the machine has
             no OpenGL or there are several surfaces.
         MissingExtraError
             If pyvista, which draws pictures, is not installed; a page needs nothing more.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> from tempfile import TemporaryDirectory
+        >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [0, 3, 8]], crs="EPSG:32616")
+        >>> with TemporaryDirectory() as folder:
+        ...     ts.preview(tin).save(f"{folder}/yard.html").name
+        'yard.html'
         """
         file = _require_path(path)
         if file.suffix.lower() in PAGE_SUFFIXES:
@@ -91,11 +102,27 @@ class Preview:
             If there is no display or no OpenGL, or there are several surfaces.
         MissingExtraError
             If pyvista is not installed.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [0, 3, 8]], crs="EPSG:32616")
+        >>> ts.preview({"before": tin, "after": tin}).show()  # of one surface a window opens
+        Traceback (most recent call last):
+        tinsmith.errors.RenderError: A window shows one surface, and there are 2: ...
         """
         open_window(self._require_one("A window"), self._look)
 
     def to_html(self) -> str:
-        """Return the page: one HTML document that needs no other file and no network."""
+        """Return the page: one HTML document that needs no other file and no network.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [0, 3, 8]], crs="EPSG:32616")
+        >>> "<title>Yard" in ts.preview(tin, title="Yard").to_html()
+        True
+        """
         tins = list(self._surfaces.values())
         ground = find_ground(tins[-1])
         factor = self._look.exaggeration or choose_exaggeration(tins[-1], ground)
@@ -233,6 +260,9 @@ def preview(
     >>> page[:15]
     '<!doctype html>'
     """
+    require_type("survey", survey, Survey, or_none=True)
+    if title is not None and not isinstance(title, str):
+        raise OptionError("title", title, "text, or None")
     chosen = Look(**look, title=title or "Terrain surface")
     check_look(chosen.size, chosen.view)
     if chosen.exaggeration is not None:
@@ -272,7 +302,7 @@ def _add_difference(
 
 
 def _require_path(output: str | os.PathLike[str]) -> Path:
-    path = Path(output)
+    path = as_path(output, "output")
     if path.suffix.lower() not in PREVIEW_SUFFIXES:
         raise RenderError(
             f"Cannot write a picture or a page to '{path}': its name must end in "

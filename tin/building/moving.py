@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from ...errors import OptionError, PointsError
+from ..validation.options import is_finite_number
+from ..validation.points import as_points
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -17,7 +21,7 @@ if TYPE_CHECKING:
 
     Move = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 
-__all__ = ["move_inputs"]
+__all__ = ["move_inputs", "move_points", "require_move"]
 
 
 def move_inputs(
@@ -39,6 +43,11 @@ def move_inputs(
     -----
     Draped vertices have no elevation before and after. Water stays flat, at the mean of what
     becomes of its corners.
+
+    Raises
+    ------
+    PointsError
+        As :func:`move_points`.
     """
     lines = inputs.lines
     xyz = _move_places(np.column_stack([lines.xy, lines.elevations]), move)
@@ -57,6 +66,36 @@ def move_inputs(
     return moved.with_lines(lines._replace(xy=xyz[:, :2].copy(), elevations=xyz[:, 2].copy()))
 
 
+def require_move(function: Any, length: Any) -> None:
+    """Refuse what cannot move points, or is no factor of lengths.
+
+    Raises
+    ------
+    OptionError
+    """
+    if not callable(function):
+        raise OptionError("function", function, "one that takes and returns (n, 3) points")
+    if not (is_finite_number(length) and length > 0):
+        raise OptionError("length", length, "a factor > 0")
+
+
+def move_points(points: NDArray[np.float64], move: Move) -> NDArray[np.float64]:
+    """Return where a function puts points.
+
+    Raises
+    ------
+    PointsError
+        If it returns no points, or another number of them.
+    """
+    moved = as_points(move(points))
+    if len(moved) != len(points):
+        raise PointsError(
+            f"The function returned {len(moved)} of {len(points)} points: "
+            "it must return all of them, in the same order."
+        )
+    return moved
+
+
 def _move_places(xyz: NDArray[np.float64], move: Move) -> NDArray[np.float64]:
     """Move what has coordinates; an elevation that is not known stays so."""
     found = xyz.copy()
@@ -64,14 +103,14 @@ def _move_places(xyz: NDArray[np.float64], move: Move) -> NDArray[np.float64]:
     if is_place.any():
         has_elevation = np.isfinite(xyz[is_place, 2])
         given = np.where(has_elevation, xyz[is_place, 2], 0.0)
-        moved = move(np.column_stack([xyz[is_place, :2], given]))
+        moved = move_points(np.column_stack([xyz[is_place, :2], given]), move)
         moved[~has_elevation, 2] = np.nan
         found[is_place] = moved
     return found
 
 
 def _move_ring(ring: NDArray[np.float64], move: Move) -> NDArray[np.float64]:
-    return move(np.column_stack([ring, np.zeros(len(ring))]))[:, :2].copy()
+    return move_points(np.column_stack([ring, np.zeros(len(ring))]), move)[:, :2].copy()
 
 
 def _level_water(

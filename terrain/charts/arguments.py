@@ -1,0 +1,70 @@
+"""Arguments of charts: titles, and features that a certain function returned."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from ...errors import OptionError
+from ..results import Features
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+__all__ = ["parse_text", "parse_title", "require_features"]
+
+
+def parse_title(title: Any, usual: str) -> str:
+    r"""Return a title on one line, the usual one if none is given.
+
+    Raises
+    ------
+    OptionError
+        If it is no text.
+
+    Examples
+    --------
+    >>> parse_title("Two\n lines", "Profile"), parse_title(None, "Profile")
+    ('Two lines', 'Profile')
+    """
+    if title is None:
+        return usual
+    return " ".join((parse_text("title", title) or usual).split())
+
+
+def parse_text(option: str, text: Any) -> str:
+    """Return a text, or refuse what is none.
+
+    Raises
+    ------
+    OptionError
+    """
+    if not isinstance(text, str):
+        raise OptionError(option, text, "text")
+    return text
+
+
+def require_features(
+    option: str, features: Any, *, kind: str, columns: Iterable[str], source: str
+) -> None:
+    """Refuse what is neither None nor features of a kind with some columns.
+
+    Parameters
+    ----------
+    option : str
+        Name of the parameter.
+    features : object
+    kind : {"points", "lines", "polygons"}
+    columns : iterable of str
+        Those that are drawn.
+    source : str
+        Function that returns such features, for the sentence.
+
+    Raises
+    ------
+    OptionError
+    """
+    if features is None:
+        return
+    is_features = isinstance(features, Features) and features.kind == kind
+    if not is_features or not set(columns) <= set(features.columns):
+        raise OptionError(option, features, f"features that {source} returned, or None")
