@@ -27,9 +27,11 @@ from .marks import (
     DecimalMark,
     find_decimal_mark,
     find_delimiter,
+    has_idle_commas,
     parse_decimal_mark,
     parse_delimiter,
     require_one_kind_of_comma,
+    split_header,
 )
 
 if TYPE_CHECKING:
@@ -190,7 +192,7 @@ def find_layout(
         )
     data, skipped = _drop_fillers(lines, data, skipped, found, wishes)
     rows = lines.decode_lines(_sample_lines(data))
-    cells = [split_line(text, found) for text in rows]
+    cells = _split_rows(rows, found)
     try:
         if found == "," and wishes.delimiter is None:
             require_one_kind_of_comma(rows)
@@ -198,6 +200,22 @@ def find_layout(
         return _lay_out_table(lines, data, skipped, cells, (found, mark), wishes, path)
     except ReadError as error:
         raise ReadError(f"'{path}': {error}", path=path, lines=error.lines) from None
+
+
+def _split_rows(rows: Sequence[str], delimiter: str) -> list[list[str]]:
+    """Split some rows, and a header above them by its own delimiter where that is another."""
+    cells = [split_line(text, delimiter) for text in rows]
+    numbers = [sum(is_number(c, ".") or is_number(c, ",") for c in row) for row in cells]
+    first = next((i for i, n in enumerate(numbers[:_TOP_LINES]) if n >= 2), 0)
+    if any(find_columns_by_header(row, strict=False) for row in cells[:first]):
+        return cells
+    counts = Counter(len(row) for row, n in zip(cells, numbers, strict=True) if n >= 2)
+    for i in range(first):
+        names = split_header(rows[i], delimiter, counts.most_common(1)[0][0])
+        if names is not None:
+            cells[i] = names
+            break
+    return cells
 
 
 def _choose_decimal_mark(
@@ -212,8 +230,11 @@ def _choose_decimal_mark(
         return DecimalMark(wishes.decimal)
     found = find_decimal_mark(cells, delimiter)
     if found is None and delimiter != ",":
-        decimals = lines.decode_lines(_sample_lines(lines.find_with_decimals(data)))
+        divided = lines.find_with_decimals(data)
+        decimals = lines.decode_lines(_sample_lines(divided))
         found = find_decimal_mark([split_line(text, delimiter) for text in decimals], delimiter)
+        if len(divided) == 0 and has_idle_commas(cells):
+            found = DecimalMark(",")
     return found or DecimalMark(".")
 
 
@@ -438,6 +459,9 @@ def _find_header_in_comment(
             names = split_line(above.removeprefix(prefix), delimiter)
             if len(names) == count and find_columns_by_header(names, strict=False) is not None:
                 return names
+            other = split_header(above.removeprefix(prefix), delimiter, count)
+            if other is not None and len(other) == count:
+                return other
     return None
 
 

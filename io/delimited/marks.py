@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from ...errors import OptionError, ReadError
 from .cells import BLANKS, is_grouped, is_number, is_number_like, may_group_or_divide, split_line
-from .columns import find_columns_by_header
+from .columns import find_columns_by_header, find_role
 from .lines import COMMENT_PREFIXES, decode_head
 
 if TYPE_CHECKING:
@@ -19,10 +19,12 @@ __all__ = [
     "DecimalMark",
     "find_decimal_mark",
     "find_delimiter",
+    "has_idle_commas",
     "looks_like_table",
     "parse_decimal_mark",
     "parse_delimiter",
     "require_one_kind_of_comma",
+    "split_header",
 ]
 
 _TOP_LINES = 100
@@ -107,12 +109,59 @@ def find_delimiter(sample: Sequence[str]) -> str | None:
     """Choose the delimiter that gives the most numbers and the most even rows.
 
     Tabs that give as many are taken rather than blanks, which part the words of a text too.
+    Blanks are taken rather than commas where they part the header and, as evenly, numbers.
     """
     scores = {delimiter: _score_delimiter(sample, delimiter) for delimiter in _DELIMITERS}
     best = max(scores, key=scores.__getitem__)
     if best == BLANKS and scores["\t"][:2] == scores[BLANKS][:2]:
         best = "\t"
+    if best == "," and _is_headed_by_blanks(sample):
+        best = BLANKS
     return best if scores[best] > (0, 0.0, 0) else None
+
+
+def split_header(line: str, delimiter: str, count: int) -> list[str] | None:
+    """Split a header that another delimiter than that of the rows parts; None if it is none.
+
+    It has the names of the coordinates, and as many as rows have cells, or nothing but known names.
+    """
+    for other in _DELIMITERS:
+        names = split_line(line, other) if other != delimiter else []
+        if find_columns_by_header(names, strict=False) is not None and (
+            len(names) == count or all(map(find_role, names))
+        ):
+            return names
+    return None
+
+
+def _is_headed_by_blanks(sample: Sequence[str]) -> bool:
+    """Whether blanks part header and rows into the same columns, and commas do not.
+
+    Below "x y z" there are three numbers in "1,5 ,5 2", not four; "1 ,5 ,5" may be either.
+    """
+    rows = [split_line(line, BLANKS) for line in sample]
+    top = next((i for i, row in enumerate(rows[:_TOP_LINES]) if _is_header(row)), None)
+    if top is None or "," in sample[top] or len(rows) == top + 1:
+        return False
+    known = find_columns_by_header(rows[top], strict=False)
+    is_described = known is not None and known.roles.get("description") == len(rows[top]) - 1
+    count = len(rows[top]) - is_described
+    bodies = [row[:count] for row in rows[top + 1 :] if is_described or len(row) == count]
+    if len(bodies) < len(rows) - top - 1 or any(
+        len(body) != count or not all(is_number(cell, ",") for cell in body if _clings(cell))
+        for body in bodies
+    ):
+        return False
+    return any(
+        any(cell.startswith(",") for cell in body)
+        or len(split_line(" ".join(body).rstrip(","), ",")) != count
+        for body in bodies
+        if any("," in cell for cell in body)
+    )
+
+
+def _is_header(row: Sequence[str]) -> bool:
+    return find_columns_by_header(row, strict=False) is not None
 
 
 def require_one_kind_of_comma(sample: Sequence[str]) -> None:
@@ -207,6 +256,12 @@ def find_decimal_mark(rows: Iterable[Sequence[str]], delimiter: str) -> DecimalM
         f"its commas may be decimal marks or separate thousands ('{commas[0]}'): decimal=',' "
         "or decimal='.' settles it."
     )
+
+
+def has_idle_commas(rows: Iterable[Sequence[str]]) -> bool:
+    """Whether numbers end with a comma, and none begins with one: "5," is 5 whatever it means."""
+    ends = [(c[0], c[-1]) for row in rows for c in row if "," in c and is_number(c, ",")]
+    return any(last == "," for _, last in ends) and not any(first == "," for first, _ in ends)
 
 
 def _has_comma(cell: str, delimiter: str) -> bool:

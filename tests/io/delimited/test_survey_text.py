@@ -135,6 +135,12 @@ def has_unproved_commas(layout, delimiter, rows):
 @settings(max_examples=250, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(table=tables())
 @example(table=("NEZ", "pipe", ",", [["1.000", ".5", ".5"]] * 3, "\n", False))
+@example(
+    table=("XYZ", "spaces", ",", [["0.0", "0.0", ".5"], ["0.0", ".5", "0.0"]] * 2, "\n", False)
+)
+@example(table=("NEZ", "spaces", ",", [["0.0", ".5", ".5"], ["0.0", "5.", "0.0"]] * 2, "\n", False))
+@example(table=("NEZ", "spaces", ",", [["6.", "5.", "0"]] * 3, "\n", False))
+@example(table=("ENZD", "pipe", ",", [["0", "0", "5.", "A"]] * 3, "\n", False))
 def test_every_table_reads_as_csv_and_float_say(survey, table):
     layout, delimiter, decimal, rows, *_ = table
     content = text_of(*table)
@@ -155,6 +161,31 @@ def test_every_table_reads_as_csv_and_float_say(survey, table):
         assert found.attributes["number"].tolist() == list(range(1, len(rows) + 1))
     if layout == "XYZ-":
         assert found.attributes["intensity"].tolist() == [int(row[-1]) for row in rows]
+
+
+@pytest.mark.parametrize(
+    ("header", "row"),
+    [
+        ("North East RL", "{}, {}, {}"),
+        ("North East RL", "{},{},{}"),
+        ("North;East;RL", "{},{},{}"),
+        ("North, East, RL", "{} {} {}"),
+        ("# North East RL", "{},{},{}"),
+        ("North East RL Code", "{}, {}, {}, A"),
+    ],
+)
+def test_a_header_parted_otherwise_than_the_rows_is_heard(survey, header, row):
+    rows = [row.format(1000 + i, 2000 + i, 30 + i) for i in range(3)]
+    found = survey("\n".join([header, *rows, ""]))
+    assert found.points.tolist() == [[2000 + i, 1000 + i, 30 + i] for i in range(3)]
+    assert found.notes == []
+
+
+def test_a_header_parted_otherwise_that_does_not_fit_is_refused(survey):
+    said = str(fault(survey, "North East RL\n1,2,3,4\n2,3,4,5\n3,4,5,6\n"))
+    assert "the header names 3 columns" in said
+    found = survey("Survey of the x y z\n1.5,2,3\n2,3.5,4\n3,4,5\n")
+    assert found.skipped == {"title lines": 1}
 
 
 @settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
