@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, get_args
 
+from ..._atomic import as_path
 from ..._sentences import printable, shown
 from ...errors import OptionError, ReadError
 from ...policies import CodeKind, CodeStyle
@@ -102,7 +103,7 @@ def read_code_table(table: str | os.PathLike[str] | Mapping[str, Any]) -> CodeTa
     """
     if isinstance(table, Mapping):
         return _Reader("the code table", None).read(table)
-    path = Path(table)
+    path = as_path(table, "code_table")
     return _Reader(f"'{path}'", path).read(_load(path))
 
 
@@ -295,7 +296,7 @@ def make_rules(rules: Mapping[str, Any]) -> dict[str, Rule]:
         raise OptionError("rules", rules, "a mapping of codes to roles")
     kinds = get_args(CodeKind)
     for code, role in rules.items():
-        if role not in kinds:
+        if not isinstance(role, str) or role not in kinds:
             raise OptionError(
                 "rules", {code: role}, f"a role for each code, one of {', '.join(kinds)}"
             )

@@ -71,9 +71,8 @@ def height_above(
     >>> above = height_above(tin, [[1, 1, 10], [5, 5, 10]])
     >>> above["height_above_ground"]
     array([ 6., nan])
-    >>> above.notes
-    ('The CRS is not known: lengths are in its own unit, elevations taken as the same.',
-     '1 of 2 points lies outside the surface (rows 1): it has no height above ground.')
+    >>> above.notes[-1]
+    '1 of 2 points lies outside the surface (rows 1): it has no height above ground.'
     """
     require_tin(tin)
     points, notes = _place_points(cloud, tin)

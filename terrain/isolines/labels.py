@@ -82,6 +82,8 @@ def contour_labels(
         spacing = _choose_spacing(lines)
     if not (is_finite_number(spacing) and spacing > 0):
         raise OptionError("spacing", spacing, "a finite number above 0")
+    if not isinstance(index_only, bool | np.bool_):
+        raise OptionError("index_only", index_only, "True or False")
     is_chosen = lines.columns["is_index"]
     if not index_only or not is_chosen.any():
         is_chosen = np.ones(len(lines), np.bool_)

@@ -182,7 +182,7 @@ def _make_caption(tin: TIN, ground: Ground, factor: float, title: str) -> Captio
 
 def check_look(size: tuple[int, int], view: str) -> None:
     """Refuse a size or a view that there is not."""
-    if view not in VIEWS:
+    if not isinstance(view, str) or view not in VIEWS:
         raise OptionError("view", view, " or ".join(map(repr, VIEWS)))
     low, high = _SIZE_RANGE
     whole = isinstance(size, tuple | list) and all(isinstance(side, Integral) for side in size)

@@ -155,7 +155,7 @@ def _as_breaks(breaks: Any, unit: str) -> NDArray[np.float64]:
     allowed = "a sequence of ascending numbers above 0"
     try:
         limits = np.asarray(breaks, np.float64)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise OptionError("breaks", breaks, allowed=allowed) from None
     if limits.ndim != 1 or len(limits) == 0 or len(limits) >= _MOST_CLASSES:
         raise OptionError("breaks", breaks, allowed=f"{allowed}, 1 to {_MOST_CLASSES - 1} of them")

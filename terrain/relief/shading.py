@@ -92,6 +92,8 @@ def hillshade(
     light, factor = as_light(azimuth, altitude), _as_positive("exaggeration", exaggeration)
     if spacing is not None and grid is not None:
         raise OptionError("spacing", spacing, allowed="None where a grid is given")
+    if not isinstance(smooth, bool | np.bool_):
+        raise OptionError("smooth", smooth, allowed="True or False")
     side = _choose_spacing(tin) if spacing is None and grid is None else spacing
     cells, _ = as_grid(tin, spacing=side, grid=grid, in_memory=True)
     require_covered(tin, cells)

@@ -261,7 +261,7 @@ def as_sequence(lines: Any, what: str) -> list[Any]:
     if isinstance(lines, np.ndarray) and lines.ndim == 2 and lines.dtype != object:
         return [lines]
     if not isinstance(lines, str | bytes | Mapping):
-        with suppress(TypeError):
+        with suppress(Exception):  # whatever it is, it gives no lines
             return list(lines)
     raise LinesError(
         f"Invalid {what} {shown(lines)}: a sequence of lines is needed, each an array of vertices."
