@@ -1,6 +1,6 @@
 #!/bin/sh
-# Build a TIN of each sample: GeoJSON for a GIS, PLY for mesh tools, PNG to look at; and ask the
-# site for contours, a profile and the volumes of a design.
+# Build a TIN of each sample: GeoJSON for a GIS, PLY for mesh tools, a page to turn in a browser, PNG
+# to look at; and ask the site for contours, a profile and the volumes of a design.
 # Usage: sh sample_data/demo.sh FOLDER, with tinsmith on the PATH.
 set -eu
 samples=$(dirname "$0")
@@ -9,6 +9,7 @@ mkdir -p "$folder"
 
 # A machine without OpenGL still gets the files; view says what it lacks.
 draw() {
+  tinsmith view "$folder/$1.ply" -o "$folder/$1.html" --title "$2" --quiet
   tinsmith view "$folder/$1.ply" -o "$folder/$1.png" --title "$2" --quiet ||
     echo "Without a picture: $1.png"
 }
