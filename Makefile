@@ -5,6 +5,8 @@ BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 CORE := $(wildcard tin/cpp/* tin/cpp/*/* terrain/cpp/* terrain/cpp/*/*)
 TREE := build/typing
+# One more than there are cores: some tests wait for child processes.
+WORKERS := $(shell expr $$(getconf _NPROCESSORS_ONLN) + 1)
 
 # Pins reach the isolated build of the core too.
 export PIP_CONSTRAINT := $(CURDIR)/constraints.txt
@@ -28,7 +30,7 @@ demo: $(READY) ## Build both samples into demo/: TINs, pictures, contours, a pro
 	@PATH="$(CURDIR)/$(BIN):$$PATH" sh sample_data/demo.sh demo
 
 test: $(READY) ## Run the tests
-	$(BIN)/python -m pytest -q -n auto
+	$(BIN)/python -m pytest -q -n $(WORKERS)
 
 check: $(READY) $(TREE) ## Lint, formatting, types, import contract
 	$(BIN)/ruff check .
