@@ -19,17 +19,9 @@
 #include "../../../tin/cpp/base/arrays.hpp"
 #include "../../../tin/cpp/base/ids.hpp"
 #include "../../../tin/cpp/base/point.hpp"
+#include "../../../tin/cpp/location/surface.hpp"
 
 namespace tinsmith::isolines {
-
-// The arrays of a TIN.
-struct SurfaceArrays {
-  const double* xyz;
-  const std::int32_t* triangles;
-  const std::int32_t* neighbors;
-  std::int32_t vertex_count;
-  std::int32_t triangle_count;
-};
 
 // Elevations, strictly ascending.
 struct Levels {
@@ -75,23 +67,24 @@ inline Point cross_edge(const RankedVertex& low, const RankedVertex& high, doubl
 
 class LevelSurface {
  public:
-  LevelSurface(const SurfaceArrays& surface, const Levels& levels)
+  LevelSurface(const Surface& surface, const Levels& levels)
       : surface_(surface),
         levels_(levels),
-        vertices_(surface.vertex_count),
-        rank_(surface.vertex_count) {
+        vertices_(surface.point_count),
+        rank_(surface.point_count) {
     double lowest = HUGE_VAL, highest = -HUGE_VAL;
-    for (std::int32_t v = 0; v < surface.vertex_count; ++v) {
-      const double* const row = surface.xyz + 3 * std::size_t(v);
-      vertices_[v] = {{row[0], row[1]}, row[2], 0};
-      lowest = std::min(lowest, row[2]);
-      highest = std::max(highest, row[2]);
+    for (const Vertex v : Ids<Vertex>(surface.point_count)) {
+      const double elevation = surface.elevation(v);
+      vertices_[number(v)] = {surface.point(v), elevation, 0};
+      lowest = std::min(lowest, elevation);
+      highest = std::max(highest, elevation);
     }
     rank_vertices(kNear * highest - kNear * lowest);
-    for (std::int32_t v = 0; v < surface.vertex_count; ++v) rank_[v] = vertices_[v].rank;
+    for (std::int32_t v = 0; v < surface.point_count; ++v) rank_[v] = vertices_[v].rank;
   }
 
-  const SurfaceArrays& arrays() const { return surface_; }
+  Ids<Triangle> triangles() const { return Ids<Triangle>(surface_.triangle_count); }
+  std::uint32_t triangle_count() const { return surface_.triangle_count; }
   std::int32_t level_count() const { return levels_.count; }
   double level(std::int32_t number) const { return levels_.values[number]; }
 
@@ -102,13 +95,8 @@ class LevelSurface {
     return vertices_[number(v)].elevation == levels_.values[level];
   }
 
-  Vertex corner(Triangle t, std::uint32_t corner) const {
-    return Vertex{surface_.triangles[entry_of(t, corner)]};
-  }
-  Triangle neighbor(Triangle t, std::uint32_t corner) const {
-    const std::int32_t across = surface_.neighbors[entry_of(t, corner)];
-    return across == kNoNeighbor ? kNoTriangle : Triangle{static_cast<std::uint32_t>(across)};
-  }
+  Vertex corner(Triangle t, std::uint32_t corner) const { return surface_.vertex(t, corner); }
+  Triangle neighbor(Triangle t, std::uint32_t corner) const { return surface_.neighbor(t, corner); }
   Point point(Vertex v) const { return vertices_[number(v)].point; }
 
   // Ask for the rows of a triangle's neighbours: one of them comes next, and memory is what a walk
@@ -118,7 +106,7 @@ class LevelSurface {
     for (std::uint32_t corner = 0; corner < 3; ++corner) {
       const std::int32_t across = surface_.neighbors[entry_of(t, corner)];
       const std::size_t entry = across == kNoNeighbor ? 0 : 3 * std::size_t(across);
-      __builtin_prefetch(surface_.triangles + entry);
+      __builtin_prefetch(surface_.corners + entry);
       __builtin_prefetch(surface_.neighbors + entry);
       __builtin_prefetch(first_exits + entry / 3);
     }
@@ -194,7 +182,7 @@ class LevelSurface {
     const double range = levels_.count > 1 ? levels_.values[levels_.count - 1] - first : 0.0;
     const double per_unit = range > 0.0 ? (levels_.count - 1) / range : 0.0;
     std::vector<Vertex> near_levels;
-    for (const Vertex v : Ids<Vertex>(surface_.vertex_count)) {
+    for (const Vertex v : Ids<Vertex>(surface_.point_count)) {
       RankedVertex& vertex = vertices_[number(v)];
       vertex.rank = rank_of(vertex.elevation, first, per_unit);
       const double off = vertex.elevation - nearest_level(vertex);
@@ -212,9 +200,9 @@ class LevelSurface {
   }
 
   void move_to_levels(const std::vector<Vertex>& near_levels) {
-    std::vector<double> steepest(std::size_t(surface_.vertex_count), -1.0);
+    std::vector<double> steepest(std::size_t(surface_.point_count), -1.0);
     for (const Vertex v : near_levels) steepest[number(v)] = 0.0;
-    for (const Triangle t : Ids<Triangle>(surface_.triangle_count)) {
+    for (const Triangle t : triangles()) {
       for (std::uint32_t k = 0; k < 3; ++k) {
         const Vertex v = corner(t, k);
         if (steepest[number(v)] < 0.0) continue;
@@ -263,7 +251,7 @@ class LevelSurface {
                                      values);
   }
 
-  SurfaceArrays surface_;
+  Surface surface_;
   Levels levels_;
   ScratchVector<RankedVertex> vertices_;
   ScratchVector<std::int32_t> rank_;  // once more: so few bytes stay in the cache

@@ -52,17 +52,16 @@ inline void turn_to_first(ScratchVector<Point>& points, std::size_t begin) {
 class LineTracer {
  public:
   LineTracer(const LevelSurface& surface, Team& team) : surface_(surface), pulse_(team) {
-    const std::int32_t count = surface.arrays().triangle_count;
-    first_exit_.resize(std::size_t(count) + 1);
+    first_exit_.resize(std::size_t{surface.triangle_count()} + 1);
     std::size_t total = 0;
-    for (const Triangle t : Ids<Triangle>(count)) {
+    for (const Triangle t : surface.triangles()) {
       const auto [low, high] = surface.ranks(t);
       first_exit_[number(t)] = static_cast<std::uint32_t>(total);
       total += std::size_t(high - low);
       if (total > kMostCrossings) throw std::length_error("too many crossings");
       if (low < high) list_boundary(t);
     }
-    first_exit_[count] = static_cast<std::uint32_t>(total);
+    first_exit_.back() = static_cast<std::uint32_t>(total);
     is_left_.assign(total, 1);
   }
 
@@ -70,7 +69,7 @@ class LineTracer {
 
   TracedLines trace() {
     for (const HalfEdge e : boundary_) trace_from_boundary(triangle_of(e), corner_of(e));
-    for (const Triangle t : Ids<Triangle>(surface_.arrays().triangle_count)) {
+    for (const Triangle t : surface_.triangles()) {
       if (!pulse_.goes_on()) break;
       const std::uint32_t begin = first_exit_[number(t)];
       const std::uint32_t end = first_exit_[std::size_t{number(t)} + 1];
@@ -170,8 +169,8 @@ inline void sort_lines(TracedLines& found) {
   std::sort(found.lines.begin(), found.lines.end(), before);
 }
 
-inline TracedLines trace_lines(const SurfaceArrays& arrays, const Levels& levels, Team& team) {
-  const LevelSurface surface(arrays, levels);
+inline TracedLines trace_lines(const Surface& given, const Levels& levels, Team& team) {
+  const LevelSurface surface(given, levels);
   TracedLines found = LineTracer(surface, team).trace();
   sort_lines(found);
   return found;
