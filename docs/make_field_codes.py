@@ -18,7 +18,7 @@ import tinsmith as ts
 HERE = Path(__file__).parent
 CODES = HERE.parent / "sample_data" / "codes"
 CORNER = np.array([752_100.0, 4_024_400.0])
-COLORS = 128
+COLORS = 64
 DPI = 110
 LABELLED = ("EP", "CL", "WALL", "WE", "BLDG", "PATH", "CP", "BM")
 DRAWN = {"EP": "black", "CL": "tab:red", "WALL": "tab:brown", "BLDG": "tab:purple"}
@@ -37,7 +37,8 @@ def main(folder: Path = HERE) -> None:
     draw_lines(axes, made)
     draw_shots(axes, survey, made)
     axes.set(aspect="equal", xlabel="easting - 752,100 m", ylabel="northing - 4,024,400 m")
-    axes.margins(0.04)
+    axes.use_sticky_edges = False  # of contours, which end at the border of the points
+    axes.margins(0.05)
     axes.autoscale()
     axes.set_title("Codes in the field, lines on the map (EPSG:32616)")
     png = io.BytesIO()
