@@ -18,7 +18,7 @@ import tinsmith as ts
 HERE = Path(__file__).parent
 CODES = HERE.parent / "sample_data" / "codes"
 CORNER = np.array([752_100.0, 4_024_400.0])
-COLORS = 64
+COLORS = 128
 DPI = 110
 LABELLED = ("EP", "CL", "WALL", "WE", "BLDG", "PATH", "CP", "BM")
 DRAWN = {"EP": "black", "CL": "tab:red", "WALL": "tab:brown", "BLDG": "tab:purple"}
@@ -43,7 +43,11 @@ def main(folder: Path = HERE) -> None:
     axes.set_title("Codes in the field, lines on the map (EPSG:32616)")
     png = io.BytesIO()
     figure.savefig(png, format="png", dpi=DPI)
-    sheet = Image.open(png).convert("RGB").quantize(COLORS, dither=Image.Dither.NONE)
+    sheet = (
+        Image.open(png)
+        .convert("RGB")
+        .quantize(COLORS, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
+    )
     sheet.save(folder / "field-codes.png", optimize=True)
 
 
