@@ -53,10 +53,11 @@ struct Surface {
     return is_triangle(beyond) ? half_edge(beyond, corner_at(beyond, vertex(t, k))) : kNoHalfEdge;
   }
 
+  // Without a way out of the loops, many are compared at once.
   bool has_sound_corners() const {
     bool sound = true;
     for (std::int64_t i = 0; i < std::int64_t{3} * triangle_count; ++i) {
-      sound &= corners[i] >= 0 && corners[i] < point_count;
+      sound &= static_cast<std::uint32_t>(corners[i]) < static_cast<std::uint32_t>(point_count);
     }
     return sound;
   }
@@ -64,8 +65,7 @@ struct Surface {
   bool has_sound_neighbors() const {
     bool sound = true;
     for (std::int64_t i = 0; i < std::int64_t{3} * triangle_count; ++i) {
-      sound &=
-          neighbors[i] >= kNoNeighbor && neighbors[i] < static_cast<std::int64_t>(triangle_count);
+      sound &= static_cast<std::uint32_t>(neighbors[i]) + 1 <= triangle_count;
     }
     return sound;
   }
