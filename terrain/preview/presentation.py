@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 
 from ..._atomic import as_path, replacing
-from ...errors import CrsError, OptionError, RenderError
+from ...errors import OptionError, RenderError
 from ...tin import TIN, Survey
-from ...tin.validation.options import require_tin, require_type
+from ...tin.validation.options import require_type
 from ..earthwork import difference
 from ..lift import parse_exaggeration
 from ..units import find_ground
+from .alignment import Aligned, align
 from .page.content import describe_page, find_labels
 from .page.document import make_document
 from .picture import PICTURE_SUFFIXES, Look, check_look, open_window, write_picture
@@ -50,8 +51,9 @@ class Preview:
     'yard.html'
     """
 
-    def __init__(self, surfaces: Mapping[str, TIN], look: Look, survey: Survey | None) -> None:
-        self._surfaces = dict(surfaces)
+    def __init__(self, aligned: Aligned, look: Look, survey: Survey | None) -> None:
+        self._aligned = aligned
+        self._surfaces = aligned.surfaces
         self._look = look
         self._survey = survey
 
@@ -127,7 +129,8 @@ class Preview:
         ground = find_ground(tins[-1])
         factor = self._look.exaggeration or choose_exaggeration(tins[-1], ground)
         surfaces, changes = _add_difference(self._surfaces)
-        labels = None if self._survey is None else find_labels(self._survey)
+        points = self._aligned.labelled
+        labels = None if points is None else find_labels(points, self._survey)
         content = describe_page(
             surfaces,
             ground,
@@ -135,6 +138,7 @@ class Preview:
             exaggeration=factor,
             changes=changes,
             labels=labels,
+            notes=self._aligned.notes,
         )
         return make_document(content)
 
@@ -205,7 +209,7 @@ def preview(
     ----------
     tin : TIN or mapping of str to TIN
         One surface, or several by name in one CRS for a page, the existing ground first; of two
-        the page shows cut and fill too.
+        the page shows cut and fill too. Elevations are shown in the unit of the first.
     output : path, optional
         File to write at once: a page (.html) that turns in any browser, offline, or a picture
         (.png, .jpg, .jpeg, .tif, .tiff). Default: write nothing, and return a Preview.
@@ -238,7 +242,8 @@ def preview(
     OptionError
         If an option is outside what is allowed, or there is no surface.
     CrsError
-        If surfaces have different CRSs.
+        If the surfaces, or the survey, have different CRSs, known of all or of none, or it cannot
+        be told whether their elevations are in one unit; units that are known are converted.
     RenderError
         If the file cannot be written, or the machine has no OpenGL.
     MissingExtraError
@@ -267,21 +272,8 @@ def preview(
     check_look(chosen.size, chosen.view)
     if chosen.exaggeration is not None:
         parse_exaggeration(chosen.exaggeration)
-    made = Preview(_as_surfaces(tin), chosen, survey)
+    made = Preview(align(tin, survey), chosen, survey)
     return made if output is None else made.save(output)
-
-
-def _as_surfaces(tin: TIN | Mapping[str, TIN]) -> dict[str, TIN]:
-    surfaces = dict(tin) if isinstance(tin, Mapping) else {"Surface": tin}
-    if not surfaces:
-        raise OptionError("tin", tin, "a TIN, or a mapping of names to TINs with one at least")
-    for one in surfaces.values():
-        require_tin(one)
-    crs = [one.crs for one in surfaces.values()]
-    if any(one != crs[0] for one in crs):
-        names = ", ".join("none" if one is None else str(one) for one in crs)
-        raise CrsError(f"The surfaces have different CRSs ({names}): one is needed.")
-    return {str(name): one for name, one in surfaces.items()}
 
 
 def _add_difference(
