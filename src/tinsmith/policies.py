@@ -26,6 +26,7 @@ __all__ = [
     "LineRole",
     "OutsidePolicy",
     "OverviewMethod",
+    "RasterCompression",
     "RasterSample",
     "RasterValue",
     "SlopeUnit",
@@ -113,6 +114,9 @@ SurfacePart: TypeAlias = Literal["triangle", "vertex"]
 
 OverviewMethod: TypeAlias = Literal["average", "nearest", "none"]
 """How the cells of a raster's smaller copies are found."""
+
+RasterCompression: TypeAlias = Literal["deflate", "none"]
+"""How the cells of a GeoTIFF are packed, without loss."""
 
 CurvatureKind: TypeAlias = Literal["profile", "plan", "tangential", "mean", "gaussian"]
 """In which direction a surface is curved."""
