@@ -192,11 +192,11 @@ def _parse_shapes(
     geometries = np.array([wkb[start:end] or None for start, end in parts], object)
     with np.errstate(invalid="ignore"):  # what is not finite is refused later
         shapes: NDArray[np.object_] = shapely.from_wkb(geometries, on_invalid="ignore")
-    wrong = shapely.is_missing(shapes) & (lengths >= 0)
-    if has_surfaces and wrong.any():  # GEOS knows no TINs
-        polygons = np.array([replace_surfaces(one) for one in geometries[wrong]], object)
-        shapes[wrong] = shapely.from_wkb(polygons, on_invalid="ignore")
         wrong = shapely.is_missing(shapes) & (lengths >= 0)
+        if has_surfaces and wrong.any():  # GEOS knows no TINs
+            polygons = np.array([replace_surfaces(one) for one in geometries[wrong]], object)
+            shapes[wrong] = shapely.from_wkb(polygons, on_invalid="ignore")
+            wrong = shapely.is_missing(shapes) & (lengths >= 0)
     if wrong.any():
         raise ReadError(
             f"'{path}': feature {arrays['numbers'][np.argmax(wrong)]} has a geometry of another "
