@@ -13,7 +13,7 @@ import tinsmith as ts
 from tinsmith.cli import main
 
 ROOT = Path(__file__).parents[1]
-BLOCK = re.compile(r"```sh\n(.*?)```", re.DOTALL)
+BLOCK = re.compile(r"```(?:ba)?sh\n(.*?)```", re.DOTALL)
 PAGES = [page for page in sorted((ROOT / "docs").glob("*.md")) if BLOCK.search(page.read_text())]
 CRS = "EPSG:32616"
 MIDDLE = np.array([752_760.0, 4_024_270.0])
