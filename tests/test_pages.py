@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from support.lidar_files import make_cloud, write_copc
 
 import tinsmith as ts
 from tinsmith.cli import main
@@ -37,6 +38,17 @@ def make_lines(*lines, name):
     return ts.Features.of_lines(coordinates, offsets, crs=CRS, name=name)
 
 
+def make_lidar(folder):
+    """Write two tiles around the window that the page names, and an octree."""
+    (folder / "tiles").mkdir()
+    for k in range(2):
+        cloud = make_cloud(200, seed=k)
+        cloud.change_scaling(offsets=np.array([512_000.0, 5_403_000, 300]))
+        cloud.xyz = [512_100, 5_403_100, 300] + np.random.default_rng(k).random((200, 3)) * 500
+        cloud.write(folder / "tiles" / f"{k}.laz")
+    write_copc(folder / "cloud.copc.laz", make_cloud(400))
+
+
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     """Return a folder with the files that the pages speak of."""
@@ -57,6 +69,7 @@ def folder(tmp_path, monkeypatch):
     ts.write(make_rings((-40, -30, 3)), "shafts.gpkg")
     ts.write(make_rings((40, 30, 4)), "cars.shp")
     ts.write(make_rings((-40, 30, 5)), "ponds.gpkg")
+    make_lidar(tmp_path)
     shutil.copytree(ROOT / "tests" / "data" / "meshes" / "esri_tin_holes", "old_tin")
     return tmp_path
 
