@@ -90,24 +90,34 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     if vertices is None or not set(_COORDINATES) <= vertices.columns.keys():
         raise ReadError(f"'{path}' has no element 'vertex' with x, y and z.", path=path)
     points = _stack_coordinates(vertices)
+    notes = common.describe_single_precision(points, vertices.columns["x"].dtype)
     reference = common.choose_reference(
         crs, z_unit, path, found_crs=header.crs, found_unit=header.elevation_unit
     )
     faces = _find_face_list(tables.get("face"))
     if faces is None or len(faces.offsets) == 1:
         return common.make_survey(
-            points, path, attributes=_find_vertex_attributes(vertices), reference=reference
+            points,
+            path,
+            attributes=_find_vertex_attributes(vertices),
+            reference=reference,
+            notes=notes,
         )
     made = common.cut_into_fans(
         _require_whole_numbers(faces.items, path), faces.offsets, points, path
     )
+    notes += made.notes
     flags = _find_edge_flags(tables["face"], len(made.triangles))
     if header.lines is None or "edge" not in tables:
-        return common.make_tin(points, made.triangles, path, constrained=flags, reference=reference)
+        return common.make_tin(
+            points, made.triangles, path, constrained=flags, reference=reference, notes=notes
+        )
     edges = require_edges(tables["edge"], path, len(points))
     if flags is None:
         flags = flag_edges(made.triangles, edges, len(points))
-    tin = common.make_tin(points, made.triangles, path, constrained=flags, reference=reference)
+    tin = common.make_tin(
+        points, made.triangles, path, constrained=flags, reference=reference, notes=notes
+    )
     lines = read_lines(header.lines, edges, path)
     _require_edges_of_tin(tin, lines, path)
     return tin.replace(lines=lines)

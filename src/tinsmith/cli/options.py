@@ -169,6 +169,7 @@ class Writing:
 class SurfaceWriting(Writing):
     """How a surface is written; some other commands have flags of these names for themselves."""
 
+    multipatch: bool = False
     texture: Path | None = None
     solid: bool = False
     thickness: float | None = None
