@@ -48,7 +48,9 @@ class Survey:
         Rings around the data, such as those a raster's voids leave: there is surface only where an
         odd number of them holds the place.
     attributes : mapping of str to (n,) array
-        Further columns, one value a point (for example ``"number"`` and ``"description"``).
+        Further columns, one value a point (for example ``"number"`` and ``"description"``). Lists
+        become arrays that hold their values as they are, of objects where those are of several
+        types; what is masked becomes NaN or None.
     crs : CRS, optional
         Coordinate reference system; given as a code ("EPSG:32616"), number, WKT or ``pyproj.CRS``.
     elevation_unit : Unit, optional
@@ -157,12 +159,37 @@ def _as_columns(attributes: Any, shape: tuple[int, ...]) -> Mapping[str, NDArray
 
 def _as_column(name: str, values: Any, shape: tuple[int, ...]) -> NDArray[Any]:
     try:
-        column = np.asarray(values)
+        column = _as_array(values)
     except Exception:
         column = np.empty(())
     if column.ndim != 1 or column.shape != shape:
         raise OptionError(f"attribute '{name}'", values, "an array of one value for each point")
     return column
+
+
+def _as_array(values: Any) -> NDArray[Any]:
+    """Return values as an array that holds them as they are: no number as text, none rounded."""
+    if isinstance(values, np.ma.MaskedArray):
+        return _fill_masked(values)
+    column = np.asarray(values)
+    if not isinstance(values, list | tuple) or column.ndim != 1 or column.dtype.kind == "O":
+        return column
+    pairs = zip(column.tolist(), values, strict=True)
+    if all(kept == given or (kept != kept and given != given) for kept, given in pairs):
+        return column
+    mixed = np.empty(len(values), object)
+    mixed[:] = values
+    return mixed
+
+
+def _fill_masked(values: np.ma.MaskedArray[Any, Any]) -> NDArray[Any]:
+    """Return values with NaN, or None where the others are no floats, for those masked."""
+    if not np.ma.is_masked(values):
+        return np.asarray(values.data)
+    is_float = values.dtype.kind == "f"
+    filled = np.array(values.data, values.dtype if is_float else object)
+    filled[np.ma.getmaskarray(values)] = np.nan if is_float else None
+    return filled
 
 
 def _as_mapping(name: str, given: Any) -> Mapping[str, Any]:
