@@ -299,7 +299,16 @@ def _whole_tin(folder: Path) -> list[tuple[str, bytes]]:
     edited = _tin()
     edited.insert([np.add(CORNER, (20.0, 15.0, 3.0))])
     files = []
-    for name, tin in (("ours.gpkg", _tin()), ("edited.gpkg", edited)):
+    count = len(_tin().vertex_of)
+    columns = {
+        "number": np.arange(count),
+        "code": [f"EP{i}" for i in range(count)],
+        "mixed": [1, None, "x"] + [2.5] * (count - 3),
+        "day": np.zeros(count, "M8[D]"),
+    }
+    named = _tin().replace(row_attributes=columns)
+    tins = (("ours.gpkg", _tin()), ("edited.gpkg", edited), ("named.gpkg", named))
+    for name, tin in tins:
         path = ts.write(tin, folder / name)
         with closing(sqlite3.connect(path, isolation_level=None)) as file:
             file.execute("PRAGMA page_size = 512")

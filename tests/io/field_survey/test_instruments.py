@@ -345,8 +345,12 @@ def gnss(name):
 
 def test_dc_grid_positions(tmp_path):
     text = dc_header() + "65KI6378137.00000000298.257223563000\r\n13TSTime Date 02/05/2026\r\n"
-    text += "69KI            PF104024238.12000000752646.125000000320.565000000000EP1 ST          11\r\n"
-    text += "69TP            PF114024239.12000000752647.125000000-20.565000000000EP1             14\r\n"
+    text += (
+        "69KI            PF104024238.12000000752646.125000000320.565000000000EP1 ST          11\r\n"
+    )
+    text += (
+        "69TP            PF114024239.12000000752647.125000000-20.565000000000EP1             14\r\n"
+    )
     survey = read(tmp_path, "a.dc", text, crs="EPSG:32616")
     assert survey.points.tolist() == [
         [752646.125, 4024238.12, 320.565],
