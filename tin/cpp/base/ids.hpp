@@ -68,8 +68,9 @@ constexpr std::size_t entry_of(Triangle triangle, std::uint32_t corner) {
   return std::size_t{3} * number(triangle) + corner;
 }
 constexpr std::size_t entry_of(HalfEdge e) { return entry_of(triangle_of(e), corner_of(e)); }
-constexpr HalfEdge half_edge_at(std::uint32_t entry) {
-  return half_edge(Triangle{entry / 3}, entry % 3);
+constexpr HalfEdge half_edge_at(std::size_t entry) {
+  return half_edge(triangle_numbered(static_cast<std::int64_t>(entry / 3)),
+                   static_cast<std::uint32_t>(entry % 3));
 }
 
 // for (const HalfEdge e : half_edges(triangle))

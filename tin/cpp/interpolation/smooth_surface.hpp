@@ -35,7 +35,7 @@ class SmoothSurface {
       if (edges[i] < 0 || edges[i] >= entries) {
         throw std::invalid_argument("there is no such edge");
       }
-      const HalfEdge e = half_edge_at(static_cast<std::uint32_t>(edges[i]));
+      const HalfEdge e = half_edge_at(static_cast<std::size_t>(edges[i]));
       result[i] = patches.on_edge(ordered_[number(triangle_of(e))], corner_of(e), shares[i]);
     }
   }
