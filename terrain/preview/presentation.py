@@ -149,8 +149,8 @@ class Preview:
         ground = find_ground(tins[-1])
         factor = self._look.exaggeration or choose_exaggeration(tins[-1], ground)
         surfaces, changes = _add_difference(self._surfaces)
-        points = self._aligned.labelled
-        labels = None if points is None else find_labels(points, self._survey)
+        points, survey = self._aligned.labelled, self._survey
+        labels = None if points is None or survey is None else find_labels(points, survey)
         content = describe_page(
             surfaces,
             ground,
