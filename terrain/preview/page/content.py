@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
     from ....tin import TIN, Survey
     from ...units import Ground
+    from ..ortho import Ortho
 
 __all__ = ["Labels", "describe_page", "find_labels"]
 
@@ -72,6 +74,7 @@ def describe_page(
     exaggeration: float,
     changes: Mapping[str, NDArray[np.float64]],
     labels: Labels | None,
+    ortho: Ortho | None = None,
 ) -> dict[str, Any]:
     """Return what a page needs, ready for JSON.
 
@@ -85,6 +88,8 @@ def describe_page(
     changes : mapping of str to (n,) float64 array
         Cut and fill at the vertices of surfaces.
     labels : Labels or None
+    ortho : Ortho, optional
+        Picture draped over all surfaces.
     """
     steps = _choose_steps(list(surfaces.values()), ground)
     described = [
@@ -109,6 +114,7 @@ def describe_page(
         "elevationScale": float(ground.scale[2]),
         "exaggeration": exaggeration,
         "ramps": _make_ramps(),
+        "ortho": None if ortho is None else _describe_ortho(ortho, steps),
         "surfaces": described,
     }
 
@@ -152,6 +158,19 @@ def _round_step(span: float) -> float:
 
 def _count_decimals(step: float) -> int:
     return min(max(-math.floor(math.log10(step) + 0.5), 0), _MOST_DECIMALS)
+
+
+def _describe_ortho(ortho: Ortho, steps: _Steps) -> dict[str, Any]:
+    """Return the picture, and the transform to it from coordinates as the page has them."""
+    placement = ortho.placement
+    turn, shift = placement[:, :2], placement[:, 2]
+    place = np.column_stack([turn / steps.scale[:2], turn @ steps.origin[:2] + shift])
+    return {
+        "kind": ortho.kind,
+        "isWhole": ortho.opacity is None,
+        "place": place.ravel().tolist(),
+        "data": base64.b64encode(ortho.content).decode("ascii"),
+    }
 
 
 def _describe_surface(
