@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -88,12 +89,16 @@ def read_ortho(
         opacity=opacity,
     )
     gap = ortho.measure_gap(tins)
-    told = [*value["told"], *_tell_placement(path, value, tins, crs), *_tell_size(path, value, most_pixels)]
+    told = [
+        *value["told"],
+        *_tell_placement(path, value, tins, crs),
+        *_tell_size(path, value, most_pixels),
+    ]
     if gap > 0.0:
         told.append(f"'{path}' does not reach over {gap:.1%} of the vertices: {beyond}.")
     for sentence in told:
-        warnings.warn(sentence, LossWarning, stacklevel=stacklevel + 1)
-    return ortho
+        warnings.warn(sentence, LossWarning, stacklevel=stacklevel)
+    return replace(ortho, told=tuple(told))
 
 
 def as_picture_path(source: object, option: str) -> Path:

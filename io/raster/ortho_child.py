@@ -212,7 +212,9 @@ def _find_bounds(source: _Source, own: str | None, target: _Target) -> Any:
     crs = _read_crs(target.crs), _read_crs(own)
     found = transform_bounds(*crs, *target.bounds, densify_pts=_DENSIFIED)
     if not np.isfinite(found).all():
-        raise Refusal(f"'{source.shown}' shows nothing of the surface: its CRS does not reach there.")
+        raise Refusal(
+            f"'{source.shown}' shows nothing of the surface: its CRS does not reach there."
+        )
     return found
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from importlib import import_module
+from io import BytesIO
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -49,6 +50,8 @@ class Ortho:
         Affine, from columns and rows to eastings and northings: a, b, x, d, e, y.
     opacity : (rows, columns) uint8 array or None
         0 where there is no picture; None where there is everywhere.
+    told : tuple of str
+        What was done to it, or taken for granted.
     """
 
     path: Path
@@ -57,6 +60,7 @@ class Ortho:
     shape: tuple[int, int]
     transform: tuple[float, ...]
     opacity: NDArray[np.uint8] | None = None
+    told: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         a, b, _, d, e, _ = self.transform
@@ -87,6 +91,13 @@ class Ortho:
         area = a * e - b * d
         pixels = np.column_stack([(e * along - b * up) / area, (a * up - d * along) / area])
         return np.asarray(pixels / np.array(self.shape)[::-1])
+
+    def decode(self) -> NDArray[np.uint8]:
+        """Return red, green, blue and opacity, (rows, columns, 4)."""
+        from PIL import Image  # comes with what draws pictures
+
+        with Image.open(BytesIO(self.content)) as picture:
+            return np.asarray(picture.convert("RGBA"))
 
     def measure_gap(self, tins: Sequence[TIN]) -> float:
         """Return the share of the vertices of surfaces at which there is no picture.

@@ -18,7 +18,14 @@ from . import opengl
 from .annotations import Caption, Sheet, annotate
 from .camera import VIEWS, View, aim, measure_pixels_per_unit, project_ground_axes
 from .overlay import Overlay
-from .scene import add_lights, add_terrain, choose_exaggeration, fade_edges, place_vertices
+from .scene import (
+    add_lights,
+    add_ortho,
+    add_terrain,
+    choose_exaggeration,
+    fade_edges,
+    place_vertices,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -27,6 +34,7 @@ if TYPE_CHECKING:
 
     from ...tin import TIN
     from ..units import Ground
+    from .ortho import Ortho
 
 __all__ = ["PICTURE_SUFFIXES", "Look", "check_look", "open_window", "write_picture"]
 
@@ -57,28 +65,28 @@ class Look:
     view: str = "oblique"
 
 
-def write_picture(tin: TIN, path: Path, look: Look) -> None:
+def write_picture(tin: TIN, path: Path, look: Look, ortho: Ortho | None = None) -> None:
     """Draw a surface off screen and write the picture whole or not at all."""
     opengl.require_opengl()
     with _keep_vtk_plain():
-        _write(path, _render(_make_stage(tin, look)))
+        _write(path, _render(_make_stage(tin, look, ortho)))
 
 
-def open_window(tin: TIN, look: Look) -> None:
+def open_window(tin: TIN, look: Look, ortho: Ortho | None = None) -> None:
     """Show a surface in a window, and wait until it is closed."""
     _optional.load("pyvista", _PURPOSE)
     opengl.require_window()
     with _keep_vtk_plain():
-        _Show(_make_stage(tin, look), look.size, off_screen=False).open_window()
+        _Show(_make_stage(tin, look, ortho), look.size, off_screen=False).open_window()
 
 
-def _make_stage(tin: TIN, look: Look) -> _Stage:
+def _make_stage(tin: TIN, look: Look, ortho: Ortho | None) -> _Stage:
     _optional.load("pyvista", _PURPOSE)
     ground = find_ground(tin)
     factor = look.exaggeration or choose_exaggeration(tin, ground)
     caption = _make_caption(tin, ground, factor, look.title)
     view = VIEWS[look.view]
-    return _Stage(tin, ground, factor, look.edges, look.lines, look.size, caption, view)
+    return _Stage(tin, ground, factor, look.edges, look.lines, look.size, caption, view, ortho)
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,6 +101,7 @@ class _Stage:
     size: tuple[int, int]
     caption: Caption
     view: View
+    ortho: Ortho | None = None
 
 
 class _Show:
@@ -115,6 +124,8 @@ class _Show:
         self.plotter.set_background("white")
         points = place_vertices(stage.tin, stage.ground, stage.exaggeration)
         self._surface, seen = add_terrain(self.plotter, stage.tin, points, edges=stage.edges)
+        if stage.ortho is not None:
+            add_ortho(self.plotter, stage.tin, points, stage.ortho, self._surface)
         add_lights(self.plotter)
         self._overlay = Overlay(self.plotter.renderer)
         self._drawn_for: tuple[object, ...] = ()

@@ -10,12 +10,14 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 
 from ..._atomic import as_path, replacing
-from ...errors import CrsError, OptionError, RenderError
+from ...errors import OptionError, RenderError
 from ...tin import TIN, Survey
-from ...tin.validation.options import require_tin, require_type
+from ...tin.validation.options import require_type
 from ..earthwork import difference
 from ..lift import parse_exaggeration
 from ..units import find_ground
+from .alignment import Aligned, align
+from .ortho import Ortho, read_ortho
 from .page.content import describe_page, find_labels
 from .page.document import make_document
 from .picture import PICTURE_SUFFIXES, Look, check_look, open_window, write_picture
@@ -50,8 +52,12 @@ class Preview:
     'yard.html'
     """
 
-    def __init__(self, surfaces: Mapping[str, TIN], look: Look, survey: Survey | None) -> None:
-        self._surfaces = dict(surfaces)
+    def __init__(
+        self, aligned: Aligned, look: Look, survey: Survey | None, ortho: Ortho | None = None
+    ) -> None:
+        self._ortho = ortho
+        self._aligned = aligned
+        self._surfaces = aligned.surfaces
         self._look = look
         self._survey = survey
 
@@ -90,7 +96,7 @@ class Preview:
         if file.suffix.lower() in PAGE_SUFFIXES:
             self._write_page(file)
         else:
-            write_picture(self._require_one("A picture"), file, self._look)
+            write_picture(self._require_one("A picture"), file, self._look, self._ortho)
         return file
 
     def show(self) -> None:
@@ -111,7 +117,7 @@ class Preview:
         Traceback (most recent call last):
         tinsmith.errors.RenderError: A window shows one surface, and there are 2: ...
         """
-        open_window(self._require_one("A window"), self._look)
+        open_window(self._require_one("A window"), self._look, self._ortho)
 
     def to_html(self) -> str:
         """Return the page: one HTML document that needs no other file and no network.
@@ -127,7 +133,8 @@ class Preview:
         ground = find_ground(tins[-1])
         factor = self._look.exaggeration or choose_exaggeration(tins[-1], ground)
         surfaces, changes = _add_difference(self._surfaces)
-        labels = None if self._survey is None else find_labels(self._survey)
+        points = self._aligned.labelled
+        labels = None if points is None else find_labels(points, self._survey)
         content = describe_page(
             surfaces,
             ground,
@@ -135,6 +142,8 @@ class Preview:
             exaggeration=factor,
             changes=changes,
             labels=labels,
+            notes=(*self._aligned.notes, *(self._ortho.told if self._ortho else ())),
+            ortho=self._ortho,
         )
         return make_document(content)
 
@@ -173,6 +182,7 @@ def preview(
     title: str | None = None,
     view: str = "oblique",
     survey: Survey | None = None,
+    drape: str | os.PathLike[str] | None = None,
 ) -> Preview: ...
 
 
@@ -188,6 +198,7 @@ def preview(
     title: str | None = None,
     view: str = "oblique",
     survey: Survey | None = None,
+    drape: str | os.PathLike[str] | None = None,
 ) -> Path: ...
 
 
@@ -197,6 +208,7 @@ def preview(
     output: str | os.PathLike[str] | None = None,
     title: str | None = None,
     survey: Survey | None = None,
+    drape: str | os.PathLike[str] | None = None,
     **look: Any,
 ) -> Preview | Path:
     """Show a TIN in 3D with hypsometric tints, hillshade, legend, scale bar and north arrow.
@@ -205,7 +217,7 @@ def preview(
     ----------
     tin : TIN or mapping of str to TIN
         One surface, or several by name in one CRS for a page, the existing ground first; of two
-        the page shows cut and fill too.
+        the page shows cut and fill too. Elevations are shown in the unit of the first.
     output : path, optional
         File to write at once: a page (.html) that turns in any browser, offline, or a picture
         (.png, .jpg, .jpeg, .tif, .tiff). Default: write nothing, and return a Preview.
@@ -226,6 +238,9 @@ def preview(
         above.
     survey : Survey, optional
         Points that a page shows with their numbers, up to 20,000.
+    drape : path, optional
+        Picture of the ground, laid over the surfaces: a GeoTIFF in any CRS, or a PNG, JPEG or JPEG
+        2000 file with its place. Where it has nothing, or is transparent, the tints stay.
 
     Returns
     -------
@@ -238,11 +253,21 @@ def preview(
     OptionError
         If an option is outside what is allowed, or there is no surface.
     CrsError
-        If surfaces have different CRSs.
+        If the surfaces, or the survey, have different CRSs, known of all or of none, or it cannot
+        be told whether their elevations are in one unit; units that are known are converted.
+    ReadError
+        If the picture to drape cannot be read, has no place on the ground, or shows nothing of the
+        surfaces.
     RenderError
         If the file cannot be written, or the machine has no OpenGL.
     MissingExtraError
-        If pyvista, which draws pictures, is not installed.
+        If pyvista, which draws pictures, or rasterio, which reads what is draped, is not installed.
+
+    Warns
+    -----
+    LossWarning
+        If what is draped is warped to the CRS of the surfaces, made smaller (to 4096 pixels), does
+        not reach over all of them, or something about it has to be assumed.
 
     Notes
     -----
@@ -267,21 +292,10 @@ def preview(
     check_look(chosen.size, chosen.view)
     if chosen.exaggeration is not None:
         parse_exaggeration(chosen.exaggeration)
-    made = Preview(_as_surfaces(tin), chosen, survey)
+    aligned = align(tin, survey)
+    ortho = None if drape is None else read_ortho(drape, [*aligned.surfaces.values()])
+    made = Preview(aligned, chosen, survey, ortho)
     return made if output is None else made.save(output)
-
-
-def _as_surfaces(tin: TIN | Mapping[str, TIN]) -> dict[str, TIN]:
-    surfaces = dict(tin) if isinstance(tin, Mapping) else {"Surface": tin}
-    if not surfaces:
-        raise OptionError("tin", tin, "a TIN, or a mapping of names to TINs with one at least")
-    for one in surfaces.values():
-        require_tin(one)
-    crs = [one.crs for one in surfaces.values()]
-    if any(one != crs[0] for one in crs):
-        names = ", ".join("none" if one is None else str(one) for one in crs)
-        raise CrsError(f"The surfaces have different CRSs ({names}): one is needed.")
-    return {str(name): one for name, one in surfaces.items()}
 
 
 def _add_difference(

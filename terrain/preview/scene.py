@@ -17,8 +17,16 @@ if TYPE_CHECKING:
 
     from ...tin import TIN
     from ..units import Ground
+    from .ortho import Ortho
 
-__all__ = ["add_lights", "add_terrain", "choose_exaggeration", "fade_edges", "place_vertices"]
+__all__ = [
+    "add_lights",
+    "add_ortho",
+    "add_terrain",
+    "choose_exaggeration",
+    "fade_edges",
+    "place_vertices",
+]
 
 _PURPOSE = "A preview"
 
@@ -32,6 +40,9 @@ _BLOCK_SHARE = 0.025
 
 _BLOCK_COLOR = (206, 203, 197)
 _BLOCK_AMBIENT = 0.72
+_ORTHO_AMBIENT = 0.68
+"""A photograph has shadows of its own: the light adds half as much as to tints."""
+
 _EDGE_COLOR = (40, 46, 50)
 _EDGE_OPACITY = 0.42
 _FAINTEST_EDGE = 0.04
@@ -108,6 +119,40 @@ def add_terrain(
         actor.prop.show_edges = True
         actor.prop.edge_color = _EDGE_COLOR
     return actor, np.vstack([points, block.points])
+
+
+def add_ortho(
+    plotter: Any, tin: TIN, points: NDArray[np.float64], ortho: Ortho, surface: Any
+) -> None:
+    """Lay a picture over the surface; where it has none, the surface below is seen.
+
+    Parameters
+    ----------
+    plotter : pyvista.Plotter
+    tin : TIN
+    points : (n, 3) float64 array
+        Its vertices as drawn.
+    ortho : Ortho
+    surface : pyvista.Actor
+        The surface, which is moved back a little.
+    """
+    pv = _optional.load("pyvista", _PURPOSE)
+
+    rows, columns = ortho.shape
+    sides = np.array([columns, rows])
+    # The picture has a transparent frame of a pixel, so that nothing of its edge is drawn out.
+    share = (ortho.place(tin.points) * sides + 1.0) / (sides + 2.0)
+    sheet = pv.PolyData.from_regular_faces(points, np.array(tin.triangles))
+    sheet.active_texture_coordinates = np.column_stack([share[:, 0], 1.0 - share[:, 1]])
+    sheet.point_data.active_normals = _average_normals(points, tin.triangles)
+    texture = pv.Texture(np.pad(ortho.decode(), ((1, 1), (1, 1), (0, 0))))
+    texture.interpolate, texture.mipmap, texture.repeat = True, True, False
+    lighting = _choose_lighting(_ORTHO_AMBIENT)
+    actor = plotter.add_mesh(sheet, color="white", texture=texture, **lighting)
+    actor.prop.interpolation = "Phong"
+    actor.ForceTranslucentOn()
+    surface.mapper.SetResolveCoincidentTopologyToPolygonOffset()
+    surface.mapper.SetRelativeCoincidentTopologyPolygonOffsetParameters(1.0, 1.0)
 
 
 def fade_edges(actor: Any, tin: TIN, ground: Ground, pixels: float) -> None:
