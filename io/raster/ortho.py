@@ -98,7 +98,7 @@ def read_ortho(
         told.append(f"'{path}' does not reach over {gap:.1%} of the vertices: {beyond}.")
     for sentence in told:
         warnings.warn(sentence, LossWarning, stacklevel=stacklevel)
-    return replace(ortho, told=tuple(told))
+    return replace(ortho, gap=gap, told=tuple(told))
 
 
 def as_picture_path(source: object, option: str) -> Path:

@@ -63,6 +63,8 @@ class Caption:
         Their unit, as it stands behind "Elevation"; "" if it is not known.
     unit : Unit
         Of lengths in the scene.
+    has_tints : bool
+        Whether tints by elevation are seen anywhere.
     """
 
     title: str
@@ -71,6 +73,7 @@ class Caption:
     elevations: tuple[float, float]
     elevation_caption: str
     unit: Unit
+    has_tints: bool = True
 
 
 def annotate(overlay: Overlay, sheet: Sheet, caption: Caption, camera: Any) -> None:
@@ -90,7 +93,8 @@ def annotate(overlay: Overlay, sheet: Sheet, caption: Caption, camera: Any) -> N
     _draw_north_arrow(overlay, camera)
     _draw_scale_bar(overlay, caption.unit, measure_pixels_per_unit(camera, sheet.height))
     _draw_notes(overlay, caption.exaggeration, View.of(camera))
-    _draw_legend(overlay, sheet, caption)
+    if caption.has_tints:
+        _draw_legend(overlay, sheet, caption)
 
 
 def scale_bar_length(unit: Unit, pixels: float) -> tuple[float, float, str]:

@@ -50,6 +50,8 @@ class Ortho:
         Affine, from columns and rows to eastings and northings: a, b, x, d, e, y.
     opacity : (rows, columns) uint8 array or None
         0 where there is no picture; None where there is everywhere.
+    gap : float
+        Share of the vertices of the surfaces at which there is no picture.
     told : tuple of str
         What was done to it, or taken for granted.
     """
@@ -60,6 +62,7 @@ class Ortho:
     shape: tuple[int, int]
     transform: tuple[float, ...]
     opacity: NDArray[np.uint8] | None = None
+    gap: float = 0.0
     told: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import secrets
 from contextlib import contextmanager
-from dataclasses import astuple, dataclass
+from dataclasses import astuple, dataclass, replace
 from numbers import Integral
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -85,6 +85,8 @@ def _make_stage(tin: TIN, look: Look, ortho: Ortho | None) -> _Stage:
     ground = find_ground(tin)
     factor = look.exaggeration or choose_exaggeration(tin, ground)
     caption = _make_caption(tin, ground, factor, look.title)
+    if ortho is not None and ortho.gap == 0.0:
+        caption = replace(caption, has_tints=False)
     view = VIEWS[look.view]
     return _Stage(tin, ground, factor, look.edges, look.lines, look.size, caption, view, ortho)
 
@@ -124,8 +126,10 @@ class _Show:
         self.plotter.set_background("white")
         points = place_vertices(stage.tin, stage.ground, stage.exaggeration)
         self._surface, seen = add_terrain(self.plotter, stage.tin, points, edges=stage.edges)
+        self._sheets = [self._surface]
         if stage.ortho is not None:
-            add_ortho(self.plotter, stage.tin, points, stage.ortho, self._surface)
+            sheet = add_ortho(self.plotter, stage.tin, points, stage.ortho, self._surface)
+            self._sheets.append(sheet)
         add_lights(self.plotter)
         self._overlay = Overlay(self.plotter.renderer)
         self._drawn_for: tuple[object, ...] = ()
@@ -146,7 +150,8 @@ class _Show:
         self._drawn_for = state
         sheet, self._overlay.factor = _fit_sheet((width, height))
         pixels = measure_pixels_per_unit(camera, sheet.height)
-        fade_edges(self._surface, self.stage.tin, self.stage.ground, pixels)
+        for one in self._sheets:
+            fade_edges(one, self.stage.tin, self.stage.ground, pixels)
         annotate(self._overlay, sheet, self.stage.caption, camera)
 
     def open_window(self) -> None:

@@ -123,8 +123,8 @@ def add_terrain(
 
 def add_ortho(
     plotter: Any, tin: TIN, points: NDArray[np.float64], ortho: Ortho, surface: Any
-) -> None:
-    """Lay a picture over the surface; where it has none, the surface below is seen.
+) -> Any:
+    """Lay a picture over the surface, and return its actor; where it has none, the tints are seen.
 
     Parameters
     ----------
@@ -153,6 +153,10 @@ def add_ortho(
     actor.ForceTranslucentOn()
     surface.mapper.SetResolveCoincidentTopologyToPolygonOffset()
     surface.mapper.SetRelativeCoincidentTopologyPolygonOffsetParameters(1.0, 1.0)
+    if surface.prop.show_edges:
+        actor.prop.show_edges = True
+        actor.prop.edge_color = _EDGE_COLOR
+    return actor
 
 
 def fade_edges(actor: Any, tin: TIN, ground: Ground, pixels: float) -> None:

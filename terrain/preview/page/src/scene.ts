@@ -24,6 +24,7 @@ import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
 
 import { makeRamp, makeTerrainMaterial, type Tint, TINTS } from "./material";
+import { makeOrthoTexture } from "./ortho";
 import type { LineLayer, Payload } from "./payload";
 import type { Hit, Surface, Vector } from "./surface";
 import { type Lines, unpackLines, unpackRows } from "./unpacking";
@@ -81,7 +82,7 @@ export class Model {
   paint(tint: Tint, ramps: Record<string, ReturnType<typeof makeRamp>>, range: [number, number]): void {
     const { uniforms } = this.material;
     uniforms.tint.value = TINTS.indexOf(tint);
-    uniforms.ramp.value = tint === "plain" ? null : ramps[tint];
+    uniforms.ramp.value = tint === "plain" ? null : ramps[tint === "ortho" ? "elevation" : tint];
     uniforms.range.value = range;
   }
 }
@@ -126,6 +127,17 @@ export class Stage {
     } else {
       this.low.min(new Vector3(...low));
       this.high.max(new Vector3(...high));
+    }
+  }
+
+  /** Drape a picture over all surfaces. */
+  drape(picture: ImageBitmap): void {
+    const { place } = this.payload.ortho!;
+    const texture = makeOrthoTexture(picture, this.renderer.capabilities.getMaxAnisotropy());
+    for (const { material } of this.models) {
+      material.uniforms.ortho.value = texture;
+      material.uniforms.across.value.fromArray(place, 0);
+      material.uniforms.down.value.fromArray(place, 3);
     }
   }
 
@@ -306,7 +318,8 @@ function makeGeometry(surface: Surface): BufferGeometry {
   return geometry;
 }
 
-/** Return the normals of the true surface at the vertices, each triangle counted by its area. */
+/** Return the normals of the true surface at the vertices, each triangle counted by its area seen
+ *  from above: so steep slivers along a hull do not darken their neighbours. */
 function averageNormals(surface: Surface): Float32Array {
   const { positions: p, triangles, elevationScale: s } = surface;
   const normals = new Float32Array(p.length);
@@ -315,10 +328,11 @@ function averageNormals(surface: Surface): Float32Array {
     const [ux, uy, uz] = [p[b] - p[a], p[b + 1] - p[a + 1], (p[b + 2] - p[a + 2]) * s];
     const [vx, vy, vz] = [p[c] - p[a], p[c + 1] - p[a + 1], (p[c + 2] - p[a + 2]) * s];
     const [nx, ny, nz] = [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx];
+    const weight = nz / (Math.hypot(nx, ny, nz) || 1);
     for (const i of [a, b, c]) {
-      normals[i] += nx;
-      normals[i + 1] += ny;
-      normals[i + 2] += nz;
+      normals[i] += weight * nx;
+      normals[i + 1] += weight * ny;
+      normals[i + 2] += weight * nz;
     }
   }
   for (let i = 0; i < normals.length; i += 3) {
