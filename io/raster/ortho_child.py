@@ -1,7 +1,7 @@
 """Pictures with a place on the ground through rasterio, as the child process reads them.
 
-The part over the surface is read, made smaller where it has to be, its colours are brought to 8
-bits and its pixels to the CRS of the surface, and the result is JPEG, or a format with opacity where
+The part over the surface is read, and made smaller where it has to be; its colours are brought to
+8 bits, and its pixels to the CRS of the surface. The result is JPEG, or a format with opacity where
 it is partly transparent.
 """
 
@@ -165,9 +165,6 @@ def _name_crs(dataset: Any) -> str | None:
     return CRS(dataset.crs.to_wkt()).horizontal.to_wkt()
 
 
-# ------------------------------------------------------------------------- what is read
-
-
 def _choose_bands(source: _Source) -> _Bands:
     dataset, shown = source.dataset, source.shown
     names = [one.name for one in dataset.colorinterp]
@@ -195,12 +192,12 @@ def _choose_colors(names: list[str], rest: list[int], source: _Source) -> tuple[
         return (rest[0],)
     if len(rest) not in (3, 4):
         raise Refusal(
-            f"'{source.shown}' is no picture: it has {len(rest)} bands, and does not say which are red, "
-            "green and blue."
+            f"'{source.shown}' is no picture: it has {len(rest)} bands, and does not say which "
+            "are red, green and blue."
         )
     source.told.append(
-        f"'{source.shown}' does not say which of its {len(rest)} bands are red, green and blue: the first "
-        "three are taken for them."
+        f"'{source.shown}' does not say which of its {len(rest)} bands are red, green and blue: "
+        "the first three are taken for them."
     )
     return tuple(rest[:3])
 
@@ -219,7 +216,7 @@ def _find_bounds(source: _Source, own: str | None, target: _Target) -> Any:
 
 
 def _read_crs(wkt: str | None) -> Any:
-    from rasterio.crs import CRS as RasterCrs  # noqa: N811 - ours is called CRS too
+    from rasterio.crs import CRS as RasterCrs
 
     return RasterCrs.from_wkt(wkt)
 
@@ -317,9 +314,6 @@ def _scale(values: Any, most: int) -> Any:
         return values
     scaled = (values.astype(np.uint32) * 255 + most // 2) // most
     return np.minimum(scaled, 255).astype(np.uint8)
-
-
-# ------------------------------------------------------------------------- what is returned
 
 
 def _warp(source: _Source, picture: _Picture, own: str | None, target: _Target) -> _Picture:

@@ -9,7 +9,7 @@ import click
 from ..options import console_options, reading_options, triangulating_options
 from ..output.failures import note_written
 from ..parameters import input_file, number_option, picture_option
-from ..paths import make_title
+from ..paths import INPUT, Named, make_title
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -32,6 +32,13 @@ __all__ = ["view"]
     help="Draw breaklines and rings.",
 )
 @click.option("--top", is_flag=True, help="Look straight down, north up.")
+@click.option(
+    "--ortho",
+    metavar="FILE",
+    type=INPUT,
+    help="Picture of the ground to drape over the surface: a GeoTIFF in any CRS, or another with "
+    "its place.",
+)
 @click.option("--title", metavar="TEXT", help="Title in the picture; default the file's name.")
 @reading_options
 @triangulating_options
@@ -39,6 +46,7 @@ __all__ = ["view"]
 def view(
     file: Path,
     output: Path | None,
+    ortho: Path | None,
     reading: Reading,
     how: Triangulating,
     console: Console,
@@ -54,17 +62,20 @@ def view(
     from ...terrain.preview.presentation import PREVIEW_SUFFIXES
     from ..files import list_inputs, read_tin, require_picture
 
+    inputs = list_inputs(file, how)
+    if ortho is not None:
+        inputs.append(Named(ortho, "the picture to drape"))
     if output is not None:
-        require_picture(
-            output, place="--output", inputs=list_inputs(file, how), suffixes=PREVIEW_SUFFIXES
-        )
+        require_picture(output, place="--output", inputs=inputs, suffixes=PREVIEW_SUFFIXES)
 
     tin, survey = read_tin(file, reading, how, console)
     top = drawing.pop("top")
     drawing["title"] = drawing["title"] or make_title(file)
     with console.steps() as steps, steps.step("Drawing"):
         seen = "top" if top else "oblique"
-        shown: Any = preview(tin, survey=survey, output=output, view=seen, **drawing)
+        shown: Any = preview(
+            tin, survey=survey, drape=ortho, output=output, view=seen, **drawing
+        )
         if output is None:
             shown.show()
     if output is not None:
