@@ -279,7 +279,7 @@ def _read_colors(
         colors = _look_up(values[0], dataset.colormap(bands.colors[0]))
         return np.concatenate([colors[:3], np.minimum(colors[3], opacity)[None]])
     colors = _scale(values, _find_white(source, bands, values[:, opacity > 0]))
-    if dataset.tags(bands.colors[0], ns="IMAGE_STRUCTURE").get("MINISWHITE") == "YES":
+    if dataset.tags(ns="IMAGE_STRUCTURE").get("MINISWHITE") == "YES":
         colors = 255 - colors
     colors = np.repeat(colors, 3, axis=0) if len(colors) == 1 else colors
     return np.concatenate([colors, opacity[None]])

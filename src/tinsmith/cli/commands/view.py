@@ -73,9 +73,7 @@ def view(
     drawing["title"] = drawing["title"] or make_title(file)
     with console.steps() as steps, steps.step("Drawing"):
         seen = "top" if top else "oblique"
-        shown: Any = preview(
-            tin, survey=survey, drape=ortho, output=output, view=seen, **drawing
-        )
+        shown: Any = preview(tin, survey=survey, drape=ortho, output=output, view=seen, **drawing)
         if output is None:
             shown.show()
     if output is not None:
