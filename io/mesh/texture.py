@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     import os
     from pathlib import Path
 
+    import numpy as np
     from numpy.typing import NDArray
 
     from ...tin import TIN

@@ -134,8 +134,7 @@ def _read_source(source: _Source, target: _Target) -> Answer:
         raise Refusal(f"'{source.shown}' has no place on the ground: it is not georeferenced.")
     bands = _choose_bands(source)
     own = _name_crs(source.dataset)
-    known = None not in (own, target.crs)
-    is_elsewhere = known and not CRS.of(own).is_same(CRS.of(target.crs))
+    is_elsewhere = own is not None and target.crs is not None and not CRS(own).is_same(target.crs)
     wanted = _find_bounds(source, own, target) if is_elsewhere else target.bounds
     part = _choose_part(source, wanted)
     picture = _read_part(source, bands, part, target.most_pixels)

@@ -134,7 +134,8 @@ class Preview:
         factor = self._look.exaggeration or choose_exaggeration(tins[-1], ground)
         surfaces, changes = _add_difference(self._surfaces)
         points = self._aligned.labelled
-        labels = None if points is None else find_labels(points, self._survey)
+        survey = self._survey
+        labels = None if points is None or survey is None else find_labels(points, survey)
         content = describe_page(
             surfaces,
             ground,

@@ -1,4 +1,4 @@
-"""Pictures in four colours, whose place can be seen: red and green in the north, blue and yellow."""
+"""Pictures in four colours, whose place can be seen: red and green in the north."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def make_square(crs="EPSG:32616", *, n=400, height=8.0):
     xy = np.random.default_rng(5).random((n, 2)) * SIDE
     xy = np.vstack([xy, [[0, 0], [SIDE, 0], [0, SIDE], [SIDE, SIDE]]])
     z = 300 + height * np.sin(xy[:, 0] / 40) * np.cos(xy[:, 1] / 55)
-    points = np.round(np.column_stack([xy + [WEST, NORTH - SIDE], z]), 3)
+    points = np.round(np.column_stack([xy + np.array([WEST, NORTH - SIDE]), z]), 3)
     return ts.triangulate(points, crs=crs, z_unit="m")
 
 

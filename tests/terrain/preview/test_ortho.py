@@ -240,7 +240,7 @@ def test_a_large_picture_is_made_smaller_and_it_is_told(tmp_path, monkeypatch):
 
 def test_a_picture_inside_one_triangle_is_seen(tmp_path):
     tin = ts.triangulate(
-        np.array([[0, 0, 1], [4000, 0, 2], [0, 4000, 3]]) + [WEST - 500, NORTH - 900, 0],
+        np.array([[0, 0, 1], [4000, 0, 2], [0, 4000, 3]]) + np.array([WEST - 500, NORTH - 900, 0]),
         crs="EPSG:32616",
     )
     path = write_raster(tmp_path / "a.tif", paint_quarters(50))
@@ -250,7 +250,8 @@ def test_a_picture_inside_one_triangle_is_seen(tmp_path):
 
 def test_boxes_that_meet_are_not_enough(tmp_path):
     tin = ts.triangulate(
-        np.array([[0, 0, 1], [4000, 0, 2], [0, 4000, 3]]) + [WEST - 3500, NORTH - 3500, 0],
+        np.array([[0, 0, 1], [4000, 0, 2], [0, 4000, 3]])
+        + np.array([WEST - 3500, NORTH - 3500, 0]),
         crs="EPSG:32616",
     )
     path = write_raster(tmp_path / "a.tif", paint_quarters(50))
@@ -374,7 +375,9 @@ def test_the_tints_stay_where_there_is_no_picture(tmp_path):
 
 def test_all_surfaces_of_a_page_are_draped(tmp_path):
     tin = make_square()
-    raised = ts.TIN.from_triangles(tin.points + [0, 0, 20], tin.triangles, crs=tin.crs, z_unit="m")
+    raised = ts.TIN.from_triangles(
+        tin.points + np.array([0, 0, 20]), tin.triangles, crs=tin.crs, z_unit="m"
+    )
     path = write_raster(tmp_path / "a.tif", paint_quarters(200))
     made = ts.preview({"Existing": tin, "Design": raised}, drape=path)
     places, colors = list_places()

@@ -1,6 +1,13 @@
 /** The page: unpacks the surfaces, shows them, and answers to mouse, touch and keys. */
 
-import { drawLabels, drawMeasured, chooseBar, type Marked } from "./annotations";
+import {
+  chooseBar,
+  drawLabels,
+  drawLegend,
+  drawMeasured,
+  drawNorth,
+  type Marked,
+} from "./annotations";
 import { type Tint, TINTS } from "./material";
 import { type Factors, makeGround } from "./ground";
 import { crossesItself, measureArea, measureLine, profileAlong } from "./measuring";
@@ -156,17 +163,18 @@ class Page {
     const [low, high] = this.range(shown);
     const shift = this.payload.origin[2];
     const digits = Math.min(Math.max(0, 2 - Math.floor(Math.log10(high - low))), 20);
-    const elevation = (z: number): string => (z + shift).toFixed(digits);
+    const elevation = (z: number): string => fix(z + shift, digits);
     const ends: Record<Exclude<Tint, "plain" | "ortho">, [string, string[]]> = {
       elevation: [joinUnit("Elevation", unit), [low, (low + high) / 2, high].map(elevation)],
       slope: ["Slope, degrees", ["0", "15", "30", "45", "60+"]],
       aspect: ["Aspect, facing", ["N", "E", "S", "W", "N"]],
-      difference: [joinUnit("Cut (below 0) and fill", unit), [low, 0, high].map((v) => v.toFixed(digits))],
+      difference: [joinUnit("Cut (below 0) and fill", unit), [low, 0, high].map((v) => fix(v, digits))],
     };
     const [title, ticks] = ends[shown];
     legend.querySelector("figcaption")!.textContent = title;
     find<HTMLElement>("ramp").style.background =
       `linear-gradient(to right, ${this.payload.ramps[shown].join(", ")})`;
+    find<HTMLElement>("ramp").dataset.colors = this.payload.ramps[shown].join(" ");
     find<HTMLElement>("ticks").replaceChildren(...ticks.map((text) => makeText("span", text)));
   }
 
@@ -301,9 +309,9 @@ class Page {
     const unit = geographic ? "\u00b0" : ` ${units.horizontal}`;
     const [x, y] = [hit.x / scale[0] + origin[0], hit.y / scale[1] + origin[1]];
     const parts = [
-      `${names[0]} ${x.toFixed(decimals[0])}${unit}`,
-      `${names[1]} ${y.toFixed(decimals[0])}${unit}`,
-      `Elevation ${(hit.z + origin[2]).toFixed(decimals[1])} ${units.elevation}`,
+      `${names[0]} ${fix(x, decimals[0])}${unit}`,
+      `${names[1]} ${fix(y, decimals[0])}${unit}`,
+      `Elevation ${fix(hit.z + origin[2], decimals[1])} ${units.elevation}`,
       `Slope ${model.surface.slope(hit.triangle).toFixed(1)}\u00b0`,
     ];
     // Isolated, for a name written from right to left would turn the numbers round.
@@ -358,7 +366,7 @@ class Page {
     const text =
       `Distance ${say(length)}, along the ground ${say(groundLength)}` +
       `${isWhole ? "" : ` on the ${say(covered)} that are on the surface`}, ` +
-      `rise ${rise.toFixed(decimals[1])} ${units.elevation}`.trimEnd();
+      `rise ${fix(rise, decimals[1])} ${units.elevation}`.trimEnd();
     const shift = this.payload.origin[2];
     const colors = CURVES[this.dark ? "dark" : "light"];
     // What is coloured by cut and fill is one of the other surfaces once more.
@@ -442,8 +450,17 @@ class Page {
     const width = bar.querySelector("i")!.getBoundingClientRect().width;
     pen.fillRect(16, this.view.clientHeight - 24, width, 3);
     pen.fillText(`${bar.querySelector("span")!.textContent ?? ""}, ${this.payload.crs}`, 16, this.view.clientHeight - 32);
+    const legend = find<HTMLElement>("legend");
+    if (!legend.hidden) drawLegend(pen, legend, this.view);
+    drawNorth(pen, this.view.clientWidth - 40, 40, this.stage.heading);
     return sheet.toDataURL("image/png");
   }
+}
+
+/** Write a number with so many decimals, and nought without a minus. */
+function fix(value: number, decimals: number): string {
+  const text = value.toFixed(decimals);
+  return Number(text) === 0 ? (0).toFixed(decimals) : text;
 }
 
 function joinUnit(words: string, unit: string): string {

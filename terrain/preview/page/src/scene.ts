@@ -30,6 +30,8 @@ import type { Hit, Surface, Vector } from "./surface";
 import { type Lines, unpackLines, unpackRows } from "./unpacking";
 
 const FIELD_OF_VIEW = 30;
+/** Share of width and height that the terrain takes at most, beside what is written around it. */
+const FILLED = 0.78;
 const FULL_CIRCLE = 2 * Math.PI;
 
 /** One surface with all that is drawn with it. */
@@ -173,9 +175,8 @@ export class Stage {
     middle.z *= this.lift;
     const half = new Vector3().subVectors(high, low).multiplyScalar(0.5);
     half.z *= this.lift;
-    const narrow = Math.min(this.camera.aspect, 1);
-    const away = half.length() / Math.tan(((FIELD_OF_VIEW / 2) * Math.PI) / 180) / narrow;
     const [a, t] = [(azimuth * Math.PI) / 180, (Math.min(tilt, 89.99) * Math.PI) / 180];
+    const away = this.findDistance(half, a, t);
     this.controls.target.copy(middle);
     this.camera.position.set(
       middle.x + away * Math.sin(a) * Math.cos(t),
@@ -186,6 +187,26 @@ export class Stage {
     this.controls.maxDistance = 6 * away;
     this.controls.update();
     this.request();
+  }
+
+  /** Return how far from its middle a box is seen whole, from a direction in radians. */
+  private findDistance(half: Vector3, azimuth: number, tilt: number): number {
+    const tangent = Math.tan(((FIELD_OF_VIEW / 2) * Math.PI) / 180) / FILLED;
+    const near = [Math.sin(azimuth) * Math.cos(tilt), Math.cos(azimuth) * Math.cos(tilt), Math.sin(tilt)];
+    const right = [-Math.cos(azimuth), Math.sin(azimuth), 0];
+    const up = [-Math.sin(azimuth) * Math.sin(tilt), -Math.cos(azimuth) * Math.sin(tilt), Math.cos(tilt)];
+    const reach = (axis: number[], corner: Vector3): number =>
+      axis[0] * corner.x + axis[1] * corner.y + axis[2] * corner.z;
+    let away = 0;
+    for (const x of [-1, 1])
+      for (const y of [-1, 1])
+        for (const z of [-1, 1]) {
+          const corner = new Vector3(x * half.x, y * half.y, z * half.z);
+          const across = Math.abs(reach(right, corner)) / (tangent * this.camera.aspect);
+          const along = Math.abs(reach(up, corner)) / tangent;
+          away = Math.max(away, reach(near, corner) + Math.max(across, along));
+        }
+    return away || 1;
   }
 
   private boundVisible(): [Vector3, Vector3] {
