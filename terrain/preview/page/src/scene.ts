@@ -24,6 +24,7 @@ import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
 
 import { makeRamp, makeTerrainMaterial, type Tint, TINTS } from "./material";
+import { Pace, simplify } from "./detail";
 import { makeOrthoTexture } from "./ortho";
 import type { LineLayer, Payload } from "./payload";
 import type { Hit, Surface, Vector } from "./surface";
@@ -41,6 +42,9 @@ export class Model {
   readonly layers = new Map<string, LineSegments2>();
   labels: { places: Float64Array; texts: string[]; marks: Points } | null = null;
   private edges: LineSegments | null = null;
+  private readonly geometry: BufferGeometry;
+  private readonly fine: BufferAttribute;
+  private coarse: BufferAttribute | undefined;
 
   constructor(
     readonly surface: Surface,
@@ -48,9 +52,20 @@ export class Model {
   ) {
     this.material = makeTerrainMaterial(payload.elevationScale);
     this.material.uniforms.base.value = payload.origin[2];
-    const mesh = new Mesh(makeGeometry(surface), this.material);
+    this.geometry = makeGeometry(surface);
+    this.fine = this.geometry.index!;
+    const mesh = new Mesh(this.geometry, this.material);
     mesh.frustumCulled = false;
     this.group.add(mesh);
+  }
+
+  /** Draw fewer triangles, or all of them. */
+  setCoarse(isCoarse: boolean): void {
+    if (isCoarse && this.coarse === undefined) {
+      const kept = simplify(this.surface);
+      this.coarse = kept === null ? this.fine : new BufferAttribute(kept, 1);
+    }
+    this.geometry.setIndex(isCoarse ? this.coarse! : this.fine);
   }
 
   async addLayers(): Promise<void> {
@@ -99,6 +114,8 @@ export class Stage {
   readonly ramps: Record<string, ReturnType<typeof makeRamp>> = {};
   /** Called after each picture. */
   drawn: () => void = () => undefined;
+  readonly pace = new Pace(() => this.setDetail());
+  private isCoarse = false;
   private waiting = false;
   private exaggeration = 1;
   private readonly low = new Vector3();
@@ -175,7 +192,7 @@ export class Stage {
     middle.z *= this.lift;
     const half = new Vector3().subVectors(high, low).multiplyScalar(0.5);
     half.z *= this.lift;
-    const [a, t] = [(azimuth * Math.PI) / 180, (Math.min(tilt, 89.99) * Math.PI) / 180];
+    const [a, t] = [(azimuth * Math.PI) / 180, (Math.min(tilt, 89.9999) * Math.PI) / 180];
     const away = this.findDistance(half, a, t);
     this.controls.target.copy(middle);
     this.camera.position.set(
@@ -314,18 +331,45 @@ export class Stage {
     this.waiting = true;
     requestAnimationFrame(() => {
       this.waiting = false;
+      this.pace.note(performance.now());
+      this.setDetail();
       this.draw();
     });
   }
 
+  /** Fit the number of triangles and pixels to the pace of the pictures. */
+  private setDetail(): void {
+    const { isCoarse } = this.pace;
+    if (this.isCoarse === isCoarse) return;
+    this.isCoarse = isCoarse;
+    for (const model of this.models) model.setCoarse(isCoarse);
+    const ratio = Math.min(window.devicePixelRatio, 2);
+    this.renderer.setPixelRatio(isCoarse ? ratio / 2 : ratio);
+    if (!isCoarse) this.request();
+  }
+
   draw(): void {
-    const far = this.camera.position.distanceTo(this.controls.target);
-    const size = this.span + Math.abs(this.high.z - this.low.z) * this.lift;
-    this.camera.near = Math.max(far - 2 * size, far / 200);
-    this.camera.far = far + 2 * size;
-    this.camera.updateProjectionMatrix();
+    this.fitDepths();
     this.renderer.render(this.scene, this.camera);
     this.drawn();
+  }
+
+  /** Let the depths that the picture holds end at the box around the surfaces. */
+  private fitDepths(): void {
+    const ahead = this.camera.getWorldDirection(new Vector3());
+    let [nearest, farthest] = [Infinity, -Infinity];
+    for (const x of [this.low.x, this.high.x])
+      for (const y of [this.low.y, this.high.y])
+        for (const z of [this.low.z, this.high.z]) {
+          const depth = new Vector3(x, y, z * this.lift).sub(this.camera.position).dot(ahead);
+          nearest = Math.min(nearest, depth);
+          farthest = Math.max(farthest, depth);
+        }
+    const away = this.camera.position.distanceTo(this.controls.target);
+    // In the midst of it what is far behind the target may flicker, as what is near must be seen.
+    this.camera.near = nearest > 0 ? Math.max(0.9 * nearest, away / 20000) : away / 200;
+    this.camera.far = Math.max(1.1 * farthest, 2 * this.camera.near);
+    this.camera.updateProjectionMatrix();
   }
 }
 
