@@ -1,7 +1,7 @@
 """How large pages are, how soon they open in Chromium and how fast they turn.
 
-``python -m benchmarks.pages [TRIANGLES ...]`` needs Chromium and playwright. Without a graphics card
-Chromium draws on the processor, so turning is the worst case.
+``python -m benchmarks.pages [TRIANGLES ...]`` needs Chromium and playwright. Without a graphics
+card Chromium draws on the processor, so turning is the worst case.
 """
 
 from __future__ import annotations

@@ -120,8 +120,9 @@ def read(
     target, declared = CRS.of(crs), Unit.of(z_unit)
     tiles = [_locate(header, target, declared) for header in headers]
     _require_one_crs(tiles, target, path)
+    units = _require_comparable_units(tiles, target, path)
     gathered = _Gathered.reserve(headers, path)
-    placed = [_read_tile(tile, selection, target, gathered) for tile in tiles]
+    placed = [_read_tile(tile, selection, target, gathered, units[0]) for tile in tiles]
     gathered.require_points(path, selection)
     return Survey(
         points=gathered.points,
@@ -188,7 +189,7 @@ def _locate(header: Header, target: CRS | None, declared: Unit | None) -> _Tile:
 
 
 def _require_one_crs(tiles: list[_Tile], target: CRS | None, path: Path) -> None:
-    """Refuse tiles in several CRSs or units, unless the caller says which is wanted."""
+    """Refuse tiles in several CRSs, unless the caller says which is wanted."""
     first = tiles[0]
     for other in tiles[1:]:
         ours, theirs = first.reference.crs, other.reference.crs
@@ -201,12 +202,31 @@ def _require_one_crs(tiles: list[_Tile], target: CRS | None, path: Path) -> None
                 "one by one, or declare the CRS that is wanted if both name theirs.",
                 crs=theirs,
             )
-        if first.unit != other.unit and target is None:
+
+
+def _require_comparable_units(
+    tiles: list[_Tile], target: CRS | None, path: Path
+) -> list[Unit | None]:
+    """Return the units of elevations after any reprojection; refuse known ones beside unknown."""
+    units = [_foresee_unit(tile, target) for tile in tiles]
+    first = tiles[0].header.path.name
+    for tile, unit in zip(tiles, units, strict=True):
+        if unit != units[0] and (unit is None or units[0] is None):
             raise ReadError(
-                f"{names} have elevations in different units: {first.unit or 'unknown'} and "
-                f"{other.unit or 'unknown'}.",
+                f"'{first}' and '{tile.header.path.name}' in '{path}' have elevations in different "
+                f"units: {units[0] or 'unknown'} and {unit or 'unknown'}; read them one by one, or "
+                "declare the unit (z_unit) if it is that of all.",
                 path=path,
             )
+    return units
+
+
+def _foresee_unit(tile: _Tile, target: CRS | None) -> Unit | None:
+    header = tile.header
+    middle = header.middle[None, :]
+    return place(
+        middle, source=tile.reference.crs, target=target, path=header.path, unit=tile.unit
+    ).elevation_unit
 
 
 def _name_crs(crs: CRS | None) -> str:
@@ -315,9 +335,9 @@ class _Gathered:
 
 
 def _read_tile(
-    tile: _Tile, selection: Selection, target: CRS | None, gathered: _Gathered
+    tile: _Tile, selection: Selection, target: CRS | None, gathered: _Gathered, unit: Unit | None
 ) -> Placed:
-    """Add the points of a file that are wanted, in the CRS that is wanted."""
+    """Add the points of a file that are wanted, in the CRS and the unit that are wanted."""
     header, start = tile.header, gathered.count
     with stream_isolated(
         f"{__package__}.las_child:read_points",
@@ -332,7 +352,12 @@ def _read_tile(
     own = gathered._points[start : gathered.count]
     placed = place(own, source=tile.reference.crs, target=target, path=header.path, unit=tile.unit)
     gathered.replace(start, placed.points)
-    return placed
+    theirs = placed.elevation_unit
+    if theirs is None or unit is None or theirs == unit:
+        return placed
+    own[:, 2] *= (theirs.metres or 1.0) / (unit.metres or 1.0)
+    note = f"The elevations of '{header.path.name}' were converted from {theirs} to {unit}."
+    return placed._replace(notes=(*placed.notes, note))
 
 
 # ------------------------------------------------------------------------- the notes

@@ -301,6 +301,34 @@ def with_keys(path, *keys, texts=b""):
     return path
 
 
+@pytest.mark.parametrize("target", [None, "EPSG:32616", "EPSG:2274"])
+@pytest.mark.parametrize("second", [9001, 9003])
+@pytest.mark.parametrize("first", [9001, 9003])
+@pytest.mark.parametrize("systems", [(32616, 32616), (32616, 2274), (2274, 32616)])
+def test_elevations_of_tiles_are_in_one_unit(tmp_path, systems, first, second, target):
+    """What lies 304.32 feet or metres high lies as high among other tiles, in metres."""
+    if target is None and systems[0] != systems[1]:
+        target = "EPSG:26916"
+    with_keys(tmp_path / "a.las", (3072, systems[0]), (4099, first))
+    with_keys(tmp_path / "b.las", (3072, systems[1]), (4099, second))
+    apart = [read(tmp_path / name, crs=target) for name in ("a.las", "b.las")]
+    both = read_lidar(tmp_path, crs=target)
+    metres = [one.points[:, 2] * one.elevation_unit.metres for one in apart]
+    found = both.points[:, 2] * both.elevation_unit.metres
+    assert np.allclose(found, np.concatenate(metres), rtol=1e-12, atol=0)
+    converted = any(note.startswith("The elevations of 'b.las' were") for note in both.notes)
+    assert converted == (apart[0].elevation_unit != apart[1].elevation_unit)
+
+
+@pytest.mark.parametrize("target", [None, "EPSG:32616"])
+def test_a_tile_without_unit_is_not_mixed_with_others(tmp_path, target):
+    with_keys(tmp_path / "a.las", (3072, 32616))
+    with_keys(tmp_path / "b.las", (3072, 32616), (4099, 9003))
+    assert "unknown and US survey foot" in refuse(tmp_path, crs=target)
+    with_keys(tmp_path / "b.las", (3072, 32616), (4099, 9001))
+    assert read_lidar(tmp_path, crs=target, z_unit="m").elevation_unit.name == "metre"
+
+
 @pytest.mark.parametrize(
     ("keys", "crs", "unit"),
     [

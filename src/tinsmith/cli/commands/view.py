@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from ..options import console_options, reading_options, triangulating_options
-from ..output.failures import note_written
-from ..parameters import input_file, number_option, picture_option
+from ..output.failures import note_written, tell_warning
+from ..parameters import input_file, number_option, parse_numbers, picture_option
 from ..paths import INPUT, Named, make_title
 
 if TYPE_CHECKING:
@@ -18,6 +19,22 @@ if TYPE_CHECKING:
     from ..output.console import Console, Row
 
 __all__ = ["view"]
+
+
+def _parse_size(
+    ctx: click.Context,  # noqa: ARG001 - click's signature
+    param: click.Parameter,
+    value: str | None,
+) -> tuple[int, int] | None:
+    """Return width and height, given as 1600x1000 or 1600,1000."""
+    if value is None:
+        return None
+    found = re.fullmatch(r"\s*(\d{1,9})\s*[xX,\N{MULTIPLICATION SIGN}]\s*(\d{1,9})\s*", value)
+    if found is None:
+        raise click.UsageError(
+            f"Invalid {param.opts[0]} '{value}': it must be width and height, such as 1600x1000."
+        )
+    return int(found[1]), int(found[2])
 
 
 @click.command(short_help="Show a TIN in 3D: in a window, as a page, as a picture.")
@@ -39,7 +56,33 @@ __all__ = ["view"]
     help="Picture of the ground to drape over the surface: a GeoTIFF in any CRS, or another with "
     "its place.",
 )
+@number_option("--azimuth", "DEGREES", "Where the viewer stands, clockwise from north.")
+@number_option("--tilt", "DEGREES", "Height of the viewer above the horizon, 90 from above.")
 @click.option("--title", metavar="TEXT", help="Title in the picture; default the file's name.")
+@click.option(
+    "--size",
+    metavar="WIDTHxHEIGHT",
+    callback=_parse_size,
+    help="Pixels of a picture or window; default 1600x1000.",
+)
+@number_option("--dpi", "NUMBER", "Dots per inch written into a picture, for printing.")
+@click.option(
+    "--sun",
+    metavar="AZIMUTH,ALTITUDE",
+    callback=parse_numbers,
+    help="Light in a picture, degrees from north and above the horizon; default 315,45.",
+)
+@click.option(
+    "--background",
+    metavar="COLOR",
+    help="white, black, light, dark, or as #e8edf2; default white.",
+)
+@click.option(
+    "--elevations",
+    metavar="LOW,HIGH",
+    callback=parse_numbers,
+    help="Range of the tints in a picture; default that of the surface.",
+)
 @reading_options
 @triangulating_options
 @console_options
@@ -73,9 +116,13 @@ def view(
     drawing["title"] = drawing["title"] or make_title(file)
     with console.steps() as steps, steps.step("Drawing"):
         seen = "top" if top else "oblique"
-        shown: Any = preview(tin, survey=survey, drape=ortho, output=output, view=seen, **drawing)
+        shown = preview(tin, survey=survey, drape=ortho, view=seen, **drawing)
         if output is None:
             shown.show()
+        else:
+            shown.save(output)
+    for note in shown.notes:
+        tell_warning(note)
     if output is not None:
         note_written(output)
         console.summarise(_summarise_picture(output))

@@ -32,7 +32,7 @@ import { type Lines, unpackLines, unpackRows } from "./unpacking";
 
 const FIELD_OF_VIEW = 30;
 /** Share of width and height that the terrain takes at most, beside what is written around it. */
-const FILLED = 0.78;
+const FILLED = 0.86;
 const FULL_CIRCLE = 2 * Math.PI;
 
 /** One surface with all that is drawn with it. */
@@ -208,7 +208,7 @@ export class Stage {
 
   /** Return how far from its middle a box is seen whole, from a direction in radians. */
   private findDistance(half: Vector3, azimuth: number, tilt: number): number {
-    const tangent = Math.tan(((FIELD_OF_VIEW / 2) * Math.PI) / 180) / FILLED;
+    const tangent = Math.tan(((FIELD_OF_VIEW / 2) * Math.PI) / 180) * FILLED;
     const near = [Math.sin(azimuth) * Math.cos(tilt), Math.cos(azimuth) * Math.cos(tilt), Math.sin(tilt)];
     const right = [-Math.cos(azimuth), Math.sin(azimuth), 0];
     const up = [-Math.sin(azimuth) * Math.sin(tilt), -Math.cos(azimuth) * Math.sin(tilt), Math.cos(tilt)];
