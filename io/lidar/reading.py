@@ -42,6 +42,9 @@ _BYTES_PER_POINT = 24
 _MOST_POINTS = 2**31 - 1
 """The vertices of a TIN are numbered with 32 bits."""
 
+_SOME = 4_096
+"""Points that are compared with the bounds of the header."""
+
 _SPARSE = 0.5
 """Share of the points below which those taken are copied, so that memory is given back."""
 
@@ -350,14 +353,35 @@ def _read_tile(
             gathered.tally.add(part.value, part.arrays["classes"])
             gathered.append(part.arrays, header)
     own = gathered._points[start : gathered.count]
+    odd = _describe_outside(own, header)
     placed = place(own, source=tile.reference.crs, target=target, path=header.path, unit=tile.unit)
     gathered.replace(start, placed.points)
+    placed = placed._replace(notes=(*placed.notes, *odd))
     theirs = placed.elevation_unit
     if theirs is None or unit is None or theirs == unit:
         return placed
     own[:, 2] *= (theirs.metres or 1.0) / (unit.metres or 1.0)
     note = f"The elevations of '{header.path.name}' were converted from {theirs} to {unit}."
     return placed._replace(notes=(*placed.notes, note))
+
+
+def _describe_outside(points: NDArray[np.float64], header: Header) -> list[str]:
+    """Tell of points beyond the bounds that the header gives, looking at some of them."""
+    some = points[:: max(1, len(points) // _SOME)]
+    low, high = header.low, header.high
+    if len(some) == 0 or not np.isfinite([low, high]).all() or not (low != high).any():
+        return []
+    with np.errstate(over="ignore"):
+        slack = (high - low) / 100 + np.abs(header.scales)
+        count = int(((some < low - slack) | (some > high + slack)).any(axis=1).sum())
+    if count == 0:
+        return []
+    box = [f"{name} {a:.10g} to {b:.10g}" for name, a, b in zip("xyz", low, high, strict=True)]
+    return [
+        f"{count:,} of {len(some):,} points looked at lie outside the bounds that "
+        f"'{header.path.name}' gives ({', '.join(box)}): these, its scales or its offsets are "
+        "wrong."
+    ]
 
 
 # ------------------------------------------------------------------------- the notes
