@@ -17,7 +17,7 @@ from ...tin.validation.options import is_finite_number
 from ..reprojection.placement import settle_unit
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -182,6 +182,7 @@ def make_tin(
     *,
     constrained: NDArray[np.bool_] | None = None,
     reference: Reference,
+    attributes: Mapping[str, NDArray[Any]] | None = None,
     notes: Sequence[str] = (),
 ) -> TIN:
     """Make a TIN of what a file holds; what makes no TIN is a fault of the file.
@@ -201,6 +202,7 @@ def make_tin(
             constrained=constrained,
             crs=reference.crs,
             z_unit=reference.elevation_unit,
+            attributes=attributes,
         )
     except PointsError as error:
         raise ReadError(f"'{path}' holds no TIN. {error}", path=path) from error

@@ -75,8 +75,12 @@ def _reference(surface: TIN | Survey, name: str) -> dict[str, Any]:
 
 
 def _make_survey_points(survey: Survey) -> Features:
-    columns = {str(name): _as_column(values) for name, values in survey.attributes.items()}
+    columns = _list_columns(survey)
     return Features.of_points(survey.points, columns=columns, **_reference(survey, "points"))
+
+
+def _list_columns(surface: TIN | Survey) -> dict[str, NDArray[Any]]:
+    return {str(name): _as_column(values) for name, values in surface.attributes.items()}
 
 
 def _as_column(values: NDArray[Any]) -> NDArray[Any]:
@@ -89,8 +93,8 @@ def _as_column(values: NDArray[Any]) -> NDArray[Any]:
 
 
 def _make_points(tin: TIN) -> Features:
-    ids = {"id": np.arange(len(tin.points))}
-    return Features.of_points(tin.points, columns=ids, **_reference(tin, "points"))
+    columns = {"id": np.arange(len(tin.points))} | _list_columns(tin)
+    return Features.of_points(tin.points, columns=columns, **_reference(tin, "points"))
 
 
 def make_whole_surface(tin: TIN) -> Features:

@@ -48,6 +48,9 @@ __all__ = [
 _TEXT_FORMATS = ("delimited", "geojson", "obj", "off", "2dm", "cityjson", "csv", "json")
 """Formats that a terminal can show."""
 
+_WISHES = ("most_cells",)
+"""Options of commands, not of users, which count where the format has them."""
+
 
 @dataclass(frozen=True)
 class Output:
@@ -92,13 +95,13 @@ def read_input(path: Path, reading: Reading, console: Console) -> Survey | TIN:
 
 
 def _read_once(path: Path, options: dict[str, Any]) -> Survey | TIN:
-    from ..io import read
-    from ..io.reading import read_stream
+    from ..io.reading import read_as_wished, read_stream
 
+    asked = {name: value for name, value in options.items() if name not in _WISHES}
+    wishes = {name: value for name, value in options.items() if name in _WISHES}
     if path == STANDARD:
-        return read_stream(open_standard_input(), name_file(path), **options)
-    found: Survey | TIN = read(path, **options)
-    return found
+        return read_stream(open_standard_input(), name_file(path), wishes, **asked)
+    return read_as_wished(path, wishes, **asked)
 
 
 def _read_to_reproject(path: Path, options: dict[str, Any], target: str) -> Survey | TIN:

@@ -58,6 +58,7 @@ class Reading:
     band: int | None = None
     window: tuple[float, float, float, float] | None = None
     stride: int | None = None
+    most_cells: int | None = None
     nodata: tuple[float, ...] | None = None
     fill: bool | None = None
     code_blocks: str | None = None
