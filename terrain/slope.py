@@ -200,7 +200,7 @@ def compute_normals(tin: TIN) -> NDArray[np.float64]:
         metres. Its horizontal part points downhill; the vertical part is positive.
     """
     require_tin(tin)
-    first, second, third = (np.ascontiguousarray(corner) for corner in tin.triangles.T)
+    first, second, third = (corner.astype(np.intp) for corner in tin.triangles.T)
     axes = [np.ascontiguousarray(axis) for axis in tin.points.T]
     (ux, vx), (uy, vy), (uz, vz) = (
         (axis[second] - axis[first], axis[third] - axis[first]) for axis in axes
@@ -246,6 +246,9 @@ def sum_normals(tin: TIN, per: SurfacePart) -> NDArray[np.float64]:
     return np.stack(sums, axis=1)
 
 
-def _average_northings(tin: TIN) -> NDArray[np.float64]:
-    middle: NDArray[np.float64] = tin.points[:, 1][tin.triangles].mean(axis=1)
-    return middle
+def _average_northings(tin: TIN) -> Any:
+    """Return the northing at the middle of each triangle if scales depend on it, else 0."""
+    if tin.crs is None or not tin.crs.is_geographic:
+        return 0.0
+    first, second, third = (tin.points[:, 1][corner] for corner in tin.triangles.T)
+    return (first + second + third) / 3.0
