@@ -306,7 +306,7 @@ def test_view_passes_on_what_is_asked_for(pyramid, tmp_path, monkeypatch, as_jso
     result = run("view", pyramid, *output, *(["--json"] if as_json else []))
     wanted = {"view": "oblique", "title": "pyramid", "survey": None}
     wanted |= {"exaggeration": None, "edges": False, "lines": True}
-    unset = ("azimuth", "tilt", "size", "dpi", "sun", "background", "elevations")
+    unset = ("azimuth", "tilt", "size", "dpi", "sun", "background", "elevations", "drape")
     wanted |= dict.fromkeys(unset)
     assert asked == [(5, wanted)]
     assert shown == ([] if writes else [True])
