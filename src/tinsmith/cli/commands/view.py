@@ -8,8 +8,8 @@ import click
 
 from ..options import console_options, reading_options, triangulating_options
 from ..output.failures import note_written
-from ..parameters import input_file, number_option, picture_option
-from ..paths import make_title
+from ..parameters import input_files, number_option, picture_option
+from ..paths import describe_inputs, make_title
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -21,7 +21,7 @@ __all__ = ["view"]
 
 
 @click.command(short_help="Show a TIN in 3D: in a window, as a page, as a picture.")
-@input_file("file")
+@input_files("files")
 @picture_option("Picture to write (.png, .jpg, .tif) instead of opening a window.")
 @number_option("--exaggeration", "FACTOR", "Vertical exaggeration; chosen if absent.")
 @click.option("--edges", is_flag=True, help="Draw the edges of the triangles.")
@@ -37,14 +37,14 @@ __all__ = ["view"]
 @triangulating_options
 @console_options
 def view(
-    file: Path,
+    files: tuple[Path, ...],
     output: Path | None,
     reading: Reading,
     how: Triangulating,
     console: Console,
     **drawing: Any,
 ) -> None:
-    """Show the TIN in FILE, or of the points in it.
+    """Show the TIN in FILES, or of the points in them.
 
     \b
     Example:
@@ -52,16 +52,16 @@ def view(
     """  # noqa: D301 - click reads the control character
     from ...terrain import preview
     from ...terrain.preview.presentation import PREVIEW_SUFFIXES
-    from ..files import list_inputs, read_tin, require_picture
+    from ..files import list_inputs, read_tin_of_files, require_picture
 
     if output is not None:
         require_picture(
-            output, place="--output", inputs=list_inputs(file, how), suffixes=PREVIEW_SUFFIXES
+            output, place="--output", inputs=list_inputs(*files, how=how), suffixes=PREVIEW_SUFFIXES
         )
 
-    tin, survey = read_tin(file, reading, how, console)
+    tin, survey = read_tin_of_files(files, reading, how, console)
     top = drawing.pop("top")
-    drawing["title"] = drawing["title"] or make_title(file)
+    drawing["title"] = drawing["title"] or make_title(files[0])
     with console.steps() as steps, steps.step("Drawing"):
         seen = "top" if top else "oblique"
         shown: Any = preview(tin, survey=survey, output=output, view=seen, **drawing)
@@ -71,7 +71,7 @@ def view(
         note_written(output)
         console.summarise(_summarise_picture(output))
         if console.as_json:
-            console.answer([], {"input": str(file), "output": str(output)})
+            console.answer([], {"input": describe_inputs(files), "output": str(output)})
 
 
 def _summarise_picture(output: Path) -> list[Row]:
