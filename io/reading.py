@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any, cast
+from types import MappingProxyType
+from typing import IO, TYPE_CHECKING, Any, NamedTuple, cast
 
 from .._atomic import as_path
 from .._plug_ins import describe_failure, warn_of_plug_in
@@ -43,9 +44,19 @@ if TYPE_CHECKING:
 
     from ..crs import CrsLike, UnitLike
 
-__all__ = ["detect", "join_files", "read", "read_stream"]
+__all__ = ["detect", "join_files", "read", "read_as_wished", "read_stream"]
 
+_NO_WISHES: Mapping[str, Any] = MappingProxyType({})
 _SHOWN = 5
+
+
+class _Asked(NamedTuple):
+    """What a caller says of a file: format, CRS and unit, options, and those that are wishes."""
+
+    format: str | None
+    declared: Mapping[str, Any]
+    options: Mapping[str, Any]
+    wishes: Mapping[str, Any]
 
 
 def read(
@@ -108,12 +119,32 @@ def read(
     ...     ts.read(Path(folder, "surface.ply"))
     <TIN: 3 vertices, 1 triangle, z 5 to 8, crs EPSG:32616>
     """
-    declared = _collect_declared(crs, z_unit)
+    return read_as_wished(path, {}, format=format, crs=crs, z_unit=z_unit, **options)
+
+
+def read_as_wished(
+    path: str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
+    wishes: Mapping[str, Any],
+    *,
+    format: str | None = None,  # noqa: A002 - as in read
+    crs: CrsLike | None = None,
+    z_unit: UnitLike | None = None,
+    **options: Any,
+) -> Survey | TIN:
+    """Read a file as :func:`read`, with options that count for the formats which have them.
+
+    Parameters
+    ----------
+    path : path-like or sequence of path-like
+    wishes : mapping of str to object
+        Options of readers; one that the chosen reader does not have is left out.
+    """
+    asked = _Asked(format, _collect_declared(crs, z_unit), options, wishes)
     if isinstance(path, list | tuple):
-        return _read_several(_require_paths(path), format, declared, options)
+        return _read_several(_require_paths(path), asked)
     one = cast("str | os.PathLike[str]", path)
     require_local(one)
-    return _read_path(as_path(one), format, declared, options)
+    return _read_path(as_path(one), asked)
 
 
 def _name_folder(survey: Survey, folder: Path, tiles: Sequence[Path]) -> Survey:
@@ -135,14 +166,9 @@ def _require_paths(paths: Sequence[Any]) -> list[Path]:
     return [as_path(one) for one in paths]
 
 
-def _read_several(
-    paths: Sequence[Path],
-    format: str | None,  # noqa: A002 - as in read
-    declared: Mapping[str, Any],
-    options: Mapping[str, Any],
-) -> Survey | TIN:
+def _read_several(paths: Sequence[Path], asked: _Asked) -> Survey | TIN:
     """Read files as one survey; a single one as what it is."""
-    found = [_read_path(path, format, declared, options) for path in paths]
+    found = [_read_path(path, asked) for path in paths]
     return found[0] if len(found) == 1 else join_files(found, paths)
 
 
@@ -174,17 +200,12 @@ def _name_apart(paths: Sequence[Path]) -> list[str]:
     return names if len({*names}) == len(names) else [str(path) for path in paths]
 
 
-def _read_path(
-    file: Path,
-    format: str | None,  # noqa: A002 - as in read
-    declared: Mapping[str, Any],
-    options: Mapping[str, Any],
-) -> Survey | TIN:
-    if _is_folder(file) and (tiles := _list_tiles(file, format)):
-        found = _read_several(tiles, format, declared, options)
+def _read_path(file: Path, asked: _Asked) -> Survey | TIN:
+    if _is_folder(file) and (tiles := _list_tiles(file, asked.format)):
+        found = _read_several(tiles, asked)
         return _name_folder(found, file, tiles) if isinstance(found, Survey) else found
     with open_ordinary_file(file) as local, unpack(local) as inner:
-        found = _read_file(inner, format, declared, options)
+        found = _read_file(inner, *asked)
     return found if inner == file else _restore_source(found, inner, file)
 
 
@@ -197,6 +218,7 @@ def _collect_declared(crs: CrsLike | None, z_unit: UnitLike | None) -> dict[str,
 def read_stream(
     stream: IO[bytes],
     name: str,
+    wishes: Mapping[str, Any] = _NO_WISHES,
     *,
     format: str | None = None,  # noqa: A002 - as in read
     crs: CrsLike | None = None,
@@ -210,15 +232,21 @@ def read_stream(
     stream : binary file object
     name : str
         What reports and errors call it.
+    wishes : mapping of str to object
+        As of :func:`read_as_wished`.
     """
     source = Path(name)
     declared = _collect_declared(crs, z_unit)
     with spool(stream, source) as local, unpack(local) as inner:
-        return _restore_source(_read_file(inner, format, declared, options), inner, source)
+        return _restore_source(_read_file(inner, format, declared, options, wishes), inner, source)
 
 
 def _read_file(
-    file: Path, name: str | None, declared: Mapping[str, Any], options: Mapping[str, Any]
+    file: Path,
+    name: str | None,
+    declared: Mapping[str, Any],
+    options: Mapping[str, Any],
+    wishes: Mapping[str, Any],
 ) -> Survey | TIN:
     chosen = _choose_format(file, name)
     if chosen.read is None:
@@ -230,6 +258,8 @@ def _read_file(
     reader = chosen.load("read")
     of_file = {name: declared[name] for name in declared if name != "crs"} | dict(options)
     require_options(chosen, "read", reader, of_file)
+    if wishes:
+        of_file |= {name: wishes[name] for name in chosen.options("read") if name in wishes}
     try:
         found = reader(file, crs=declared["crs"], **of_file)
     except CrsError as error:

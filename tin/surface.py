@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Never
 
 import numpy as np
 
+from .._notebook import make_card
 from .._sentences import counted
 from ..crs import CRS, Unit, require_one_unit, scale_elevations, shorten_crs
 from ..errors import choice
@@ -779,6 +780,9 @@ class TIN(Editable):
             f"<TIN: {len(surface.points):,} vertices, {counted(count, 'triangle')}, "
             f"z {z.min():g} to {z.max():g}, crs {shorten_crs(self.crs)}>"
         )
+
+    def _repr_html_(self) -> str | None:
+        return make_card(self)
 
 
 def _with_length_one(vectors: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -9,7 +9,7 @@ from .signatures import (
     is_geopackage,
     is_parquet,
     is_shapefile,
-    is_vector_xml,
+    is_vector_text,
 )
 
 __all__ = ["FORMATS"]
@@ -119,7 +119,7 @@ FORMATS = (
         read=_READ,
         reads=_BOTH,
         extra="vector",
-        sniff=is_vector_xml,
+        sniff=is_vector_text,
         sniff_folder=is_geodatabase,
     ),
 )

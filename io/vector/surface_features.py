@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["make_features"]
+__all__ = ["make_features", "make_whole_surface"]
 
 
 def make_features(
@@ -97,10 +97,28 @@ def _make_points(tin: TIN) -> Features:
     return Features.of_points(tin.points, columns=columns, **_reference(tin, "points"))
 
 
+def make_whole_surface(tin: TIN) -> Features:
+    """Return all triangles as the parts of one feature, with their number."""
+    count = len(tin.triangles)
+    return Features.of_polygons(
+        _list_corners(tin),
+        np.arange(0, 4 * count + 1, 4),
+        np.arange(count + 1),
+        [0, count],
+        columns={"triangles": np.array([count])},
+        **_reference(tin, "surface"),
+    )
+
+
+def _list_corners(tin: TIN) -> NDArray[np.float64]:
+    """Return the rings of the triangles, one after the other."""
+    corners: NDArray[np.float64] = tin.points[tin.triangles[:, [0, 1, 2, 0]].ravel()]
+    return corners
+
+
 def _make_triangles(tin: TIN) -> Features:
     """Return triangles as rings with slope and aspect in degrees, and area in the plane."""
     count = len(tin.triangles)
-    corners = tin.points[tin.triangles[:, [0, 1, 2, 0]].ravel()]
     columns = {
         "id": np.arange(count),
         "slope": slope(tin),
@@ -108,7 +126,7 @@ def _make_triangles(tin: TIN) -> Features:
         "area": measure_areas(tin),
     }
     return Features.of_polygons(
-        corners,
+        _list_corners(tin),
         np.arange(0, 4 * count + 1, 4),
         np.arange(count + 1),
         columns=columns,

@@ -16,6 +16,7 @@ import numpy as np
 import tinsmith as ts
 
 from .mesh_samples import MESH_MAKERS
+from .vector_samples import VECTOR_MAKERS
 
 __all__ = ["MEMORY", "sample_files"]
 
@@ -222,18 +223,6 @@ def _las(folder: Path) -> list[tuple[str, bytes]]:
     return [(one.name, one.read_bytes()) for one in sorted(folder.iterdir())]
 
 
-def _layers(folder: Path) -> list[tuple[str, bytes]]:
-    tin = _tin()
-    survey = ts.Survey(points=tin.points, crs=CRS, attributes={"k": np.arange(len(tin.points))})
-    for name in ("s.gpkg", "s.fgb", "s.parquet"):
-        ts.write(survey, folder / name)
-    for name in ("t.fgb", "t.parquet"):
-        ts.write(tin, folder / name)
-    ts.write(survey, folder / "s.geojson", projected=True)
-    ts.write(tin, folder / "t.geojson", projected=True)
-    return [(one.name, one.read_bytes()) for one in sorted(folder.iterdir())]
-
-
 def _survey() -> Any:
     tin = _tin()
     ring = CORNER[:2] + np.array([[1, 1], [35, 2], [34, 27], [2, 26]])
@@ -356,7 +345,7 @@ _MAKERS = {
     "vectors": _vectors,
     "delimited": _delimited,
     "las": _las,
-    "layers": _layers,
+    **VECTOR_MAKERS,
     "instruments": _instruments,
     **MESH_MAKERS,
     "landxml": _landxml,

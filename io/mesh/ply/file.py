@@ -90,16 +90,20 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     if vertices is None or not set(_COORDINATES) <= vertices.columns.keys():
         raise ReadError(f"'{path}' has no element 'vertex' with x, y and z.", path=path)
     points = _stack_coordinates(vertices)
+    notes = common.describe_single_precision(points, vertices.columns["x"].dtype)
     reference = common.choose_reference(
         crs, z_unit, path, found_crs=header.crs, found_unit=header.elevation_unit
     )
     faces = _find_face_list(tables.get("face"))
     attributes = _find_vertex_attributes(vertices)
     if faces is None or len(faces.offsets) == 1:
-        return common.make_survey(points, path, attributes=attributes, reference=reference)
+        return common.make_survey(
+            points, path, attributes=attributes, reference=reference, notes=notes
+        )
     made = common.cut_into_fans(
         _require_whole_numbers(faces.items, path), faces.offsets, points, path
     )
+    notes += made.notes
     flags = _find_edge_flags(tables["face"], len(made.triangles))
     has_lines = header.lines is not None and "edge" in tables
     edges = require_edges(tables["edge"], path, len(points)) if has_lines else None
@@ -112,6 +116,7 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
         constrained=flags,
         reference=reference,
         attributes=attributes,
+        notes=notes,
     )
     if edges is None or header.lines is None:
         return tin
