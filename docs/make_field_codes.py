@@ -37,12 +37,17 @@ def main(folder: Path = HERE) -> None:
     draw_lines(axes, made)
     draw_shots(axes, survey, made)
     axes.set(aspect="equal", xlabel="easting - 752,100 m", ylabel="northing - 4,024,400 m")
-    axes.margins(0.04)
+    axes.use_sticky_edges = False  # of contours, which end at the border of the points
+    axes.margins(0.05)
     axes.autoscale()
     axes.set_title("Codes in the field, lines on the map (EPSG:32616)")
     png = io.BytesIO()
     figure.savefig(png, format="png", dpi=DPI)
-    sheet = Image.open(png).convert("RGB").quantize(COLORS, dither=Image.Dither.NONE)
+    sheet = (
+        Image.open(png)
+        .convert("RGB")
+        .quantize(COLORS, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
+    )
     sheet.save(folder / "field-codes.png", optimize=True)
 
 

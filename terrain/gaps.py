@@ -38,7 +38,7 @@ def describe_gaps(tin: TIN) -> list[str]:
     Returns
     -------
     list of str
-        A sentence for long edges at the perimeter, one for those inside, one for steep slivers
+        A sentence for long edges along the boundary, one for those inside, one for steep slivers
         along the hull; none for edges of lines.
 
     Notes
@@ -62,9 +62,10 @@ def describe_gaps(tin: TIN) -> list[str]:
     if is_long.any():
         surface = Surface(tin.points, tin.triangles, tin.neighbors, tin.constrained)
         stays = trim(surface, stays, limit, everywhere=False)
+    unit = "units" if tin.crs is None else tin.crs.horizontal_unit.symbol
     return [
-        *_describe_outer(squares[~stays], limit),
-        *_describe_inner(squares[is_long & stays], limit),
+        *_describe_outer(squares[~stays], limit, unit),
+        *_describe_inner(squares[is_long & stays], limit, unit),
         *_describe_slivers(tin, squares, stays),
     ]
 
@@ -85,22 +86,22 @@ def _round_up(length: float) -> float:
     return float(f"{np.ceil(length / unit) * unit:.6g}")
 
 
-def _describe_outer(squares: NDArray[np.float64], limit: float) -> list[str]:
+def _describe_outer(squares: NDArray[np.float64], limit: float, unit: str) -> list[str]:
     if len(squares) == 0:
         return []
     return [
-        f"{_count_triangles(len(squares))} at the perimeter with edges of up to "
-        f"{np.sqrt(squares.max()):.6g} units, far longer than usual: max_edge={limit:g} trims "
+        f"{_count_triangles(len(squares))} along the boundary with edges of up to "
+        f"{np.sqrt(squares.max()):.6g} {unit}, far longer than usual: max_edge={limit:g} trims "
         "them."
     ]
 
 
-def _describe_inner(squares: NDArray[np.float64], limit: float) -> list[str]:
+def _describe_inner(squares: NDArray[np.float64], limit: float, unit: str) -> list[str]:
     if len(squares) == 0:
         return []
     return [
         f"{_count_triangles(len(squares))} inside with edges of up to {np.sqrt(squares.max()):.6g} "
-        f"units, as over a void: max_edge={limit:g} with trim='everywhere' leaves them out."
+        f"{unit}, as over a void: max_edge={limit:g} with trim='everywhere' leaves them out."
     ]
 
 

@@ -98,6 +98,10 @@ if TYPE_CHECKING:
     from .tin.voronoi import voronoi
 else:  # a type checker takes every name for one that such a __getattr__ has
     from ._lazy import lazy_names
+    from ._notebook import register_card
+
+    # What tin cannot make itself, for it knows no pictures.
+    register_card("TIN", "tinsmith.terrain.preview.card:make_card")
 
     __getattr__, __dir__ = lazy_names(
         __name__,

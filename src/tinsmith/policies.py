@@ -30,6 +30,7 @@ __all__ = [
     "OverviewMethod",
     "PaperOrientation",
     "PointMarking",
+    "RasterCompression",
     "RasterSample",
     "RasterValue",
     "SheetLayout",
@@ -118,6 +119,9 @@ SurfacePart: TypeAlias = Literal["triangle", "vertex"]
 
 OverviewMethod: TypeAlias = Literal["average", "nearest", "none"]
 """How the cells of a raster's smaller copies are found."""
+
+RasterCompression: TypeAlias = Literal["deflate", "none"]
+"""How the cells of a GeoTIFF are packed, without loss."""
 
 CurvatureKind: TypeAlias = Literal["profile", "plan", "tangential", "mean", "gaussian"]
 """In which direction a surface is curved."""

@@ -73,7 +73,7 @@ def find_footprint(tin: TIN) -> Footprint:
 def _find_water(
     tin: TIN, faces: NDArray[Any], triangles: NDArray[np.int32], edges: NDArray[np.int32]
 ) -> NDArray[np.bool_]:
-    """Tell which faces are level water: flat, along a shore, and in a ring of water if all close."""
+    """Tell which faces are water: flat, along a shore, and in a ring of it if all are closed."""
     shores = {tuple(place) for place in tin.points[np.unique(edges)][:, :2].tolist()}
     heights = tin.points[tin.triangles[triangles], 2]
     is_flat = np.ptp(heights, axis=1) == 0

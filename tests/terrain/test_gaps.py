@@ -48,12 +48,14 @@ def test_a_void_inside_is_counted_and_the_option_closes_it():
     assert describe_gaps(cut) == []
 
 
-def test_a_bay_at_the_perimeter_is_told_apart():
+def test_a_bay_along_the_boundary_is_told_apart():
     xy = grid(60, 60)
     tin = ts.triangulate(ground(xy[(xy > 300).sum(axis=1) < 2]))
     (sentence,) = describe_gaps(tin)
     limit = float(re.search(r"max_edge=([\d.]+)", sentence)[1])
-    assert "at the perimeter" in sentence
+    assert "along the boundary with edges of up to " in sentence
+    assert " units, " in sentence
+    assert describe_gaps(tin.replace(crs="EPSG:2274")) == [sentence.replace(" units,", " US ft,")]
     cut = ts.triangulate(tin.points, max_edge=limit)
     lost = len(tin.triangles) - len(cut.triangles)
     assert f"{lost} triangles" in sentence

@@ -72,6 +72,7 @@ def describe_page(
     exaggeration: float,
     changes: Mapping[str, NDArray[np.float64]],
     labels: Labels | None,
+    notes: Sequence[str],
 ) -> dict[str, Any]:
     """Return what a page needs, ready for JSON.
 
@@ -85,6 +86,8 @@ def describe_page(
     changes : mapping of str to (n,) float64 array
         Cut and fill at the vertices of surfaces.
     labels : Labels or None
+    notes : sequence of str
+        What had to be assumed.
     """
     steps = _choose_steps(list(surfaces.values()), ground)
     described = [
@@ -97,6 +100,7 @@ def describe_page(
     return {
         "title": title,
         "subtitle": f"{counts} \N{MIDDLE DOT} {ground.crs_name}",
+        "notes": " ".join(notes),
         "crs": ground.crs_name,
         "units": {
             "horizontal": ground.unit.symbol,
@@ -113,11 +117,13 @@ def describe_page(
     }
 
 
-def find_labels(survey: Survey) -> Labels | None:
+def find_labels(points: NDArray[np.float64], survey: Survey) -> Labels | None:
     """Return the points of a survey with their numbers, or their elevations if they have none.
 
     Parameters
     ----------
+    points : (k, 3) float64 array
+        Of the survey, elevations in the unit of the page.
     survey : Survey
 
     Returns
@@ -125,7 +131,6 @@ def find_labels(survey: Survey) -> Labels | None:
     Labels or None
         None where there are more than can be read.
     """
-    points = survey.points
     if not 0 < len(points) <= _MOST_LABELS:
         return None
     numbers = survey.attributes.get("number")

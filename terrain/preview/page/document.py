@@ -31,6 +31,7 @@ def make_document(content: Mapping[str, Any]) -> str:
     parts = {
         "title": escape(content["title"]),
         "subtitle": escape(content["subtitle"]),
+        "notes": escape(content["notes"]),
         "style": folder.joinpath("style.css").read_text("utf-8"),
         "payload": _write_json(content),
         "viewer": folder.joinpath("viewer.js").read_text("utf-8"),

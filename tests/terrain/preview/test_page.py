@@ -90,6 +90,10 @@ def test_coordinates_come_back_to_a_millimetre():
 # ------------------------------------------------------------------ the document
 
 
+def test_numbers_are_read_to_a_millimetre():
+    assert content(ts.preview(hills(50)).to_html())["decimals"] == [3, 3]
+
+
 def test_nothing_outside_is_asked_for():
     page = ts.preview(hills(20)).to_html()
     addresses = set(re.findall(r"(?:src|href)=[\"']?([a-z]+:[^\"' >]*)", page))
@@ -305,8 +309,44 @@ def test_without_webgl_there_is_a_still_picture(tmp_path):
 
 
 def test_surfaces_of_different_crs_are_refused():
-    with pytest.raises(ts.CrsError, match="different CRSs"):
+    with pytest.raises(
+        ts.CrsError, match=r"'a' is in EPSG:32616 and the surface 'b' in EPSG:32617"
+    ):
         ts.preview({"a": hills(), "b": hills(crs="EPSG:32617")})
+
+
+def test_a_survey_of_another_crs_is_refused():
+    tin = hills(50)
+    for crs in ("EPSG:2274", None):
+        with pytest.raises(ts.CrsError, match="the survey"):
+            ts.preview(tin, survey=ts.Survey(points=tin.points, crs=crs))
+
+
+def test_elevations_in_feet_and_metres_are_not_mixed():
+    """The same ground in two units is one surface, with neither cut nor fill."""
+    metres = hills(60)
+    feet = metres.replace(points=metres.points * (1, 1, 1 / 0.3048), elevation_unit="ft")
+    shown = content(ts.preview({"first": metres, "second": feet}).to_html())
+    assert shown["units"]["elevation"] == "m"
+    assert "'second' were converted from foot to metre" in shown["notes"]
+    first, second, compared = shown["surfaces"]
+    assert np.array_equal(unpack(first["vertices"]), unpack(second["vertices"]))
+    assert not unpack(compared["difference"]).any()
+
+
+def test_labels_are_in_the_unit_of_the_page():
+    metres = hills(60)
+    survey = ts.Survey(
+        points=metres.points * (1, 1, 1 / 0.3048), crs=metres.crs, elevation_unit=ts.Unit.of("ft")
+    )
+    shown = content(ts.preview(metres, survey=survey).to_html())
+    labels = shown["surfaces"][0]["labels"]
+    assert labels["texts"] == [f"{z:.2f}" for z in metres.points[:, 2]]
+
+
+def test_an_assumed_unit_is_told():
+    page = ts.preview(hills(60, z_unit=None)).to_html()
+    assert "<p>The unit of elevations is not known: taken to be the metre.</p>" in page
 
 
 def test_no_surface_is_refused():

@@ -1,0 +1,77 @@
+"""Alignment: the surfaces and points of one preview in one CRS, elevations in one unit."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, NamedTuple
+
+from ...errors import OptionError
+from ...tin import TIN
+from ...tin.validation.options import require_tin
+from ..georeference import agree
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from ...crs import CRS, Unit
+    from ...tin import Survey
+
+__all__ = ["Aligned", "align"]
+
+_ALLOWED = "a TIN, or a mapping of names to TINs with one at least"
+_ALONE = "Surface"
+
+
+class Aligned(NamedTuple):
+    """What is shown together.
+
+    Attributes
+    ----------
+    surfaces : dict of str to TIN
+        In one CRS, elevations in one unit.
+    labelled : (k, 3) float64 array or None
+        The points of the survey, in that unit.
+    notes : tuple of str
+        What had to be assumed or converted.
+    """
+
+    surfaces: dict[str, TIN]
+    labelled: NDArray[np.float64] | None
+    notes: tuple[str, ...]
+
+
+def align(given: TIN | Mapping[str, TIN], survey: Survey | None) -> Aligned:
+    """Bring surfaces and points together, elevations in the unit of the first that has one.
+
+    Raises
+    ------
+    OptionError
+        If there is no surface.
+    PointsError
+        If one is no TIN.
+    CrsError
+        As :func:`tinsmith.terrain.georeference.agree` says.
+    """
+    named = given if isinstance(given, Mapping) else {_ALONE: given}
+    if not named:
+        raise OptionError("tin", given, _ALLOWED)
+    for one in named.values():
+        require_tin(one)
+    tins = tuple(named.values())
+    names = [f"the surface '{name}'" for name in named] if len(tins) > 1 else ["the surface"]
+    added = [] if survey is None else [survey]
+    found = agree([*tins, *added], [*names, *("the survey" for _ in added)])
+    surfaces = {
+        str(name): _convert(tin, factor, found.crs, found.elevation_unit)
+        for (name, tin), factor in zip(named.items(), found.factors, strict=False)
+    }
+    labelled = None if survey is None else survey.points * (1.0, 1.0, found.factors[-1])
+    return Aligned(surfaces, labelled, found.notes)
+
+
+def _convert(tin: TIN, factor: float, crs: CRS | None, unit: Unit | None) -> TIN:
+    if factor == 1.0:
+        return tin
+    points = tin.points * (1.0, 1.0, factor)
+    return tin.replace(points=points, crs=crs, elevation_unit=unit)
