@@ -22,7 +22,7 @@ SURVEY = str(SAMPLES / "site_survey.csv")
 UTM = ("--crs", "EPSG:32616")
 COMMANDS = (
     *("build", "info", "check", "view", "refine", "compare", "edit", "convert"),
-    *("volume", "diff", "formats"),
+    *("volume", "diff", "formats", "plan"),
 )
 
 
