@@ -30,6 +30,7 @@ __all__ = [
     "RasterValue",
     "SlopeUnit",
     "SurfacePart",
+    "Tint",
     "TrimPolicy",
 ]
 
@@ -124,3 +125,6 @@ DrawingContent: TypeAlias = Literal["surface", "source", "points"]
 
 DrawingVersion: TypeAlias = Literal["R2010", "R12"]
 """Which version of DXF is written."""
+
+Tint: TypeAlias = Literal["elevation", "slope", "aspect", "plain"]
+"""What the colours of a surface in 3D tell."""

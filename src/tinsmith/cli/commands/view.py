@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ...policies import Tint
 from ..options import console_options, reading_options, triangulating_options
 from ..output.failures import note_written, tell_warning
-from ..parameters import input_file, number_option, parse_numbers, picture_option
+from ..parameters import choice_option, input_file, number_option, parse_numbers, picture_option
 from ..paths import make_title
 
 if TYPE_CHECKING:
@@ -76,6 +77,8 @@ def _parse_size(
     callback=parse_numbers,
     help="Range of the tints in a picture; default that of the surface.",
 )
+@choice_option("--tint", Tint, "What colours tell in a picture.", default="elevation")
+@number_option("--contours", "INTERVAL", "Draw contours in a picture, in the unit of elevations.")
 @reading_options
 @triangulating_options
 @console_options
