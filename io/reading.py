@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import IO, TYPE_CHECKING, Any
 
 from .._atomic import as_path
@@ -35,7 +36,9 @@ if TYPE_CHECKING:
 
     from ..crs import CrsLike, UnitLike
 
-__all__ = ["detect", "read", "read_stream"]
+__all__ = ["detect", "read", "read_as_wished", "read_stream"]
+
+_NO_WISHES: Mapping[str, Any] = MappingProxyType({})
 
 
 def read(
@@ -95,11 +98,31 @@ def read(
     ...     ts.read(Path(folder, "surface.ply"))
     <TIN: 3 vertices, 1 triangle, z 5 to 8, crs EPSG:32616>
     """
+    return read_as_wished(path, {}, format=format, crs=crs, z_unit=z_unit, **options)
+
+
+def read_as_wished(
+    path: str | os.PathLike[str],
+    wishes: Mapping[str, Any],
+    *,
+    format: str | None = None,  # noqa: A002 - as in read
+    crs: CrsLike | None = None,
+    z_unit: UnitLike | None = None,
+    **options: Any,
+) -> Survey | TIN:
+    """Read a file as :func:`read`, with options that count for the formats which have them.
+
+    Parameters
+    ----------
+    path : path-like
+    wishes : mapping of str to object
+        Options of readers; one that the chosen reader does not have is left out.
+    """
     file = as_path(path)
     require_local(path)
     declared = _collect_declared(crs, z_unit)
     with open_ordinary_file(file) as local, unpack(local) as inner:
-        found = _read_file(inner, format, declared, options)
+        found = _read_file(inner, format, declared, options, wishes)
     return found if inner == file else _restore_source(found, inner, file)
 
 
@@ -112,6 +135,7 @@ def _collect_declared(crs: CrsLike | None, z_unit: UnitLike | None) -> dict[str,
 def read_stream(
     stream: IO[bytes],
     name: str,
+    wishes: Mapping[str, Any] = _NO_WISHES,
     *,
     format: str | None = None,  # noqa: A002 - as in read
     crs: CrsLike | None = None,
@@ -125,15 +149,21 @@ def read_stream(
     stream : binary file object
     name : str
         What reports and errors call it.
+    wishes : mapping of str to object
+        As of :func:`read_as_wished`.
     """
     source = Path(name)
     declared = _collect_declared(crs, z_unit)
     with spool(stream, source) as local, unpack(local) as inner:
-        return _restore_source(_read_file(inner, format, declared, options), inner, source)
+        return _restore_source(_read_file(inner, format, declared, options, wishes), inner, source)
 
 
 def _read_file(
-    file: Path, name: str | None, declared: Mapping[str, Any], options: Mapping[str, Any]
+    file: Path,
+    name: str | None,
+    declared: Mapping[str, Any],
+    options: Mapping[str, Any],
+    wishes: Mapping[str, Any],
 ) -> Survey | TIN:
     chosen = _choose_format(file, name)
     if chosen.read is None:
@@ -145,6 +175,8 @@ def _read_file(
     reader = chosen.load("read")
     of_file = {name: declared[name] for name in declared if name != "crs"} | dict(options)
     require_options(chosen, "read", reader, of_file)
+    if wishes:
+        of_file |= {name: wishes[name] for name in chosen.options("read") if name in wishes}
     try:
         found = reader(file, crs=declared["crs"], **of_file)
     except CrsError as error:

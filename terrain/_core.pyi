@@ -8,6 +8,7 @@ Doubles: TypeAlias = NDArray[np.float64]
 Ints: TypeAlias = NDArray[np.int32]
 Longs: TypeAlias = NDArray[np.int64]
 Flags: TypeAlias = NDArray[np.bool_]
+Bytes: TypeAlias = NDArray[np.uint8]
 
 def values_at_centers(
     points: Doubles,
@@ -109,3 +110,29 @@ def stage_sums(
     levels: Doubles,
     up: float,
 ) -> Doubles: ...
+def triangle_normals(
+    points: Doubles,
+    triangles: Ints,
+    threads: int = ...,
+) -> tuple[Doubles, Ints]: ...
+def vertex_normals(
+    points: Doubles,
+    triangles: Ints,
+    normals: Doubles,
+) -> Doubles: ...
+def fit_quadratics(
+    points: Doubles,
+    triangles: Ints,
+    east: Doubles,
+    north: Doubles,
+    up: float,
+    threads: int = ...,
+) -> Doubles: ...
+def shade_planes(
+    normals: Doubles,
+    east: float,
+    north: float,
+    up: float,
+    darkest: int,
+    brightest: int,
+) -> Bytes: ...

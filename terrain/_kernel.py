@@ -17,19 +17,28 @@ __all__ = [
     "SUMS",
     "OverlayMesh",
     "fill_bands",
+    "fit_quadratics",
     "means_of_cells",
     "overlay",
+    "shade_planes",
     "smooth_contours",
     "stage_sums",
     "sum_areas",
     "sum_between",
     "sum_heights",
     "trace_contours",
+    "triangle_normals",
     "values_at_centers",
+    "vertex_normals",
 ]
 
 means_of_cells = _core.means_of_cells
 values_at_centers = _core.values_at_centers
+
+triangle_normals = _core.triangle_normals
+vertex_normals = _core.vertex_normals
+shade_planes = _core.shade_planes
+fit_quadratics = _core.fit_quadratics
 
 trace_contours = _core.trace_contours
 smooth_contours = _core.smooth_contours

@@ -90,8 +90,8 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     if not face_lines:
         return common.make_survey(points, path, reference=reference)
     corners, offsets = _parse_faces(lines, vertex_lines, face_lines, path)
-    triangles = common.cut_into_fans(corners, offsets, points, path).triangles
-    return common.make_tin(points, triangles, path, reference=reference)
+    made = common.cut_into_fans(corners, offsets, points, path)
+    return common.make_tin(points, made.triangles, path, reference=reference, notes=made.notes)
 
 
 def _split_lines(content: bytes) -> list[str]:

@@ -71,6 +71,7 @@ if TYPE_CHECKING:
     )
     from .terrain.results import Features, Raster, Table
     from .terrain.sections import cross_sections, drape, profile, section_lines
+    from .terrain.sheets import Plan, plan
     from .terrain.slope import aspect, slope
     from .tin import (
         TIN,
@@ -173,6 +174,7 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "slope_statistics",
             ),
             ".terrain.sections": ("cross_sections", "drape", "profile", "section_lines"),
+            ".terrain.sheets": ("Plan", "plan"),
             ".terrain.results": ("Features", "Raster", "Table"),
             ".tin": (
                 "TIN",
@@ -224,6 +226,7 @@ __all__ = [
     "MissingExtraError",
     "OptionError",
     "Outcome",
+    "Plan",
     "PlugInWarning",
     "PointsError",
     "Preview",
@@ -265,6 +268,7 @@ __all__ = [
     "lift",
     "lines_from_codes",
     "paper",
+    "plan",
     "preview",
     "profile",
     "profile_picture",

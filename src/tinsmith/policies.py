@@ -11,6 +11,7 @@ __all__ = [
     "BreaklineKind",
     "CodeKind",
     "CodeStyle",
+    "ContourLabeling",
     "CrossingPolicy",
     "CurvatureKind",
     "DistanceRule",
@@ -20,14 +21,19 @@ __all__ = [
     "EmptyCircleRule",
     "Extrapolation",
     "FeatureKind",
+    "GridStyle",
     "InterpolationMethod",
     "LineKind",
     "LineReading",
     "LineRole",
     "OutsidePolicy",
     "OverviewMethod",
+    "PaperOrientation",
+    "PointMarking",
+    "RasterCompression",
     "RasterSample",
     "RasterValue",
+    "SheetLayout",
     "SlopeUnit",
     "SurfacePart",
     "Tint",
@@ -115,6 +121,9 @@ SurfacePart: TypeAlias = Literal["triangle", "vertex"]
 OverviewMethod: TypeAlias = Literal["average", "nearest", "none"]
 """How the cells of a raster's smaller copies are found."""
 
+RasterCompression: TypeAlias = Literal["deflate", "none"]
+"""How the cells of a GeoTIFF are packed, without loss."""
+
 CurvatureKind: TypeAlias = Literal["profile", "plan", "tangential", "mean", "gaussian"]
 """In which direction a surface is curved."""
 OutsidePolicy: TypeAlias = Literal["error", "nan", "cut"]
@@ -128,3 +137,18 @@ DrawingVersion: TypeAlias = Literal["R2010", "R12"]
 
 Tint: TypeAlias = Literal["elevation", "slope", "aspect", "plain"]
 """What the colours of a surface in 3D tell."""
+
+PaperOrientation: TypeAlias = Literal["landscape", "portrait"]
+"""How a sheet of paper lies."""
+
+SheetLayout: TypeAlias = Literal["single", "rows", "strips"]
+"""Which ground the sheets of a plan show: all on one, rows of sheets, strips along an axis."""
+
+ContourLabeling: TypeAlias = Literal["index", "all", "none"]
+"""Which contours have their elevation written on them."""
+
+PointMarking: TypeAlias = Literal["none", "marks", "numbers", "elevations", "both"]
+"""What stands at the points of a plan."""
+
+GridStyle: TypeAlias = Literal["crosses", "lines", "none"]
+"""How the coordinate grid of a plan is drawn."""

@@ -367,6 +367,54 @@ def test_view_tells_an_elevation_far_off(tmp_path):
     assert "Warning: 1 elevation far off all others: 9,999." in result.stderr
 
 
+@pytest.fixture
+def drawn(monkeypatch):
+    """What ``view`` hands to be drawn."""
+    calls = []
+
+    def draw(tin, **options):
+        calls.append((tin, options))
+        Path(options["output"]).write_text("drawn")
+
+    monkeypatch.setattr("tinsmith.terrain.preview", draw)
+    return calls
+
+
+@pytest.mark.parametrize(("name", "most"), [("a.png", 400), ("a.html", 200)])
+def test_view_shows_a_sample_of_a_large_raster_and_says_so(
+    tmp_path, monkeypatch, drawn, name, most
+):
+    monkeypatch.setattr("tinsmith.cli.commands.view._MOST_CELLS", 400)
+    dem = SAMPLES / "jacksboro.tif"
+    result = run("view", dem, "-o", tmp_path / name, "--json")
+    (tin, options), whole = drawn[0], len(ts.read(dem).points)
+    assert len(tin.points) <= most
+    told = f"{len(tin.points):,} of {whole:,} cells"
+    assert options["title"] == f"jacksboro ({told})"
+    assert f"Sampled     {told} are shown; --full shows all" in result.stderr
+    assert json.loads(result.stdout)["sample"] == told
+
+
+@pytest.mark.parametrize("options", [["--full"], ["--stride", "2"]])
+def test_view_shows_all_cells_that_are_asked_for(tmp_path, monkeypatch, drawn, options):
+    monkeypatch.setattr("tinsmith.cli.commands.view._MOST_CELLS", 400)
+    dem = SAMPLES / "jacksboro.tif"
+    result = run("view", dem, "-o", tmp_path / "a.png", *options)
+    stride = 2 if "--stride" in options else 1
+    assert len(drawn[0][0].points) == len(ts.read(dem, stride=stride).points)
+    assert drawn[0][1]["title"] == "jacksboro"
+    assert "Sampled" not in result.stderr
+
+
+def test_view_of_a_raster_from_standard_input_is_a_sample_too(tmp_path, monkeypatch, drawn):
+    monkeypatch.setattr("tinsmith.cli.commands.view._MOST_CELLS", 400)
+    dem = (SAMPLES / "jacksboro.tif").read_bytes()
+    result = CliRunner().invoke(main, ["view", "-", "-o", str(tmp_path / "a.png")], input=dem)
+    assert result.exit_code == 0, result.output
+    assert len(drawn[0][0].points) <= 400
+    assert drawn[0][1]["title"].startswith("Terrain surface (")
+
+
 def test_view_writes_a_picture(pyramid, tmp_path, can_draw):
     pytest.importorskip("pyvista")
     picture = tmp_path / "out.png"

@@ -29,6 +29,11 @@ MESH_READING = (
 
 MESH_WRITING = (
     click.option(
+        "--multipatch",
+        is_flag=True,
+        help="Write a shapefile of one MultiPatch, the surface that ArcGIS knows, not of polygons.",
+    ),
+    click.option(
         "--texture",
         metavar="FILE",
         type=INPUT,

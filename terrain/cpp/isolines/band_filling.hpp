@@ -9,6 +9,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
+#include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -29,6 +31,7 @@ struct Bands {
 
 class BandFiller {
  public:
+  // Throws overflow_error, with the number of parts of triangles, if there are too many.
   BandFiller(const LevelSurface& surface, Team& team) : surface_(surface), team_(team) {
     list_triangles();
   }
@@ -54,6 +57,7 @@ class BandFiller {
     };
     each([&](Triangle, std::int32_t band) { ++first_[std::size_t(band) + 1]; });
     std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    if (first_.back() > kMostCrossings) throw std::overflow_error(std::to_string(first_.back()));
     listed_.resize(first_.back());
     std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
     each([&](Triangle t, std::int32_t band) { listed_[next[band]++] = t; });

@@ -22,11 +22,13 @@ using GivenLevels = Given<double, -1>;
 using Offsets = Made<std::int64_t, -1>;
 
 inline void require_between(const GivenTriples& numbers, std::int32_t least, std::int32_t end) {
-  const std::int32_t* const last = numbers.data() + 3 * numbers.shape(0);
-  const auto is_sound = [=](std::int32_t i) { return i >= least && i < end; };
-  if (!std::all_of(numbers.data(), last, is_sound)) {
-    throw std::invalid_argument("every number must be that of an existing row");
+  const auto first = static_cast<std::uint32_t>(least);
+  const std::uint32_t count = static_cast<std::uint32_t>(end) - first;
+  bool is_any_outside = false;  // without a way out of the loop, many are compared at once
+  for (std::size_t i = 0; i < 3 * numbers.shape(0); ++i) {
+    is_any_outside |= static_cast<std::uint32_t>(numbers.data()[i]) - first >= count;
   }
+  if (is_any_outside) throw std::invalid_argument("every number must be that of an existing row");
 }
 
 inline isolines::SurfaceArrays surface_of(const GivenXyz& points, const GivenTriples& triangles,
@@ -49,6 +51,12 @@ inline isolines::Levels levels_of(const GivenLevels& levels) {
     throw std::invalid_argument("levels must be finite and ascend");
   }
   return {levels.data(), row_count(levels.shape(0))};
+}
+
+// hypot, which takes several times as long, where squares are too large or too small.
+inline double measure_length(double x, double y) {
+  const double square = x * x + y * y;
+  return square > 0x1p-900 && square < 0x1p900 ? std::sqrt(square) : std::hypot(x, y);
 }
 
 // Coordinates and offsets, and of each line its level, whether it is closed, and its length.
@@ -75,7 +83,7 @@ inline auto hand_over_lines(const isolines::TracedLines& found, const isolines::
       xyz[3 * at] = p.x;
       xyz[3 * at + 1] = p.y;
       xyz[3 * at + 2] = levels.values[line.level];
-      if (i > 0) length[k] += std::hypot(p.x - xyz[3 * at - 3], p.y - xyz[3 * at - 2]);
+      if (i > 0) length[k] += measure_length(p.x - xyz[3 * at - 3], p.y - xyz[3 * at - 2]);
     }
   }
   offsets[count] = static_cast<std::int64_t>(at);

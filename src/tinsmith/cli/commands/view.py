@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -16,10 +17,14 @@ from ..paths import make_title
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from ...tin import Survey
     from ..options import Reading, Triangulating
     from ..output.console import Console, Row
 
 __all__ = ["view"]
+
+_MOST_CELLS = 1_000_000
+_UNNAMED = "Terrain surface"
 
 
 def _parse_size(
@@ -52,6 +57,12 @@ def _parse_size(
 @click.option("--top", is_flag=True, help="Look straight down, north up.")
 @number_option("--azimuth", "DEGREES", "Where the viewer stands, clockwise from north.")
 @number_option("--tilt", "DEGREES", "Height of the viewer above the horizon, 90 from above.")
+@click.option(
+    "--full",
+    is_flag=True,
+    help="Show every cell of a large raster; default a sample of a million, or half as many in a "
+    "page.",
+)
 @click.option("--title", metavar="TEXT", help="Title in the picture; default the file's name.")
 @click.option(
     "--size",
@@ -85,6 +96,7 @@ def _parse_size(
 def view(
     file: Path,
     output: Path | None,
+    full: bool,
     reading: Reading,
     how: Triangulating,
     console: Console,
@@ -105,9 +117,15 @@ def view(
             output, place="--output", inputs=list_inputs(file, how), suffixes=PREVIEW_SUFFIXES
         )
 
+    if not full and reading.stride is None:
+        reading = replace(reading, most_cells=_choose_most_cells(output))
     tin, survey = read_tin(file, reading, how, console)
+    sample = None if survey is None else _describe_sample(survey)
     top = drawing.pop("top")
     drawing["title"] = drawing["title"] or make_title(file)
+    if sample is not None:
+        console.summarise([("Sampled", f"{sample} are shown; --full shows all")])
+        drawing["title"] = f"{drawing['title'] or _UNNAMED} ({sample})"
     with console.steps() as steps, steps.step("Drawing"):
         seen = "top" if top else "oblique"
         shown = preview(tin, survey=survey, view=seen, **drawing)
@@ -121,7 +139,23 @@ def view(
         note_written(output)
         console.summarise(_summarise_picture(output))
         if console.as_json:
-            console.answer([], {"input": str(file), "output": str(output)})
+            record = {"input": str(file), "output": str(output)}
+            console.answer([], record | ({} if sample is None else {"sample": sample}))
+
+
+def _choose_most_cells(output: Path | None) -> int:
+    """Return how many cells of a raster are shown at most: pages are sent by mail."""
+    is_page = output is not None and output.suffix.lower().startswith(".htm")
+    return _MOST_CELLS // 2 if is_page else _MOST_CELLS
+
+
+def _describe_sample(survey: Survey) -> str | None:
+    """Return how many cells of a raster were read, if not all were."""
+    from ...io.raster.dem import LEFT_OUT
+
+    left_out = survey.skipped.get(LEFT_OUT, 0)
+    read = len(survey.points) + survey.skipped.get("nodata cells", 0)
+    return f"{read:,} of {read + left_out:,} cells" if left_out else None
 
 
 def _summarise_picture(output: Path) -> list[Row]:
