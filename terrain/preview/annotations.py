@@ -74,8 +74,8 @@ class Caption:
     palette : Palette
     legend : Legend or None
         Of the colours; default that of the elevations.
-    is_plain : bool
-        Whether colours tell nothing, and there is no legend.
+    has_tints : bool
+        Whether colours that tell something are seen anywhere.
     """
 
     title: str
@@ -88,7 +88,7 @@ class Caption:
     warning: str = ""
     palette: Palette = Palette()  # noqa: RUF009 - colours that are never changed
     legend: Legend | None = None
-    is_plain: bool = False
+    has_tints: bool = True
 
 
 def annotate(overlay: Overlay, sheet: Sheet, caption: Caption, camera: Any) -> None:
@@ -229,7 +229,7 @@ def _draw_legend(overlay: Overlay, sheet: Sheet, caption: Caption) -> None:
     if caption.warning:
         words = shorten(overlay, caption.warning, _LEGEND_WIDTH, size=14)
         overlay.draw_text((left, bottom + height + 31.0), words, palette.warning, size=14)
-    if caption.is_plain:
+    if not caption.has_tints:
         return
     legend = caption.legend or _describe_elevations(caption)
     overlay.draw_text((left, bottom + height + 8.0), legend.name, palette.ink, size=15)

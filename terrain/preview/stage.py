@@ -23,6 +23,7 @@ from .ramps import measure_tint
 from .scene import (
     BLOCK_SHARE,
     add_lights,
+    add_ortho,
     add_terrain,
     choose_exaggeration,
     fade_edges,
@@ -43,6 +44,7 @@ if TYPE_CHECKING:
     from .corridor import Corridor, Strips
     from .elevations import ElevationRange
     from .look import Look
+    from .ortho import Ortho
 
 __all__ = [
     "Show",
@@ -87,6 +89,8 @@ class Stage:
     has_block : bool
     strips : Strips or None
         Pieces of a corridor.
+    ortho : Ortho or None
+        Picture draped over the surface.
     """
 
     tin: TIN
@@ -97,6 +101,7 @@ class Stage:
     caption: Caption
     has_block: bool
     strips: Strips | None
+    ortho: Ortho | None = None
 
     @property
     def exaggeration(self) -> float:
@@ -109,13 +114,16 @@ class Stage:
         return place_vertices(self.tin, self.ground, self.exaggeration)
 
 
-def make_stage(tin: TIN, look: Look, *, has_strips: bool = True) -> Stage:
+def make_stage(
+    tin: TIN, look: Look, ortho: Ortho | None = None, *, has_strips: bool = True
+) -> Stage:
     """Choose all that the caller left open.
 
     Parameters
     ----------
     tin : TIN
     look : Look
+    ortho : Ortho, optional
     has_strips : bool, optional
         Cut a corridor into strips, if nobody chose where to look from.
     """
@@ -131,9 +139,11 @@ def make_stage(tin: TIN, look: Look, *, has_strips: bool = True) -> Stage:
         if has_strips:
             factor, strips = _cut(tin, ground, look, view)
     caption = _make_caption(tin, ground, look, shown, factor, corridor, strips)
+    is_covered = ortho is not None and ortho.gap == 0.0
+    caption = replace(caption, has_tints=look.tint != "plain" and not is_covered)
     depth = BLOCK_SHARE * measure_extent(tin, ground)
     has_block = strips is None and measure_mean_width(tin, ground) >= _LEAST_WIDTH * depth
-    return Stage(tin, ground, look, view, shown, caption, has_block, strips)
+    return Stage(tin, ground, look, view, shown, caption, has_block, strips, ortho)
 
 
 def _cut(tin: TIN, ground: Ground, look: Look, view: View) -> tuple[float, Strips | None]:
@@ -175,7 +185,8 @@ class Show:
     Attributes
     ----------
     plotter : pyvista.Plotter
-    surface : pyvista.Actor or None
+    surfaces : list of pyvista.Actor
+        The surface, and what is draped over it.
     overlay : Overlay
         With the annotations.
     after_update : callable or None
@@ -187,7 +198,7 @@ class Show:
         self.plotter = open_plotter(stage, window, off_screen=off_screen)
         self.overlay = Overlay(self.plotter.renderer)
         self._drawn_for: tuple[object, ...] = ()
-        self.surface: Any = None
+        self.surfaces: list[Any] = []
         self._terrain: list[str] = []
         self.after_update: Callable[[], None] | None = None
         if stage.strips is None:
@@ -208,7 +219,7 @@ class Show:
     def _build(self, window: tuple[int, int]) -> NDArray[np.float64]:
         """Add the terrain, and return what must be seen."""
         before = set(self.plotter.renderer.actors)
-        self.surface, seen = add_stage(self.plotter, self.stage, fit_sheet(window)[1])
+        self.surfaces, seen = add_stage(self.plotter, self.stage, fit_sheet(window)[1])
         self._terrain = [name for name in self.plotter.renderer.actors if name not in before]
         return seen
 
@@ -231,8 +242,8 @@ class Show:
         self._drawn_for = state
         sheet, self.overlay.factor = fit_sheet((width, height))
         pixels = measure_pixels_per_unit(camera, sheet.height)
-        if self.surface is not None:
-            fade_edges(self.surface, self.stage.tin, self.stage.ground, pixels)
+        for surface in self.surfaces:
+            fade_edges(surface, self.stage.tin, self.stage.ground, pixels)
         annotate(self.overlay, sheet, self.stage.caption, camera)
         if self.after_update is not None:
             self.after_update()
@@ -247,8 +258,8 @@ def open_plotter(stage: Stage, window: tuple[int, int], *, off_screen: bool) -> 
     return plotter
 
 
-def add_stage(plotter: Any, stage: Stage, factor: float) -> tuple[Any, NDArray[np.float64]]:
-    """Add terrain and lines to a plotter; return the surface, and what must be seen.
+def add_stage(plotter: Any, stage: Stage, factor: float) -> tuple[list[Any], NDArray[np.float64]]:
+    """Add terrain and lines to a plotter; return actors with edges, and what must be seen.
 
     Parameters
     ----------
@@ -268,11 +279,14 @@ def add_stage(plotter: Any, stage: Stage, factor: float) -> tuple[Any, NDArray[n
         is_far_off=stage.shown.is_far_off,
         has_block=stage.has_block,
     )
+    surfaces = [surface]
+    if stage.ortho is not None:
+        surfaces.append(add_ortho(plotter, stage.tin, points, stage.ortho, surface))
     if stage.look.lines:
         add_lines(plotter, stage.tin, points, factor=factor)
     if stage.look.contours is not None:
         _add_contours(plotter, stage, stage.look.contours, factor)
-    return surface, seen
+    return surfaces, seen
 
 
 def _add_contours(plotter: Any, stage: Stage, interval: float, factor: float) -> None:
@@ -325,7 +339,6 @@ def _make_caption(
         warning=_warn(tin, look, shown),
         palette=look.palette,
         legend=measure_tint(tin, look.tint, ends, ground.elevation_caption)[1],
-        is_plain=look.tint == "plain",
     )
 
 

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from ...tin import TIN
     from ..results import Table
     from .look import Look
+    from .ortho import Ortho
 
 __all__ = ["Reading", "Window", "open_window"]
 
@@ -69,12 +70,15 @@ class Window:
     ----------
     tin : TIN
     look : Look
+    ortho : Ortho, optional
     off_screen : bool, optional
         Draw where nobody sees it.
     """
 
-    def __init__(self, tin: TIN, look: Look, *, off_screen: bool = False) -> None:
-        stage = make_stage(tin, look, has_strips=False)
+    def __init__(
+        self, tin: TIN, look: Look, ortho: Ortho | None = None, *, off_screen: bool = False
+    ) -> None:
+        stage = make_stage(tin, look, ortho, has_strips=False)
         self.show = Show(stage, look.size, off_screen=off_screen)
         self.readings: list[Reading] = []
         self._slopes = slope(tin)
@@ -104,7 +108,7 @@ class Window:
     def set_tint(self, tint: Tint) -> None:
         """Colour by elevation, slope or aspect, or not at all."""
         look = replace(self.stage.look, tint=tint)
-        words = make_stage(self.stage.tin, look, has_strips=False).caption
+        words = make_stage(self.stage.tin, look, self.stage.ortho, has_strips=False).caption
         caption = replace(words, exaggeration=self.stage.exaggeration)
         self._rebuild(replace(self.stage, look=look, caption=caption))
 
@@ -146,7 +150,7 @@ class Window:
 
         picker = vtkCellPicker()
         picker.SetTolerance(0.0)
-        picker.AddPickList(self.show.surface)
+        picker.AddPickList(self.show.surfaces[0])
         picker.PickFromListOn()
         if not picker.Pick(x, y, 0.0, self.show.plotter.renderer):
             self._say("No surface there.")
@@ -312,11 +316,11 @@ class Window:
         self.pick(*self.show.plotter.iren.get_event_position())
 
 
-def open_window(tin: TIN, look: Look) -> None:
+def open_window(tin: TIN, look: Look, ortho: Ortho | None = None) -> None:
     """Show a surface in a window, and wait until it is closed."""
     _optional.load("pyvista", _PURPOSE)
     opengl.require_window()
     with keep_vtk_plain():
-        window = Window(tin, look)
+        window = Window(tin, look, ortho)
         window.connect()
         window.show.plotter.show(title=window.stage.caption.title)

@@ -372,9 +372,15 @@ def drawn(monkeypatch):
     """What ``view`` hands to be drawn."""
     calls = []
 
+    class Shown:
+        notes = ()
+
+        def save(self, path):
+            Path(path).write_text("drawn")
+
     def draw(tin, **options):
         calls.append((tin, options))
-        Path(options["output"]).write_text("drawn")
+        return Shown()
 
     monkeypatch.setattr("tinsmith.terrain.preview", draw)
     return calls

@@ -152,7 +152,7 @@ def test_a_section_is_the_profile_between_the_last_two_places(opened):
 
 
 def heights_of(window):
-    return window.show.surface.mapper.dataset.points[:, 2]
+    return window.show.surfaces[0].mapper.dataset.points[:, 2]
 
 
 def test_the_slider_exaggerates_surface_caption_and_marks(opened):
@@ -180,10 +180,10 @@ def test_tints_go_around_and_have_the_colours_of_the_page(opened):
     for tint in ("slope", "aspect", "plain", "elevation"):
         window.change_tint()
         assert window.stage.look.tint == tint
-        assert window.stage.caption.is_plain == (tint == "plain")
+        assert window.stage.caption.has_tints == (tint != "plain")
         if tint == "plain":
             continue
-        table = window.show.surface.mapper.lookup_table
+        table = window.show.surfaces[0].mapper.lookup_table
         ends = [table.values[k, :3] for k in (0, -1)]
         low, high = ("#" + "".join(f"{part:02x}" for part in end) for end in ends)
         assert low in pages
