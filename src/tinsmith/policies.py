@@ -36,6 +36,7 @@ __all__ = [
     "SheetLayout",
     "SlopeUnit",
     "SurfacePart",
+    "Tint",
     "TrimPolicy",
 ]
 
@@ -133,6 +134,9 @@ DrawingContent: TypeAlias = Literal["surface", "source", "points"]
 
 DrawingVersion: TypeAlias = Literal["R2010", "R12"]
 """Which version of DXF is written."""
+
+Tint: TypeAlias = Literal["elevation", "slope", "aspect", "plain"]
+"""What the colours of a surface in 3D tell."""
 
 PaperOrientation: TypeAlias = Literal["landscape", "portrait"]
 """How a sheet of paper lies."""

@@ -11,14 +11,15 @@ from ...tin import Bounds
 from ..rounding import choose_ticks, format_number, round_down
 from .camera import View, measure_pixels_per_unit, name_direction, project_ground_axes
 from .palette import Palette
+from .ramps import Legend, choose_ramp
 from .scene import NORTHWEST
-from .tints import interpolate_tints
 from .titles import fit_title, shorten
 
 if TYPE_CHECKING:
     from ...crs import Unit
     from ..light import Light
     from .overlay import Overlay
+    from .palette import Color
 
 __all__ = ["Caption", "Sheet", "annotate", "scale_bar_length"]
 
@@ -71,8 +72,10 @@ class Caption:
     warning : str
         What a reader must know of the elevations; "" for nothing.
     palette : Palette
+    legend : Legend or None
+        Of the colours; default that of the elevations.
     has_tints : bool
-        Whether tints by elevation are seen anywhere.
+        Whether colours that tell something are seen anywhere.
     """
 
     title: str
@@ -84,6 +87,7 @@ class Caption:
     sun: Light = NORTHWEST
     warning: str = ""
     palette: Palette = Palette()  # noqa: RUF009 - colours that are never changed
+    legend: Legend | None = None
     has_tints: bool = True
 
 
@@ -106,8 +110,7 @@ def annotate(overlay: Overlay, sheet: Sheet, caption: Caption, camera: Any) -> N
     pixels = measure_pixels_per_unit(camera, sheet.height)
     _draw_scale_bar(overlay, caption.unit, pixels, palette)
     _draw_notes(overlay, caption, View.of(camera))
-    if caption.has_tints:
-        _draw_legend(overlay, sheet, caption)
+    _draw_legend(overlay, sheet, caption)
 
 
 def scale_bar_length(unit: Unit, pixels: float) -> tuple[float, float, str]:
@@ -222,18 +225,38 @@ def _describe_exaggeration(factor: float, view: View) -> str:
 
 def _draw_legend(overlay: Overlay, sheet: Sheet, caption: Caption) -> None:
     left, bottom, height = sheet.width - MARGIN - _LEGEND_WIDTH, 62.0, 14.0
-    unit = caption.elevation_caption
-    name = f"Elevation ({unit})" if unit else "Elevation (unit not known)"
     palette = caption.palette
-    overlay.draw_text((left, bottom + height + 8.0), name, palette.ink, size=15)
     if caption.warning:
         words = shorten(overlay, caption.warning, _LEGEND_WIDTH, size=14)
         overlay.draw_text((left, bottom + height + 31.0), words, palette.warning, size=14)
-    colors = interpolate_tints(100).tolist()
+    if not caption.has_tints:
+        return
+    legend = caption.legend or _describe_elevations(caption)
+    overlay.draw_text((left, bottom + height + 8.0), legend.name, palette.ink, size=15)
+    colors = legend.colors.tolist()
     step = _LEGEND_WIDTH / len(colors)
     for k, (red, green, blue) in enumerate(colors):
         overlay.draw_rectangle((left + k * step, bottom), (step + 0.5, height), (red, green, blue))
-    _draw_legend_ticks(overlay, caption.elevations, (left, bottom), palette)
+    if not legend.ticks:
+        _draw_legend_ticks(overlay, legend.ends, (left, bottom), palette)
+        return
+    low, high = legend.ends
+    for value, words in legend.ticks:
+        x = left + _LEGEND_WIDTH * (value - low) / (high - low)
+        _draw_legend_tick(overlay, words, (x, bottom), palette.ink)
+
+
+def _describe_elevations(caption: Caption) -> Legend:
+    name = f"Elevation ({caption.elevation_caption or 'unit not known'})"
+    return Legend(name, choose_ramp("elevation", 100), caption.elevations)
+
+
+def _draw_legend_tick(
+    overlay: Overlay, words: str, place: tuple[float, float], color: Color
+) -> None:
+    x, bottom = place
+    overlay.draw_line([(x, bottom), (x, bottom - 5.0)], color, width=1.0)
+    overlay.draw_text((x, bottom - 19.0), words, color, size=13, align="center")
 
 
 def _draw_legend_ticks(
@@ -255,5 +278,4 @@ def _draw_legend_ticks(
         if any(x - half < stop and start < x + half for start, stop in used):
             continue
         used.append((x - half, x + half))
-        overlay.draw_line([(x, bottom), (x, bottom - 5.0)], color, width=1.0)
-        overlay.draw_text((x, bottom - 19.0), words, color, size=13, align="center")
+        _draw_legend_tick(overlay, words, (x, bottom), color)

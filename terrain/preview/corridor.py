@@ -26,9 +26,11 @@ __all__ = [
 _LEAST_ELONGATION = 10.0
 """Length over width from which on a surface is a corridor."""
 
-_MOST_STRIPS = 30
 STRIP_GAP = 34.0
 """Design pixels above each strip, for its label."""
+
+_LEAST_PITCH = 1.5 * STRIP_GAP
+"""Design pixels from strip to strip, at least on the mean."""
 
 
 class Corridor(NamedTuple):
@@ -137,7 +139,8 @@ def cut_into_strips(
     right, up, _ = view.axes
     across, along = points @ right, points @ up
     none = edges[:0]
-    tried = [_plan(count, across, along, none, frame) for count in range(1, _MOST_STRIPS + 1)]
+    most = max(int(frame.height / _LEAST_PITCH), 1)
+    tried = [_plan(count, across, along, none, frame) for count in range(1, most + 1)]
     best = max(tried, key=lambda plan: plan.scale)
     return _plan(len(best.lows), across, along, edges, frame)
 

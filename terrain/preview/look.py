@@ -6,7 +6,8 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
-from ...errors import OptionError
+from ...errors import OptionError, choice
+from ...policies import Tint
 from ...tin.validation.options import as_flag, is_finite_number, is_whole_number
 from ..lift import parse_exaggeration
 from ..light import Light
@@ -43,6 +44,10 @@ class Look:
     dpi : float or None
     elevations : tuple of float or None
         The lowest and the highest tint.
+    tint : Tint
+        What colours tell.
+    contours : float or None
+        Their interval.
     """
 
     exaggeration: float | None = None
@@ -57,6 +62,8 @@ class Look:
     palette: Palette = Palette()  # noqa: RUF009 - colours that are never changed
     dpi: float | None = None
     elevations: tuple[float, float] | None = None
+    tint: Tint = "elevation"
+    contours: float | None = None
 
     @property
     def seen_from(self) -> View:
@@ -82,6 +89,8 @@ def make_look(
     background: str | None = None,
     dpi: float | None = None,
     elevations: tuple[float, float] | None = None,
+    tint: Tint = "elevation",
+    contours: float | None = None,
 ) -> Look:
     """Return options that are checked; None is the usual one.
 
@@ -107,6 +116,8 @@ def make_look(
         palette=choose_palette(_parse_color(background)),
         dpi=_parse_dpi(dpi),
         elevations=_parse_elevations(elevations),
+        tint=choice("tint", tint, Tint),
+        contours=_parse_interval(contours),
     )
 
 
@@ -178,3 +189,11 @@ def _parse_elevations(elevations: Any) -> tuple[float, float] | None:
     if len(ends) != 2 or not all(map(is_finite_number, ends)) or not ends[0] < ends[1]:
         raise OptionError("elevations", elevations, "the lowest and the highest, in this order")
     return float(ends[0]), float(ends[1])
+
+
+def _parse_interval(interval: Any) -> float | None:
+    if interval is None:
+        return None
+    if not is_finite_number(interval) or interval <= 0:
+        raise OptionError("contours", interval, "an interval above 0, in the unit of elevations")
+    return float(interval)

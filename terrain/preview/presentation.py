@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from ...policies import Tint
+
 __all__ = ["PREVIEW_SUFFIXES", "Preview", "preview"]
 
 PAGE_SUFFIXES = (".html", ".htm")
@@ -207,6 +209,8 @@ def preview(
     background: str | None = None,
     dpi: float | None = None,
     elevations: tuple[float, float] | None = None,
+    tint: Tint = "elevation",
+    contours: float | None = None,
     survey: Survey | None = None,
     drape: str | os.PathLike[str] | None = None,
 ) -> Preview: ...
@@ -229,6 +233,8 @@ def preview(
     background: str | None = None,
     dpi: float | None = None,
     elevations: tuple[float, float] | None = None,
+    tint: Tint = "elevation",
+    contours: float | None = None,
     survey: Survey | None = None,
     drape: str | os.PathLike[str] | None = None,
 ) -> Path: ...
@@ -284,6 +290,10 @@ def preview(
     elevations : tuple of float, optional
         Lowest and highest elevation of the tints in a picture, so that several can be compared;
         default those of the surface.
+    tint : {"elevation", "slope", "aspect", "plain"}, optional
+        What colours tell in a picture; a page and a window have a switch for them.
+    contours : float, optional
+        Interval of contour lines in a picture, in the unit of elevations; default none.
     survey : Survey, optional
         Points that a page shows with their numbers, up to 20,000.
     drape : path, optional

@@ -12,11 +12,12 @@ from ...tin.topology import edges_at
 from ..lift import choose_origin
 from ..light import Light
 from .elevations import ElevationRange, find_elevation_range
-from .tints import interpolate_tints
+from .ramps import PLAIN, choose_ramp, measure_tint
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from ...policies import Tint
     from ...tin import TIN
     from ..units import Ground
     from .ortho import Ortho
@@ -122,6 +123,7 @@ def add_terrain(
     *,
     edges: bool,
     elevations: tuple[float, float] | None = None,
+    tint: Tint = "elevation",
     is_far_off: NDArray[np.bool_] | None = None,
     has_block: bool = True,
 ) -> tuple[Any, NDArray[np.float64]]:
@@ -137,6 +139,8 @@ def add_terrain(
         Whether to draw the triangles' edges.
     elevations : tuple of float, optional
         Of the lowest and the highest tint; default those of the TIN.
+    tint : {"elevation", "slope", "aspect", "plain"}, optional
+        What colours tell.
     is_far_off : (n,) bool array, optional
         Vertices that need not be in the picture, however high or low they are; default none.
     has_block : bool, optional
@@ -155,9 +159,8 @@ def add_terrain(
     surface = pv.PolyData.from_regular_faces(points, np.array(tin.triangles))
     surface.point_data["elevation"] = tin.points[:, 2].copy()
     surface.point_data.active_normals = _average_normals(points, tin.triangles)
-    actor = plotter.add_mesh(
-        surface, **_choose_tints(pv, *ends), **_choose_lighting(), show_scalar_bar=False
-    )
+    coloring = _choose_tints(pv, surface, tin, tint, (float(ends[0]), float(ends[1])))
+    actor = plotter.add_mesh(surface, **coloring, **_choose_lighting(), show_scalar_bar=False)
     actor.prop.interpolation = "Phong"
     if edges:
         actor.prop.show_edges = True
@@ -262,11 +265,19 @@ def _choose_lighting(ambient: float = _AMBIENT) -> dict[str, float]:
     return {"ambient": ambient, "diffuse": diffuse, "specular": 0.0}
 
 
-def _choose_tints(pv: Any, low: float, high: float) -> dict[str, Any]:
-    if low == high:
-        low, high = low - 0.5, high + 0.5
-    colors = np.column_stack([interpolate_tints(), np.full(256, 255, np.uint8)])
-    return {"scalars": "elevation", "cmap": pv.LookupTable(values=colors, scalar_range=(low, high))}
+def _choose_tints(
+    pv: Any, surface: Any, tin: TIN, tint: Tint, ends: tuple[float, float]
+) -> dict[str, Any]:
+    """Return what a plotter needs to colour a surface, and give it what the colours tell."""
+    values, legend = measure_tint(tin, tint, ends, "")
+    if values is None or legend is None:
+        return {"color": PLAIN}
+    low, high = legend.ends if legend.ends[0] < legend.ends[1] else (ends[0] - 0.5, ends[0] + 0.5)
+    if tint != "elevation":
+        surface.cell_data[tint] = values
+    colors = np.column_stack([choose_ramp(tint, 256), np.full(256, 255, np.uint8)])
+    table = pv.LookupTable(values=colors, scalar_range=(low, high), nan_color=PLAIN)
+    return {"scalars": tint, "cmap": table}
 
 
 def _average_normals(

@@ -10,13 +10,16 @@ import numpy as np
 from ... import _optional
 from ..._sentences import counted
 from ...tin import Bounds
-from ..linework import add_lines
+from ..isolines import contours
+from ..lift import choose_origin
+from ..linework import add_lines, add_polylines
 from ..rounding import format_number
 from ..units import find_ground
 from .annotations import Caption, Sheet, annotate
 from .camera import aim, measure_pixels_per_unit, place_camera, project_ground_axes
 from .corridor import cut_into_strips, find_corridor, measure_mean_width
 from .overlay import Overlay
+from .ramps import measure_tint
 from .scene import (
     BLOCK_SHARE,
     add_lights,
@@ -31,6 +34,8 @@ from .scene import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from ...tin import TIN
@@ -49,6 +54,7 @@ __all__ = [
     "fit_sheet",
     "make_stage",
     "open_plotter",
+    "place_on_stage",
 ]
 
 _PURPOSE = "A preview"
@@ -58,6 +64,9 @@ _DESIGN_SIZE = (1600.0, 1000.0)
 
 _RELIEF_OF_STRIP = 0.5
 """Share of a corridor's width that the relief within a strip takes, at least."""
+
+_CONTOUR_COLOR = (88, 66, 48)
+_CONTOUR_WIDTH = 0.9
 
 _LEAST_WIDTH = 2.0
 """Depths of the block that the ground is wide, at least, to stand on a block: else it would hide
@@ -130,7 +139,8 @@ def make_stage(
         if has_strips:
             factor, strips = _cut(tin, ground, look, view)
     caption = _make_caption(tin, ground, look, shown, factor, corridor, strips)
-    caption = replace(caption, has_tints=ortho is None or ortho.gap > 0.0)
+    is_covered = ortho is not None and ortho.gap == 0.0
+    caption = replace(caption, has_tints=look.tint != "plain" and not is_covered)
     depth = BLOCK_SHARE * measure_extent(tin, ground)
     has_block = strips is None and measure_mean_width(tin, ground) >= _LEAST_WIDTH * depth
     return Stage(tin, ground, look, view, shown, caption, has_block, strips, ortho)
@@ -171,6 +181,16 @@ class Show:
     window : tuple of int
         Width and height of the window, pixels.
     off_screen : bool
+
+    Attributes
+    ----------
+    plotter : pyvista.Plotter
+    surfaces : list of pyvista.Actor
+        The surface, and what is draped over it.
+    overlay : Overlay
+        With the annotations.
+    after_update : callable or None
+        Called when annotations were drawn anew, which then cover what was drawn before.
     """
 
     def __init__(self, stage: Stage, window: tuple[int, int], *, off_screen: bool) -> None:
@@ -178,11 +198,11 @@ class Show:
         self.plotter = open_plotter(stage, window, off_screen=off_screen)
         self.overlay = Overlay(self.plotter.renderer)
         self._drawn_for: tuple[object, ...] = ()
-        self._surfaces: list[Any] = []
+        self.surfaces: list[Any] = []
+        self._terrain: list[str] = []
+        self.after_update: Callable[[], None] | None = None
         if stage.strips is None:
-            factor = fit_sheet(window)[1]
-            self._surfaces, seen = add_stage(self.plotter, stage, factor)
-            self._aim(seen, window)
+            self._aim(self._build(window), window)
         else:
             height = fit_sheet(window)[0].height / stage.strips.scale
             place_camera(
@@ -196,6 +216,23 @@ class Show:
         aim(self.plotter.camera, seen, view=self.stage.view, frame=frame, size=window)
         self.plotter.renderer.ResetCameraClippingRange()
 
+    def _build(self, window: tuple[int, int]) -> NDArray[np.float64]:
+        """Add the terrain, and return what must be seen."""
+        before = set(self.plotter.renderer.actors)
+        self.surfaces, seen = add_stage(self.plotter, self.stage, fit_sheet(window)[1])
+        self._terrain = [name for name in self.plotter.renderer.actors if name not in before]
+        return seen
+
+    def rebuild(self, stage: Stage) -> None:
+        """Draw another stage of the same surface, seen from where the camera stands."""
+        self.stage = stage
+        for name in self._terrain:
+            self.plotter.remove_actor(name, render=False, reset_camera=False)
+        self._build(tuple(self.plotter.window_size))
+        self._drawn_for = ()
+        self.update()
+        self.plotter.renderer.ResetCameraClippingRange()
+
     def update(self, *_: object) -> None:
         """Make the annotations true for the present camera and window, if these have changed."""
         camera, (width, height) = self.plotter.camera, self.plotter.window_size
@@ -205,9 +242,11 @@ class Show:
         self._drawn_for = state
         sheet, self.overlay.factor = fit_sheet((width, height))
         pixels = measure_pixels_per_unit(camera, sheet.height)
-        for surface in self._surfaces:
+        for surface in self.surfaces:
             fade_edges(surface, self.stage.tin, self.stage.ground, pixels)
         annotate(self.overlay, sheet, self.stage.caption, camera)
+        if self.after_update is not None:
+            self.after_update()
 
 
 def open_plotter(stage: Stage, window: tuple[int, int], *, off_screen: bool) -> Any:
@@ -236,6 +275,7 @@ def add_stage(plotter: Any, stage: Stage, factor: float) -> tuple[list[Any], NDA
         points,
         edges=stage.look.edges,
         elevations=stage.caption.elevations,
+        tint=stage.look.tint,
         is_far_off=stage.shown.is_far_off,
         has_block=stage.has_block,
     )
@@ -244,7 +284,26 @@ def add_stage(plotter: Any, stage: Stage, factor: float) -> tuple[list[Any], NDA
         surfaces.append(add_ortho(plotter, stage.tin, points, stage.ortho, surface))
     if stage.look.lines:
         add_lines(plotter, stage.tin, points, factor=factor)
+    if stage.look.contours is not None:
+        _add_contours(plotter, stage, stage.look.contours, factor)
     return surfaces, seen
+
+
+def _add_contours(plotter: Any, stage: Stage, interval: float, factor: float) -> None:
+    """Draw contour lines, index contours heavier."""
+    found = contours(stage.tin, interval)
+    places = place_on_stage(stage, found.coordinates)
+    for is_index, width in ((False, _CONTOUR_WIDTH), (True, 2 * _CONTOUR_WIDTH)):
+        chosen = np.flatnonzero(found.columns["is_index"] == is_index)
+        if len(chosen):
+            lines = places, found.offsets[0], chosen
+            add_polylines(plotter, *lines, color=_CONTOUR_COLOR, width=width * factor)
+
+
+def place_on_stage(stage: Stage, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return where points, (k, 3) in the units of the TIN, are drawn."""
+    placed: NDArray[np.float64] = (points - choose_origin(stage.tin)) * stage.ground.scale
+    return placed * (1.0, 1.0, stage.exaggeration)
 
 
 def fit_sheet(window: tuple[int, int]) -> tuple[Sheet, float]:
@@ -268,16 +327,18 @@ def _make_caption(
     parts = [f"{len(tin.points):,} points, {len(tin.triangles):,} triangles", ground.crs_name]
     if corridor is not None and strips is not None:
         parts.append(_describe_strips(strips, ground))
+    ends = look.elevations or (shown.low, shown.high)
     return Caption(
         title=" ".join(look.title.split()),
         subtitle="  \N{MIDDLE DOT}  ".join(parts),
         exaggeration=factor,
-        elevations=look.elevations or (shown.low, shown.high),
+        elevations=ends,
         elevation_caption=ground.elevation_caption,
         unit=ground.unit,
         sun=look.sun,
         warning=_warn(tin, look, shown),
         palette=look.palette,
+        legend=measure_tint(tin, look.tint, ends, ground.elevation_caption)[1],
     )
 
 

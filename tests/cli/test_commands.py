@@ -306,8 +306,8 @@ def test_view_passes_on_what_is_asked_for(pyramid, tmp_path, monkeypatch, as_jso
     result = run("view", pyramid, *output, *(["--json"] if as_json else []))
     wanted = {"view": "oblique", "title": "pyramid", "survey": None}
     wanted |= {"exaggeration": None, "edges": False, "lines": True}
-    unset = ("azimuth", "tilt", "size", "dpi", "sun", "background", "elevations", "drape")
-    wanted |= dict.fromkeys(unset)
+    unset = ("azimuth", "tilt", "size", "dpi", "sun", "background", "elevations", "contours")
+    wanted |= dict.fromkeys((*unset, "drape")) | {"tint": "elevation"}
     assert asked == [(5, wanted)]
     assert shown == ([] if writes else [True])
     assert ("(7 bytes)" in result.stderr) is writes
@@ -324,10 +324,12 @@ def test_view_passes_on_what_is_asked_for(pyramid, tmp_path, monkeypatch, as_jso
     asked.clear()
     options = ["--azimuth", "-30", "--tilt", "20.5", "--size", "800x600", "--dpi", "300"]
     options += ["--sun", "250,30", "--background", "dark", "--elevations", "-5,12.5"]
+    options += ["--tint", "slope", "--contours", "0.5"]
     run("view", pyramid, *output, *options)
     wanted |= {"view": "oblique", "lines": True, "edges": False, "title": "pyramid"}
     wanted |= {"azimuth": -30.0, "tilt": 20.5, "size": (800, 600), "dpi": 300.0}
     wanted |= {"sun": [250.0, 30.0], "background": "dark", "elevations": [-5.0, 12.5]}
+    wanted |= {"tint": "slope", "contours": 0.5}
     assert asked == [(5, wanted)]
 
 
@@ -344,6 +346,7 @@ def test_view_passes_on_what_is_asked_for(pyramid, tmp_path, monkeypatch, as_jso
         ("--sun", "315,-1", "0 to 90 above the horizon"),
         ("--sun", "high", "numbers with commas between them"),
         ("--background", "reddish", "white, black, light, dark, or a colour such as '#e8edf2'"),
+        ("--contours", "0", "an interval above 0, in the unit of elevations"),
         ("--elevations", "5,2", "the lowest and the highest, in this order"),
         ("--exaggeration", "0", "a finite number above 0"),
     ],

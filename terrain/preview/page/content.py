@@ -11,7 +11,8 @@ import numpy as np
 from ....errors import OptionError
 from ...linework import EDGE_KINDS, find_line_edges
 from ...units import find_ellipsoid
-from ..tints import interpolate_tints, mix_tints
+from ..ramps import choose_ramp
+from ..tints import mix_tints
 from .packing import pack_counts, pack_rows, pack_triangles, sort_in_morton_order
 
 if TYPE_CHECKING:
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from ....policies import Tint
     from ....tin import TIN, Survey
     from ...units import Ground
     from ..ortho import Ortho
@@ -45,7 +47,6 @@ _PENS: dict[str, tuple[str, str, bool, float]] = {
     "boundary": ("Boundary", "#963a22", False, 2.4),
     "water": ("Water", "#185c98", False, 3.0),
 }
-_SLOPE = ((0.93, 0.02, 110.0), (0.83, 0.12, 95.0), (0.66, 0.17, 55.0), (0.42, 0.15, 25.0))
 _CUT_AND_FILL = ((0.50, 0.15, 30.0), (0.72, 0.10, 45.0), (0.96, 0.0, 90.0))
 _FILL = ((0.96, 0.0, 250.0), (0.70, 0.10, 250.0), (0.45, 0.13, 255.0))
 """Rungs of ramps in Oklch: lightness, chroma, hue in degrees."""
@@ -261,11 +262,9 @@ def _describe_labels(labels: Labels, steps: _Steps) -> dict[str, Any]:
 
 
 def _make_ramps() -> dict[str, list[str]]:
-    circle = [(0.72, 0.11, float(hue)) for hue in range(250, 250 + 361, 20)]
+    tints: tuple[Tint, ...] = ("elevation", "slope", "aspect")
     return {
-        "elevation": _name_colors(interpolate_tints(_COLOURS)),
-        "slope": _name_colors(mix_tints(_SLOPE, _COLOURS)),
-        "aspect": _name_colors(mix_tints(circle, _COLOURS)),
+        **{tint: _name_colors(choose_ramp(tint, _COLOURS)) for tint in tints},
         "difference": _name_colors(mix_tints(_CUT_AND_FILL, _COLOURS // 2))
         + _name_colors(mix_tints(_FILL, _COLOURS // 2)),
     }

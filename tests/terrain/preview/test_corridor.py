@@ -170,3 +170,12 @@ def test_each_strip_shows_its_own_part(tmp_path):
         assert (above.min(axis=2) > 60).all()
     assert len(means) > 2
     assert (np.diff(means) > 0).all()
+
+
+def test_level_strips_seen_from_the_horizon_stay_on_the_sheet():
+    """They have no height at all, so that no number of them would be too many."""
+    tin = corridor(relief=0.0)
+    stage = make_stage(tin, make_look(tilt=0.0))
+    places = place_strips(stage.strips, SHEET)
+    assert len(places) > 5
+    assert places[-1].top - places[-1].height >= SHEET.frame.ymin

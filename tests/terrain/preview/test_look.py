@@ -48,6 +48,8 @@ def picture(path):
         ("dpi", [0, 35, 2401, math.nan, "300", True]),
         ("elevations", [(1,), (2, 1), (1, 1), (1, math.inf), "1,2", 5]),
         ("exaggeration", [0, -1, math.nan, "2", True]),
+        ("tint", ["height", 1, None]),
+        ("contours", [0, -1.0, math.inf, "1", True]),
         ("edges", [1, "yes"]),
         ("lines", [0, "no"]),
         ("title", [5, b"x"]),
@@ -76,7 +78,17 @@ def test_an_unknown_option_is_refused():
 
 
 def test_none_is_the_usual_value():
-    options = ("size", "azimuth", "tilt", "sun", "background", "dpi", "elevations", "title")
+    options = (
+        "size",
+        "azimuth",
+        "tilt",
+        "sun",
+        "background",
+        "dpi",
+        "elevations",
+        "title",
+        "contours",
+    )
     assert make_look(**dict.fromkeys(options)) == make_look()
 
 

@@ -8,9 +8,16 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ...policies import Tint
 from ..options import console_options, reading_options, triangulating_options
 from ..output.failures import note_written, tell_warning
-from ..parameters import input_files, number_option, parse_numbers, picture_option
+from ..parameters import (
+    choice_option,
+    input_files,
+    number_option,
+    parse_numbers,
+    picture_option,
+)
 from ..paths import INPUT, Named, describe_inputs, make_title
 
 if TYPE_CHECKING:
@@ -94,6 +101,8 @@ def _parse_size(
     callback=parse_numbers,
     help="Range of the tints in a picture; default that of the surface.",
 )
+@choice_option("--tint", Tint, "What colours tell in a picture.", default="elevation")
+@number_option("--contours", "INTERVAL", "Draw contours in a picture, in the unit of elevations.")
 @reading_options
 @triangulating_options
 @console_options
