@@ -6,7 +6,6 @@ import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-import shapely
 
 from ..._sentences import counted
 from ...errors import OptionError
@@ -129,6 +128,8 @@ def cut_rows(ground: Ground, layout: Layout, scale: Scale) -> list[Window]:
     OptionError
         If there would be too many.
     """
+    import shapely
+
     length = scale.measure_unit(ground.unit)
     width, height = _find_step(layout, length)
     bounds = ground.bounds
@@ -167,6 +168,8 @@ def _find_room(layout: Layout, length: float) -> tuple[float, float]:
 
 def _find_ground(footprint: Footprint, boxes: NDArray[Any]) -> NDArray[np.bool_]:
     """Tell which rectangles hold some of a footprint."""
+    import shapely
+
     shapely.prepare(footprint.faces)
     is_kept = np.zeros(len(boxes), np.bool_)
     for face in footprint.faces:
@@ -217,6 +220,8 @@ def cut_strip_windows(
     OptionError
         If a strip is too narrow for the ground, or there would be too many.
     """
+    import shapely
+
     length = scale.measure_unit(ground.unit)
     width, height = _find_step(layout, length)
     area = float(shapely.area(ground.footprint.faces).sum())
