@@ -404,6 +404,7 @@ class _Parser:
         points.descriptions.append(attributes.get("desc", "").strip())
         points.codes.append(attributes.get("code", "").strip())
         points.groups.append(self._groups[-1])
+        points.states.append(attributes.get("state", "").strip())
         if "pntRef" in attributes and not text.strip():
             points.references[row] = attributes["pntRef"].strip()
         if attributes.get("DTMAttribute", "").strip().lower() in _NOT_FOR_SURFACE:
