@@ -68,7 +68,7 @@ OPTIONS: dict[str, dict[str, Any]] = {
         "type": Path,
         "default": RESULTS,
         "metavar": "FOLDER",
-        "help": "for benchmarks.md, .json and .png",
+        "help": "for benchmarks.md, .json and .png; or a page to write alone, .md",
     },
 }
 

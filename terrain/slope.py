@@ -212,9 +212,7 @@ def compute_normals(tin: TIN) -> NDArray[np.float64]:
 
 def _find_normal_factors(tin: TIN) -> tuple[Any, Any, Any]:
     """Return the factors from products of two coordinates each to areas, of each triangle."""
-    is_even = tin.crs is None or not tin.crs.is_geographic
-    northing = 0.0 if is_even else _average_northings(tin)
-    east, north, up = find_scales(tin.crs, tin.elevation_unit, northing)
+    east, north, up = find_scales(tin.crs, tin.elevation_unit, _average_northings(tin))
     return north * up, east * up, east * north
 
 
@@ -244,6 +242,9 @@ def sum_normals(tin: TIN, per: SurfacePart) -> NDArray[np.float64]:
     return _kernel.vertex_normals(surface.points, surface.triangles, upward)
 
 
-def _average_northings(tin: TIN) -> NDArray[np.float64]:
-    middle: NDArray[np.float64] = tin.points[:, 1][tin.triangles].mean(axis=1)
-    return middle
+def _average_northings(tin: TIN) -> Any:
+    """Return the northing at the middle of each triangle if scales depend on it, else 0."""
+    if tin.crs is None or not tin.crs.is_geographic:
+        return 0.0
+    first, second, third = (tin.points[:, 1][corner] for corner in tin.triangles.T)
+    return (first + second + third) / 3.0

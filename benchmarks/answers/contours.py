@@ -20,15 +20,17 @@ from tinsmith.tin import TIN
 from ..measure import OURS, Outcome, Result, alternate, find_median
 from ..peers.programs import find_present, run_program
 
-__all__ = ["run"]
+__all__ = ["MATPLOTLIB", "TASK", "run"]
 
 SECTION = "answers"
 SIZE = 10_000.0
 """Side of the square, metres."""
 
 LEVELS = 72
+TASK = f"contours: {LEVELS} levels"
+MATPLOTLIB = "matplotlib"
 CONTOURPY, GDAL = "contourpy, on a raster", "gdal_contour, on a raster"
-MODULES = {OURS: "tinsmith", "matplotlib": "matplotlib", CONTOURPY: "contourpy"}
+MODULES = {OURS: "tinsmith", MATPLOTLIB: "matplotlib", CONTOURPY: "contourpy"}
 NOTES = {
     CONTOURPY: "of as many cells; other lines of the same surface",
     GDAL: "the same raster, from a GeoTIFF to a FlatGeobuf file",
@@ -54,7 +56,7 @@ def run(n_points: int, *, repeats: int = 3) -> Outcome:
     with tempfile.TemporaryDirectory() as folder:
         tools = {
             OURS: lambda: lambda: _ours(tin, levels),
-            "matplotlib": lambda: _matplotlib(tin, levels),
+            MATPLOTLIB: lambda: _matplotlib(tin, levels),
             CONTOURPY: lambda: _contourpy(n_points, levels),
             GDAL: lambda: _gdal_contour(n_points, levels, Path(folder)),
         }
@@ -66,10 +68,9 @@ def run(n_points: int, *, repeats: int = 3) -> Outcome:
     for name, lines in answers.items():
         _require_same(answers[OURS], lines, is_raster=name in NOTES)
         seconds = find_median(runs[name])
-        task = f"contours: {LEVELS} levels, {len(tin.triangles):,} triangles"
-        note = NOTES.get(name, "")
+        note = NOTES.get(name, "") or f"{len(tin.triangles):,} triangles, {len(lines):,} lines"
         outcome.results.append(
-            Result(SECTION, task, name, n_points, seconds, tuple(runs[name]), note)
+            Result(SECTION, TASK, name, n_points, seconds, tuple(runs[name]), note)
         )
     return outcome
 

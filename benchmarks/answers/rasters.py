@@ -19,7 +19,7 @@ import tinsmith as ts
 from ..measure import OURS, Outcome, Result, alternate, find_median
 from ..peers.programs import find_present, run_program
 
-__all__ = ["run"]
+__all__ = ["FILES", "GDAL", "label_task", "run"]
 
 SECTION = "answers"
 SIZE = 1000.0
@@ -42,6 +42,15 @@ Floats = NDArray[np.float64]
 Call = Callable[[], Any]
 
 
+def label_task(n_points: int) -> str:
+    """Name the task on so many points."""
+    return f"raster: from points to {_count_rows(n_points) ** 2:,} cells"
+
+
+def _count_rows(n_points: int) -> int:
+    return int(np.sqrt(CELLS_PER_POINT * n_points))
+
+
 def run(n_points: int, *, repeats: int = 3) -> Outcome:
     """Measure ``n_points`` uniform points to 16 times as many cells, triangulation included.
 
@@ -52,7 +61,7 @@ def run(n_points: int, *, repeats: int = 3) -> Outcome:
     """
     rng = np.random.default_rng(1)
     points = rng.random((n_points, 3)) * [SIZE, SIZE, 50.0]
-    side = int(np.sqrt(CELLS_PER_POINT * n_points))
+    side = _count_rows(n_points)
     grid = ts.Grid(ts.Bounds(0.0, 0.0, SIZE, SIZE), shape=(side, side), spacing=SIZE / side)
     outcome = Outcome()
     with tempfile.TemporaryDirectory() as name:
@@ -72,11 +81,16 @@ def run(n_points: int, *, repeats: int = 3) -> Outcome:
         cells = {tool: _read_cells(tool, answer, folder) for tool, answer in answers.items()}
     for tool in calls:
         _require_same(tool, cells[OURS], cells[tool])
-        task = f"raster: from points to {side * side:,} cells"
         seconds = tuple(runs[tool])
         outcome.results.append(
             Result(
-                SECTION, task, tool, n_points, find_median(runs[tool]), seconds, NOTES.get(tool, "")
+                SECTION,
+                label_task(n_points),
+                tool,
+                n_points,
+                find_median(runs[tool]),
+                seconds,
+                NOTES.get(tool, ""),
             )
         )
     return outcome

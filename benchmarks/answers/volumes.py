@@ -18,7 +18,7 @@ from tinsmith.tin import TIN
 
 from ..measure import OURS, Outcome, Result, alternate, find_median
 
-__all__ = ["run"]
+__all__ = ["TASK", "run"]
 
 SECTION = "answers"
 SIZE = 10_000.0
@@ -30,6 +30,7 @@ ERROR = 1e-4
 EXACT = 1e-9
 MOST_CELLS_PER_POINT = 64
 CELLS = "raster cells"
+TASK = "volume: cut and fill between two TINs"
 
 Floats = NDArray[np.float64]
 
@@ -66,7 +67,7 @@ def run(n_points: int, *, repeats: int = 3) -> Outcome:
         outcome.results.append(
             Result(
                 SECTION,
-                "volume: cut and fill between two TINs",
+                TASK,
                 name,
                 n_points,
                 find_median(runs[name]),

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
+from ..answers import contours, rasters, volumes
 from ..datasets.edits import BATCH, EDITS, label_task
 from ..measure import OURS, Result
 from ..peers.edit_tools import BUILD, WITH_ARRAYS
@@ -96,6 +97,18 @@ def _compare_batch(results: Results, task: str) -> float | None:
     return _divide(results.seconds(task, WITH_ARRAYS), results.seconds(task, BUILD))
 
 
+def _compare_contours(results: Results, task: str) -> float | None:
+    return _divide(results.seconds(task, contours.MATPLOTLIB), results.seconds(task, OURS))
+
+
+def _compare_raster_files(results: Results, task: str) -> float | None:
+    return _divide(results.seconds(task, rasters.GDAL), results.seconds(task, rasters.FILES))
+
+
+def _find_seconds(results: Results, task: str) -> float | None:
+    return results.seconds(task, OURS)
+
+
 GOALS = (
     Goal("CGAL time / kernel", ("uniform", "scan lines", "raster"), 1.5, 2.5, _compare_with_cgal),
     Goal("CGAL time / kernel", UNEVEN, 1.0, 1.5, _compare_with_cgal),
@@ -132,6 +145,11 @@ GOALS = (
     Goal(
         "batch / building it", (label_task(BATCH, POINTS),), 3.0, 2.0, _compare_batch, is_most=True
     ),
+    Goal("matplotlib time / tinsmith", (contours.TASK,), 5.0, 8.0, _compare_contours),
+    Goal(
+        "gdal_grid time / tinsmith", (rasters.label_task(POINTS),), 5.0, 8.0, _compare_raster_files
+    ),
+    Goal("seconds", (volumes.TASK,), 5.0, 4.0, _find_seconds, is_most=True),
 )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import textwrap
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -19,7 +20,7 @@ from .goals import judge_goals
 __all__ = ["write_report"]
 
 NAME = "benchmarks"
-PLOTS = {kernel.SECTION: f"{NAME}.png", lines.SECTION: f"{NAME}-lines.png"}
+PLOTS = {kernel.SECTION: ".png", lines.SECTION: "-lines.png"}
 LEAST_FOR_MEMORY = 50_000
 """Below this many points memory is that of the libraries, not of the points."""
 
@@ -55,33 +56,45 @@ incomplete or not ended in time, see below.
 
 
 def write_report(
-    outcome: Outcome, machine: dict[str, str], command: str, folder: Path
+    outcome: Outcome, machine: dict[str, str], command: str, target: Path
 ) -> list[Path]:
-    """Write ``benchmarks.md``, ``.json`` and, where matplotlib is installed, ``.png``.
+    """Write the page, its data and, where matplotlib is installed, its plots.
+
+    Parameters
+    ----------
+    outcome : Outcome
+    machine : dict of str to str
+    command : str
+    target : Path
+        A folder for ``benchmarks.md``, ``.json`` and ``.png``; or the page itself, ``.md``, which
+        then stands without its data.
 
     Returns
     -------
     list of Path
         The files written.
     """
+    is_page = target.suffix == ".md"
+    folder, name = (target.parent, target.stem) if is_page else (target, NAME)
     folder.mkdir(parents=True, exist_ok=True)
-    page, data = folder / f"{NAME}.md", folder / f"{NAME}.json"
-    plots = _name_plots(outcome)
-    page.write_text(_format_page(outcome, machine, command, plots), encoding="utf-8")
-    data.write_text(_format_outcome(outcome, machine, command), encoding="utf-8")
-    written = [page, data]
-    for section, name in plots.items():
+    plots = _name_plots(outcome, name)
+    written = [folder / f"{name}.md"]
+    written[0].write_text(_format_page(outcome, machine, command, plots), encoding="utf-8")
+    if not is_page:
+        written.append(folder / f"{name}.json")
+        written[1].write_text(_format_outcome(outcome, machine, command), encoding="utf-8")
+    for section, plot in plots.items():
         from .plot import draw
 
-        written.append(draw(_select_section(outcome.results, section), folder / name))
+        written.append(draw(_select_section(outcome.results, section), folder / plot))
     return written
 
 
-def _name_plots(outcome: Outcome) -> dict[str, str]:
+def _name_plots(outcome: Outcome, name: str) -> dict[str, str]:
     """Return the names of the plots to draw, by section."""
     drawn = {
-        section: name
-        for section, name in PLOTS.items()
+        section: f"{name}{ending}"
+        for section, ending in PLOTS.items()
         if _select_section(outcome.results, section)
     }
     if drawn and not is_installed("matplotlib"):
@@ -357,6 +370,23 @@ startinpy name vertices by handles that stay, and keep no history. CGAL has no h
 startinpy is a removal and an insertion; its points are sorted along a curve first, not timed.
 """
 
+ANSWERS_NOTES = """\
+What is derived from a TIN, on one and the same TIN. To prepare is from the TIN to its index. Every
+answer is compared with ours, as said below the table; one that differs ends the run.
+"""
+
+
+def _format_answers_part(results: list[Result], plot: str) -> str:
+    part = _make_part_formatter("Answers from the surface", "points", ANSWERS_NOTES)
+    compared = [_format_item(text) for text in answers.describe_modules()]
+    return "\n".join([part(results, plot), "### What is compared\n", *compared, ""])
+
+
+def _format_item(text: str) -> str:
+    """Return an item of a list, in lines as long as those of the page."""
+    return textwrap.fill(text, 100, initial_indent="- ", subsequent_indent="  ")
+
+
 SECTIONS: dict[str, Callable[[list[Result], str], str]] = {
     kernel.SECTION: _format_kernel_part,
     ways.SECTION: _make_part_formatter(
@@ -385,10 +415,5 @@ SECTIONS: dict[str, Callable[[list[Result], str], str]] = {
     writers.SECTION: _make_part_formatter(
         "Writers", "triangles", "From the TIN to the file; every file is read back and compared.\n"
     ),
-    answers.SECTION: _make_part_formatter(
-        "Answers from the surface",
-        "points",
-        "What is derived from a TIN, on one and the same TIN, answers compared. To prepare is\n"
-        "from the TIN to its index.\n",
-    ),
+    answers.SECTION: _format_answers_part,
 }

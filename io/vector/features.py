@@ -153,14 +153,14 @@ def _require_whole_file(path: Path) -> bytes:
     kind = find_reference_kind(head)
     if kind is not None:
         raise ReadError(f"'{path}' is {kind}: only files of lines themselves are read.", path=path)
-    if head.startswith(_SHAPEFILE):
-        _require_index(path)
     if head.startswith(_SHAPEFILE) and len(head) >= 28:
         (words,) = struct.unpack(">i", head[24:28])  # the length is counted in 16-bit words
         if size < 2 * words:
             raise ReadError(
                 f"'{path}' is cut short: it has {size} of {2 * words} bytes.", path=path
             )
+    if head.startswith(_SHAPEFILE):
+        _require_index(path)
     return head
 
 

@@ -93,7 +93,8 @@ FORMATS = (
         write=_WRITE + "shapefile",
         writes=("Features", "TIN", "Survey"),
         precision="Coordinates are the same doubles; other numbers have 15 decimals at most.",
-        losses="Names beyond 10 bytes, texts beyond 254, units and notes. " + _LOSSES,
+        losses="Names beyond 10 bytes, texts beyond 254, units and notes. As a MultiPatch (on "
+        "request) slope, aspect and area too. " + _LOSSES,
         loses=("elevation unit", *_LOSES),
         extra="vector",
         sniff=is_shapefile,

@@ -71,6 +71,8 @@ class Caption:
     warning : str
         What a reader must know of the elevations; "" for nothing.
     palette : Palette
+    has_tints : bool
+        Whether tints by elevation are seen anywhere.
     """
 
     title: str
@@ -82,6 +84,7 @@ class Caption:
     sun: Light = NORTHWEST
     warning: str = ""
     palette: Palette = Palette()  # noqa: RUF009 - colours that are never changed
+    has_tints: bool = True
 
 
 def annotate(overlay: Overlay, sheet: Sheet, caption: Caption, camera: Any) -> None:
@@ -103,7 +106,8 @@ def annotate(overlay: Overlay, sheet: Sheet, caption: Caption, camera: Any) -> N
     pixels = measure_pixels_per_unit(camera, sheet.height)
     _draw_scale_bar(overlay, caption.unit, pixels, palette)
     _draw_notes(overlay, caption, View.of(camera))
-    _draw_legend(overlay, sheet, caption)
+    if caption.has_tints:
+        _draw_legend(overlay, sheet, caption)
 
 
 def scale_bar_length(unit: Unit, pixels: float) -> tuple[float, float, str]:

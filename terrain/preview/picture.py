@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from ...tin import TIN
     from .look import Look
+    from .ortho import Ortho
     from .stage import Stage
 
 __all__ = ["PICTURE_SUFFIXES", "keep_vtk_plain", "write_picture"]
@@ -34,11 +35,11 @@ _SUPERSAMPLING = 2
 _JPEG_QUALITY = 92
 
 
-def write_picture(tin: TIN, path: Path, look: Look) -> None:
+def write_picture(tin: TIN, path: Path, look: Look, ortho: Ortho | None = None) -> None:
     """Draw a surface off screen and write the picture whole or not at all."""
     opengl.require_opengl()
     with keep_vtk_plain():
-        picture = _render(make_stage(tin, look))
+        picture = _render(make_stage(tin, look, ortho))
     _write(path, picture, look.dpi)
 
 

@@ -17,6 +17,7 @@ from ..earthwork import difference
 from ..units import find_ground
 from .alignment import Aligned, align
 from .look import Look, make_look
+from .ortho import Ortho, read_ortho
 from .page.content import describe_page, find_labels
 from .page.document import make_document
 from .picture import PICTURE_SUFFIXES, write_picture
@@ -53,7 +54,10 @@ class Preview:
     'yard.html'
     """
 
-    def __init__(self, aligned: Aligned, look: Look, survey: Survey | None) -> None:
+    def __init__(
+        self, aligned: Aligned, look: Look, survey: Survey | None, ortho: Ortho | None = None
+    ) -> None:
+        self._ortho = ortho
         self._aligned = aligned
         self._surfaces = aligned.surfaces
         self._look = look
@@ -112,7 +116,7 @@ class Preview:
         if file.suffix.lower() in PAGE_SUFFIXES:
             self._write_page(file)
         else:
-            write_picture(self._require_one("A picture"), file, self._look)
+            write_picture(self._require_one("A picture"), file, self._look, self._ortho)
         return file
 
     def show(self) -> None:
@@ -133,7 +137,7 @@ class Preview:
         Traceback (most recent call last):
         tinsmith.errors.RenderError: A window shows one surface, and there are 2: ...
         """
-        open_window(self._require_one("A window"), self._look)
+        open_window(self._require_one("A window"), self._look, self._ortho)
 
     def to_html(self) -> str:
         """Return the page: one HTML document that needs no other file and no network.
@@ -149,8 +153,8 @@ class Preview:
         ground = find_ground(tins[-1])
         factor = self._look.exaggeration or choose_exaggeration(tins[-1], ground)
         surfaces, changes = _add_difference(self._surfaces)
-        points = self._aligned.labelled
-        labels = None if points is None else find_labels(points, self._survey)
+        points, survey = self._aligned.labelled, self._survey
+        labels = None if points is None or survey is None else find_labels(points, survey)
         content = describe_page(
             surfaces,
             ground,
@@ -158,7 +162,8 @@ class Preview:
             exaggeration=factor,
             changes=changes,
             labels=labels,
-            notes=(*self._aligned.notes, *self.notes),
+            notes=(*self._aligned.notes, *self.notes, *(self._ortho.told if self._ortho else ())),
+            ortho=self._ortho,
         )
         return make_document(content)
 
@@ -203,6 +208,7 @@ def preview(
     dpi: float | None = None,
     elevations: tuple[float, float] | None = None,
     survey: Survey | None = None,
+    drape: str | os.PathLike[str] | None = None,
 ) -> Preview: ...
 
 
@@ -224,6 +230,7 @@ def preview(
     dpi: float | None = None,
     elevations: tuple[float, float] | None = None,
     survey: Survey | None = None,
+    drape: str | os.PathLike[str] | None = None,
 ) -> Path: ...
 
 
@@ -232,6 +239,7 @@ def preview(
     *,
     output: str | os.PathLike[str] | None = None,
     survey: Survey | None = None,
+    drape: str | os.PathLike[str] | None = None,
     **look: Any,
 ) -> Preview | Path:
     """Show a TIN in 3D with hypsometric tints, hillshade, legend, scale bar and north arrow.
@@ -278,6 +286,9 @@ def preview(
         default those of the surface.
     survey : Survey, optional
         Points that a page shows with their numbers, up to 20,000.
+    drape : path, optional
+        Picture of the ground, laid over the surfaces: a GeoTIFF in any CRS, or a PNG, JPEG or JPEG
+        2000 file with its place. Where it has nothing, or is transparent, the tints stay.
 
     Returns
     -------
@@ -292,10 +303,19 @@ def preview(
     CrsError
         If the surfaces, or the survey, have different CRSs, known of all or of none, or it cannot
         be told whether their elevations are in one unit; units that are known are converted.
+    ReadError
+        If the picture to drape cannot be read, has no place on the ground, or shows nothing of the
+        surfaces.
     RenderError
         If the file cannot be written, or the machine has no OpenGL.
     MissingExtraError
-        If pyvista, which draws pictures, is not installed.
+        If pyvista, which draws pictures, or rasterio, which reads what is draped, is not installed.
+
+    Warns
+    -----
+    LossWarning
+        If what is draped is warped to the CRS of the surfaces, made smaller (to 4096 pixels), does
+        not reach over all of them, or something about it has to be assumed.
 
     Notes
     -----
@@ -316,7 +336,9 @@ def preview(
     '<!doctype html>'
     """
     require_type("survey", survey, Survey, or_none=True)
-    made = Preview(align(tin, survey), make_look(**look), survey)
+    chosen, aligned = make_look(**look), align(tin, survey)
+    ortho = None if drape is None else read_ortho(drape, [*aligned.surfaces.values()])
+    made = Preview(aligned, chosen, survey, ortho)
     return made if output is None else made.save(output)
 
 

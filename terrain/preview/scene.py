@@ -19,11 +19,13 @@ if TYPE_CHECKING:
 
     from ...tin import TIN
     from ..units import Ground
+    from .ortho import Ortho
 
 __all__ = [
     "BLOCK_SHARE",
     "NORTHWEST",
     "add_lights",
+    "add_ortho",
     "add_terrain",
     "choose_exaggeration",
     "fade_edges",
@@ -45,6 +47,9 @@ BLOCK_SHARE = 0.025
 
 _BLOCK_COLOR = (206, 203, 197)
 _BLOCK_AMBIENT = 0.72
+_ORTHO_AMBIENT = 0.68
+"""A photograph has shadows of its own: the light adds half as much as to tints."""
+
 _EDGE_COLOR = (40, 46, 50)
 _EDGE_OPACITY = 0.42
 _FAINTEST_EDGE = 0.04
@@ -171,6 +176,44 @@ def _without(points: NDArray[np.float64], kept: NDArray[np.float64]) -> NDArray[
     height = points[:, 2]
     rim: NDArray[np.float64] = points[(height >= height[-1]) & (height <= kept[:, 2].max())]
     return rim
+
+
+def add_ortho(
+    plotter: Any, tin: TIN, points: NDArray[np.float64], ortho: Ortho, surface: Any
+) -> Any:
+    """Lay a picture over the surface, and return its actor; where it has none, the tints are seen.
+
+    Parameters
+    ----------
+    plotter : pyvista.Plotter
+    tin : TIN
+    points : (n, 3) float64 array
+        Its vertices as drawn.
+    ortho : Ortho
+    surface : pyvista.Actor
+        The surface, which is moved back a little.
+    """
+    pv = _optional.load("pyvista", _PURPOSE)
+
+    rows, columns = ortho.shape
+    sides = np.array([columns, rows])
+    # The picture has a transparent frame of a pixel, so that nothing of its edge is drawn out.
+    share = (ortho.place(tin.points) * sides + 1.0) / (sides + 2.0)
+    sheet = pv.PolyData.from_regular_faces(points, np.array(tin.triangles))
+    sheet.active_texture_coordinates = np.column_stack([share[:, 0], 1.0 - share[:, 1]])
+    sheet.point_data.active_normals = _average_normals(points, tin.triangles)
+    texture = pv.Texture(np.pad(ortho.decode(), ((1, 1), (1, 1), (0, 0))))
+    texture.interpolate, texture.mipmap, texture.repeat = True, True, False
+    lighting = _choose_lighting(_ORTHO_AMBIENT)
+    actor = plotter.add_mesh(sheet, color="white", texture=texture, **lighting)
+    actor.prop.interpolation = "Phong"
+    actor.ForceTranslucentOn()
+    surface.mapper.SetResolveCoincidentTopologyToPolygonOffset()
+    surface.mapper.SetRelativeCoincidentTopologyPolygonOffsetParameters(1.0, 1.0)
+    if surface.prop.show_edges:
+        actor.prop.show_edges = True
+        actor.prop.edge_color = _EDGE_COLOR
+    return actor
 
 
 def fade_edges(actor: Any, tin: TIN, ground: Ground, pixels: float) -> None:

@@ -20,6 +20,7 @@ from .overlay import Overlay
 from .scene import (
     BLOCK_SHARE,
     add_lights,
+    add_ortho,
     add_terrain,
     choose_exaggeration,
     fade_edges,
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
     from .corridor import Corridor, Strips
     from .elevations import ElevationRange
     from .look import Look
+    from .ortho import Ortho
 
 __all__ = [
     "Show",
@@ -78,6 +80,8 @@ class Stage:
     has_block : bool
     strips : Strips or None
         Pieces of a corridor.
+    ortho : Ortho or None
+        Picture draped over the surface.
     """
 
     tin: TIN
@@ -88,6 +92,7 @@ class Stage:
     caption: Caption
     has_block: bool
     strips: Strips | None
+    ortho: Ortho | None = None
 
     @property
     def exaggeration(self) -> float:
@@ -100,13 +105,16 @@ class Stage:
         return place_vertices(self.tin, self.ground, self.exaggeration)
 
 
-def make_stage(tin: TIN, look: Look, *, has_strips: bool = True) -> Stage:
+def make_stage(
+    tin: TIN, look: Look, ortho: Ortho | None = None, *, has_strips: bool = True
+) -> Stage:
     """Choose all that the caller left open.
 
     Parameters
     ----------
     tin : TIN
     look : Look
+    ortho : Ortho, optional
     has_strips : bool, optional
         Cut a corridor into strips, if nobody chose where to look from.
     """
@@ -122,9 +130,10 @@ def make_stage(tin: TIN, look: Look, *, has_strips: bool = True) -> Stage:
         if has_strips:
             factor, strips = _cut(tin, ground, look, view)
     caption = _make_caption(tin, ground, look, shown, factor, corridor, strips)
+    caption = replace(caption, has_tints=ortho is None or ortho.gap > 0.0)
     depth = BLOCK_SHARE * measure_extent(tin, ground)
     has_block = strips is None and measure_mean_width(tin, ground) >= _LEAST_WIDTH * depth
-    return Stage(tin, ground, look, view, shown, caption, has_block, strips)
+    return Stage(tin, ground, look, view, shown, caption, has_block, strips, ortho)
 
 
 def _cut(tin: TIN, ground: Ground, look: Look, view: View) -> tuple[float, Strips | None]:
@@ -169,10 +178,10 @@ class Show:
         self.plotter = open_plotter(stage, window, off_screen=off_screen)
         self.overlay = Overlay(self.plotter.renderer)
         self._drawn_for: tuple[object, ...] = ()
-        self._surface: Any = None
+        self._surfaces: list[Any] = []
         if stage.strips is None:
             factor = fit_sheet(window)[1]
-            self._surface, seen = add_stage(self.plotter, stage, factor)
+            self._surfaces, seen = add_stage(self.plotter, stage, factor)
             self._aim(seen, window)
         else:
             height = fit_sheet(window)[0].height / stage.strips.scale
@@ -196,8 +205,8 @@ class Show:
         self._drawn_for = state
         sheet, self.overlay.factor = fit_sheet((width, height))
         pixels = measure_pixels_per_unit(camera, sheet.height)
-        if self._surface is not None:
-            fade_edges(self._surface, self.stage.tin, self.stage.ground, pixels)
+        for surface in self._surfaces:
+            fade_edges(surface, self.stage.tin, self.stage.ground, pixels)
         annotate(self.overlay, sheet, self.stage.caption, camera)
 
 
@@ -210,8 +219,8 @@ def open_plotter(stage: Stage, window: tuple[int, int], *, off_screen: bool) -> 
     return plotter
 
 
-def add_stage(plotter: Any, stage: Stage, factor: float) -> tuple[Any, NDArray[np.float64]]:
-    """Add terrain and lines to a plotter; return the surface, and what must be seen.
+def add_stage(plotter: Any, stage: Stage, factor: float) -> tuple[list[Any], NDArray[np.float64]]:
+    """Add terrain and lines to a plotter; return actors with edges, and what must be seen.
 
     Parameters
     ----------
@@ -230,9 +239,12 @@ def add_stage(plotter: Any, stage: Stage, factor: float) -> tuple[Any, NDArray[n
         is_far_off=stage.shown.is_far_off,
         has_block=stage.has_block,
     )
+    surfaces = [surface]
+    if stage.ortho is not None:
+        surfaces.append(add_ortho(plotter, stage.tin, points, stage.ortho, surface))
     if stage.look.lines:
         add_lines(plotter, stage.tin, points, factor=factor)
-    return surface, seen
+    return surfaces, seen
 
 
 def fit_sheet(window: tuple[int, int]) -> tuple[Sheet, float]:

@@ -94,8 +94,9 @@ def _draw_strips(stage: Stage, strips: Strips, factor: float) -> Iterator[NDArra
     window = max(math.ceil(scale * strips.length), 1), max(*heights, 1)
     plotter = open_plotter(stage, window, off_screen=True)
     try:
-        surface, seen = add_stage(plotter, stage, factor)
-        fade_edges(surface, stage.tin, stage.ground, strips.scale)
+        surfaces, seen = add_stage(plotter, stage, factor)
+        for surface in surfaces:
+            fade_edges(surface, stage.tin, stage.ground, strips.scale)
         for k, height in enumerate(heights):
             _look_at_strip(plotter, seen, stage, strips, k, window[1] / scale)
             plotter.render()  # a screenshot alone keeps the picture before

@@ -91,13 +91,12 @@ def _number_components(neighbors: NDArray[np.int32]) -> NDArray[np.int64]:
     Roots hook onto the smallest root beside them, then every path is halved until it is one step
     long (Shiloach and Vishkin 1982, doi:10.1016/0196-6774(82)90008-6).
     """
-    triangle, corner = np.nonzero(neighbors != NO_NEIGHBOR)
-    across = neighbors[triangle, corner].astype(np.int64)
     root = np.arange(len(neighbors))
+    triangle, corner = np.nonzero(neighbors > root[:, None])  # each pair once
+    across = neighbors[triangle, corner].astype(np.int64)
     while len(triangle):
         near, far = root[triangle], root[across]
-        is_lower = far < near
-        np.minimum.at(root, near[is_lower], far[is_lower])
+        np.minimum.at(root, np.maximum(near, far), np.minimum(near, far))
         while True:
             shorter = root[root]
             if np.array_equal(shorter, root):
@@ -173,8 +172,11 @@ def _sort_exteriors_first(
     rings: _Rings, classes: NDArray[np.int64], points: NDArray[np.float64]
 ) -> NDArray[np.int64]:
     """Sort rings by class, by polygon, and within it the exterior before the holes."""
+    is_used = np.zeros(len(points), np.bool_)
+    is_used[rings.vertices] = True
+    used = np.flatnonzero(is_used)
     rank = np.empty(len(points), np.int64)
-    rank[np.lexsort((points[:, 1], points[:, 0]))] = np.arange(len(points))
+    rank[used[np.lexsort((points[used, 1], points[used, 0]))]] = np.arange(len(used))
     western = np.minimum.reduceat(rank[rings.vertices], rings.offsets[:-1])
     # Where a hole touches its exterior in the westernmost vertex, the exterior turns left.
     areas = _measure_ring_areas(points, rings)

@@ -73,7 +73,7 @@ def find_footprint(tin: TIN) -> Footprint:
 def _find_water(
     tin: TIN, faces: NDArray[Any], triangles: NDArray[np.int32], edges: NDArray[np.int32]
 ) -> NDArray[np.bool_]:
-    """Tell which faces are level water: flat, with water's edges on their outer ring."""
+    """Tell which faces are water: flat, along a shore, and in a ring of it if all are closed."""
     shores = {tuple(place) for place in tin.points[np.unique(edges)][:, :2].tolist()}
     heights = tin.points[tin.triangles[triangles], 2]
     is_flat = np.ptp(heights, axis=1) == 0
@@ -81,7 +81,7 @@ def _find_water(
     is_water = np.zeros(len(faces), np.bool_)
     for k in np.flatnonzero(is_flat).tolist():
         outer = shapely.get_coordinates(shapely.get_exterior_ring(faces[k])).tolist()
-        if not shores.issuperset(map(tuple, outer)) and not _touches(outer, shores):
+        if not _touches(outer, shores):
             continue
         inside = shapely.contains_properly(rings, shapely.point_on_surface(faces[k]))
         is_water[k] = inside.sum() % 2 == 1 if len(rings) else True

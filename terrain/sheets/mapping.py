@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from decimal import Decimal
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -279,7 +280,8 @@ def _write_levels(levels: NDArray[np.float64]) -> dict[float, str]:
 
 
 def _count_decimals(value: float) -> int:
-    return len(f"{value:.12f}".rstrip("0").partition(".")[2])
+    """Return how many decimals the shortest way to write a number has."""
+    return max(0, -int(Decimal(str(value)).normalize().as_tuple().exponent))
 
 
 def _cut_out(paths: Paths, texts: list[_Text]) -> Paths:

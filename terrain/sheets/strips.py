@@ -91,9 +91,18 @@ def cut_strips(
     middle on the axis, and a strip is as long as all of its pieces, whole, lie in the rectangle. So
     no place of the surface is left out, whatever the axis is.
     """
+    if _measure_widest(footprint) > math.hypot(*room):
+        return None
     pieces = cut_into_pieces(footprint.faces, room[1] / _CELLS_ACROSS)
     line = find_axis(footprint, pieces, room[1]) if axis is None else axis
     return _Walk(pieces, shapely.LineString(line), step, room).cut()
+
+
+def _measure_widest(footprint: Footprint) -> float:
+    """Return the diameter of the largest circle in a footprint, or a little less."""
+    largest = footprint.faces[int(np.argmax(shapely.area(footprint.faces)))]
+    tolerance = 0.01 * math.sqrt(float(shapely.area(largest)))
+    return 2 * float(shapely.length(shapely.maximum_inscribed_circle(largest, tolerance)))
 
 
 class _Walk:

@@ -26,6 +26,7 @@ from benchmarks.peers.programs import find_present, run_program
 from benchmarks.peers.tool_process import ToolFailedError, ToolProcess
 from benchmarks.peers.triangulators import CGAL, KERNEL, TOOLS
 from benchmarks.report.goals import judge_goals as goals_of
+from benchmarks.report.page import write_report
 from benchmarks.sections import edits, kernel, lines, locate, readers, writers
 
 N = 2_000
@@ -385,8 +386,8 @@ def test_tools_take_turns():
     ("run", "tasks"),
     [
         (locate.run, 2),
-        (readers.run, 4),
-        (writers.run, 3),
+        (readers.run, 6),
+        (writers.run, 11),
         (profiles.run, 2),
         (interpolation.run, 5),
         (rasters.run, 1),
@@ -459,6 +460,27 @@ def test_report_has_lines_and_edits(tmp_path):
     assert "| mixed edits, TIN of 400 points | tinsmith | 100 |" in page
     assert (tmp_path / "benchmarks-lines.png").exists() == is_installed("matplotlib")
     assert ("benchmarks-lines.png" in page) == is_installed("matplotlib")
+
+
+def test_answers_have_a_page_of_their_own_that_says_what_is_compared(tmp_path):
+    outcome = Outcome()
+    figures = {
+        contours.TASK: {OURS: 0.2, contours.MATPLOTLIB: 1.5},
+        rasters.label_task(1_000_000): {OURS: 1.0, rasters.FILES: 2.0, rasters.GDAL: 9.0},
+        volumes.TASK: {OURS: 5.5},
+    }
+    for task, seconds in figures.items():
+        for tool, value in seconds.items():
+            outcome.results.append(Result("answers", task, tool, 1_000_000, value, (value,), ""))
+    written = write_report(outcome, {"machine": "one"}, "a command", tmp_path / "answers.md")
+    assert written == [tmp_path / "answers.md"]
+    assert list(tmp_path.iterdir()) == written
+    page = written[0].read_text(encoding="utf-8")
+    assert "| contours: 72 levels | matplotlib | 1,000,000 | 1.50 s | 7.50 |" in page
+    assert "- Contours beside matplotlib on the same TIN" in page
+    assert "The same lines must come of the TIN: as many, as long." in " ".join(page.split())
+    reached = [row[-2:] for row in goals_of(outcome.results)]
+    assert reached == [["7.50", "\u2713"], ["4.50", "\u2717"], ["5.50", "\u2717"]]
 
 
 def test_too_few_points_are_refused(capsys):

@@ -22,7 +22,7 @@ SURVEY = str(SAMPLES / "site_survey.csv")
 UTM = ("--crs", "EPSG:32616")
 COMMANDS = (
     *("build", "info", "check", "view", "refine", "compare", "edit", "convert"),
-    *("volume", "diff", "formats"),
+    *("volume", "diff", "formats", "plan"),
 )
 
 
@@ -306,7 +306,7 @@ def test_view_passes_on_what_is_asked_for(pyramid, tmp_path, monkeypatch, as_jso
     result = run("view", pyramid, *output, *(["--json"] if as_json else []))
     wanted = {"view": "oblique", "title": "pyramid", "survey": None}
     wanted |= {"exaggeration": None, "edges": False, "lines": True}
-    unset = ("azimuth", "tilt", "size", "dpi", "sun", "background", "elevations")
+    unset = ("azimuth", "tilt", "size", "dpi", "sun", "background", "elevations", "drape")
     wanted |= dict.fromkeys(unset)
     assert asked == [(5, wanted)]
     assert shown == ([] if writes else [True])
@@ -369,9 +369,15 @@ def drawn(monkeypatch):
     """What ``view`` hands to be drawn."""
     calls = []
 
+    class Shown:
+        notes = ()
+
+        def save(self, path):
+            Path(path).write_text("drawn")
+
     def draw(tin, **options):
         calls.append((tin, options))
-        Path(options["output"]).write_text("drawn")
+        return Shown()
 
     monkeypatch.setattr("tinsmith.terrain.preview", draw)
     return calls

@@ -80,7 +80,9 @@ def _read_text(one: Any, name: str, height: float) -> Text:
 def read_pdf(path: Path) -> list[Page]:
     """Return the pages: their paths by stroke colour, and their texts."""
     data = path.read_bytes()
-    boxes = re.findall(rb"/MediaBox\s+\[\s*0\s+0\s+(\S+)\s+(\S+)\s*\]\s+/Contents\s+(\d+) 0 R", data)
+    boxes = re.findall(
+        rb"/MediaBox\s+\[\s*0\s+0\s+(\S+)\s+(\S+)\s*\]\s+/Contents\s+(\d+) 0 R", data
+    )
     pages = []
     for width, height, number in boxes:
         start = re.search(rb"(?<!\d)" + number + rb" 0 obj.*?stream\r?\n", data, re.DOTALL)

@@ -177,64 +177,79 @@ def quality(tin: TIN, *, space: bool = False) -> Quality:
     """
     require_tin(tin)
     in_space = as_flag("space", space)
-    corners = _lift_corners(tin) if in_space else tin.points[:, :2][tin.triangles]
-    edges = np.roll(corners, 1, axis=1) - np.roll(corners, -1, axis=1)
-    lengths = np.sqrt(np.einsum("tkx,tkx->tk", edges, edges))
+    edges = _subtract_corners(_gather_corners(tin, in_space=in_space))
+    lengths = _measure_lengths(edges)
     doubled = _measure_doubled_areas(edges, lengths)
     angles = _measure_angles(edges, doubled)
-    shortest, longest = lengths.min(axis=1), lengths.max(axis=1)
+    shortest, longest = lengths.min(axis=0), lengths.max(axis=0)
     with np.errstate(divide="ignore"):
-        aspect = longest * lengths.sum(axis=1) / (2 * np.sqrt(3) * doubled)
-        circumradius = lengths.prod(axis=1) / (2 * doubled)
+        aspect = longest * lengths.sum(axis=0) / (2 * np.sqrt(3) * doubled)
+        circumradius = lengths.prod(axis=0) / (2 * doubled)
     return Quality(
-        min_angle=angles.min(axis=1),
-        max_angle=angles.max(axis=1),
+        min_angle=angles.min(axis=0),
+        max_angle=angles.max(axis=0),
         aspect_ratio=aspect,
-        edge_lengths=lengths,
+        edge_lengths=np.ascontiguousarray(lengths.T),
         circumradius=circumradius,
         radius_edge=circumradius / shortest,
         space=bool(space),
     )
 
 
-def _lift_corners(tin: TIN) -> NDArray[np.float64]:
-    scale = (1.0, 1.0, scale_elevations(tin.crs, tin.elevation_unit))
-    corners: NDArray[np.float64] = (tin.points * scale)[tin.triangles]
-    return corners
+def _gather_corners(tin: TIN, *, in_space: bool) -> NDArray[np.float64]:
+    """Return the corners of all triangles, (3, 2 or 3, m): each coordinate lies by itself."""
+    scales = [1.0, 1.0, scale_elevations(tin.crs, tin.elevation_unit)] if in_space else [1.0, 1.0]
+    columns = [np.ascontiguousarray(tin.points[:, k] * scale) for k, scale in enumerate(scales)]
+    numbers = [corner.astype(np.intp) for corner in tin.triangles.T]
+    return np.array([[column[corner] for column in columns] for corner in numbers])
 
 
 def measure_smallest_angles(corners: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the smallest angle of each triangle, degrees, from (m, 3, 2) corners."""
-    edges = np.roll(corners, 1, axis=1) - np.roll(corners, -1, axis=1)
-    lengths = np.sqrt(np.einsum("tkx,tkx->tk", edges, edges))
-    angles: NDArray[np.float64] = _measure_angles(
-        edges, _measure_doubled_areas(edges, lengths)
-    ).min(axis=1)
+    edges = _subtract_corners(np.ascontiguousarray(corners.transpose(1, 2, 0)))
+    doubled = _measure_doubled_areas(edges, _measure_lengths(edges))
+    angles: NDArray[np.float64] = _measure_angles(edges, doubled).min(axis=0)
     return angles
+
+
+def _subtract_corners(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the edge opposite of each corner, (3, 2 or 3, m)."""
+    return np.array([corners[(k + 2) % 3] - corners[(k + 1) % 3] for k in range(3)])
+
+
+def _measure_lengths(edges: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.sqrt(_sum_products(edges, edges))
+
+
+def _sum_products(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the dot products of (..., 2 or 3, m) vectors."""
+    products = first[..., 0, :] * second[..., 0, :]
+    for k in range(1, first.shape[-2]):
+        products += first[..., k, :] * second[..., k, :]
+    return products
 
 
 def _measure_doubled_areas(
     edges: NDArray[np.float64], lengths: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Return twice the area, from the two shorter edges: their product rounds least."""
-    longest = np.argmax(lengths, axis=1)
-    rows = np.arange(len(edges))
-    u, w = edges[rows, (longest + 1) % 3], edges[rows, (longest + 2) % 3]
-    flat: NDArray[np.float64] = u[:, 0] * w[:, 1] - u[:, 1] * w[:, 0]
-    if edges.shape[2] == 2:
+    longest = np.argmax(lengths, axis=0)
+    u, w = (
+        np.choose((longest + step) % 3, list(edges)) for step in (1, 2)
+    )  # of each triangle, (2 or 3, m)
+    flat: NDArray[np.float64] = u[0] * w[1] - u[1] * w[0]
+    if len(u) == 2:
         return np.asarray(np.maximum(flat, 0.0), np.float64)
-    north = u[:, 2] * w[:, 0] - u[:, 0] * w[:, 2]
-    east = u[:, 1] * w[:, 2] - u[:, 2] * w[:, 1]
+    north, east = u[2] * w[0] - u[0] * w[2], u[1] * w[2] - u[2] * w[1]
     return np.asarray(np.sqrt(east**2 + north**2 + flat**2), np.float64)
 
 
 def _measure_angles(
     edges: NDArray[np.float64], doubled: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Return the angle at each corner, degrees: the turn from one edge there to the other."""
-    after, before = np.roll(edges, -1, axis=1), np.roll(edges, 1, axis=1)
-    dots = -np.einsum("tkx,tkx->tk", after, before)
-    return np.asarray(np.degrees(np.arctan2(doubled[:, None], dots)), np.float64)
+    """Return the angle at each corner, degrees, (3, m): the turn from one edge there to another."""
+    dots = np.array([-_sum_products(edges[k - 2], edges[k - 1]) for k in range(3)])
+    return np.asarray(np.degrees(np.arctan2(doubled, dots)), np.float64)
 
 
 def _find_quantiles(values: NDArray[np.float64]) -> dict[str, float]:

@@ -80,13 +80,15 @@ class Triangulation(Frozen):
     @cached_property
     def triangle_areas(self) -> NDArray[np.float64]:
         """Area of each triangle in the plane, (m,) array, CRS units squared."""
-        first, second = self._edge_vectors()
-        return seal(0.5 * (first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]))
+        (ux, vx), (uy, vy) = self._edge_components(2)
+        return seal(0.5 * (ux * vy - uy * vx))
 
     def surface_areas(self, elevation_scale: float = 1.0) -> NDArray[np.float64]:
         """Measure each triangle in space, (m,) array; elevations times a factor."""
-        first, second = (edge * (1.0, 1.0, elevation_scale) for edge in self._edge_vectors())
-        areas: NDArray[np.float64] = 0.5 * np.linalg.norm(np.cross(first, second), axis=1)
+        (ux, vx), (uy, vy), (uz, vz) = self._edge_components(3)
+        uz, vz = uz * elevation_scale, vz * elevation_scale
+        east, north, up = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+        areas: NDArray[np.float64] = 0.5 * np.sqrt(east * east + north * north + up * up)
         return seal(areas)
 
     @cached_property
@@ -139,6 +141,12 @@ class Triangulation(Frozen):
     def nearest(self) -> NearestVertex:
         """The index of nearest vertices; any number of threads may ask it at a time."""
         return NearestVertex(self.points)
+
+    def _edge_components(self, axes: int) -> list[tuple[NDArray[np.float64], ...]]:
+        """Return for each axis that of both edges from the first corner, contiguous in memory."""
+        first, second, third = (corner.astype(np.intp) for corner in self.triangles.T)
+        columns = [np.ascontiguousarray(axis) for axis in self.points.T[:axes]]
+        return [(axis[second] - axis[first], axis[third] - axis[first]) for axis in columns]
 
     def _edge_vectors(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         origin = self.points[self.triangles[:, 0]]

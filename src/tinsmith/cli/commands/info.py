@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -63,32 +63,38 @@ def info(
             f"'{file}' holds points, and --plot needs a TIN: 'tinsmith build' makes one of them."
         )
     found = add_coded_lines(found, how)
-    record = {"input": describe_inputs(files)} | describe_survey(found)
-    console.answer([("File", name_files(files)), *summarise_survey(found)], record)
+    if console.as_json:
+        console.answer([], {"input": describe_inputs(files)} | describe_survey(found))
+    else:
+        console.answer([("File", name_files(files)), *summarise_survey(found)], {})
 
 
 def _describe(tin: TIN, file: Path, plot: Path | None, console: Console) -> None:
-    from ..output.summaries import (
-        describe_file_size,
-        describe_tin,
-        measure_quality,
-        summarise_quality,
-        summarise_tin,
-    )
+    from ..output.summaries import measure_quality
 
     shapes = measure_quality(tin)
-    rows: list[Row] = [
-        ("File", name_file(file)),
-        *summarise_tin(tin),
-        *summarise_quality(shapes),
-    ]
-    record = {"input": str(file)} | describe_tin(tin)
-    record["quality"] = None if shapes is None else shapes.summary()
     if plot is not None:
         _plot(shapes, tin, file, plot, console)
-        rows.append(("Written", f"{plot} ({describe_file_size(plot)})"))
-        record["plot"] = str(plot)
-    console.answer(rows, record)
+    # Both measure the whole surface: only what is asked for.
+    if console.as_json:
+        console.answer([], _record(tin, file, plot, shapes))
+    else:
+        console.answer(_summarise(tin, file, plot, shapes), {})
+
+
+def _record(tin: TIN, file: Path, plot: Path | None, shapes: Quality | None) -> dict[str, Any]:
+    from ..output.summaries import describe_tin
+
+    record = {"input": str(file)} | describe_tin(tin)
+    record["quality"] = None if shapes is None else shapes.summary()
+    return record if plot is None else record | {"plot": str(plot)}
+
+
+def _summarise(tin: TIN, file: Path, plot: Path | None, shapes: Quality | None) -> list[Row]:
+    from ..output.summaries import describe_file_size, summarise_quality, summarise_tin
+
+    rows = [("File", name_file(file)), *summarise_tin(tin), *summarise_quality(shapes)]
+    return rows if plot is None else [*rows, ("Written", f"{plot} ({describe_file_size(plot)})")]
 
 
 def _plot(shapes: Quality | None, tin: TIN, file: Path, plot: Path, console: Console) -> None:

@@ -11,7 +11,7 @@ import click
 from ..options import console_options, reading_options, triangulating_options
 from ..output.failures import note_written, tell_warning
 from ..parameters import input_files, number_option, parse_numbers, picture_option
-from ..paths import describe_inputs, make_title
+from ..paths import INPUT, Named, describe_inputs, make_title
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -54,6 +54,13 @@ def _parse_size(
     help="Draw breaklines and rings.",
 )
 @click.option("--top", is_flag=True, help="Look straight down, north up.")
+@click.option(
+    "--ortho",
+    metavar="FILE",
+    type=INPUT,
+    help="Picture of the ground to drape over the surface: a GeoTIFF in any CRS, or another with "
+    "its place.",
+)
 @number_option("--azimuth", "DEGREES", "Where the viewer stands, clockwise from north.")
 @number_option("--tilt", "DEGREES", "Height of the viewer above the horizon, 90 from above.")
 @click.option(
@@ -93,6 +100,7 @@ def _parse_size(
 def view(
     files: tuple[Path, ...],
     output: Path | None,
+    ortho: Path | None,
     full: bool,
     reading: Reading,
     how: Triangulating,
@@ -109,10 +117,11 @@ def view(
     from ...terrain.preview.presentation import PREVIEW_SUFFIXES
     from ..files import list_inputs, read_tin_of_files, require_picture
 
+    inputs = list_inputs(*files, how=how)
+    if ortho is not None:
+        inputs.append(Named(ortho, "the picture to drape"))
     if output is not None:
-        require_picture(
-            output, place="--output", inputs=list_inputs(*files, how=how), suffixes=PREVIEW_SUFFIXES
-        )
+        require_picture(output, place="--output", inputs=inputs, suffixes=PREVIEW_SUFFIXES)
 
     if not full and reading.stride is None:
         reading = replace(reading, most_cells=_choose_most_cells(output))
@@ -125,7 +134,7 @@ def view(
         drawing["title"] = f"{drawing['title'] or _UNNAMED} ({sample})"
     with console.steps() as steps, steps.step("Drawing"):
         seen = "top" if top else "oblique"
-        shown = preview(tin, survey=survey, view=seen, **drawing)
+        shown = preview(tin, survey=survey, drape=ortho, view=seen, **drawing)
         if output is None:
             shown.show()
         else:
