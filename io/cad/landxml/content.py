@@ -146,6 +146,8 @@ class Content:
         Of its ``Feature``.
     surfaces : list of Surface
     points : Points
+    others : dict of str to int
+        How many elements there are of each kind that is not read, such as plan features.
     """
 
     version: str = ""
@@ -154,3 +156,4 @@ class Content:
     system_properties: dict[str, str] = field(default_factory=dict)
     surfaces: list[Surface] = field(default_factory=list)
     points: Points = field(default_factory=Points)
+    others: dict[str, int] = field(default_factory=dict)

@@ -177,3 +177,13 @@ def test_points_that_are_planned_or_gone_are_told(tmp_path):
     path.write_text(document("", points=points.replace("proposed", "existing").replace(
         'state="destroyed"', "")))  # fmt: skip
     assert not any("by their state" in note for note in ts.read(path).notes)
+
+
+def test_plan_features_and_alignments_are_told(tmp_path):
+    line = "<CoordGeom><Line><Start>0 0 1</Start><End>5 5 2</End></Line></CoordGeom>"
+    planned = f"""<PlanFeatures><PlanFeature name="kerb">{line}</PlanFeature>
+<PlanFeature name="wall">{line}</PlanFeature></PlanFeatures>
+<Alignments><Alignment name="road" length="7" staStart="0">{line}</Alignment></Alignments>"""
+    path = tmp_path / "a.xml"
+    path.write_text(document("", points=POINTS + planned))
+    assert "Not read: 2 plan features, 1 alignment." in ts.read(path).notes
