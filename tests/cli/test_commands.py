@@ -286,51 +286,61 @@ def test_convert_keeps_points_as_points(folder):
     np.testing.assert_array_equal(ts.io.read("out.xyz").points, ts.io.read(SURVEY).points)
 
 
-@pytest.mark.parametrize("as_json", [False, True])
-@pytest.mark.parametrize("writes", [False, True])
-def test_view_passes_on_what_is_asked_for(pyramid, tmp_path, monkeypatch, as_json, writes):
-    asked = []
+AS_USUAL = {
+    "view": "oblique", "title": "pyramid", "survey": None, "exaggeration": None, "edges": False,
+    "lines": True, "tint": "elevation", "azimuth": None, "tilt": None, "size": None, "dpi": None,
+    "sun": None, "background": None, "elevations": None, "contours": None, "drape": None,
+}  # fmt: skip
+
+
+@pytest.fixture
+def asked(monkeypatch):
+    """What ``view`` asks for, and what it shows."""
+    made = SimpleNamespace(options=[], shown=[])
 
     def draw(tin, **options):
-        asked.append((len(tin.points), options))
+        made.options.append((len(tin.points), options))
         return SimpleNamespace(
-            show=lambda: shown.append(True),
+            show=lambda: made.shown.append(True),
             save=lambda path: path.write_bytes(b"7 bytes"),
             notes=("Mind the gap.",),
         )
 
-    shown = []
     monkeypatch.setattr("tinsmith.terrain.preview", draw)
+    return made
+
+
+@pytest.mark.parametrize("as_json", [False, True])
+@pytest.mark.parametrize("writes", [False, True])
+def test_view_shows_or_writes(pyramid, tmp_path, asked, as_json, writes):
     picture = tmp_path / "a.png"
     output = ["-o", picture] if writes else []
     result = run("view", pyramid, *output, *(["--json"] if as_json else []))
-    wanted = {"view": "oblique", "title": "pyramid", "survey": None}
-    wanted |= {"exaggeration": None, "edges": False, "lines": True}
-    unset = ("azimuth", "tilt", "size", "dpi", "sun", "background", "elevations", "contours")
-    wanted |= dict.fromkeys((*unset, "drape")) | {"tint": "elevation"}
-    assert asked == [(5, wanted)]
-    assert shown == ([] if writes else [True])
+    assert asked.options == [(5, AS_USUAL)]
+    assert asked.shown == ([] if writes else [True])
     assert ("(7 bytes)" in result.stderr) is writes
     assert "Warning: Mind the gap." in result.stderr
     if writes and as_json:
         assert json.loads(result.stdout) == {"input": str(pyramid), "output": str(picture)}
     else:
         assert result.stdout == ""
-    asked.clear()
-    options = ["--top", "--no-lines", "--edges", "--title", "A hill", "--exaggeration", "3"]
-    run("view", pyramid, *output, *options)
-    wanted |= {"view": "top", "lines": False, "edges": True, "title": "A hill"}
-    assert asked == [(5, wanted | {"exaggeration": 3.0})]
-    asked.clear()
-    options = ["--azimuth", "-30", "--tilt", "20.5", "--size", "800x600", "--dpi", "300"]
-    options += ["--sun", "250,30", "--background", "dark", "--elevations", "-5,12.5"]
-    options += ["--tint", "slope", "--contours", "0.5"]
-    run("view", pyramid, *output, *options)
-    wanted |= {"view": "oblique", "lines": True, "edges": False, "title": "pyramid"}
-    wanted |= {"azimuth": -30.0, "tilt": 20.5, "size": (800, 600), "dpi": 300.0}
-    wanted |= {"sun": [250.0, 30.0], "background": "dark", "elevations": [-5.0, 12.5]}
-    wanted |= {"tint": "slope", "contours": 0.5}
-    assert asked == [(5, wanted)]
+
+
+@pytest.mark.parametrize(
+    ("options", "wanted"),
+    [
+        (["--top", "--no-lines", "--edges", "--title", "A hill", "--exaggeration", "3"],
+         {"view": "top", "lines": False, "edges": True, "title": "A hill", "exaggeration": 3.0}),
+        (["--azimuth", "-30", "--tilt", "20.5", "--size", "800x600", "--dpi", "300"],
+         {"azimuth": -30.0, "tilt": 20.5, "size": (800, 600), "dpi": 300.0}),
+        (["--sun", "250,30", "--background", "dark", "--elevations", "-5,12.5"],
+         {"sun": [250.0, 30.0], "background": "dark", "elevations": [-5.0, 12.5]}),
+        (["--tint", "slope", "--contours", "0.5"], {"tint": "slope", "contours": 0.5}),
+    ],
+)  # fmt: skip
+def test_view_passes_on_what_is_asked_for(pyramid, asked, options, wanted):
+    run("view", pyramid, *options)
+    assert asked.options == [(5, AS_USUAL | wanted)]
 
 
 @pytest.mark.parametrize(

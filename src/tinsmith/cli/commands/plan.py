@@ -125,7 +125,7 @@ def _list_inputs(file: Path, how: Triangulating, axis: Path | None) -> list[Name
     from ..files import list_inputs
 
     more = [] if axis is None else [Named(split_layer(axis)[0], "the file of --axis")]
-    return [*list_inputs(file, how), *more]
+    return [*list_inputs(file, how=how), *more]
 
 
 def _require_plans(outputs: Sequence[Path], inputs: Sequence[Named]) -> None:
