@@ -139,10 +139,9 @@ class LevelSurface {
   Triangle beyond_ridge(Triangle t, std::uint32_t above, std::int32_t level) const {
     constexpr std::uint32_t kLoneBelow[8] = {3, 3, 3, 2, 3, 1, 0, 3};
     const std::uint32_t lone = kLoneBelow[above];
-    if (lone == 3 || !is_at(corner(t, corner_after(lone)), level) ||
-        !is_at(corner(t, corner_before(lone)), level)) {
-      return kNoTriangle;
-    }
+    const bool is_ridge = lone != 3 && is_at(corner(t, corner_after(lone)), level) &&
+                          is_at(corner(t, corner_before(lone)), level);
+    if (!is_ridge) return kNoTriangle;
     const Triangle beyond = neighbor(t, lone);
     if (beyond == kNoTriangle || corners_above(beyond, level) == 7) return kNoTriangle;
     return beyond;
