@@ -163,7 +163,8 @@ def _order_by_number(survey: Survey) -> NDArray[np.int64]:
 
 def _namer(survey: Survey) -> Callable[[int], str]:
     """Return what names a row for a sentence."""
-    numbers = survey.attributes.get("number")
+    given = survey.attributes.get("number")
+    numbers = None if given is None else given.tolist()
     return lambda row: f"row {row}" if numbers is None else f"point {numbers[row]}"
 
 
@@ -209,10 +210,10 @@ class _Builder:
         self.faults: list[Fault] = [
             Fault("unknown mark", one.word, (one.row,)) for one in reading.unread
         ]
-        short = [one for one in reading.figures if len(one.shots) < one.least]
+        short = [one for one in reading.figures if not one.is_long_enough]
         self.faults += [Fault("too few points", one.name, tuple(one.rows)) for one in short]
         self.faults += reading.faults
-        self.figures = [one for one in reading.figures if len(one.shots) >= one.least]
+        self.figures = [one for one in reading.figures if one.is_long_enough]
 
     def build(self, order: Sequence[int], texts: Sequence[str], notes: Sequence[str]) -> Survey:
         """Return the survey with its lines."""
@@ -244,7 +245,10 @@ class _Builder:
         crs = self.survey.crs
         bent = ("begin_curve", "begin_tangent_curve", "toggle_curve")
         has_curves = any(
-            meaning in bent for one in self.figures for shot in one.shots for meaning in shot.marks
+            meaning in bent
+            for one in self.figures
+            for marks in one.marks.values()
+            for meaning in marks
         )
         if crs is not None and crs.is_geographic and has_curves:
             raise LinesError(f"Curves need a projected CRS: {crs.label} measures in degrees.")
@@ -327,9 +331,9 @@ class _Builder:
     def _exclude(self, survey: Survey, texts: Sequence[str]) -> Survey:
         """Leave out the points that are not for the surface, unless a line goes through them."""
         out = {text for text in self.reading.descriptions if self._is_excluded(text)}
-        is_out = np.array([bool(out) and text in out for text in texts], np.bool_)
-        if not is_out.any():
+        if not out:
             return survey
+        is_out = np.array([text in out for text in texts], np.bool_)
         kept = ~is_out
         what = "points not for the surface"
         attributes = {name: np.asarray(v)[kept] for name, v in survey.attributes.items()}

@@ -141,7 +141,7 @@ def read(
     _require_elevation_band(dataset, number, band is not None, path)
     target, source = CRS.of(crs), CRS.of(dataset.crs)
     unit, said = _find_elevation_unit(dataset, number, source, Unit.of(z_unit))
-    cells = _choose_cells(dataset, window, stride, most_cells, path)
+    cells = _choose_cells(dataset, window, stride, path, most_cells)
     left_out = 0 if most_cells is None else cells.width * cells.height - cells.count
     marks = parse_nodata(nodata)
     _require_few_cells(cells, path)
@@ -405,8 +405,8 @@ def _choose_cells(
     dataset: _Header,
     window: Sequence[int] | Bounds | None,
     stride: int | None,
-    most_cells: int | None,
     path: Path,
+    most_cells: int | None = None,
 ) -> _Cells:
     bounds = None
     if window is None:

@@ -11,6 +11,7 @@ __all__ = [
     "BreaklineKind",
     "CodeKind",
     "CodeStyle",
+    "ContourLabeling",
     "CrossingPolicy",
     "CurvatureKind",
     "DistanceRule",
@@ -20,15 +21,19 @@ __all__ = [
     "EmptyCircleRule",
     "Extrapolation",
     "FeatureKind",
+    "GridStyle",
     "InterpolationMethod",
     "LineKind",
     "LineReading",
     "LineRole",
     "OutsidePolicy",
     "OverviewMethod",
+    "PaperOrientation",
+    "PointMarking",
     "RasterCompression",
     "RasterSample",
     "RasterValue",
+    "SheetLayout",
     "SlopeUnit",
     "SurfacePart",
     "TrimPolicy",
@@ -128,3 +133,18 @@ DrawingContent: TypeAlias = Literal["surface", "source", "points"]
 
 DrawingVersion: TypeAlias = Literal["R2010", "R12"]
 """Which version of DXF is written."""
+
+PaperOrientation: TypeAlias = Literal["landscape", "portrait"]
+"""How a sheet of paper lies."""
+
+SheetLayout: TypeAlias = Literal["single", "rows", "strips"]
+"""Which ground the sheets of a plan show: all on one, rows of sheets, strips along an axis."""
+
+ContourLabeling: TypeAlias = Literal["index", "all", "none"]
+"""Which contours have their elevation written on them."""
+
+PointMarking: TypeAlias = Literal["none", "marks", "numbers", "elevations", "both"]
+"""What stands at the points of a plan."""
+
+GridStyle: TypeAlias = Literal["crosses", "lines", "none"]
+"""How the coordinate grid of a plan is drawn."""

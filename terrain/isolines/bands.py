@@ -74,11 +74,13 @@ def contour_bands(
     (array([0., 3.]), array([3., 6.]), array([12.,  4.]))
     """
     require_tin(tin)
-    chosen = LevelOptions(interval, levels, base).for_bands(tin)
-    parts = PolygonParts(
-        *_kernel.fill_bands(tin.points, tin.triangles, tin.neighbors, chosen.values)
-    )
-    parts, notes = mend_polygons(parts)
+    options = LevelOptions(interval, levels, base)
+    chosen = options.for_bands(tin)
+    try:
+        filled = _kernel.fill_bands(tin.points, tin.triangles, tin.neighbors, chosen.values)
+    except OverflowError as error:
+        raise options.refuse_count(int(str(error)), "parts of triangles") from None
+    parts, notes = mend_polygons(PolygonParts(*filled))
     said: tuple[str, ...] = ()
     if notes or not is_whole(tin, parts):
         parts, said = rebuild_wrong_bands(tin, chosen.values, parts)

@@ -19,10 +19,13 @@ if TYPE_CHECKING:
 
     from ...tin import TIN
 
-__all__ = ["MOST_LEVELS", "LevelOptions", "Levels"]
+__all__ = ["MOST_CROSSINGS", "MOST_LEVELS", "LevelOptions", "Levels"]
 
 MOST_LEVELS = 100_000
 """More are refused: an interval with so many was given in another unit, or by a slip."""
+
+MOST_CROSSINGS = 2**31 - 1
+"""Of triangles by levels, or parts of triangles in bands: the kernel has 32 bits for them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,6 +91,14 @@ class LevelOptions:
         bounds = values[first : last + 1]
         return Levels(seal(bounds), np.zeros(len(bounds), np.bool_))
 
+    def refuse_count(self, count: int, what: str) -> OptionError:
+        """Return the refusal of levels of which so many of something would come."""
+        most = f"that there are at most {MOST_CROSSINGS:,} {what}, and here there would be"
+        if self.interval is None:
+            allowed = f"so small {most} {count:,}"
+            return OptionError("number of levels", len(as_levels(self.levels)), allowed=allowed)
+        return OptionError("interval", self.interval, allowed=f"so large {most} {count:,}")
+
     def _at_interval(
         self, lowest: float, highest: float
     ) -> tuple[NDArray[Any], NDArray[np.float64]]:
@@ -145,9 +156,10 @@ def _round(level: Fraction) -> float:
 def elevation_range(tin: TIN) -> tuple[float, float]:
     """Return the lowest and the highest elevation of the vertices that triangles have."""
     z = tin.points[:, 2]
-    ends = z.argmin(), z.argmax()
-    if not all((tin.triangles == end).any() for end in ends):
-        z = z[np.unique(tin.triangles)]
+    ends = int(z.argmin()), int(z.argmax())
+    if all((tin.triangles == end).any() for end in ends):
+        return float(z[ends[0]]), float(z[ends[1]])
+    z = z[np.unique(tin.triangles)]
     return (float(z.min()), float(z.max())) if len(z) else (0.0, 0.0)
 
 

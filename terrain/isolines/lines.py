@@ -60,8 +60,8 @@ def contours(
     Raises
     ------
     OptionError
-        If the interval is not above 0, a level is not finite, there are more than 100,000 levels,
-        or an option is none.
+        If the interval is not above 0, a level is not finite, there are more than 100,000 levels
+        or 2**31 - 1 crossings of triangles, or an option is none.
 
     Notes
     -----
@@ -91,14 +91,20 @@ def contours(
         require_tolerance(name, value)
         for name, value in (("smooth", smooth), ("simplify", simplify))
     ]
-    lines = TracedLines(
-        *_kernel.trace_contours(tin.points, tin.triangles, tin.neighbors, chosen.values)
-    )
+    lines = _trace(tin, chosen, options)
     if any(tolerances) and len(lines.level):
         lines = smooth_lines(
             tin, lines, chosen.values, smooth=tolerances[0], simplify=tolerances[1]
         )
     return _as_features(tin, lines, chosen)
+
+
+def _trace(tin: TIN, chosen: Levels, options: LevelOptions) -> TracedLines:
+    try:
+        traced = _kernel.trace_contours(tin.points, tin.triangles, tin.neighbors, chosen.values)
+    except OverflowError as error:
+        raise options.refuse_count(int(str(error)), "crossings of triangles") from None
+    return TracedLines(*traced)
 
 
 def _as_features(tin: TIN, lines: TracedLines, chosen: Levels) -> Features:

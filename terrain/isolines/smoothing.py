@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 
 __all__ = ["TracedLines", "require_tolerance", "smooth_lines"]
 
+MOST_POINTS = (2**31 - 1) // 16
+"""Of all lines together: the kernel numbers in 31 bits what rounds of cutting corners make."""
+
 _ROUNDS = 3
 """So often corners are cut: what is left turns by a few degrees in each vertex."""
 
@@ -82,6 +85,11 @@ def smooth_lines(
     -------
     TracedLines
 
+    Raises
+    ------
+    OptionError
+        If there are more than :data:`MOST_POINTS` points.
+
     Notes
     -----
     Corners are cut as by Chaikin [1]_, points are dropped as by Visvalingam and Whyatt [2]_. Each
@@ -96,6 +104,7 @@ def smooth_lines(
     .. [2] M. Visvalingam and J. D. Whyatt, Line generalisation by repeated elimination of points,
        The Cartographic Journal 30 (1993), doi:10.1179/000870493786962263.
     """
+    _require_few(lines, smooth=smooth, simplify=simplify)
     places = _find_places(tin, lines)
     return TracedLines(
         *_kernel.smooth_contours(
@@ -110,6 +119,14 @@ def smooth_lines(
             simplify,
         )
     )
+
+
+def _require_few(lines: TracedLines, **tolerances: float) -> None:
+    count = len(lines.coordinates)
+    if count > MOST_POINTS:
+        name, value = next(item for item in tolerances.items() if item[1] > 0)
+        allowed = f"left out where contours have more than {MOST_POINTS:,} points: here {count:,}"
+        raise OptionError(name, value, allowed=allowed)
 
 
 def _find_places(tin: TIN, lines: TracedLines) -> NDArray[np.int32]:

@@ -364,6 +364,8 @@ def _as_coordinates(given: Any) -> NDArray[np.float64]:
         array = np.empty((0, 2))
     if array.ndim != 2 or array.shape[1] not in (2, 3):
         raise OptionError("shape of coordinates", array.shape, allowed="(n, 2) or (n, 3)")
+    if np.isfinite(array).all():
+        return frozen_copy(array)
     bad = ~np.isfinite(array[:, :2]).all(axis=1) | np.isinf(array[:, 2:]).any(axis=1)
     if bad.any():
         row = int(bad.argmax())

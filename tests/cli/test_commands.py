@@ -293,20 +293,25 @@ def test_view_passes_on_what_is_asked_for(pyramid, tmp_path, monkeypatch, as_jso
 
     def draw(tin, **options):
         asked.append((len(tin.points), options))
-        if options["output"] is not None:
-            options["output"].write_bytes(b"7 bytes")
-        return SimpleNamespace(show=lambda: shown.append(True))
+        return SimpleNamespace(
+            show=lambda: shown.append(True),
+            save=lambda path: path.write_bytes(b"7 bytes"),
+            notes=("Mind the gap.",),
+        )
 
     shown = []
     monkeypatch.setattr("tinsmith.terrain.preview", draw)
     picture = tmp_path / "a.png"
     output = ["-o", picture] if writes else []
     result = run("view", pyramid, *output, *(["--json"] if as_json else []))
-    wanted = {"output": picture if writes else None, "view": "oblique", "title": "pyramid"}
-    wanted |= {"exaggeration": None, "edges": False, "lines": True, "survey": None}
+    wanted = {"view": "oblique", "title": "pyramid", "survey": None}
+    wanted |= {"exaggeration": None, "edges": False, "lines": True}
+    unset = ("azimuth", "tilt", "size", "dpi", "sun", "background", "elevations")
+    wanted |= dict.fromkeys(unset)
     assert asked == [(5, wanted)]
     assert shown == ([] if writes else [True])
     assert ("(7 bytes)" in result.stderr) is writes
+    assert "Warning: Mind the gap." in result.stderr
     if writes and as_json:
         assert json.loads(result.stdout) == {"input": str(pyramid), "output": str(picture)}
     else:
@@ -316,6 +321,47 @@ def test_view_passes_on_what_is_asked_for(pyramid, tmp_path, monkeypatch, as_jso
     run("view", pyramid, *output, *options)
     wanted |= {"view": "top", "lines": False, "edges": True, "title": "A hill"}
     assert asked == [(5, wanted | {"exaggeration": 3.0})]
+    asked.clear()
+    options = ["--azimuth", "-30", "--tilt", "20.5", "--size", "800x600", "--dpi", "300"]
+    options += ["--sun", "250,30", "--background", "dark", "--elevations", "-5,12.5"]
+    run("view", pyramid, *output, *options)
+    wanted |= {"view": "oblique", "lines": True, "edges": False, "title": "pyramid"}
+    wanted |= {"azimuth": -30.0, "tilt": 20.5, "size": (800, 600), "dpi": 300.0}
+    wanted |= {"sun": [250.0, 30.0], "background": "dark", "elevations": [-5.0, 12.5]}
+    assert asked == [(5, wanted)]
+
+
+@pytest.mark.parametrize(
+    ("flag", "value", "allowed"),
+    [
+        ("--size", "800", "width and height, such as 1600x1000"),
+        ("--size", "800x", "width and height, such as 1600x1000"),
+        ("--size", "100x9000", "width and height, 200 to 5000 pixels each"),
+        ("--dpi", "0", "36 to 2400 dots per inch"),
+        ("--azimuth", "nan", "a finite number of degrees clockwise from north"),
+        ("--tilt", "91", "0 (from the horizon) to 90 (from above) degrees"),
+        ("--sun", "315", "azimuth and altitude"),
+        ("--sun", "315,-1", "0 to 90 above the horizon"),
+        ("--sun", "high", "numbers with commas between them"),
+        ("--background", "reddish", "white, black, light, dark, or a colour such as '#e8edf2'"),
+        ("--elevations", "5,2", "the lowest and the highest, in this order"),
+        ("--exaggeration", "0", "a finite number above 0"),
+    ],
+)
+def test_view_refuses_what_cannot_be_drawn(pyramid, tmp_path, flag, value, allowed):
+    result = run("view", pyramid, "-o", tmp_path / "a.png", flag, value, code=2)
+    assert f"Invalid {flag} " in result.stderr
+    assert allowed in result.stderr
+    assert not list(tmp_path.glob("a*"))
+
+
+def test_view_tells_an_elevation_far_off(tmp_path):
+    points = [f"{x},{y},{5 + 0.1 * x}" for x in range(6) for y in range(6)]
+    points[8] = "1,2,9999"
+    file = tmp_path / "points.csv"
+    file.write_text("x,y,z\n" + "\n".join(points))
+    result = run("view", file, "-o", tmp_path / "a.html")
+    assert "Warning: 1 elevation far off all others: 9,999." in result.stderr
 
 
 @pytest.fixture
@@ -323,9 +369,15 @@ def drawn(monkeypatch):
     """What ``view`` hands to be drawn."""
     calls = []
 
+    class Shown:
+        notes = ()
+
+        def save(self, path):
+            Path(path).write_text("drawn")
+
     def draw(tin, **options):
         calls.append((tin, options))
-        Path(options["output"]).write_text("drawn")
+        return Shown()
 
     monkeypatch.setattr("tinsmith.terrain.preview", draw)
     return calls

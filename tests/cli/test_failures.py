@@ -173,8 +173,58 @@ def test_bad_rows_and_nodata_are_left_out_on_request(folder):
     assert "4 vertices" in stderr
 
 
-def test_unknown_crs(folder):
-    assert_sentence(*build(SQUARE, "--crs", "EPSG:999999"), "EPSG:999999")
+@pytest.mark.parametrize("flag", ["--crs", "--to-crs", "--source-crs"])
+@pytest.mark.parametrize("crs", ["EPSG:999999", "", "no such", "EPSG:5703", "EPSG:4978"])
+def test_an_unknown_crs_is_wrong_usage(folder, flag, crs):
+    """Also one of elevations alone, or of the earth's centre."""
+    assert_wrong_usage(*build(SQUARE, flag, crs), f"Invalid {flag}: ", f"'{crs}'")
+
+
+COMMANDS_WITH_A_CRS = [
+    [name]
+    for name in ("build", "check", "convert", "hillshade", "info", "raster", "refine", "slope")
+] + [
+    ["contours", "--interval", "1"],
+    ["compare"],
+    ["diff", "in.csv"],
+    ["drape", "in.csv"],
+    ["edit", "in.csv"],
+    ["interpolate", "in.csv"],
+    ["profile", "--line", "in.csv"],
+    ["view"],
+    ["volume", "--base", "0"],
+]
+
+
+@pytest.mark.parametrize("arguments", COMMANDS_WITH_A_CRS, ids=lambda given: given[0])
+def test_an_unknown_crs_is_wrong_usage_of_every_command(folder, arguments):
+    Path("in.csv").write_text(SQUARE)
+    result = CliRunner().invoke(main, [*arguments[:1], "in.csv", *arguments[1:], "--crs", "EPSG:1"])
+    assert result.exit_code == 2
+    assert "Error: Invalid --crs: unknown CRS 'EPSG:1'" in result.stderr
+
+
+def test_a_crs_that_does_not_fit_the_data_is_no_wrong_usage(folder):
+    assert_sentence(*build(SQUARE, "--to-crs", "EPSG:32616"), "CRS")
+
+
+@pytest.mark.parametrize("flag", ["--format", "--output-format"])
+def test_an_unknown_format_is_wrong_usage(folder, flag):
+    assert_wrong_usage(*build(SQUARE, flag, "nosuch"), f"Invalid {flag}: unknown format 'nosuch'")
+
+
+def test_levels_beyond_all_bounds_are_wrong_usage(folder):
+    """Cells of a chequerboard, each crossed by 60,000 levels."""
+    x, y = (axis.ravel() for axis in np.meshgrid(np.arange(200), np.arange(200)))
+    rows = np.column_stack([x, y, (x + y) % 2 * 6000])
+    np.savetxt("in.csv", rows, "%d", delimiter=",", header="x,y,z", comments="")
+    for product in ([], ["--bands"]):
+        command = ["contours", "in.csv", "--interval", "0.1", "-o", "out.geojson", *product]
+        result = CliRunner().invoke(main, command)
+        assert result.exit_code == 2
+        words = "Error: Invalid --interval 0.1: it must be so large that there are at most 2,147,"
+        assert words in result.stderr
+        assert not Path("out.geojson").exists()
 
 
 def test_bad_snap(folder):
@@ -532,7 +582,7 @@ def test_interrupt_after_the_first_file_names_it(folder, monkeypatch):
 
 
 def test_bug_is_one_sentence_that_tells_how_to_see_more(folder, monkeypatch):
-    monkeypatch.setattr("tinsmith.io.read", lambda *_, **__: {}["nothing"])
+    monkeypatch.setattr("tinsmith.io.reading.read_as_wished", lambda *_, **__: {}["nothing"])
     result = CliRunner().invoke(main, ["info", "in.csv"])
     assert result.exit_code == 1
     assert result.stderr.startswith("Error: A bug in tinsmith: KeyError: 'nothing'")
@@ -552,7 +602,7 @@ def test_system_errors_are_sentences(folder, monkeypatch, error, sentence):
     def fail(*_, **__):
         raise error
 
-    monkeypatch.setattr("tinsmith.io.read", fail)
+    monkeypatch.setattr("tinsmith.io.reading.read_as_wished", fail)
     result = CliRunner().invoke(main, ["info", "in.csv"])
     assert_sentence(result.exit_code, result.stdout, result.stderr, sentence)
 
@@ -560,9 +610,9 @@ def test_system_errors_are_sentences(folder, monkeypatch, error, sentence):
 def test_warning_of_a_library_is_one_line(folder, monkeypatch):
     import warnings
 
-    from tinsmith import io
+    from tinsmith.io import reading
 
-    read = io.read
+    read = reading.read_as_wished
 
     def warned(*arguments, **options):
         with warnings.catch_warnings():
@@ -570,7 +620,7 @@ def test_warning_of_a_library_is_one_line(folder, monkeypatch):
             warnings.warn("the datum\nis old", UserWarning, stacklevel=1)
         return read(*arguments, **options)
 
-    monkeypatch.setattr(io, "read", warned)
+    monkeypatch.setattr(reading, "read_as_wished", warned)
     Path("in.csv").write_text(SQUARE)
     result = CliRunner().invoke(main, ["info", "in.csv"])
     assert result.stderr == "Warning: the datum is old\n"

@@ -14,6 +14,7 @@ import click
 from .._sentences import counted
 from .output.console import emit_file
 from .output.failures import Failure, note_written
+from .parameters import refuse_value
 from .paths import STANDARD, Named, name_file, require_separate
 
 if TYPE_CHECKING:
@@ -80,6 +81,7 @@ def read_input(path: Path, reading: Reading, console: Console) -> Survey | TIN:
     from ..io import reproject
     from ..tin import Bounds
 
+    _require_format("--format", reading.format)
     options = {name: value for name, value in asdict(reading).items() if value is not None}
     target = options.pop("to_crs", None)
     if reading.length_unit is not None:
@@ -340,9 +342,22 @@ def _describe_option_not_taken(name: str) -> click.UsageError:
     )
 
 
+def _require_format(flag: str, name: str | None) -> None:
+    """Refuse a name that no format has: that is wrong usage, whatever the data."""
+    from ..errors import FormatError
+    from ..io.registry import find_format
+
+    try:
+        if name is not None:
+            find_format(name)
+    except FormatError as error:
+        raise refuse_value(flag, error) from error
+
+
 def _choose_output_formats(path: Path, name: str | None, kinds: Sequence[str]) -> dict[str, Format]:
     from ..io.registry import find_writers
 
+    _require_format("--output-format", name)
     if name is None and path == STANDARD:
         raise click.UsageError("'-o -' needs --output-format: standard output has no suffix.")
     return find_writers(path, name, kinds)

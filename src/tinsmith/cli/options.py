@@ -15,7 +15,7 @@ from .flags import note_given
 from .line_options import CODE_OPTIONS, LINE_OPTIONS
 from .mesh_options import MESH_READING, MESH_WRITING
 from .output.console import Console
-from .parameters import Decorator, choice_option, number_option
+from .parameters import Decorator, choice_option, crs_option, number_option
 
 __all__ = [
     "CODE_FLAGS",
@@ -169,6 +169,7 @@ class Writing:
 class SurfaceWriting(Writing):
     """How a surface is written; some other commands have flags of these names for themselves."""
 
+    multipatch: bool = False
     texture: Path | None = None
     solid: bool = False
     thickness: float | None = None
@@ -226,10 +227,9 @@ def _parse_given(
 
 
 _READING = (
-    click.option(
+    crs_option(
         "--crs",
-        metavar="CRS",
-        help="Coordinate reference system of points that name none, such as EPSG:32616; "
+        "Coordinate reference system of points that name none, such as EPSG:32616; "
         "points in another one are reprojected to it.",
     ),
     click.option(
@@ -238,13 +238,10 @@ _READING = (
         help="Unit of the elevations in the file, where it does not say: m, ft, 'US survey foot'. "
         "Points that are reprojected get the unit of --crs.",
     ),
-    click.option(
-        "--source-crs", metavar="CRS", help="CRS that the points are in, if it is not --crs."
-    ),
-    click.option(
+    crs_option("--source-crs", "CRS that the points are in, if it is not --crs."),
+    crs_option(
         "--to-crs",
-        metavar="CRS",
-        help="Reproject what was read to this CRS; the input must name its own, or --crs does.",
+        "Reproject what was read to this CRS; the input must name its own, or --crs does.",
     ),
     click.option("--format", metavar="NAME", help="Format of the input, whatever it looks like."),
     click.option(

@@ -12,12 +12,14 @@ from .paths import INPUT, OUTPUT
 __all__ = [
     "Decorator",
     "choice_option",
+    "crs_option",
     "input_file",
     "number_option",
     "output_files",
     "output_option",
     "parse_numbers",
     "picture_option",
+    "refuse_value",
     "report_option",
 ]
 
@@ -64,6 +66,32 @@ def choice_option(
         show_default=default is not None,
         help=help,
     )
+
+
+def crs_option(flag: str, help: str) -> Decorator:  # noqa: A002 - click's name
+    """Return an option for a CRS; one that does not exist is wrong usage."""
+    return click.option(flag, metavar="CRS", callback=_require_crs, help=help)
+
+
+def _require_crs(
+    ctx: click.Context,  # noqa: ARG001 - click's signature
+    param: click.Parameter,
+    value: str | None,
+) -> str | None:
+    from ..crs import CRS
+    from ..errors import CrsError
+
+    try:
+        CRS.of(value)
+    except CrsError as error:
+        raise refuse_value(param.opts[0], error) from error
+    return value
+
+
+def refuse_value(flag: str, error: Exception) -> click.UsageError:
+    """Return wrong usage, with the library's sentence on the value of an option."""
+    sentence = str(error)
+    return click.UsageError(f"Invalid {flag}: {sentence[:1].lower()}{sentence[1:]}")
 
 
 def input_file(name: str) -> Decorator:

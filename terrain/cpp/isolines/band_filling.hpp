@@ -9,6 +9,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
+#include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -29,6 +31,7 @@ struct Bands {
 
 class BandFiller {
  public:
+  // Throws overflow_error, with the number of parts of triangles, if there are too many.
   BandFiller(const LevelSurface& surface, Team& team) : surface_(surface), team_(team) {
     list_triangles();
   }
@@ -46,7 +49,7 @@ class BandFiller {
   void list_triangles() {
     first_.assign(std::size_t(surface_.level_count()) + 2, 0);
     const auto each = [&](const auto& use) {
-      for (const Triangle t : Ids<Triangle>(surface_.arrays().triangle_count)) {
+      for (const Triangle t : surface_.triangles()) {
         const auto [low, high] = surface_.ranks(t);
         if (low == high && !is_at_boundary(t)) continue;
         for (std::int32_t band = low; band <= high; ++band) use(t, band);
@@ -54,6 +57,7 @@ class BandFiller {
     };
     each([&](Triangle, std::int32_t band) { ++first_[std::size_t(band) + 1]; });
     std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    if (first_.back() > kMostCrossings) throw std::overflow_error(std::to_string(first_.back()));
     listed_.resize(first_.back());
     std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
     each([&](Triangle t, std::int32_t band) { listed_[next[band]++] = t; });
@@ -140,8 +144,8 @@ class BandFiller {
   Bands found_;
 };
 
-inline Bands fill_bands(const SurfaceArrays& arrays, const Levels& levels, Team& team) {
-  const LevelSurface surface(arrays, levels);
+inline Bands fill_bands(const Surface& given, const Levels& levels, Team& team) {
+  const LevelSurface surface(given, levels);
   return BandFiller(surface, team).fill();
 }
 

@@ -19,23 +19,18 @@
 #include "../../../tin/cpp/base/arrays.hpp"
 #include "../../../tin/cpp/base/ids.hpp"
 #include "../../../tin/cpp/base/point.hpp"
+#include "../../../tin/cpp/location/surface.hpp"
 
 namespace tinsmith::isolines {
-
-// The arrays of a TIN.
-struct SurfaceArrays {
-  const double* xyz;
-  const std::int32_t* triangles;
-  const std::int32_t* neighbors;
-  std::int32_t vertex_count;
-  std::int32_t triangle_count;
-};
 
 // Elevations, strictly ascending.
 struct Levels {
   const double* values;
   std::int32_t count;
 };
+
+// Of triangles by levels, and parts of triangles in bands: numbers of 32 bits are left for marks.
+constexpr std::uint64_t kMostCrossings = INT32_MAX;
 
 // The edge of a triangle by which a line leaves it; the higher end lies on the line's left.
 struct Exit {
@@ -44,22 +39,15 @@ struct Exit {
   Vertex high;
 };
 
-// A triangle that a level crosses: which corners are above, as bits, and the lowest rank.
-struct Crossed {
-  std::uint32_t above;
-  std::int32_t lowest_rank;
-};
-
-// A vertex, and how many levels are at or below it; half a line of the cache.
-struct alignas(32) RankedVertex {
+// A vertex, half a line of the cache; its elevation perhaps moved to a level.
+struct alignas(32) LevelVertex {
   Point point;
   double elevation;
-  std::int32_t rank;
 };
 
 // A crossing of an edge: where the elevation is the level. The same from both triangles, as it is
 // computed from the lower end to the higher one.
-inline Point cross_edge(const RankedVertex& low, const RankedVertex& high, double level) {
+inline Point cross_edge(const LevelVertex& low, const LevelVertex& high, double level) {
   if (high.elevation == level) return high.point;
   const double rise = high.elevation - low.elevation;
   // Halves where the difference of two huge elevations overflows.
@@ -75,23 +63,22 @@ inline Point cross_edge(const RankedVertex& low, const RankedVertex& high, doubl
 
 class LevelSurface {
  public:
-  LevelSurface(const SurfaceArrays& surface, const Levels& levels)
+  LevelSurface(const Surface& surface, const Levels& levels)
       : surface_(surface),
         levels_(levels),
-        vertices_(surface.vertex_count),
-        rank_(surface.vertex_count) {
+        vertices_(surface.point_count),
+        rank_(surface.point_count) {
     double lowest = HUGE_VAL, highest = -HUGE_VAL;
-    for (std::int32_t v = 0; v < surface.vertex_count; ++v) {
-      const double* const row = surface.xyz + 3 * std::size_t(v);
-      vertices_[v] = {{row[0], row[1]}, row[2], 0};
-      lowest = std::min(lowest, row[2]);
-      highest = std::max(highest, row[2]);
+    for (const Vertex v : Ids<Vertex>(surface.point_count)) {
+      lowest = std::min(lowest, surface.elevation(v));
+      highest = std::max(highest, surface.elevation(v));
     }
-    rank_vertices(kNear * highest - kNear * lowest);
-    for (std::int32_t v = 0; v < surface.vertex_count; ++v) rank_[v] = vertices_[v].rank;
+    const std::vector<Vertex> near_levels = rank_vertices(kNear * highest - kNear * lowest);
+    if (!near_levels.empty()) move_to_levels(near_levels);
   }
 
-  const SurfaceArrays& arrays() const { return surface_; }
+  std::uint32_t triangle_count() const { return surface_.triangle_count; }
+  Ids<Triangle> triangles() const { return Ids<Triangle>(triangle_count()); }
   std::int32_t level_count() const { return levels_.count; }
   double level(std::int32_t number) const { return levels_.values[number]; }
 
@@ -102,29 +89,18 @@ class LevelSurface {
     return vertices_[number(v)].elevation == levels_.values[level];
   }
 
-  Vertex corner(Triangle t, std::uint32_t corner) const {
-    return Vertex{surface_.triangles[entry_of(t, corner)]};
-  }
-  Triangle neighbor(Triangle t, std::uint32_t corner) const {
-    const std::int32_t across = surface_.neighbors[entry_of(t, corner)];
-    return across == kNoNeighbor ? kNoTriangle : Triangle{static_cast<std::uint32_t>(across)};
-  }
+  Vertex corner(Triangle t, std::uint32_t corner) const { return surface_.vertex(t, corner); }
+  Triangle neighbor(Triangle t, std::uint32_t corner) const { return surface_.neighbor(t, corner); }
   Point point(Vertex v) const { return vertices_[number(v)].point; }
 
-  // Ask for the rows of a triangle's neighbours: one of them comes next, and memory is what a walk
-  // waits for.
-  void prefetch_around(Triangle t, const std::uint32_t* first_exits) const {
-#if defined(__GNUC__)
-    for (std::uint32_t corner = 0; corner < 3; ++corner) {
-      const std::int32_t across = surface_.neighbors[entry_of(t, corner)];
-      const std::size_t entry = across == kNoNeighbor ? 0 : 3 * std::size_t(across);
-      __builtin_prefetch(surface_.triangles + entry);
-      __builtin_prefetch(surface_.neighbors + entry);
-      __builtin_prefetch(first_exits + entry / 3);
-    }
-#else
-    (void)t, (void)first_exits;
-#endif
+  // Ask for what the corners of a triangle hold, before it is needed: vertices lie anywhere in
+  // memory. GCC drops the calls of a function that does nothing else if it is not part of the
+  // caller.
+  [[gnu::always_inline]] void prefetch_ranks(Triangle t) const {
+    prefetch_corners(t, rank_.data());
+  }
+  [[gnu::always_inline]] void prefetch_vertices(Triangle t) const {
+    prefetch_corners(t, vertices_.data());
   }
 
   // The lowest and the highest rank of a triangle's corners: levels from the first to before the
@@ -141,17 +117,6 @@ class LevelSurface {
     return std::uint32_t{is_above(corner(t, 0), level)} |
            std::uint32_t{is_above(corner(t, 1), level)} << 1 |
            std::uint32_t{is_above(corner(t, 2), level)} << 2;
-  }
-
-  // Throws where the level crosses no edge, as only wrong neighbours lead there.
-  Crossed crossed(Triangle t, std::int32_t level) const {
-    const std::int32_t a = rank(corner(t, 0)), b = rank(corner(t, 1)), c = rank(corner(t, 2));
-    const std::uint32_t above =
-        std::uint32_t{a > level} | std::uint32_t{b > level} << 1 | std::uint32_t{c > level} << 2;
-    if (above == 0 || above == 7) {
-      throw std::invalid_argument("the neighbours are not those of the triangles");
-    }
-    return {above, std::min(a, std::min(b, c))};
   }
 
   Exit exit_of(Triangle t, std::uint32_t above) const {
@@ -189,55 +154,74 @@ class LevelSurface {
   // A line nearer to a vertex than so many roundings of its coordinates runs through it.
   static constexpr double kRoundings = 16.0;
 
-  void rank_vertices(double near) {
+  template <typename Row>
+  [[gnu::always_inline]] void prefetch_corners(Triangle t, const Row* rows) const {
+#if defined(__GNUC__)
+    if (!surface_.is_triangle(t)) return;
+    for (std::uint32_t k = 0; k < 3; ++k) __builtin_prefetch(rows + number(corner(t, k)));
+#else
+    (void)t, (void)rows;
+#endif
+  }
+
+  // Returns the vertices near to a level, but not at it.
+  std::vector<Vertex> rank_vertices(double near) {
     const double first = levels_.count > 0 ? levels_.values[0] : 0.0;
     const double range = levels_.count > 1 ? levels_.values[levels_.count - 1] - first : 0.0;
     const double per_unit = range > 0.0 ? (levels_.count - 1) / range : 0.0;
     std::vector<Vertex> near_levels;
-    for (const Vertex v : Ids<Vertex>(surface_.vertex_count)) {
-      RankedVertex& vertex = vertices_[number(v)];
-      vertex.rank = rank_of(vertex.elevation, first, per_unit);
-      const double off = vertex.elevation - nearest_level(vertex);
+    for (const Vertex v : Ids<Vertex>(surface_.point_count)) {
+      const double elevation = surface_.elevation(v);
+      vertices_[number(v)] = {surface_.point(v), elevation};
+      rank_[number(v)] = rank_of(elevation, first, per_unit);
+      const double off = elevation - nearest_level(v);
       if (off != 0.0 && std::fabs(off) < near) near_levels.push_back(v);
     }
-    if (!near_levels.empty()) move_to_levels(near_levels);
+    return near_levels;
   }
 
-  double nearest_level(const RankedVertex& vertex) const {
-    const double elevation = vertex.elevation;
-    const std::int32_t r = vertex.rank;
+  double nearest_level(Vertex v) const {
+    const double elevation = vertices_[number(v)].elevation;
+    const std::int32_t r = rank(v);
     const double below = r > 0 ? levels_.values[r - 1] : -HUGE_VAL;
     const double above = r < levels_.count ? levels_.values[r] : HUGE_VAL;
     return elevation - below <= above - elevation ? below : above;
   }
 
   void move_to_levels(const std::vector<Vertex>& near_levels) {
-    std::vector<double> steepest(std::size_t(surface_.vertex_count), -1.0);
-    for (const Vertex v : near_levels) steepest[number(v)] = 0.0;
-    for (const Triangle t : Ids<Triangle>(surface_.triangle_count)) {
-      for (std::uint32_t k = 0; k < 3; ++k) {
-        const Vertex v = corner(t, k);
-        if (steepest[number(v)] < 0.0) continue;
-        for (const Vertex w : {corner(t, corner_after(k)), corner(t, corner_before(k))}) {
-          steepest[number(v)] = std::max(steepest[number(v)], steepness(v, w));
-        }
-      }
-    }
-    for (const Vertex v : near_levels) {
-      RankedVertex& vertex = vertices_[number(v)];
-      const double largest = std::max(std::fabs(vertex.point.x), std::fabs(vertex.point.y));
-      const double level = nearest_level(vertex);
-      const double off = std::fabs(vertex.elevation - level);
-      if (!(off <= kRoundings * 0x1p-52 * largest * steepest[number(v)])) continue;
+    const std::vector<double> steepest = find_steepest(near_levels);
+    for (std::size_t i = 0; i < near_levels.size(); ++i) {
+      const Vertex v = near_levels[i];
+      const double largest = std::max(std::fabs(point(v).x), std::fabs(point(v).y));
+      const double level = nearest_level(v);
+      double& elevation = vertices_[number(v)].elevation;
+      if (!(std::fabs(elevation - level) <= kRoundings * 0x1p-52 * largest * steepest[i])) continue;
+      elevation = level;
       const double* const end = levels_.values + levels_.count;
-      vertex.elevation = level;
-      vertex.rank =
+      rank_[number(v)] =
           static_cast<std::int32_t>(std::upper_bound(levels_.values, end, level) - levels_.values);
     }
   }
 
+  // How steeply the edges of some vertices, given in ascending order, rise or fall at most.
+  std::vector<double> find_steepest(const std::vector<Vertex>& from) const {
+    std::vector<double> steepest(from.size(), 0.0);
+    std::vector<bool> is_wanted(std::size_t(surface_.point_count), false);
+    for (const Vertex v : from) is_wanted[number(v)] = true;
+    for (const Triangle t : triangles()) {
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const Vertex v = corner(t, k);
+        if (!is_wanted[number(v)]) continue;
+        double& most = steepest[std::lower_bound(from.begin(), from.end(), v) - from.begin()];
+        most = std::max({most, steepness(v, corner(t, corner_after(k))),
+                         steepness(v, corner(t, corner_before(k)))});
+      }
+    }
+    return steepest;
+  }
+
   double steepness(Vertex v, Vertex w) const {
-    const RankedVertex &p = vertices_[number(v)], &q = vertices_[number(w)];
+    const LevelVertex &p = vertices_[number(v)], &q = vertices_[number(w)];
     return std::fabs(p.elevation - q.elevation) /
            std::hypot(p.point.x - q.point.x, p.point.y - q.point.y);
   }
@@ -263,10 +247,10 @@ class LevelSurface {
                                      values);
   }
 
-  SurfaceArrays surface_;
+  Surface surface_;
   Levels levels_;
-  ScratchVector<RankedVertex> vertices_;
-  ScratchVector<std::int32_t> rank_;  // once more: so few bytes stay in the cache
+  ScratchVector<LevelVertex> vertices_;
+  ScratchVector<std::int32_t> rank_;  // apart: so few bytes stay in the cache
 };
 
 }  // namespace tinsmith::isolines

@@ -12,6 +12,7 @@
 #include "../../../tin/cpp/base/parallel.hpp"
 #include "../pulse.hpp"
 #include "level_surface.hpp"
+#include "line_exits.hpp"
 
 namespace tinsmith::isolines {
 
@@ -51,92 +52,51 @@ inline void turn_to_first(ScratchVector<Point>& points, std::size_t begin) {
 // triangle beyond: lines are the cycles of that map and its ways from boundary to boundary.
 class LineTracer {
  public:
-  LineTracer(const LevelSurface& surface, Team& team) : surface_(surface), pulse_(team) {
-    const std::int32_t count = surface.arrays().triangle_count;
-    first_exit_.resize(std::size_t(count) + 1);
-    std::size_t total = 0;
-    for (const Triangle t : Ids<Triangle>(count)) {
-      const auto [low, high] = surface.ranks(t);
-      first_exit_[number(t)] = static_cast<std::uint32_t>(total);
-      total += std::size_t(high - low);
-      if (total > kMostCrossings) throw std::length_error("too many crossings");
-      if (low < high) list_boundary(t);
-    }
-    first_exit_[count] = static_cast<std::uint32_t>(total);
-    is_left_.assign(total, 1);
-  }
-
-  static constexpr std::size_t kMostCrossings = INT32_MAX;
+  LineTracer(const LevelSurface& surface, Team& team) : pulse_(team), exits_(surface, pulse_) {}
 
   TracedLines trace() {
-    for (const HalfEdge e : boundary_) trace_from_boundary(triangle_of(e), corner_of(e));
-    for (const Triangle t : Ids<Triangle>(surface_.arrays().triangle_count)) {
-      if (!pulse_.goes_on()) break;
-      const std::uint32_t begin = first_exit_[number(t)];
-      const std::uint32_t end = first_exit_[std::size_t{number(t)} + 1];
-      for (std::uint32_t exit = begin; exit < end; ++exit) {
-        if (is_left_[exit]) trace_closed(t, surface_.ranks(t).first + std::int32_t(exit - begin));
-      }
+    found_.points.reserve(exits_.size() + exits_.starts().size());
+    for (const Start& start : exits_.starts()) trace_from(start);
+    for (ExitId e{0}; number(e) < exits_.size() && pulse_.goes_on(); e = ExitId{number(e) + 1}) {
+      if (!exits_.is_left(e)) trace_closed(e);
     }
     return std::move(found_);
   }
 
  private:
-  void list_boundary(Triangle t) {
-    for (std::uint32_t corner = 0; corner < 3; ++corner) {
-      if (surface_.neighbor(t, corner) == kNoTriangle) boundary_.push_back(half_edge(t, corner));
-    }
-  }
-
-  // Lines come in where the boundary falls, with the surface on its left.
-  void trace_from_boundary(Triangle t, std::uint32_t corner) {
-    const Vertex start = surface_.corner(t, corner_after(corner));
-    const Vertex end = surface_.corner(t, corner_before(corner));
-    for (std::int32_t level = surface_.rank(end); level < surface_.rank(start); ++level) {
-      const std::size_t begin = found_.points.size();
-      found_.points.push_back(surface_.crossing({corner, end, start}, level));
-      follow(t, level, begin);
-      keep(begin, level, false);
-    }
-  }
-
-  void trace_closed(Triangle t, std::int32_t level) {
+  void trace_from(const Start& start) {
     const std::size_t begin = found_.points.size();
-    Triangle next = t;
-    leave(t, surface_.crossed(t, level), level, begin, next);
-    follow(next, level, begin);
+    found_.points.push_back(start.point);
+    const std::int32_t level = exits_.level(start.first);
+    require(follow(start.first, begin) == kNoExit);
+    keep(begin, level, false);
+  }
+
+  void trace_closed(ExitId first) {
+    const std::size_t begin = found_.points.size();
+    const std::int32_t level = exits_.level(first);
+    require(follow(first, begin) == first);
     auto& points = found_.points;
     while (points.size() > begin + 1 && points.back() == points[begin]) points.pop_back();
     turn_to_first(points, begin);
     keep(begin, level, true);
   }
 
-  // From exit to exit, until the boundary or an exit that the line had before.
-  void follow(Triangle t, std::int32_t level, std::size_t begin) {
-    while (t != kNoTriangle && pulse_.goes_on()) {
-      surface_.prefetch_around(t, first_exit_.data());
-      Crossed crossed = surface_.crossed(t, level);
-      const Triangle beyond = surface_.beyond_ridge(t, crossed.above, level);
-      if (beyond != kNoTriangle) {
-        t = beyond;
-        crossed = surface_.crossed(t, level);
-      }
-      if (!leave(t, crossed, level, begin, t)) return;
+  // From exit to exit, until the boundary or an exit that was left before: returns that.
+  ExitId follow(ExitId e, std::size_t begin) {
+    auto& points = found_.points;
+    while (e != kNoExit && !exits_.is_left(e) && pulse_.goes_on()) {
+      const Point point = exits_.point(e);
+      if (points.size() == begin || !(points.back() == point)) points.push_back(point);
+      e = exits_.leave(e);
     }
+    return e;
   }
 
-  // Add the point where the line leaves a triangle and find the next one; false if that was done.
-  bool leave(Triangle t, const Crossed& crossed, std::int32_t level, std::size_t begin,
-             Triangle& next) {
-    char& is_left = is_left_[first_exit_[number(t)] + std::uint32_t(level - crossed.lowest_rank)];
-    if (!is_left) return false;
-    is_left = 0;
-    const Exit exit = surface_.exit_of(t, crossed.above);
-    const Point point = surface_.crossing(exit, level);
-    auto& points = found_.points;
-    if (points.size() == begin || !(points.back() == point)) points.push_back(point);
-    next = surface_.neighbor(t, exit.corner);
-    return true;
+  void require(bool comes_to_its_end) {
+    if (!comes_to_its_end && pulse_.goes_on()) {
+      throw std::invalid_argument("the neighbours are not those of the triangles");
+    }
   }
 
   // A line that has shrunk to a point, or to a way forth and back, is none.
@@ -149,11 +109,8 @@ class LineTracer {
     found_.lines.push_back({begin, points.size(), level, is_closed});
   }
 
-  const LevelSurface& surface_;
   Pulse pulse_;
-  ScratchVector<std::uint32_t> first_exit_;  // of each triangle, that of its lowest level
-  std::vector<HalfEdge> boundary_;           // of crossed triangles
-  std::vector<char> is_left_;
+  LineExits exits_;
   TracedLines found_;
 };
 
@@ -170,8 +127,8 @@ inline void sort_lines(TracedLines& found) {
   std::sort(found.lines.begin(), found.lines.end(), before);
 }
 
-inline TracedLines trace_lines(const SurfaceArrays& arrays, const Levels& levels, Team& team) {
-  const LevelSurface surface(arrays, levels);
+inline TracedLines trace_lines(const Surface& given, const Levels& levels, Team& team) {
+  const LevelSurface surface(given, levels);
   TracedLines found = LineTracer(surface, team).trace();
   sort_lines(found);
   return found;

@@ -9,11 +9,10 @@
 #include <stdexcept>
 #include <utility>
 
-#include "../../../tin/cpp/python/arrays.hpp"
+#include "../../../tin/cpp/python/conversion.hpp"
 #include "../relief/normals.hpp"
 #include "../relief/quadratic_fit.hpp"
 #include "../relief/shading.hpp"
-#include "bind_gridding.hpp"
 
 namespace tinsmith::python {
 
@@ -22,7 +21,7 @@ using Derivatives = Made<double, QuadraticFit::kTerms, -1>;
 
 inline std::pair<Xyz, Numbers> triangle_normals(const GivenXyz& points,
                                                 const GivenTriples& triangles, int threads) {
-  const Surface surface = gridded_surface(points, triangles);
+  const Surface surface = surface_of(points, triangles);
   auto normals = streamed_array<double>(3 * triangles.shape(0));
   const auto slivers =
       unlocked(threads, [&](Team& team) { return compute_normals(surface, normals.get(), team); });
@@ -31,7 +30,7 @@ inline std::pair<Xyz, Numbers> triangle_normals(const GivenXyz& points,
 
 inline Xyz vertex_normals(const GivenXyz& points, const GivenTriples& triangles,
                           const GivenXyz& normals) {
-  const Surface surface = gridded_surface(points, triangles);
+  const Surface surface = surface_of(points, triangles);
   if (normals.shape(0) != triangles.shape(0)) {
     throw std::invalid_argument("there must be one normal for each triangle");
   }
@@ -44,19 +43,17 @@ inline Xyz vertex_normals(const GivenXyz& points, const GivenTriples& triangles,
 }
 
 inline Derivatives fit_quadratics(const GivenXyz& points, const GivenTriples& triangles,
-                                  const GivenNumbers1D& east, const GivenNumbers1D& north,
-                                  double up, int threads) {
-  const Surface surface = gridded_surface(points, triangles);
+                                  const GivenValues& east, const GivenValues& north, double up,
+                                  int threads) {
+  const Surface surface = surface_of(points, triangles);
   const std::size_t count = points.shape(0), given = east.shape(0);
   if (given != north.shape(0) || (given != 1 && given != count)) {
     throw std::invalid_argument("there must be one factor for all vertices or for each");
   }
   const VertexScales scales{east.data(), north.data(), up, given != 1};
   auto derivatives = streamed_array<double>(QuadraticFit::kTerms * count);
-  unlocked(threads, [&](Team& team) {
-    QuadraticFit::run(surface, scales, derivatives.get(), team);
-    return 0;
-  });
+  run_unlocked(threads,
+               [&](Team& team) { QuadraticFit::run(surface, scales, derivatives.get(), team); });
   return hand_over<Derivatives>(std::move(derivatives), {QuadraticFit::kTerms, count});
 }
 

@@ -26,11 +26,9 @@ inline std::vector<std::int32_t> compute_normals(const Surface& surface, double*
     const Range range = part_of(surface.triangle_count, part, team.size());
     for (std::int32_t i = range.begin; i < range.end; ++i) {
       if (i % kBetweenQuestions == 0 && !team.keeps_going(part)) return;
-      const Triangle t{static_cast<std::uint32_t>(i)};
+      const Triangle t = triangle_numbered(i);
       const double* row[3];
-      for (std::uint32_t k = 0; k < 3; ++k) {
-        row[k] = surface.points + 3 * static_cast<std::size_t>(number(surface.vertex(t, k)));
-      }
+      for (std::uint32_t k = 0; k < 3; ++k) row[k] = surface.row(surface.vertex(t, k));
       double u[3], v[3];
       for (int axis = 0; axis < 3; ++axis) {
         u[axis] = row[1][axis] - row[0][axis];

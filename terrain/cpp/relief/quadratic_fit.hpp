@@ -1,7 +1,8 @@
 // The quadratic surface through each vertex that fits the vertices within two edges best.
 //
 // Least squares of the differences in elevation, all of equal weight, by the normal equations and
-// Cholesky's decomposition. Sums run over a vertex's neighbours in the order of their coordinates and
+// Cholesky's decomposition (Benoit, "Note sur une methode de resolution des equations normales",
+// 1924). Sums run over a vertex's neighbours in the order of their coordinates and
 // then over each one's that are new, in the same order: so the result does not depend on how
 // vertices are numbered. Lengths are divided by their size, so that the equations have no unit.
 #pragma once
@@ -111,7 +112,7 @@ class QuadraticFit {
   }
 
   Place place_of(Vertex v) const {
-    const double* row = surface_.points + 3 * static_cast<std::size_t>(number(v));
+    const double* row = surface_.row(v);
     return {row[0], row[1], row[2]};
   }
 

@@ -25,7 +25,7 @@ class VertexTriangles {
     std::uint32_t total = 0;
     for (std::int32_t v = 0; v <= surface.point_count; ++v) begin_[v] = total += begin_[v];
     for (std::size_t i = entries; i-- > 0;) {
-      triangles_[--begin_[surface.corners[i]]] = Triangle{static_cast<std::uint32_t>(i / 3)};
+      triangles_[--begin_[surface.corners[i]]] = triangle_of(half_edge_at(i));
     }
   }
 
@@ -76,12 +76,8 @@ class VertexNeighbors {
         if (w != v && !(are_few && std::find(first, last, w) != last)) *last++ = w;
       }
     }
-    const auto row = [&](Vertex w) {
-      return surface.points + 3 * static_cast<std::size_t>(number(w));
-    };
     std::sort(first, last, [&](Vertex a, Vertex b) {
-      const double *p = row(a), *q = row(b);
-      return p[0] < q[0] || (p[0] == q[0] && p[1] < q[1]);
+      return lexicographically_before(surface.point(a), surface.point(b));
     });
     count_[number(v)] = static_cast<std::uint32_t>(std::unique(first, last) - first);
   }

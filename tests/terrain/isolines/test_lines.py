@@ -305,6 +305,39 @@ def test_options_that_are_none_are_refused_in_a_sentence(options, sentence):
     assert sentence in str(refused.value)
 
 
+def chequerboard(side):
+    x, y = (axis.ravel() for axis in np.meshgrid(np.arange(side), np.arange(side)))
+    return ts.triangulate(np.column_stack([x, y, (x + y) % 2]))
+
+
+@pytest.mark.parametrize(
+    ("trace", "count", "what"),
+    [
+        (ts.contours, 2 * 199 * 199 * 30_000, "crossings of triangles"),
+        (ts.contour_bands, 2 * 199 * 199 * 30_001, "parts of triangles"),
+    ],
+)
+def test_more_crossings_than_can_be_numbered_are_refused(trace, count, what):
+    """Every triangle is crossed by every level; memory for the lines is never asked for."""
+    tin = chequerboard(200)
+    step = 1 / 30_000
+    most = f"at most 2,147,483,647 {what}, and here there would be {count:,}."
+    with pytest.raises(ts.OptionError) as refused:
+        trace(tin, levels=(np.arange(30_000) + 0.5) * step)
+    sentence = f"Invalid number of levels 30000: it must be so small that there are {most}"
+    assert str(refused.value) == sentence
+    with pytest.raises(ts.OptionError, match=r"^Invalid interval .*: it must be so large"):
+        trace(tin, interval=step)
+
+
+def test_as_many_crossings_as_can_be_numbered_are_counted_exactly():
+    """One level beyond the last that fits; 2**31 - 1 is a prime, so none fits exactly."""
+    triangles = len(chequerboard(200).triangles)
+    beyond = (2**31 - 1) // triangles + 1
+    with pytest.raises(ts.OptionError, match=f"here there would be {beyond * triangles:,}"):
+        ts.contours(chequerboard(200), levels=(np.arange(beyond) + 0.5) / beyond)
+
+
 def test_an_interval_below_the_resolution_of_elevations_is_refused():
     z = 1e6 + np.array([0, 0, 1e-9, 1e-9])
     tin = ts.triangulate(np.column_stack([SQUARE, z]))

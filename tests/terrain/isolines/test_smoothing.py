@@ -141,3 +141,13 @@ def test_the_checker_knows_lines_that_meet_in_a_vertex_at_their_level():
 def test_the_checker_refuses_what_are_no_contours():
     with pytest.raises(ts.OptionError, match="contours, as lines with elevations"):
         ts.check_contours(PLANE, ts.Features.of_points([[0, 0]]))
+
+
+def test_more_points_than_smoothing_can_number_are_refused(monkeypatch):
+    monkeypatch.setattr("tinsmith.terrain.isolines.smoothing.MOST_POINTS", 9)
+    tin = ts.triangulate([[0, 0, 0], [4, 0, 4], [4, 4, 4], [0, 4, 0]])
+    sentence = "it must be left out where contours have more than 9 points: here 12"
+    for option in ("smooth", "simplify"):
+        ts.contours(tin, levels=[1, 2, 3], **{option: 0.1})
+        with pytest.raises(ts.OptionError, match=f"Invalid {option} 0.1: {sentence}"):
+            ts.contours(tin, levels=[0.5, 1.5, 2.5, 3.5], **{option: 0.1})

@@ -197,7 +197,7 @@ class TestPicture:
         assert list(tmp_path.iterdir()) == [path]
 
     def test_annotations_follow_the_camera(self, monkeypatch):
-        module = sys.modules["tinsmith.terrain.preview.picture"]
+        module = sys.modules["tinsmith.terrain.preview.stage"]
         written = []
         monkeypatch.setattr(opengl, "require_window", lambda: None)
         monkeypatch.setattr(

@@ -9,7 +9,7 @@ import click
 from ..._sentences import counted
 from ...policies import Extrapolation, InterpolationMethod
 from ..output.failures import Failure
-from ..parameters import choice_option, input_file, output_files
+from ..parameters import choice_option, crs_option, input_file, output_files
 from ..paths import LINES, Named
 from ..request import surface_options
 
@@ -49,7 +49,7 @@ __all__ = ["interpolate"]
     help="Columns of easting and northing, if their names do not say.",
 )
 @click.option("--places-delimiter", metavar="TEXT", help="What separates the columns of places.")
-@click.option("--places-crs", metavar="CRS", help="CRS of the places, if it is not the surface's.")
+@crs_option("--places-crs", "CRS of the places, if it is not the surface's.")
 @click.option(
     "--column",
     metavar="NAME",
