@@ -10,26 +10,29 @@ Longs: TypeAlias = NDArray[np.int64]
 Flags: TypeAlias = NDArray[np.bool_]
 Bytes: TypeAlias = NDArray[np.uint8]
 
-def values_at_centers(
-    points: Doubles,
-    triangles: Ints,
-    x: Doubles,
-    y: Doubles,
-    spacing: float,
-    values: Doubles | None,
-    threads: int = ...,
-) -> Doubles: ...
-def means_of_cells(
-    points: Doubles,
-    triangles: Ints,
-    x: Doubles,
-    y: Doubles,
-    spacing: float,
-    x_edges: Doubles,
-    y_edges: Doubles,
-    values: Doubles | None,
-    threads: int = ...,
-) -> Doubles: ...
+TILE_SIDE: int
+
+class GriddedSurface:
+    def __init__(self, points: Doubles, triangles: Ints) -> None: ...
+    def values_at_centers(
+        self,
+        x: Doubles,
+        y: Doubles,
+        spacing: float,
+        values: Doubles | None,
+        threads: int = ...,
+    ) -> Doubles: ...
+    def means_of_cells(
+        self,
+        x: Doubles,
+        y: Doubles,
+        spacing: float,
+        x_edges: Doubles,
+        y_edges: Doubles,
+        values: Doubles | None,
+        threads: int = ...,
+    ) -> Doubles: ...
+
 def trace_contours(
     points: Doubles,
     triangles: Ints,

@@ -15,10 +15,11 @@ if TYPE_CHECKING:
 
 __all__ = [
     "SUMS",
+    "TILE_SIDE",
+    "GriddedSurface",
     "OverlayMesh",
     "fill_bands",
     "fit_quadratics",
-    "means_of_cells",
     "overlay",
     "shade_planes",
     "smooth_contours",
@@ -28,12 +29,12 @@ __all__ = [
     "sum_heights",
     "trace_contours",
     "triangle_normals",
-    "values_at_centers",
     "vertex_normals",
 ]
 
-means_of_cells = _core.means_of_cells
-values_at_centers = _core.values_at_centers
+GriddedSurface = _core.GriddedSurface
+TILE_SIDE = _core.TILE_SIDE
+"""Cells of a raster that are computed together lie in squares of so many rows and columns."""
 
 triangle_normals = _core.triangle_normals
 vertex_normals = _core.vertex_normals

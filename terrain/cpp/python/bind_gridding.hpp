@@ -22,14 +22,6 @@ inline CellGrid grid_of(const GivenValues& x, const GivenValues& y, double spaci
   return {x.data(), y.data(), row_count(x.shape(0)), row_count(y.shape(0)), spacing};
 }
 
-inline const double* values_of(const std::optional<GivenValues>& values, const Surface& surface) {
-  if (!values) return nullptr;
-  if (values->shape(0) != surface.triangle_count) {
-    throw std::invalid_argument("there must be one value for each triangle");
-  }
-  return values->data();
-}
-
 template <typename Draw>
 Cells draw_cells(const CellGrid& grid, int threads, Draw&& draw) {
   const auto rows = static_cast<std::size_t>(grid.rows);
@@ -39,40 +31,63 @@ Cells draw_cells(const CellGrid& grid, int threads, Draw&& draw) {
   return hand_over<Cells>(std::move(cells), {rows, columns});
 }
 
-inline Cells values_at_centers(const GivenXyz& points, const GivenTriples& triangles,
-                               const GivenValues& x, const GivenValues& y, double spacing,
-                               const std::optional<GivenValues>& values, int threads) {
-  const Surface surface = surface_of(points, triangles);
-  const CellGrid grid = grid_of(x, y, spacing);
-  const double* each = values_of(values, surface);
-  return draw_cells(grid, threads, [&](double* cells, Team& team) {
-    CenterScan::run(surface, grid, each, cells, team);
-  });
-}
+// A surface in an order for drawing, for any number of blocks of cells.
+class GriddedSurface {
+ public:
+  GriddedSurface(const GivenXyz& points, const GivenTriples& triangles)
+      : ordered_(order(surface_of(points, triangles))) {}
 
-inline Cells means_of_cells(const GivenXyz& points, const GivenTriples& triangles,
-                            const GivenValues& x, const GivenValues& y, double spacing,
-                            const GivenValues& x_edges, const GivenValues& y_edges,
-                            const std::optional<GivenValues>& values, int threads) {
-  const Surface surface = surface_of(points, triangles);
-  const CellGrid grid = grid_of(x, y, spacing);
-  if (x_edges.shape(0) != x.shape(0) + 1 || y_edges.shape(0) != y.shape(0) + 1) {
-    throw std::invalid_argument("columns and rows have one edge more than centres");
+  Cells values_at_centers(const GivenValues& x, const GivenValues& y, double spacing,
+                          const std::optional<GivenValues>& values, int threads) const {
+    const CellGrid grid = grid_of(x, y, spacing);
+    const double* each = values_of(values);
+    return draw_cells(grid, threads, [&](double* cells, Team& team) {
+      CenterScan::run(ordered_, grid, each, cells, team);
+    });
   }
-  const double* each = values_of(values, surface);
-  return draw_cells(grid, threads, [&](double* cells, Team& team) {
-    MeanScan::run(surface, grid, x_edges.data(), y_edges.data(), each, cells, team);
-  });
-}
+
+  Cells means_of_cells(const GivenValues& x, const GivenValues& y, double spacing,
+                       const GivenValues& x_edges, const GivenValues& y_edges,
+                       const std::optional<GivenValues>& values, int threads) const {
+    const CellGrid grid = grid_of(x, y, spacing);
+    if (x_edges.shape(0) != x.shape(0) + 1 || y_edges.shape(0) != y.shape(0) + 1) {
+      throw std::invalid_argument("columns and rows have one edge more than centres");
+    }
+    const double* each = values_of(values);
+    return draw_cells(grid, threads, [&](double* cells, Team& team) {
+      MeanScan::run(ordered_, grid, x_edges.data(), y_edges.data(), each, cells, team);
+    });
+  }
+
+ private:
+  static OrderedSurface order(const Surface& surface) {
+    nb::gil_scoped_release release;
+    return OrderedSurface(surface);
+  }
+
+  const double* values_of(const std::optional<GivenValues>& values) const {
+    if (!values) return nullptr;
+    if (values->shape(0) != ordered_.surface().triangle_count) {
+      throw std::invalid_argument("there must be one value for each triangle");
+    }
+    return values->data();
+  }
+
+  OrderedSurface ordered_;
+};
 
 inline void bind_gridding(nb::module_& m) {
-  m.def("values_at_centers", &values_at_centers, "points"_a.noconvert(), "triangles"_a.noconvert(),
-        "x"_a.noconvert(), "y"_a.noconvert(), "spacing"_a, "values"_a.none(), "threads"_a = 1,
-        "Elevations, or values of triangles, at the centres of cells; NaN outside.");
-  m.def("means_of_cells", &means_of_cells, "points"_a.noconvert(), "triangles"_a.noconvert(),
-        "x"_a.noconvert(), "y"_a.noconvert(), "spacing"_a, "x_edges"_a.noconvert(),
-        "y_edges"_a.noconvert(), "values"_a.none(), "threads"_a = 1,
-        "Means over the parts of cells that the surface covers; NaN where it covers none.");
+  m.attr("TILE_SIDE") = Tiles::kSide;
+  nb::class_<GriddedSurface>(m, "GriddedSurface", "A surface to draw blocks of cells of.")
+      .def(nb::init<const GivenXyz&, const GivenTriples&>(), "points"_a.noconvert(),
+           "triangles"_a.noconvert())
+      .def("values_at_centers", &GriddedSurface::values_at_centers, "x"_a.noconvert(),
+           "y"_a.noconvert(), "spacing"_a, "values"_a.none(), "threads"_a = 1,
+           "Elevations, or values of triangles, at the centres of cells; NaN outside.")
+      .def("means_of_cells", &GriddedSurface::means_of_cells, "x"_a.noconvert(), "y"_a.noconvert(),
+           "spacing"_a, "x_edges"_a.noconvert(), "y_edges"_a.noconvert(), "values"_a.none(),
+           "threads"_a = 1,
+           "Means over the parts of cells that the surface covers; NaN where it covers none.");
 }
 
 }  // namespace tinsmith::python
