@@ -27,6 +27,7 @@ from .detection import Reading, choose_reading, read_in_style
 from .figures import RINGS, Fault, Figure
 from .geometry import build_polyline
 from .remarks import describe_faults
+from .several_files import NoCodesError, read_each_file, split_files
 from .styles import MARKS, find_style
 
 if TYPE_CHECKING:
@@ -89,7 +90,8 @@ def lines_from_codes(
         as they are, but for those that a table excludes from the surface. ``findings`` has what is
         odd, with the rows of the survey given, and ``notes`` counts it: marks that are unknown,
         and are taken for a remark, lines of too few points, which are left out, curves that cannot
-        be, rings that are open.
+        be, rings that are open. Of several files that were read as one survey each is read by
+        itself: a line ends with its file.
 
     Raises
     ------
@@ -114,13 +116,21 @@ def lines_from_codes(
     if not isinstance(survey, Survey):
         raise OptionError("survey", survey, "a Survey")
     table = _choose_table(rules, code_table)
+    if files := split_files(survey):
+
+        def read(part: Survey) -> Survey:
+            return lines_from_codes(
+                part, code_table=table, code_style=code_style, arc_tolerance=arc_tolerance
+            )
+
+        return read_each_file(survey, files, read)
     tolerance = _choose_tolerance(survey, table, arc_tolerance)
     texts = _require_descriptions(survey)
     order = _order_by_number(survey).tolist()
     reading, notes = _read(order, texts, table, code_style, _namer(survey))
     if not reading.figures and not _excludes(table, reading):
         known = ", ".join(table.rules)
-        raise LinesError(f"No description begins with a line code: {known} are known.")
+        raise NoCodesError(f"No description begins with a line code: {known} are known.")
     return _Builder(survey, table, reading, tolerance).build(order, texts, notes)
 
 

@@ -6,7 +6,6 @@ import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-import shapely
 
 from ..._sentences import counted
 from ...errors import OptionError
@@ -129,6 +128,8 @@ def cut_rows(ground: Ground, layout: Layout, scale: Scale) -> list[Window]:
     OptionError
         If there would be too many.
     """
+    import shapely
+
     length = scale.measure_unit(ground.unit)
     width, height = _find_step(layout, length)
     bounds = ground.bounds
@@ -167,6 +168,8 @@ def _find_room(layout: Layout, length: float) -> tuple[float, float]:
 
 def _find_ground(footprint: Footprint, boxes: NDArray[Any]) -> NDArray[np.bool_]:
     """Tell which rectangles hold some of a footprint."""
+    import shapely
+
     shapely.prepare(footprint.faces)
     is_kept = np.zeros(len(boxes), np.bool_)
     for face in footprint.faces:
@@ -217,13 +220,15 @@ def cut_strip_windows(
     OptionError
         If a strip is too narrow for the ground, or there would be too many.
     """
+    import shapely
+
     length = scale.measure_unit(ground.unit)
     width, height = _find_step(layout, length)
     area = float(shapely.area(ground.footprint.faces).sum())
     require_few(area / (width * height), scale, layout)
     strips = cut_strips(ground.footprint, width, _find_room(layout, length), axis)
     if strips is None:
-        raise OptionError("scale", scale.text, _describe_too_narrow(ground, layout, axis))
+        raise OptionError("scale", scale.text, _describe_too_wide(ground, layout, scale, axis))
     require_few(len(strips), scale, layout)
     return [_as_window(k, strips, layout, length) for k in range(len(strips))]
 
@@ -244,18 +249,19 @@ def _reach(window: Window, joint: Any) -> NDArray[np.float64]:
     return np.array([joint.place - reach * across, joint.place + reach * across])
 
 
-def _describe_too_narrow(ground: Ground, layout: Layout, axis: NDArray[np.float64] | None) -> str:
-    """Say at which scale strips would be wide enough."""
-    of = "the given axis" if axis is not None else "its own axis"
+def _describe_too_wide(
+    ground: Ground, layout: Layout, given: Scale, axis: NDArray[np.float64] | None
+) -> str:
+    """Say at which smaller scale strips would be wide enough."""
+    of = f"strips of {layout.paper.name} along {'its own' if axis is None else 'the given'} axis"
     for scale in Scale.usual(ground.unit):
-        width, height = _find_step(layout, scale.measure_unit(ground.unit))
-        area = float(shapely.area(ground.footprint.faces).sum())
-        if area / (width * height) > MOST_SHEETS:
+        if scale.denominator <= given.denominator:
             continue
-        room = _find_room(layout, scale.measure_unit(ground.unit))
-        if cut_strips(ground.footprint, width, room, axis) is not None:
+        length = scale.measure_unit(ground.unit)
+        room = _find_room(layout, length)
+        if cut_strips(ground.footprint, _find_step(layout, length)[0], room, axis) is not None:
             return (
-                f"{scale.text} or smaller: the surface is too wide for a strip of "
-                f"{layout.paper.name} along {of}; or the layout 'rows'"
+                f"{scale.text} or smaller, for the surface is too wide for {of}; or the layout "
+                "'rows'"
             )
-    return f"smaller: the surface is too wide for strips of {layout.paper.name} along {of}"
+    return f"smaller, for the surface is too wide for {of}"

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from decimal import Decimal
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-import shapely
 
 from ..isolines import contour_labels
 from ..results import Features
@@ -163,6 +163,8 @@ def _draw_paths(
 
 
 def _fill_water(canvas: Canvas, window: Window, contents: Contents, drawn: Drawn) -> None:
+    import shapely
+
     box = shapely.box(*_list_sides(window))
     for face in contents.footprint.faces[contents.footprint.is_water]:
         moved = shapely.make_valid(shapely.transform(face, window.to_paper))
@@ -209,6 +211,8 @@ def _draw_contours(
 
 def _list_barriers(window: Window, contents: Contents) -> Any:
     """Return the lines that labels should not lie on, in a tree."""
+    import shapely
+
     parts = [
         part
         for paths in contents.linework.values()
@@ -219,6 +223,8 @@ def _list_barriers(window: Window, contents: Contents) -> Any:
 
 def _choose_labels(texts: list[_Text], barriers: Any, room: Room) -> list[_Text]:
     """Keep the labels that have room; one on a line only where its contour has no other."""
+    import shapely
+
     boxes = shapely.polygons(np.array([text.corners for text in texts]).reshape(-1, 4, 2))
     hit = np.zeros(len(texts), np.bool_)
     hit[barriers.query(boxes, predicate="intersects")[0]] = True
@@ -279,11 +285,14 @@ def _write_levels(levels: NDArray[np.float64]) -> dict[float, str]:
 
 
 def _count_decimals(value: float) -> int:
-    return len(f"{value:.12f}".rstrip("0").partition(".")[2])
+    """Return how many decimals the shortest way to write a number has."""
+    return max(0, -int(Decimal(str(value)).normalize().as_tuple().exponent))
 
 
 def _cut_out(paths: Paths, texts: list[_Text]) -> Paths:
     """Leave the lines out that run through a text."""
+    import shapely
+
     if not texts or len(paths.sources) == 0:
         return paths
     parts = paths.parts()
@@ -303,6 +312,8 @@ def _cut_out(paths: Paths, texts: list[_Text]) -> Paths:
 
 
 def _subtract(line: Any, boxes: NDArray[Any]) -> list[NDArray[np.float64]]:
+    import shapely
+
     rest = shapely.difference(line, shapely.union_all(boxes))
     pieces = [shapely.get_coordinates(part) for part in shapely.get_parts(rest)]
     return [piece for piece in pieces if len(piece) > 1]

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-import shapely
 
 from ... import _optional
 from ..._sentences import counted
@@ -371,6 +370,8 @@ class _Wording(NamedTuple):
 
 
 def _find_ground(tin: TIN, unit: Unit) -> Ground:
+    import shapely
+
     if len(tin.triangles) == 0:
         raise PointsError("The TIN has no triangle: there is nothing to draw.")
     footprint = find_footprint(tin)

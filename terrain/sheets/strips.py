@@ -7,7 +7,6 @@ import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-import shapely
 
 from ...tin import Bounds
 from .footprint import cut_into_pieces
@@ -91,15 +90,30 @@ def cut_strips(
     middle on the axis, and a strip is as long as all of its pieces, whole, lie in the rectangle. So
     no place of the surface is left out, whatever the axis is.
     """
+    import shapely
+
+    if _measure_widest(footprint) > math.hypot(*room):
+        return None
     pieces = cut_into_pieces(footprint.faces, room[1] / _CELLS_ACROSS)
     line = find_axis(footprint, pieces, room[1]) if axis is None else axis
     return _Walk(pieces, shapely.LineString(line), step, room).cut()
+
+
+def _measure_widest(footprint: Footprint) -> float:
+    """Return the diameter of the largest circle in a footprint, or a little less."""
+    import shapely
+
+    largest = footprint.faces[int(np.argmax(shapely.area(footprint.faces)))]
+    tolerance = 0.01 * math.sqrt(float(shapely.area(largest)))
+    return 2 * float(shapely.length(shapely.maximum_inscribed_circle(largest, tolerance)))
 
 
 class _Walk:
     """The way along an axis, rectangle after rectangle."""
 
     def __init__(self, pieces: Pieces, axis: Any, step: float, room: tuple[float, float]) -> None:
+        import shapely
+
         self._axis = axis
         self._step = step
         self._room = room
@@ -165,6 +179,8 @@ class _Walk:
         return math.degrees(math.atan2(north, east))
 
     def _at(self, *stations: float) -> NDArray[np.float64]:
+        import shapely
+
         found = shapely.line_interpolate_point(self._axis, list(stations))
         places: NDArray[np.float64] = shapely.get_coordinates(found)
         return places
@@ -205,6 +221,8 @@ def find_axis(footprint: Footprint, pieces: Pieces, height: float) -> NDArray[np
 
 
 def _find_straight_axis(footprint: Footprint, height: float) -> tuple[NDArray[np.float64], bool]:
+    import shapely
+
     around = shapely.oriented_envelope(shapely.MultiPoint(shapely.get_coordinates(footprint.faces)))
     corners = shapely.get_coordinates(around)[:4]
     sides = np.hypot(*np.diff(corners[:3], axis=0).T)

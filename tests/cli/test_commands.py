@@ -22,7 +22,7 @@ SURVEY = str(SAMPLES / "site_survey.csv")
 UTM = ("--crs", "EPSG:32616")
 COMMANDS = (
     *("build", "info", "check", "view", "refine", "compare", "edit", "convert"),
-    *("volume", "diff", "formats"),
+    *("volume", "diff", "formats", "plan"),
 )
 
 
@@ -307,7 +307,7 @@ def test_view_passes_on_what_is_asked_for(pyramid, tmp_path, monkeypatch, as_jso
     wanted = {"view": "oblique", "title": "pyramid", "survey": None}
     wanted |= {"exaggeration": None, "edges": False, "lines": True}
     unset = ("azimuth", "tilt", "size", "dpi", "sun", "background", "elevations", "contours")
-    wanted |= dict.fromkeys(unset) | {"tint": "elevation"}
+    wanted |= dict.fromkeys((*unset, "drape")) | {"tint": "elevation"}
     assert asked == [(5, wanted)]
     assert shown == ([] if writes else [True])
     assert ("(7 bytes)" in result.stderr) is writes

@@ -6,7 +6,7 @@ stands for, so that edits, which keep the numbers of rows, keep the values in th
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,7 +19,14 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["Attributes", "as_columns", "as_mapping", "as_row_attributes", "find_first_rows"]
+__all__ = [
+    "Attributes",
+    "as_columns",
+    "as_mapping",
+    "as_row_attributes",
+    "find_first_rows",
+    "join_columns",
+]
 
 _EXACT = 2**53
 """Whole numbers up to here are exact as floats."""
@@ -87,6 +94,43 @@ def find_first_rows(vertex_of: NDArray[np.int32], n_vertices: int) -> NDArray[np
     found = np.full(n_vertices, -1, np.int64)
     found[vertex_of[rows]] = rows
     return seal(found)
+
+
+def join_columns(
+    tables: Sequence[Mapping[str, NDArray[Any]]], counts: Sequence[int]
+) -> dict[str, NDArray[Any]]:
+    """Return the columns of several tables, one behind the other; what one lacks is missing.
+
+    Examples
+    --------
+    >>> one, other = {"number": np.array([1, 2])}, {"number": np.array(["2A"])}
+    >>> join_columns([one, other], [2, 1])["number"].tolist()
+    [1, 2, '2A']
+    """
+    names = dict.fromkeys(name for table in tables for name in table)
+    return {name: _join([one.get(name) for one in tables], counts) for name in names}
+
+
+def _join(columns: Sequence[NDArray[Any] | None], counts: Sequence[int]) -> NDArray[Any]:
+    there = [(one, n) for one, n in zip(columns, counts, strict=True) if one is not None and n]
+    kinds = {one.dtype.kind for one, _ in there}
+    if len(kinds) > 1 and not (kinds <= {"i", "f"} and _are_exact(one for one, _ in there)):
+        there = [(one.astype(object), n) for one, n in there]
+    together = np.concatenate([one for one, _ in there] or [np.empty(0, object)])
+    if len(there) == sum(1 for n in counts if n):
+        return together
+    ends = iter(np.cumsum([0, *(n for _, n in there)]).tolist())
+    start, rows = next(ends), []
+    for one, n in zip(columns, counts, strict=True):
+        rows.append(np.full(n, -1) if one is None else np.arange(start, start + n))
+        start = next(ends, start) if one is not None and n else start
+    return _take(together, np.concatenate(rows))
+
+
+def _are_exact(columns: Iterable[NDArray[Any]]) -> bool:
+    """Whether whole numbers of columns stay what they are among floats."""
+    whole = (one.astype(float) for one in columns if one.dtype.kind == "i")
+    return all((np.abs(one) < _EXACT).all() for one in whole)
 
 
 def as_row_attributes(given: Any, n_rows: int) -> dict[str, NDArray[Any]]:

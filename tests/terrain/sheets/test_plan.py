@@ -87,21 +87,24 @@ def test_lines_have_their_kinds(tmp_path):
     assert np.ptp(water, axis=0) == pytest.approx(4.0 * 1000 / ts.plan(tin).scale, rel=1e-5)
 
 
-def test_an_island_in_water_is_no_water(tmp_path):
-    lake = shapely.box(500005, 4e6 + 5, 500035, 4e6 + 25) - shapely.box(
-        500015, 4e6 + 10, 500025, 4e6 + 20
-    )
-    tin = ts.triangulate(
-        [*SQUARE, [500020, 4e6 + 15, 9]], crs="EPSG:32616", water=[ts.Water(lake, 6.0)]
-    )
-    _, (page,) = draw(tin, tmp_path, scale=250)
-    (rings,) = page.paths["water"]
-    closed = 600 * 16.0
-    outer_area, inner_area = closed, 100 * 16.0
-    ends = np.flatnonzero((rings[1:] == rings[0]).all(axis=1)) + 2
-    first = shapely.Polygon(rings[: ends[0]])
-    assert first.area == pytest.approx(outer_area, rel=1e-5)
-    assert shapely.Polygon(rings[ends[0] :]).area == pytest.approx(inner_area, rel=1e-5)
+def water_area(tin, folder):
+    _, (page,) = draw(tin, folder, scale=250)
+    return sum(shapely.Polygon(ring).area for ring in page.paths.get("water", [])) / 16.0
+
+
+POND = np.array([[500005, 4e6 + 5], [500035, 4e6 + 5], [500035, 4e6 + 25], [500005, 4e6 + 25]])
+
+
+def test_level_ground_around_a_pond_is_no_water(tmp_path):
+    level = [[x, y, 6.0] for x, y, _ in SQUARE]
+    tin = ts.triangulate(level, crs="EPSG:32616", water=[ts.Water(POND, 6.0)])
+    assert water_area(tin, tmp_path) == pytest.approx(600.0, rel=1e-5)
+
+
+def test_a_pond_that_the_boundary_cuts_is_filled_as_far_as_it_goes(tmp_path):
+    ring = [[500000, 4e6], [500020, 4e6], [500020, 4e6 + 30], [500000, 4e6 + 30]]
+    tin = square(boundary=[ring], water=[ts.Water(POND, 6.0)])
+    assert water_area(tin, tmp_path) == pytest.approx(300.0, rel=1e-5)
 
 
 def test_points_have_their_numbers_and_elevations(tmp_path):
@@ -130,6 +133,14 @@ def test_labels_have_the_decimals_of_their_levels(interval, tmp_path):
     found = {float(text) for text in texts(page, "contour-label")}
     assert found
     assert all(round(value / interval, 9) % 1 == 0 for value in found)
+
+
+def test_labels_of_high_levels_are_not_those_of_binary_numbers(tmp_path):
+    tin = ts.triangulate([[0, 0, 200_000.05], [40, 0, 200_001.05], [0, 40, 200_000.05]])
+    _, (page,) = draw(tin, tmp_path, interval=0.1, ground_unit="m", labels="all")
+    found = texts(page, "contour-label")
+    assert "200000.3" in found
+    assert all(len(text) == 8 for text in found)
 
 
 def test_no_labels_no_grid(tmp_path):
@@ -200,10 +211,10 @@ def test_a_flat_surface_has_no_contours_and_says_so(tmp_path):
     assert any("there is no line" in note for note in made.notes)
 
 
-def test_no_triangle_is_nothing_to_draw():
-    tin = ts.TIN.from_triangles(SQUARE, np.empty((0, 3), int), crs="EPSG:32616")
-    with pytest.raises(ts.PointsError, match="no triangle: there is nothing to draw"):
-        ts.plan(tin)
+def test_what_is_no_tin_is_refused():
+    for wrong in (None, SQUARE, ts.TIN):
+        with pytest.raises(ts.PointsError, match="one made by triangulate is needed"):
+            ts.plan(wrong)
 
 
 def test_ten_thousand_levels_are_refused():
@@ -336,8 +347,8 @@ def test_files_are_the_same_in_every_process(tmp_path):
     script = (
         "import sys, tinsmith as ts\n"
         "made = ts.plan(ts.triangulate([[0, 0, 5], [40, 0, 6], [0, 30, 8]]), ground_unit='m',\n"
-        "               title='Plan \\u56f3', points='elevations')\n"
-        "for kind in ('pdf', 'svg', 'png'): made.save(f'{sys.argv[1]}.{kind}')\n"
+        "               title='Plan \\u56f3', points='elevations', paper='A4')\n"
+        "for kind in ('pdf', 'svg', 'png'): made.save(f'{sys.argv[1]}.{kind}', dpi=50)\n"
     )
     for name in ("1", "2"):
         subprocess.run(
@@ -366,6 +377,12 @@ def test_letters_stay_text_in_a_pdf_with_its_font(tmp_path):
     data = file.read_bytes()
     assert b"/FontFile2" in data
     assert b"/ToUnicode" in data
+
+
+def test_without_matplotlib_the_extra_is_named(monkeypatch):
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    with pytest.raises(ts.MissingExtraError, match="plot"):
+        ts.plan(square())
 
 
 def test_a_png_has_the_pixels_of_its_paper(tmp_path):

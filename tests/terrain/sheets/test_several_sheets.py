@@ -173,7 +173,7 @@ def test_a_surface_too_wide_for_strips_is_refused_with_the_scale_that_fits():
     )
     tin = ts.triangulate(points, crs="EPSG:32616")
     with pytest.raises(
-        ts.OptionError, match=r"it must be (1:\d+) or smaller: the surface"
+        ts.OptionError, match=r"it must be (1:\d+) or smaller, for the surface"
     ) as refused:
         ts.plan(tin, scale=500, layout="strips")
     fitting = str(refused.value).split("must be ")[1].split(" ")[0]

@@ -95,12 +95,13 @@ def plan(
 
     \b
     Example:
-      tinsmith plan sample_data/site_survey.csv --crs EPSG:32616 --codes --scale 1000 --paper A3
-        --title "Site survey" --date 2026-11-22 -o plan.pdf
+      tinsmith plan sample_data/site_survey.csv --crs EPSG:32616 --codes --scale 1000 -o plan.pdf
     """  # noqa: D301 - click reads the control character
     from ... import terrain
     from ..files import read_tin
 
+    if asked["scale"] is None and asked["layout"] != "single":
+        raise click.UsageError(f"--layout {asked['layout']} needs --scale.")
     inputs = _list_inputs(file, how, asked["axis_file"])
     _require_plans(outputs, inputs)
     tin, survey = read_tin(file, reading, how, console)

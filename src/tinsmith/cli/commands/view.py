@@ -11,8 +11,14 @@ import click
 from ...policies import Tint
 from ..options import console_options, reading_options, triangulating_options
 from ..output.failures import note_written, tell_warning
-from ..parameters import choice_option, input_file, number_option, parse_numbers, picture_option
-from ..paths import INPUT, Named, make_title
+from ..parameters import (
+    choice_option,
+    input_files,
+    number_option,
+    parse_numbers,
+    picture_option,
+)
+from ..paths import INPUT, Named, describe_inputs, make_title
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -44,7 +50,7 @@ def _parse_size(
 
 
 @click.command(short_help="Show a TIN in 3D: in a window, as a page, as a picture.")
-@input_file("file")
+@input_files("files")
 @picture_option("Picture to write (.png, .jpg, .tif) instead of opening a window.")
 @number_option("--exaggeration", "FACTOR", "Vertical exaggeration; chosen if absent.")
 @click.option("--edges", is_flag=True, help="Draw the edges of the triangles.")
@@ -101,7 +107,7 @@ def _parse_size(
 @triangulating_options
 @console_options
 def view(
-    file: Path,
+    files: tuple[Path, ...],
     output: Path | None,
     ortho: Path | None,
     full: bool,
@@ -110,7 +116,7 @@ def view(
     console: Console,
     **drawing: Any,
 ) -> None:
-    """Show the TIN in FILE, or of the points in it.
+    """Show the TIN in FILES, or of the points in them.
 
     \b
     Example:
@@ -118,9 +124,9 @@ def view(
     """  # noqa: D301 - click reads the control character
     from ...terrain import preview
     from ...terrain.preview.presentation import PREVIEW_SUFFIXES
-    from ..files import list_inputs, read_tin, require_picture
+    from ..files import list_inputs, read_tin_of_files, require_picture
 
-    inputs = list_inputs(file, how)
+    inputs = list_inputs(*files, how=how)
     if ortho is not None:
         inputs.append(Named(ortho, "the picture to drape"))
     if output is not None:
@@ -128,10 +134,10 @@ def view(
 
     if not full and reading.stride is None:
         reading = replace(reading, most_cells=_choose_most_cells(output))
-    tin, survey = read_tin(file, reading, how, console)
+    tin, survey = read_tin_of_files(files, reading, how, console)
     sample = None if survey is None else _describe_sample(survey)
     top = drawing.pop("top")
-    drawing["title"] = drawing["title"] or make_title(file)
+    drawing["title"] = drawing["title"] or make_title(files[0])
     if sample is not None:
         console.summarise([("Sampled", f"{sample} are shown; --full shows all")])
         drawing["title"] = f"{drawing['title'] or _UNNAMED} ({sample})"
@@ -148,7 +154,7 @@ def view(
         note_written(output)
         console.summarise(_summarise_picture(output))
         if console.as_json:
-            record = {"input": str(file), "output": str(output)}
+            record = {"input": describe_inputs(files), "output": str(output)}
             console.answer([], record | ({} if sample is None else {"sample": sample}))
 
 
