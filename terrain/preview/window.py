@@ -322,5 +322,6 @@ def open_window(tin: TIN, look: Look, ortho: Ortho | None = None) -> None:
     opengl.require_window()
     with keep_vtk_plain():
         window = Window(tin, look, ortho)
+        opengl.require_on_screen(window.show.plotter.render_window.GetClassName())
         window.connect()
         window.show.plotter.show(title=window.stage.caption.title)

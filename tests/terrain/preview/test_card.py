@@ -12,6 +12,7 @@ from html.parser import HTMLParser
 import numpy as np
 import pytest
 from PIL import Image
+from support.pages import open_page
 
 import tinsmith as ts
 from tinsmith.terrain.preview.card import draw_map, encode_png
@@ -200,3 +201,21 @@ def test_a_card_needs_neither_pyvista_nor_matplotlib_nor_pillow():
         [sys.executable, "-W", "error", "-c", code], capture_output=True, text=True, check=False
     )
     assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_an_exported_notebook_shows_card_and_page_without_a_network(tmp_path):
+    """As nbconvert writes them: outputs of cells one below the other in one file."""
+    tin = hills(300)
+    file = tmp_path / "notebook.html"
+    outputs = (tin._repr_html_(), ts.preview(tin, title='Site & "survey"')._repr_html_())
+    ready = "<script>window.terrain = Promise.resolve()</script>"
+    file.write_text(
+        f"<!doctype html><meta charset='utf-8'>{ready}<div>{'</div><div>'.join(outputs)}</div>",
+        encoding="utf-8",
+    )
+    with open_page(file) as page:
+        sizes = page.evaluate("[...document.images].map((i) => [i.naturalWidth, i.naturalHeight])")
+        assert sizes == [[picture_of(outputs[0]).shape[1], picture_of(outputs[0]).shape[0]]]
+        (inner,) = [frame for frame in page.frames if frame != page.main_frame]
+        assert inner.evaluate("window.terrain.then((p) => p.stage.models.length)") == 1
+        assert inner.title() == 'Site & "survey"'
