@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from decimal import Decimal
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -17,7 +16,8 @@ if TYPE_CHECKING:
 
 __all__ = ["contour_labels"]
 
-_MOST_DECIMALS = 3
+_MOST_DECIMALS = 15
+_SMALL_SHARE = 1e-6
 _SHARE_OF_EXTENT = 3.0
 _SHORTEST = 0.2
 """A line shorter than this share of the spacing has no label."""
@@ -189,7 +189,7 @@ def _as_features(lines: Features, labels: list[_Label]) -> Features:
     decimals = _count_decimals(lines.columns["elevation"])
     places = np.array([(label.x, label.y) for label in labels], np.float64).reshape(-1, 2)
     columns: dict[str, NDArray[Any]] = {
-        "text": np.array([f"{level:.{decimals}f}" for level in levels] or [], object),
+        "text": np.array([f"{level + 0.0:.{decimals}f}" for level in levels] or [], object),
         "elevation": levels,
         "rotation": np.array([label.rotation for label in labels], np.float64),
         "uphill": np.array([label.uphill for label in labels] or [], object),
@@ -207,8 +207,11 @@ def _as_features(lines: Features, labels: list[_Label]) -> Features:
 
 
 def _count_decimals(levels: NDArray[np.float64]) -> int:
-    """Return how many decimals the levels need, all of them the same number."""
-    needed = [
-        -int(Decimal(str(level)).normalize().as_tuple().exponent) for level in np.unique(levels)
-    ]
-    return min(max([0, *needed]), _MOST_DECIMALS)
+    """Return how many decimals tell the levels to a millionth of the least step between them."""
+    levels = np.unique(levels)
+    steps = np.diff(levels) if len(levels) > 1 else np.abs(levels)
+    allowed = _SMALL_SHARE * float(steps.min(initial=np.inf))
+    for decimals in range(_MOST_DECIMALS):
+        if (np.abs(levels.round(decimals) - levels) <= allowed).all():
+            return decimals
+    return _MOST_DECIMALS

@@ -64,6 +64,24 @@ def test_texts_have_the_decimals_of_the_levels(interval, texts):
     assert " ".join(sorted(set(labels.columns["text"]))[:3]) == texts
 
 
+@pytest.mark.parametrize(
+    ("levels", "texts"),
+    [
+        ([4.5, 4.5005, 4.501], ["4.5000", "4.5005", "4.5010"]),
+        ([0.1 + 0.2 + 4, 5.3], ["4.3", "5.3"]),
+        ([4 + 1 / 3], ["4.33333"]),
+        ([-0.0, 1.0], ["0", "1"]),
+        ([5.0], ["5"]),
+    ],
+)
+def test_texts_tell_levels_apart(levels, texts):
+    tin = ts.triangulate([[0, 0, -4], [9, 0, 7.2], [9, 9, 7.2], [0, 9, -4]])
+    labels = ts.contour_labels(ts.contours(tin, levels=levels), spacing=5, index_only=False)
+    found = set(labels.columns["text"])
+    assert found
+    assert found <= set(texts)
+
+
 def test_labels_are_apart_and_short_lines_have_none():
     tin = cone()
     lines = ts.contours(tin, interval=0.1)
