@@ -35,8 +35,19 @@ EVERY = 4
 def main(folder: Path = HERE) -> None:
     """Make the pictures and print the figures."""
     lined = thinned(ts.lines_from_codes(ts.read(SAMPLES / "site_survey.csv", crs="EPSG:32616")))
-    for name, source in (("without", replace(lined, breaklines=())), ("with", lined)):
-        draw(source, folder / f"breaklines-{name}.png", f"Ditch and road, {name} breaklines")
+    sources = {"without": replace(lined, breaklines=()), "with": lined}
+    parts = {name: take_part(source) for name, source in sources.items()}
+    tints = find_range(list(parts.values()))
+    for name, source in sources.items():
+        ts.preview(
+            parts[name],
+            output=folder / f"breaklines-{name}.png",
+            title=f"Ditch and road, {name} breaklines",
+            edges=True,
+            exaggeration=EXAGGERATION,
+            size=(1200, 900),
+            elevations=tints,
+        )
         tell(name, ts.triangulate(source))
 
 
@@ -56,13 +67,16 @@ def _every(coords: NDArray[np.float64]) -> NDArray[np.float64]:
     return coords[[*range(0, len(coords) - 1, EVERY), -1]]
 
 
-def draw(survey: ts.Survey, path: Path, title: str) -> None:
-    """Draw the part of the site with the edges of its triangles."""
+def take_part(survey: ts.Survey) -> ts.TIN:
+    """Return the part of the site in the pictures."""
     corner = np.array([SITE["EASTING"], SITE["NORTHING"]])
-    tin = ts.triangulate(survey, boundary=[corner + PART])
-    ts.preview(
-        tin, output=path, title=title, edges=True, exaggeration=EXAGGERATION, size=(1200, 900)
-    )
+    return ts.triangulate(survey, boundary=[corner + PART])
+
+
+def find_range(tins: list[ts.TIN]) -> tuple[float, float]:
+    """Return the lowest and the highest elevation of all: one scale of colours."""
+    elevations = np.concatenate([tin.points[:, 2] for tin in tins])
+    return float(elevations.min()), float(elevations.max())
 
 
 def tell(name: str, tin: ts.TIN) -> None:

@@ -14,6 +14,8 @@ import numpy as np
 import triangle
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 import tinsmith as ts
 from tinsmith.tin import quality, refine
@@ -66,7 +68,7 @@ def others() -> list[tuple[str, ts.TIN]]:
 def draw(site: ts.TIN, path: Path) -> None:
     """Draw a part of the site before and after, triangles with small angles filled."""
     refined = refine(site, min_angle=LEAST_ANGLE, max_area=LARGEST_AREA)
-    figure = Figure(figsize=(12.0, 5.6), layout="constrained")
+    figure = Figure(figsize=(12.0, 6.0), layout="constrained")
     titles = (
         f"As surveyed: {len(site.triangles):,} triangles, "
         f"smallest angle {quality(site).min_angle.min():.1f}°",
@@ -76,6 +78,18 @@ def draw(site: ts.TIN, path: Path) -> None:
     for axes, tin, title in zip(figure.subplots(1, 2), (site, refined), titles, strict=True):
         draw_mesh(axes, tin, site.bounds)
         axes.set_title(title, color=INK, fontsize=12)
+    figure.legend(
+        handles=[
+            Line2D([], [], color=LINES, linewidth=1.8, label="breaklines"),
+            Line2D([], [], color=EDGES, linewidth=0.9, label="edges of triangles"),
+            Patch(color=BAD, label=f"triangles with an angle below {LEAST_ANGLE:g}°"),
+        ],
+        loc="outside lower center",
+        ncols=3,
+        frameon=False,
+        labelcolor=INK,
+        fontsize=11,
+    )
     figure.savefig(path, dpi=150, metadata=NO_VERSION)
 
 

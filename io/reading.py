@@ -4,13 +4,21 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any
+from types import MappingProxyType
+from typing import IO, TYPE_CHECKING, Any, NamedTuple, cast
 
 from .._atomic import as_path
 from .._plug_ins import describe_failure, warn_of_plug_in
 from .._sentences import printable
 from ..crs import CRS, Unit
-from ..errors import CrsError, FormatError, MissingExtraError, ReadError, TinsmithError
+from ..errors import (
+    CrsError,
+    FormatError,
+    MissingExtraError,
+    OptionError,
+    ReadError,
+    TinsmithError,
+)
 from ..tin import TIN, Survey
 from .isolated.archives import unpack
 from .isolated.local_files import require_local
@@ -28,6 +36,7 @@ from .registry import (
     require_options,
     signatures,
 )
+from .reprojection.joining import join_surveys
 
 if TYPE_CHECKING:
     import os
@@ -35,11 +44,23 @@ if TYPE_CHECKING:
 
     from ..crs import CrsLike, UnitLike
 
-__all__ = ["detect", "read", "read_stream"]
+__all__ = ["detect", "join_files", "read", "read_as_wished", "read_stream"]
+
+_NO_WISHES: Mapping[str, Any] = MappingProxyType({})
+_SHOWN = 5
+
+
+class _Asked(NamedTuple):
+    """What a caller says of a file: format, CRS and unit, options, and those that are wishes."""
+
+    format: str | None
+    declared: Mapping[str, Any]
+    options: Mapping[str, Any]
+    wishes: Mapping[str, Any]
 
 
 def read(
-    path: str | os.PathLike[str],
+    path: str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
     *,
     format: str | None = None,  # noqa: A002 - the word that users of the package know
     crs: CrsLike | None = None,
@@ -50,9 +71,11 @@ def read(
 
     Parameters
     ----------
-    path : path-like
-        A file, or a folder where the format is one (tiles of lidar). What is compressed (``.gz``,
-        ``.zip``) is unpacked, if one set of data is in it.
+    path : path-like or sequence of path-like
+        A file, or a folder: a format of its own, tiles of lidar, or files of points of one format.
+        Several files, or those of a folder, are one survey, whose attribute ``source_file`` says
+        where each point is from. What is compressed (``.gz``, ``.zip``) is unpacked, if one set of
+        data is in it.
     format : str, optional
         Name of a format, to choose it whatever the file looks like.
     crs : CRS, str, int or pyproj.CRS, optional
@@ -77,10 +100,11 @@ def read(
     FormatError
         If no format fits, or the format has no such option.
     CrsError
-        If the CRS is unknown, or another than that of a TIN.
+        If the CRS is unknown, or another than that of a TIN; if several files are in several and
+        ``crs`` does not say which is wanted.
     OptionError
-        If an option has a value that it cannot have; if the unit is unknown, or another than the
-        one that the file gives.
+        If there is no path; if an option has a value that it cannot have; if the unit is unknown,
+        or another than the one that the file gives.
     MissingExtraError
         If the library that reads the format is not installed.
 
@@ -95,11 +119,93 @@ def read(
     ...     ts.read(Path(folder, "surface.ply"))
     <TIN: 3 vertices, 1 triangle, z 5 to 8, crs EPSG:32616>
     """
-    file = as_path(path)
-    require_local(path)
-    declared = _collect_declared(crs, z_unit)
+    return read_as_wished(path, {}, format=format, crs=crs, z_unit=z_unit, **options)
+
+
+def read_as_wished(
+    path: str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
+    wishes: Mapping[str, Any],
+    *,
+    format: str | None = None,  # noqa: A002 - as in read
+    crs: CrsLike | None = None,
+    z_unit: UnitLike | None = None,
+    **options: Any,
+) -> Survey | TIN:
+    """Read a file as :func:`read`, with options that count for the formats which have them.
+
+    Parameters
+    ----------
+    path : path-like or sequence of path-like
+    wishes : mapping of str to object
+        Options of readers; one that the chosen reader does not have is left out.
+    """
+    asked = _Asked(format, _collect_declared(crs, z_unit), options, wishes)
+    if isinstance(path, list | tuple):
+        return _read_several(_require_paths(path), asked)
+    one = cast("str | os.PathLike[str]", path)
+    require_local(one)
+    return _read_path(as_path(one), asked)
+
+
+def _name_folder(survey: Survey, folder: Path, tiles: Sequence[Path]) -> Survey:
+    """Return the survey of a folder's files, with a note of those that were not read."""
+    others = sorted(one.name for one in folder.iterdir() if _is_visible_file(one))
+    names = [name for name in others if name not in {one.name for one in tiles}]
+    if not names:
+        return replace(survey, source=folder.name)
+    more = f" and {len(names) - _SHOWN:,} more" if len(names) > _SHOWN else ""
+    note = f"In '{folder.name}' {len(tiles):,} files were read, and not {', '.join(names[:_SHOWN])}"
+    return replace(survey, source=folder.name, notes=[*survey.notes, f"{printable(note)}{more}."])
+
+
+def _require_paths(paths: Sequence[Any]) -> list[Path]:
+    if not paths:
+        raise OptionError("path", paths, "the name of a file, or a list of at least one")
+    for one in paths:
+        require_local(one)
+    return [as_path(one) for one in paths]
+
+
+def _read_several(paths: Sequence[Path], asked: _Asked) -> Survey | TIN:
+    """Read files as one survey; a single one as what it is."""
+    found = [_read_path(path, asked) for path in paths]
+    return found[0] if len(found) == 1 else join_files(found, paths)
+
+
+def join_files(found: Sequence[Survey | TIN], paths: Sequence[Path]) -> Survey:
+    """Return the surveys of files as one.
+
+    Raises
+    ------
+    ReadError
+        If one is a TIN.
+    CrsError
+        As :func:`tinsmith.read`.
+    """
+    surveys = []
+    for one, path in zip(found, paths, strict=True):
+        if isinstance(one, TIN):
+            raise ReadError(
+                f"'{path}' holds a TIN, whose triangles cannot be joined with others: several "
+                "files are read as one only where all hold points.",
+                path=path,
+            )
+        surveys.append(one)
+    return join_surveys(surveys, _name_apart(paths))
+
+
+def _name_apart(paths: Sequence[Path]) -> list[str]:
+    """Return the names of files, with their folders where names alone are the same."""
+    names = [path.name for path in paths]
+    return names if len({*names}) == len(names) else [str(path) for path in paths]
+
+
+def _read_path(file: Path, asked: _Asked) -> Survey | TIN:
+    if _is_folder(file) and (tiles := _list_tiles(file, asked.format)):
+        found = _read_several(tiles, asked)
+        return _name_folder(found, file, tiles) if isinstance(found, Survey) else found
     with open_ordinary_file(file) as local, unpack(local) as inner:
-        found = _read_file(inner, format, declared, options)
+        found = _read_file(inner, *asked)
     return found if inner == file else _restore_source(found, inner, file)
 
 
@@ -112,6 +218,7 @@ def _collect_declared(crs: CrsLike | None, z_unit: UnitLike | None) -> dict[str,
 def read_stream(
     stream: IO[bytes],
     name: str,
+    wishes: Mapping[str, Any] = _NO_WISHES,
     *,
     format: str | None = None,  # noqa: A002 - as in read
     crs: CrsLike | None = None,
@@ -125,15 +232,21 @@ def read_stream(
     stream : binary file object
     name : str
         What reports and errors call it.
+    wishes : mapping of str to object
+        As of :func:`read_as_wished`.
     """
     source = Path(name)
     declared = _collect_declared(crs, z_unit)
     with spool(stream, source) as local, unpack(local) as inner:
-        return _restore_source(_read_file(inner, format, declared, options), inner, source)
+        return _restore_source(_read_file(inner, format, declared, options, wishes), inner, source)
 
 
 def _read_file(
-    file: Path, name: str | None, declared: Mapping[str, Any], options: Mapping[str, Any]
+    file: Path,
+    name: str | None,
+    declared: Mapping[str, Any],
+    options: Mapping[str, Any],
+    wishes: Mapping[str, Any],
 ) -> Survey | TIN:
     chosen = _choose_format(file, name)
     if chosen.read is None:
@@ -145,6 +258,8 @@ def _read_file(
     reader = chosen.load("read")
     of_file = {name: declared[name] for name in declared if name != "crs"} | dict(options)
     require_options(chosen, "read", reader, of_file)
+    if wishes:
+        of_file |= {name: wishes[name] for name in chosen.options("read") if name in wishes}
     try:
         found = reader(file, crs=declared["crs"], **of_file)
     except CrsError as error:
@@ -185,6 +300,43 @@ def _find_format_of_part(file: Path) -> Format | None:
     """Return the format of a folder of which a file is a part, as its name tells."""
     name = file.name.lower()
     return next((one for one in known_formats() if name in one.part_names), None)
+
+
+def _list_tiles(folder: Path, name: str | None) -> list[Path]:
+    """Return the files of points in a folder that is no format of its own, in order of their names.
+
+    Raises
+    ------
+    ReadError
+        If they are of several formats.
+    """
+    named = None if name is None else find_format(name, "read")
+    whole = [one for one in known_formats() if one.read and one.sniff_folder is not None]
+    if named in whole or any(_recognises(one, one.sniff_folder, folder) for one in whole):
+        return []
+    files = sorted(one for one in folder.iterdir() if _is_visible_file(one))
+    found = {file: choose_format(_drop_packing(file), "read") for file in files}
+    known = {file: one for file, one in found.items() if one and "Survey" in one.reads}
+    kinds = {one.name for one in known.values()} if named is None else {named.name}
+    tiles = [file for file, one in known.items() if one.name in kinds]
+    if len(kinds) > 1:
+        first = {one.name: file.name for file, one in reversed(known.items())}
+        told = ", ".join(f"'{file}' ({kind})" for kind, file in sorted(first.items()))
+        raise ReadError(
+            f"The folder '{folder}' has files of several formats: {told}; name the files, or the "
+            "format that is wanted.",
+            path=folder,
+        )
+    return tiles
+
+
+def _is_visible_file(file: Path) -> bool:
+    return not file.name.startswith(".") and file.is_file()
+
+
+def _drop_packing(file: Path) -> Path:
+    """Return a name without the suffix of a compressed file."""
+    return file.with_suffix("") if file.suffix.lower() in (".gz", ".zip") else file
 
 
 def _is_folder(file: Path) -> bool:

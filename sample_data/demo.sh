@@ -24,6 +24,8 @@ echo "Contours, a profile and volumes of a building pad designed into it:"
 tinsmith build "$samples/design_pad.csv" --crs EPSG:32616 --codes --quiet -o "$folder/design_pad.ply"
 tinsmith contours "$folder/site_survey.ply" --interval 0.5 --smooth 0.1 \
   -o "$folder/contours.geojson" -o "$folder/contours.png"
+tinsmith plan "$samples/site_survey.csv" --crs EPSG:32616 --codes --max-edge 20 --interval 0.5 \
+  --scale 1000 --paper A3 --title "Site survey" -o "$folder/plan.pdf"
 tinsmith profile "$folder/site_survey.ply" "$folder/design_pad.ply" \
   --from 752770 4024225 --to 752835 4024340 -o "$folder/profile.csv" -o "$folder/profile.png"
 tinsmith volume "$folder/site_survey.ply" "$folder/design_pad.ply" \

@@ -16,6 +16,7 @@ from .preview import Preview, preview
 from .relief import aspect_classes, curvature, hillshade, slope_classes, slope_statistics
 from .results import Features, Raster, Table
 from .sections import cross_sections, drape, profile, section_lines
+from .sheets import Plan, plan
 from .slope import aspect, slope
 
 __all__ = [
@@ -23,6 +24,7 @@ __all__ = [
     "Difference",
     "Features",
     "OptionError",
+    "Plan",
     "Preview",
     "Raster",
     "RenderError",
@@ -44,6 +46,7 @@ __all__ = [
     "hillshade",
     "histogram",
     "lift",
+    "plan",
     "preview",
     "profile",
     "profile_picture",

@@ -8,27 +8,31 @@ Doubles: TypeAlias = NDArray[np.float64]
 Ints: TypeAlias = NDArray[np.int32]
 Longs: TypeAlias = NDArray[np.int64]
 Flags: TypeAlias = NDArray[np.bool_]
+Bytes: TypeAlias = NDArray[np.uint8]
 
-def values_at_centers(
-    points: Doubles,
-    triangles: Ints,
-    x: Doubles,
-    y: Doubles,
-    spacing: float,
-    values: Doubles | None,
-    threads: int = ...,
-) -> Doubles: ...
-def means_of_cells(
-    points: Doubles,
-    triangles: Ints,
-    x: Doubles,
-    y: Doubles,
-    spacing: float,
-    x_edges: Doubles,
-    y_edges: Doubles,
-    values: Doubles | None,
-    threads: int = ...,
-) -> Doubles: ...
+TILE_SIDE: int
+
+class GriddedSurface:
+    def __init__(self, points: Doubles, triangles: Ints) -> None: ...
+    def values_at_centers(
+        self,
+        x: Doubles,
+        y: Doubles,
+        spacing: float,
+        values: Doubles | None,
+        threads: int = ...,
+    ) -> Doubles: ...
+    def means_of_cells(
+        self,
+        x: Doubles,
+        y: Doubles,
+        spacing: float,
+        x_edges: Doubles,
+        y_edges: Doubles,
+        values: Doubles | None,
+        threads: int = ...,
+    ) -> Doubles: ...
+
 def trace_contours(
     points: Doubles,
     triangles: Ints,
@@ -109,3 +113,29 @@ def stage_sums(
     levels: Doubles,
     up: float,
 ) -> Doubles: ...
+def triangle_normals(
+    points: Doubles,
+    triangles: Ints,
+    threads: int = ...,
+) -> tuple[Doubles, Ints]: ...
+def vertex_normals(
+    points: Doubles,
+    triangles: Ints,
+    normals: Doubles,
+) -> Doubles: ...
+def fit_quadratics(
+    points: Doubles,
+    triangles: Ints,
+    east: Doubles,
+    north: Doubles,
+    up: float,
+    threads: int = ...,
+) -> Doubles: ...
+def shade_planes(
+    normals: Doubles,
+    east: float,
+    north: float,
+    up: float,
+    darkest: int,
+    brightest: int,
+) -> Bytes: ...

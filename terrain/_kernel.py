@@ -15,21 +15,31 @@ if TYPE_CHECKING:
 
 __all__ = [
     "SUMS",
+    "TILE_SIDE",
+    "GriddedSurface",
     "OverlayMesh",
     "fill_bands",
-    "means_of_cells",
+    "fit_quadratics",
     "overlay",
+    "shade_planes",
     "smooth_contours",
     "stage_sums",
     "sum_areas",
     "sum_between",
     "sum_heights",
     "trace_contours",
-    "values_at_centers",
+    "triangle_normals",
+    "vertex_normals",
 ]
 
-means_of_cells = _core.means_of_cells
-values_at_centers = _core.values_at_centers
+GriddedSurface = _core.GriddedSurface
+TILE_SIDE = _core.TILE_SIDE
+"""Cells of a raster that are computed together lie in squares of so many rows and columns."""
+
+triangle_normals = _core.triangle_normals
+vertex_normals = _core.vertex_normals
+shade_planes = _core.shade_planes
+fit_quadratics = _core.fit_quadratics
 
 trace_contours = _core.trace_contours
 smooth_contours = _core.smooth_contours

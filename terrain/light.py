@@ -9,6 +9,7 @@ import numpy as np
 
 from ..errors import OptionError
 from ..tin.validation.options import is_finite_number
+from . import _kernel
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -64,9 +65,7 @@ def shade(upward: NDArray[np.float64], light: Light) -> NDArray[np.uint8]:
     """
     turn, rise = math.radians(light.azimuth), math.radians(light.altitude)
     towards = (math.sin(turn) * math.cos(rise), math.cos(turn) * math.cos(rise), math.sin(rise))
-    cosine = np.clip(normalise(upward) @ np.array(towards), 0.0, 1.0)
-    levels = DARKEST + (BRIGHTEST - DARKEST) * np.nan_to_num(cosine)
-    return np.asarray(np.rint(levels), np.uint8)
+    return _kernel.shade_planes(upward, *towards, DARKEST, BRIGHTEST)
 
 
 def normalise(vectors: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from ..tin import TIN
 
-__all__ = ["EDGE_KINDS", "LineEdges", "add_lines", "find_line_edges"]
+__all__ = ["EDGE_KINDS", "LineEdges", "add_lines", "add_polylines", "find_line_edges"]
 
 EDGE_KINDS = ("soft", "hard", "hole", "boundary", "water")
 """Kinds of lines; where several share an edge it is of the last in this list."""
@@ -170,9 +170,44 @@ def _draw_edges(plotter: Any, ends: NDArray[np.float64], pen: _Pen, factor: floa
     count = len(ends)
     cells = np.column_stack([np.full(count, 2), np.arange(2 * count).reshape(count, 2)])
     mesh = pv.PolyData(ends.reshape(-1, 3), lines=cells.ravel())
-    actor = plotter.add_mesh(
-        mesh, color=pen.color, lighting=False, line_width=pen.width * factor, pickable=False
-    )
+    return _draw(plotter, mesh, pen.color, pen.width * factor)
+
+
+def _draw(plotter: Any, mesh: Any, color: tuple[int, int, int], width: float) -> Any:
+    """Draw lines in front of the surface that they lie on."""
+    actor = plotter.add_mesh(mesh, color=color, lighting=False, line_width=width, pickable=False)
     actor.mapper.SetResolveCoincidentTopologyToPolygonOffset()
     actor.mapper.SetRelativeCoincidentTopologyLineOffsetParameters(_NEARER, _NEARER)
     return actor
+
+
+def add_polylines(
+    plotter: Any,
+    points: NDArray[np.float64],
+    offsets: NDArray[Any],
+    chosen: NDArray[np.int64],
+    *,
+    color: tuple[int, int, int],
+    width: float,
+) -> Any:
+    """Draw polylines over a surface.
+
+    Parameters
+    ----------
+    plotter : pyvista.Plotter
+    points : (n, 3) float64 array
+        Of all polylines, as drawn.
+    offsets : (k + 1,) int array
+        Where each begins and ends among the points.
+    chosen : int array
+        Polylines to draw.
+    color : tuple of int
+    width : float
+        Window pixels.
+    """
+    pv = _optional.load("pyvista", _PURPOSE)
+
+    starts, stops = np.asarray(offsets)[chosen], np.asarray(offsets)[chosen + 1]
+    cells = [part for a, b in zip(starts, stops, strict=True) for part in (b - a, *range(a, b))]
+    mesh = pv.PolyData(points, lines=np.array(cells, np.int64))
+    return _draw(plotter, mesh, color, width)

@@ -10,6 +10,8 @@ import numpy as np
 from ..errors import choice
 from ..policies import SlopeUnit, SurfacePart
 from ..tin.validation.options import require_tin
+from ..tin.validation.threads import thread_count
+from . import _kernel
 from .units import find_scales
 
 if TYPE_CHECKING:
@@ -28,9 +30,6 @@ __all__ = [
     "slope",
     "sum_normals",
 ]
-
-_SLIVER = 2.0**-20
-"""Normals of triangles whose area is a smaller share of their squared size are found exactly."""
 
 
 def slope(
@@ -200,22 +199,21 @@ def compute_normals(tin: TIN) -> NDArray[np.float64]:
         metres. Its horizontal part points downhill; the vertical part is positive.
     """
     require_tin(tin)
-    first, second, third = (corner.astype(np.intp) for corner in tin.triangles.T)
-    axes = [np.ascontiguousarray(axis) for axis in tin.points.T]
-    (ux, vx), (uy, vy), (uz, vz) = (
-        (axis[second] - axis[first], axis[third] - axis[first]) for axis in axes
-    )
-    components = [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx]
-    sizes = np.maximum(np.abs(ux), np.abs(uy)) * np.maximum(np.abs(vx), np.abs(vy))
-    for row in np.flatnonzero(~(components[2] > _SLIVER * sizes)).tolist():
-        exact = _compute_exact_normal(*tin.points[tin.triangles[row]])
-        for component, value in zip(components, exact, strict=True):
-            component[row] = value
+    surface = tin.triangulation
+    workers = thread_count(None, len(surface.triangles))
+    normals, slivers = _kernel.triangle_normals(surface.points, surface.triangles, workers)
+    for row in slivers.tolist():
+        normals[row] = _compute_exact_normal(*surface.points[surface.triangles[row]])
+    for axis, factor in enumerate(_find_normal_factors(tin)):
+        if np.ndim(factor) > 0 or factor != 1.0:
+            normals[:, axis] *= factor
+    return normals
+
+
+def _find_normal_factors(tin: TIN) -> tuple[Any, Any, Any]:
+    """Return the factors from products of two coordinates each to areas, of each triangle."""
     east, north, up = find_scales(tin.crs, tin.elevation_unit, _average_northings(tin))
-    factors = (north * up, east * up, east * north)
-    return np.stack(
-        [component * factor for component, factor in zip(components, factors, strict=True)], axis=1
-    )
+    return north * up, east * up, east * north
 
 
 def _compute_exact_normal(*corners: NDArray[np.float64]) -> list[float]:
@@ -238,12 +236,10 @@ def sum_normals(tin: TIN, per: SurfacePart) -> NDArray[np.float64]:
         For another place.
     """
     choice("per", per, SurfacePart)
-    upward = compute_normals(tin)
+    upward, surface = compute_normals(tin), tin.triangulation
     if per == "triangle":
         return upward
-    corners, count = tin.triangles.ravel(), len(tin.points)
-    sums = [np.bincount(corners, np.repeat(axis, 3), count) for axis in upward.T]
-    return np.stack(sums, axis=1)
+    return _kernel.vertex_normals(surface.points, surface.triangles, upward)
 
 
 def _average_northings(tin: TIN) -> Any:

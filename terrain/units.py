@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from ..crs import CRS
     from ..tin import TIN
 
-__all__ = ["Ground", "Scales", "find_ground", "find_scales"]
+__all__ = ["Ellipsoid", "Ground", "Scales", "find_ellipsoid", "find_ground", "find_scales"]
 
 NOT_KNOWN = Unit("unit", "", None)
 
@@ -33,6 +33,24 @@ class Scales(NamedTuple):
     east: Any
     north: Any
     up: float
+
+
+class Ellipsoid(NamedTuple):
+    """Shape of the earth under a geographic CRS.
+
+    Attributes
+    ----------
+    major : float
+        Half axis in the plane of the equator, metres.
+    squared : float
+        Squared eccentricity.
+    to_radians : float
+        Radians of a unit of the CRS.
+    """
+
+    major: float
+    squared: float
+    to_radians: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,12 +143,21 @@ def _measure_degrees(
     crs: CRS, latitude: ArrayLike
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return metres per CRS unit along a parallel and along a meridian."""
-    parsed: Any = crs.to_pyproj()  # every geographic CRS has axes and an ellipsoid
-    to_radians = float(parsed.axis_info[0].unit_conversion_factor)
+    major, squared, to_radians = _read_ellipsoid(crs)
     turn = np.asarray(latitude, np.float64) * to_radians
-    major, minor = parsed.ellipsoid.semi_major_metre, parsed.ellipsoid.semi_minor_metre
-    squared = 1.0 - (minor / major) ** 2
     bulge = 1.0 - squared * np.sin(turn) ** 2
     prime_vertical = major / np.sqrt(bulge)
     meridian = prime_vertical * (1.0 - squared) / bulge
     return prime_vertical * np.cos(turn) * to_radians, meridian * to_radians
+
+
+def find_ellipsoid(crs: CRS | None) -> Ellipsoid | None:
+    """Return the ellipsoid of a geographic CRS, None for others."""
+    return None if crs is None or not crs.is_geographic else _read_ellipsoid(crs)
+
+
+def _read_ellipsoid(crs: CRS) -> Ellipsoid:
+    parsed: Any = crs.to_pyproj()  # every geographic CRS has axes and an ellipsoid
+    major, minor = parsed.ellipsoid.semi_major_metre, parsed.ellipsoid.semi_minor_metre
+    to_radians = float(parsed.axis_info[0].unit_conversion_factor)
+    return Ellipsoid(float(major), 1.0 - (minor / major) ** 2, to_radians)

@@ -10,7 +10,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fuzz import coordinates, minimise
+from fuzz import coordinates, minimise, readers, samples
+
+from tinsmith.io import reading
+from tinsmith.io.registry import known_formats
 
 TESTS = Path(__file__).parent
 
@@ -145,3 +148,14 @@ def test_coordinates_are_finite_pairs_and_the_same_by_seed(kind):
     assert np.isfinite(made[0]).all()
     assert np.array_equal(made[0], made[1])
     assert len(np.unique(made[0], axis=0)) > 2
+
+
+def test_every_reader_that_is_registered_has_a_campaign(tmp_path):
+    built_in = {one.name for one in known_formats() if one.read is not None and one.is_built_in}
+    met = set()
+    for kind in readers.KINDS:
+        for name, content in samples.sample_files(kind):
+            (tmp_path / kind).mkdir(exist_ok=True)
+            path = readers.put_file(tmp_path / kind, kind, name, content)
+            met.add(reading._choose_format(path, None).name)
+    assert built_in - met == set()

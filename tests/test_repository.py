@@ -251,6 +251,16 @@ def test_readme_python_runs(tmp_path, monkeypatch, can_draw):
 PAGES = [path for path in (ROOT / "docs").glob("*.md") if "```python" in path.read_text()]
 
 
+def write_ortho(tin, path):
+    """Write a picture of one grey over the bounds of a TIN."""
+    rasterio = pytest.importorskip("rasterio")
+    low, high = tin.bounds.xmin, tin.bounds.ymax
+    options = {"crs": str(tin.crs), "count": 3, "width": 9, "height": 9, "dtype": "uint8"}
+    options["transform"] = rasterio.Affine(50, 0, low, 0, -50, high)
+    with rasterio.open(path, "w", driver="GTiff", photometric="RGB", **options) as file:
+        file.write(np.full((3, 9, 9), 128, np.uint8))
+
+
 @pytest.fixture
 def names_of_pages(tmp_path, monkeypatch):
     """Return what the pages speak of without making it, in a folder with the samples."""
@@ -263,6 +273,7 @@ def names_of_pages(tmp_path, monkeypatch):
     corners = np.array([[-9, -9], [9, -9], [9, 9], [-9, 9]])
     line = middle + np.array([[-40, -20], [40, 20]])
     ts.write(ts.rasterize(ground, spacing=2.0), "other.tif")
+    write_ortho(ground, Path("ortho.tif"))
     lines = {"line": line, "centreline": line, "roads": ts.contours(ground, interval=2.0)}
     rings = {"ring": middle + corners, "polygon": middle + corners + np.array([25, 0])}
     edge = dict(zip("ab", ground.edges[0].tolist(), strict=True))

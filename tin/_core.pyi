@@ -125,7 +125,7 @@ def refine(
     most: int,
 ) -> tuple[Doubles, Ints, Ints, int, bool]: ...
 def regions(
-    xy: Doubles,
+    points: Doubles,
     triangles: Ints,
     neighbors: Ints,
     barrier: Flags,

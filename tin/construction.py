@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from .building.assembly import assemble
 from .building.inputs import gather_inputs
+from .building.survey import Survey
 from .surface import TIN
 
 if TYPE_CHECKING:
@@ -14,7 +15,6 @@ if TYPE_CHECKING:
 
     from ..crs import CrsLike, UnitLike
     from ..policies import CrossingPolicy, DuplicatePolicy, TrimPolicy
-    from .building.survey import Survey
     from .constraints.breaklines import Breakline, Water
 
 __all__ = ["triangulate"]
@@ -157,5 +157,6 @@ def triangulate(
         lines=built.lines,
         crs=inputs.crs,
         elevation_unit=inputs.elevation_unit,
+        row_attributes=points.attributes if isinstance(points, Survey) else None,
         inputs=inputs,
     )

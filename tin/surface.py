@@ -7,12 +7,14 @@ from typing import TYPE_CHECKING, Any, ClassVar, Never
 
 import numpy as np
 
+from .._notebook import make_card
 from .._sentences import counted
 from ..crs import CRS, Unit, require_one_unit, scale_elevations, shorten_crs
 from ..errors import choice
 from ..policies import Extrapolation, InterpolationMethod
 from . import topology
 from .building.assembly import assemble
+from .building.attributes import Attributes, as_columns, as_row_attributes
 from .building.moving import move_inputs, move_points, require_move
 from .constraints.breaklines import Lines
 from .editing.editable import Editable
@@ -25,7 +27,7 @@ from .validation.triangles import as_flags, as_triangles, turn_counter_clockwise
 from .validation.vertices import as_vertex, as_vertex_pairs
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from numpy.typing import ArrayLike, NDArray
 
@@ -47,6 +49,7 @@ _ARGUMENTS = (
     "lines",
     "crs",
     "elevation_unit",
+    "row_attributes",
 )
 
 
@@ -76,6 +79,10 @@ class TIN(Editable):
         Coordinate reference system.
     elevation_unit : Unit or None
         Unit of elevations; None if it is not known.
+    attributes : mapping of str to (n,) array
+        Further columns of the vertices, such as ``"number"`` and ``"description"``.
+    row_attributes : mapping of str to array
+        The same of the input rows.
 
     Notes
     -----
@@ -94,7 +101,7 @@ class TIN(Editable):
     (12.0, 4.0)
     """
 
-    __slots__ = ("__weakref__", "_crs", "_elevation_unit")
+    __slots__ = ("__weakref__", "_crs", "_elevation_unit", "_row_attributes")
 
     # ``dataclasses.replace(tin, crs=...)`` makes a TIN that differs in some arguments.
     __dataclass_fields__: ClassVar[dict[str, Field[Any]]] = vars(
@@ -113,6 +120,7 @@ class TIN(Editable):
         lines: Lines | None = None,
         crs: CrsLike | None = None,
         elevation_unit: UnitLike | None = None,
+        row_attributes: Mapping[str, ArrayLike] | None = None,
         inputs: BuildInputs | None = None,
     ) -> None:
         system = CRS.of(crs)
@@ -129,6 +137,7 @@ class TIN(Editable):
         super().__init__(version, inputs)
         self._crs = system
         self._elevation_unit = unit
+        self._row_attributes = as_row_attributes(row_attributes or {}, len(vertex_of))
 
     @classmethod
     def from_triangles(
@@ -139,6 +148,7 @@ class TIN(Editable):
         constrained: ArrayLike | None = None,
         crs: CrsLike | None = None,
         z_unit: UnitLike | None = None,
+        attributes: Mapping[str, ArrayLike] | None = None,
     ) -> TIN:
         """Make a TIN of triangles that exist already, for example those of a file.
 
@@ -152,13 +162,16 @@ class TIN(Editable):
         crs : CRS, str, int or pyproj.CRS, optional
         z_unit : Unit or str, optional
             Unit of the elevations; default that of the CRS's vertical axis, else not known.
+        attributes : mapping of str to (n,) array, optional
+            Further columns of the points.
 
         Raises
         ------
         CrsError
             If the CRS is unknown.
         OptionError
-            If ``z_unit`` is unknown, or another than that of the CRS's vertical axis.
+            If ``z_unit`` is unknown, or another than that of the CRS's vertical axis; if an
+            attribute has not one value for each point.
         PointsError
             If a vertex number is out of range, a triangle has no area, or triangles overlap
             along an edge.
@@ -184,6 +197,7 @@ class TIN(Editable):
             report=Report(n_rows=len(xyz), n_vertices=len(xyz), n_triangles=len(corners)),
             crs=system,
             elevation_unit=unit,
+            row_attributes=as_columns(attributes or {}, (len(xyz),)),
         )
 
     def __setattr__(self, name: str, value: Never) -> None:
@@ -243,12 +257,46 @@ class TIN(Editable):
         """Unit of elevations; None if it is not known."""
         return self._elevation_unit
 
+    @property
+    def attributes(self) -> Mapping[str, NDArray[Any]]:
+        """Further columns of the vertices, such as ``"number"``, those of the survey.
+
+        The value of a vertex is that of the first row that it stands for. Vertices that no such
+        row gave, but lines and edits, have none: NaN among numbers, an empty text among texts,
+        else None.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> points = [[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8]]
+        >>> survey = ts.Survey(points=points, attributes={"number": [11, 12, 13, 14]})
+        >>> tin = ts.triangulate(survey)
+        >>> tin.remove(1)
+        >>> tin.attributes["number"]
+        array([11, 13, 14])
+        """
+        version = self._current
+        return Attributes(self._row_attributes, lambda: version.first_rows)
+
+    @property
+    def row_attributes(self) -> Mapping[str, NDArray[Any]]:
+        """Further columns of the input rows; those that edits inserted, behind them, have none."""
+        return dict(self._row_attributes)
+
     def __getstate__(self) -> dict[str, Any]:
-        return super().__getstate__() | {"_crs": self._crs, "_elevation_unit": self._elevation_unit}
+        own = ("_crs", "_elevation_unit", "_row_attributes")
+        return super().__getstate__() | {name: getattr(self, name) for name in own}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        super().__setstate__({"_row_attributes": {}} | state)
 
     @property
     def _reference(self) -> dict[str, Any]:
-        return {"crs": self._crs, "elevation_unit": self._elevation_unit}
+        return {
+            "crs": self._crs,
+            "elevation_unit": self._elevation_unit,
+            "row_attributes": self._row_attributes,
+        }
 
     def replace(self, **changes: Any) -> TIN:
         """Return a TIN that differs in some arguments of the constructor; it has no edits.
@@ -315,6 +363,7 @@ class TIN(Editable):
         if inputs is None:
             moved = move_points(self.points.copy(), function)
             return self._keep_triangles(moved, system, unit)
+        rows = self._list_rows()
         inputs = move_inputs(inputs, function, length=length, crs=system, elevation_unit=unit)
         built = assemble(inputs)
         return type(self)(
@@ -324,8 +373,15 @@ class TIN(Editable):
             lines=built.lines,
             crs=system,
             elevation_unit=unit,
+            row_attributes=self._choose_attributes(rows),
             inputs=inputs,
         )
+
+    def _choose_attributes(self, rows: NDArray[np.int64] | None) -> Mapping[str, NDArray[Any]]:
+        """Return the attributes of some rows, None for all."""
+        if rows is None:
+            return self._row_attributes
+        return dict(Attributes(self._row_attributes, lambda: rows))
 
     def _keep_triangles(
         self, points: NDArray[np.float64], crs: CRS | None, unit: Unit | None
@@ -334,7 +390,12 @@ class TIN(Editable):
         made = type(self).from_triangles(
             points, self.triangles, constrained=self.constrained, crs=crs, z_unit=unit
         )
-        return made.replace(vertex_of=self.vertex_of, report=self.report, lines=self.lines)
+        return made.replace(
+            vertex_of=self.vertex_of,
+            report=self.report,
+            lines=self.lines,
+            row_attributes=self._row_attributes,
+        )
 
     # ---------------------------------------------------------------- measures
 
@@ -719,6 +780,9 @@ class TIN(Editable):
             f"<TIN: {len(surface.points):,} vertices, {counted(count, 'triangle')}, "
             f"z {z.min():g} to {z.max():g}, crs {shorten_crs(self.crs)}>"
         )
+
+    def _repr_html_(self) -> str | None:
+        return make_card(self)
 
 
 def _with_length_one(vectors: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -1,7 +1,8 @@
 """Rasters of scattered points beside gdal_grid and whitebox, which interpolate linearly too.
 
 A peer triangulates as part of the call, so we do. gdal_grid reads points from a file and writes
-cells to one: a row of ours does the same.
+cells to one, not compressed and without overviews: a row of ours does the same, and one writes a
+file as it is usually written.
 """
 
 from __future__ import annotations
@@ -31,9 +32,16 @@ LEAST_SHARE = 0.95
 """Of the cells that must lie inside for a peer as for us."""
 
 FILES, GDAL, WHITEBOX = "tinsmith, files", "gdal_grid, files", "whitebox"
-MODULES = {OURS: "tinsmith", FILES: "rasterio", WHITEBOX: "whitebox_workflows"}
+PACKED = "tinsmith, compressed files"
+MODULES = {
+    OURS: "tinsmith",
+    FILES: "rasterio",
+    PACKED: "rasterio",
+    WHITEBOX: "whitebox_workflows",
+}
 NOTES = {
-    FILES: "from a CSV file to a GeoTIFF",
+    FILES: "from a CSV file to a GeoTIFF as gdal_grid writes it, on one thread",
+    PACKED: "from a CSV file to a GeoTIFF, deflated by all cores, with overviews, and read back",
     GDAL: "from a CSV file to a GeoTIFF, on one thread",
     WHITEBOX: "points and cells in memory, on all cores",
 }
@@ -71,7 +79,8 @@ def run(n_points: int, *, repeats: int = 3) -> Outcome:
         )
         makers = {
             OURS: lambda: _ours(points, grid),
-            FILES: lambda: _ours_in_files(grid, folder),
+            FILES: lambda: _ours_in_files(grid, folder, compression="none", overviews="none"),
+            PACKED: lambda: _ours_in_files(grid, folder),
             GDAL: lambda: _gdal_grid(grid, folder),
             WHITEBOX: lambda: _whitebox(points, grid, folder),
         }
@@ -100,11 +109,12 @@ def _ours(points: Floats, grid: ts.Grid) -> Call:
     return lambda: ts.rasterize(ts.triangulate(points, threads=1), grid=grid, threads=1)
 
 
-def _ours_in_files(grid: ts.Grid, folder: Path) -> Call:
+def _ours_in_files(grid: ts.Grid, folder: Path, **options: Any) -> Call:
+    path = folder / ("packed.tif" if not options else "ours.tif")
+
     def call() -> Path:
         tin = ts.triangulate(ts.read(folder / "points.csv"), threads=1)
-        ts.write(ts.rasterize(tin, grid=grid, threads=1), folder / "ours.tif")
-        return folder / "ours.tif"
+        return Path(ts.write(ts.rasterize(tin, grid=grid, threads=1, lazy=True), path, **options))
 
     return call
 

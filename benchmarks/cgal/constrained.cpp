@@ -17,8 +17,9 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_2;
 using Vertex = CGAL::Triangulation_vertex_base_with_info_2<std::uint32_t, Kernel>;
 using Face = CGAL::Constrained_triangulation_face_base_2<Kernel>;
-using Numbered = CGAL::Constrained_Delaunay_triangulation_2<
-    Kernel, CGAL::Triangulation_data_structure_2<Vertex, Face>>;
+using Numbered =
+    CGAL::Constrained_Delaunay_triangulation_2<Kernel,
+                                               CGAL::Triangulation_data_structure_2<Vertex, Face>>;
 using Plain = CGAL::Constrained_Delaunay_triangulation_2<Kernel>;
 using Points = std::vector<Point>;
 using Segments = std::vector<std::pair<std::size_t, std::size_t>>;
@@ -44,9 +45,8 @@ void serve_handles(const Points& points, const Segments& segments) {
     }
   };
   Numbered kept;
-  serve(kept, clear<Numbered>, [&](Numbered& triangulation) {
-    return seconds_of([&] { build(triangulation); });
-  });
+  serve(kept, clear<Numbered>,
+        [&](Numbered& triangulation) { return seconds_of([&] { build(triangulation); }); });
 }
 
 void serve_indices(const Points& points, const Segments& segments) {

@@ -38,8 +38,8 @@ bool read_edits(const char* path, std::vector<Edit>& edits) {
   if (file == nullptr) return false;
   double row[4];
   while (std::fread(row, sizeof(double), 4, file) == 4) {
-    edits.push_back({static_cast<What>(row[0]), static_cast<std::size_t>(row[1]),
-                     Point(row[2], row[3])});
+    edits.push_back(
+        {static_cast<What>(row[0]), static_cast<std::size_t>(row[1]), Point(row[2], row[3])});
   }
   std::fclose(file);
   return true;

@@ -14,6 +14,8 @@ from ..sections import kernel, lines
 __all__ = ["TITLES", "draw"]
 
 PALE = 0.3
+TICKS = (1.0, 2.0, 5.0)
+"""Leads of the numbers below the axis."""
 
 STYLES: dict[str, dict[str, Any]] = {
     OURS: {"color": "#0b5fa5", "marker": "o", "s": 75, "zorder": 5},
@@ -83,15 +85,17 @@ def _name_size(result: Result) -> str:
 
 
 def _finish_axes(axes: Any, labels: list[str], title: str) -> None:
-    from matplotlib.ticker import LogFormatter
+    from matplotlib.ticker import LogLocator, NullFormatter
 
     axes.set_xscale("log")
+    axes.xaxis.set_major_locator(LogLocator(10, subs=TICKS))
+    axes.xaxis.set_minor_locator(LogLocator(10, subs=range(1, 10)))
     axes.set_yticks(range(len(labels)), labels)
     axes.invert_yaxis()
     axes.set_xlabel("microseconds per point (less is better); pale: wrong or incomplete answer")
     axes.set_title(title, loc="left")
     axes.xaxis.set_major_formatter("{x:g}")
-    axes.xaxis.set_minor_formatter(LogFormatter(labelOnlyBase=False))
+    axes.xaxis.set_minor_formatter(NullFormatter())
     axes.grid(axis="x", which="both", color="#e6e6e6", linewidth=0.7)
     axes.grid(axis="y", color="#f0f0f0", linewidth=0.7)
     axes.set_axisbelow(True)

@@ -16,6 +16,12 @@ from tinsmith.tin import TIN
 
 from ..datasets.points import make_points
 from ..measure import OURS, Outcome, Result, alternate, find_median, is_installed
+from ..peers.exchange import (
+    read_cloud_with_laspy,
+    read_triangles,
+    write_cloud_with_laspy,
+    write_triangles_with_pyogrio,
+)
 from ..peers.landxml import read_with_etree
 from ..peers.meshes import MESH_PEERS
 
@@ -25,11 +31,14 @@ SECTION = "readers"
 CRS = "EPSG:32616"
 SURVEY, RASTER, MESH = "survey, PNEZD CSV", "raster, GeoTIFF float32", "surface, binary PLY"
 LANDXML = "surface, LandXML"
+LIDAR, LAYER = "lidar, LAZ", "triangles, FlatGeobuf"
 OUR_NOTES = {
     SURVEY: "finds the layout, checks every row",
     RASTER: "points at the cell centres, masks honoured",
     MESH: "checks the triangles, finds their neighbours",
     LANDXML: "checks the triangles, finds their neighbours",
+    LIDAR: "in a child process; four attributes",
+    LAYER: "in a child process; joins corners, checks the triangles",
 }
 
 Floats = NDArray[np.float64]
@@ -51,7 +60,7 @@ def run(n: int, *, repeats: int = 3) -> Outcome:
     outcome = Outcome()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        for task in (_measure_survey, _measure_raster, _measure_mesh, _measure_landxml):
+        for task in _TASKS:
             print(f"readers: {task.__name__[1:]}, {n:,}", file=sys.stderr, flush=True)
             task(folder, n, repeats, outcome)
     return outcome
@@ -215,3 +224,50 @@ def _measure_landxml(folder: Path, n: int, repeats: int, outcome: Outcome) -> No
         np.testing.assert_array_equal(theirs[1], ours.triangles)
 
     _measure_readers(LANDXML, path, n, peers, repeats, outcome, require)
+
+
+# -------------------------------------------------------------------------- lidar, layers
+
+
+def _measure_lidar(folder: Path, n: int, repeats: int, outcome: Outcome) -> None:
+    if not is_installed("laspy"):
+        outcome.skipped.append("LAZ: skipped, laspy is not installed.")
+        return
+    points = np.round(make_points("uniform", n), 3)
+    path = folder / "cloud.laz"
+    write_cloud_with_laspy(points, path)
+    peers = {"laspy": Reader("laspy", read_cloud_with_laspy, "every attribute")}
+
+    def require(ours: Any, theirs: Floats, _: str) -> None:
+        np.testing.assert_array_equal(ours.points, theirs)
+        np.testing.assert_allclose(ours.points, points, rtol=0, atol=1e-6)
+
+    _measure_readers(LIDAR, path, n, peers, repeats, outcome, require)
+
+
+def _measure_layer(folder: Path, n: int, repeats: int, outcome: Outcome) -> None:
+    if not is_installed("pyogrio"):
+        outcome.skipped.append("FlatGeobuf: skipped, pyogrio is not installed.")
+        return
+    tin = ts.triangulate(make_points("uniform", n // 2), crs=CRS)
+    path = folder / "triangles.fgb"
+    write_triangles_with_pyogrio(tin, path)
+    peers = {"pyogrio, shapely": Reader("pyogrio", read_triangles, "corners alone")}
+
+    def require(ours: TIN, theirs: Floats, _: str) -> None:
+        assert len(ours.triangles) == len(tin.triangles)
+        np.testing.assert_array_equal(
+            np.sort(ours.points[ours.triangles], axis=1), np.sort(theirs, axis=1)
+        )
+
+    _measure_readers(LAYER, path, len(tin.triangles), peers, repeats, outcome, require)
+
+
+_TASKS = (
+    _measure_survey,
+    _measure_raster,
+    _measure_mesh,
+    _measure_landxml,
+    _measure_lidar,
+    _measure_layer,
+)

@@ -22,6 +22,13 @@ from tinsmith.tin import TIN
 
 from ..datasets.points import make_points
 from ..measure import OURS, Outcome, Result, alternate, find_median
+from ..peers.exchange import (
+    read_triangles,
+    write_drawing_with_ezdxf,
+    write_triangles_with_arrow,
+    write_triangles_with_pyogrio,
+    write_with_trimesh,
+)
 from ..peers.landxml import read_with_etree, write_with_etree
 from ..peers.meshes import MESH_PEERS
 
@@ -57,7 +64,7 @@ def run(n_triangles: int, *, repeats: int = 3) -> Outcome:
     points = make_points("uniform", n_triangles // 2)
     tin = ts.triangulate(points, crs=CRS)
     with tempfile.TemporaryDirectory() as name:
-        for task in (_measure_geojson, _measure_ply, _measure_landxml):
+        for task in _TASKS:
             print(f"writers: {task.__name__[1:]}, {n_triangles:,}", file=sys.stderr, flush=True)
             task(Path(name), tin, repeats, outcome)
     return outcome
@@ -220,3 +227,71 @@ def _measure_landxml(folder: Path, tin: TIN, repeats: int, outcome: Outcome) -> 
         points, triangles = read_with_etree(path)
         np.testing.assert_array_equal(points, tin.points)
         np.testing.assert_array_equal(triangles, tin.triangles)
+
+
+# ---------------------------------------------------------------------------- layers
+
+
+def _measure_layers(folder: Path, tin: TIN, repeats: int, outcome: Outcome) -> None:
+    """Write triangles as layers; a GeoPackage of ours holds the whole TIN."""
+    through = Writer("pyogrio", write_triangles_with_pyogrio, "polygons with a number")
+    arrow = Writer("geopandas", write_triangles_with_arrow, "polygons with a number")
+    wanted = _sort_triangles(tin.points[tin.triangles])
+    for task, suffix, tool, peer in (
+        ("whole TIN, GeoPackage", ".gpkg", "pyogrio, shapely", through),
+        ("triangles, FlatGeobuf", ".fgb", "pyogrio, shapely", through),
+        ("triangles, shapefile", ".shp", "pyogrio, shapely", through),
+        ("triangles, GeoParquet", ".parquet", "geopandas", arrow),
+    ):
+        paths = _measure_writers(task, suffix, folder, tin, {tool: peer}, repeats, outcome)
+        for path in paths.values():
+            np.testing.assert_array_equal(_sort_triangles(read_triangles(path)), wanted)
+
+
+def _sort_triangles(corners: Floats) -> Floats:
+    """Return triangles in one order, whatever the order and the first corner of each."""
+    first = np.lexsort((corners[..., 1], corners[..., 0]), axis=1)
+    corners = np.take_along_axis(corners, first[..., None], axis=1)
+    flat = corners.reshape(len(corners), 9)
+    return flat[np.lexsort(flat.T[::-1])]
+
+
+# ------------------------------------------------------------------ drawings and meshes
+
+
+def _measure_drawing(folder: Path, tin: TIN, repeats: int, outcome: Outcome) -> None:
+    peers = {"ezdxf": Writer("ezdxf", write_drawing_with_ezdxf, "no CRS, no layers")}
+    paths = _measure_writers("3DFACEs, DXF R2010", ".dxf", folder, tin, peers, repeats, outcome)
+    wanted = _sort_triangles(tin.points[tin.triangles])
+    for path in paths.values():
+        found = ts.read(path, crs=CRS)
+        np.testing.assert_array_equal(_sort_triangles(found.points[found.triangles]), wanted)
+
+
+def _measure_meshes(folder: Path, tin: TIN, repeats: int, outcome: Outcome) -> None:
+    """Write meshes that few programs write: each is read back, GLB by trimesh."""
+    viewer = {"trimesh": Writer("trimesh", write_with_trimesh, "no normals, colours, CRS")}
+    paths = _measure_writers("surface, GLB", ".glb", folder, tin, viewer, repeats, outcome)
+    for path in paths.values():
+        assert _count_faces(path) == len(tin.triangles)
+    for task, suffix in (("surface, 2DM", ".2dm"), ("surface, UGRID", ".nc")):
+        (path,) = _measure_writers(task, suffix, folder, tin, {}, repeats, outcome).values()
+        np.testing.assert_array_equal(ts.read(path).triangles, tin.triangles)
+
+
+def _count_faces(path: Path) -> int:
+    """Return the faces of a GLB file, a third of the indices that its header tells of."""
+    content = path.read_bytes()
+    header = json.loads(content[20 : 20 + int.from_bytes(content[12:16], "little")])
+    pieces = [one for mesh in header["meshes"] for one in mesh["primitives"]]
+    return sum(header["accessors"][one["indices"]]["count"] for one in pieces) // 3
+
+
+_TASKS = (
+    _measure_geojson,
+    _measure_ply,
+    _measure_landxml,
+    _measure_layers,
+    _measure_drawing,
+    _measure_meshes,
+)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..._sentences import counted
@@ -57,16 +58,16 @@ class Reading:
         """How much speaks against it: words that are not read, and lines that are odd."""
         return len(self.unread) + self.n_odd_lines
 
-    @property
+    @cached_property
     def n_odd_lines(self) -> int:
         """How much is odd in the lines themselves."""
-        short = sum(len(one.shots) < one.least for one in self.figures)
+        short = sum(not one.is_long_enough for one in self.figures)
         return short + sum(fault.kind not in (*_HARMLESS, _COUNTED) for fault in self.faults)
 
-    @property
+    @cached_property
     def key(self) -> frozenset[tuple[object, ...]]:
         """What tells its lines from those of another reading."""
-        return frozenset(one.key for one in self.figures if len(one.shots) >= one.least)
+        return frozenset(one.key for one in self.figures if one.is_long_enough)
 
 
 def read_in_style(
@@ -112,37 +113,58 @@ def _follow(
     style: Style,
     descriptions: dict[str, Description],
 ) -> Reading:
-    coded = [(row, descriptions[texts[row]].codes) for row in order]
-    figures, faults = follow_figures(coded, rules)
-    faults += _find_codes_behind_others(coded, rules)
+    lines = {text: _select_lines(one.codes, rules) for text, one in descriptions.items()}
+    figures, faults = follow_figures(order, [lines[texts[row]] for row in order], rules)
+    faults += _find_codes_behind_others(order, texts, rules, descriptions)
     for figure in figures:
-        find_curves(figure, faults.append)
-    unread = [
-        Unread(row, descriptions[texts[row]].unread)
-        for row in order
-        if _has_unread_mark(descriptions[texts[row]], rules)
-    ]
-    return Reading(style, figures, faults, unread, descriptions)
+        if figure.marks:
+            find_curves(figure, faults.append)
+    unread = {text: one.unread for text, one in descriptions.items() if _is_doubtful(one, rules)}
+    left = [Unread(row, unread[texts[row]]) for row in order if texts[row] in unread]
+    return Reading(style, figures, faults, left if unread else [], descriptions)
 
 
-def _has_unread_mark(description: Description, rules: dict[str, Rule]) -> bool:
+def _select_lines(codes: Sequence[Coded], rules: dict[str, Rule]) -> tuple[tuple[str, Coded], ...]:
+    """Return the codes of a description that make lines, each with the name of its line."""
+    return tuple((one.name, one) for one in codes if rules[one.code].kind not in NO_LINES)
+
+
+def _is_doubtful(description: Description, rules: dict[str, Rule]) -> bool:
     """Whether a word that is not understood stands behind the code of a line."""
     codes = description.codes
     return bool(description.unread and codes) and rules[codes[-1].code].kind not in NO_LINES
 
 
 def _find_codes_behind_others(
-    coded: Sequence[tuple[int, Sequence[Coded]]], rules: dict[str, Rule]
+    order: Sequence[int],
+    texts: Sequence[str],
+    rules: dict[str, Rule],
+    descriptions: dict[str, Description],
 ) -> list[Fault]:
     """Tell of lines whose codes have no number and stand behind others only, as remarks do."""
-    first = {codes[0].code for _, codes in coded if codes}
+    first = {one.codes[0].code for one in descriptions.values() if one.codes}
+    behind = {
+        text: codes
+        for text, one in descriptions.items()
+        if (codes := _list_doubtful(one.codes, rules, first))
+    }
     found: dict[str, list[int]] = {}
-    for row, codes in coded:
-        for one in codes[1:]:
-            is_doubtful = not one.number and not one.marks and one.code not in first
-            if is_doubtful and rules[one.code].kind not in NO_LINES:
-                found.setdefault(one.code, []).append(row)
+    for row in order if behind else ():
+        for code in behind.get(texts[row], ()):
+            found.setdefault(code, []).append(row)
     return [Fault("code behind others", code, tuple(rows)) for code, rows in found.items()]
+
+
+def _list_doubtful(
+    codes: Sequence[Coded], rules: dict[str, Rule], first: set[str]
+) -> tuple[str, ...]:
+    """Return the codes of lines without number and mark that never stand first."""
+    return tuple(
+        one.code
+        for one in codes[1:]
+        if not one.number and not one.marks and one.code not in first
+        if rules[one.code].kind not in NO_LINES
+    )
 
 
 def choose_reading(
@@ -258,10 +280,10 @@ def _find_difference(one: Reading, other: Reading, name_row: Callable[[int], str
     """Name the first line that only one of two readings has."""
     for reading, keys in ((one, other.key), (other, one.key)):
         for figure in reading.figures:
-            if len(figure.shots) >= figure.least and figure.key not in keys:
+            if figure.is_long_enough and figure.key not in keys:
                 first, last = name_row(figure.rows[0]), name_row(figure.rows[-1])
                 return (
                     f" (only '{reading.style.name}' makes {figure.name} of "
-                    f"{counted(len(figure.shots), 'shot')} from {first} to {last})"
+                    f"{counted(len(figure.rows), 'shot')} from {first} to {last})"
                 )
     return ""

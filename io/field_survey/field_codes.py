@@ -27,6 +27,7 @@ from .detection import Reading, choose_reading, read_in_style
 from .figures import RINGS, Fault, Figure
 from .geometry import build_polyline
 from .remarks import describe_faults
+from .several_files import NoCodesError, read_each_file, split_files
 from .styles import MARKS, find_style
 
 if TYPE_CHECKING:
@@ -89,7 +90,8 @@ def lines_from_codes(
         as they are, but for those that a table excludes from the surface. ``findings`` has what is
         odd, with the rows of the survey given, and ``notes`` counts it: marks that are unknown,
         and are taken for a remark, lines of too few points, which are left out, curves that cannot
-        be, rings that are open.
+        be, rings that are open. Of several files that were read as one survey each is read by
+        itself: a line ends with its file.
 
     Raises
     ------
@@ -114,13 +116,21 @@ def lines_from_codes(
     if not isinstance(survey, Survey):
         raise OptionError("survey", survey, "a Survey")
     table = _choose_table(rules, code_table)
+    if files := split_files(survey):
+
+        def read(part: Survey) -> Survey:
+            return lines_from_codes(
+                part, code_table=table, code_style=code_style, arc_tolerance=arc_tolerance
+            )
+
+        return read_each_file(survey, files, read)
     tolerance = _choose_tolerance(survey, table, arc_tolerance)
     texts = _require_descriptions(survey)
     order = _order_by_number(survey).tolist()
     reading, notes = _read(order, texts, table, code_style, _namer(survey))
     if not reading.figures and not _excludes(table, reading):
         known = ", ".join(table.rules)
-        raise LinesError(f"No description begins with a line code: {known} are known.")
+        raise NoCodesError(f"No description begins with a line code: {known} are known.")
     return _Builder(survey, table, reading, tolerance).build(order, texts, notes)
 
 
@@ -163,7 +173,8 @@ def _order_by_number(survey: Survey) -> NDArray[np.int64]:
 
 def _namer(survey: Survey) -> Callable[[int], str]:
     """Return what names a row for a sentence."""
-    numbers = survey.attributes.get("number")
+    given = survey.attributes.get("number")
+    numbers = None if given is None else given.tolist()
     return lambda row: f"row {row}" if numbers is None else f"point {numbers[row]}"
 
 
@@ -209,10 +220,10 @@ class _Builder:
         self.faults: list[Fault] = [
             Fault("unknown mark", one.word, (one.row,)) for one in reading.unread
         ]
-        short = [one for one in reading.figures if len(one.shots) < one.least]
+        short = [one for one in reading.figures if not one.is_long_enough]
         self.faults += [Fault("too few points", one.name, tuple(one.rows)) for one in short]
         self.faults += reading.faults
-        self.figures = [one for one in reading.figures if len(one.shots) >= one.least]
+        self.figures = [one for one in reading.figures if one.is_long_enough]
 
     def build(self, order: Sequence[int], texts: Sequence[str], notes: Sequence[str]) -> Survey:
         """Return the survey with its lines."""
@@ -244,7 +255,10 @@ class _Builder:
         crs = self.survey.crs
         bent = ("begin_curve", "begin_tangent_curve", "toggle_curve")
         has_curves = any(
-            meaning in bent for one in self.figures for shot in one.shots for meaning in shot.marks
+            meaning in bent
+            for one in self.figures
+            for marks in one.marks.values()
+            for meaning in marks
         )
         if crs is not None and crs.is_geographic and has_curves:
             raise LinesError(f"Curves need a projected CRS: {crs.label} measures in degrees.")
@@ -327,9 +341,9 @@ class _Builder:
     def _exclude(self, survey: Survey, texts: Sequence[str]) -> Survey:
         """Leave out the points that are not for the surface, unless a line goes through them."""
         out = {text for text in self.reading.descriptions if self._is_excluded(text)}
-        is_out = np.array([bool(out) and text in out for text in texts], np.bool_)
-        if not is_out.any():
+        if not out:
             return survey
+        is_out = np.array([text in out for text in texts], np.bool_)
         kept = ~is_out
         what = "points not for the surface"
         attributes = {name: np.asarray(v)[kept] for name, v in survey.attributes.items()}

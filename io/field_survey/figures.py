@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -11,18 +11,11 @@ if TYPE_CHECKING:
     from .descriptions import Coded
     from .styles import Meaning
 
-__all__ = ["NO_LINES", "RINGS", "Curve", "Fault", "Figure", "Shot", "find_curves", "follow_figures"]
+__all__ = ["NO_LINES", "RINGS", "Curve", "Fault", "Figure", "find_curves", "follow_figures"]
 
 RINGS = ("boundary", "hole", "erase", "water")
 NO_LINES = ("point", "exclude")
 """Kinds whose codes make no line."""
-
-
-class Shot(NamedTuple):
-    """One shot of a figure: its row, and what its marks say."""
-
-    row: int
-    marks: tuple[Meaning, ...] = ()
 
 
 class Curve(NamedTuple):
@@ -53,7 +46,10 @@ class Figure:
     name : str
         Code and number.
     rule : Rule
-    shots : list of Shot
+    rows : list of int
+        Of its shots.
+    marks : dict of int to tuple of str
+        What the marks at a shot say, by its place in ``rows``; most shots have none.
     is_closed : bool
         Whether it comes back to its first shot.
     is_rectangle : bool
@@ -66,7 +62,8 @@ class Figure:
 
     name: str
     rule: Rule
-    shots: list[Shot] = field(default_factory=list)
+    rows: list[int] = field(default_factory=list)
+    marks: dict[int, tuple[Meaning, ...]] = field(default_factory=dict)
     is_closed: bool = False
     is_rectangle: bool = False
     is_begun: bool = False
@@ -74,9 +71,9 @@ class Figure:
     n_added: int = 0
 
     @property
-    def rows(self) -> list[int]:
-        """Rows of its shots."""
-        return [shot.row for shot in self.shots]
+    def is_long_enough(self) -> bool:
+        """Whether it has as many shots as it needs."""
+        return len(self.rows) >= self.least
 
     @property
     def is_ring(self) -> bool:
@@ -96,14 +93,16 @@ class Figure:
 
 
 def follow_figures(
-    coded: Iterable[tuple[int, Sequence[Coded]]], rules: dict[str, Rule]
+    rows: Sequence[int], shots: Sequence[Sequence[tuple[str, Coded]]], rules: dict[str, Rule]
 ) -> tuple[list[Figure], list[Fault]]:
     """Follow every line through the shots, in the order of the first shot of each.
 
     Parameters
     ----------
-    coded : iterable of (row, codes)
+    rows : sequence of int
         In the order in which lines run.
+    shots : sequence of sequences of (name, Coded)
+        Of each row the names of its lines, with what the codes say.
     rules : dict of str to Rule
 
     Returns
@@ -112,10 +111,14 @@ def follow_figures(
     faults : list of Fault
     """
     follower = _Follower(rules)
-    for row, codes in coded:
-        for one in codes:
-            if rules[one.code].kind not in NO_LINES:
-                follower.add(row, one)
+    running, add = follower.running, follower.add
+    for row, codes in zip(rows, shots, strict=True):
+        for name, one in codes:
+            figure = None if one.marks else running.get(name)
+            if figure is None:
+                add(row, one)
+            else:
+                figure.rows.append(row)
     follower.finish()
     return follower.figures, follower.faults
 
@@ -127,52 +130,55 @@ class _Follower:
         self.rules = rules
         self.figures: list[Figure] = []
         self.faults: list[Fault] = []
-        self._running: dict[str, Figure] = {}
+        self.running: dict[str, Figure] = {}
 
     def add(self, row: int, one: Coded) -> None:
         """Add a shot to its line."""
         marks = one.marks
-        for word, meaning in zip(one.words, marks, strict=True):
-            if meaning == "other":
-                self.faults.append(Fault("mark not applied", word, (row,)))
+        if "other" in marks:
+            for word, meaning in zip(one.words, marks, strict=True):
+                if meaning == "other":
+                    self.faults.append(Fault("mark not applied", word, (row,)))
         if "exclude" in marks:
             return
         if "begin" in marks and _is_before(marks, ("end", "close"), "begin"):
-            self._append(one, Shot(row, marks[: marks.index("begin")]))
+            self._append(one, row, marks[: marks.index("begin")])
             marks = marks[marks.index("begin") :]
-        self._append(one, Shot(row, marks))
+        self._append(one, row, marks)
 
-    def _append(self, one: Coded, shot: Shot) -> None:
-        name, marks = one.name, shot.marks
-        self._tell_doubts(one, shot)
-        if name not in self._running or "begin" in marks:
+    def _append(self, one: Coded, row: int, marks: tuple[Meaning, ...]) -> None:
+        name = one.name
+        self._tell_doubts(name, row, marks)
+        figure = self.running.get(name)
+        if figure is None or "begin" in marks:
             figure = Figure(name, self.rules[one.code], is_begun="begin" in marks)
-            self._running[name] = figure
+            self.running[name] = figure
             self.figures.append(figure)
-        figure = self._running[name]
-        figure.shots.append(shot)
-        if {"end", "close", "rectangle"} & set(marks):
-            self._running.pop(name)
+        if marks:
+            figure.marks[len(figure.rows)] = marks
+        figure.rows.append(row)
+        if "end" in marks or "close" in marks or "rectangle" in marks:
+            self.running.pop(name)
             figure.is_ended = True
             figure.is_closed = "close" in marks
             figure.is_rectangle = "rectangle" in marks
 
-    def _tell_doubts(self, one: Coded, shot: Shot) -> None:
-        marks = shot.marks
-        is_alone = one.name not in self._running and "begin" not in marks
+    def _tell_doubts(self, name: str, row: int, marks: tuple[Meaning, ...]) -> None:
+        is_alone = name not in self.running and "begin" not in marks
         if is_alone and "end" in marks:
-            self.faults.append(Fault("end without a begin", one.name, (shot.row,)))
+            self.faults.append(Fault("end without a begin", name, (row,)))
         if is_alone and "continue" in marks:
-            self.faults.append(Fault("nothing to continue", one.name, (shot.row,)))
+            self.faults.append(Fault("nothing to continue", name, (row,)))
 
     def finish(self) -> None:
         """Tell of lines that do not end as others do."""
         ends = any(figure.is_ended for figure in self.figures)
         for figure in self.figures:
-            if "continue" in figure.shots[-1].marks:
-                self.faults.append(Fault("nothing to continue", figure.name, (figure.rows[-1],)))
-            if ends and figure.is_begun and not figure.is_ended and len(figure.shots) > 1:
-                ends_at = (figure.rows[0], figure.rows[-1])
+            rows = figure.rows
+            if "continue" in figure.marks.get(len(rows) - 1, ()):
+                self.faults.append(Fault("nothing to continue", figure.name, (rows[-1],)))
+            if ends and figure.is_begun and not figure.is_ended and len(rows) > 1:
+                ends_at = (rows[0], rows[-1])
                 self.faults.append(Fault("line without an end", figure.name, ends_at))
 
 
@@ -192,11 +198,11 @@ def find_curves(figure: Figure, tell: Callable[[Fault], None] = _say_nothing) ->
     """
     curves: list[Curve] = []
     begun: tuple[int, bool] | None = None
-    for i, shot in enumerate(figure.shots):
-        for meaning in _order_marks(shot.marks, is_open=begun is not None):
+    for i, marks in figure.marks.items():
+        for meaning in _order_marks(marks, is_open=begun is not None):
             if meaning == "end_curve":
                 if begun is None:
-                    tell(Fault("end of no curve", figure.name, (shot.row,)))
+                    tell(Fault("end of no curve", figure.name, (figure.rows[i],)))
                 else:
                     _close_curve(figure, Curve(begun[0], i, begun[1]), curves, tell)
                 begun = None
@@ -205,14 +211,12 @@ def find_curves(figure: Figure, tell: Callable[[Fault], None] = _say_nothing) ->
                     _take_three(figure, begun[0], i, curves, tell)
                 begun = (i, meaning == "begin_tangent_curve")
     if begun is not None:
-        _take_three(figure, begun[0], len(figure.shots) - 1, curves, tell)
+        _take_three(figure, begun[0], len(figure.rows) - 1, curves, tell)
     return curves
 
 
 def _order_marks(marks: Sequence[Meaning], *, is_open: bool) -> list[Meaning]:
     """Return the marks of curves, the end of one before the begin of the next."""
-    if not marks:
-        return []
     found: list[Meaning] = [one for one in marks if one == "end_curve"]
     if "toggle_curve" in marks:
         found.append("end_curve" if is_open else "begin_curve")

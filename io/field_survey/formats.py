@@ -1,7 +1,7 @@
 """The formats of survey instruments."""
 
 from ..registry.format import Format
-from .signatures import is_gsi, is_jobxml, is_sdr
+from .signatures import is_dc, is_gsi, is_jobxml, is_sdr
 
 __all__ = ["FORMATS"]
 
@@ -29,5 +29,13 @@ FORMATS = (
         read="tinsmith.io.field_survey.instruments.jobxml:read",
         writes=(),
         sniff=is_jobxml,
+    ),
+    Format(
+        name="dc",
+        description="Trimble DC of Survey Controller and Access: points of a survey job",
+        suffixes=(".dc",),
+        read="tinsmith.io.field_survey.instruments.dc:read",
+        writes=(),
+        sniff=is_dc,
     ),
 )

@@ -166,6 +166,8 @@ class _Line:
 
     def join(self, tolerance: float) -> NDArray[np.float64]:
         """Return all vertices."""
+        if not self.arcs:
+            return self.shots
         parts = [self.shots[:1]]
         for i in range(len(self.shots) - 1):
             if i in self.arcs:

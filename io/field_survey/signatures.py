@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import re
 
-__all__ = ["is_gsi", "is_jobxml", "is_sdr"]
+__all__ = ["is_dc", "is_gsi", "is_jobxml", "is_sdr"]
 
 _GSI = re.compile(
     rb"(?:\xef\xbb\xbf)?\s*(?:\*?(?:11|41)[\d.]{4}[+-][^\s,;]{8}(?:[^\s,;]{8})?"
     rb"(?:[ \t]*[\r\n]|[ \t]*\Z| (?:\d\d[\d.]|\d{3})[\d.]{3}[+-]))"
 )
 _SDR = re.compile(rb"(?:\xef\xbb\xbf)?00[A-Z]{2}SDR[23]\d", re.IGNORECASE)
+_DC = re.compile(rb"(?:\xef\xbb\xbf)?00[A-Z]{2}(?:SC|DC) ?V\d", re.IGNORECASE)
 _JOBXML = re.compile(rb"<JOBFile[\s>]")
 
 
@@ -22,6 +23,11 @@ def is_gsi(head: bytes) -> bool:
 def is_sdr(head: bytes) -> bool:
     """Whether the file is certainly Sokkia SDR."""
     return _SDR.match(head) is not None
+
+
+def is_dc(head: bytes) -> bool:
+    """Whether the file is certainly a Trimble DC file."""
+    return _DC.match(head) is not None
 
 
 def is_jobxml(head: bytes) -> bool:

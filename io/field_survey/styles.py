@@ -5,9 +5,11 @@ Each style says where its words are from:
 - ``words``: what crews write whatever the program; the default.
 - ``dash``, ``slash``, ``dot``: the same words, parted by one more letter: EP1-B, EP1/B, EP1.B.
 - ``star``: EP1* begins a new line; ``star-end``: EP1* ends the line.
-- ``civil3d``: a linework code set of Autodesk Civil 3D with the codes of its documentation: B
-  begin, C continue, E end, CLS close, BC and EC curves, RECT; behind ``/`` follows a comment.
-- ``carlson``: Carlson Field to Finish: +7 and -7 of PointCAD, PC and PT curves, CLO.
+- ``civil3d``: a linework code set of Autodesk Civil 3D with the codes of its User's Guide: B begin,
+  C continue, E end, BC and EC curves, RECT; and of its survey exercises: BEG, END, CLS, BCV and
+  ECV; behind ``/`` follows a comment.
+- ``carlson``: Carlson Field to Finish: +7 and -7 of PointCAD, PC and PT curves, CLO; not verified
+  against its manual.
 - ``trimble``: control codes of Trimble Business Center as LISCAD lists them: ST, END, CLOSE,
   CLSRECT, SA and EA arcs that leave their leg as a tangent, SC and EC curves.
 - ``leica``: free codes of Leica instruments as n4ce lists them: CS and CE curves, TS and TE tangent
@@ -126,6 +128,8 @@ STYLES: Mapping[str, Style] = {
                 "C": "continue",
                 "CLS": "close",
                 **{word: _CURVES[word] for word in ("BC", "EC", "RECT")},
+                "BCV": "begin_curve",
+                "ECV": "end_curve",
                 **dict.fromkeys(("RPN", "CPN", "RT", "CIR", "SO"), "other"),
             },
             others=r"(?:RPN|CPN|RT|CIR|X|H|V|RECT)-?\d+(?:\.\d+)?",

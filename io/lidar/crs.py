@@ -13,9 +13,12 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+
 from ...crs import CRS, FOOT, METRE, US_SURVEY_FOOT, Unit
-from ...errors import CrsError, MissingExtraError, ReadError
+from ...errors import CrsError, MissingExtraError, ReadError, TinsmithError
 from ..isolated import run_isolated
+from ..reprojection.transformation import transform_points
 
 if TYPE_CHECKING:
     from .header import Header
@@ -27,6 +30,15 @@ _WKT, _KEYS, _DOUBLES, _TEXTS = 2112, 34735, 34736, 34737
 _GEOGRAPHIC_KEY, _PROJECTED_KEY, _LINEAR_UNIT_KEY = 2048, 3072, 3076
 _VERTICAL_KEY, _VERTICAL_UNIT_KEY = 4096, 4099
 _USER_DEFINED = 32767
+_SAME_UNIT = 1e-3
+"""Feet of either kind differ by 2e-6, any other two units by far more."""
+
+_DEGREE = 111_000.0
+"""Metres, about."""
+
+_RADII, _HIGHEST = (6.3e6, 6.42e6), 1e4
+"""Metres from the centre of the Earth at its surface; elevations are below the latter."""
+
 _UNITS = {9001: METRE, 9002: FOOT, 9003: US_SURVEY_FOOT}
 _IN_FEET = {(5703, US_SURVEY_FOOT): 6360, (5703, FOOT): 8228}
 """NAVD 88 in metres, as files name it whose elevations are in feet, and what they mean."""
@@ -69,29 +81,91 @@ def find_reference(header: Header, *, is_declared: bool) -> Reference:
 
     Notes
     -----
-    WKT goes before keys of GeoTIFF, which older programs read, where a file has both.
+    Where a file has both WKT and keys of GeoTIFF, which older programs read, they must mean the
+    same; keys with a projection of their own are not compared.
     """
     try:
         return _find_reference(header)
     except (CrsError, MissingExtraError, ReadError) as error:
-        if not is_declared:
-            raise
-        reason = str(error).partition(": ")[2] or str(error)
+        if not is_declared or _is_from_the_centre(header, error):
+            raise _advise(header, error) from error
+        reason = str(error).removeprefix(f"'{header.path}': ")
         note = f"'{header.path.name}' names a CRS that was not used: {reason}"
         return Reference(notes=(note,))
 
 
 def _find_reference(header: Header) -> Reference:
-    wkt = _read_wkt(header)
     keys = _read_keys(header)
-    if wkt:
-        return Reference(CRS.of(wkt))
-    return Reference() if keys is None else _interpret_keys(header, keys)
+    named = [CRS.of(text) for text in _read_texts(header)]
+    if not named:
+        return Reference() if keys is None else _interpret_keys(header, keys)
+    for other in (*named[1:], *_find_plain_code(keys or {})):
+        _require_agreement(named[0], other, header)
+    vertical, unit = named[0].vertical_unit, _UNITS.get((keys or {}).get(_VERTICAL_UNIT_KEY, 0))
+    if vertical is None or unit is None:
+        return Reference(named[0], unit)
+    if abs(unit.metres / vertical.metres - 1.0) > _SAME_UNIT:  # type: ignore[operator]
+        raise ReadError(
+            f"'{header.path}' has elevations in {vertical.name} by its WKT and in {unit.name} by "
+            "its keys of GeoTIFF: declare the CRS that is right.",
+            path=header.path,
+        )
+    return Reference(named[0])
 
 
-def _read_wkt(header: Header) -> str:
-    content = header.find(_PROJECTION, _WKT) or b""
-    return content.split(b"\0")[0].decode("utf-8", "replace").strip()
+def _read_texts(header: Header) -> list[str]:
+    """Return the WKT of each record that has some, once."""
+    contents = [
+        one.content for one in header.records if (one.user, one.number) == (_PROJECTION, _WKT)
+    ]
+    texts = [one.split(b"\0")[0].decode("utf-8", "replace").strip() for one in contents]
+    return list(dict.fromkeys(text for text in texts if text))
+
+
+def _find_plain_code(keys: dict[int, int]) -> list[CRS]:
+    """Return the CRS whose number the keys give, if they give one."""
+    code = keys.get(_PROJECTED_KEY) or keys.get(_GEOGRAPHIC_KEY)
+    return [] if code in (None, 0, _USER_DEFINED) else [CRS.of(f"EPSG:{code}")]
+
+
+def _require_agreement(first: CRS, other: CRS, header: Header) -> None:
+    """Refuse two CRSs of one file that put its middle more than a metre apart."""
+    ours, theirs = first.horizontal, other.horizontal
+    if ours.is_same(theirs):
+        return
+    middle = np.append(header.middle[:2], 0.0)[None, :]
+    try:
+        moved = transform_points(middle, ours, theirs)
+        away = float(np.abs(moved - middle)[0, :2].max()) * (_DEGREE if theirs.is_geographic else 1)
+    except CrsError:
+        away = np.inf
+    if not away <= 1.0:
+        raise CrsError(
+            f"'{header.path}' names two CRSs that differ: {ours.label} in its WKT, and "
+            f"{theirs.label}.",
+            crs=other,
+        )
+
+
+def _advise(header: Header, error: TinsmithError) -> TinsmithError:
+    """Return an error that tells the coordinates too, by which a surveyor knows their CRS."""
+    if not isinstance(error, CrsError):
+        return error
+    middle = ", ".join(f"{one:.10g}" for one in header.middle.tolist())
+    advice = f"declare the CRS of its coordinates, which are about ({middle})"
+    if _is_from_the_centre(header, error):
+        advice = (
+            f"its coordinates, about ({middle}), are from the centre of the Earth indeed: another "
+            "program must project them first"
+        )
+    return CrsError(f"{str(error).removesuffix('.')}; {advice}.", crs=error.crs)
+
+
+def _is_from_the_centre(header: Header, error: TinsmithError) -> bool:
+    """Whether a geocentric CRS has coordinates that can only be geocentric."""
+    low, high = _RADII
+    is_on_earth = low < float(np.linalg.norm(header.middle)) < high
+    return "Geocentric" in str(error) and is_on_earth and abs(header.middle[2]) > _HIGHEST
 
 
 def _read_keys(header: Header) -> dict[int, int] | None:

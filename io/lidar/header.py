@@ -72,8 +72,8 @@ class Header:
         Where the points begin.
     scales, offsets : (3,) float64 arrays
         A coordinate is its whole number times the scale plus the offset.
-    middle : (3,) float64 array
-        Of the bounds that it gives, which no coordinate has to keep to.
+    low, high : (3,) float64 arrays
+        The bounds that it gives, which no coordinate has to keep to.
     records : tuple of Record
     surplus : int
         Bytes behind the points of a file that is not compressed, which no record explains.
@@ -89,7 +89,8 @@ class Header:
     offset: int
     scales: np.ndarray[tuple[int], np.dtype[np.float64]]
     offsets: np.ndarray[tuple[int], np.dtype[np.float64]]
-    middle: np.ndarray[tuple[int], np.dtype[np.float64]]
+    low: np.ndarray[tuple[int], np.dtype[np.float64]]
+    high: np.ndarray[tuple[int], np.dtype[np.float64]]
     records: tuple[Record, ...]
     surplus: int
 
@@ -97,6 +98,12 @@ class Header:
     def is_copc(self) -> bool:
         """Whether the points are in an octree of levels."""
         return bool(self.records) and self.records[0][:2] == _COPC
+
+    @property
+    def middle(self) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+        """Middle of the bounds."""
+        with np.errstate(over="ignore", invalid="ignore"):
+            return np.nan_to_num(self.low / 2 + self.high / 2)
 
     def find(self, user: str, number: int) -> bytes | None:
         """Return the content of the first record of a kind; None if there is none."""
@@ -147,7 +154,8 @@ def _parse(file: IO[bytes], path: Path, size: int) -> Header:
         offset=offset,
         scales=scales,
         offsets=offsets,
-        middle=_find_middle(fields[23:]),
+        low=np.array(fields[24::2]),
+        high=np.array(fields[23::2]),
         records=(*records, *further),
         surplus=_find_surplus(whole, version, offset + count * point_bytes, first_further or size),
     )
@@ -230,11 +238,6 @@ def _require_scales(
             "and finite ones, the scales not 0, are needed",
         )
     return scales, offsets
-
-
-def _find_middle(box: tuple[float, ...]) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-    with np.errstate(over="ignore", invalid="ignore"):
-        return np.nan_to_num(np.array(box[0::2]) / 2 + np.array(box[1::2]) / 2)
 
 
 def _list(numbers: np.ndarray[tuple[int], np.dtype[np.float64]]) -> str:

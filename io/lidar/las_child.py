@@ -239,15 +239,17 @@ def _count_marks(points: Any, keep: Any) -> dict[str, int]:
 
 
 def _gather_attributes(points: Any, wanted: dict[str, Any], keep: Any) -> dict[str, Any]:
-    """Return attributes of one number a point."""
+    """Return attributes; of several numbers a point one for each, ``rgb[0]``, ``rgb[1]`` ..."""
     every = [name for name in points.point_format.dimension_names if name not in "XYZ"]
     names = every if wanted["attributes"] is None else wanted["attributes"]
-    found = {name: np.asarray(points[name]) for name in names}
-    return {
-        f"attribute {name}": _as_plain(values)[keep]
-        for name, values in found.items()
-        if values.ndim == 1
-    }
+    found: dict[str, Any] = {}
+    for name in names:
+        values = _as_plain(np.asarray(points[name]))[keep]
+        if values.ndim == 1:
+            found[f"attribute {name}"] = values
+        else:
+            found |= {f"attribute {name}[{k}]": values[:, k] for k in range(values.shape[1])}
+    return found
 
 
 def _as_plain(values: Any) -> Any:

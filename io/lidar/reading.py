@@ -42,6 +42,9 @@ _BYTES_PER_POINT = 24
 _MOST_POINTS = 2**31 - 1
 """The vertices of a TIN are numbered with 32 bits."""
 
+_SOME = 4_096
+"""Points that are compared with the bounds of the header."""
+
 _SPARSE = 0.5
 """Share of the points below which those taken are copied, so that memory is given back."""
 
@@ -120,8 +123,9 @@ def read(
     target, declared = CRS.of(crs), Unit.of(z_unit)
     tiles = [_locate(header, target, declared) for header in headers]
     _require_one_crs(tiles, target, path)
+    units = _require_comparable_units(tiles, target, path)
     gathered = _Gathered.reserve(headers, path)
-    placed = [_read_tile(tile, selection, target, gathered) for tile in tiles]
+    placed = [_read_tile(tile, selection, target, gathered, units[0]) for tile in tiles]
     gathered.require_points(path, selection)
     return Survey(
         points=gathered.points,
@@ -188,7 +192,7 @@ def _locate(header: Header, target: CRS | None, declared: Unit | None) -> _Tile:
 
 
 def _require_one_crs(tiles: list[_Tile], target: CRS | None, path: Path) -> None:
-    """Refuse tiles in several CRSs or units, unless the caller says which is wanted."""
+    """Refuse tiles in several CRSs, unless the caller says which is wanted."""
     first = tiles[0]
     for other in tiles[1:]:
         ours, theirs = first.reference.crs, other.reference.crs
@@ -201,12 +205,31 @@ def _require_one_crs(tiles: list[_Tile], target: CRS | None, path: Path) -> None
                 "one by one, or declare the CRS that is wanted if both name theirs.",
                 crs=theirs,
             )
-        if first.unit != other.unit and target is None:
+
+
+def _require_comparable_units(
+    tiles: list[_Tile], target: CRS | None, path: Path
+) -> list[Unit | None]:
+    """Return the units of elevations after any reprojection; refuse known ones beside unknown."""
+    units = [_foresee_unit(tile, target) for tile in tiles]
+    first = tiles[0].header.path.name
+    for tile, unit in zip(tiles, units, strict=True):
+        if unit != units[0] and (unit is None or units[0] is None):
             raise ReadError(
-                f"{names} have elevations in different units: {first.unit or 'unknown'} and "
-                f"{other.unit or 'unknown'}.",
+                f"'{first}' and '{tile.header.path.name}' in '{path}' have elevations in different "
+                f"units: {units[0] or 'unknown'} and {unit or 'unknown'}; read them one by one, or "
+                "declare the unit (z_unit) if it is that of all.",
                 path=path,
             )
+    return units
+
+
+def _foresee_unit(tile: _Tile, target: CRS | None) -> Unit | None:
+    header = tile.header
+    middle = header.middle[None, :]
+    return place(
+        middle, source=tile.reference.crs, target=target, path=header.path, unit=tile.unit
+    ).elevation_unit
 
 
 def _name_crs(crs: CRS | None) -> str:
@@ -315,9 +338,9 @@ class _Gathered:
 
 
 def _read_tile(
-    tile: _Tile, selection: Selection, target: CRS | None, gathered: _Gathered
+    tile: _Tile, selection: Selection, target: CRS | None, gathered: _Gathered, unit: Unit | None
 ) -> Placed:
-    """Add the points of a file that are wanted, in the CRS that is wanted."""
+    """Add the points of a file that are wanted, in the CRS and the unit that are wanted."""
     header, start = tile.header, gathered.count
     with stream_isolated(
         f"{__package__}.las_child:read_points",
@@ -330,9 +353,35 @@ def _read_tile(
             gathered.tally.add(part.value, part.arrays["classes"])
             gathered.append(part.arrays, header)
     own = gathered._points[start : gathered.count]
+    odd = _describe_outside(own, header)
     placed = place(own, source=tile.reference.crs, target=target, path=header.path, unit=tile.unit)
     gathered.replace(start, placed.points)
-    return placed
+    placed = placed._replace(notes=(*placed.notes, *odd))
+    theirs = placed.elevation_unit
+    if theirs is None or unit is None or theirs == unit:
+        return placed
+    own[:, 2] *= (theirs.metres or 1.0) / (unit.metres or 1.0)
+    note = f"The elevations of '{header.path.name}' were converted from {theirs} to {unit}."
+    return placed._replace(notes=(*placed.notes, note))
+
+
+def _describe_outside(points: NDArray[np.float64], header: Header) -> list[str]:
+    """Tell of points beyond the bounds that the header gives, looking at some of them."""
+    some = points[:: max(1, len(points) // _SOME)]
+    low, high = header.low, header.high
+    if len(some) == 0 or not np.isfinite([low, high]).all() or not (low != high).any():
+        return []
+    with np.errstate(over="ignore"):
+        slack = (high - low) / 100 + np.abs(header.scales)
+        count = int(((some < low - slack) | (some > high + slack)).any(axis=1).sum())
+    if count == 0:
+        return []
+    box = [f"{name} {a:.10g} to {b:.10g}" for name, a, b in zip("xyz", low, high, strict=True)]
+    return [
+        f"{count:,} of {len(some):,} points looked at lie outside the bounds that "
+        f"'{header.path.name}' gives ({', '.join(box)}): these, its scales or its offsets are "
+        "wrong."
+    ]
 
 
 # ------------------------------------------------------------------------- the notes

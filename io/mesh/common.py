@@ -7,15 +7,17 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ..._sentences import counted
 from ...crs import CRS, Unit
 from ...errors import CrsError, FormatError, OptionError, PointsError, ReadError
+from ...terrain.nodata import find_suspect_elevations
 from ...tin import TIN, Survey
 from ...tin.checking.overlaps import describe_overlaps
 from ...tin.validation.options import is_finite_number
 from ..reprojection.placement import settle_unit
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -28,6 +30,7 @@ __all__ = [
     "add_notes",
     "choose_reference",
     "cut_into_fans",
+    "describe_single_precision",
     "format_crs",
     "format_unit",
     "make_survey",
@@ -39,6 +42,14 @@ __all__ = [
 ]
 
 
+_LARGEST_SINGLE = float(np.finfo(np.float32).max)
+_LEAST_MARK = 999.0
+"""The smallest number that programs write for no data."""
+
+_MUCH = 1e-3
+"""CRS units between coordinates beyond which their rounding is told."""
+
+
 class Fans(NamedTuple):
     """Triangles of polygons.
 
@@ -47,10 +58,13 @@ class Fans(NamedTuple):
     triangles : (m, 3) int64 array
     polygon : (m,) int64 array
         The polygon that each triangle comes from.
+    notes : tuple of str
+        Whether polygons were cut, which has more than one way.
     """
 
     triangles: NDArray[np.int64]
     polygon: NDArray[np.int64]
+    notes: tuple[str, ...] = ()
 
 
 def read_content(path: Path) -> bytes:
@@ -168,6 +182,7 @@ def make_tin(
     *,
     constrained: NDArray[np.bool_] | None = None,
     reference: Reference,
+    attributes: Mapping[str, NDArray[Any]] | None = None,
     notes: Sequence[str] = (),
 ) -> TIN:
     """Make a TIN of what a file holds; what makes no TIN is a fault of the file.
@@ -187,11 +202,44 @@ def make_tin(
             constrained=constrained,
             crs=reference.crs,
             z_unit=reference.elevation_unit,
+            attributes=attributes,
         )
     except PointsError as error:
         raise ReadError(f"'{path}' holds no TIN. {error}", path=path) from error
-    told = [*notes, *describe_overlaps(tin)]
+    told = [*notes, *describe_overlaps(tin), *_describe_suspects(tin.points[:, 2])]
     return add_notes(tin, told) if told else tin
+
+
+def describe_single_precision(points: NDArray[np.float64], dtype: Any) -> list[str]:
+    """Tell how far apart the numbers are that coordinates of a file can have, if that is much.
+
+    Parameters
+    ----------
+    points : (n, 3) float64 array
+    dtype : dtype
+        As which the file holds coordinates.
+    """
+    if np.dtype(dtype).newbyteorder("=") != np.float32 or len(points) == 0:
+        return []
+    largest = float(np.abs(points[:, :2]).max())
+    step = float(np.spacing(np.float32(largest))) if largest < _LARGEST_SINGLE else np.inf
+    if not _MUCH <= step < np.inf:
+        return []
+    return [
+        f"Coordinates of the file are numbers of 32 bits: those about {largest:,.10g} are rounded "
+        f"to multiples of {step:g}."
+    ]
+
+
+def _describe_suspects(z: NDArray[np.float64]) -> list[str]:
+    """Tell of elevations that may stand for no data; a mesh is read with all its vertices."""
+    return [
+        f"{counted(one.count, 'vertex', 'vertices')} {'has' if one.count == 1 else 'have'} the "
+        f"elevation {one.value:g}, far from the others ({one.lowest:g} to {one.highest:g}): it may "
+        "stand for no data."
+        for one in find_suspect_elevations(z)
+        if abs(one.value) >= _LEAST_MARK  # a flat mesh may well have one tower
+    ]
 
 
 def add_notes(tin: TIN, notes: Sequence[str]) -> TIN:
@@ -205,6 +253,7 @@ def make_survey(
     *,
     attributes: dict[str, NDArray[Any]] | None = None,
     reference: Reference,
+    notes: Sequence[str] = (),
 ) -> Survey:
     """Make a survey of the points of a file.
 
@@ -229,6 +278,7 @@ def make_survey(
         crs=reference.crs,
         elevation_unit=reference.elevation_unit,
         source=path.name,
+        notes=list(notes),
     )
 
 
@@ -275,7 +325,12 @@ def cut_into_fans(
     )
     start = offsets[:-1][polygon]
     triangles = [corners[start], corners[start + within + 1], corners[start + within + 2]]
-    return Fans(np.stack(triangles, axis=1), polygon)
+    count = int((lengths > 3).sum())
+    note = (
+        f"{counted(count, 'polygon')} of the file {'was' if count == 1 else 'were'} cut into "
+        "triangles: the file does not tell along which diagonals."
+    )
+    return Fans(np.stack(triangles, axis=1), polygon, (note,))
 
 
 def _turn_to_inner_diagonal(

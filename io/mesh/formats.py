@@ -52,8 +52,8 @@ FORMATS = (
         sniff=signatures.is_obj,
         writes=("TIN",),
         precision=_EXACT,
-        losses="Which edges are constrained, lines and the report.",
-        loses=("constrained", "lines", "notes", "report"),
+        losses="Which edges are constrained, lines, attributes and the report.",
+        loses=("constrained", "lines", "attributes", "notes", "report"),
     ),
     _make(
         *("stl", "STL mesh", ".stl"),
@@ -63,9 +63,9 @@ FORMATS = (
         precision="Coordinates are rounded to float32 after an origin is subtracted: to a sixteen "
         "millionth of the extent.",
         relative_rounding=6e-8,
-        losses="The order of vertices and triangles, which edges are constrained, lines and the "
-        "report.",
-        loses=("order", "constrained", "lines", "notes", "report"),
+        losses="The order of vertices and triangles, which edges are constrained, lines, "
+        "attributes and the report.",
+        loses=("order", "constrained", "lines", "attributes", "notes", "report"),
     ),
     _make(
         *("vtk", "VTK XML mesh (opens in ParaView)", ".vtp", ".vtu"),
@@ -74,8 +74,8 @@ FORMATS = (
         sniff=signatures.is_vtk_xml,
         writes=("TIN",),
         precision=_EXACT,
-        losses="Names and kinds of lines, and the report.",
-        loses=("lines", "notes", "report"),
+        losses="Names and kinds of lines, attributes, and the report.",
+        loses=("lines", "attributes", "notes", "report"),
     ),
     _make(
         "gmsh",
@@ -87,8 +87,8 @@ FORMATS = (
         writes=("TIN",),
         precision=_EXACT,
         losses="The CRS and the unit of elevations; lines are named groups of edges, which are "
-        "read as constrained edges; the report.",
-        loses=("crs", "elevation unit", "lines", "notes", "report"),
+        "read as constrained edges; attributes; the report.",
+        loses=("crs", "elevation unit", "lines", "attributes", "notes", "report"),
     ),
     Format(
         name="2dm",
@@ -99,8 +99,9 @@ FORMATS = (
         write="tinsmith.io.mesh.sms:write",
         writes=("TIN",),
         precision="Every number comes back bit for bit.",
-        losses="The CRS and the unit of elevations; names and kinds of lines; the report.",
-        loses=("crs", "elevation unit", "lines", "notes", "report"),
+        losses="The CRS and the unit of elevations; names and kinds of lines; attributes; the "
+        "report.",
+        loses=("crs", "elevation unit", "lines", "attributes", "notes", "report"),
         sniff=is_2dm,
     ),
     Format(
@@ -112,8 +113,8 @@ FORMATS = (
         write="tinsmith.io.mesh.ugrid:write",
         writes=("TIN",),
         precision="Every number comes back bit for bit.",
-        losses="Names of lines, which are chained anew, and the report.",
-        loses=("lines", "notes", "report"),
+        losses="Names of lines, which are chained anew, attributes, and the report.",
+        loses=("lines", "attributes", "notes", "report"),
         extra="mesh",
         sniff=signatures.is_ugrid,
     ),
@@ -137,8 +138,9 @@ FORMATS = (
         precision="Decimals come back bit for bit, other numbers to the last digit of float64; or "
         "to the precision asked for.",
         rounding=2e-9,
-        losses="Which edges are constrained, lines and the report; vertices of no triangle.",
-        loses=("constrained", "lines", "notes", "report"),
+        losses="Which edges are constrained, lines, attributes and the report; vertices of no "
+        "triangle.",
+        loses=("constrained", "lines", "attributes", "notes", "report"),
         sniff=is_cityjson,
     ),
     Format(
@@ -149,9 +151,18 @@ FORMATS = (
         writes=("TIN",),
         precision="A thousandth of the median edge in the plane, a millimetre or a 32,767th of the "
         "range of elevations in a tile.",
-        losses="The surface is cut into tiles in longitude and latitude, without lines; one tile "
-        "is read at a time.",
-        loses=("crs", "elevation unit", "triangles", "constrained", "lines", "notes", "report"),
+        losses="The surface is cut into tiles in longitude and latitude, without lines and "
+        "attributes; one tile is read at a time.",
+        loses=(
+            "crs",
+            "elevation unit",
+            "triangles",
+            "constrained",
+            "lines",
+            "attributes",
+            "notes",
+            "report",
+        ),
     ),
     Format(
         name="terrain",
@@ -168,8 +179,9 @@ FORMATS = (
         write="tinsmith.io.mesh.gltf.writing:write",
         writes=("TIN",),
         precision="A sixteen millionth of the extent, from an origin that the file tells.",
-        losses="Which edges are constrained, lines and the report; vertices of no triangle.",
-        loses=("constrained", "lines", "notes", "report"),
+        losses="Which edges are constrained, lines, attributes and the report; vertices of no "
+        "triangle.",
+        loses=("constrained", "lines", "attributes", "notes", "report"),
     ),
     Format(
         name="off",
@@ -180,8 +192,8 @@ FORMATS = (
         write="tinsmith.io.mesh.off:write",
         writes=("TIN",),
         precision="Every number comes back bit for bit.",
-        losses="Which edges are constrained, lines and the report.",
-        loses=("constrained", "lines", "notes", "report"),
+        losses="Which edges are constrained, lines, attributes and the report.",
+        loses=("constrained", "lines", "attributes", "notes", "report"),
         sniff=is_off,
     ),
 )

@@ -22,7 +22,7 @@ from .common import (
     format_unit,
     require_tin,
 )
-from .texture import load_texture
+from .texture import choose_picture, load_texture
 
 if TYPE_CHECKING:
     import os
@@ -90,8 +90,8 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     if not face_lines:
         return common.make_survey(points, path, reference=reference)
     corners, offsets = _parse_faces(lines, vertex_lines, face_lines, path)
-    triangles = common.cut_into_fans(corners, offsets, points, path).triangles
-    return common.make_tin(points, triangles, path, reference=reference)
+    made = common.cut_into_fans(corners, offsets, points, path)
+    return common.make_tin(points, made.triangles, path, reference=reference, notes=made.notes)
 
 
 def _split_lines(content: bytes) -> list[str]:
@@ -195,6 +195,7 @@ def write(
     surface: TIN,
     path: Path,
     *,
+    drape: str | os.PathLike[str] | None = None,
     texture: str | os.PathLike[str] | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> None:
@@ -204,9 +205,11 @@ def write(
     ----------
     surface : TIN
     path : Path
+    drape : path-like, optional
+        Picture to lay over it: a GeoTIFF in any CRS, or a PNG or JPEG file with a world file beside
+        it. The material (``.mtl``) and the picture are written beside the file, under its name.
     texture : path-like, optional
-        Picture to drape over it: a GeoTIFF, or a PNG or JPEG file with a world file beside it. The
-        material (``.mtl``) and the picture are written beside the file, under its name.
+        The former name of ``drape``.
     progress : callable, optional
         Called with the fraction done.
 
@@ -215,20 +218,21 @@ def write(
     FormatError
         If ``surface`` is no TIN.
     ReadError
-        If the texture cannot be read, or shows nothing of the surface.
-    CrsError
-        If the texture is in another CRS.
+        If the picture cannot be read, or shows nothing of the surface.
+    OptionError
+        If two pictures are named.
     WriteError
         If the file cannot be written, or the texture itself would be overwritten.
     """
     tin = require_tin(surface, path, format_name="OBJ")
-    if texture is None:
+    source = choose_picture(drape, texture)
+    if source is None:
         with replacing(path, binary=False) as file:
             _write_body(file, tin, None, progress)
         return
-    draped = load_texture(texture, tin, stacklevel=4)
+    draped = load_texture(source, tin, stacklevel=4)
     picture = path.with_name(f"{path.stem}{_PICTURE}{draped.suffix}")
-    _require_other_file(texture, (picture, path, path.with_suffix(".mtl")))
+    _require_other_file(source, (picture, path, path.with_suffix(".mtl")))
     with replacing_files(path, parts=(".mtl",)) as beside:
         beside.with_name(picture.name).write_bytes(draped.content)
         material = f"newmtl {_MATERIAL}\nKa 1 1 1\nKd 1 1 1\nKs 0 0 0\nmap_Kd {picture.name}\n"

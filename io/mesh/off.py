@@ -101,8 +101,8 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     if counts.faces == 0:
         return make_survey(points, path, reference=reference)
     corners, offsets = _parse_faces(rows[faces], lines[faces], path)
-    triangles = cut_into_fans(corners, offsets, points, path).triangles
-    return make_tin(points, triangles, path, reference=reference)
+    made = cut_into_fans(corners, offsets, points, path)
+    return make_tin(points, made.triangles, path, reference=reference, notes=made.notes)
 
 
 def _skip_keyword(rows: list[str], lines: list[int], path: Path) -> tuple[list[str], list[int]]:
@@ -110,7 +110,12 @@ def _skip_keyword(rows: list[str], lines: list[int], path: Path) -> tuple[list[s
     first = rows[0].split() if rows else [""]
     keyword = first[0]
     found = _KEYWORD.fullmatch(keyword)
-    if found is None or "BINARY" in first:
+    if "BINARY" in first:
+        raise ReadError(
+            f"'{path}' is a binary OFF file, and only those in text are read: save it as that.",
+            path=path,
+        )
+    if found is None:
         raise ReadError(
             f"'{path}' is no OFF file in text: it must begin with 'OFF', not '{keyword[:20]}'.",
             path=path,

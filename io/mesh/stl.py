@@ -25,6 +25,7 @@ from ...errors import CrsError, OptionError, ReadError, WriteError
 from ...tin.validation.options import as_flag
 from .common import (
     choose_reference,
+    describe_single_precision,
     format_unit,
     make_tin,
     read_content,
@@ -46,6 +47,7 @@ __all__ = ["read", "write"]
 
 _HEADER_BYTES = 80
 _FACET = np.dtype([("normal", "<f4", (3,)), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+_HEAD = 1000
 _BATCH = 131_072
 _MILLIMETRES = 1000.0
 _BASE_SHARE = 20.0
@@ -90,7 +92,8 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused
         points, triangles = _merge_corners(facets["corners"].reshape(-1, 3))
         places = points + origin
-    return make_tin(places, triangles, path, reference=reference)
+    notes = describe_single_precision(points, np.float32)
+    return make_tin(places, triangles, path, reference=reference, notes=notes)
 
 
 def _find_facets(content: bytes, path: Path) -> NDArray[Any]:
@@ -99,7 +102,7 @@ def _find_facets(content: bytes, path: Path) -> NDArray[Any]:
     room = (len(content) - body) // _FACET.itemsize
     if room == count > 0:
         return np.frombuffer(content, _FACET, count, body)
-    if content.lstrip().startswith(b"solid"):
+    if content.lstrip()[:5].lower() == b"solid" and b"facet" in content[:_HEAD].lower():
         raise ReadError(
             f"'{path}' is a text STL, and only binary STL is read: save it as that.",
             path=path,

@@ -1,34 +1,31 @@
 """A picture draped over a surface: its bytes, and the place in it of each vertex.
 
-A GeoTIFF is read through GDAL in a child process, made smaller where graphics cards ask for that,
-and becomes JPEG, or PNG where it is partly transparent. PNG and JPEG files go as they are, placed
-by the world file beside them.
+A GeoTIFF is read as for a preview, and becomes JPEG, or PNG where it is partly transparent. PNG and
+JPEG files go as they are, placed by the world file beside them.
 """
 
 from __future__ import annotations
 
-import os
 import struct
 import warnings
 from dataclasses import dataclass
-from pathlib import Path
-from typing import IO, TYPE_CHECKING
+from typing import TYPE_CHECKING
 
-import numpy as np
-
-from ... import _optional
-from ...crs import CRS
-from ...errors import CrsError, LossWarning, OptionError, ReadError
-from ..isolated import run_isolated
-from ..isolated.local_files import require_local
+from ...errors import LossWarning, OptionError, ReadError
+from ...terrain.preview.ortho import Ortho
+from ..raster.ortho import as_picture_path, read_ortho
 from .common import read_content
 
 if TYPE_CHECKING:
+    import os
+    from pathlib import Path
+
+    import numpy as np
     from numpy.typing import NDArray
 
     from ...tin import TIN
 
-__all__ = ["MOST_PIXELS", "Texture", "load_texture"]
+__all__ = ["MOST_PIXELS", "Texture", "choose_picture", "load_texture"]
 
 MOST_PIXELS = 8192
 """Widest and highest picture that graphics cards and WebGL take everywhere."""
@@ -38,8 +35,7 @@ _WORLD_SUFFIXES = {"png": (".pgw", ".pngw", ".wld"), "jpeg": (".jgw", ".jpgw", "
 _SIZE_MARKERS = frozenset({*range(0xC0, 0xD0)} - {0xC4, 0xC8, 0xCC})
 """Segments of JPEG that tell the size of the picture."""
 
-_OUTSIDE = 1e-6
-"""Share of the picture beyond its edge that rounding of a world file explains."""
+_BEYOND = "its edge is drawn out to them"
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,18 +61,6 @@ class Texture:
         return ".png" if self.kind == "png" else ".jpg"
 
 
-@dataclass(frozen=True)
-class _Picture:
-    """A picture, and the affine transform from columns and rows to eastings and northings."""
-
-    content: bytes
-    kind: str
-    width: int
-    height: int
-    transform: tuple[float, ...]
-    crs: CRS | None
-
-
 def load_texture(source: str | os.PathLike[str], tin: TIN, *, stacklevel: int = 3) -> Texture:
     """Read the picture to drape over a TIN.
 
@@ -96,81 +80,55 @@ def load_texture(source: str | os.PathLike[str], tin: TIN, *, stacklevel: int = 
         If the file is missing, damaged, no picture, or has no place on the ground; or shows none of
         the surface.
     CrsError
-        If it is in another CRS than the TIN.
+        If it cannot be brought to the CRS of the TIN.
     MissingExtraError
         If a GeoTIFF is given and rasterio is not installed.
 
     Warns
     -----
     LossWarning
-        If the picture is made smaller, or does not reach over all of the surface.
+        If the picture is warped or made smaller, does not reach over all of the surface, or
+        something is taken for granted that it does not tell.
     """
-    path = _as_path(source)
-    picture = _read_picture(path, stacklevel + 1)
-    _require_same_crs(picture, tin, path)
-    places = _find_places(picture, tin.points, path)
-    used = places[np.unique(tin.triangles)]
-    outside = ((used < -_OUTSIDE) | (used > 1.0 + _OUTSIDE)).any(axis=1)
-    if outside.all():
-        raise ReadError(f"'{path}' shows nothing of the surface: it lies elsewhere.", path=path)
-    if outside.any():
-        warnings.warn(
-            f"'{path}' does not reach over {outside.mean():.1%} of the vertices: its edge is drawn "
-            "out to them.",
-            LossWarning,
-            stacklevel=stacklevel,
+    path = as_picture_path(source, "drape")
+    kind = _find_kind(path)
+    if kind is None:
+        ortho = read_ortho(
+            path, [tin], most_pixels=MOST_PIXELS, beyond=_BEYOND, stacklevel=stacklevel + 1
         )
-    return Texture(picture.content, picture.kind, places)
+    else:
+        ortho = _read_plain(path, kind)
+        if gap := ortho.measure_gap([tin]):
+            warnings.warn(
+                f"'{path}' does not reach over {gap:.1%} of the vertices: {_BEYOND}.",
+                LossWarning,
+                stacklevel=stacklevel,
+            )
+    return Texture(ortho.content, ortho.kind, ortho.place(tin.points))
 
 
-def _as_path(source: object) -> Path:
-    if not isinstance(source, str | os.PathLike):
-        raise OptionError("texture", source, "the path of a GeoTIFF, PNG or JPEG file")
-    require_local(source)
-    return Path(source)
+def choose_picture(
+    drape: str | os.PathLike[str] | None, texture: str | os.PathLike[str] | None
+) -> str | os.PathLike[str] | None:
+    """Return the picture that is named, by the name of the option or by its former one.
+
+    Raises
+    ------
+    OptionError
+        If both are given.
+    """
+    if drape is not None and texture is not None:
+        raise OptionError("texture", texture, "left out where drape names the picture")
+    return texture if drape is None else drape
 
 
-def _read_picture(path: Path, stacklevel: int) -> _Picture:
-    if path.is_dir():
-        raise ReadError(f"'{path}' is a folder: name a picture in it.", path=path)
-    with _open(path) as file:
+def _find_kind(path: Path) -> str | None:
+    with path.open("rb") as file:
         head = file.read(16)
-    kind = next((kind for start, kind in _KINDS.items() if head.startswith(start)), None)
-    return _read_georeferenced(path, stacklevel) if kind is None else _read_plain(path, kind)
+    return next((kind for start, kind in _KINDS.items() if head.startswith(start)), None)
 
 
-def _open(path: Path) -> IO[bytes]:
-    try:
-        return path.open("rb")
-    except OSError as error:
-        raise ReadError(f"Cannot read '{path}': {error.strerror or error}.", path=path) from error
-
-
-def _read_georeferenced(path: Path, stacklevel: int) -> _Picture:
-    _optional.require("rasterio", "Reading a texture that is no PNG or JPEG file")
-    where = {"path": os.path.abspath(path), "shown": str(path), "most_pixels": MOST_PIXELS}  # noqa: PTH100
-    value, arrays = run_isolated(f"{__package__}.texture_child:read_picture", where, path=path)
-    if value["transform"] is None:
-        raise ReadError(f"'{path}' has no place on the ground: it is not georeferenced.", path=path)
-    rows, columns = value["shape"]
-    if (rows, columns) != (value["height"], value["width"]):
-        warnings.warn(
-            f"'{path}' was made smaller, from {value['width']} x {value['height']} to {columns} x "
-            f"{rows} pixels: graphics cards take no larger ones.",
-            LossWarning,
-            stacklevel=stacklevel + 1,
-        )
-    return _Picture(
-        arrays["content"].tobytes(),
-        value["kind"],
-        value["width"],
-        value["height"],
-        tuple(value["transform"]),
-        CRS.of(value["crs"]),
-    )
-
-
-def _read_plain(path: Path, kind: str) -> _Picture:
+def _read_plain(path: Path, kind: str) -> Ortho:
     """Return a PNG or JPEG file as it is, placed by its world file."""
     content = read_content(path)
     size = _find_png_size(content) if kind == "png" else _find_jpeg_size(content)
@@ -188,7 +146,8 @@ def _read_plain(path: Path, kind: str) -> _Picture:
             f"'{path}' has no place on the ground: there is no world file beside it ({names}).",
             path=path,
         )
-    return _Picture(content, kind, *size, _read_world_file(world), None)
+    width, height = size
+    return Ortho(path, content, kind, (height, width), _read_world_file(world))
 
 
 def _find_png_size(content: bytes) -> tuple[int, int] | None:
@@ -225,25 +184,3 @@ def _read_world_file(path: Path) -> tuple[float, ...]:
             path=path,
         ) from None
     return a, b, x - (a + b) / 2, d, e, y - (d + e) / 2
-
-
-def _require_same_crs(picture: _Picture, tin: TIN, path: Path) -> None:
-    if picture.crs is None or tin.crs is None:
-        return
-    if not picture.crs.horizontal.is_same(tin.crs.horizontal):
-        raise CrsError(
-            f"'{path}' is in {picture.crs.label}, and the TIN in {tin.crs.label}: bring the "
-            "picture to the CRS of the TIN first (gdalwarp -t_srs).",
-            crs=picture.crs,
-        )
-
-
-def _find_places(picture: _Picture, points: NDArray[np.float64], path: Path) -> NDArray[np.float64]:
-    """Return where in the picture each vertex lies."""
-    a, b, x, d, e, y = picture.transform
-    area = a * e - b * d
-    if not np.isfinite([*picture.transform]).all() or area == 0.0:
-        raise ReadError(f"'{path}' has no place on the ground: its pixels have no area.", path=path)
-    along, up = points[:, 0] - x, points[:, 1] - y
-    columns, rows = (e * along - b * up) / area, (a * up - d * along) / area
-    return np.column_stack([columns / picture.width, rows / picture.height])

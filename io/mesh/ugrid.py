@@ -16,7 +16,7 @@ import numpy as np
 from ... import _optional
 from ..._atomic import replacing_path
 from ..._sentences import counted
-from ...crs import CRS, Unit
+from ...crs import CRS, METRE, Unit
 from ...errors import CrsError, OptionError, ReadError, WriteError
 from ...policies import LineKind
 from ..isolated import run_isolated
@@ -24,6 +24,7 @@ from .common import (
     add_notes,
     choose_reference,
     cut_into_fans,
+    describe_single_precision,
     format_unit,
     make_survey,
     make_tin,
@@ -107,17 +108,13 @@ def read(
         notes.append(f"Depths '{value['variable']}' grow downwards: their sign was changed.")
     _require_elevations(points, value["variable"], path)
     reference = _choose_reference(crs, z_unit, value, path)
-    lengths = np.diff(arrays["offsets"])
-    if len(lengths) == 0:
-        return make_survey(points, path, reference=reference)
-    triangles = cut_into_fans(arrays["corners"], arrays["offsets"], points, path).triangles
-    n_polygons = int((lengths > 3).sum())
-    if n_polygons:
-        notes.append(
-            f"{counted(n_polygons, 'polygon')} of the file {'was' if n_polygons == 1 else 'were'} "
-            "cut into triangles: the file does not tell along which diagonals."
-        )
-    tin = make_tin(points, triangles, path, reference=reference, notes=notes)
+    notes += describe_single_precision(points, value["dtype"])
+    notes += _require_units(value["xy_units"], reference.crs, path)
+    if len(arrays["offsets"]) == 1:
+        return make_survey(points, path, reference=reference, notes=notes)
+    made = cut_into_fans(arrays["corners"], arrays["offsets"], points, path)
+    notes += made.notes
+    tin = make_tin(points, made.triangles, path, reference=reference, notes=notes)
     return _add_edge_types(tin, arrays)
 
 
@@ -143,6 +140,32 @@ def _choose_reference(
             f"'{path}' names the CRS '{told[0][:60]}', which is unknown: declare it.", crs=told[0]
         )
     return choose_reference(crs, z_unit, path, found_crs=found, found_unit=unit)
+
+
+def _require_units(units: Sequence[str], crs: CRS | None, path: Path) -> list[str]:
+    """Refuse units of eastings and northings that are not those of the CRS; tell lonely ones.
+
+    Raises
+    ------
+    ReadError
+    """
+    words = [text.lower() for text in units]
+    is_degrees = any(word.startswith("degree") for word in words)
+    lengths = [Unit.of(text) for text in units if _is_unit(text)]
+    unit = next((one for one in lengths if one is not None), None)
+    if not is_degrees and (unit is None or (crs is None and unit == METRE)):
+        return []
+    name = "degrees" if unit is None or is_degrees else unit.name
+    if crs is None:
+        return [f"Eastings and northings of the file are in {name}, and no CRS is named."]
+    if is_degrees == crs.is_geographic and (is_degrees or unit == crs.horizontal_unit):
+        return []
+    of_crs = "degrees" if crs.is_geographic else crs.horizontal_unit.name
+    raise ReadError(
+        f"'{path}' has eastings and northings in {name}, and {crs.label} measures in {of_crs}: "
+        "its CRS is another one.",
+        path=path,
+    )
 
 
 def _find_known_crs(texts: Sequence[str]) -> str | None:

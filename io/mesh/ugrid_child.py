@@ -56,11 +56,13 @@ def read_mesh(path: str, shown: str, *, surface: str | None, variable: str | Non
     -------
     Answer
         The value holds the ``mesh``, the ``variable`` of elevations and whether it is a ``depth``,
-        its ``unit``, and texts of the CRS to try. The arrays hold ``points``, ``corners`` of the
+        its ``unit``, texts of the CRS to try, ``xy_units`` and the ``dtype`` of eastings and
+        northings. The arrays hold ``points``, ``corners`` of the
         faces, their ``offsets``, and where the file has them ``edges`` and their ``types``.
     """
     with import_module("netCDF4").Dataset(path) as data:
         mesh = _find_mesh(data, surface, shown)
+        places = _find_coordinates(data, mesh, shown)
         x, y = _read_coordinates(data, mesh, shown)
         level = _find_elevations(data, mesh, len(x), variable, shown)
         z = _read_numbers(level, shown)
@@ -70,7 +72,9 @@ def read_mesh(path: str, shown: str, *, surface: str | None, variable: str | Non
             "variable": level.name,
             "depth": _is_depth(level),
             "unit": _get_text(level, "units"),
-            "crs": _find_crs(data, (level, *_find_coordinates(data, mesh, shown))),
+            "crs": _find_crs(data, (level, *places)),
+            "xy_units": [_get_text(one, "units") for one in places],
+            "dtype": "float32" if any(one.dtype == np.float32 for one in places) else "float64",
         }
         arrays = {"points": np.column_stack([x, y, z]), "corners": corners, "offsets": offsets}
         return Answer(value, arrays | _read_edges(data, mesh, len(x)))

@@ -71,6 +71,7 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
         If the unit is unknown, or the file names another.
     """
     value, arrays = _read_in_child(path)
+    notes = common.describe_single_precision(arrays["points"], value["dtype"])
     points = _restore_points(arrays)
     reference = common.choose_reference(
         crs, z_unit, path, found_crs=value["crs"], found_unit=value["elevation_unit"]
@@ -78,12 +79,19 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     cells = arrays["cells"]
     if len(cells) == 0:
         attributes = {name: arrays[f"attribute {k}"] for k, name in enumerate(value["attributes"])}
-        return common.make_survey(points, path, attributes=attributes, reference=reference)
+        return common.make_survey(
+            points, path, attributes=attributes, reference=reference, notes=notes
+        )
     made = common.cut_into_fans(arrays["corners"], arrays["offsets"], points, path)
     flags = arrays.get("flags") if len(cells) == len(made.triangles) else None
     is_flagged = None if flags is None else flags != 0
     return common.make_tin(
-        points, made.triangles, path, constrained=is_flagged, reference=reference
+        points,
+        made.triangles,
+        path,
+        constrained=is_flagged,
+        reference=reference,
+        notes=(*notes, *made.notes),
     )
 
 

@@ -40,10 +40,11 @@ def read_mesh(path: str, shown: str, *, kind: str) -> Answer:
     Returns
     -------
     Answer
-        The value holds ``crs``, ``elevation_unit`` and the names of the ``attributes``. The arrays
-        hold ``points``, the ``corners`` of faces, one face after the other, their ``offsets``, the
-        number of the cell that each is (``cells``), ``attribute 0`` ..., and where the file has
-        them ``flags`` of the faces' edges, ``origin``, ``exaggeration`` and ``elevation_scale``.
+        The value holds ``crs``, ``elevation_unit``, the names of the ``attributes``, and the
+        ``dtype`` of the coordinates. The arrays hold ``points``, the ``corners`` of faces, one face
+        after the other, their ``offsets``, the number of the cell that each is (``cells``),
+        ``attribute 0`` ..., and where the file has them ``flags`` of the faces' edges, ``origin``,
+        ``exaggeration`` and ``elevation_scale``.
     """
     pv = import_module("pyvista")
     reader = load_vtk_class(f"vtkXML{kind}Reader")()
@@ -62,7 +63,8 @@ def read_mesh(path: str, shown: str, *, kind: str) -> Answer:
     arrays |= {f"attribute {k}": values for k, values in enumerate(attributes.values())}
     arrays |= _read_number_fields(found) | _read_edge_flags(found, faces["cells"])
     texts = {name: _read_text_field(found, name) for name in ("crs", "elevation_unit")}
-    return Answer({**texts, "attributes": list(attributes)}, arrays)
+    value = {**texts, "attributes": list(attributes), "dtype": str(found.points.dtype)}
+    return Answer(value, arrays)
 
 
 def load_vtk_class(name: str) -> Any:

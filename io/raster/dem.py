@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from dataclasses import dataclass, replace
 from numbers import Integral, Real
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
 
     from ...crs import CrsLike, UnitLike
 
-__all__ = ["is_raster", "read", "read_georeference"]
+__all__ = ["LEFT_OUT", "is_raster", "read", "read_georeference"]
 
 _STRIP_CELLS = 4_000_000
 """Cells read at a time, so that memory holds little but the points."""
@@ -39,6 +40,9 @@ LARGEST_RASTER = 2**31 - 1
 
 BYTES_PER_CELL = 48
 """Memory for a cell: its three coordinates, once in strips and once in one array."""
+
+LEFT_OUT = "cells between samples"
+_FEWEST_CELLS = 4
 
 _COLOURS = ("red", "green", "blue", "palette", "cyan", "magenta", "yellow", "black")
 
@@ -53,6 +57,10 @@ class _Cells:
     height: int
     stride: int
     bounds: Bounds | None = None
+
+    @property
+    def count(self) -> int:
+        return -(-self.width // self.stride) * -(-self.height // self.stride)
 
     @property
     def columns(self) -> NDArray[np.int64]:
@@ -71,7 +79,8 @@ def read(
     z_unit: UnitLike | None = None,
     band: int | None = None,
     window: Sequence[int] | Bounds | None = None,
-    stride: int = 1,
+    stride: int | None = None,
+    most_cells: int | None = None,
     nodata: float | Sequence[float] | None = None,
     fill: bool = False,
 ) -> Survey:
@@ -91,8 +100,11 @@ def read(
     window : (4,) sequence of int, or Bounds, optional
         Part to read: column and row of the first cell (from 0), width and height in cells; or
         bounds in the raster's own CRS, which hold the centres of the cells wanted.
-    stride : int
-        Read every ``stride``-th row and column only.
+    stride : int, optional
+        Read every ``stride``-th row and column only; default all.
+    most_cells : int, optional
+        Read so many cells at most: every n-th row and column of a larger raster, with the smallest
+        n for which they are no more, which ``notes`` tell. Not with ``stride``.
     nodata : float or sequence of float, optional
         Elevations that stand for no data, besides the one that the raster declares.
     fill : bool
@@ -103,7 +115,8 @@ def read(
     -------
     Survey
         Rows of the raster from north to south, as stored. ``skipped["nodata cells"]`` counts
-        cells that are nodata, masked, NaN or infinite.
+        cells that are nodata, masked, NaN or infinite, ``skipped["cells between samples"]`` those
+        that ``most_cells`` left out.
 
     Raises
     ------
@@ -128,7 +141,8 @@ def read(
     _require_elevation_band(dataset, number, band is not None, path)
     target, source = CRS.of(crs), CRS.of(dataset.crs)
     unit, said = _find_elevation_unit(dataset, number, source, Unit.of(z_unit))
-    cells = _choose_cells(dataset, window, stride, path)
+    cells = _choose_cells(dataset, window, stride, path, most_cells)
+    left_out = 0 if most_cells is None else cells.width * cells.height - cells.count
     marks = parse_nodata(nodata)
     _require_few_cells(cells, path)
     place(_find_middle(dataset), source=source, target=target, path=path)
@@ -147,8 +161,12 @@ def read(
         crs=placed.crs,
         elevation_unit=placed.elevation_unit,
         source=path.name,
-        skipped={"nodata cells": n_nodata} if n_nodata else {},
-        notes=[*said, *notes, *placed.notes],
+        skipped={
+            name: count
+            for name, count in (("nodata cells", n_nodata), (LEFT_OUT, left_out))
+            if count
+        },
+        notes=[*said, *_describe_sample(cells, left_out), *notes, *placed.notes],
     )
     return survey if fill or valid.all() else _add_void_rings(survey, valid)
 
@@ -384,7 +402,11 @@ def _find_middle(dataset: _Header) -> NDArray[np.float64]:
 
 
 def _choose_cells(
-    dataset: _Header, window: Sequence[int] | Bounds | None, stride: int, path: Path
+    dataset: _Header,
+    window: Sequence[int] | Bounds | None,
+    stride: int | None,
+    path: Path,
+    most_cells: int | None = None,
 ) -> _Cells:
     bounds = None
     if window is None:
@@ -394,7 +416,9 @@ def _choose_cells(
         part = _cut_bounds(dataset, bounds, path)
     else:
         part = _cut_window(dataset, window, path)
-    smaller = min(part[2:])
+    if most_cells is not None:
+        return _Cells(*part, _choose_stride(part[2], part[3], stride, most_cells), bounds)
+    smaller, stride = min(part[2:]), 1 if stride is None else stride
     if not isinstance(stride, Integral) or not (1 <= stride < smaller or stride == 1):
         raise OptionError(
             "stride",
@@ -403,6 +427,28 @@ def _choose_cells(
             f"and {counted(part[3], 'row')} to read",
         )
     return _Cells(*part, int(stride), bounds)
+
+
+def _choose_stride(width: int, height: int, stride: int | None, most_cells: int) -> int:
+    """Return the smallest stride that leaves so many cells, and two rows and columns at least."""
+    is_count = isinstance(most_cells, Integral) and not isinstance(most_cells, bool)
+    if not is_count or most_cells < _FEWEST_CELLS:
+        raise OptionError("most_cells", most_cells, f"a whole number from {_FEWEST_CELLS} on")
+    if stride is not None:
+        raise OptionError("most_cells", most_cells, "None where a stride is given")
+    found = max(1, math.isqrt(width * height // int(most_cells)))
+    while -(-width // found) * -(-height // found) > most_cells:
+        found += 1
+    return max(1, min(found, min(width, height) - 1))
+
+
+def _describe_sample(cells: _Cells, left_out: int) -> list[str]:
+    if left_out == 0:
+        return []
+    return [
+        f"One row and column of {cells.stride} is read: {cells.count:,} of "
+        f"{cells.width * cells.height:,} cells."
+    ]
 
 
 def _cut_window(dataset: _Header, window: Sequence[int], path: Path) -> tuple[int, int, int, int]:
@@ -448,7 +494,7 @@ def _cut_bounds(dataset: _Header, bounds: Bounds, path: Path) -> tuple[int, int,
 
 def _require_few_cells(cells: _Cells, path: Path) -> None:
     """Refuse more cells than can be read, before memory is asked for."""
-    count = -(-cells.width // cells.stride) * -(-cells.height // cells.stride)
+    count = cells.count
     memory = measure_free_memory()
     most = min(LARGEST_RASTER, memory // BYTES_PER_CELL)
     if count > most:

@@ -102,7 +102,8 @@ def is_obj(head: bytes) -> bool:
 
 def is_stl(head: bytes) -> bool:
     """Whether the file is a text STL mesh; a binary one has no signature."""
-    return head.startswith(b"solid") and re.search(rb"\n\s*facet\s+normal\s", head) is not None
+    words = head.lower()
+    return words.startswith(b"solid") and re.search(rb"\n\s*facet\s+normal\s", words) is not None
 
 
 def is_tin_geopackage(head: bytes) -> bool:

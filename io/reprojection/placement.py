@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 __all__ = ["DegreesError", "Placed", "place", "settle_unit"]
 
 _WGS84 = "EPSG:4326"
+_MOST_DEGREES = 540.0
+"""Longitudes go on beyond 360 where data cross the antimeridian; latitudes never do."""
 
 
 class DegreesError(ReadError):
@@ -109,6 +111,7 @@ def settle_unit(declared: Unit | None, found: Unit | None, path: Path) -> Unit |
 
 
 def _refuse_degrees(points: NDArray[np.float64], wanted: CRS, source: CRS, path: Path) -> NoReturn:
+    _require_degrees(points, source, path)
     suggestion = _suggest_zone(points, source)
     fitting = f"crs='{suggestion}'" if suggestion else "the option crs"
     raise DegreesError(
@@ -116,6 +119,20 @@ def _refuse_degrees(points: NDArray[np.float64], wanted: CRS, source: CRS, path:
         f"give {fitting} to reproject from longitude and latitude.",
         path=path,
     )
+
+
+def _require_degrees(points: NDArray[np.float64], source: CRS, path: Path) -> None:
+    """Refuse coordinates that are in degrees by their CRS, and cannot be."""
+    if not source.is_geographic or len(points) == 0:
+        return
+    middle = np.median(points[:, :2], axis=0)
+    if (np.abs(middle) > _MOST_DEGREES).any():
+        x, y = middle.tolist()
+        raise CrsError(
+            f"'{path}' is in {source.label}, in degrees, by what it says, and its coordinates, "
+            f"about ({x:.10g}, {y:.10g}), are none: the CRS of the file is another one.",
+            crs=source,
+        )
 
 
 def _suggest_zone(points: NDArray[np.float64], source: CRS) -> str | None:

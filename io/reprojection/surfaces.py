@@ -14,11 +14,13 @@ from .transformation import find_conversion_factor
 from .transformation import reproject as reproject_points
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from ...crs import CrsLike, UnitLike
 
-__all__ = ["reproject"]
+__all__ = ["reproject", "scale_survey"]
 
 _FLAT = 1e-3
 """By how much the corners of water may differ in elevation after a change of the vertical datum."""
@@ -124,38 +126,68 @@ def _add_notes(tin: TIN, notes: tuple[str, ...]) -> TIN:
 
 def _move_survey(survey: Survey, source: CRS, target: CRS, unit: Unit | None) -> Survey:
     told = reproject_points(survey.points, source, target, unit=unit)
-    move = _Mover(source, target, unit)
-    lines: dict[str, Any] = {
-        "breaklines": [move.move_line(line) for line in survey.breaklines],
-        "boundary": [move.move_region(one) for one in survey.boundary],
-        "holes": [move.move_region(one) for one in survey.holes],
-        "erase": [move.move_region(one) for one in survey.erase],
-        "water": [move.move_water(one) for one in survey.water],
-        "extent": [move.move_ring(one) for one in survey.extent],
-    }
+
+    def move(points: NDArray[np.float64]) -> NDArray[np.float64]:
+        return reproject_points(points, source, target, unit=unit).points
+
     return replace(
         survey,
         points=told.points,
         crs=target,
         elevation_unit=told.unit,
         notes=[*survey.notes, *told.notes],
-        **lines,
+        **_Mover(move, target).move_lines(survey),
     )
+
+
+def scale_survey(survey: Survey, factor: float, unit: Unit | None) -> Survey:
+    """Return a survey whose elevations, those of lines included, are multiplied by a factor.
+
+    Parameters
+    ----------
+    survey : Survey
+    factor : float
+    unit : Unit or None
+        Of the elevations then; None leaves it as it is.
+    """
+    if factor == 1.0:
+        return replace(survey, elevation_unit=unit or survey.elevation_unit)
+
+    def move(points: NDArray[np.float64]) -> NDArray[np.float64]:
+        moved: NDArray[np.float64] = points * np.array([1.0, 1.0, factor])
+        return moved
+
+    lines = _Mover(move, None).move_lines(survey)
+    return replace(survey, points=move(survey.points), elevation_unit=unit, **lines)
 
 
 class _Mover:
     """Lines of a survey, moved as its points are."""
 
-    def __init__(self, source: CRS, target: CRS, unit: Unit | None) -> None:
-        self._how: dict[str, Any] = {"source": source, "target": target, "unit": unit}
+    def __init__(
+        self, move: Callable[[NDArray[np.float64]], NDArray[np.float64]], target: CRS | None
+    ) -> None:
+        self._move = move
+        self._target = target
+
+    def move_lines(self, survey: Survey) -> dict[str, Any]:
+        """Return the lines and rings of a survey, by what they are."""
+        return {
+            "breaklines": [self.move_line(line) for line in survey.breaklines],
+            "boundary": [self.move_region(one) for one in survey.boundary],
+            "holes": [self.move_region(one) for one in survey.holes],
+            "erase": [self.move_region(one) for one in survey.erase],
+            "water": [self.move_water(one) for one in survey.water],
+            "extent": [self.move_ring(one) for one in survey.extent],
+        }
 
     def move_ring(self, ring: Any) -> NDArray[np.float64]:
         """Move an array of two or three columns."""
         given = np.asarray(ring, np.float64)
         if given.shape[1] == 3:
-            return reproject_points(given, **self._how).points
+            return self._move(given)
         level = np.column_stack([given, np.zeros(len(given))])
-        return reproject_points(level, **self._how).points[:, :2].copy()
+        return self._move(level)[:, :2].copy()
 
     def move_line(self, line: Any) -> Any:
         """Move a breakline or its coordinates."""
@@ -177,11 +209,11 @@ class _Mover:
     def move_water(self, water: Water) -> Water:
         """Move a polygon of water, which must stay flat."""
         corners = np.column_stack([water.ring, np.full(len(water.ring), water.z)])
-        moved = reproject_points(corners, **self._how).points
-        if np.ptp(moved[:, 2]) > _FLAT:
+        moved = self._move(corners)
+        if self._target is not None and np.ptp(moved[:, 2]) > _FLAT:
             raise CrsError(
                 f"Water at {water.z:g} would not be flat in the vertical datum of "
-                f"{self._how['target'].label}: name the horizontal part of the CRS alone.",
-                crs=self._how["target"],
+                f"{self._target.label}: name the horizontal part of the CRS alone.",
+                crs=self._target,
             )
         return Water(moved[:, :2], float(moved[:, 2].mean()), name=water.name)

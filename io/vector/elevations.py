@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+import re
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from ..._sentences import counted
+from ...crs import FOOT, US_SURVEY_FOOT, Unit
 from ...errors import OptionError, ReadError
 
 if TYPE_CHECKING:
@@ -14,7 +16,7 @@ if TYPE_CHECKING:
 
     from .features import Features
 
-__all__ = ["find_elevations"]
+__all__ = ["Elevations", "find_elevations", "find_named_unit"]
 
 GEOMETRY = "geometry"
 _NAMES = frozenset(
@@ -31,14 +33,51 @@ _SAME = 0.006
 """CRS units by which a rounded column and the geometry may differ: half a hundredth."""
 
 
+_UNIT_AT_END = re.compile(
+    r"[\s_.(\[-]+(us[\s_-]?ft|ft[\s_-]?us|ft|feet|foot|m|met(?:er|re)s?)[)\]]?$"
+)
+"""A unit behind the name of a column, as in ``elev_ft`` or ``Height (m)``."""
+
+
+class Elevations(NamedTuple):
+    """Elevations of vertices.
+
+    Attributes
+    ----------
+    z : (n,) float64 array
+        NaN where there is none.
+    unit : Unit or None
+        What the name of their column says.
+    notes : tuple of str
+        What was assumed.
+    """
+
+    z: NDArray[np.float64]
+    unit: Unit | None = None
+    notes: tuple[str, ...] = ()
+
+
+def find_named_unit(name: str, features: Features) -> Unit | None:
+    """Return the unit that the name of a column ends with; None if it ends with none.
+
+    Feet are those of the CRS, as "ft" is written for either kind.
+    """
+    found = _UNIT_AT_END.search(name.lower())
+    unit = None if found is None else Unit.of(found[1])
+    if unit != FOOT or features.crs is None or features.crs.is_geographic:
+        return unit
+    units = (features.crs.vertical_unit, features.crs.horizontal_unit)
+    return US_SURVEY_FOOT if next(filter(None, units)) == US_SURVEY_FOOT else unit
+
+
 def find_elevations(
     features: Features,
     z: NDArray[np.float64],
     has_z: NDArray[np.bool_],
     rows: NDArray[np.int64],
     z_field: str | None,
-) -> tuple[NDArray[np.float64], list[str]]:
-    """Return the elevation of each vertex, NaN where there is none, and what was assumed.
+) -> Elevations:
+    """Find the elevation of each vertex, in the geometry or in a column.
 
     Parameters
     ----------
@@ -59,14 +98,14 @@ def find_elevations(
         If there is no such column, or it holds no numbers.
     """
     if z_field is not None:
-        return _take_asked(features, z, has_z, rows, z_field), []
+        return _take_asked(features, z, has_z, rows, z_field)
     columns = _find_columns(features)
     if not has_z.any():
         return _take_column(features, columns, rows)
     z = _require_all(features, z, has_z, rows)
     for name, values in columns.items():
         _require_same(features, z, values[rows], name, rows)
-    return z, []
+    return Elevations(z)
 
 
 def _take_asked(
@@ -75,14 +114,14 @@ def _take_asked(
     has_z: NDArray[np.bool_],
     rows: NDArray[np.int64],
     name: str,
-) -> NDArray[np.float64]:
-    column = features.columns.get(name.lower())
+) -> Elevations:
+    column = features.find_column(name)
     if column is None and name.lower() == GEOMETRY:
         if not has_z.any():
             raise ReadError(
                 f"'{features.path}' has no elevations in its geometry.", path=features.path
             )
-        return _require_all(features, z, has_z, rows)
+        return Elevations(_require_all(features, z, has_z, rows))
     if column is None:
         known = ", ".join(features.names) or "none"
         raise OptionError("z_field", name, f"a column of '{features.path}' ({known}) or geometry")
@@ -94,7 +133,7 @@ def _take_asked(
             f"'{features.path}': the column '{name}' has no value that is a number.",
             path=features.path,
         )
-    return values[rows]
+    return Elevations(values[rows], find_named_unit(name, features))
 
 
 def _require_all(
@@ -121,7 +160,7 @@ def _find_columns(features: Features) -> dict[str, NDArray[np.float64]]:
     """Return the columns that hold elevations, by their names."""
     found = {}
     for name, column in features.columns.items():
-        values = _as_numbers(column) if name in _NAMES else None
+        values = _as_numbers(column) if name.lower() in _NAMES else None
         if values is not None and np.isfinite(values).any():
             found[name] = values
     return found
@@ -145,13 +184,13 @@ def _as_numbers(column: NDArray[Any]) -> NDArray[np.float64] | None:
 
 def _take_column(
     features: Features, columns: dict[str, NDArray[np.float64]], rows: NDArray[np.int64]
-) -> tuple[NDArray[np.float64], list[str]]:
+) -> Elevations:
     """Take the only column that can be meant; several that agree are one."""
     if not columns:
         known = ", ".join(features.names)
         raise ReadError(
             f"'{features.path}' has no elevations: none in the geometry, and "
-            + (f"no column of that name ({known}): " if known else "no column: ")
+            + (f"no column of numbers with such a name ({known}): " if known else "no column: ")
             + "the option z_field names the column that holds them.",
             path=features.path,
         )
@@ -163,7 +202,10 @@ def _take_column(
                 f"differ: {', '.join(columns)}; the option z_field chooses ({name} or {other}).",
                 path=features.path,
             )
-    return values[rows], [f"Elevations are those of the column '{name}'."]
+    unit = find_named_unit(name, features)
+    told = "" if unit is None else f", in {unit.name} as its name says"
+    note = f"Elevations are those of the column '{name}'{told}."
+    return Elevations(values[rows], unit, (note,))
 
 
 def _require_same(

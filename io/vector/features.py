@@ -19,8 +19,9 @@ from ..isolated.spooling import describe_system_error, open_ordinary_file
 from ..registry.signatures import HEAD_BYTES, find_reference_kind
 from .drawings import read_drawing_features
 from .geojson.members import read_json_members
-from .layers import Features
+from .layers import Features, name_apart, name_columns
 from .signatures import is_parquet
+from .well_known_binary import replace_surfaces
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -50,7 +51,7 @@ def read_features(
     where : str, optional
         Condition on the columns, as in SQL.
     lines_only : bool
-        Leave the points and texts of a drawing aside.
+        Leave the points and texts of a drawing aside, and refuse TINs.
 
     Raises
     ------
@@ -97,11 +98,11 @@ def _read_layer(path: Path, layer: str | None, where: str | None, *, lines_only:
         Features(
             path,
             arrays["numbers"],
-            _parse_shapes(arrays, path),
+            _parse_shapes(arrays, path, has_surfaces=not lines_only),
             _decode_columns(value, arrays),
             crs,
-            (),
-            tuple(value["names"]),
+            tuple(value.get("notes", ())),
+            tuple(name_apart(value["names"])),
             unit,
         )
     )
@@ -117,12 +118,12 @@ def _find_file_crs(text: str | None, path: Path) -> CRS | None:
 def _decode_columns(
     value: dict[str, Any], arrays: dict[str, NDArray[Any]]
 ) -> dict[str, NDArray[Any]]:
-    """Return the columns by their names in lower case."""
+    """Return the columns by their names in lower case, see :func:`name_columns`."""
     columns = {}
-    for k, name in enumerate(value["names"]):
+    for k, name in enumerate(name_columns(value["names"])):
         texts = value["texts"].get(str(k))
         column = arrays[f"column {k}"] if texts is None else np.array(texts, object)
-        columns[name.lower()] = column
+        columns[name] = column
     return columns
 
 
@@ -158,14 +159,31 @@ def _require_whole_file(path: Path) -> bytes:
             raise ReadError(
                 f"'{path}' is cut short: it has {size} of {2 * words} bytes.", path=path
             )
+    if head.startswith(_SHAPEFILE):
+        _require_index(path)
     return head
+
+
+def _require_index(path: Path) -> None:
+    """Refuse a shapefile without the part that tells where its features are."""
+    if path.suffix.lower() == ".shp" and not any(
+        path.with_suffix(one).exists() for one in (".shx", ".SHX")
+    ):
+        raise ReadError(
+            f"'{path}' lacks its part '{path.with_suffix('.shx').name}', without which GDAL does "
+            "not read it: put it beside, or let QGIS repair the file.",
+            path=path,
+        )
 
 
 def _describe_part(layer: str, where: str | None) -> str:
     return f" in layer '{layer}'" if where is None else f" where {where}"
 
 
-def _parse_shapes(arrays: dict[str, NDArray[Any]], path: Path) -> NDArray[np.object_]:
+def _parse_shapes(
+    arrays: dict[str, NDArray[Any]], path: Path, *, has_surfaces: bool
+) -> NDArray[np.object_]:
+    """Return geometries of shapely; TINs and the like as polygons where surfaces may be."""
     import shapely
 
     wkb, lengths = arrays["wkb"].tobytes(), arrays["lengths"]
@@ -174,7 +192,11 @@ def _parse_shapes(arrays: dict[str, NDArray[Any]], path: Path) -> NDArray[np.obj
     geometries = np.array([wkb[start:end] or None for start, end in parts], object)
     with np.errstate(invalid="ignore"):  # what is not finite is refused later
         shapes: NDArray[np.object_] = shapely.from_wkb(geometries, on_invalid="ignore")
-    wrong = shapely.is_missing(shapes) & (lengths >= 0)
+        wrong = shapely.is_missing(shapes) & (lengths >= 0)
+        if has_surfaces and wrong.any():  # GEOS knows no TINs
+            polygons = np.array([replace_surfaces(one) for one in geometries[wrong]], object)
+            shapes[wrong] = shapely.from_wkb(polygons, on_invalid="ignore")
+            wrong = shapely.is_missing(shapes) & (lengths >= 0)
     if wrong.any():
         raise ReadError(
             f"'{path}': feature {arrays['numbers'][np.argmax(wrong)]} has a geometry of another "
@@ -202,5 +224,8 @@ def _drop_without_geometry(features: Features) -> Features:
         numbers=features.numbers[~is_empty],
         geometries=features.geometries[~is_empty],
         columns={name: column[~is_empty] for name, column in features.columns.items()},
-        notes=(f"'{features.path.name}': {count} {have} no geometry (first: {first}).",),
+        notes=(
+            *features.notes,
+            f"'{features.path.name}': {count} {have} no geometry (first: {first}).",
+        ),
     )

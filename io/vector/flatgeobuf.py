@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..._atomic import replacing_files
 from .ogr import describe, write_layer
@@ -38,6 +38,6 @@ def write(features: Features, path: Path, *, has_index: bool = True) -> None:
     if there is one, else in their own. Units of columns and of elevations, and notes, are metadata
     of the layer.
     """
-    how = {} if has_index else {"SPATIAL_INDEX": "NO"}
+    how: dict[str, Any] = {} if has_index else {"SPATIAL_INDEX": "NO"}
     with replacing_files(path) as new:
         write_layer(features, new, path, driver="FlatGeobuf", metadata=describe(features), **how)

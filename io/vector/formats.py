@@ -9,7 +9,7 @@ from .signatures import (
     is_geopackage,
     is_parquet,
     is_shapefile,
-    is_vector_xml,
+    is_vector_text,
 )
 
 __all__ = ["FORMATS"]
@@ -19,10 +19,10 @@ _WRITE = "tinsmith.io.vector.surface_layers:write_"
 _BOTH = ("Survey", "TIN")
 _EXACT = "Every coordinate is the same double."
 _LOSSES = (
-    "Of a TIN what the kind that is written does not show: lines beside triangles, the report, "
-    "vertices of no triangle; of a survey its lines."
+    "Of a TIN what the kind that is written does not show: lines and attributes beside triangles, "
+    "the report, vertices of no triangle; of a survey its lines."
 )
-_LOSES: tuple[Loss, ...] = ("order", "constrained", "lines", "notes", "report")
+_LOSES: tuple[Loss, ...] = ("order", "constrained", "lines", "attributes", "notes", "report")
 
 FORMATS = (
     Format(
@@ -93,8 +93,9 @@ FORMATS = (
         write=_WRITE + "shapefile",
         writes=("Features", "TIN", "Survey"),
         precision="Coordinates are the same doubles; other numbers have 15 decimals at most.",
-        losses="Names beyond 10 bytes, texts beyond 254, units and notes. " + _LOSSES,
-        loses=("elevation unit", "attributes", *_LOSES),
+        losses="Names beyond 10 bytes, texts beyond 254, units and notes. As a MultiPatch (on "
+        "request) slope, aspect and area too. " + _LOSSES,
+        loses=("elevation unit", *_LOSES),
         extra="vector",
         sniff=is_shapefile,
     ),
@@ -119,7 +120,7 @@ FORMATS = (
         read=_READ,
         reads=_BOTH,
         extra="vector",
-        sniff=is_vector_xml,
+        sniff=is_vector_text,
         sniff_folder=is_geodatabase,
     ),
 )

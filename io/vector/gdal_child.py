@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import warnings
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -22,6 +23,12 @@ __all__ = [
 
 ENVIRONMENT = make_environment()
 
+_WESTERN = "CP1252"
+
+_ANY_KIND, _SURFACES = 0, (15, 16, 17)
+_ANY_WITH_Z = 2**31
+"""Numbers of kinds of geometry, as GDAL has them."""
+
 _GDAL_SOURCE = re.compile(r"^\S+\.cpp, \d+: ")
 
 
@@ -39,6 +46,23 @@ def prepare() -> None:
     loaded = pyogrio.list_drivers().keys() & set(REFERRING_DRIVERS)
     if loaded:
         raise RuntimeError(f"the GDAL driver {min(loaded)} cannot be switched off")
+    _name_further_kinds()
+
+
+def _name_further_kinds() -> None:
+    """Let pyogrio take layers of kinds that it has no name for, and refuses.
+
+    They are those of any geometry with elevations or measures, and surfaces: TIN, triangle and
+    polyhedral surface. It only looks the name up.
+    """
+    from pyogrio import _geometry
+
+    names = getattr(_geometry, "GEOMETRY_TYPES", {})
+    for kind in (_ANY_KIND, *_SURFACES):
+        for dimension in (0, 1000, 2000, 3000):
+            names.setdefault(kind + dimension, "Unknown")
+    for number in (_ANY_WITH_Z, _ANY_WITH_Z - 2**32):  # the one of no dimension that has a flag
+        names.setdefault(number, "Unknown")
 
 
 def read_features(path: str, shown: str, *, layer: str | None, where: str | None) -> Answer:
@@ -55,20 +79,20 @@ def read_features(path: str, shown: str, *, layer: str | None, where: str | None
     -------
     Answer
         The value holds ``layer``, ``crs``, ``elevation_unit`` if the layer tells it, ``names`` of
-        the columns, and ``texts``, the columns that are no numbers, by their place. The arrays hold
+        the columns, ``texts``, the columns that are no numbers, by their place, and ``notes``. The
+        arrays hold
         ``numbers`` of the features, ``wkb`` of all geometries, ``lengths`` of each (-1 where there
         is none), and ``column 0`` ...
     """
     import pyogrio
-    from pyogrio import raw
     from pyogrio.errors import DataSourceError
 
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             chosen = _choose_layer(path, shown, layer)
-            meta, numbers, geometries, values = raw.read(
-                path, layer=chosen, where=where, return_fids=True
+            (meta, numbers, geometries, values), notes = _read_texts_right(
+                path, shown, layer=chosen, where=where, return_fids=True
             )
             metadata = pyogrio.read_info(path, layer=chosen)["layer_metadata"] or {}
     except (RuntimeError, ValueError, IndexError) as error:
@@ -83,8 +107,61 @@ def read_features(path: str, shown: str, *, layer: str | None, where: str | None
         if not is_numeric(column)
     }
     names = [str(name) for name in meta["fields"]]
-    value = {"layer": chosen, "crs": meta["crs"], "names": names, "texts": texts}
+    notes += _describe_missing_crs(path, shown, meta["crs"])
+    value = {"layer": chosen, "crs": meta["crs"], "names": names, "texts": texts, "notes": notes}
     return Answer(value | {"elevation_unit": metadata.get("elevation_unit")}, arrays)
+
+
+def _read_texts_right(path: str, shown: str, **how: Any) -> tuple[Any, list[str]]:
+    """Read a layer; texts of a shapefile that are in another encoding than it says, as they are.
+
+    Bytes of another encoding are hardly ever UTF-8 by chance, so texts of which all are, are it.
+    """
+    from pyogrio import raw
+
+    try:
+        read = raw.read(path, **how)
+    except UnicodeDecodeError:
+        note = f"'{_find_name(shown)}': texts are no UTF-8, which they are said to be: taken to be "
+        return raw.read(path, encoding=_WESTERN, **how), [f"{note}Windows-1252."]
+    if not path.lower().endswith(".shp"):
+        return read, []
+    texts = [
+        one
+        for column in read[3]
+        if not is_numeric(column)
+        for one in column.tolist()
+        if isinstance(one, str) and not one.isascii()
+    ]
+    if not texts or not all(map(_is_misread, texts)):
+        return read, []
+    note = f"'{_find_name(shown)}': texts are UTF-8, though the file does not say so."
+    return raw.read(path, encoding="UTF-8", **how), [note]
+
+
+def _is_misread(text: str) -> bool:
+    """Whether the bytes of a text that was read as Latin-1 are UTF-8."""
+    try:
+        text.encode("latin-1").decode("utf-8")
+    except UnicodeError:
+        return False
+    return True
+
+
+def _describe_missing_crs(path: str, shown: str, crs: str | None) -> list[str]:
+    """Tell of a CRS beside a shapefile that GDAL does not understand."""
+    if crs is not None or not path.lower().endswith(".shp"):
+        return []
+    for suffix in (".prj", ".PRJ"):
+        file = Path(path).with_suffix(suffix)
+        if file.is_file() and file.stat().st_size:
+            name = _find_name(shown).rpartition(".")[0] + suffix
+            return [f"'{name}' names a CRS that is not understood: it was left aside."]
+    return []
+
+
+def _find_name(shown: str) -> str:
+    return Path(shown).name
 
 
 def _choose_layer(path: str, shown: str, layer: str | None) -> str:

@@ -16,6 +16,7 @@ from ... import _optional
 from ..._atomic import replacing_path
 from ...errors import WriteError
 from .ogr import describe, encode_geometries
+from .well_known_binary import encode_equal_shapes
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -28,6 +29,8 @@ __all__ = ["write"]
 
 _GEOMETRY = "geometry"
 _GROUP_ROWS = 65_536
+_MOST_BYTES = 2**31 - 1
+"""What the offsets of one column of Arrow reach."""
 
 
 def write(features: Features, path: Path) -> None:
@@ -58,13 +61,24 @@ def write(features: Features, path: Path) -> None:
             path=path,
         )
     columns = {name: _make_column(pyarrow, values) for name, values in features.columns.items()}
-    columns[_GEOMETRY] = pyarrow.array(encode_geometries(features), pyarrow.binary())
+    columns[_GEOMETRY] = _encode_column(pyarrow, features)
     table = pyarrow.table(columns)
     metadata = {"geo": json.dumps(_describe_geometry(features)), **describe(features)}
     with replacing_path(path) as new:
         parquet.write_table(
             table.replace_schema_metadata(metadata), new, row_group_size=_GROUP_ROWS
         )
+
+
+def _encode_column(pyarrow: Any, features: Features) -> Any:
+    """Return the geometries as a column of Arrow; those of equal shape without a copy."""
+    equal = encode_equal_shapes(features)
+    if equal is None or equal.nbytes > _MOST_BYTES:
+        return pyarrow.array(encode_geometries(features), pyarrow.binary())
+    size = equal.dtype.itemsize
+    offsets = np.arange(0, equal.nbytes + 1, size, dtype=np.int32)
+    buffers = [None, pyarrow.py_buffer(offsets), pyarrow.py_buffer(equal.view(np.uint8))]
+    return pyarrow.Array.from_buffers(pyarrow.binary(), len(equal), buffers)
 
 
 def _make_column(pyarrow: Any, values: NDArray[Any]) -> Any:

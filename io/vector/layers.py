@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
     import numpy as np
@@ -12,7 +14,7 @@ if TYPE_CHECKING:
 
     from ...crs import CRS
 
-__all__ = ["Features"]
+__all__ = ["Features", "name_apart", "name_columns"]
 
 
 class Features(NamedTuple):
@@ -26,7 +28,7 @@ class Features(NamedTuple):
     geometries : (n,) object array
         Shapely geometries, none of them missing or empty.
     columns : dict of str to (n,) array
-        By their names in lower case.
+        By their names in lower case; those that only capitals keep apart by their own.
     crs : CRS or None
     notes : tuple of str
         What was left out.
@@ -48,3 +50,41 @@ class Features(NamedTuple):
     def label(self, row: int) -> str:
         """Return what a feature is called in sentences."""
         return f"'{self.path}': feature {self.numbers[row]}"
+
+    def find_column(self, name: str) -> NDArray[Any] | None:
+        """Return the column of a name, whatever its capitals unless they keep two apart."""
+        if name in self.columns:
+            return self.columns[name]
+        same = [key for key in self.columns if key.lower() == name.lower()]
+        return self.columns[same[0]] if len(same) == 1 else None
+
+
+def name_apart(names: Sequence[str]) -> list[str]:
+    """Return names of which no two are the same: a number follows those that come again.
+
+    Examples
+    --------
+    >>> name_apart(["a", "b", "a", "a_2"])
+    ['a', 'b', 'a_2', 'a_2_2']
+    """
+    taken: dict[str, None] = {}
+    for name in names:
+        candidate, number = name, 1
+        while candidate in taken:
+            number += 1
+            candidate = f"{name}_{number}"
+        taken[candidate] = None
+    return list(taken)
+
+
+def name_columns(names: Sequence[str]) -> list[str]:
+    """Return the names of columns in lower case, as they are where only capitals differ.
+
+    Examples
+    --------
+    >>> name_columns(["Code", "Elev", "elev"])
+    ['code', 'Elev', 'elev']
+    """
+    apart = name_apart(names)
+    counts = Counter(name.lower() for name in apart)
+    return [name.lower() if counts[name.lower()] == 1 else name for name in apart]

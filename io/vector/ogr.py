@@ -14,6 +14,7 @@ from ...errors import WriteError
 from ...terrain.results.columns import UNKNOWN_UNIT, unit_text
 from ...terrain.results.geometries import build_geometries
 from ..reprojection.crs_kept import require_kept
+from .well_known_binary import encode_equal_shapes
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -37,6 +38,8 @@ def write_layer(
     driver: str,
     names: Sequence[str] | None = None,
     metadata: Mapping[str, str] | None = None,
+    geometries: NDArray[np.object_] | None = None,
+    geometry_type: str | None = None,
     **options: str,
 ) -> None:
     """Write features as one layer.
@@ -54,6 +57,10 @@ def write_layer(
         Of the columns, if the format needs others.
     metadata : mapping of str to str, optional
         Of the layer.
+    geometries : (n,) object array, optional
+        Well-known binary, if it is another than that of the features.
+    geometry_type : str, optional
+        Then the type that pyogrio is told.
     **options : str
         Of the layer's creation.
 
@@ -65,17 +72,19 @@ def write_layer(
         If it cannot be written, or GDAL had to change a value.
     """
     pyogrio = _optional.load("pyogrio", f"Writing '{shown}'")
+    if geometry_type is None:
+        geometry_type = features.geometry_type + (" Z" if features.has_elevations else "")
     columns = [_as_field(name, values, shown) for name, values in features.columns.items()]
     with _faults_as_sentences(shown), _without_clock():
         pyogrio.raw.write(
             os.fspath(path),
-            encode_geometries(features),
+            encode_geometries(features) if geometries is None else geometries,
             columns,
             list(features.columns) if names is None else list(names),
             field_mask=[_missing(values) for values in columns],
             driver=driver,
             layer=features.name or shown.stem,
-            geometry_type=features.geometry_type + (" Z" if features.has_elevations else ""),
+            geometry_type=geometry_type,
             crs=None if features.crs is None else features.crs.to_wkt(),
             encoding="UTF-8",
             promote_to_multi=False,
@@ -127,6 +136,9 @@ def require_int64(name: str, values: NDArray[Any], path: Path) -> None:
 
 def encode_geometries(features: Features) -> NDArray[np.object_]:
     """Return geometries as well-known binary of the ISO kind."""
+    equal = encode_equal_shapes(features)
+    if equal is not None:
+        return equal.astype(object)
     import shapely
 
     dimension = 3 if features.has_elevations else 2

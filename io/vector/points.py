@@ -14,6 +14,7 @@ from ..._sentences import counted
 from ...crs import CRS, Unit
 from ...errors import OptionError, ReadError, choice
 from ...policies import LineReading
+from ...terrain.nodata import describe_suspects, find_suspect_elevations, parse_nodata
 from ...tin import TIN, Breakline, Survey
 from ...tin.topology import find_offsets
 from ..mesh.common import Reference, make_tin
@@ -22,6 +23,7 @@ from .elevations import find_elevations
 from .features import Features, read_features
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -43,6 +45,7 @@ def read(
     z_field: str | None = None,
     where: str | None = None,
     lines_as: LineReading | None = None,
+    nodata: float | Sequence[float] | None = None,
 ) -> Survey | TIN:
     """Read the points of a vector layer, or the triangles that another program wrote as polygons.
 
@@ -63,6 +66,8 @@ def read(
     lines_as : {"points", "breaklines"}, optional
         Take the vertices of lines, and of polygons that are no triangles, as points, or the lines
         as breaklines too. Needed for a layer of them.
+    nodata : float or sequence of float, optional
+        Elevations that stand for none: such points are left out and counted.
 
     Returns
     -------
@@ -86,7 +91,10 @@ def read(
     """
     role = None if lines_as is None else choice("lines_as", lines_as, LineReading)
     features = read_features(path, layer=layer, where=where)
-    asked = _Asked(CRS.of(crs), _find_unit(features, Unit.of(z_unit)), z_field)
+    declared = Unit.of(z_unit)
+    asked = _Asked(
+        CRS.of(crs), declared, _find_unit(features, declared), z_field, parse_nodata(nodata)
+    )
     kinds = _list_kinds(features)
     if kinds == {_POINT}:
         return _make_survey(_gather_points(features), features, asked)
@@ -109,11 +117,13 @@ def read(
 
 
 class _Asked(NamedTuple):
-    """What the caller asks for."""
+    """What the caller asks for; ``unit`` is the file's, or else the one declared."""
 
     crs: CRS | None
+    declared: Unit | None
     unit: Unit | None
     z_field: str | None
+    nodata: NDArray[np.float64]
 
 
 class _Vertices(NamedTuple):
@@ -142,11 +152,20 @@ def _list_kinds(features: Features) -> set[int]:
     """Return the kinds of single geometries, with collections taken apart."""
     import shapely
 
-    shapes = features.geometries
-    while (shapely.get_type_id(shapes) > _POLYGON).any():
-        shapes = shapely.get_parts(shapes)
+    shapes, _ = _take_apart(features)
     found = np.unique(shapely.get_type_id(shapes[~shapely.is_empty(shapes)])).tolist()
     return {_LINE if kind == _RING else int(kind) for kind in found}
+
+
+def _take_apart(features: Features) -> tuple[NDArray[np.object_], NDArray[np.int64]]:
+    """Return single geometries, and the row of the feature of each; collections may be nested."""
+    import shapely
+
+    shapes, rows = features.geometries, np.arange(len(features.geometries))
+    while (shapely.get_type_id(shapes) > _POLYGON).any():
+        shapes, index = shapely.get_parts(shapes, return_index=True)
+        rows = rows[index]
+    return shapes, rows
 
 
 def _gather_points(features: Features) -> _Vertices:
@@ -161,10 +180,7 @@ def _gather_lines(features: Features) -> _Vertices:
     """Return the vertices of lines and rings; the last of a closed one is left out of no line."""
     import shapely
 
-    shapes, rows = features.geometries, np.arange(len(features.geometries))
-    while (shapely.get_type_id(shapes) > _POLYGON).any():
-        shapes, index = shapely.get_parts(shapes, return_index=True)
-        rows = rows[index]
+    shapes, rows = _take_apart(features)
     is_polygon = shapely.get_type_id(shapes) == _POLYGON
     rings, of_polygon = shapely.get_rings(shapes[is_polygon], return_index=True)
     lines = np.concatenate([shapes[~is_polygon], rings])
@@ -194,31 +210,45 @@ def _require_finite(vertices: _Vertices, features: Features) -> None:
 
 def _make_survey(vertices: _Vertices, features: Features, asked: _Asked) -> Survey:
     _require_finite(vertices, features)
-    z, notes = find_elevations(
+    found = find_elevations(
         features, vertices.xyz[:, 2], vertices.has_z, vertices.rows, asked.z_field
     )
-    keep = np.isfinite(z)
-    points = np.column_stack([vertices.xyz[keep, :2], z[keep]])
-    placed = place(
-        points, source=features.crs, target=asked.crs, path=features.path, unit=asked.unit
-    )
+    is_nodata = np.isin(found.z, asked.nodata)
+    keep = np.isfinite(found.z) & ~is_nodata
+    if not keep.any():
+        raise ReadError(
+            f"'{features.path}' has no elevation but nodata ({asked.nodata.tolist()}).",
+            path=features.path,
+        )
+    points = np.column_stack([vertices.xyz[keep, :2], found.z[keep]])
+    unit = settle_unit(asked.declared, found.unit, features.path) if found.unit else asked.unit
+    placed = place(points, source=features.crs, target=asked.crs, path=features.path, unit=unit)
     rows = vertices.rows[keep]
-    without = len(np.unique(vertices.rows[~keep]))
+    skipped = {
+        "features without an elevation": len(np.unique(vertices.rows[np.isnan(found.z)])),
+        "nodata points": int(is_nodata.sum()),
+    }
     return Survey(
         points=placed.points,
         attributes=_collect_attributes(features, rows),
         crs=placed.crs,
         elevation_unit=placed.elevation_unit,
         source=features.path.name,
-        skipped={"features without an elevation": without} if without else {},
-        notes=[*features.notes, *notes, *placed.notes],
+        skipped={what: count for what, count in skipped.items() if count},
+        notes=[
+            *features.notes,
+            *found.notes,
+            *describe_suspects(find_suspect_elevations(points[:, 2])),
+            *placed.notes,
+        ],
     )
 
 
 def _collect_attributes(features: Features, rows: NDArray[np.int64]) -> dict[str, NDArray[Any]]:
     """Return the columns under the names of the file."""
-    names = {name.lower(): name for name in features.names}
-    return {names.get(name, name): column[rows] for name, column in features.columns.items()}
+    names = features.names or tuple(features.columns)
+    columns = zip(names, features.columns.values(), strict=True)
+    return {name: column[rows] for name, column in columns}
 
 
 def _make_line_survey(
@@ -276,7 +306,7 @@ def _are_triangles(features: Features) -> bool:
     """Whether every polygon has three corners with elevations, and no island."""
     import shapely
 
-    shapes = shapely.get_parts(features.geometries)
+    shapes, _ = _take_apart(features)
     return bool(
         shapely.has_z(shapes).all()
         and (shapely.get_num_coordinates(shapes) == _TRIANGLE_CORNERS).all()
@@ -290,7 +320,9 @@ def _make_triangles(features: Features, asked: _Asked) -> TIN:
 
     if asked.z_field not in (None, "geometry"):
         raise OptionError("z_field", asked.z_field, "geometry, where polygons are triangles")
-    xyz = shapely.get_coordinates(shapely.get_parts(features.geometries), include_z=True)
+    if len(asked.nodata):
+        raise OptionError("nodata", asked.nodata.tolist(), "none, where polygons are triangles")
+    xyz = shapely.get_coordinates(features.geometries, include_z=True)
     corners = np.delete(xyz.reshape(-1, _TRIANGLE_CORNERS, 3), 3, axis=1).reshape(-1, 3)
     if not np.isfinite(corners).all():
         raise ReadError(f"'{features.path}': a corner of a triangle is not finite.",

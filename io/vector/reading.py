@@ -16,6 +16,8 @@ from ...errors import ReadError
 from ...policies import BreaklineKind
 from ...tin import Breakline, Water
 from ...tin.constraints.breaklines import as_ring
+from ..reprojection.placement import settle_unit
+from .elevations import find_named_unit
 from .features import Features, read_features
 from .parts import Part, Wanted, find_elevation_factor, split_into_parts
 
@@ -326,7 +328,7 @@ def _parse_priorities(features: Features) -> list[int]:
 
 def _find_texts(features: Features, name: str) -> list[str]:
     """Return a column as text, empty where there is no value or no such column."""
-    column = features.columns.get(name)
+    column = features.find_column(name)
     if column is None:
         return [""] * len(features.numbers)
     return ["" if _is_missing(value) else str(value).strip() for value in column.tolist()]
@@ -352,16 +354,27 @@ def _find_levels(features: Features, wanted: Wanted, z: float | str | None) -> l
     """Return the height of each feature, None where the corners must tell; columns converted."""
     if z is not None and not isinstance(z, str):
         return [float(z)] * len(features.numbers)
-    if z is not None and z.lower() not in features.columns:
+    if z is not None and features.find_column(z) is None:
         raise ReadError(
             f"'{features.path}' has no column '{z}': there is "
             f"{', '.join(features.columns) or 'none at all'}.",
             path=features.path,
         )
-    names = [z.lower()] if z is not None else [n for n in _WATER_COLUMNS if n in features.columns]
-    found = [_parse_finite(text) for text in _find_texts(features, names[0] if names else "")]
-    if all(level is None for level in found):
-        return found
+    names = [z] if z is not None else [n for n in _WATER_COLUMNS if n in features.columns]
+    levels = {name: list(map(_parse_finite, _find_texts(features, name))) for name in names}
+    levels = {name: found for name, found in levels.items() if any(n is not None for n in found)}
+    if not levels:
+        return [None] * len(features.numbers)
+    name, found = next(iter(levels.items()))
+    if any(others != found for others in levels.values()):
+        raise ReadError(
+            f"'{features.path}' has several columns that may hold the height of the water, and "
+            f"they differ: {', '.join(levels)}; the option z names one.",
+            path=features.path,
+        )
+    unit = find_named_unit(name, features)
+    if unit is not None:
+        wanted = wanted._replace(z_unit=settle_unit(wanted.z_unit, unit, features.path))
     factor = find_elevation_factor(features, wanted, notes=[])
     return [None if level is None else level * factor for level in found]
 

@@ -11,6 +11,7 @@ from ..._atomic import replacing_files
 from ..._sentences import counted
 from ...errors import LossWarning, WriteError
 from .ogr import write_layer
+from .well_known_binary import encode_tin
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
     from ...terrain.results import Features
 
-__all__ = ["short_names", "write"]
+__all__ = ["short_names", "write", "write_multipatch"]
 
 _PARTS = (".shx", ".dbf", ".prj", ".cpg", ".qpj", ".sbn", ".sbx", ".qix", ".idx", ".shp.xml")
 _NAME_BYTES = 10
@@ -59,6 +60,23 @@ def write(features: Features, path: Path) -> None:
     Coordinates are the same float64; numbers have 15 decimals at most. All parts take their places
     after all of them are written, the ``.shp`` last.
     """
+    _write(features, path)
+
+
+def write_multipatch(features: Features, path: Path) -> None:
+    """Write one feature of triangles as a MultiPatch, the surface that ArcGIS knows.
+
+    Parameters, errors and warnings are those of :func:`write`.
+
+    Notes
+    -----
+    Each triangle is an outer ring. GDAL reads it as a TIN, QGIS as polygons.
+    """
+    tin = np.array([encode_tin(features.coordinates.reshape(-1, 4, 3))], object)
+    _write(features, path, geometries=tin, geometry_type="Unknown", SHPT="MULTIPATCH")
+
+
+def _write(features: Features, path: Path, **how: Any) -> None:
     _require_room(features, path)
     names = short_names(features.columns)
     _warn_of_losses(features, names, path)
@@ -70,6 +88,7 @@ def write(features: Features, path: Path) -> None:
             driver="ESRI Shapefile",
             names=names,
             DBF_DATE_LAST_UPDATE="1970-01-01",
+            **how,
         )
 
 
@@ -114,7 +133,7 @@ def _warn_of_losses(features: Features, names: list[str], path: Path) -> None:
     if features.notes:
         lost.append("notes have no place")
     if lost:
-        warnings.warn(f"'{path}' is a shapefile: {', and '.join(lost)}.", LossWarning, stacklevel=3)
+        warnings.warn(f"'{path}' is a shapefile: {', and '.join(lost)}.", LossWarning, stacklevel=4)
 
 
 def _require_room(features: Features, path: Path) -> None:

@@ -17,13 +17,14 @@ __all__ = [
     "is_geopackage",
     "is_parquet",
     "is_shapefile",
-    "is_vector_xml",
+    "is_vector_text",
 ]
 
 _APPLICATIONS = (b"GPKG", b"GP10", b"GP11")
 """Application ids of GeoPackages, 68 bytes from the start of an SQLite file."""
 
-_XML = re.compile(rb"<(?:kml|gpx|(?:\w+:)?FeatureCollection)[\s>]")
+_XML = re.compile(rb"<(?:kml|gpx|JCSDataFile|(?:\w+:)?FeatureCollection)[\s>]")
+_GMT = b"# @VGMT1.0"
 
 
 def is_geopackage(head: bytes) -> bool:
@@ -51,9 +52,9 @@ def is_geojson_sequence(head: bytes) -> bool:
     return head.startswith(b"\x1e") and head[1:].lstrip().startswith(b"{")
 
 
-def is_vector_xml(head: bytes) -> bool:
-    """Whether the file is KML, GPX or GML."""
-    return _XML.match(skip_prologue(head)) is not None
+def is_vector_text(head: bytes) -> bool:
+    """Whether the file is KML, GPX, GML, JML, or vectors of GMT, whose rows are no table."""
+    return head.startswith(_GMT) or _XML.match(skip_prologue(head)) is not None
 
 
 def is_geodatabase(folder: Path) -> bool:

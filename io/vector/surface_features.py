@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["make_features"]
+__all__ = ["make_features", "make_whole_surface"]
 
 
 def make_features(
@@ -75,8 +75,12 @@ def _reference(surface: TIN | Survey, name: str) -> dict[str, Any]:
 
 
 def _make_survey_points(survey: Survey) -> Features:
-    columns = {str(name): _as_column(values) for name, values in survey.attributes.items()}
+    columns = _list_columns(survey)
     return Features.of_points(survey.points, columns=columns, **_reference(survey, "points"))
+
+
+def _list_columns(surface: TIN | Survey) -> dict[str, NDArray[Any]]:
+    return {str(name): _as_column(values) for name, values in surface.attributes.items()}
 
 
 def _as_column(values: NDArray[Any]) -> NDArray[Any]:
@@ -89,14 +93,32 @@ def _as_column(values: NDArray[Any]) -> NDArray[Any]:
 
 
 def _make_points(tin: TIN) -> Features:
-    ids = {"id": np.arange(len(tin.points))}
-    return Features.of_points(tin.points, columns=ids, **_reference(tin, "points"))
+    columns = {"id": np.arange(len(tin.points))} | _list_columns(tin)
+    return Features.of_points(tin.points, columns=columns, **_reference(tin, "points"))
+
+
+def make_whole_surface(tin: TIN) -> Features:
+    """Return all triangles as the parts of one feature, with their number."""
+    count = len(tin.triangles)
+    return Features.of_polygons(
+        _list_corners(tin),
+        np.arange(0, 4 * count + 1, 4),
+        np.arange(count + 1),
+        [0, count],
+        columns={"triangles": np.array([count])},
+        **_reference(tin, "surface"),
+    )
+
+
+def _list_corners(tin: TIN) -> NDArray[np.float64]:
+    """Return the rings of the triangles, one after the other."""
+    corners: NDArray[np.float64] = tin.points[tin.triangles[:, [0, 1, 2, 0]].ravel()]
+    return corners
 
 
 def _make_triangles(tin: TIN) -> Features:
     """Return triangles as rings with slope and aspect in degrees, and area in the plane."""
     count = len(tin.triangles)
-    corners = tin.points[tin.triangles[:, [0, 1, 2, 0]].ravel()]
     columns = {
         "id": np.arange(count),
         "slope": slope(tin),
@@ -104,7 +126,7 @@ def _make_triangles(tin: TIN) -> Features:
         "area": measure_areas(tin),
     }
     return Features.of_polygons(
-        corners,
+        _list_corners(tin),
         np.arange(0, 4 * count + 1, 4),
         np.arange(count + 1),
         columns=columns,

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ...errors import FormatError
+from ...terrain.results import Features
 from ...tin import Survey
+from ..mesh.common import require_tin
 from . import flatgeobuf, geopackage, shapefile
-from .surface_features import make_features
+from .surface_features import make_features, make_whole_surface
 
 if TYPE_CHECKING:
     from pathlib import Path
     from typing import TypeAlias
 
     from ...policies import FeatureKind
-    from ...terrain.results import Features
     from ...tin import TIN
 
     Writable: TypeAlias = TIN | Survey | Features
@@ -46,7 +48,9 @@ def write_flatgeobuf(surface: Writable, path: Path, *, kind: FeatureKind | None 
     flatgeobuf.write(make_features(surface, path, kind), path, has_index=not is_survey)
 
 
-def write_shapefile(surface: Writable, path: Path, *, kind: FeatureKind | None = None) -> None:
+def write_shapefile(
+    surface: Writable, path: Path, *, kind: FeatureKind | None = None, multipatch: bool = False
+) -> None:
     """Write a kind of parts of a surface, or features, as :func:`shapefile.write` does.
 
     Parameters
@@ -55,8 +59,24 @@ def write_shapefile(surface: Writable, path: Path, *, kind: FeatureKind | None =
     path : Path
     kind : {"triangles", "points", "edges", "lines", "hull"}, optional
         Of a TIN; default triangles, as PolygonZ.
+    multipatch : bool
+        Write all triangles of a TIN as one MultiPatch, without slope, aspect and area.
+
+    Raises
+    ------
+    FormatError
+        If a MultiPatch is asked for of something else than the triangles of a TIN.
     """
-    shapefile.write(make_features(surface, path, kind), path)
+    if not multipatch:
+        shapefile.write(make_features(surface, path, kind), path)
+    elif kind in (None, "triangles") and not isinstance(surface, Features):
+        tin = require_tin(surface, path, format_name="a MultiPatch")
+        shapefile.write_multipatch(make_whole_surface(tin), path)
+    else:
+        raise FormatError(
+            f"Cannot write '{path}': a MultiPatch holds the triangles of a TIN, no "
+            f"{'features' if isinstance(surface, Features) else kind}."
+        )
 
 
 def write_geoparquet(surface: Writable, path: Path, *, kind: FeatureKind | None = None) -> None:

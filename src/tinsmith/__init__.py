@@ -71,6 +71,7 @@ if TYPE_CHECKING:
     )
     from .terrain.results import Features, Raster, Table
     from .terrain.sections import cross_sections, drape, profile, section_lines
+    from .terrain.sheets import Plan, plan
     from .terrain.slope import aspect, slope
     from .tin import (
         TIN,
@@ -97,6 +98,10 @@ if TYPE_CHECKING:
     from .tin.voronoi import voronoi
 else:  # a type checker takes every name for one that such a __getattr__ has
     from ._lazy import lazy_names
+    from ._notebook import register_card
+
+    # What tin cannot make itself, for it knows no pictures.
+    register_card("TIN", "tinsmith.terrain.preview.card:make_card")
 
     __getattr__, __dir__ = lazy_names(
         __name__,
@@ -169,6 +174,7 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "slope_statistics",
             ),
             ".terrain.sections": ("cross_sections", "drape", "profile", "section_lines"),
+            ".terrain.sheets": ("Plan", "plan"),
             ".terrain.results": ("Features", "Raster", "Table"),
             ".tin": (
                 "TIN",
@@ -220,6 +226,7 @@ __all__ = [
     "MissingExtraError",
     "OptionError",
     "Outcome",
+    "Plan",
     "PlugInWarning",
     "PointsError",
     "Preview",
@@ -261,6 +268,7 @@ __all__ = [
     "lift",
     "lines_from_codes",
     "paper",
+    "plan",
     "preview",
     "profile",
     "profile_picture",

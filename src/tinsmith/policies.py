@@ -11,6 +11,7 @@ __all__ = [
     "BreaklineKind",
     "CodeKind",
     "CodeStyle",
+    "ContourLabeling",
     "CrossingPolicy",
     "CurvatureKind",
     "DistanceRule",
@@ -20,16 +21,22 @@ __all__ = [
     "EmptyCircleRule",
     "Extrapolation",
     "FeatureKind",
+    "GridStyle",
     "InterpolationMethod",
     "LineKind",
     "LineReading",
     "LineRole",
     "OutsidePolicy",
     "OverviewMethod",
+    "PaperOrientation",
+    "PointMarking",
+    "RasterCompression",
     "RasterSample",
     "RasterValue",
+    "SheetLayout",
     "SlopeUnit",
     "SurfacePart",
+    "Tint",
     "TrimPolicy",
 ]
 
@@ -114,6 +121,9 @@ SurfacePart: TypeAlias = Literal["triangle", "vertex"]
 OverviewMethod: TypeAlias = Literal["average", "nearest", "none"]
 """How the cells of a raster's smaller copies are found."""
 
+RasterCompression: TypeAlias = Literal["deflate", "none"]
+"""How the cells of a GeoTIFF are packed, without loss."""
+
 CurvatureKind: TypeAlias = Literal["profile", "plan", "tangential", "mean", "gaussian"]
 """In which direction a surface is curved."""
 OutsidePolicy: TypeAlias = Literal["error", "nan", "cut"]
@@ -124,3 +134,21 @@ DrawingContent: TypeAlias = Literal["surface", "source", "points"]
 
 DrawingVersion: TypeAlias = Literal["R2010", "R12"]
 """Which version of DXF is written."""
+
+Tint: TypeAlias = Literal["elevation", "slope", "aspect", "plain"]
+"""What the colours of a surface in 3D tell."""
+
+PaperOrientation: TypeAlias = Literal["landscape", "portrait"]
+"""How a sheet of paper lies."""
+
+SheetLayout: TypeAlias = Literal["single", "rows", "strips"]
+"""Which ground the sheets of a plan show: all on one, rows of sheets, strips along an axis."""
+
+ContourLabeling: TypeAlias = Literal["index", "all", "none"]
+"""Which contours have their elevation written on them."""
+
+PointMarking: TypeAlias = Literal["none", "marks", "numbers", "elevations", "both"]
+"""What stands at the points of a plan."""
+
+GridStyle: TypeAlias = Literal["crosses", "lines", "none"]
+"""How the coordinate grid of a plan is drawn."""

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -79,17 +80,39 @@ class SurfaceBand:
         return block
 
     def _scan(self, rows: slice, columns: slice) -> NDArray[np.float64]:
-        surface, (x, y) = self._tin.triangulation, locate_centers(self._grid, rows, columns)
+        if self._is_mean:
+            return self._scan_means(rows, columns)
+        x, y = locate_centers(self._grid, rows, columns)
         threads = thread_count(self._threads, len(x) * len(y))
-        spacing, values = self._grid.spacing, self._values
-        if not self._is_mean:
-            return _kernel.values_at_centers(
-                surface.points, surface.triangles, x, y, spacing, values, threads
-            )
-        x_edges, y_edges = locate_edges(self._grid, rows, columns)
-        return _kernel.means_of_cells(
-            surface.points, surface.triangles, x, y, spacing, x_edges, y_edges, values, threads
+        return self._drawn.values_at_centers(x, y, self._grid.spacing, self._values, threads)
+
+    def _scan_means(self, rows: slice, columns: slice) -> NDArray[np.float64]:
+        """Compute whole tiles of the raster, so that all blocks of it have the same bits."""
+        tiles = [_widen(part, side) for part, side in zip((rows, columns), self.shape, strict=True)]
+        x, y = locate_centers(self._grid, *tiles)
+        x_edges, y_edges = locate_edges(self._grid, *tiles)
+        found = self._drawn.means_of_cells(
+            x,
+            y,
+            self._grid.spacing,
+            x_edges,
+            y_edges,
+            self._values,
+            thread_count(self._threads, len(x) * len(y)),
         )
+        down, across = (
+            slice(part.start - tile.start, part.stop - tile.start)
+            for part, tile in zip((rows, columns), tiles, strict=True)
+        )
+        return found[down, across]
+
+    @cached_property
+    def _drawn(self) -> _kernel.GriddedSurface:
+        surface = self._tin.triangulation
+        return _kernel.GriddedSurface(surface.points, surface.triangles)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in self.__dict__.items() if name != "_drawn"}
 
     def _ask(self, rows: slice, columns: slice) -> NDArray[np.float64]:
         x, y = locate_centers(self._grid, rows, columns)
@@ -98,6 +121,12 @@ class SurfaceBand:
         places = xy.reshape(-1, 2)
         found = self._tin.interpolate(places, self._method, threads=self._threads)
         return found.reshape(len(y), len(x))
+
+
+def _widen(part: slice, side: int) -> slice:
+    """Return the rows, or columns, of all tiles that some rows lie in."""
+    tile = _kernel.TILE_SIDE
+    return slice(part.start // tile * tile, min(side, -(-part.stop // tile) * tile))
 
 
 def _list_strips(rows: slice, columns: slice) -> Iterator[slice]:

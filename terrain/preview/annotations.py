@@ -9,26 +9,30 @@ import numpy as np
 
 from ...tin import Bounds
 from ..rounding import choose_ticks, format_number, round_down
-from .camera import View, measure_pixels_per_unit, project_ground_axes
-from .tints import interpolate_tints
+from .camera import View, measure_pixels_per_unit, name_direction, project_ground_axes
+from .palette import Palette
+from .ramps import Legend, choose_ramp
+from .scene import NORTHWEST
+from .titles import fit_title, shorten
 
 if TYPE_CHECKING:
     from ...crs import Unit
-    from .overlay import Color, Overlay
+    from ..light import Light
+    from .overlay import Overlay
+    from .palette import Color
 
 __all__ = ["Caption", "Sheet", "annotate", "scale_bar_length"]
-
-INK: Color = (28, 34, 40)
-GREY: Color = (96, 106, 114)
-PAPER: Color = (255, 255, 255)
 
 MARGIN = 44.0
 _COMPASS_RADIUS = 32.0
 _HEADER = 112.0
 _FOOTER = 140.0
-_BAR_LEFT = MARGIN + 96.0
+_BAR_LEFT = MARGIN + 112.0
 _BAR_WIDTH = 260.0
+_NOTES_LEFT = MARGIN + 456.0
 _LEGEND_WIDTH = 400.0
+_LEAST_FORESHORTENING = 0.05
+"""Length of an axis of the ground in the picture, for 1, from which on it has a direction."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +67,15 @@ class Caption:
         Their unit, as it stands behind "Elevation"; "" if it is not known.
     unit : Unit
         Of lengths in the scene.
+    sun : Light
+        Where the light comes from.
+    warning : str
+        What a reader must know of the elevations; "" for nothing.
+    palette : Palette
+    legend : Legend or None
+        Of the colours; default that of the elevations.
+    has_tints : bool
+        Whether colours that tell something are seen anywhere.
     """
 
     title: str
@@ -71,6 +84,11 @@ class Caption:
     elevations: tuple[float, float]
     elevation_caption: str
     unit: Unit
+    sun: Light = NORTHWEST
+    warning: str = ""
+    palette: Palette = Palette()  # noqa: RUF009 - colours that are never changed
+    legend: Legend | None = None
+    has_tints: bool = True
 
 
 def annotate(overlay: Overlay, sheet: Sheet, caption: Caption, camera: Any) -> None:
@@ -85,11 +103,13 @@ def annotate(overlay: Overlay, sheet: Sheet, caption: Caption, camera: Any) -> N
         In parallel projection.
     """
     overlay.clear()
-    _draw_margins(overlay, sheet)
+    palette = caption.palette
+    _draw_margins(overlay, sheet, palette)
     _draw_title(overlay, sheet, caption)
-    _draw_north_arrow(overlay, camera)
-    _draw_scale_bar(overlay, caption.unit, measure_pixels_per_unit(camera, sheet.height))
-    _draw_notes(overlay, caption.exaggeration, View.of(camera))
+    _draw_north_arrow(overlay, camera, palette)
+    pixels = measure_pixels_per_unit(camera, sheet.height)
+    _draw_scale_bar(overlay, caption.unit, pixels, palette)
+    _draw_notes(overlay, caption, View.of(camera))
     _draw_legend(overlay, sheet, caption)
 
 
@@ -118,71 +138,82 @@ def scale_bar_length(unit: Unit, pixels: float) -> tuple[float, float, str]:
     return length, length, unit.symbol
 
 
-def _draw_margins(overlay: Overlay, sheet: Sheet) -> None:
+def _draw_margins(overlay: Overlay, sheet: Sheet, palette: Palette) -> None:
     """Keep the paper behind the words free, however far a user zooms into the terrain."""
-    frame = sheet.frame
-    overlay.draw_rectangle((0.0, 0.0), (sheet.width, frame.ymin - 8.0), PAPER)
-    overlay.draw_rectangle((0.0, frame.ymax + 8.0), (sheet.width, sheet.height - frame.ymax), PAPER)
+    frame, top = sheet.frame, sheet.height - sheet.frame.ymax
+    overlay.draw_rectangle((0.0, 0.0), (sheet.width, frame.ymin - 8.0), palette.paper)
+    overlay.draw_rectangle((0.0, frame.ymax + 8.0), (sheet.width, top), palette.paper)
 
 
 def _draw_title(overlay: Overlay, sheet: Sheet, caption: Caption) -> None:
-    room = sheet.width - 2 * MARGIN
-    for words, drop, size, bold, color in (
-        (caption.title, 62.0, 30.0, True, INK),
-        (caption.subtitle, 92.0, 17.0, False, GREY),
-    ):
-        fitting = _elide(overlay, words, room, size=size, bold=bold)
-        overlay.draw_text((MARGIN, sheet.height - drop), fitting, color, size=size, bold=bold)
+    room, palette = sheet.width - 2 * MARGIN, caption.palette
+    title = fit_title(overlay, caption.title, room)
+    for words, drop in zip(title.lines, title.drops, strict=True):
+        place = (MARGIN, sheet.height - drop)
+        overlay.draw_text(place, words, palette.ink, size=title.size, bold=True)
+    words = shorten(overlay, caption.subtitle, room, size=17.0)
+    place = (MARGIN, sheet.height - title.next_drop)
+    overlay.draw_text(place, words, palette.grey, size=17.0)
 
 
-def _elide(overlay: Overlay, words: str, room: float, *, size: float, bold: bool) -> str:
-    """Cut words that are too long for the room, and show that they are cut."""
-    if overlay.measure_text(words, size=size, bold=bold) <= room:
-        return words
-    while words and overlay.measure_text(words + "...", size=size, bold=bold) > room:
-        words = words[:-1]
-    return words.rstrip() + "..."
-
-
-def _draw_north_arrow(overlay: Overlay, camera: Any) -> None:
+def _draw_north_arrow(overlay: Overlay, camera: Any, palette: Palette) -> None:
     """Draw a compass that lies on the ground, foreshortened like the ground itself."""
+    ink, grey, paper, _ = palette
     axes = project_ground_axes(camera) * _COMPASS_RADIUS
     center = np.array([MARGIN + _COMPASS_RADIUS, 66.0])
     turn = np.linspace(0.0, 2 * np.pi, 49)
-    overlay.draw_line(np.column_stack([np.sin(turn), np.cos(turn)]) @ axes + center, GREY)
+    overlay.draw_line(np.column_stack([np.sin(turn), np.cos(turn)]) @ axes + center, grey)
     needle = np.array([(0.0, 1.25), (-0.42, -0.7), (0.0, -0.4), (0.42, -0.7)]) @ axes + center
     tip, left, notch, right = needle
-    overlay.draw_polygon([tip, left, notch], INK)
-    overlay.draw_polygon([tip, notch, right], PAPER)
-    overlay.draw_line([tip, left, notch, right, tip, notch], INK, width=1.2)
-    north = axes[1] / max(float(np.linalg.norm(axes[1])), 1e-9)
-    x, y = tip + 12.0 * north
-    overlay.draw_text((x, y - 6.0), "N", INK, size=17, bold=True, align="center")
+    overlay.draw_polygon([tip, left, notch], ink)
+    overlay.draw_polygon([tip, notch, right], paper)
+    overlay.draw_line([tip, left, notch, right, tip, notch], ink, width=1.2)
+    length = float(np.linalg.norm(axes[1]))
+    is_seen = length > _LEAST_FORESHORTENING * _COMPASS_RADIUS
+    x, y = tip + 12.0 * (axes[1] / length if is_seen else np.array([0.0, 1.0]))
+    overlay.draw_text((x, y - 6.0), "N", ink, size=17, bold=True, align="center")
 
 
-def _draw_scale_bar(overlay: Overlay, unit: Unit, pixels: float) -> None:
+def _draw_scale_bar(overlay: Overlay, unit: Unit, pixels: float, palette: Palette) -> None:
+    ink, grey, paper, _ = palette
     length, shown, symbol = scale_bar_length(unit, pixels)
     left, bottom, height, width = _BAR_LEFT, 62.0, 7.0, length * pixels
-    for part, color in enumerate((INK, PAPER, INK, PAPER)):
+    for part, color in enumerate((ink, paper, ink, paper)):
         overlay.draw_rectangle((left + part * width / 4, bottom), (width / 4, height), color)
     outline = [(0, 0), (width, 0), (width, height), (0, height), (0, 0)]
-    overlay.draw_line(np.add(outline, (left, bottom)), INK, width=1.2)
+    overlay.draw_line(np.add(outline, (left, bottom)), ink, width=1.2)
     for fraction in (0.0, 0.5, 1.0):
         words = format_number(fraction * shown, step=shown / 2) if fraction else "0"
         if fraction == 1.0:
             words = format_number(shown, step=shown)
         place = (left + fraction * width, bottom + 14.0)
-        overlay.draw_text(place, words, INK, size=15, align="center")
+        overlay.draw_text(place, words, ink, size=15, align="center")
         if fraction == 1.0:
             half = overlay.measure_text(words, size=15) / 2
-            overlay.draw_text((place[0] + half + 5.0, place[1]), symbol, INK, size=15)
-    overlay.draw_text((left, 38.0), "true from left to right", GREY, size=14)
+            overlay.draw_text((place[0] + half + 5.0, place[1]), symbol, ink, size=15)
+    overlay.draw_text((left, 38.0), "true from left to right", grey, size=14)
 
 
-def _draw_notes(overlay: Overlay, exaggeration: float, view: View) -> None:
-    left = _BAR_LEFT + _BAR_WIDTH + 100.0
-    overlay.draw_text((left, 62.0), _describe_exaggeration(exaggeration, view), INK, size=17)
-    overlay.draw_text((left, 38.0), view.caption, GREY, size=14)
+def _draw_notes(overlay: Overlay, caption: Caption, view: View) -> None:
+    left, palette = _NOTES_LEFT, caption.palette
+    words = _describe_exaggeration(caption.exaggeration, view)
+    overlay.draw_text((left, 84.0), words, palette.ink, size=17)
+    overlay.draw_text((left, 61.0), view.caption, palette.grey, size=14)
+    overlay.draw_text((left, 38.0), _describe_light(caption.sun), palette.grey, size=14)
+
+
+def _describe_light(sun: Light) -> str:
+    """Say where the light comes from, as the cartographer does.
+
+    Examples
+    --------
+    >>> from ..light import Light
+    >>> _describe_light(Light(250.0, 30.0))
+    'Light from the west-southwest, 30° high'
+    """
+    if sun.altitude > 89.5:
+        return "Light from straight above"
+    return f"Light from the {name_direction(sun.azimuth)}, {sun.altitude:.3g}° high"
 
 
 def _describe_exaggeration(factor: float, view: View) -> str:
@@ -194,30 +225,57 @@ def _describe_exaggeration(factor: float, view: View) -> str:
 
 def _draw_legend(overlay: Overlay, sheet: Sheet, caption: Caption) -> None:
     left, bottom, height = sheet.width - MARGIN - _LEGEND_WIDTH, 62.0, 14.0
-    unit = caption.elevation_caption
-    name = f"Elevation ({unit})" if unit else "Elevation (unit not known)"
-    overlay.draw_text((left, bottom + height + 8.0), name, INK, size=15)
-    colors = interpolate_tints(100).tolist()
+    palette = caption.palette
+    if caption.warning:
+        words = shorten(overlay, caption.warning, _LEGEND_WIDTH, size=14)
+        overlay.draw_text((left, bottom + height + 31.0), words, palette.warning, size=14)
+    if not caption.has_tints:
+        return
+    legend = caption.legend or _describe_elevations(caption)
+    overlay.draw_text((left, bottom + height + 8.0), legend.name, palette.ink, size=15)
+    colors = legend.colors.tolist()
     step = _LEGEND_WIDTH / len(colors)
     for k, (red, green, blue) in enumerate(colors):
         overlay.draw_rectangle((left + k * step, bottom), (step + 0.5, height), (red, green, blue))
-    _draw_legend_ticks(overlay, caption.elevations, (left, bottom))
+    if not legend.ticks:
+        _draw_legend_ticks(overlay, legend.ends, (left, bottom), palette)
+        return
+    low, high = legend.ends
+    for value, words in legend.ticks:
+        x = left + _LEGEND_WIDTH * (value - low) / (high - low)
+        _draw_legend_tick(overlay, words, (x, bottom), palette.ink)
+
+
+def _describe_elevations(caption: Caption) -> Legend:
+    name = f"Elevation ({caption.elevation_caption or 'unit not known'})"
+    return Legend(name, choose_ramp("elevation", 100), caption.elevations)
+
+
+def _draw_legend_tick(
+    overlay: Overlay, words: str, place: tuple[float, float], color: Color
+) -> None:
+    x, bottom = place
+    overlay.draw_line([(x, bottom), (x, bottom - 5.0)], color, width=1.0)
+    overlay.draw_text((x, bottom - 19.0), words, color, size=13, align="center")
 
 
 def _draw_legend_ticks(
-    overlay: Overlay, elevations: tuple[float, float], corner: tuple[float, float]
+    overlay: Overlay,
+    elevations: tuple[float, float],
+    corner: tuple[float, float],
+    palette: Palette,
 ) -> None:
+    ink, grey = palette.ink, palette.grey
     (low, high), (left, bottom) = elevations, corner
     inner = choose_ticks(low, high, count=5)
     step = (inner[1] - inner[0]) if len(inner) > 1 else max(high - low, 1.0)
     used: list[tuple[float, float]] = []
-    ends = [(value, INK) for value in (low, high)]
-    for value, color in [*ends, *((value, GREY) for value in inner)]:
-        words = format_number(value, step=step / 10 if color == INK else step)
+    ends = [(value, ink) for value in (low, high)]
+    for value, color in [*ends, *((value, grey) for value in inner)]:
+        words = format_number(value, step=step / 10 if color == ink else step)
         x = left + _LEGEND_WIDTH * ((value - low) / (high - low) if high > low else 0.5)
         half = overlay.measure_text(words, size=13) / 2 + 6.0
         if any(x - half < stop and start < x + half for start, stop in used):
             continue
         used.append((x - half, x + half))
-        overlay.draw_line([(x, bottom), (x, bottom - 5.0)], color, width=1.0)
-        overlay.draw_text((x, bottom - 19.0), words, color, size=13, align="center")
+        _draw_legend_tick(overlay, words, (x, bottom), color)

@@ -13,7 +13,15 @@ from ...tin import Bounds
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["VIEWS", "View", "aim", "measure_pixels_per_unit", "project_ground_axes"]
+__all__ = [
+    "VIEWS",
+    "View",
+    "aim",
+    "measure_pixels_per_unit",
+    "name_direction",
+    "place_camera",
+    "project_ground_axes",
+]
 
 _OVERHEAD = 89.5
 """Height of the viewer, degrees, from which on a view is a map."""
@@ -78,7 +86,7 @@ class View:
         """
         if self.is_map:
             return "Map view, north up" if abs(self.azimuth - 180.0) < 0.5 else "Map view"
-        point = _POINTS[round(self.azimuth / 22.5) % 16]
+        point = name_direction(self.azimuth)
         side = "below" if self.height < -0.5 else "above"
         return f"Parallel view from the {point}, {abs(self.height):.0f}° {side} the horizon"
 
@@ -99,6 +107,17 @@ class View:
 VIEWS = {"oblique": View(202.5, 35.0), "top": View(180.0, 90.0)}
 
 
+def name_direction(azimuth: float) -> str:
+    """Return the nearest of the 16 points of the compass.
+
+    Examples
+    --------
+    >>> name_direction(200.0)
+    'south-southwest'
+    """
+    return _POINTS[round(azimuth / 22.5) % 16]
+
+
 def aim(
     camera: Any, points: NDArray[np.float64], *, view: View, frame: Bounds, size: tuple[int, int]
 ) -> None:
@@ -116,20 +135,52 @@ def aim(
     size : tuple of int
         Width and height of the window, pixels.
     """
-    right, up, toward = view.axes
-    across, along, depth = points @ right, points @ up, points @ toward
+    right, up, _ = view.axes
+    across, along = points @ right, points @ up
     drawn = Bounds(across.min(), along.min(), across.max(), along.max())
-    scale = min(frame.width / drawn.width, frame.height / drawn.height)
+    scale = _fit(drawn, frame)
     middle = [
         part - (spot - full / 2) / scale
         for part, spot, full in zip(drawn.center, frame.center, size, strict=True)
     ]
+    place_camera(camera, points, view=view, middle=(middle[0], middle[1]), height=size[1] / scale)
+
+
+def _fit(drawn: Bounds, frame: Bounds) -> float:
+    """Return the scale at which what is drawn fits; seen from the side it may have no height."""
+    sides = ((frame.width, drawn.width), (frame.height, drawn.height))
+    return min((room / side for room, side in sides if side > 0), default=1.0)
+
+
+def place_camera(
+    camera: Any,
+    points: NDArray[np.float64],
+    *,
+    view: View,
+    middle: tuple[float, float],
+    height: float,
+) -> None:
+    """Place a camera so that a place across and along the picture is in its middle.
+
+    Parameters
+    ----------
+    camera : pyvista.Camera
+    points : (n, 3) float64 array
+        What must lie in front of it.
+    view : View
+    middle : tuple of float
+        Lengths along the view's first two axes.
+    height : float
+        Of the window, in lengths of the scene.
+    """
+    right, up, toward = view.axes
+    depth = points @ toward
     focus = middle[0] * right + middle[1] * up + depth.mean() * toward
-    distance = float(np.ptp(depth)) + drawn.diagonal
+    distance = float(np.ptp(depth)) + float(np.ptp(points, axis=0).max())
     camera.parallel_projection = True
-    camera.parallel_scale = size[1] / 2 / scale
+    camera.parallel_scale = height / 2
     camera.focal_point = focus
-    camera.position = focus + distance * toward
+    camera.position = focus + max(distance, height) * toward
     camera.up = up
 
 

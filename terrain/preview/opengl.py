@@ -9,7 +9,7 @@ from functools import cache
 
 from ...errors import RenderError
 
-__all__ = ["require_opengl", "require_window"]
+__all__ = ["require_on_screen", "require_opengl", "require_window"]
 
 PROBE_SECONDS = 60
 """How long the probe may take: a first start from a cold disk takes a few seconds."""
@@ -28,6 +28,7 @@ assert window.SupportsOpenGL()
 print("window:" + window.GetClassName())
 """
 _OFF_SCREEN_WINDOWS = ("EGL", "OSOpenGL")
+_NO_DISPLAY = "There is no display to open a window on: name a picture file as output instead."
 
 
 def require_opengl() -> None:
@@ -54,11 +55,26 @@ def require_window() -> None:
         If there is no display, or no OpenGL.
     """
     require_opengl()
-    headless = any(name in _find_window_class() for name in _OFF_SCREEN_WINDOWS)
-    if headless or (sys.platform.startswith("linux") and not os.environ.get("DISPLAY")):
-        raise RenderError(
-            "There is no display to open a window on: name a picture file as output instead."
-        )
+    require_on_screen(_find_window_class())
+    if sys.platform.startswith("linux") and not os.environ.get("DISPLAY"):
+        raise RenderError(_NO_DISPLAY)
+
+
+def require_on_screen(kind: str) -> None:
+    """Make sure that a window can be seen: VTK draws elsewhere if it cannot reach the display.
+
+    Parameters
+    ----------
+    kind : str
+        Name of VTK's window class.
+
+    Raises
+    ------
+    RenderError
+        If it is one that nobody sees.
+    """
+    if any(name in kind for name in _OFF_SCREEN_WINDOWS):
+        raise RenderError(_NO_DISPLAY)
 
 
 @cache

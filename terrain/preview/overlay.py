@@ -12,10 +12,9 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-__all__ = ["Color", "Overlay"]
+    from .palette import Color
 
-Color = tuple[int, int, int]
-"""Red, green and blue, 0 to 255."""
+__all__ = ["Overlay"]
 
 _LAST_LATIN = "\N{LATIN SMALL LETTER LONG S}"
 """Last character that VTK's own font is sure to have."""

@@ -10,22 +10,27 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 
 from ..._atomic import as_path, replacing
-from ...errors import OptionError, RenderError
+from ...errors import RenderError
 from ...tin import TIN, Survey
 from ...tin.validation.options import require_type
 from ..earthwork import difference
-from ..lift import parse_exaggeration
 from ..units import find_ground
 from .alignment import Aligned, align
+from .look import Look, make_look
+from .ortho import Ortho, read_ortho
 from .page.content import describe_page, find_labels
 from .page.document import make_document
-from .picture import PICTURE_SUFFIXES, Look, check_look, open_window, write_picture
-from .scene import choose_exaggeration
+from .picture import PICTURE_SUFFIXES, write_picture
+from .scene import choose_exaggeration, measure_relief
+from .stage import describe_far_off
+from .window import open_window
 
 if TYPE_CHECKING:
     import os
 
     from numpy.typing import NDArray
+
+    from ...policies import Tint
 
 __all__ = ["PREVIEW_SUFFIXES", "Preview", "preview"]
 
@@ -51,11 +56,32 @@ class Preview:
     'yard.html'
     """
 
-    def __init__(self, aligned: Aligned, look: Look, survey: Survey | None) -> None:
+    def __init__(
+        self, aligned: Aligned, look: Look, survey: Survey | None, ortho: Ortho | None = None
+    ) -> None:
+        self._ortho = ortho
         self._aligned = aligned
         self._surfaces = aligned.surfaces
         self._look = look
         self._survey = survey
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Sentences on what a viewer should know: elevations far off all others.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> points = [[x, y, 5.0 + x] for x in range(6) for y in range(6)]
+        >>> points[7][2] = 9999.0
+        >>> ts.preview(ts.triangulate(points)).notes
+        ('1 elevation far off all others: 9,999.',)
+        """
+        return tuple(
+            f"{words}." if len(self._surfaces) == 1 else f"{name}: {words}."
+            for name, tin in self._surfaces.items()
+            if (words := describe_far_off(tin, measure_relief(tin, find_ground(tin))))
+        )
 
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write a page (.html) or a picture (.png, .jpg, .jpeg, .tif, .tiff).
@@ -92,7 +118,7 @@ class Preview:
         if file.suffix.lower() in PAGE_SUFFIXES:
             self._write_page(file)
         else:
-            write_picture(self._require_one("A picture"), file, self._look)
+            write_picture(self._require_one("A picture"), file, self._look, self._ortho)
         return file
 
     def show(self) -> None:
@@ -113,7 +139,7 @@ class Preview:
         Traceback (most recent call last):
         tinsmith.errors.RenderError: A window shows one surface, and there are 2: ...
         """
-        open_window(self._require_one("A window"), self._look)
+        open_window(self._require_one("A window"), self._look, self._ortho)
 
     def to_html(self) -> str:
         """Return the page: one HTML document that needs no other file and no network.
@@ -129,8 +155,8 @@ class Preview:
         ground = find_ground(tins[-1])
         factor = self._look.exaggeration or choose_exaggeration(tins[-1], ground)
         surfaces, changes = _add_difference(self._surfaces)
-        points = self._aligned.labelled
-        labels = None if points is None else find_labels(points, self._survey)
+        points, survey = self._aligned.labelled, self._survey
+        labels = None if points is None or survey is None else find_labels(points, survey)
         content = describe_page(
             surfaces,
             ground,
@@ -138,7 +164,8 @@ class Preview:
             exaggeration=factor,
             changes=changes,
             labels=labels,
-            notes=self._aligned.notes,
+            notes=(*self._aligned.notes, *self.notes, *(self._ortho.told if self._ortho else ())),
+            ortho=self._ortho,
         )
         return make_document(content)
 
@@ -173,10 +200,19 @@ def preview(
     exaggeration: float | None = None,
     edges: bool = False,
     lines: bool = True,
-    size: tuple[int, int] = (1600, 1000),
+    size: tuple[int, int] | None = None,
     title: str | None = None,
     view: str = "oblique",
+    azimuth: float | None = None,
+    tilt: float | None = None,
+    sun: tuple[float, float] | None = None,
+    background: str | None = None,
+    dpi: float | None = None,
+    elevations: tuple[float, float] | None = None,
+    tint: Tint = "elevation",
+    contours: float | None = None,
     survey: Survey | None = None,
+    drape: str | os.PathLike[str] | None = None,
 ) -> Preview: ...
 
 
@@ -188,10 +224,19 @@ def preview(
     exaggeration: float | None = None,
     edges: bool = False,
     lines: bool = True,
-    size: tuple[int, int] = (1600, 1000),
+    size: tuple[int, int] | None = None,
     title: str | None = None,
     view: str = "oblique",
+    azimuth: float | None = None,
+    tilt: float | None = None,
+    sun: tuple[float, float] | None = None,
+    background: str | None = None,
+    dpi: float | None = None,
+    elevations: tuple[float, float] | None = None,
+    tint: Tint = "elevation",
+    contours: float | None = None,
     survey: Survey | None = None,
+    drape: str | os.PathLike[str] | None = None,
 ) -> Path: ...
 
 
@@ -199,8 +244,8 @@ def preview(
     tin: TIN | Mapping[str, TIN],
     *,
     output: str | os.PathLike[str] | None = None,
-    title: str | None = None,
     survey: Survey | None = None,
+    drape: str | os.PathLike[str] | None = None,
     **look: Any,
 ) -> Preview | Path:
     """Show a TIN in 3D with hypsometric tints, hillshade, legend, scale bar and north arrow.
@@ -224,12 +269,36 @@ def preview(
     size : tuple of int, optional
         Width and height of a picture or window, pixels, 200 to 5000 each; default (1600, 1000).
     title : str, optional
-        Default "Terrain surface".
+        Default "Terrain surface". A long one is written smaller, in up to three lines.
     view : {"oblique", "top"}, optional
         Of a picture: seen from the south-southwest, 35 degrees above the horizon, or as a map from
         above.
+    azimuth : float, optional
+        Where the viewer of a picture stands, degrees clockwise from north, in place of the view's.
+        Default: that of the view, for a corridor across its axis.
+    tilt : float, optional
+        Height of the viewer of a picture above the horizon, 0 to 90 degrees, in place of the
+        view's.
+    sun : tuple of float, optional
+        Azimuth and altitude of the light in a picture, degrees clockwise from north and above the
+        horizon; default (315, 45).
+    background : str, optional
+        Of a picture: "white" (the default), "black", "light", "dark", or a colour such as
+        "#e8edf2". Words are light on a dark one.
+    dpi : float, optional
+        Dots per inch, 36 to 2400, written into a picture for those who print it.
+    elevations : tuple of float, optional
+        Lowest and highest elevation of the tints in a picture, so that several can be compared;
+        default those of the surface.
+    tint : {"elevation", "slope", "aspect", "plain"}, optional
+        What colours tell in a picture; a page and a window have a switch for them.
+    contours : float, optional
+        Interval of contour lines in a picture, in the unit of elevations; default none.
     survey : Survey, optional
         Points that a page shows with their numbers, up to 20,000.
+    drape : path, optional
+        Picture of the ground, laid over the surfaces: a GeoTIFF in any CRS, or a PNG, JPEG or JPEG
+        2000 file with its place. Where it has nothing, or is transparent, the tints stay.
 
     Returns
     -------
@@ -244,18 +313,29 @@ def preview(
     CrsError
         If the surfaces, or the survey, have different CRSs, known of all or of none, or it cannot
         be told whether their elevations are in one unit; units that are known are converted.
+    ReadError
+        If the picture to drape cannot be read, has no place on the ground, or shows nothing of the
+        surfaces.
     RenderError
         If the file cannot be written, or the machine has no OpenGL.
     MissingExtraError
-        If pyvista, which draws pictures, is not installed.
+        If pyvista, which draws pictures, or rasterio, which reads what is draped, is not installed.
+
+    Warns
+    -----
+    LossWarning
+        If what is draped is warped to the CRS of the surfaces, made smaller (to 4096 pixels), does
+        not reach over all of them, or something about it has to be assumed.
 
     Notes
     -----
     Pictures are parallel projections, in which one scale holds from left to right all over the
-    picture. Light falls from the northwest at 45 degrees, fixed to the ground. Tints span the
-    lowest to the highest elevation; perceived lightness rises evenly with elevation. The same TIN
-    and options give the same bytes on the same machine. Coordinates in a page are rounded to a
-    millimetre, or finer where a surface is small.
+    picture. The light is fixed to the ground. Tints span the lowest to the highest elevation;
+    perceived lightness rises evenly with elevation. At either end at most one vertex in a hundred,
+    if it lies off all others by more than four times their range, is left out of tints,
+    exaggeration and frame, which the picture says. A surface at least ten times as long as wide is
+    drawn in strips, one below the other. The same TIN and options give the same bytes on the same
+    machine. Coordinates in a page are rounded to a millimetre, or finer where a surface is small.
 
     Examples
     --------
@@ -266,13 +346,9 @@ def preview(
     '<!doctype html>'
     """
     require_type("survey", survey, Survey, or_none=True)
-    if title is not None and not isinstance(title, str):
-        raise OptionError("title", title, "text, or None")
-    chosen = Look(**look, title=title or "Terrain surface")
-    check_look(chosen.size, chosen.view)
-    if chosen.exaggeration is not None:
-        parse_exaggeration(chosen.exaggeration)
-    made = Preview(align(tin, survey), chosen, survey)
+    chosen, aligned = make_look(**look), align(tin, survey)
+    ortho = None if drape is None else read_ortho(drape, [*aligned.surfaces.values()])
+    made = Preview(aligned, chosen, survey, ortho)
     return made if output is None else made.save(output)
 
 

@@ -8,13 +8,12 @@ import numpy as np
 
 from ...errors import choice
 from ...policies import CurvatureKind, SurfacePart
-from ...tin.topology import gather
 from ...tin.validation.options import require_tin
+from ...tin.validation.threads import thread_count
+from .. import _kernel
 from ..units import find_scales
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from numpy.typing import NDArray
 
     from ...tin import TIN
@@ -22,10 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["curvature"]
 
 _CHUNK = 1 << 15
-_TERMS = 5
-_LEAST_PIVOT = 1e-10
-"""A pivot that elimination leaves of so small a share of the diagonal is none: the neighbours then
-lie on a conic, and many quadratic surfaces fit."""
+"""Vertices whose curvature is computed at a time, so that what is between stays in the cache."""
 
 
 class _Derivatives(NamedTuple):
@@ -71,7 +67,8 @@ def curvature(
     each vertex is taken that fits the vertices within two edges best (least squares of the
     differences in elevation, all of equal weight), as Evans and Zevenbergen and Thorne do on
     rasters: exact where the vertices lie on a quadratic surface, and smoothed across breaklines.
-    Signs and formulas are those of [1]_. Linear in the vertices.
+    Signs and formulas are those of [1]_. Linear in the pairs of vertices within two edges. The
+    result does not depend on the order of points or the number of threads.
 
     References
     ----------
@@ -91,95 +88,23 @@ def curvature(
     require_tin(tin)
     choice("kind", kind, CurvatureKind)
     choice("per", per, SurfacePart)
-    offsets, neighbors = _vertex_neighbors(tin)
-    found = np.empty(len(tin.points))
+    derivatives = _fit(tin)
+    found = np.empty(derivatives.shape[1])
     for start in range(0, len(found), _CHUNK):
-        rows = np.arange(start, min(start + _CHUNK, len(found)))
-        found[rows] = _FORMULAS[kind](_fit(tin, rows, offsets, neighbors))
+        rows = slice(start, start + _CHUNK)
+        found[rows] = _FORMULAS[kind](_Derivatives(*derivatives[:, rows]))
     if per == "triangle":
         found = found[tin.triangles].mean(axis=1)
     return found
 
 
-def _vertex_neighbors(tin: TIN) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return the vertices joined to each by an edge, as offsets and numbers."""
-    edges = tin.edges.astype(np.int64)
-    start = np.concatenate([edges[:, 0], edges[:, 1]])
-    end = np.concatenate([edges[:, 1], edges[:, 0]])
-    counts = np.bincount(start, minlength=len(tin.points))
-    return np.append(0, np.cumsum(counts)), end[np.argsort(start, kind="stable")]
-
-
-def _fit(
-    tin: TIN, rows: NDArray[np.int64], offsets: NDArray[np.int64], neighbors: NDArray[np.int64]
-) -> _Derivatives:
-    """Fit a quadratic surface through each of some vertices to those within two edges."""
-    owner, other = _within_two_edges(rows, offsets, neighbors, len(tin.points))
-    center = tin.points[rows]
-    scales = find_scales(tin.crs, tin.elevation_unit, center[:, 1])
-    factors = np.empty((len(rows), 3))
-    for axis, factor in enumerate(scales):
-        factors[:, axis] = factor
-    steps = (tin.points[other] - center[owner]) * factors[owner]
-    reach = np.zeros(len(rows))
-    np.maximum.at(reach, owner, np.abs(steps[:, :2]).max(axis=1))
-    reach[reach == 0.0] = 1.0
-    x, y = (steps[:, axis] / reach[owner] for axis in (0, 1))
-    terms = (x, y, x * x / 2, x * y, y * y / 2)
-    solved = _least_squares(terms, steps[:, 2], owner, len(rows))
-    by_size = solved / np.stack([reach, reach, reach**2, reach**2, reach**2])
-    return _Derivatives(*by_size)
-
-
-def _within_two_edges(
-    rows: NDArray[np.int64], offsets: NDArray[np.int64], neighbors: NDArray[np.int64], n: int
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return pairs: place of a row, and each vertex within two edges of it, once."""
-    slots, owner = gather(offsets, rows)
-    near = neighbors[slots]
-    further, via = gather(offsets, near)
-    keys = np.concatenate([owner * n + near, owner[via] * n + neighbors[further]])
-    keys.sort()  # many times as fast as the hashing of np.unique
-    keys = keys[np.append(True, keys[1:] != keys[:-1])]
-    owners, others = np.divmod(keys, n)
-    is_other = others != rows[owners]
-    return owners[is_other], others[is_other]
-
-
-def _least_squares(
-    terms: Sequence[NDArray[np.float64]],
-    values: NDArray[np.float64],
-    owner: NDArray[np.int64],
-    count: int,
-) -> NDArray[np.float64]:
-    """Solve the normal equations of each owner, (5, count); NaN where they have no one solution."""
-    matrix = np.empty((_TERMS, _TERMS, count))
-    right = np.empty((_TERMS, count))
-    for i in range(_TERMS):
-        right[i] = np.bincount(owner, terms[i] * values, count)
-        for j in range(i + 1):
-            matrix[i, j] = np.bincount(owner, terms[i] * terms[j], count)
-    return _solve(matrix, right)
-
-
-def _solve(matrix: NDArray[np.float64], right: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Solve symmetric systems by Cholesky's decomposition, of many at once."""
-    least = _LEAST_PIVOT * np.stack([matrix[k, k] for k in range(_TERMS)])
-    lower = np.zeros_like(matrix)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        for j in range(_TERMS):
-            pivot = matrix[j, j] - (lower[j, :j] ** 2).sum(axis=0)
-            lower[j, j] = np.sqrt(np.where(pivot > least[j], pivot, np.nan))
-            for i in range(j + 1, _TERMS):
-                known = (lower[i, :j] * lower[j, :j]).sum(axis=0)
-                lower[i, j] = (matrix[i, j] - known) / lower[j, j]
-        solved = np.zeros_like(right)
-        for j in range(_TERMS):
-            solved[j] = (right[j] - (lower[j, :j] * solved[:j]).sum(axis=0)) / lower[j, j]
-        for j in reversed(range(_TERMS)):
-            known = (lower[j + 1 :, j] * solved[j + 1 :]).sum(axis=0)
-            solved[j] = (solved[j] - known) / lower[j, j]
-    return solved
+def _fit(tin: TIN) -> NDArray[np.float64]:
+    """Return the derivatives of the quadratic surface that fits around each vertex, (5, n)."""
+    points, triangles = tin.triangulation.points, tin.triangulation.triangles
+    scales = find_scales(tin.crs, tin.elevation_unit, points[:, 1])
+    east, north = (np.atleast_1d(np.asarray(side, np.float64)) for side in scales[:2])
+    threads = thread_count(None, len(points))
+    return _kernel.fit_quadratics(points, triangles, east, north, scales.up, threads)
 
 
 # ------------------------------------------------------------------------------ formulas

@@ -386,8 +386,8 @@ def test_tools_take_turns():
     ("run", "tasks"),
     [
         (locate.run, 2),
-        (readers.run, 4),
-        (writers.run, 3),
+        (readers.run, 6),
+        (writers.run, 11),
         (profiles.run, 2),
         (interpolation.run, 5),
         (rasters.run, 1),

@@ -22,7 +22,7 @@ SURVEY = str(SAMPLES / "site_survey.csv")
 UTM = ("--crs", "EPSG:32616")
 COMMANDS = (
     *("build", "info", "check", "view", "refine", "compare", "edit", "convert"),
-    *("volume", "diff", "formats"),
+    *("volume", "diff", "formats", "plan"),
 )
 
 
@@ -286,36 +286,149 @@ def test_convert_keeps_points_as_points(folder):
     np.testing.assert_array_equal(ts.io.read("out.xyz").points, ts.io.read(SURVEY).points)
 
 
-@pytest.mark.parametrize("as_json", [False, True])
-@pytest.mark.parametrize("writes", [False, True])
-def test_view_passes_on_what_is_asked_for(pyramid, tmp_path, monkeypatch, as_json, writes):
-    asked = []
+AS_USUAL = {
+    "view": "oblique", "title": "pyramid", "survey": None, "exaggeration": None, "edges": False,
+    "lines": True, "tint": "elevation", "azimuth": None, "tilt": None, "size": None, "dpi": None,
+    "sun": None, "background": None, "elevations": None, "contours": None, "drape": None,
+}  # fmt: skip
+
+
+@pytest.fixture
+def asked(monkeypatch):
+    """What ``view`` asks for, and what it shows."""
+    made = SimpleNamespace(options=[], shown=[])
 
     def draw(tin, **options):
-        asked.append((len(tin.points), options))
-        if options["output"] is not None:
-            options["output"].write_bytes(b"7 bytes")
-        return SimpleNamespace(show=lambda: shown.append(True))
+        made.options.append((len(tin.points), options))
+        return SimpleNamespace(
+            show=lambda: made.shown.append(True),
+            save=lambda path: path.write_bytes(b"7 bytes"),
+            notes=("Mind the gap.",),
+        )
 
-    shown = []
     monkeypatch.setattr("tinsmith.terrain.preview", draw)
+    return made
+
+
+@pytest.mark.parametrize("as_json", [False, True])
+@pytest.mark.parametrize("writes", [False, True])
+def test_view_shows_or_writes(pyramid, tmp_path, asked, as_json, writes):
     picture = tmp_path / "a.png"
     output = ["-o", picture] if writes else []
     result = run("view", pyramid, *output, *(["--json"] if as_json else []))
-    wanted = {"output": picture if writes else None, "view": "oblique", "title": "pyramid"}
-    wanted |= {"exaggeration": None, "edges": False, "lines": True, "survey": None}
-    assert asked == [(5, wanted)]
-    assert shown == ([] if writes else [True])
+    assert asked.options == [(5, AS_USUAL)]
+    assert asked.shown == ([] if writes else [True])
     assert ("(7 bytes)" in result.stderr) is writes
+    assert "Warning: Mind the gap." in result.stderr
     if writes and as_json:
         assert json.loads(result.stdout) == {"input": str(pyramid), "output": str(picture)}
     else:
         assert result.stdout == ""
-    asked.clear()
-    options = ["--top", "--no-lines", "--edges", "--title", "A hill", "--exaggeration", "3"]
-    run("view", pyramid, *output, *options)
-    wanted |= {"view": "top", "lines": False, "edges": True, "title": "A hill"}
-    assert asked == [(5, wanted | {"exaggeration": 3.0})]
+
+
+@pytest.mark.parametrize(
+    ("options", "wanted"),
+    [
+        (["--top", "--no-lines", "--edges", "--title", "A hill", "--exaggeration", "3"],
+         {"view": "top", "lines": False, "edges": True, "title": "A hill", "exaggeration": 3.0}),
+        (["--azimuth", "-30", "--tilt", "20.5", "--size", "800x600", "--dpi", "300"],
+         {"azimuth": -30.0, "tilt": 20.5, "size": (800, 600), "dpi": 300.0}),
+        (["--sun", "250,30", "--background", "dark", "--elevations", "-5,12.5"],
+         {"sun": [250.0, 30.0], "background": "dark", "elevations": [-5.0, 12.5]}),
+        (["--tint", "slope", "--contours", "0.5"], {"tint": "slope", "contours": 0.5}),
+    ],
+)  # fmt: skip
+def test_view_passes_on_what_is_asked_for(pyramid, asked, options, wanted):
+    run("view", pyramid, *options)
+    assert asked.options == [(5, AS_USUAL | wanted)]
+
+
+@pytest.mark.parametrize(
+    ("flag", "value", "allowed"),
+    [
+        ("--size", "800", "width and height, such as 1600x1000"),
+        ("--size", "800x", "width and height, such as 1600x1000"),
+        ("--size", "100x9000", "width and height, 200 to 5000 pixels each"),
+        ("--dpi", "0", "36 to 2400 dots per inch"),
+        ("--azimuth", "nan", "a finite number of degrees clockwise from north"),
+        ("--tilt", "91", "0 (from the horizon) to 90 (from above) degrees"),
+        ("--sun", "315", "azimuth and altitude"),
+        ("--sun", "315,-1", "0 to 90 above the horizon"),
+        ("--sun", "high", "numbers with commas between them"),
+        ("--background", "reddish", "white, black, light, dark, or a colour such as '#e8edf2'"),
+        ("--contours", "0", "an interval above 0, in the unit of elevations"),
+        ("--elevations", "5,2", "the lowest and the highest, in this order"),
+        ("--exaggeration", "0", "a finite number above 0"),
+    ],
+)
+def test_view_refuses_what_cannot_be_drawn(pyramid, tmp_path, flag, value, allowed):
+    result = run("view", pyramid, "-o", tmp_path / "a.png", flag, value, code=2)
+    assert f"Invalid {flag} " in result.stderr
+    assert allowed in result.stderr
+    assert not list(tmp_path.glob("a*"))
+
+
+def test_view_tells_an_elevation_far_off(tmp_path):
+    points = [f"{x},{y},{5 + 0.1 * x}" for x in range(6) for y in range(6)]
+    points[8] = "1,2,9999"
+    file = tmp_path / "points.csv"
+    file.write_text("x,y,z\n" + "\n".join(points))
+    result = run("view", file, "-o", tmp_path / "a.html")
+    assert "Warning: 1 elevation far off all others: 9,999." in result.stderr
+
+
+@pytest.fixture
+def drawn(monkeypatch):
+    """What ``view`` hands to be drawn."""
+    calls = []
+
+    class Shown:
+        notes = ()
+
+        def save(self, path):
+            Path(path).write_text("drawn")
+
+    def draw(tin, **options):
+        calls.append((tin, options))
+        return Shown()
+
+    monkeypatch.setattr("tinsmith.terrain.preview", draw)
+    return calls
+
+
+@pytest.mark.parametrize(("name", "most"), [("a.png", 400), ("a.html", 200)])
+def test_view_shows_a_sample_of_a_large_raster_and_says_so(
+    tmp_path, monkeypatch, drawn, name, most
+):
+    monkeypatch.setattr("tinsmith.cli.commands.view._MOST_CELLS", 400)
+    dem = SAMPLES / "jacksboro.tif"
+    result = run("view", dem, "-o", tmp_path / name, "--json")
+    (tin, options), whole = drawn[0], len(ts.read(dem).points)
+    assert len(tin.points) <= most
+    told = f"{len(tin.points):,} of {whole:,} cells"
+    assert options["title"] == f"jacksboro ({told})"
+    assert f"Sampled     {told} are shown; --full shows all" in result.stderr
+    assert json.loads(result.stdout)["sample"] == told
+
+
+@pytest.mark.parametrize("options", [["--full"], ["--stride", "2"]])
+def test_view_shows_all_cells_that_are_asked_for(tmp_path, monkeypatch, drawn, options):
+    monkeypatch.setattr("tinsmith.cli.commands.view._MOST_CELLS", 400)
+    dem = SAMPLES / "jacksboro.tif"
+    result = run("view", dem, "-o", tmp_path / "a.png", *options)
+    stride = 2 if "--stride" in options else 1
+    assert len(drawn[0][0].points) == len(ts.read(dem, stride=stride).points)
+    assert drawn[0][1]["title"] == "jacksboro"
+    assert "Sampled" not in result.stderr
+
+
+def test_view_of_a_raster_from_standard_input_is_a_sample_too(tmp_path, monkeypatch, drawn):
+    monkeypatch.setattr("tinsmith.cli.commands.view._MOST_CELLS", 400)
+    dem = (SAMPLES / "jacksboro.tif").read_bytes()
+    result = CliRunner().invoke(main, ["view", "-", "-o", str(tmp_path / "a.png")], input=dem)
+    assert result.exit_code == 0, result.output
+    assert len(drawn[0][0].points) <= 400
+    assert drawn[0][1]["title"].startswith("Terrain surface (")
 
 
 def test_view_writes_a_picture(pyramid, tmp_path, can_draw):

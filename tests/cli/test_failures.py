@@ -582,7 +582,7 @@ def test_interrupt_after_the_first_file_names_it(folder, monkeypatch):
 
 
 def test_bug_is_one_sentence_that_tells_how_to_see_more(folder, monkeypatch):
-    monkeypatch.setattr("tinsmith.io.read", lambda *_, **__: {}["nothing"])
+    monkeypatch.setattr("tinsmith.io.reading.read_as_wished", lambda *_, **__: {}["nothing"])
     result = CliRunner().invoke(main, ["info", "in.csv"])
     assert result.exit_code == 1
     assert result.stderr.startswith("Error: A bug in tinsmith: KeyError: 'nothing'")
@@ -602,7 +602,7 @@ def test_system_errors_are_sentences(folder, monkeypatch, error, sentence):
     def fail(*_, **__):
         raise error
 
-    monkeypatch.setattr("tinsmith.io.read", fail)
+    monkeypatch.setattr("tinsmith.io.reading.read_as_wished", fail)
     result = CliRunner().invoke(main, ["info", "in.csv"])
     assert_sentence(result.exit_code, result.stdout, result.stderr, sentence)
 
@@ -610,9 +610,9 @@ def test_system_errors_are_sentences(folder, monkeypatch, error, sentence):
 def test_warning_of_a_library_is_one_line(folder, monkeypatch):
     import warnings
 
-    from tinsmith import io
+    from tinsmith.io import reading
 
-    read = io.read
+    read = reading.read_as_wished
 
     def warned(*arguments, **options):
         with warnings.catch_warnings():
@@ -620,7 +620,7 @@ def test_warning_of_a_library_is_one_line(folder, monkeypatch):
             warnings.warn("the datum\nis old", UserWarning, stacklevel=1)
         return read(*arguments, **options)
 
-    monkeypatch.setattr(io, "read", warned)
+    monkeypatch.setattr(reading, "read_as_wished", warned)
     Path("in.csv").write_text(SQUARE)
     result = CliRunner().invoke(main, ["info", "in.csv"])
     assert result.stderr == "Warning: the datum is old\n"

@@ -66,6 +66,20 @@ def test_a_profile_is_a_table_and_a_picture(site, tmp_path):
     assert picture.read_bytes().startswith(b"\x89PNG")
 
 
+def test_a_picture_knows_the_crs(site, tmp_path, monkeypatch):
+    drawn = []
+
+    def draw(table, **look):
+        drawn.append(look["crs"])
+        return profile_picture(table, **look)
+
+    profile_picture = ts.profile_picture
+    monkeypatch.setattr("tinsmith.terrain.profile_picture", draw)
+    out = run("profile", site, *LINE, "-o", tmp_path / "a.png")
+    assert out.exit_code == 0, out.output
+    assert drawn == [UTM]
+
+
 def test_several_surfaces_have_names(site, tmp_path):
     tin = ts.read(site)
     raised = ts.write(tin.replace(points=tin.points + np.array([0, 0, 2.0])), tmp_path / "b.ply")

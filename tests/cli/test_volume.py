@@ -99,6 +99,13 @@ def test_stages_are_tabulated(files):
     assert "reaches the boundary" in result.stderr
 
 
+def test_a_summary_has_some_rows_and_counts_the_others(files):
+    short = run("volume", files[1], "--stage-storage", "--interval", 1).stderr
+    assert " more" not in short
+    long = run("volume", files[1], "--stage-storage", "--interval", 0.25).stderr
+    assert "... 5 more" in long
+
+
 def test_the_difference_goes_to_files_of_every_kind(files, tmp_path):
     names = ["d.ply", "d.csv", "zones.geojson", "d.png"]
     outputs = [part for name in names for part in ("-o", tmp_path / name)]

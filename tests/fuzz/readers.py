@@ -18,11 +18,13 @@ from tinsmith.io.isolated import limits
 from .campaign import Campaign
 from .mesh_samples import MESH_MAKERS, TILE
 from .samples import MEMORY, sample_files
+from .vector_samples import VECTOR_MAKERS, WITH_PARTS
 
 KINDS = (
     *("ply", "obj", "stl", "vtk", "gmsh", "raster", "vectors", "delimited", "tin", "instruments"),
-    *("las", "layers", "landxml", "dxf"),
+    *("las", "landxml", "dxf"),
     *MESH_MAKERS,
+    *VECTOR_MAKERS,
 )
 
 _NUMBER = re.compile(rb"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
@@ -39,6 +41,9 @@ _WORDS = (
     *("<xi:include href='a'/>", "POLYLINE\n", "INSERT\n  2\nA\n", "VERTEX\n", "SEQEND\n  0\n"),
     *("<!DOCTYPE a>", "/vsicurl/http://127.0.0.1:9/a", "EOF\n", "  0\nSECTION\n"),
 )
+_LIES = (0, 1, 2, 2**15, 2**16 - 1, 10**6, 2**31 - 1, 2**31, 2**32 - 1, 2**62, 2**63, 2**64 - 1)
+"""Numbers and sizes that a header has not to have."""
+
 _SHAPES = frozenset({"hull", "boundary", "euler"})
 """What a check tells of sound surfaces too, if their boundary is not marked: concave, in pieces."""
 
@@ -74,7 +79,8 @@ def _damage(rng: np.random.Generator, content: bytes) -> list[Any]:
         ["number", int(rng.integers(12 if rng.random() < 0.5 else 200)), str(rng.choice(_NUMBERS))],
         ["truncate", at],
         ["join"],
-    ][int(rng.choice(9, p=[0.2, 0.12, 0.08, 0.1, 0.08, 0.12, 0.2, 0.07, 0.03]))]
+        ["lie", at, int(rng.choice([2, 4, 8])), bool(rng.random() < 0.2), int(rng.choice(12))],
+    ][int(rng.choice(10, p=[0.18, 0.1, 0.07, 0.09, 0.07, 0.11, 0.18, 0.07, 0.03, 0.1]))]
 
 
 def damaged(content: bytes, damages: list[list[Any]]) -> bytes:
@@ -122,6 +128,14 @@ def _number(content: bytes, which: int, text: str) -> bytes:
     return content[:start] + text.encode(_LETTERS) + content[end:]
 
 
+def _lie(content: bytes, at: int, size: int, is_big: bool, which: int) -> bytes:
+    """Put another whole number where one may stand in a header, on a multiple of two bytes."""
+    at = at % len(content) // 2 * 2
+    number = _LIES[which] % 2 ** (8 * size)
+    told = number.to_bytes(size, "big" if is_big else "little")
+    return (content[:at] + told + content[at + size :])[: len(content)]
+
+
 def _truncate(content: bytes, at: int) -> bytes:
     return content[: at % len(content)]
 
@@ -140,6 +154,7 @@ _DAMAGES = {
     "number": _number,
     "truncate": _truncate,
     "join": _join,
+    "lie": _lie,
 }
 
 
@@ -152,10 +167,9 @@ def examine(case: dict[str, Any]) -> str:
     content = damaged(dict(sample_files(case["kind"]))[case["name"]], case["damages"])
     with tempfile.TemporaryDirectory(dir=MEMORY) as folder, warnings.catch_warnings():
         warnings.simplefilter("error")
-        path = _put(Path(folder), case["kind"], case["name"], content)
-        options = {"tile": TILE} if case["kind"] == "terrain" else {}
+        path = put_file(Path(folder), case["kind"], case["name"], content)
         try:
-            found = _read(path, case["kind"], options)
+            found = _read(path, case["kind"], _choose_options(case["kind"], case["name"]))
         except ts.TinsmithError as error:
             require_sentence(str(error), path)
             return f"refused: {'crashed' if 'crashed' in str(error) else type(error).__name__}"
@@ -163,15 +177,17 @@ def examine(case: dict[str, Any]) -> str:
     return "read"
 
 
-def _put(folder: Path, kind: str, name: str, content: bytes) -> Path:
+def put_file(folder: Path, kind: str, name: str, content: bytes) -> Path:
     """Write a file, and those that lie in its folder; return what to read."""
     path = folder / name
     path.parent.mkdir(exist_ok=True)
-    if kind == "esritin":
+    if kind == "esritin" or kind in WITH_PARTS:
         for other, sound in sample_files(kind):
             if other.startswith(f"{path.parent.name}/"):
                 (folder / other).write_bytes(sound)
     path.write_bytes(content)
+    if kind in WITH_PARTS:
+        return path.with_suffix(".shp")
     return path.parent if kind == "esritin" else path
 
 
@@ -181,6 +197,18 @@ def _read(path: Path, kind: str, options: dict[str, Any]) -> Any:
     if kind == "landxml" and "source" in path.name:
         return ts.read(path, content="source")
     return ts.read(path, **options)
+
+
+def _choose_options(kind: str, name: str) -> dict[str, Any]:
+    """Return the options without which even a sound file is refused."""
+    if kind == "terrain":
+        return {"tile": TILE}
+    options = {}
+    if "degrees" in name or name.endswith((".geojsonl", ".geojsons", ".kml")):
+        options["crs"] = "EPSG:32616"
+    if kind in VECTOR_MAKERS and "lines" in name:
+        options |= {"lines_as": "breaklines", "z_field": "geometry"}
+    return options
 
 
 def _hurry() -> None:
@@ -195,7 +223,7 @@ def require_sentence(message: str, path: Path) -> None:
     assert message.replace(str(path), "").isprintable(), message
     for word in ("np.", "Traceback", "object at 0x", "numpy", "1 points", "1 triangles", "1 rows"):
         assert not re.search(rf"(?<!\d){re.escape(word)}", message), message
-    assert path.name in message, message
+    assert path.name in message or message.startswith("Unknown option"), message
 
 
 def require_sound(found: Any) -> None:

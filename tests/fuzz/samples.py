@@ -16,6 +16,7 @@ import numpy as np
 import tinsmith as ts
 
 from .mesh_samples import MESH_MAKERS
+from .vector_samples import VECTOR_MAKERS
 
 __all__ = ["MEMORY", "sample_files"]
 
@@ -222,18 +223,6 @@ def _las(folder: Path) -> list[tuple[str, bytes]]:
     return [(one.name, one.read_bytes()) for one in sorted(folder.iterdir())]
 
 
-def _layers(folder: Path) -> list[tuple[str, bytes]]:
-    tin = _tin()
-    survey = ts.Survey(points=tin.points, crs=CRS, attributes={"k": np.arange(len(tin.points))})
-    for name in ("s.gpkg", "s.fgb", "s.parquet"):
-        ts.write(survey, folder / name)
-    for name in ("t.fgb", "t.parquet"):
-        ts.write(tin, folder / name)
-    ts.write(survey, folder / "s.geojson", projected=True)
-    ts.write(tin, folder / "t.geojson", projected=True)
-    return [(one.name, one.read_bytes()) for one in sorted(folder.iterdir())]
-
-
 def _survey() -> Any:
     tin = _tin()
     ring = CORNER[:2] + np.array([[1, 1], [35, 2], [34, 27], [2, 26]])
@@ -299,7 +288,16 @@ def _whole_tin(folder: Path) -> list[tuple[str, bytes]]:
     edited = _tin()
     edited.insert([np.add(CORNER, (20.0, 15.0, 3.0))])
     files = []
-    for name, tin in (("ours.gpkg", _tin()), ("edited.gpkg", edited)):
+    count = len(_tin().vertex_of)
+    columns = {
+        "number": np.arange(count),
+        "code": [f"EP{i}" for i in range(count)],
+        "mixed": [1, None, "x"] + [2.5] * (count - 3),
+        "day": np.zeros(count, "M8[D]"),
+    }
+    named = _tin().replace(row_attributes=columns)
+    tins = (("ours.gpkg", _tin()), ("edited.gpkg", edited), ("named.gpkg", named))
+    for name, tin in tins:
         path = ts.write(tin, folder / name)
         with closing(sqlite3.connect(path, isolation_level=None)) as file:
             file.execute("PRAGMA page_size = 512")
@@ -317,6 +315,7 @@ def _instruments(folder: Path) -> list[tuple[str, bytes]]:
     sdr = f"00NM{'SDR33 V04-04.02':<20}{'05-Nov-20 08:00':<16}211111\n"
     sdr += "".join(f"{cell:<16}" for cell in ("02TPS", "0", "0", "0", "1.5")) + "\n"
     sdr += "07TP" + "".join(f"{cell:<16}" for cell in ("S", "B", "0", "0")) + "\n03NM1.5\n"
+    dc = f"00NM{'SC V10-70':<16}{'1021':<4}{'05-Jan-26 12:20':<16}111111\n"
     reduced = ""
     for k, row in enumerate(rows, start=1):
         cells = " ".join(f"{i}..00+{round(row[j] * 1e3) % 10**8:08d}" for i, j in words)
@@ -324,12 +323,14 @@ def _instruments(folder: Path) -> list[tuple[str, bytes]]:
         cells = " ".join(f"{i}..06+{round(row[j] * 1e4):016d}" for i, j in words)
         gsi16 += f"*11{k:04d}+{k:016d} {cells} \r\n"
         sdr += "08TP" + "".join(f"{cell:<16}" for cell in (k, row[1], row[0], row[2], "EP1")) + "\n"
+        dc += "69KI" + "".join(f"{cell:<16}" for cell in (k, row[1], row[0], row[2], "EP1"))
+        dc += f"11\n66KI{k + 1000:>16}{-37.1:<16}{-69.5:<16}{12.5:<16}\n"
         shot = ("S", 100 + k, 20 + k, 100, 10 * k, "GS")
         sdr += "09F1" + "".join(f"{cell:<16}" for cell in shot) + "\n"
         grid = f"<North>{row[1]}</North><East>{row[0]}</East><Elevation>{row[2]}</Elevation>"
         reduced += f"<Point><Name>{k}</Name><Code>EP1</Code><Grid>{grid}</Grid></Point>\n"
     jxl = f"<?xml version='1.0'?><JOBFile><Reductions>\n{reduced}</Reductions></JOBFile>\n"
-    texts = {"a.gsi": gsi8, "b.gsi": gsi16, "a.sdr": sdr, "a.jxl": jxl}
+    texts = {"a.gsi": gsi8, "b.gsi": gsi16, "a.sdr": sdr, "a.jxl": jxl, "a.dc": dc}
     return [(name, text.encode()) for name, text in texts.items()]
 
 
@@ -344,7 +345,7 @@ _MAKERS = {
     "vectors": _vectors,
     "delimited": _delimited,
     "las": _las,
-    "layers": _layers,
+    **VECTOR_MAKERS,
     "instruments": _instruments,
     **MESH_MAKERS,
     "landxml": _landxml,

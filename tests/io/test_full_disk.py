@@ -34,8 +34,8 @@ except ts.WriteError as error:
 """
 
 
-@pytest.mark.parametrize("share", [0.5, 0.9999])
-@pytest.mark.parametrize(("name", "form"), [("a.fgb", "-"), ("a.tif", "cog")])
+@pytest.mark.parametrize("share", [0.5, 0.9, 0.9999])
+@pytest.mark.parametrize(("name", "form"), [("a.fgb", "-"), ("a.tif", "cog"), ("a.tif", "geotiff")])
 def test_a_file_without_its_end_is_refused(tmp_path, name, form, share):
     result = run(sys.executable, "-c", CODE, name, form, str(share), str(tmp_path), cwd=tmp_path)
     assert result.stdout.startswith("refused Cannot write"), result.stdout + result.stderr

@@ -379,5 +379,6 @@ def test_counts_of_thousands_of_digits(tmp_path):
 @pytest.mark.parametrize("size", [28, 100], ids=["to the length", "a whole header"])
 def test_a_shapefile_that_promises_more_than_it_has(tmp_path, size):
     head = struct.pack(">i20xi", 9994, 1 << 30) + struct.pack("<ii", 1000, 3) + bytes(64)
-    (tmp_path / "a.shp").write_bytes(head[:size])
+    for part in ("a.shp", "a.shx"):
+        (tmp_path / part).write_bytes(head[:size])
     assert "cut short" in refused(read_lines, tmp_path / "a.shp", ReadError)

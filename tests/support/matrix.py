@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 import tinsmith as ts
@@ -29,13 +31,11 @@ def make_survey():
 
 
 def make_tin():
-    """Return a constrained TIN with lines of every kind, CRS and unit of elevations."""
+    """Return a constrained TIN with attributes, lines of every kind, CRS and unit."""
     survey = make_survey()
     place = lambda *xy: (np.array(xy, float) + SITE).tolist()  # noqa: E731
     return ts.triangulate(
-        ts.Survey(
-            points=survey.points, crs=survey.crs, elevation_unit="m", notes=["the unit was guessed"]
-        ),
+        replace(survey, notes=["the unit was guessed"]),
         breaklines=[
             ts.Breakline([[*place(10, 10), 302], [*place(200, 120), 306]], name="kerb"),
             ts.Breakline(
@@ -64,7 +64,7 @@ def measure_rounding(given, found):
 
 def find_losses_of_tin(given, found):
     """Return words for what is not as in the TIN that was written."""
-    lost = _find_losses_of_reference(given, found)
+    lost = _find_losses_of_reference(given, found) | _find_losses_of_attributes(given, found)
     if not isinstance(found, ts.TIN):
         return lost | {"triangles", "constrained", "lines", "report", "order", "notes"} - (
             {"order"} if _is_same_order(given, found) else set()
@@ -95,6 +95,17 @@ def find_losses_of_survey(given, found):
         if name not in found.attributes or list(found.attributes[name]) != list(column):
             lost.add("attributes")
     return lost
+
+
+def _find_losses_of_attributes(given, found):
+    """Compare attributes place by place: a mesh may number its vertices anew."""
+    number = _match(found, given)
+    for name, column in given.attributes.items():
+        wanted = column[number].tolist()
+        kept = np.asarray(found.attributes.get(name, np.full(len(number), None))).tolist()
+        if any(a != b and (a == a or b == b) for a, b in zip(wanted, kept, strict=True)):
+            return {"attributes"}
+    return set()
 
 
 def _find_losses_of_reference(given, found):

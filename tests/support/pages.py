@@ -15,16 +15,12 @@ _NO_WEBGL = ("--disable-gpu", "--disable-3d-apis")
 
 
 @contextmanager
-def open_page(path, *, webgl=True):
+def open_page(path, *, webgl=True, **context_options):
     """Open a page from a file; an error or a warning on its console fails the test."""
-    browser_path = shutil.which("chromium") or shutil.which("chromium-browser")
-    if browser_path is None:
-        pytest.skip("chromium is not installed")
     said = []
-    arguments = ["--no-sandbox", *(_WEBGL if webgl else _NO_WEBGL)]
-    browser = _start_driver().chromium.launch(executable_path=browser_path, args=arguments)
+    options = {"offline": True, "viewport": {"width": 1200, "height": 800}, **context_options}
+    context = _launch_browser(webgl).new_context(**options)
     try:
-        context = browser.new_context(offline=True, viewport={"width": 1200, "height": 800})
         page = context.new_page()
         page.on("pageerror", lambda error: said.append(str(error)))
         page.on("console", lambda line: said.append(line.text) if line.type == "error" else None)
@@ -33,8 +29,18 @@ def open_page(path, *, webgl=True):
         page.evaluate("window.terrain.then(() => true)")
         yield page
     finally:
-        browser.close()
+        context.close()
     assert [line for line in said if webgl or "WebGL" not in line] == []
+
+
+@cache
+def _launch_browser(webgl):
+    """Start a browser, of which a process has one with and one without WebGL."""
+    browser_path = shutil.which("chromium") or shutil.which("chromium-browser")
+    if browser_path is None:
+        pytest.skip("chromium is not installed")
+    arguments = ["--no-sandbox", *(_WEBGL if webgl else _NO_WEBGL)]
+    return _start_driver().chromium.launch(executable_path=browser_path, args=arguments)
 
 
 @cache

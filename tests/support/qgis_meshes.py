@@ -1,4 +1,4 @@
-"""Meshes as QGIS opens them, in a process of the system's own Python."""
+"""Files as QGIS opens them: meshes, in a process of the system's own Python."""
 
 from __future__ import annotations
 
@@ -41,6 +41,11 @@ def has_qgis() -> bool:
 
 def open_in_qgis(path, folder):
     """Open a mesh; return counts, CRS and ranges; skip the test where QGIS is missing."""
+    return run_in_qgis(_OPEN, [str(path)], folder)
+
+
+def run_in_qgis(script, arguments, folder):
+    """Run a script that prints its answer; skip the test where QGIS is missing."""
     if not has_qgis():
         pytest.skip("needs QGIS (python3-qgis)")
     runtime = folder / "runtime"
@@ -49,7 +54,7 @@ def open_in_qgis(path, folder):
     environment |= {"HOME": str(runtime)}
     environment.pop("PYTHONPATH", None)
     done = subprocess.run(
-        [_PYTHON, "-c", _OPEN, str(path)],
+        [_PYTHON, "-c", script, *arguments],
         capture_output=True,
         text=True,
         timeout=120,

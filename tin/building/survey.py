@@ -15,6 +15,7 @@ from ..constraints.breaklines import Breakline, Water
 from ..constraints.constraint_set import as_sequence
 from ..types import Bounds, Finding
 from ..validation.tables import Table, as_table
+from .attributes import as_columns, as_mapping
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -48,7 +49,9 @@ class Survey:
         Rings around the data, such as those a raster's voids leave: there is surface only where an
         odd number of them holds the place.
     attributes : mapping of str to (n,) array
-        Further columns, one value a point (for example ``"number"`` and ``"description"``).
+        Further columns, one value a point (for example ``"number"`` and ``"description"``). Lists
+        become arrays that hold their values as they are, of objects where those are of several
+        types; what is masked becomes NaN or None.
     crs : CRS, optional
         Coordinate reference system; given as a code ("EPSG:32616"), number, WKT or ``pyproj.CRS``.
     elevation_unit : Unit, optional
@@ -104,12 +107,12 @@ class Survey:
         object.__setattr__(self, "elevation_unit", unit)
         for name in _LINES:
             object.__setattr__(self, name, _as_lines(name, getattr(self, name)))
-        object.__setattr__(self, "skipped", _as_mapping("skipped", self.skipped))
-        object.__setattr__(self, "skipped_lines", _as_mapping("skipped_lines", self.skipped_lines))
+        object.__setattr__(self, "skipped", as_mapping("skipped", self.skipped))
+        object.__setattr__(self, "skipped_lines", as_mapping("skipped_lines", self.skipped_lines))
         _require_texts(self)
         table = Table(self.points) if _is_plain(self.points) else as_table(self.points, "Points")
         object.__setattr__(self, "points", table.values)
-        columns = _as_columns(self.attributes, table.values.shape[:1])
+        columns = as_columns(self.attributes, table.values.shape[:1])
         object.__setattr__(self, "attributes", columns)
         if table.is_masked is not None:
             self._leave_out(table.is_masked)
@@ -145,31 +148,6 @@ class Survey:
 def _as_lines(name: str, lines: Any) -> Sequence[Any]:
     """Return several lines or rings as a sequence; one alone is told from several."""
     return lines if isinstance(lines, tuple | list) else as_sequence(lines, name)
-
-
-def _as_columns(attributes: Any, shape: tuple[int, ...]) -> Mapping[str, NDArray[Any]]:
-    """Return columns as arrays of one value a point; those of a data frame too."""
-    if hasattr(attributes, "columns") and not isinstance(attributes, Mapping):
-        attributes = {name: attributes[name] for name in attributes.columns}
-    given = _as_mapping("attributes", attributes)
-    return {name: _as_column(name, values, shape) for name, values in given.items()}
-
-
-def _as_column(name: str, values: Any, shape: tuple[int, ...]) -> NDArray[Any]:
-    try:
-        column = np.asarray(values)
-    except Exception:
-        column = np.empty(())
-    if column.ndim != 1 or column.shape != shape:
-        raise OptionError(f"attribute '{name}'", values, "an array of one value for each point")
-    return column
-
-
-def _as_mapping(name: str, given: Any) -> Mapping[str, Any]:
-    """Return what gives values by their names."""
-    if not isinstance(given, Mapping) or not all(isinstance(key, str) for key in given):
-        raise OptionError(name, given, "a mapping whose keys are text")
-    return given
 
 
 def _require_texts(survey: Survey) -> None:

@@ -133,8 +133,8 @@ def _find_regions(
 ) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
     barrier = np.zeros(surface.constrained.shape, np.bool_)
     barrier[half.triangle, half.corner] = True
-    xy = np.ascontiguousarray(surface.points[:, :2])
-    return _kernel.regions(xy, surface.triangles, surface.neighbors, barrier)
+    points = np.ascontiguousarray(surface.points)
+    return _kernel.regions(points, surface.triangles, surface.neighbors, barrier)
 
 
 def _find_toggles(segments: RingSegments, n_vertices: int) -> dict[int, int]:

@@ -154,12 +154,11 @@ class Triangulator {
                              grown[i].store.size(), grown[i].last_shared);
       }
     });
-    std::vector<std::int32_t> base{0};
+    std::vector<std::uint32_t> base{0};
     for (const GrownPart& part : parts) base.push_back(base.back() + part.kept());
     team_.run([&](int member) {
       for (int i = member; i < count; i += team_.size()) {
-        parts[i].write(base[i], result_.arrays(),
-                       [this](std::int32_t position) { return number(rows_of_[position]); });
+        parts[i].write(base[i], result_.arrays(), [this](Vertex v) { return rows_of_[number(v)]; });
       }
     });
     join_open_edges(parts, result_.arrays());

@@ -86,6 +86,13 @@ class Editable:
                 return self._inputs
             return self._open_session().inputs().build_inputs
 
+    def _list_rows(self) -> NDArray[np.int64] | None:
+        """Return the numbers of the rows that inputs have after edits; None for all of them."""
+        with self._lock:
+            if self._inputs is None or (self._session is None and self._origin is None):
+                return None
+            return self._open_session().inputs().rows
+
     def _resume(self, origin: Origin) -> None:
         """Go on as the TIN did that was stored; its edits are done again when one follows."""
         self._inputs = origin.inputs

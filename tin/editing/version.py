@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from ..building.attributes import find_first_rows
 from ..interpolation.interpolator import Interpolator
 from ..types import Frozen
 
@@ -42,3 +43,8 @@ class Version(Frozen):
     def interpolator(self) -> Interpolator:
         """What interpolation needs; any number of threads may ask it at a time."""
         return Interpolator(self.triangulation, self.lines)
+
+    @cached_property
+    def first_rows(self) -> NDArray[np.int64]:
+        """The first row that each vertex stands for, -1 for none."""
+        return find_first_rows(self.vertex_of, len(self.triangulation.points))

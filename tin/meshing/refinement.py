@@ -369,6 +369,7 @@ def _make_refined(
         lines=find_lines_in(pslg.polylines, pslg.constraints, number_of, surface, is_whole=False),
         crs=tin.crs,
         elevation_unit=tin.elevation_unit,
+        row_attributes=tin.row_attributes,
     )
 
 

@@ -106,7 +106,7 @@ class Points:
     ----------
     coordinates : array of double
         Northing, easting, elevation, one after the other; NaN for what is missing.
-    names, descriptions, codes, groups : list of str
+    names, descriptions, codes, groups, states : list of str
     references : dict of int to str
         The point by name that a row refers to.
     excluded : set of int
@@ -118,6 +118,7 @@ class Points:
     descriptions: list[str] = field(default_factory=list)
     codes: list[str] = field(default_factory=list)
     groups: list[str] = field(default_factory=list)
+    states: list[str] = field(default_factory=list)
     references: dict[int, str] = field(default_factory=dict)
     excluded: set[int] = field(default_factory=set)
 
@@ -145,6 +146,8 @@ class Content:
         Of its ``Feature``.
     surfaces : list of Surface
     points : Points
+    others : dict of str to int
+        How many elements there are of each kind that is not read, such as plan features.
     """
 
     version: str = ""
@@ -153,3 +156,4 @@ class Content:
     system_properties: dict[str, str] = field(default_factory=dict)
     surfaces: list[Surface] = field(default_factory=list)
     points: Points = field(default_factory=Points)
+    others: dict[str, int] = field(default_factory=dict)

@@ -7,6 +7,7 @@ missing. Nothing is followed that names another file.
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import TYPE_CHECKING, Any, NoReturn
 from xml.parsers import expat
 
@@ -33,6 +34,8 @@ _LONGEST_MARKUP = 1 << 26
 
 _LINES = frozenset({"Breakline", "Boundary", "Contour", "DataPoints"})
 _LIST_WIDTHS = {"PntList2D": 2, "PntList3D": 3}
+_OTHERS = {"PlanFeature": "plan feature", "Alignment": "alignment", "Parcel": "parcel"}
+"""Elements with lines of their own, which are none of a surface."""
 _NOT_FOR_SURFACE = frozenset({"donotinclude", "donottriangulate"})
 
 
@@ -104,7 +107,12 @@ class _Parser:
             "Property": self._start_property,
             "PointFile": self._start_point_file,
             "RetWall": self._start_wall,
+            **{name: partial(self._count_other, what) for name, what in _OTHERS.items()},
         }
+
+    def _count_other(self, what: str, _: dict[str, str]) -> None:
+        """Count a thing that may have lines, and is not read."""
+        self.content.others[what] = self.content.others.get(what, 0) + 1
 
     def _list_ends(self) -> dict[str, Callable[[], None]]:
         return {
@@ -404,6 +412,7 @@ class _Parser:
         points.descriptions.append(attributes.get("desc", "").strip())
         points.codes.append(attributes.get("code", "").strip())
         points.groups.append(self._groups[-1])
+        points.states.append(attributes.get("state", "").strip())
         if "pntRef" in attributes and not text.strip():
             points.references[row] = attributes["pntRef"].strip()
         if attributes.get("DTMAttribute", "").strip().lower() in _NOT_FOR_SURFACE:

@@ -209,6 +209,9 @@ def _describe_rest(found: Content, chosen: Surface | None, kind: str) -> list[st
         notes.append(
             f"Not read: {counted(len(found.points), 'survey point')}, which content='points' gives."
         )
+    if found.others:
+        told = ", ".join(counted(n, what) for what, n in found.others.items())
+        notes.append(f"Not read: {told}.")
     if kind == "source" and chosen is not None and not chosen.n_visible:
         notes.append("There are no visible faces: the source data were read.")
     return notes

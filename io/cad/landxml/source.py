@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -56,8 +57,20 @@ def make_survey_of_points(
         elevation_unit=placing.elevation_unit,
         source=path.name,
         skipped=skipped,
-        notes=placing.notes,
+        notes=[*placing.notes, *_describe_states(points, kept)],
     )
+
+
+def _describe_states(points: Points, kept: NDArray[np.int64]) -> list[str]:
+    """Tell of points that are no longer there, or not yet: a design stands among the ground."""
+    found = Counter(points.states[row] for row in kept.tolist())
+    told = [f"{n:,} {state}" for state, n in found.items() if state not in ("", "existing")]
+    if not told:
+        return []
+    return [
+        f"Of {counted(len(kept), 'survey point')} {' and '.join(told)}, by their state, are read "
+        "as the others are: the attribute state tells them apart."
+    ]
 
 
 def _select_points(points: Points) -> tuple[NDArray[np.int64], dict[str, int]]:
@@ -78,6 +91,7 @@ def _gather_attributes(points: Points, kept: NDArray[np.int64]) -> dict[str, NDA
         "description": points.descriptions if any(points.descriptions) else points.codes,
         "code": points.codes,
         "group": points.groups,
+        "state": points.states,
     }
     return {name: np.array(values, object)[kept] for name, values in columns.items() if any(values)}
 

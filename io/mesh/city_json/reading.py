@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...._sentences import counted
 from ....errors import ReadError
 from ..common import choose_reference, cut_into_fans, make_tin, read_content
 from .decimals import DecimalGrid
@@ -25,6 +24,8 @@ if TYPE_CHECKING:
 __all__ = ["read"]
 
 _VERSIONS = ("1.0", "1.1", "2.0")
+_WITHOUT_TRANSFORM = "1.0"
+"""The version in which vertices may be coordinates as they are."""
 _SURFACES = ("CompositeSurface", "MultiSurface")
 _URL = re.compile(
     r"(?:https?://www\.opengis\.net/def/crs/|urn:ogc:def:crs:)([A-Za-z]+)[/:][^/:]*[/:]([^/:]+)"
@@ -88,14 +89,9 @@ def read(
     offsets = np.concatenate([[0], np.cumsum(lengths)])
     if len(lengths) == 0:
         raise ReadError(f"'{path}' holds a TINRelief without any triangle.", path=path)
-    triangles = cut_into_fans(corners, offsets, points, path).triangles
-    n_polygons = int((lengths > 3).sum())
-    if n_polygons:
-        notes.append(
-            f"{counted(n_polygons, 'polygon')} of the file {'was' if n_polygons == 1 else 'were'} "
-            "cut into triangles: the file does not tell along which diagonals."
-        )
-    points, triangles = _merge_vertices(points, triangles)
+    made = cut_into_fans(corners, offsets, points, path)
+    notes += made.notes
+    points, triangles = _merge_vertices(points, made.triangles)
     found_crs, found_unit = _find_reference(city, reliefs)
     reference = choose_reference(crs, z_unit, path, found_crs=found_crs, found_unit=found_unit)
     return make_tin(points, triangles, path, reference=reference, notes=notes)
@@ -198,6 +194,8 @@ def _restore_vertices(city: dict[str, Any], path: Path) -> NDArray[np.float64]:
         raise _damaged(path, "its vertices are no list of three numbers each") from None
     transform = city.get("transform")
     if transform is None:
+        if not str(city["version"]).startswith(_WITHOUT_TRANSFORM):
+            raise _damaged(path, f"version {city['version']} needs a transform, and it has none")
         return vertices
     try:
         scale = np.array(transform["scale"], np.float64).reshape(3)

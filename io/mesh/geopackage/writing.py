@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import sqlite3
 from contextlib import closing
+from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,6 +17,7 @@ from ..common import format_unit, require_tin
 from .digests import digest_arrays, digest_lines
 from .geometries import make_chain_blobs, make_point_blobs, make_triangle_blobs
 from .records import pack_tin
+from .records.columns import describe_layer_columns
 from .schema import (
     APPLICATION_ID,
     LAYERS,
@@ -58,9 +60,9 @@ def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None 
 
     Notes
     -----
-    Layers: ``vertices`` (points with z, and their numbers), ``triangles`` (polygons with the
-    numbers ``a``, ``b``, ``c`` of their vertices, slope and aspect in degrees, and ``constrained``,
-    of which bit 0 stands for the edge opposite ``a``, and so on), ``lines`` (kind, name and
+    Layers: ``vertices`` (points with z, their numbers and attributes), ``triangles`` (polygons
+    with the numbers ``a``, ``b``, ``c`` of their vertices, slope and aspect in degrees, and
+    ``constrained``, of which bit 0 is that of the edge opposite ``a``), ``lines`` (kind, name and
     source), ``boundary`` (closed lines) and ``water`` (polygons with their elevation). The table
     ``tinsmith_tin`` holds the rest: the report, and what edits and undoing them need.
     """
@@ -183,15 +185,20 @@ def _write_record(file: sqlite3.Connection, tin: TIN) -> None:
 
 
 def _write_vertices(file: sqlite3.Connection, tin: TIN, srs: int) -> None:
+    """Write the vertices, with a column for each attribute."""
+    columns = describe_layer_columns(tin.attributes, ("fid", "geom", "vertex"))
+    for declaration, _ in columns:
+        file.execute(f"ALTER TABLE vertices ADD COLUMN {declaration}")
+    values = [iter(column) for _, column in columns]
+    marks = ", ".join("?" * (3 + len(columns)))
     for start in range(0, len(tin.points), _CHUNK):
         points = tin.points[start : start + _CHUNK]
         numbers = range(start, start + len(points))
+        blobs = make_point_blobs(points, srs)
+        parts = [islice(column, len(points)) for column in values]
         file.executemany(
-            "INSERT INTO vertices VALUES (?, ?, ?)",
-            (
-                (number + 1, blob, number)
-                for number, blob in zip(numbers, make_point_blobs(points, srs), strict=True)
-            ),
+            f"INSERT INTO vertices VALUES ({marks})",
+            zip(range(start + 1, start + len(points) + 1), blobs, numbers, *parts, strict=True),
         )
 
 

@@ -21,7 +21,7 @@ from ....crs import assume_elevation_unit
 from ....errors import CrsError, WriteError
 from ....terrain.preview.tints import interpolate_tints
 from ..common import format_crs, format_unit, require_factor, require_tin
-from ..texture import load_texture
+from ..texture import choose_picture, load_texture
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -62,6 +62,7 @@ def write(
     surface: TIN,
     path: Path,
     *,
+    drape: str | os.PathLike[str] | None = None,
     texture: str | os.PathLike[str] | None = None,
     exaggeration: float = 1.0,
     progress: Callable[[float], None] | None = None,
@@ -72,9 +73,11 @@ def write(
     ----------
     surface : TIN
     path : Path
+    drape : path-like, optional
+        Picture to lay over it: a GeoTIFF in any CRS, or a PNG or JPEG file with a world file beside
+        it. Default colours by elevation.
     texture : path-like, optional
-        Picture to drape over it: a GeoTIFF, or a PNG or JPEG file with a world file beside it.
-        Default colours by elevation.
+        The former name of ``drape``.
     exaggeration : float
         Factor on the elevations, which ``extras`` tells.
     progress : callable, optional
@@ -85,11 +88,11 @@ def write(
     FormatError
         If ``surface`` is no TIN.
     CrsError
-        If its coordinates are longitude and latitude, or the texture is in another CRS.
+        If its coordinates are longitude and latitude.
     OptionError
-        If the exaggeration is not positive.
+        If the exaggeration is not positive, or two pictures are named.
     ReadError
-        If the texture cannot be read, or shows nothing of the surface.
+        If the picture cannot be read, or shows nothing of the surface.
     WriteError
         If the file cannot be written; if triangles have no area in float32, or the file would be
         larger than 4 GiB.
@@ -107,7 +110,8 @@ def write(
             "TIN in a projected CRS.",
             crs=tin.crs,
         )
-    draped = None if texture is None else load_texture(texture, tin, stacklevel=4)
+    picture = choose_picture(drape, texture)
+    draped = None if picture is None else load_texture(picture, tin, stacklevel=4)
     origin = np.floor(tin.points.min(axis=0))
     scale = _choose_scale(tin) * (1.0, 1.0, exaggeration)
     mesh = _make_mesh(tin, origin, scale, draped, path)

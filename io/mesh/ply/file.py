@@ -71,7 +71,7 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     Returns
     -------
     TIN or Survey
-        A survey where the file has no faces, further vertex properties as attributes. Polygons
+        A survey where the file has no faces; further vertex properties as attributes. Polygons
         are cut into triangles; other properties and elements are skipped.
 
     Raises
@@ -90,24 +90,36 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     if vertices is None or not set(_COORDINATES) <= vertices.columns.keys():
         raise ReadError(f"'{path}' has no element 'vertex' with x, y and z.", path=path)
     points = _stack_coordinates(vertices)
+    notes = common.describe_single_precision(points, vertices.columns["x"].dtype)
     reference = common.choose_reference(
         crs, z_unit, path, found_crs=header.crs, found_unit=header.elevation_unit
     )
     faces = _find_face_list(tables.get("face"))
+    attributes = _find_vertex_attributes(vertices)
     if faces is None or len(faces.offsets) == 1:
         return common.make_survey(
-            points, path, attributes=_find_vertex_attributes(vertices), reference=reference
+            points, path, attributes=attributes, reference=reference, notes=notes
         )
     made = common.cut_into_fans(
         _require_whole_numbers(faces.items, path), faces.offsets, points, path
     )
+    notes += made.notes
     flags = _find_edge_flags(tables["face"], len(made.triangles))
-    if header.lines is None or "edge" not in tables:
-        return common.make_tin(points, made.triangles, path, constrained=flags, reference=reference)
-    edges = require_edges(tables["edge"], path, len(points))
-    if flags is None:
+    has_lines = header.lines is not None and "edge" in tables
+    edges = require_edges(tables["edge"], path, len(points)) if has_lines else None
+    if flags is None and edges is not None:
         flags = flag_edges(made.triangles, edges, len(points))
-    tin = common.make_tin(points, made.triangles, path, constrained=flags, reference=reference)
+    tin = common.make_tin(
+        points,
+        made.triangles,
+        path,
+        constrained=flags,
+        reference=reference,
+        attributes=attributes,
+        notes=notes,
+    )
+    if edges is None or header.lines is None:
+        return tin
     lines = read_lines(header.lines, edges, path)
     _require_edges_of_tin(tin, lines, path)
     return tin.replace(lines=lines)
@@ -170,8 +182,8 @@ def write(
     Parameters
     ----------
     surface : TIN or Survey
-        Of a survey the points and those attributes that are numbers are written (whole numbers
-        beyond 32 bits as double); PLY has no text.
+        Of the attributes of points those that are numbers are written (whole numbers beyond 32
+        bits as double); PLY has no text.
     path : Path
     progress : callable, optional
         Called with the fraction done.
@@ -184,8 +196,7 @@ def write(
         If the file cannot be written.
     """
     surface = common.require_writable(surface, path)
-    attributes = surface.attributes if isinstance(surface, Survey) else {}
-    body = {"vertex": _pack_vertices(surface.points, attributes)}
+    body = {"vertex": _pack_vertices(surface.points, surface.attributes)}
     comments: list[str] = []
     if isinstance(surface, TIN):
         edges = take_edges(surface)

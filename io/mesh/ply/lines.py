@@ -44,6 +44,7 @@ __all__ = [
 ENDS = ("vertex1", "vertex2")
 """Properties of an edge, as other programs call them."""
 
+_INT32 = 2**31
 _COMMENT = re.compile(r'(hard|soft|boundary|hole|water) (-?[0-9]{1,10}) ([0-9]{1,10}) (".*")')
 
 
@@ -98,7 +99,10 @@ def parse_line_comment(text: str) -> LineComment | None:
     except ValueError:
         return None
     kind: Any = found[1]
-    return LineComment(kind, int(found[2]), int(found[3]), name)
+    source, n_edges = int(found[2]), int(found[3])
+    if not -_INT32 <= source < _INT32:
+        return None
+    return LineComment(kind, source, n_edges, name)
 
 
 def require_edges(table: Table, path: Path, n_vertices: int) -> NDArray[np.int64]:

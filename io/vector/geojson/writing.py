@@ -32,6 +32,7 @@ __all__ = ["Kind", "gather_edge_flags", "group_rings", "write"]
 Kind = FeatureKind
 
 _BATCH = 16_384
+_LARGEST = 2**63
 _FEATURE = '{"type":"Feature","properties":%s,"geometry":{"type":"%s","coordinates":%s}}'
 _TRIANGLE = _FEATURE % (
     '{"id":%d,"slope":%.4f,"aspect":%.4f,"area":%.9g}',
@@ -315,7 +316,7 @@ def _close_ring(
 
 
 def _format_points(surface: TIN | Survey, places: Places) -> Iterator[tuple[int, str]]:
-    attributes = surface.attributes if isinstance(surface, Survey) else {}
+    attributes = surface.attributes
     names = [json.dumps(str(name)) for name in attributes if name != "id"]
     columns = [np.asarray(column) for name, column in attributes.items() if name != "id"]
     ids = np.asarray(attributes.get("id", np.arange(len(places.xyz))))
@@ -334,7 +335,10 @@ def _format_json(value: Any) -> str:
         return "null"
     if isinstance(value, float) and not np.isfinite(value):
         return "null"
-    return json.dumps(value if isinstance(value, bool | int | float | str) else str(value))
+    is_plain = isinstance(value, bool | int | float | str)
+    if isinstance(value, int) and not -_LARGEST <= value < _LARGEST:
+        is_plain = False  # no reader of JSON is bound to take more than 64 bits
+    return json.dumps(value if is_plain else str(value))
 
 
 _SURFACE_FEATURES: dict[str, Callable[[TIN, Places], Iterator[tuple[int, str]]]] = {

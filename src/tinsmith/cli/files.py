@@ -38,7 +38,9 @@ __all__ = [
     "open_standard_input",
     "plan_outputs",
     "read_input",
+    "read_inputs",
     "read_tin",
+    "read_tin_of_files",
     "require_picture",
     "write_figure",
     "write_outputs",
@@ -47,6 +49,9 @@ __all__ = [
 
 _TEXT_FORMATS = ("delimited", "geojson", "obj", "off", "2dm", "cityjson", "csv", "json")
 """Formats that a terminal can show."""
+
+_WISHES = ("most_cells",)
+"""Options of commands, not of users, which count where the format has them."""
 
 
 @dataclass(frozen=True)
@@ -91,14 +96,24 @@ def read_input(path: Path, reading: Reading, console: Console) -> Survey | TIN:
         return reproject(_read_to_reproject(path, options, target), target)
 
 
-def _read_once(path: Path, options: dict[str, Any]) -> Survey | TIN:
-    from ..io import read
-    from ..io.reading import read_stream
+def read_inputs(paths: Sequence[Path], reading: Reading, console: Console) -> Survey | TIN:
+    """Read files as one survey, or a single one as what it is; as :func:`read_input`."""
+    from ..io.reading import join_files
 
+    found = [read_input(path, reading, console) for path in paths]
+    if len(found) == 1:
+        return found[0]
+    return join_files(found, [Path(name_file(path)) for path in paths])
+
+
+def _read_once(path: Path, options: dict[str, Any]) -> Survey | TIN:
+    from ..io.reading import read_as_wished, read_stream
+
+    asked = {name: value for name, value in options.items() if name not in _WISHES}
+    wishes = {name: value for name, value in options.items() if name in _WISHES}
     if path == STANDARD:
-        return read_stream(open_standard_input(), name_file(path), **options)
-    found: Survey | TIN = read(path, **options)
-    return found
+        return read_stream(open_standard_input(), name_file(path), wishes, **asked)
+    return read_as_wished(path, wishes, **asked)
 
 
 def _read_to_reproject(path: Path, options: dict[str, Any], target: str) -> Survey | TIN:
@@ -190,25 +205,32 @@ def read_tin(
     path: Path, reading: Reading, how: Triangulating, console: Console
 ) -> tuple[TIN, Survey | None]:
     """Read a TIN, or points and build theirs; the points are None for a file that holds a TIN."""
+    return read_tin_of_files((path,), reading, how, console)
+
+
+def read_tin_of_files(
+    paths: Sequence[Path], reading: Reading, how: Triangulating, console: Console
+) -> tuple[TIN, Survey | None]:
+    """Read a TIN, or the points of several files and build theirs; as :func:`read_tin`."""
     from ..tin import TIN
 
-    found = read_input(path, reading, console)
+    found = read_inputs(paths, reading, console)
     if isinstance(found, TIN):
         if how.shaping:
             raise Failure(
-                f"'{path}' holds a TIN already, and {how.shaping[0]} needs points to build from: "
-                "'tinsmith edit' adds lines to a TIN."
+                f"'{paths[0]}' holds a TIN already, and {how.shaping[0]} needs points to build "
+                "from: 'tinsmith edit' adds lines to a TIN."
             )
         return found, None
     survey = add_lines(found, how, console)
     return build_tin(survey, how, console), survey
 
 
-def list_inputs(file: Path, how: Coding | None = None) -> list[Named]:
+def list_inputs(*files: Path, how: Coding | None = None) -> list[Named]:
     """Return all files that a command reads."""
     from ..io.vector.survey_lines import split_layer
 
-    inputs = [Named(file, "the input")]
+    inputs = [Named(file, "the input") for file in files]
     if how is not None and how.code_table is not None:
         inputs.append(Named(how.code_table, "the file of --code-table"))
     given = getattr(how, "line_files", {})

@@ -29,11 +29,18 @@ MESH_READING = (
 
 MESH_WRITING = (
     click.option(
+        "--multipatch",
+        is_flag=True,
+        help="Write a shapefile of one MultiPatch, the surface that ArcGIS knows, not of polygons.",
+    ),
+    click.option(
+        "--ortho",
         "--texture",
+        "texture",
         metavar="FILE",
         type=INPUT,
-        help="Drape a picture over a GLB or OBJ file: a GeoTIFF, or a PNG or JPEG file with a "
-        "world file beside it.",
+        help="Drape a picture over a GLB or OBJ file: a GeoTIFF in any CRS, or a PNG or JPEG file "
+        "with a world file beside it.",
     ),
     click.option(
         "--solid",

@@ -58,6 +58,7 @@ class Reading:
     band: int | None = None
     window: tuple[float, float, float, float] | None = None
     stride: int | None = None
+    most_cells: int | None = None
     nodata: tuple[float, ...] | None = None
     fill: bool | None = None
     code_blocks: str | None = None
@@ -168,6 +169,7 @@ class Writing:
 class SurfaceWriting(Writing):
     """How a surface is written; some other commands have flags of these names for themselves."""
 
+    multipatch: bool = False
     texture: Path | None = None
     solid: bool = False
     thickness: float | None = None

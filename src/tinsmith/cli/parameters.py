@@ -14,6 +14,7 @@ __all__ = [
     "choice_option",
     "crs_option",
     "input_file",
+    "input_files",
     "number_option",
     "output_files",
     "output_option",
@@ -97,6 +98,11 @@ def refuse_value(flag: str, error: Exception) -> click.UsageError:
 def input_file(name: str) -> Decorator:
     """Return the argument for the file to read."""
     return click.argument(name, type=INPUT)
+
+
+def input_files(name: str) -> Decorator:
+    """Return the argument for files to read, several of points being one survey."""
+    return click.argument(name, type=INPUT, nargs=-1, required=True)
 
 
 def output_option(help: str, *, required: bool = False) -> Decorator:  # noqa: A002 - click's name

@@ -19,11 +19,14 @@ __all__ = [
     "OUTPUT",
     "STANDARD",
     "Named",
+    "describe_inputs",
     "make_title",
     "name_file",
+    "name_files",
     "require_separate",
 ]
 
+_SHOWN = 5
 STANDARD = Path("-")
 """Standard input or output; a file of that name is ``./-``."""
 
@@ -44,6 +47,18 @@ _MORE_PARTS = (".aux.xml", ".xml", ".ovr", ".msk", "-wal", "-shm", "-journal")
 def name_file(path: Path) -> str:
     """Return what a file to read is called in summaries."""
     return "standard input" if path == STANDARD else escape_unprintable(str(path))
+
+
+def name_files(paths: Sequence[Path]) -> str:
+    """Return what files to read are called in summaries."""
+    more = f" and {len(paths) - _SHOWN:,} more" if len(paths) > _SHOWN else ""
+    return ", ".join(map(name_file, paths[:_SHOWN])) + more
+
+
+def describe_inputs(paths: Sequence[Path]) -> str | list[str]:
+    """Return the name of a file for a record, or those of several."""
+    names = [str(path) for path in paths]
+    return names[0] if len(names) == 1 else names
 
 
 def make_title(path: Path) -> str:

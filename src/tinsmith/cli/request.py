@@ -75,8 +75,7 @@ class Request:
 
     def list_inputs(self, *files: Path, more: Sequence[Named] = ()) -> list[Named]:
         """Return all files that are read: surfaces, lines, and others."""
-        surfaces = [Named(file, "the input") for file in files]
-        return [*surfaces, *list_inputs(files[0], self.how)[1:], *more]
+        return [*list_inputs(*files, how=self.how), *more]
 
     def step(self, text: str) -> AbstractContextManager[None]:
         """Return the context in which long work shows its progress."""

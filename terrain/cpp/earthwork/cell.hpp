@@ -13,6 +13,8 @@
 #pragma once
 
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <stdexcept>
 #include <utility>
 
@@ -26,6 +28,12 @@ class Cell {
   static constexpr int kMostCorners = 6;
   static constexpr int kCrossings = 6;  // the first number of a crossing
 
+  // The edge of the first triangle and that of the second that cross there.
+  static std::pair<std::uint32_t, std::uint32_t> crossing_of(int number) {
+    const auto crossing = static_cast<std::uint32_t>(number - kCrossings);
+    return {crossing / 3, crossing % 3};
+  }
+
   // True if the interiors of the triangles meet; then all else can be asked for.
   bool cut(const Facet& first, const Facet& second) {
     facet_[0] = &first;
@@ -34,7 +42,7 @@ class Cell {
     next_.fill(-1);
     count_ = 0;
     for (int which = 0; which < 2; ++which) {
-      for (int edge = 0; edge < 3; ++edge) add_side(which, edge);
+      for (std::uint32_t edge = 0; edge < 3; ++edge) add_side(which, edge);
     }
     link();
     return true;
@@ -48,7 +56,9 @@ class Cell {
   double difference(int i) const { return difference_[i]; }
 
  private:
-  using Side = std::pair<int, int>;
+  static int number_of_crossing(std::uint32_t edge, std::uint32_t other) {
+    return kCrossings + static_cast<int>(3 * edge + other);
+  }
 
   // area_[w][i][j] is twice the area of corner i of triangle w and edge j of the other one.
   // False where an edge of one has the other one on its right or touching.
@@ -56,10 +66,10 @@ class Cell {
     for (int which = 1; which >= 0; --which) {
       const Facet& corners = *facet_[which];
       const Facet& edges = *facet_[1 - which];
-      for (int i = 0; i < 3; ++i) load_areas(edges, corners.corner[i], area_[which][i]);
-      for (int j = 0; j < 3; ++j) {
+      for (std::uint32_t i = 0; i < 3; ++i) load_areas(edges, corners.corner[i], area_[which][i]);
+      for (std::uint32_t j = 0; j < 3; ++j) {
         bool has_left = false;
-        for (int i = 0; i < 3; ++i) has_left |= area_[which][i][j] > 0.0;
+        for (std::uint32_t i = 0; i < 3; ++i) has_left |= area_[which][i][j] > 0.0;
         if (!has_left) return false;
       }
     }
@@ -69,22 +79,23 @@ class Cell {
   // Of a point and the three edges.
   static void load_areas(const Facet& edges, Point p, double (&area)[3]) {
     double x[3], y[3];
-    for (int k = 0; k < 3; ++k) {
+    for (std::uint32_t k = 0; k < 3; ++k) {
       x[k] = edges.corner[k].x - p.x;
       y[k] = edges.corner[k].y - p.y;
     }
     bool are_precise = true;
-    for (int j = 0; j < 3; ++j) {
-      const double left = x[kAfter[j]] * y[kBefore[j]], right = y[kAfter[j]] * x[kBefore[j]];
+    for (std::uint32_t j = 0; j < 3; ++j) {
+      const double left = x[corner_after(j)] * y[corner_before(j)],
+                   right = y[corner_after(j)] * x[corner_before(j)];
       area[j] = left - right;
       are_precise &= is_precise(left, right);
     }
     if (are_precise) return;
-    for (int j = 0; j < 3; ++j) area[j] = twice_area(edges.start(j), edges.end(j), p);
+    for (std::uint32_t j = 0; j < 3; ++j) area[j] = twice_area(edges.start(j), edges.end(j), p);
   }
 
   // The part of an edge within the other triangle.
-  void add_side(int which, int edge) {
+  void add_side(int which, std::uint32_t edge) {
     const double across[3] = {area_[1 - which][0][edge], area_[1 - which][1][edge],
                               area_[1 - which][2][edge]};
     const int right = (across[0] < 0.0) + (across[1] < 0.0) + (across[2] < 0.0);
@@ -94,33 +105,34 @@ class Cell {
   }
 
   // The line of the edge runs through the interior of the other triangle.
-  void add_chord(int which, int edge, const double (&across)[3]) {
-    const int start = kAfter[edge], end = kBefore[edge];
+  void add_chord(int which, std::uint32_t edge, const double (&across)[3]) {
+    const std::uint32_t start = corner_after(edge), end = corner_before(edge);
     int from = number_of(which, start), to = number_of(which, end);
-    for (int k = 0; k < 3; ++k) {
+    for (std::uint32_t k = 0; k < 3; ++k) {
       const double at_start = area_[which][start][k], at_end = area_[which][end][k];
-      const double before = across[kAfter[k]], after = across[kBefore[k]];
+      const double before = across[corner_after(k)], after = across[corner_before(k)];
       const bool enters = before >= 0.0 && after < 0.0, leaves = before < 0.0 && after >= 0.0;
       if (!enters && !leaves) continue;
       if ((enters && at_start < 0.0 && at_end <= 0.0) ||
           (leaves && at_end < 0.0 && at_start <= 0.0)) {
         return;
       }
-      if (enters && at_start < 0.0) from = meeting(which, edge, k, before, kAfter[k]);
-      if (leaves && at_end < 0.0) to = meeting(which, edge, k, after, kBefore[k]);
+      if (enters && at_start < 0.0) from = meeting(which, edge, k, before, corner_after(k));
+      if (leaves && at_end < 0.0) to = meeting(which, edge, k, after, corner_before(k));
     }
     next_[from] = to;
   }
 
   // Where an edge meets edge k of the other triangle: in a corner of that, or between.
-  int meeting(int which, int edge, int k, double at_corner, int corner) const {
+  int meeting(int which, std::uint32_t edge, std::uint32_t k, double at_corner,
+              std::uint32_t corner) const {
     if (at_corner == 0.0) return number_of(1 - which, corner);
-    return which == 0 ? kCrossings + 3 * edge + k : kCrossings + 3 * k + edge;
+    return which == 0 ? number_of_crossing(edge, k) : number_of_crossing(k, edge);
   }
 
   // Both triangles lie left of two edges on one line: what those share is a side.
-  void add_shared(int edge, const double (&across)[3]) {
-    const int other = across[0] != 0.0 ? 0 : across[1] != 0.0 ? 1 : 2;
+  void add_shared(std::uint32_t edge, const double (&across)[3]) {
+    const std::uint32_t other = across[0] != 0.0 ? 0 : across[1] != 0.0 ? 1 : 2;
     const Point start = facet_[0]->start(edge), end = facet_[0]->end(edge);
     const Point other_start = facet_[1]->start(other), other_end = facet_[1]->end(other);
     const bool is_rising = lexicographically_before(start, end);
@@ -129,18 +141,18 @@ class Cell {
     };
     const bool starts_later = precedes(start, other_start), ends_sooner = precedes(other_end, end);
     if (!precedes(starts_later ? other_start : start, ends_sooner ? other_end : end)) return;
-    next_[starts_later ? 3 + kAfter[other] : kAfter[edge]] =
-        ends_sooner ? 3 + kBefore[other] : kBefore[edge];
+    next_[starts_later ? 3 + corner_after(other) : corner_after(edge)] =
+        static_cast<int>(ends_sooner ? 3 + corner_before(other) : corner_before(edge));
   }
 
   // A corner that both triangles have goes by its number in the first.
-  int number_of(int which, int corner) const {
-    if (which == 0) return corner;
+  int number_of(int which, std::uint32_t corner) const {
+    if (which == 0) return static_cast<int>(corner);
     const double* area = area_[1][corner];
-    for (int k = 0; k < 3; ++k) {
-      if (area[kAfter[k]] == 0.0 && area[kBefore[k]] == 0.0) return k;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      if (area[corner_after(k)] == 0.0 && area[corner_before(k)] == 0.0) return static_cast<int>(k);
     }
-    return 3 + corner;
+    return 3 + static_cast<int>(corner);
   }
 
   void link() {
@@ -165,10 +177,10 @@ class Cell {
       return {p.x - origin.x, p.y - origin.y};
     }
     // From the nearer end.
-    const int edge = (number - kCrossings) / 3, other = (number - kCrossings) % 3;
+    const auto [edge, other] = crossing_of(number);
     Point a = facet_[0]->start(edge), b = facet_[0]->end(edge);
-    double at_a = std::fabs(area_[0][kAfter[edge]][other]);
-    double at_b = std::fabs(area_[0][kBefore[edge]][other]);
+    double at_a = std::fabs(area_[0][corner_after(edge)][other]);
+    double at_b = std::fabs(area_[0][corner_before(edge)][other]);
     if (at_a > at_b) {
       std::swap(a, b);
       std::swap(at_a, at_b);
@@ -179,7 +191,7 @@ class Cell {
 
   double difference_of(int number) const {
     if (number < kCrossings) return difference_at_corner(number);
-    const int edge = (number - kCrossings) / 3, other = (number - kCrossings) % 3;
+    const auto [edge, other] = crossing_of(number);
     return height_at_crossing(crossing_edge(0, edge, other), crossing_edge(1, other, edge));
   }
 
@@ -191,9 +203,9 @@ class Cell {
     return which == 0 ? height : -height;
   }
 
-  CrossingEdge crossing_edge(int which, int edge, int other) const {
+  CrossingEdge crossing_edge(int which, std::uint32_t edge, std::uint32_t other) const {
     const Facet& facet = *facet_[which];
-    const int start = kAfter[edge], end = kBefore[edge];
+    const std::uint32_t start = corner_after(edge), end = corner_before(edge);
     return {facet.corner[start],  facet.corner[end],          facet.elevation[start],
             facet.elevation[end], area_[which][start][other], area_[which][end][other]};
   }

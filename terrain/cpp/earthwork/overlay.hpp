@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <stdexcept>
 #include <vector>
@@ -20,23 +21,23 @@
 namespace tinsmith::earthwork {
 
 // An edge of the first surface and one of the second, each by its smaller and larger vertex.
-using EdgePair = std::array<std::int32_t, 4>;
+using EdgePair = std::array<Vertex, 4>;
 
-// Numbers of edge pairs, from a given one on, by open addressing.
+// The vertex of the overlay at each pair of edges, by open addressing.
 class EdgePairs {
  public:
   EdgePairs() : slots_(kFirstSize) {}
 
-  // The number of the pair, `number` if it is new.
-  std::int32_t find_or_add(const EdgePair& pair, std::int32_t number) {
+  // The vertex of the pair, `made` if it has none yet.
+  Vertex find_or_add(const EdgePair& pair, Vertex made) {
     if (2 * ++count_ > slots_.size()) grow();
     Slot& slot = slot_of(pair);
-    if (slot.number < 0) {
-      slot = {pair, number};
+    if (slot.vertex == kNoVertex) {
+      slot = {pair, made};
     } else {
       --count_;
     }
-    return slot.number;
+    return slot.vertex;
   }
 
  private:
@@ -44,17 +45,19 @@ class EdgePairs {
 
   struct Slot {
     EdgePair pair;
-    std::int32_t number = -1;
+    Vertex vertex = kNoVertex;
   };
 
   Slot& slot_of(const EdgePair& pair) {
     std::uint64_t hash = 0;
-    for (const std::int32_t number : pair) {
-      hash = (hash ^ static_cast<std::uint32_t>(number)) * 0x9e3779b97f4a7c15;  // 2^64 / golden
+    for (const Vertex v : pair) {
+      hash = (hash ^ static_cast<std::uint32_t>(number(v))) * 0x9e3779b97f4a7c15;  // 2^64 / golden
       hash ^= hash >> 29;
     }
     std::size_t at = hash & (slots_.size() - 1);
-    while (slots_[at].number >= 0 && slots_[at].pair != pair) at = (at + 1) & (slots_.size() - 1);
+    while (slots_[at].vertex != kNoVertex && slots_[at].pair != pair) {
+      at = (at + 1) & (slots_.size() - 1);
+    }
     return slots_[at];
   }
 
@@ -62,7 +65,7 @@ class EdgePairs {
     std::vector<Slot> old(2 * slots_.size());
     old.swap(slots_);
     for (const Slot& slot : old) {
-      if (slot.number >= 0) slot_of(slot.pair) = slot;
+      if (slot.vertex != kNoVertex) slot_of(slot.pair) = slot;
     }
   }
 
@@ -77,9 +80,9 @@ class Overlay {
     double difference;  // of the second surface above the first
   };
 
-  Overlay(const Triangles& first, const Triangles& second, Team& team)
-      : vertex_of_{std::vector<std::int32_t>(first.point_count, -1),
-                   std::vector<std::int32_t>(second.point_count, -1)} {
+  Overlay(const Surface& first, const Surface& second, Team& team)
+      : vertex_of_{std::vector<Vertex>(first.point_count, kNoVertex),
+                   std::vector<Vertex>(second.point_count, kNoVertex)} {
     const Pairs pairs(first, second);
     pairs.visit(team, [&](int, const Facet& one, const Facet& other) {
       const bool is_kept = is_measured_along(one, other);
@@ -92,17 +95,17 @@ class Overlay {
   }
 
   std::vector<OverlayVertex> vertices;
-  std::vector<std::array<std::int32_t, 2>> origins;    // vertex of the first, of the second; -1
-  std::vector<std::int64_t> offsets{0};                // of cells, in corners
-  std::vector<std::int32_t> corners;                   // vertices of cells, counter-clockwise
-  std::vector<std::array<std::int32_t, 2>> triangles;  // of the first and the second, of each cell
+  std::vector<std::array<Vertex, 2>> origins;      // of the first, of the second, or kNoVertex
+  std::vector<std::int64_t> offsets{0};            // of cells, in corners
+  std::vector<Vertex> corners;                     // of cells, counter-clockwise
+  std::vector<std::array<Triangle, 2>> triangles;  // of the first and the second, of each cell
 
  private:
   void add_corner(const Facet& one, const Facet& other, bool is_kept, const Cell& cell, int i) {
     const int number = cell.number(i);
     const double difference = is_kept ? cell.difference(i) : -cell.difference(i);
     if (number >= Cell::kCrossings) {
-      const int edge = (number - Cell::kCrossings) / 3, across = (number - Cell::kCrossings) % 3;
+      const auto [edge, across] = Cell::crossing_of(number);
       add_crossing(one, is_kept ? edge : across, other, is_kept ? across : edge, difference);
       return;
     }
@@ -110,7 +113,7 @@ class Overlay {
     const int corner = number % 3;
     const int shared = shared_corner(is_of_first ? other : one, is_of_first ? one : other, corner);
     if (is_of_first) {
-      add_vertex(one, corner, shared < 0 ? -1 : other.vertex[shared], difference);
+      add_vertex(one, corner, shared < 0 ? kNoVertex : other.vertex[shared], difference);
     } else if (shared >= 0) {
       add_vertex(one, shared, other.vertex[corner], difference);
     } else {
@@ -126,46 +129,48 @@ class Overlay {
     return -1;
   }
 
-  void add_vertex(const Facet& one, int corner, std::int32_t second, double difference) {
-    std::int32_t& number = vertex_of_[0][one.vertex[corner]];
-    if (number < 0) {
-      number = new_vertex(one.corner[corner], difference, {one.vertex[corner], second});
-    }
-    corners.push_back(number);
+  void add_vertex(const Facet& one, int corner, Vertex second, double difference) {
+    const Vertex first = one.vertex[corner];
+    Vertex& vertex = vertex_of_[0][number(first)];
+    if (vertex == kNoVertex) vertex = new_vertex(one.corner[corner], difference, {first, second});
+    corners.push_back(vertex);
   }
 
   void add_second_vertex(const Facet& other, int corner, double difference) {
-    std::int32_t& number = vertex_of_[1][other.vertex[corner]];
-    if (number < 0)
-      number = new_vertex(other.corner[corner], difference, {-1, other.vertex[corner]});
-    corners.push_back(number);
+    const Vertex second = other.vertex[corner];
+    Vertex& vertex = vertex_of_[1][number(second)];
+    if (vertex == kNoVertex) {
+      vertex = new_vertex(other.corner[corner], difference, {kNoVertex, second});
+    }
+    corners.push_back(vertex);
   }
 
-  void add_crossing(const Facet& one, int edge, const Facet& other, int across, double difference) {
-    const auto ends = std::minmax(one.vertex[kAfter[edge]], one.vertex[kBefore[edge]]);
+  void add_crossing(const Facet& one, std::uint32_t edge, const Facet& other, std::uint32_t across,
+                    double difference) {
+    const auto ends = std::minmax(one.vertex[corner_after(edge)], one.vertex[corner_before(edge)]);
     const auto other_ends =
-        std::minmax(other.vertex[kAfter[across]], other.vertex[kBefore[across]]);
-    const auto next = static_cast<std::int32_t>(vertices.size());
-    const std::int32_t number = crossings_.find_or_add(
+        std::minmax(other.vertex[corner_after(across)], other.vertex[corner_before(across)]);
+    const Vertex next{static_cast<std::int32_t>(vertices.size())};
+    const Vertex vertex = crossings_.find_or_add(
         {ends.first, ends.second, other_ends.first, other_ends.second}, next);
-    if (number == next) {
+    if (vertex == next) {
       new_vertex(intersection_point(one.start(edge), one.end(edge), other.start(across),
                                     other.end(across)),
-                 difference, {-1, -1});
+                 difference, {kNoVertex, kNoVertex});
     }
-    corners.push_back(number);
+    corners.push_back(vertex);
   }
 
-  std::int32_t new_vertex(Point p, double difference, std::array<std::int32_t, 2> origin) {
+  Vertex new_vertex(Point p, double difference, std::array<Vertex, 2> origin) {
     if (vertices.size() >= static_cast<std::size_t>(INT32_MAX / 4)) {
       throw std::overflow_error("the overlay has more vertices than 32-bit indices can number");
     }
     vertices.push_back({p.x, p.y, difference});
     origins.push_back(origin);
-    return static_cast<std::int32_t>(vertices.size() - 1);
+    return Vertex{static_cast<std::int32_t>(vertices.size() - 1)};
   }
 
-  std::array<std::vector<std::int32_t>, 2> vertex_of_;
+  std::array<std::vector<Vertex>, 2> vertex_of_;
   EdgePairs crossings_;
 };
 

@@ -1,4 +1,4 @@
-// The pairs of triangles of two surfaces whose boxes meet.
+// The pairs of triangles of two surfaces whose boxes meet: a spatial join.
 //
 // One surface is taken block by block along Hilbert's curve; of the other those near the block are
 // looked up once in a tree of boxes. Nothing is asked of the surfaces: they may be clipped, of
@@ -21,10 +21,11 @@ namespace tinsmith::earthwork {
 
 class Pairs {
  public:
-  Pairs(const Triangles& first, const Triangles& second)
-      : first_(surface_of(first)),
-        second_(surface_of(second)),
-        tree_(second.count, [this](std::int32_t i) { return box_of(second_, i); }) {}
+  Pairs(const Surface& first, const Surface& second)
+      : first_(without_neighbors(first)),
+        second_(without_neighbors(second)),
+        tree_(static_cast<std::int32_t>(second.triangle_count),
+              [this](std::int32_t i) { return box_of(second_, i); }) {}
 
   // visit(part, triangle, other triangle) for every pair, on all threads of the team.
   template <typename Visit>
@@ -39,10 +40,9 @@ class Pairs {
         if (begin >= count) return;
         const std::int64_t end = std::min<std::int64_t>(begin + kBlocksAtATime * kBlock, count);
         for (std::int64_t at = begin; at < end; at += kBlock) {
-          visit_block(at, std::min(at + kBlock, end), near,
-                      [&](const Facet& a, const Facet& b) {
-                        if (pulse.goes_on()) visit(part, a, b);
-                      });
+          visit_block(at, std::min(at + kBlock, end), near, [&](const Facet& a, const Facet& b) {
+            if (pulse.goes_on()) visit(part, a, b);
+          });
         }
       }
     });
@@ -58,12 +58,12 @@ class Pairs {
     Facet facet;
   };
 
-  static OrderedSurface surface_of(const Triangles& triangles) {
-    return OrderedSurface({triangles.points, triangles.corners, nullptr, triangles.point_count,
-                           static_cast<std::uint32_t>(triangles.count)});
+  static OrderedSurface without_neighbors(Surface surface) {
+    surface.neighbors = nullptr;
+    return OrderedSurface(surface);
   }
   static Box box_of(const OrderedSurface& copy, std::int64_t i) {
-    return copy.surface().box_of(Triangle{static_cast<std::uint32_t>(i)});
+    return copy.surface().box_of(triangle_numbered(i));
   }
 
   template <typename Visit>
@@ -83,7 +83,7 @@ class Pairs {
       const Box& box = boxes[i - begin];
       if (is_scattered) gather(box, near);
       if (near.empty()) continue;
-      const Facet facet = Facet::of(first_, static_cast<std::int32_t>(i));
+      const Facet facet = Facet::of(first_, triangle_numbered(i));
       for (const Item& item : near) {
         if (item.box.meets(box)) visit(facet, item.facet);
       }
@@ -96,7 +96,8 @@ class Pairs {
                           [&](std::int32_t begin, std::int32_t end) {
                             for (std::int32_t i = begin; i < end; ++i) {
                               const Box own = box_of(second_, i);
-                              if (own.meets(box)) near.push_back({own, Facet::of(second_, i)});
+                              if (own.meets(box))
+                                near.push_back({own, Facet::of(second_, triangle_numbered(i))});
                             }
                             return false;
                           });

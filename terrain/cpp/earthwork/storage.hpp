@@ -22,12 +22,12 @@ class Storage {
   using Row = std::array<double, 3>;  // area in the plane, in space, volume
 
   // `levels` ascend; `up` converts elevations to the unit of the plane for areas in space.
-  Storage(const Triangles& triangles, const double* levels, std::int32_t count, double up,
-          Team& team)
+  Storage(const Surface& surface, const double* levels, std::int32_t count, double up, Team& team)
       : levels_(levels, levels + count), cut_(count), drowned_(count) {
     Pulse pulse(team);
-    for (std::int32_t t = 0; t < triangles.count && pulse.goes_on(); ++t) {
-      add(Facet::of(triangles, t), up, pulse);
+    for (const Triangle t : Ids<Triangle>(surface.triangle_count)) {
+      if (!pulse.goes_on()) return;
+      add(Facet::of(surface, t), up, pulse);
     }
   }
 

@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <cstddef>
 #include <limits>
 #include <utility>
+#include <vector>
 
 #include "exact_sum.hpp"
 
@@ -71,42 +72,41 @@ class Sums {
 
   // A cell, with areas in space over the same part of the plane.
   void add(const CellSums& cell, double surface, double other_surface) {
-    area_.add(cell.area);
-    fill_area_.add(cell.fill_area);
-    cut_area_.add(cell.cut_area);
-    fill_.add(cell.fill);
-    cut_.add(cell.cut);
-    squares_.add(cell.squares);
-    surface_.add(surface);
-    other_surface_.add(other_surface);
+    const double values[kSummed] = {cell.area, cell.cut_area, cell.fill_area, cell.cut,
+                                    cell.fill, cell.squares,  surface,        other_surface};
+    for (std::size_t i = 0; i < kSummed; ++i) sums_[i].add(values[i]);
     highest_ = std::max(highest_, cell.highest);
     lowest_ = std::min(lowest_, cell.lowest);
   }
 
   void add(const Sums& other) {
-    area_.add(other.area_);
-    fill_area_.add(other.fill_area_);
-    cut_area_.add(other.cut_area_);
-    fill_.add(other.fill_);
-    cut_.add(other.cut_);
-    squares_.add(other.squares_);
-    surface_.add(other.surface_);
-    other_surface_.add(other.other_surface_);
+    for (std::size_t i = 0; i < kSummed; ++i) sums_[i].add(other.sums_[i]);
     highest_ = std::max(highest_, other.highest_);
     lowest_ = std::min(lowest_, other.lowest_);
   }
 
   // In the order in which terrain/_kernel.py names them.
   std::array<double, kColumns> values() const {
-    return {area_.value(), cut_area_.value(), fill_area_.value(), cut_.value(),
-            fill_.value(), squares_.value(),  surface_.value(),   other_surface_.value(),
-            lowest_,       highest_};
+    std::array<double, kColumns> values;
+    for (std::size_t i = 0; i < kSummed; ++i) values[i] = sums_[i].value();
+    values[kSummed] = lowest_;
+    values[kSummed + 1] = highest_;
+    return values;
   }
 
  private:
-  ExactSum area_, cut_area_, fill_area_, cut_, fill_, squares_, surface_, other_surface_;
+  static constexpr std::size_t kSummed = 8;
+
+  std::array<ExactSum, kSummed> sums_;
   double lowest_ = std::numeric_limits<double>::infinity();
   double highest_ = -std::numeric_limits<double>::infinity();
 };
+
+inline std::vector<std::array<double, Sums::kColumns>> rows_of(const std::vector<Sums>& sums) {
+  std::vector<std::array<double, Sums::kColumns>> rows;
+  rows.reserve(sums.size());
+  for (const Sums& one : sums) rows.push_back(one.values());
+  return rows;
+}
 
 }  // namespace tinsmith::earthwork

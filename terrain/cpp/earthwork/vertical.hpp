@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 
 #include "facet.hpp"
 
@@ -24,13 +25,15 @@ template <typename ExactWeight>
 double weighted_sum(const double (&weight)[3], const double (&elevation)[3], double datum,
                     ExactWeight&& exact) {
   double sum = 0.0, size = 0.0;
-  for (int k = 0; k < 3; ++k) {
+  for (std::uint32_t k = 0; k < 3; ++k) {
     const double term = weight[k] * (elevation[k] - datum);
     sum += term;
     size += std::fabs(term);
   }
   if (size == 0.0 || std::fabs(sum) > kKeptOfSum * size) return sum;
-  const auto term = [&](int k) { return exact(k) * expand(exact_difference(elevation[k], datum)); };
+  const auto term = [&](std::uint32_t k) {
+    return exact(k) * expand(exact_difference(elevation[k], datum));
+  };
   return (term(0) + term(1) + term(2)).value();
 }
 
@@ -40,13 +43,13 @@ double weighted_sum(const double (&weight)[3], const double (&elevation)[3], dou
 // the edges of the facet.
 inline double height_of_plane(const Facet& facet, Point p, double elevation,
                               const double (&weight)[3]) {
-  for (int k = 0; k < 3; ++k) {
-    if (weight[kAfter[k]] == 0.0 && weight[kBefore[k]] == 0.0) {
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    if (weight[corner_after(k)] == 0.0 && weight[corner_before(k)] == 0.0) {
       return facet.elevation[k] - elevation;  // the point is a corner of the facet
     }
   }
   const double total = weight[0] + weight[1] + weight[2];
-  const double sum = detail::weighted_sum(weight, facet.elevation, elevation, [&](int k) {
+  const double sum = detail::weighted_sum(weight, facet.elevation, elevation, [&](std::uint32_t k) {
     return detail::exact_area(facet.start(k), facet.end(k), p);
   });
   return sum / total;
@@ -64,7 +67,7 @@ inline double height_at_crossing(const CrossingEdge& first, const CrossingEdge& 
   const double datum = first.start_elevation;
   const double weight[3] = {second.end_area, -second.start_area, -first.start_area};
   const double elevation[3] = {second.start_elevation, second.end_elevation, first.end_elevation};
-  const double sum = detail::weighted_sum(weight, elevation, datum, [&](int k) {
+  const double sum = detail::weighted_sum(weight, elevation, datum, [&](std::uint32_t k) {
     if (k == 0) return detail::exact_area(first.start, first.end, second.end);
     if (k == 1) return -detail::exact_area(first.start, first.end, second.start);
     return -detail::exact_area(second.start, second.end, first.start);

@@ -49,17 +49,17 @@ inline std::vector<Sums> add_up(const std::vector<std::vector<Sums>>& parts) {
   return all;
 }
 
-inline std::vector<double> all_steepness(const Triangles& triangles, double up) {
-  std::vector<double> values(triangles.count);
-  for (std::int32_t t = 0; t < triangles.count; ++t) {
-    values[t] = steepness(Facet::of(triangles, t), up);
+inline std::vector<double> all_steepness(const Surface& surface, double up) {
+  std::vector<double> values(surface.triangle_count);
+  for (const Triangle t : Ids<Triangle>(surface.triangle_count)) {
+    values[number(t)] = steepness(Facet::of(surface, t), up);
   }
   return values;
 }
 
 // Of the second surface above the first; `groups` has the group of each triangle of the first.
-inline std::vector<Sums> sum_between(const Triangles& first, const std::int32_t* groups,
-                                     std::int32_t group_count, const Triangles& second, double up,
+inline std::vector<Sums> sum_between(const Surface& first, const std::int32_t* groups,
+                                     std::int32_t group_count, const Surface& second, double up,
                                      Team& team) {
   const Pairs pairs(first, second);
   const auto steep = all_steepness(first, up), other_steep = all_steepness(second, up);
@@ -73,35 +73,38 @@ inline std::vector<Sums> sum_between(const Triangles& first, const std::int32_t*
     fan_out(cell, [&](double doubled, double u, double v, double w) {
       sums.add(doubled, sign * u, sign * v, sign * w);
     });
-    parts[part][groups[one.triangle]].add(sums, sums.area * steep[one.triangle],
-                                          sums.area * other_steep[other.triangle]);
+    const std::uint32_t t = number(one.triangle), u = number(other.triangle);
+    parts[part][groups[t]].add(sums, sums.area * steep[t], sums.area * other_steep[u]);
   });
   return add_up(parts);
 }
 
 // Of heights at the vertices, which are linear over each triangle.
-inline std::vector<Sums> sum_heights(const Triangles& triangles, const double* heights,
+inline std::vector<Sums> sum_heights(const Surface& surface, const double* heights,
                                      const std::int32_t* groups, std::int32_t group_count,
                                      double up, Team& team) {
   std::vector<Sums> sums(group_count);
   Pulse pulse(team);
-  for (std::int32_t t = 0; t < triangles.count && pulse.goes_on(); ++t) {
-    const Facet facet = Facet::of(triangles, t);
+  for (const Triangle t : Ids<Triangle>(surface.triangle_count)) {
+    if (!pulse.goes_on()) break;
+    const Facet facet = Facet::of(surface, t);
     const double doubled = twice_area(facet.corner[0], facet.corner[1], facet.corner[2]);
+    const auto height = [&](int k) { return heights[number(facet.vertex[k])]; };
     CellSums own;
-    own.add(doubled, heights[facet.vertex[0]], heights[facet.vertex[1]], heights[facet.vertex[2]]);
-    sums[groups[t]].add(own, own.area * steepness(facet, up), own.area);
+    own.add(doubled, height(0), height(1), height(2));
+    sums[groups[number(t)]].add(own, own.area * steepness(facet, up), own.area);
   }
   return sums;
 }
 
 // Areas in the plane.
-inline std::vector<double> sum_areas(const Triangles& triangles, const std::int32_t* groups,
+inline std::vector<double> sum_areas(const Surface& surface, const std::int32_t* groups,
                                      std::int32_t group_count) {
   std::vector<ExactSum> sums(group_count);
-  for (std::int32_t t = 0; t < triangles.count; ++t) {
-    const Facet facet = Facet::of(triangles, t);
-    sums[groups[t]].add(0.5 * twice_area(facet.corner[0], facet.corner[1], facet.corner[2]));
+  for (const Triangle t : Ids<Triangle>(surface.triangle_count)) {
+    const Facet facet = Facet::of(surface, t);
+    sums[groups[number(t)]].add(0.5 *
+                                twice_area(facet.corner[0], facet.corner[1], facet.corner[2]));
   }
   std::vector<double> areas;
   for (const ExactSum& sum : sums) areas.push_back(sum.value());

@@ -13,27 +13,33 @@
 #include <limits>
 #include <vector>
 
+#include "../../../tin/cpp/location/ordered_surface.hpp"
 #include "tiles.hpp"
 
 namespace tinsmith {
 
 class CenterScan {
  public:
-  // `values` holds one value a triangle; nullptr for elevations. Cells outside become NaN. Check
-  // `team.is_stopped()` afterwards.
-  static void run(const Surface& surface, const CellGrid& grid, const double* values, double* cells,
-                  Team& team) {
-    const Tiles tiles(surface, grid);
+  // `values` holds one value a triangle, as the caller numbers them; nullptr for elevations. Cells
+  // outside become NaN. Check `team.is_stopped()` afterwards.
+  static void run(const OrderedSurface& surface, const CellGrid& grid, const double* values,
+                  double* cells, Team& team) {
+    const Tiles tiles(surface.surface(), grid);
     tiles.share(team, [&](std::int32_t tile) {
       CenterScan scan(surface, grid, values, cells, tiles[tile]);
-      tiles.for_each_triangle(surface, tile, [&](Triangle t) { scan.draw(t); });
+      tiles.for_each_triangle(tile, [&](Triangle t) { scan.draw(t); });
     });
   }
 
  private:
-  CenterScan(const Surface& surface, const CellGrid& grid, const double* values, double* cells,
-             const Tile& tile)
-      : surface_(surface), grid_(grid), values_(values), cells_(cells), tile_(tile) {
+  CenterScan(const OrderedSurface& ordered, const CellGrid& grid, const double* values,
+             double* cells, const Tile& tile)
+      : ordered_(ordered),
+        surface_(ordered.surface()),
+        grid_(grid),
+        values_(values),
+        cells_(cells),
+        tile_(tile) {
     for (std::int32_t row = tile.rows.begin; row < tile.rows.end; ++row) {
       double* const first = grid.row_of(cells, row);
       std::fill(first + tile.columns.begin, first + tile.columns.end,
@@ -104,32 +110,37 @@ class CenterScan {
       const Point p{grid_.x[column], grid_.y[row]};
       const auto weights = CornerWeights::at(p, corner[0], corner[1], corner[2]);
       const double least = std::min({weights.of[0], weights.of[1], weights.of[2]});
-      if (least < 0.0 || (least == 0.0 && !takes_edge(weights, row, column))) continue;
-      cells[column] = values_ == nullptr ? weights.mean_of(elevation) : values_[number(t)];
+      if (least < 0.0 || (least == 0.0 && !takes_edge(t, weights, row, column))) continue;
+      cells[column] = values_ == nullptr ? weights.mean_of(elevation)
+                                         : values_[number(ordered_.given_number(t))];
     }
   }
 
-  // A centre on an edge or a vertex is the first triangle's. One without area holds nothing.
-  bool takes_edge(const CornerWeights& weights, std::int32_t row, std::int32_t column) {
+  // A centre on an edge or a vertex is the triangle's with the smallest number. One without area
+  // holds nothing.
+  bool takes_edge(Triangle t, const CornerWeights& weights, std::int32_t row, std::int32_t column) {
     if (weights.total() == 0.0) return false;
-    if (on_edge_.empty()) {
-      on_edge_.assign(static_cast<std::size_t>(tile_.columns.size()) * tile_.rows.size(), false);
+    if (holders_.empty()) {
+      holders_.assign(static_cast<std::size_t>(tile_.columns.size()) * tile_.rows.size(),
+                      kNoTriangle);
     }
     const std::size_t place =
         static_cast<std::size_t>(row - tile_.rows.begin) * tile_.columns.size() +
         (column - tile_.columns.begin);
-    if (on_edge_[place]) return false;
-    on_edge_[place] = true;
+    const Triangle known_as = ordered_.given_number(t);
+    if (number(holders_[place]) < number(known_as)) return false;
+    holders_[place] = known_as;
     return true;
   }
 
-  const Surface& surface_;
+  const OrderedSurface& ordered_;
+  const Surface surface_;
   const CellGrid& grid_;
   const double* values_;
   double* cells_;
   Tile tile_;
   double slack_;
-  std::vector<unsigned char> on_edge_;
+  std::vector<Triangle> holders_;  // of centres on edges
 };
 
 }  // namespace tinsmith

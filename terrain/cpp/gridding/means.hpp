@@ -10,6 +10,7 @@
 #include <limits>
 #include <vector>
 
+#include "../../../tin/cpp/location/ordered_surface.hpp"
 #include "tiles.hpp"
 
 namespace tinsmith {
@@ -18,12 +19,12 @@ class MeanScan {
  public:
   // As CenterScan; `x_edges` and `y_edges` hold the sides of the columns and rows, one more than
   // there are.
-  static void run(const Surface& surface, const CellGrid& grid, const double* x_edges,
+  static void run(const OrderedSurface& surface, const CellGrid& grid, const double* x_edges,
                   const double* y_edges, const double* values, double* cells, Team& team) {
-    const Tiles tiles(surface, grid);
+    const Tiles tiles(surface.surface(), grid);
     tiles.share(team, [&](std::int32_t tile) {
       MeanScan scan(surface, grid, x_edges, y_edges, values, tiles[tile]);
-      tiles.for_each_triangle(surface, tile, [&](Triangle t) { scan.draw(t); });
+      tiles.for_each_triangle(tile, [&](Triangle t) { scan.draw(t); });
       scan.write(cells);
     });
   }
@@ -48,9 +49,10 @@ class MeanScan {
     double integral = 0.0;
   };
 
-  MeanScan(const Surface& surface, const CellGrid& grid, const double* x_edges,
+  MeanScan(const OrderedSurface& ordered, const CellGrid& grid, const double* x_edges,
            const double* y_edges, const double* values, const Tile& tile)
-      : surface_(surface),
+      : ordered_(ordered),
+        surface_(ordered.surface()),
         grid_(grid),
         x_edges_(x_edges),
         y_edges_(y_edges),
@@ -63,7 +65,8 @@ class MeanScan {
     Polygon whole;
     for (std::uint32_t k = 0; k < 3; ++k) {
       const Point p = surface_.corner(t, k);
-      const double value = values_ == nullptr ? surface_.elevation(t, k) : values_[number(t)];
+      const double value =
+          values_ == nullptr ? surface_.elevation(t, k) : values_[number(ordered_.given_number(t))];
       if (!is_shifted_) {
         shift_ = value;
         is_shifted_ = true;
@@ -149,7 +152,8 @@ class MeanScan {
     }
   }
 
-  const Surface& surface_;
+  const OrderedSurface& ordered_;
+  const Surface surface_;
   const CellGrid& grid_;
   const double* x_edges_;
   const double* y_edges_;

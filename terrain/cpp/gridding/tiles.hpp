@@ -1,8 +1,8 @@
 // A grid of cells in square tiles, and the triangles that may meet each tile.
 //
 // A tile's cells stay in the cache while its triangles are drawn; tiles are shared among threads.
-// Within a tile triangles come in ascending order, whatever the tiles, so that results are the same
-// for any window and any number of threads.
+// Within a tile triangles come in the order of the surface, whatever the tiles, so that results are
+// the same for any number of threads.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 #include "../../../tin/cpp/base/ids.hpp"
 #include "../../../tin/cpp/base/parallel.hpp"
 #include "../../../tin/cpp/base/range.hpp"
-#include "../../../tin/cpp/location/locator.hpp"
+#include "../../../tin/cpp/location/ordered_surface.hpp"
 
 namespace tinsmith {
 
@@ -43,6 +43,8 @@ struct Tile {
 
 class Tiles {
  public:
+  static constexpr std::int32_t kSide = 256;  // cells; a tile's values fill half a megabyte
+
   Tiles(const Surface& surface, const CellGrid& grid) : grid_(grid) {
     across_ = (grid.columns + kSide - 1) / kSide;
     down_ = (grid.rows + kSide - 1) / kSide;
@@ -66,14 +68,10 @@ class Tiles {
     return {side(tile % across_, grid_.columns), side(tile / across_, grid_.rows)};
   }
 
-  // visit(triangle) in ascending order. What the next ones need is fetched ahead.
+  // visit(triangle) in ascending order.
   template <typename Visit>
-  void for_each_triangle(const Surface& surface, std::int32_t tile, Visit&& visit) const {
-    const std::int64_t end = begin_[tile + 1];
-    for (std::int64_t i = begin_[tile]; i < end; ++i) {
-      fetch_ahead(surface, i, end);
-      visit(triangles_[i]);
-    }
+  void for_each_triangle(std::int32_t tile, Visit&& visit) const {
+    for (std::int64_t i = begin_[tile]; i < begin_[tile + 1]; ++i) visit(triangles_[i]);
   }
 
   // draw(tile number) for every tile, by the threads of a team.
@@ -90,10 +88,6 @@ class Tiles {
   }
 
  private:
-  static constexpr std::int32_t kSide = 256;  // cells; a tile's values fill half a megabyte
-  static constexpr std::int64_t kCornersAhead = 24;
-  static constexpr std::int64_t kPointsAhead = 12;
-
   struct Span {
     std::int32_t west, east, north, south;  // of tiles, empty if west > east
   };
@@ -124,22 +118,6 @@ class Tiles {
         visit(row * across_ + column);
       }
     }
-  }
-
-  void fetch_ahead(const Surface& surface, std::int64_t i, std::int64_t end) const {
-#if defined(__GNUC__)
-    if (i + kCornersAhead < end) {
-      __builtin_prefetch(surface.corners + entry_of(triangles_[i + kCornersAhead], 0));
-    }
-    if (i + kPointsAhead < end) {
-      for (std::uint32_t k = 0; k < 3; ++k) {
-        const Vertex v = surface.vertex(triangles_[i + kPointsAhead], k);
-        __builtin_prefetch(surface.points + 3 * static_cast<std::size_t>(number(v)));
-      }
-    }
-#else
-    static_cast<void>(surface), static_cast<void>(i), static_cast<void>(end);
-#endif
   }
 
   CellGrid grid_;

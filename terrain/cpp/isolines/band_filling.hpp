@@ -49,7 +49,7 @@ class BandFiller {
   void list_triangles() {
     first_.assign(std::size_t(surface_.level_count()) + 2, 0);
     const auto each = [&](const auto& use) {
-      for (const Triangle t : Ids<Triangle>(surface_.arrays().triangle_count)) {
+      for (const Triangle t : surface_.triangles()) {
         const auto [low, high] = surface_.ranks(t);
         if (low == high && !is_at_boundary(t)) continue;
         for (std::int32_t band = low; band <= high; ++band) use(t, band);
@@ -144,8 +144,8 @@ class BandFiller {
   Bands found_;
 };
 
-inline Bands fill_bands(const SurfaceArrays& arrays, const Levels& levels, Team& team) {
-  const LevelSurface surface(arrays, levels);
+inline Bands fill_bands(const Surface& given, const Levels& levels, Team& team) {
+  const LevelSurface surface(given, levels);
   return BandFiller(surface, team).fill();
 }
 

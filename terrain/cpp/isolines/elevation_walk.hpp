@@ -1,12 +1,14 @@
 // How far from a level the surface is along a straight segment: a walk through its triangles.
 //
-// The walk is careful, not complete: where the segment runs through a vertex or along an edge, and
+// A straight walk (Devillers, Pion and Teillaud, "Walking in a triangulation", 2002), careful and
+// not complete: where the segment runs through a vertex or along an edge, and
 // where rounding leaves too much open, it says that it does not know.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <stdexcept>
 
 #include "../../../tin/cpp/predicates/predicates.hpp"
 #include "level_surface.hpp"
@@ -33,7 +35,7 @@ inline Turn measure_turn(Point a, Point b, Point c) {
 
 class ElevationWalk {
  public:
-  explicit ElevationWalk(const SurfaceArrays& surface) : surface_(surface) {}
+  explicit ElevationWalk(const Surface& surface) : surface_(surface) {}
 
   // Whether the surface is within the tolerance of the level all along a segment but for its ends.
   // `to.triangle` may be kNoTriangle: then the triangle is found.
@@ -48,11 +50,11 @@ class ElevationWalk {
       }
       const std::uint32_t exit = exit_of(t, entry, from.point, to.point);
       if (exit == kNoCorner) return false;
-      const std::int32_t low = vertex(t, corner_after(exit));
-      const std::int32_t high = vertex(t, corner_before(exit));
+      const Vertex low = surface_.vertex(t, corner_after(exit));
+      const Vertex high = surface_.vertex(t, corner_before(exit));
       if (!is_near(from.point, to.point, low, high, level, tolerance)) return false;
-      const Triangle next = neighbor(t, exit);
-      entry = next == kNoTriangle ? kNoCorner : corner_across(next, t);
+      const Triangle next = surface_.neighbor(t, exit);
+      entry = next == kNoTriangle ? kNoCorner : surface_.corner_facing(next, t);
       t = next;
     }
     return false;
@@ -63,9 +65,9 @@ class ElevationWalk {
     double weight = 0.0, height = 0.0, error = 0.0, largest = 0.0;
     for (std::uint32_t corner = 0; corner < 3; ++corner) {
       const Turn part =
-          measure_turn(point(vertex(place.triangle, corner_after(corner))),
-                       point(vertex(place.triangle, corner_before(corner))), place.point);
-      const double rise = elevation(vertex(place.triangle, corner)) - level;
+          measure_turn(surface_.corner(place.triangle, corner_after(corner)),
+                       surface_.corner(place.triangle, corner_before(corner)), place.point);
+      const double rise = surface_.elevation(place.triangle, corner) - level;
       weight += part.value;
       height += part.value * rise;
       error += part.error;
@@ -81,64 +83,51 @@ class ElevationWalk {
   static constexpr std::int32_t kMostSteps = 100'000;
   static constexpr double kRoundings = 1.0 + 16.0 * kUnitRoundoff;  // of the last few operations
 
-  std::int32_t vertex(Triangle t, std::uint32_t corner) const {
-    return surface_.triangles[entry_of(t, corner)];
-  }
-  Triangle neighbor(Triangle t, std::uint32_t corner) const {
-    const std::int32_t across = surface_.neighbors[entry_of(t, corner)];
-    return across == kNoNeighbor ? kNoTriangle : Triangle{static_cast<std::uint32_t>(across)};
-  }
-  Point point(std::int32_t v) const {
-    return {surface_.xyz[3 * std::size_t(v)], surface_.xyz[3 * std::size_t(v) + 1]};
-  }
-  double elevation(std::int32_t v) const { return surface_.xyz[3 * std::size_t(v) + 2]; }
-
-  std::uint32_t corner_across(Triangle t, Triangle from) const {
-    for (std::uint32_t corner = 0; corner < 3; ++corner) {
-      if (neighbor(t, corner) == from) return corner;
-    }
-    return kNoCorner;
-  }
-
   bool holds(Triangle t, Point p) const {
-    const Point a = point(vertex(t, 0)), b = point(vertex(t, 1)), c = point(vertex(t, 2));
+    const Point a = surface_.corner(t, 0), b = surface_.corner(t, 1), c = surface_.corner(t, 2);
     return orientation(a, b, p) >= 0 && orientation(b, c, p) >= 0 && orientation(c, a, p) >= 0;
   }
 
   // Where the walk starts in a vertex, the triangle about it that the segment runs into.
   Triangle first_triangle(const Place& from, Point to) const {
     for (std::uint32_t corner = 0; corner < 3; ++corner) {
-      if (point(vertex(from.triangle, corner)) == from.point) {
-        return turn_towards(from.triangle, vertex(from.triangle, corner), to);
+      if (surface_.corner(from.triangle, corner) == from.point) {
+        return turn_towards(half_edge(from.triangle, corner), to);
       }
     }
     return from.triangle;
   }
 
-  Triangle turn_towards(Triangle start, std::int32_t about, Point to) const {
-    for (const bool is_left : {true, false}) {
-      Triangle t = start;
+  // Turning about the vertex opposite an edge.
+  Triangle turn_towards(HalfEdge start, Point to) const {
+    for (const auto turn : {Surface::Turn::kCounterClockwise, Surface::Turn::kClockwise}) {
+      HalfEdge e = start;
+      std::uint32_t most = surface_.triangle_count;
       do {
-        std::uint32_t corner = 0;
-        while (vertex(t, corner) != about) ++corner;
-        const Point right = point(vertex(t, corner_after(corner)));
-        const Point left = point(vertex(t, corner_before(corner)));
-        if (orientation(point(about), right, to) >= 0 && orientation(point(about), left, to) <= 0 &&
-            orientation(right, left, point(about)) > 0) {
-          return t;
-        }
-        t = neighbor(t, is_left ? corner_after(corner) : corner_before(corner));
-      } while (t != kNoTriangle && t != start);
+        if (leads_to(e, to)) return triangle_of(e);
+        if (most-- == 0) throw std::logic_error("a turn about a vertex does not come round");
+        e = surface_.next_about(e, turn);
+      } while (e != kNoHalfEdge && e != start);
     }
     return kNoTriangle;
+  }
+
+  // Whether the way from the vertex opposite an edge to a point begins in the edge's triangle.
+  bool leads_to(HalfEdge e, Point to) const {
+    const Triangle t = triangle_of(e);
+    const Point about = surface_.corner(t, corner_of(e));
+    const Point right = surface_.corner(t, corner_after(corner_of(e)));
+    const Point left = surface_.corner(t, corner_before(corner_of(e)));
+    return orientation(about, right, to) >= 0 && orientation(about, left, to) <= 0 &&
+           orientation(right, left, about) > 0;
   }
 
   // The edge by which the segment leaves a triangle, kNoCorner where no edge is it for certain.
   std::uint32_t exit_of(Triangle t, std::uint32_t entry, Point from, Point to) const {
     for (std::uint32_t corner = 0; corner < 3; ++corner) {
       if (corner == entry) continue;
-      const Point right = point(vertex(t, corner_after(corner)));
-      const Point left = point(vertex(t, corner_before(corner)));
+      const Point right = surface_.corner(t, corner_after(corner));
+      const Point left = surface_.corner(t, corner_before(corner));
       if (orientation(from, to, right) < 0 && orientation(from, to, left) > 0 &&
           orientation(right, left, to) < 0) {
         return corner;
@@ -148,22 +137,21 @@ class ElevationWalk {
   }
 
   // Whether the edge p-q is near the level where the segment crosses it.
-  bool is_near(Point from, Point to, std::int32_t p, std::int32_t q, double level,
-               double tolerance) const {
-    const Turn right = measure_turn(from, to, point(p));
-    const Turn left = measure_turn(from, to, point(q));
+  bool is_near(Point from, Point to, Vertex p, Vertex q, double level, double tolerance) const {
+    const Turn right = measure_turn(from, to, surface_.point(p));
+    const Turn left = measure_turn(from, to, surface_.point(q));
     const double total = std::fabs(right.value) + std::fabs(left.value);
     const double error = right.error + left.error;
     if (!(total > 2.0 * error)) return false;
     const double share = std::fabs(right.value) / total;
     const double slack = 2.0 * error / (total - error) + 4.0 * kUnitRoundoff;
-    const double rise = elevation(q) - elevation(p);
-    const double off = std::fabs(elevation(p) - level + share * rise) + slack * std::fabs(rise);
-    const double rounding = 4.0 * kUnitRoundoff * (std::fabs(elevation(p)) + std::fabs(level));
+    const double start = surface_.elevation(p), rise = surface_.elevation(q) - start;
+    const double off = std::fabs(start - level + share * rise) + slack * std::fabs(rise);
+    const double rounding = 4.0 * kUnitRoundoff * (std::fabs(start) + std::fabs(level));
     return (off + rounding) * kRoundings <= tolerance;
   }
 
-  SurfaceArrays surface_;
+  Surface surface_;
 };
 
 }  // namespace tinsmith::isolines

@@ -19,17 +19,9 @@
 #include "../../../tin/cpp/base/arrays.hpp"
 #include "../../../tin/cpp/base/ids.hpp"
 #include "../../../tin/cpp/base/point.hpp"
+#include "../../../tin/cpp/location/surface.hpp"
 
 namespace tinsmith::isolines {
-
-// The arrays of a TIN.
-struct SurfaceArrays {
-  const double* xyz;
-  const std::int32_t* triangles;
-  const std::int32_t* neighbors;
-  std::int32_t vertex_count;
-  std::int32_t triangle_count;
-};
 
 // Elevations, strictly ascending.
 struct Levels {
@@ -71,21 +63,22 @@ inline Point cross_edge(const LevelVertex& low, const LevelVertex& high, double 
 
 class LevelSurface {
  public:
-  LevelSurface(const SurfaceArrays& surface, const Levels& levels)
+  LevelSurface(const Surface& surface, const Levels& levels)
       : surface_(surface),
         levels_(levels),
-        vertices_(surface.vertex_count),
-        rank_(surface.vertex_count) {
+        vertices_(surface.point_count),
+        rank_(surface.point_count) {
     double lowest = HUGE_VAL, highest = -HUGE_VAL;
-    for (std::size_t v = 0; v < vertices_.size(); ++v) {
-      lowest = std::min(lowest, surface.xyz[3 * v + 2]);
-      highest = std::max(highest, surface.xyz[3 * v + 2]);
+    for (const Vertex v : Ids<Vertex>(surface.point_count)) {
+      lowest = std::min(lowest, surface.elevation(v));
+      highest = std::max(highest, surface.elevation(v));
     }
     const std::vector<Vertex> near_levels = rank_vertices(kNear * highest - kNear * lowest);
     if (!near_levels.empty()) move_to_levels(near_levels);
   }
 
-  const SurfaceArrays& arrays() const { return surface_; }
+  std::uint32_t triangle_count() const { return surface_.triangle_count; }
+  Ids<Triangle> triangles() const { return Ids<Triangle>(triangle_count()); }
   std::int32_t level_count() const { return levels_.count; }
   double level(std::int32_t number) const { return levels_.values[number]; }
 
@@ -96,22 +89,17 @@ class LevelSurface {
     return vertices_[number(v)].elevation == levels_.values[level];
   }
 
-  Vertex corner(Triangle t, std::uint32_t corner) const {
-    return Vertex{surface_.triangles[entry_of(t, corner)]};
-  }
-  Triangle neighbor(Triangle t, std::uint32_t corner) const {
-    const std::int32_t across = surface_.neighbors[entry_of(t, corner)];
-    return across == kNoNeighbor ? kNoTriangle : Triangle{static_cast<std::uint32_t>(across)};
-  }
+  Vertex corner(Triangle t, std::uint32_t corner) const { return surface_.vertex(t, corner); }
+  Triangle neighbor(Triangle t, std::uint32_t corner) const { return surface_.neighbor(t, corner); }
   Point point(Vertex v) const { return vertices_[number(v)].point; }
 
   // Ask for what the corners of a triangle hold, before it is needed: vertices lie anywhere in
   // memory. GCC drops the calls of a function that does nothing else if it is not part of the
   // caller.
-  [[gnu::always_inline]] void prefetch_ranks(std::int32_t t) const {
+  [[gnu::always_inline]] void prefetch_ranks(Triangle t) const {
     prefetch_corners(t, rank_.data());
   }
-  [[gnu::always_inline]] void prefetch_vertices(std::int32_t t) const {
+  [[gnu::always_inline]] void prefetch_vertices(Triangle t) const {
     prefetch_corners(t, vertices_.data());
   }
 
@@ -151,10 +139,9 @@ class LevelSurface {
   Triangle beyond_ridge(Triangle t, std::uint32_t above, std::int32_t level) const {
     constexpr std::uint32_t kLoneBelow[8] = {3, 3, 3, 2, 3, 1, 0, 3};
     const std::uint32_t lone = kLoneBelow[above];
-    if (lone == 3 || !is_at(corner(t, corner_after(lone)), level) ||
-        !is_at(corner(t, corner_before(lone)), level)) {
-      return kNoTriangle;
-    }
+    const bool is_ridge = lone != 3 && is_at(corner(t, corner_after(lone)), level) &&
+                          is_at(corner(t, corner_before(lone)), level);
+    if (!is_ridge) return kNoTriangle;
     const Triangle beyond = neighbor(t, lone);
     if (beyond == kNoTriangle || corners_above(beyond, level) == 7) return kNoTriangle;
     return beyond;
@@ -167,12 +154,10 @@ class LevelSurface {
   static constexpr double kRoundings = 16.0;
 
   template <typename Row>
-  [[gnu::always_inline]] void prefetch_corners(std::int32_t t, const Row* rows) const {
+  [[gnu::always_inline]] void prefetch_corners(Triangle t, const Row* rows) const {
 #if defined(__GNUC__)
-    if (t >= surface_.triangle_count) return;
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      __builtin_prefetch(rows + surface_.triangles[3 * std::size_t(t) + k]);
-    }
+    if (!surface_.is_triangle(t)) return;
+    for (std::uint32_t k = 0; k < 3; ++k) __builtin_prefetch(rows + number(corner(t, k)));
 #else
     (void)t, (void)rows;
 #endif
@@ -184,11 +169,11 @@ class LevelSurface {
     const double range = levels_.count > 1 ? levels_.values[levels_.count - 1] - first : 0.0;
     const double per_unit = range > 0.0 ? (levels_.count - 1) / range : 0.0;
     std::vector<Vertex> near_levels;
-    for (const Vertex v : Ids<Vertex>(surface_.vertex_count)) {
-      const double* const row = surface_.xyz + 3 * std::size_t(number(v));
-      vertices_[number(v)] = {{row[0], row[1]}, row[2]};
-      rank_[number(v)] = rank_of(row[2], first, per_unit);
-      const double off = row[2] - nearest_level(v);
+    for (const Vertex v : Ids<Vertex>(surface_.point_count)) {
+      const double elevation = surface_.elevation(v);
+      vertices_[number(v)] = {surface_.point(v), elevation};
+      rank_[number(v)] = rank_of(elevation, first, per_unit);
+      const double off = elevation - nearest_level(v);
       if (off != 0.0 && std::fabs(off) < near) near_levels.push_back(v);
     }
     return near_levels;
@@ -220,9 +205,9 @@ class LevelSurface {
   // How steeply the edges of some vertices, given in ascending order, rise or fall at most.
   std::vector<double> find_steepest(const std::vector<Vertex>& from) const {
     std::vector<double> steepest(from.size(), 0.0);
-    std::vector<bool> is_wanted(std::size_t(surface_.vertex_count), false);
+    std::vector<bool> is_wanted(std::size_t(surface_.point_count), false);
     for (const Vertex v : from) is_wanted[number(v)] = true;
-    for (const Triangle t : Ids<Triangle>(surface_.triangle_count)) {
+    for (const Triangle t : triangles()) {
       for (std::uint32_t k = 0; k < 3; ++k) {
         const Vertex v = corner(t, k);
         if (!is_wanted[number(v)]) continue;
@@ -261,7 +246,7 @@ class LevelSurface {
                                      values);
   }
 
-  SurfaceArrays surface_;
+  Surface surface_;
   Levels levels_;
   ScratchVector<LevelVertex> vertices_;
   ScratchVector<std::int32_t> rank_;  // apart: so few bytes stay in the cache

@@ -38,7 +38,7 @@ class LineExits {
     const std::uint64_t total = number_exits();
     if (total > kMostCrossings) throw std::overflow_error(std::to_string(total));
     rows_.resize(std::size_t(total));
-    for (const Triangle t : Ids<Triangle>(surface_.arrays().triangle_count)) {
+    for (const Triangle t : surface_.triangles()) {
       if (!pulse.goes_on()) return;
       surface_.prefetch_ranks(ahead(t, kRanksAhead));
       surface_.prefetch_vertices(ahead(t, kVerticesAhead));
@@ -65,15 +65,15 @@ class LineExits {
   };
 
   // So many triangles take as long as memory does to answer.
-  static constexpr std::int32_t kRanksAhead = 64;
-  static constexpr std::int32_t kVerticesAhead = 32;
+  static constexpr std::uint32_t kRanksAhead = 64;
+  static constexpr std::uint32_t kVerticesAhead = 32;
 
-  static std::int32_t ahead(Triangle t, std::int32_t by) { return std::int32_t(number(t)) + by; }
+  static Triangle ahead(Triangle t, std::uint32_t by) { return Triangle{number(t) + by}; }
 
   std::uint64_t number_exits() {
-    base_.resize(std::size_t(surface_.arrays().triangle_count));
+    base_.resize(surface_.triangle_count());
     std::uint64_t total = 0;
-    for (const Triangle t : Ids<Triangle>(surface_.arrays().triangle_count)) {
+    for (const Triangle t : surface_.triangles()) {
       surface_.prefetch_ranks(ahead(t, kRanksAhead));
       const auto [low, high] = surface_.ranks(t);
       base_[number(t)] = static_cast<std::uint32_t>(total) - static_cast<std::uint32_t>(low);

@@ -15,6 +15,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "../../../tin/cpp/base/box.hpp"
 #include "../../../tin/cpp/predicates/predicates.hpp"
 #include "elevation_walk.hpp"
 #include "line_tracing.hpp"
@@ -42,12 +43,8 @@ class NodeGrid {
  public:
   explicit NodeGrid(const std::vector<Point>& points) {
     if (points.empty()) return;
-    Point high = low_ = points[0];
-    for (const Point p : points) {
-      low_ = {std::min(low_.x, p.x), std::min(low_.y, p.y)};
-      high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-    }
-    const double width = high.x - low_.x, height = high.y - low_.y;
+    for (const Point p : points) box_.include(p);
+    const double width = box_.width(), height = box_.height();
     const double cells = std::max<double>(1.0, static_cast<double>(points.size()));
     size_ = std::max(std::sqrt(width * height / cells), std::max(width, height) / cells);
     if (!(size_ > 0.0)) size_ = 1.0;
@@ -66,13 +63,10 @@ class NodeGrid {
   // Whether a test holds for any vertex whose cell meets the box of some points.
   template <typename Test>
   bool any_near(std::initializer_list<Point> around, const Test& test) const {
-    Point low = *around.begin(), high = low;
-    for (const Point p : around) {
-      low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-      high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-    }
-    for (std::int64_t r = row(low.y); r <= row(high.y); ++r) {
-      for (std::int64_t c = column(low.x); c <= column(high.x); ++c) {
+    Box box;
+    for (const Point p : around) box.include(p);
+    for (std::int64_t r = row(box.south); r <= row(box.north); ++r) {
+      for (std::int64_t c = column(box.west); c <= column(box.east); ++c) {
         for (Node n = first_[std::size_t(r * columns_ + c)]; n != kNoNode; n = next_[number(n)]) {
           if (test(n)) return true;
         }
@@ -82,13 +76,13 @@ class NodeGrid {
   }
 
  private:
-  std::int64_t column(double x) const { return clamp((x - low_.x) / size_, columns_); }
-  std::int64_t row(double y) const { return clamp((y - low_.y) / size_, rows_); }
+  std::int64_t column(double x) const { return clamp((x - box_.west) / size_, columns_); }
+  std::int64_t row(double y) const { return clamp((y - box_.south) / size_, rows_); }
   static std::int64_t clamp(double cell, std::int64_t count) {
     return std::min(std::max(static_cast<std::int64_t>(cell), std::int64_t{0}), count - 1);
   }
 
-  Point low_{0.0, 0.0};
+  Box box_;
   double size_ = 1.0;
   std::int64_t columns_ = 0, rows_ = 0;
   std::vector<Node> first_;
@@ -109,8 +103,7 @@ class LineNetwork {
     triangle_.resize(count);
     is_alive_.assign(count, 1);
     for (std::size_t i = 0; i < count; ++i) {
-      triangle_[i] =
-          triangles[i] < 0 ? kNoTriangle : Triangle{static_cast<std::uint32_t>(triangles[i])};
+      triangle_[i] = triangle_numbered(triangles[i]);
       grid_.add(Node(i), points_[i]);
     }
     for (const Line& line : lines.lines) {

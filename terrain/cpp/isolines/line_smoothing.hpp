@@ -1,5 +1,9 @@
 // Lines with fewer points or rounder corners, that stay within a vertical tolerance of their level
 // and do not touch one another.
+//
+// Corners are cut after Chaikin, "An algorithm for high speed curve generation" (1974), vertices
+// dropped after Visvalingam and Whyatt, "Line generalisation by repeated elimination of points"
+// (1993).
 #pragma once
 
 #include <algorithm>
@@ -18,12 +22,12 @@ namespace tinsmith::isolines {
 
 class LineSmoother {
  public:
-  LineSmoother(const SurfaceArrays& surface, const Levels& levels, const TracedLines& lines,
+  LineSmoother(const Surface& surface, const Levels& levels, const TracedLines& lines,
                const std::int32_t* triangles, Team& team)
       : walk_(surface), levels_(levels), lines_(lines), network_(lines, triangles), team_(team) {}
 
-  // Cut corners at a quarter of their sides, as Chaikin (1974) does, or at less where there is no
-  // room; then those that are left.
+  // Cut corners at a quarter of their sides, or at less where there is no room; then those that are
+  // left.
   void smooth(double tolerance, int rounds) {
     for (int round = 0; round < rounds; ++round) {
       for (const Line& line : lines_.lines) {
@@ -33,8 +37,8 @@ class LineSmoother {
     }
   }
 
-  // Drop vertices, those of the smallest triangle with their neighbours first (Visvalingam and
-  // Whyatt 1993), as long as the tolerance allows.
+  // Drop vertices, those of the smallest triangle with their neighbours first, as long as the
+  // tolerance allows.
   void simplify(double tolerance) {
     for (const Line& line : lines_.lines) {
       if (!team_.keeps_going(0)) return;

@@ -52,8 +52,7 @@ inline void turn_to_first(ScratchVector<Point>& points, std::size_t begin) {
 // triangle beyond: lines are the cycles of that map and its ways from boundary to boundary.
 class LineTracer {
  public:
-  LineTracer(const LevelSurface& surface, Team& team)
-      : pulse_(team), exits_(surface, pulse_) {}
+  LineTracer(const LevelSurface& surface, Team& team) : pulse_(team), exits_(surface, pulse_) {}
 
   TracedLines trace() {
     found_.points.reserve(exits_.size() + exits_.starts().size());
@@ -128,8 +127,8 @@ inline void sort_lines(TracedLines& found) {
   std::sort(found.lines.begin(), found.lines.end(), before);
 }
 
-inline TracedLines trace_lines(const SurfaceArrays& arrays, const Levels& levels, Team& team) {
-  const LevelSurface surface(arrays, levels);
+inline TracedLines trace_lines(const Surface& given, const Levels& levels, Team& team) {
+  const LevelSurface surface(given, levels);
   TracedLines found = LineTracer(surface, team).trace();
   sort_lines(found);
   return found;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <stdexcept>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -67,8 +68,11 @@ class RingTracer {
   std::int32_t number_of(Point p) const {
     const auto found =
         std::lower_bound(points_.begin(), points_.end(), p, lexicographically_before);
+    if (found == points_.end() || !(*found == p)) throw not_closed();
     return static_cast<std::int32_t>(found - points_.begin());
   }
+
+  static std::logic_error not_closed() { return std::logic_error("a boundary does not close"); }
 
   // Leave out pairs of segments of opposite direction.
   void cancel() {
@@ -146,6 +150,7 @@ class RingTracer {
         best = e;
       }
     }
+    if (best == edges_.size()) throw not_closed();
     return best;
   }
 

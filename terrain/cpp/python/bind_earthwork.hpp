@@ -5,56 +5,36 @@
 #include <nanobind/stl/tuple.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <stdexcept>
 #include <tuple>
 #include <vector>
 
-#include "../../../tin/cpp/python/arrays.hpp"
+#include "../../../tin/cpp/python/conversion.hpp"
 #include "../earthwork/overlay.hpp"
 #include "../earthwork/storage.hpp"
 #include "../earthwork/volumes.hpp"
 
 namespace tinsmith::python {
 
-using GivenValues = Given<double, -1>;
 using StageTable = Made<double, -1, 3>;
-using Offsets = Made<std::int64_t, -1>;
-using GroupAreas = Made<double, -1>;
 using SumTable = Made<double, -1, earthwork::Sums::kColumns>;
 
-inline earthwork::Triangles earthwork_triangles(const GivenXyz& points,
-                                                const GivenTriples& triangles) {
-  const std::int32_t point_count = row_count(points.shape(0));
-  const std::int32_t count = row_count(triangles.shape(0));
-  for (std::size_t i = 0; i < 3 * triangles.shape(0); ++i) {
-    if (triangles.data()[i] < 0 || triangles.data()[i] >= point_count) {
-      throw std::invalid_argument("triangles must hold vertex numbers from 0 to n - 1");
-    }
-  }
-  for (std::size_t i = 0; i < 3 * points.shape(0); i += 3) {
-    if (!(std::fabs(points.data()[i]) <= kLargestCoordinate &&
-          std::fabs(points.data()[i + 1]) <= kLargestCoordinate)) {
-      throw std::invalid_argument("points must be finite and within the exact range");
-    }
-  }
-  return {points.data(), triangles.data(), count, point_count};
+inline Surface exact_surface_of(const GivenXyz& points, const GivenTriples& triangles) {
+  const Surface surface = surface_of(points, triangles);
+  require_exact_points(surface);
+  return surface;
 }
 
 inline void require_groups(const GivenNumbers& groups, std::size_t count, std::int32_t limit) {
   if (groups.shape(0) != count) throw std::invalid_argument("a group for each triangle is needed");
-  for (std::size_t i = 0; i < count; ++i) {
-    if (groups.data()[i] < 0 || groups.data()[i] >= limit) {
-      throw std::invalid_argument("groups must be numbers from 0 to their count - 1");
-    }
+  if (!are_all(groups, [limit](std::int32_t group) { return group >= 0 && group < limit; })) {
+    throw std::invalid_argument("groups must be numbers from 0 to their count - 1");
   }
 }
 
 inline SumTable hand_over(const std::vector<earthwork::Sums>& sums) {
-  std::vector<std::array<double, earthwork::Sums::kColumns>> rows;
-  rows.reserve(sums.size());
-  for (const earthwork::Sums& one : sums) rows.push_back(one.values());
+  const auto rows = earthwork::rows_of(sums);
   return copy_over<SumTable, double>(rows, {rows.size(), earthwork::Sums::kColumns});
 }
 
@@ -62,8 +42,8 @@ inline SumTable sum_between(const GivenXyz& points, const GivenTriples& triangle
                             const GivenNumbers& groups, std::int32_t group_count,
                             const GivenXyz& other_points, const GivenTriples& other_triangles,
                             double up, int threads) {
-  const auto first = earthwork_triangles(points, triangles);
-  const auto second = earthwork_triangles(other_points, other_triangles);
+  const Surface first = exact_surface_of(points, triangles);
+  const Surface second = exact_surface_of(other_points, other_triangles);
   require_groups(groups, triangles.shape(0), group_count);
   return hand_over(unlocked(threads, [&](Team& team) {
     return earthwork::sum_between(first, groups.data(), group_count, second, up, team);
@@ -73,7 +53,7 @@ inline SumTable sum_between(const GivenXyz& points, const GivenTriples& triangle
 inline SumTable sum_heights(const GivenXyz& points, const GivenTriples& triangles,
                             const GivenValues& heights, const GivenNumbers& groups,
                             std::int32_t group_count, double up) {
-  const auto given = earthwork_triangles(points, triangles);
+  const Surface given = exact_surface_of(points, triangles);
   require_groups(groups, triangles.shape(0), group_count);
   if (heights.shape(0) != points.shape(0)) {
     throw std::invalid_argument("a height for each point is needed");
@@ -83,20 +63,19 @@ inline SumTable sum_heights(const GivenXyz& points, const GivenTriples& triangle
   }));
 }
 
-inline GroupAreas sum_areas(const GivenXyz& points, const GivenTriples& triangles,
+inline Elevations sum_areas(const GivenXyz& points, const GivenTriples& triangles,
                             const GivenNumbers& groups, std::int32_t group_count) {
-  const auto given = earthwork_triangles(points, triangles);
+  const Surface given = exact_surface_of(points, triangles);
   require_groups(groups, triangles.shape(0), group_count);
-  nb::gil_scoped_release release;
-  const std::vector<double> areas = earthwork::sum_areas(given, groups.data(), group_count);
-  nb::gil_scoped_acquire acquire;
-  return copy_over<GroupAreas, double>(areas, {areas.size()});
+  const std::vector<double> areas =
+      unlocked(1, [&](Team&) { return earthwork::sum_areas(given, groups.data(), group_count); });
+  return copy_over<Elevations, double>(areas, {areas.size()});
 }
 
 inline auto overlay(const GivenXyz& points, const GivenTriples& triangles,
                     const GivenXyz& other_points, const GivenTriples& other_triangles) {
-  const auto first = earthwork_triangles(points, triangles);
-  const auto second = earthwork_triangles(other_points, other_triangles);
+  const Surface first = exact_surface_of(points, triangles);
+  const Surface second = exact_surface_of(other_points, other_triangles);
   const earthwork::Overlay made =
       unlocked(1, [&](Team& team) { return earthwork::Overlay(first, second, team); });
   return std::make_tuple(
@@ -109,7 +88,7 @@ inline auto overlay(const GivenXyz& points, const GivenTriples& triangles,
 
 inline StageTable stage_sums(const GivenXyz& points, const GivenTriples& triangles,
                              const GivenValues& levels, double up) {
-  const auto given = earthwork_triangles(points, triangles);
+  const Surface given = exact_surface_of(points, triangles);
   if (!std::is_sorted(levels.data(), levels.data() + levels.shape(0))) {
     throw std::invalid_argument("levels must ascend");
   }

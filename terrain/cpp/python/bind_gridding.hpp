@@ -9,40 +9,17 @@
 #include <stdexcept>
 #include <utility>
 
-#include "../../../tin/cpp/python/arrays.hpp"
+#include "../../../tin/cpp/python/conversion.hpp"
 #include "../gridding/centers.hpp"
 #include "../gridding/means.hpp"
 
 namespace tinsmith::python {
 
-using GivenNumbers1D = Given<double, -1>;
 using Cells = Made<double, -1, -1>;
 
-inline Surface gridded_surface(const GivenXyz& points, const GivenTriples& triangles) {
-  if (triangles.shape(0) > INT32_MAX / 3 || points.shape(0) > INT32_MAX / 3) {
-    throw std::invalid_argument("more triangles or points than 32-bit indices can number");
-  }
-  const Surface surface{points.data(), triangles.data(), nullptr,
-                        static_cast<std::int32_t>(points.shape(0)),
-                        static_cast<std::uint32_t>(triangles.shape(0))};
-  if (!surface.has_sound_corners()) {
-    throw std::invalid_argument("triangles must hold vertex numbers from 0 to n - 1");
-  }
-  return surface;
-}
-
-inline CellGrid grid_of(const GivenNumbers1D& x, const GivenNumbers1D& y, double spacing) {
+inline CellGrid grid_of(const GivenValues& x, const GivenValues& y, double spacing) {
   if (x.shape(0) == 0 || y.shape(0) == 0) throw std::invalid_argument("a grid has cells");
   return {x.data(), y.data(), row_count(x.shape(0)), row_count(y.shape(0)), spacing};
-}
-
-inline const double* values_of(const std::optional<GivenNumbers1D>& values,
-                               const Surface& surface) {
-  if (!values) return nullptr;
-  if (values->shape(0) != surface.triangle_count) {
-    throw std::invalid_argument("there must be one value for each triangle");
-  }
-  return values->data();
 }
 
 template <typename Draw>
@@ -50,47 +27,67 @@ Cells draw_cells(const CellGrid& grid, int threads, Draw&& draw) {
   const auto rows = static_cast<std::size_t>(grid.rows);
   const auto columns = static_cast<std::size_t>(grid.columns);
   auto cells = streamed_array<double>(rows * columns);
-  unlocked(threads, [&](Team& team) {
-    draw(cells.get(), team);
-    return 0;
-  });
+  run_unlocked(threads, [&](Team& team) { draw(cells.get(), team); });
   return hand_over<Cells>(std::move(cells), {rows, columns});
 }
 
-inline Cells values_at_centers(const GivenXyz& points, const GivenTriples& triangles,
-                               const GivenNumbers1D& x, const GivenNumbers1D& y, double spacing,
-                               const std::optional<GivenNumbers1D>& values, int threads) {
-  const Surface surface = gridded_surface(points, triangles);
-  const CellGrid grid = grid_of(x, y, spacing);
-  const double* each = values_of(values, surface);
-  return draw_cells(grid, threads, [&](double* cells, Team& team) {
-    CenterScan::run(surface, grid, each, cells, team);
-  });
-}
+// A surface in an order for drawing, for any number of blocks of cells.
+class GriddedSurface {
+ public:
+  GriddedSurface(const GivenXyz& points, const GivenTriples& triangles)
+      : ordered_(order(surface_of(points, triangles))) {}
 
-inline Cells means_of_cells(const GivenXyz& points, const GivenTriples& triangles,
-                            const GivenNumbers1D& x, const GivenNumbers1D& y, double spacing,
-                            const GivenNumbers1D& x_edges, const GivenNumbers1D& y_edges,
-                            const std::optional<GivenNumbers1D>& values, int threads) {
-  const Surface surface = gridded_surface(points, triangles);
-  const CellGrid grid = grid_of(x, y, spacing);
-  if (x_edges.shape(0) != x.shape(0) + 1 || y_edges.shape(0) != y.shape(0) + 1) {
-    throw std::invalid_argument("columns and rows have one edge more than centres");
+  Cells values_at_centers(const GivenValues& x, const GivenValues& y, double spacing,
+                          const std::optional<GivenValues>& values, int threads) const {
+    const CellGrid grid = grid_of(x, y, spacing);
+    const double* each = values_of(values);
+    return draw_cells(grid, threads, [&](double* cells, Team& team) {
+      CenterScan::run(ordered_, grid, each, cells, team);
+    });
   }
-  const double* each = values_of(values, surface);
-  return draw_cells(grid, threads, [&](double* cells, Team& team) {
-    MeanScan::run(surface, grid, x_edges.data(), y_edges.data(), each, cells, team);
-  });
-}
+
+  Cells means_of_cells(const GivenValues& x, const GivenValues& y, double spacing,
+                       const GivenValues& x_edges, const GivenValues& y_edges,
+                       const std::optional<GivenValues>& values, int threads) const {
+    const CellGrid grid = grid_of(x, y, spacing);
+    if (x_edges.shape(0) != x.shape(0) + 1 || y_edges.shape(0) != y.shape(0) + 1) {
+      throw std::invalid_argument("columns and rows have one edge more than centres");
+    }
+    const double* each = values_of(values);
+    return draw_cells(grid, threads, [&](double* cells, Team& team) {
+      MeanScan::run(ordered_, grid, x_edges.data(), y_edges.data(), each, cells, team);
+    });
+  }
+
+ private:
+  static OrderedSurface order(const Surface& surface) {
+    nb::gil_scoped_release release;
+    return OrderedSurface(surface);
+  }
+
+  const double* values_of(const std::optional<GivenValues>& values) const {
+    if (!values) return nullptr;
+    if (values->shape(0) != ordered_.surface().triangle_count) {
+      throw std::invalid_argument("there must be one value for each triangle");
+    }
+    return values->data();
+  }
+
+  OrderedSurface ordered_;
+};
 
 inline void bind_gridding(nb::module_& m) {
-  m.def("values_at_centers", &values_at_centers, "points"_a.noconvert(), "triangles"_a.noconvert(),
-        "x"_a.noconvert(), "y"_a.noconvert(), "spacing"_a, "values"_a.none(), "threads"_a = 1,
-        "Elevations, or values of triangles, at the centres of cells; NaN outside.");
-  m.def("means_of_cells", &means_of_cells, "points"_a.noconvert(), "triangles"_a.noconvert(),
-        "x"_a.noconvert(), "y"_a.noconvert(), "spacing"_a, "x_edges"_a.noconvert(),
-        "y_edges"_a.noconvert(), "values"_a.none(), "threads"_a = 1,
-        "Means over the parts of cells that the surface covers; NaN where it covers none.");
+  m.attr("TILE_SIDE") = Tiles::kSide;
+  nb::class_<GriddedSurface>(m, "GriddedSurface", "A surface to draw blocks of cells of.")
+      .def(nb::init<const GivenXyz&, const GivenTriples&>(), "points"_a.noconvert(),
+           "triangles"_a.noconvert())
+      .def("values_at_centers", &GriddedSurface::values_at_centers, "x"_a.noconvert(),
+           "y"_a.noconvert(), "spacing"_a, "values"_a.none(), "threads"_a = 1,
+           "Elevations, or values of triangles, at the centres of cells; NaN outside.")
+      .def("means_of_cells", &GriddedSurface::means_of_cells, "x"_a.noconvert(), "y"_a.noconvert(),
+           "spacing"_a, "x_edges"_a.noconvert(), "y_edges"_a.noconvert(), "values"_a.none(),
+           "threads"_a = 1,
+           "Means over the parts of cells that the surface covers; NaN where it covers none.");
 }
 
 }  // namespace tinsmith::python

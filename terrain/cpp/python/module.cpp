@@ -4,10 +4,12 @@
 #include "bind_earthwork.hpp"
 #include "bind_gridding.hpp"
 #include "bind_isolines.hpp"
+#include "bind_relief.hpp"
 
 NB_MODULE(_core, m) {
   m.doc() = "Compiled core of tinsmith.terrain: what is derived from a TIN.";
   tinsmith::python::bind_isolines(m);
   tinsmith::python::bind_gridding(m);
   tinsmith::python::bind_earthwork(m);
+  tinsmith::python::bind_relief(m);
 }

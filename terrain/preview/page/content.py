@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -9,7 +10,9 @@ import numpy as np
 
 from ....errors import OptionError
 from ...linework import EDGE_KINDS, find_line_edges
-from ..tints import interpolate_tints, mix_tints
+from ...units import find_ellipsoid
+from ..ramps import choose_ramp
+from ..tints import mix_tints
 from .packing import pack_counts, pack_rows, pack_triangles, sort_in_morton_order
 
 if TYPE_CHECKING:
@@ -17,17 +20,25 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from ....policies import Tint
     from ....tin import TIN, Survey
     from ...units import Ground
+    from ..ortho import Ortho
 
 __all__ = ["Labels", "describe_page", "find_labels"]
 
 _STEPS = 2**22
 """Steps of a coordinate from end to end, at least: 0.3 mm in a kilometre."""
 
+_MOST_STEPS = 2**30
+"""Steps at most, whose differences 32 bits hold: a millimetre in a thousand kilometres."""
+
 _COLOURS = 64
 _MOST_LABELS = 20_000
-_MOST_DECIMALS = 3
+_DECIMALS = 3
+_SHOWN_DIGITS = 2
+"""Digits of a surface's span that are shown, where they are more than the decimals above."""
+
 
 _PENS: dict[str, tuple[str, str, bool, float]] = {
     "soft": ("Soft breaklines", "#40444c", True, 2.0),
@@ -36,7 +47,6 @@ _PENS: dict[str, tuple[str, str, bool, float]] = {
     "boundary": ("Boundary", "#963a22", False, 2.4),
     "water": ("Water", "#185c98", False, 3.0),
 }
-_SLOPE = ((0.93, 0.02, 110.0), (0.83, 0.12, 95.0), (0.66, 0.17, 55.0), (0.42, 0.15, 25.0))
 _CUT_AND_FILL = ((0.50, 0.15, 30.0), (0.72, 0.10, 45.0), (0.96, 0.0, 90.0))
 _FILL = ((0.96, 0.0, 250.0), (0.70, 0.10, 250.0), (0.45, 0.13, 255.0))
 """Rungs of ramps in Oklch: lightness, chroma, hue in degrees."""
@@ -50,12 +60,13 @@ class Labels(NamedTuple):
 
 
 class _Steps(NamedTuple):
-    """Coordinates as whole numbers: from an origin, in steps across and up."""
+    """Coordinates as whole numbers: from an origin, in steps across and up; how far they span."""
 
     origin: NDArray[np.float64]
     scale: NDArray[np.float64]
     across: float
     up: float
+    spans: tuple[float, ...]
 
     def round(self, points: NDArray[np.float64]) -> NDArray[np.int64]:
         """Return the (n, 3) whole steps of places."""
@@ -73,6 +84,7 @@ def describe_page(
     changes: Mapping[str, NDArray[np.float64]],
     labels: Labels | None,
     notes: Sequence[str],
+    ortho: Ortho | None = None,
 ) -> dict[str, Any]:
     """Return what a page needs, ready for JSON.
 
@@ -88,6 +100,8 @@ def describe_page(
     labels : Labels or None
     notes : sequence of str
         What had to be assumed.
+    ortho : Ortho, optional
+        Picture draped over all surfaces.
     """
     steps = _choose_steps(list(surfaces.values()), ground)
     described = [
@@ -107,12 +121,17 @@ def describe_page(
             "elevation": "" if last.elevation_unit is None else last.elevation_unit.symbol,
         },
         "geographic": last.crs is not None and last.crs.is_geographic,
+        "ellipsoid": find_ellipsoid(last.crs),
         "origin": steps.origin.tolist(),
         "scale": steps.scale[:2].tolist(),
-        "decimals": [_count_decimals(steps.across), _count_decimals(steps.up)],
+        "decimals": [
+            _count_decimals(steps.across, max(steps.spans[:2])),
+            _count_decimals(steps.up, steps.spans[2]),
+        ],
         "elevationScale": float(ground.scale[2]),
         "exaggeration": exaggeration,
         "ramps": _make_ramps(),
+        "ortho": None if ortho is None else _describe_ortho(ortho, steps),
         "surfaces": described,
     }
 
@@ -146,17 +165,49 @@ def _choose_steps(tins: Sequence[TIN], ground: Ground) -> _Steps:
     if not np.isfinite(spans).all():
         raise OptionError("tin", "a surface", "coordinates whose differences are finite")
     across, up = (_round_step(float(span)) for span in (max(spans[:2]), spans[2]))
-    middle = (low + high) / 2
-    return _Steps(np.array([float(f"{value:.9g}") for value in middle]), scale, across, up)
+    origin = [_round_origin(*ends) for ends in zip(low.tolist(), high.tolist(), strict=True)]
+    return _Steps(np.array(origin), scale, across, up, tuple(spans.tolist()))
+
+
+def _round_origin(low: float, high: float) -> float:
+    """Return a number near the middle with few digits, or with all where they are needed."""
+    middle = low + (high - low) / 2
+    short = float(f"{middle:.9g}")
+    return short if low <= short <= high else middle
 
 
 def _round_step(span: float) -> float:
-    """Return the largest power of ten, at most a millimetre, that makes enough steps."""
-    return min(10.0 ** math.floor(math.log10(span / _STEPS)), 1e-3) if span > 0 else 1e-3
+    """Return the largest power of ten, at most a millimetre, that makes enough steps.
+
+    It is more than a millimetre where there would be too many of them.
+    """
+    if span == 0.0:
+        return 1e-3
+    wanted = min(10.0 ** math.floor(math.log10(span / _STEPS)), 1e-3)
+    return float(max(wanted, 10.0 ** math.ceil(math.log10(span / _MOST_STEPS))))
 
 
-def _count_decimals(step: float) -> int:
-    return min(max(-math.floor(math.log10(step) + 0.5), 0), _MOST_DECIMALS)
+def _count_decimals(step: float, span: float) -> int:
+    """Return the decimals to show: of a millimetre, or some of a small span, but not below a step.
+
+    Beyond the digits of a float64 none is told.
+    """
+    of_step = max(-math.floor(math.log10(step) + 0.5), 0)
+    of_span = _SHOWN_DIGITS - math.floor(math.log10(span)) if span > 0 else 0
+    return min(of_step, max(_DECIMALS, of_span))
+
+
+def _describe_ortho(ortho: Ortho, steps: _Steps) -> dict[str, Any]:
+    """Return the picture, and the transform to it from coordinates as the page has them."""
+    placement = ortho.placement
+    turn, shift = placement[:, :2], placement[:, 2]
+    place = np.column_stack([turn / steps.scale[:2], turn @ steps.origin[:2] + shift])
+    return {
+        "kind": ortho.kind,
+        "isWhole": ortho.gap == 0.0,
+        "place": place.ravel().tolist(),
+        "data": base64.b64encode(ortho.content).decode("ascii"),
+    }
 
 
 def _describe_surface(
@@ -211,11 +262,9 @@ def _describe_labels(labels: Labels, steps: _Steps) -> dict[str, Any]:
 
 
 def _make_ramps() -> dict[str, list[str]]:
-    circle = [(0.72, 0.11, float(hue)) for hue in range(250, 250 + 361, 20)]
+    tints: tuple[Tint, ...] = ("elevation", "slope", "aspect")
     return {
-        "elevation": _name_colors(interpolate_tints(_COLOURS)),
-        "slope": _name_colors(mix_tints(_SLOPE, _COLOURS)),
-        "aspect": _name_colors(mix_tints(circle, _COLOURS)),
+        **{tint: _name_colors(choose_ramp(tint, _COLOURS)) for tint in tints},
         "difference": _name_colors(mix_tints(_CUT_AND_FILL, _COLOURS // 2))
         + _name_colors(mix_tints(_FILL, _COLOURS // 2)),
     }

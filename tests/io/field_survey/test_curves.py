@@ -167,6 +167,15 @@ def test_a_rectangle_gets_its_fourth_corner():
     assert made.findings == []
 
 
+def test_a_rectangle_of_more_corners_gets_the_mean_of_its_ends():
+    places = ORIGIN + np.array([[0, 0], [20, 0], [20, 10], [12, 10], [12, 16.0]])
+    codes = ["BLDG1"] * 4 + ["BLDG1 RECT"]
+    made = lines_from_codes(site(places, codes, z=[5, 7, 8, 9, 6.5]))
+    ring = made.breaklines[0].coords
+    assert np.allclose(ring[5], [*beside(0, 16), 5.75], atol=1e-9)
+    assert made.findings == []
+
+
 def test_a_rectangle_out_of_square_is_told():
     places = ORIGIN + np.array([[0, 0], [12, 0], [14, 11.0]])
     made = lines_from_codes(site(places, ["BLDG1", "BLDG1", "BLDG1 RECT"]))

@@ -18,7 +18,7 @@ from tinsmith.io.field_survey.instruments.reduction import (
     reduce_shot,
     to_radians,
 )
-from tinsmith.io.field_survey.signatures import is_gsi, is_jobxml, is_sdr
+from tinsmith.io.field_survey.signatures import is_dc, is_gsi, is_jobxml, is_sdr
 
 
 def read(tmp_path, name, text, **options):
@@ -331,6 +331,95 @@ def test_faults_of_sdr(tmp_path, text, words):
     refused(words, tmp_path, "a.sdr", text, format="sdr")
 
 
+# ------------------------------------------------------------------ Trimble DC
+
+
+def dc_header(units="111111"):
+    return f"00NM{'SC V10-70':<16}1021{'05-Jan-26 12:20':<16}{units}\r\n10NM{'SITE':<16}121111\r\n"
+
+
+def gnss(name):
+    """A position as a real job has it, its fields without a blank between them."""
+    return f"66KI{name:>16}-45.784424760500-68.239471013000705.67700000000050              11\r\n"
+
+
+def test_dc_grid_positions(tmp_path):
+    text = dc_header() + "65KI6378137.00000000298.257223563000\r\n13TSTime Date 02/05/2026\r\n"
+    text += (
+        "69KI            PF104024238.12000000752646.125000000320.565000000000EP1 ST          11\r\n"
+    )
+    text += (
+        "69TP            PF114024239.12000000752647.125000000-20.565000000000EP1             14\r\n"
+    )
+    survey = read(tmp_path, "a.dc", text, crs="EPSG:32616")
+    assert survey.points.tolist() == [
+        [752646.125, 4024238.12, 320.565],
+        [752647.125, 4024239.12, -20.565],
+    ]
+    assert survey.attributes["number"].tolist() == ["PF10", "PF11"]
+    assert survey.attributes["description"].tolist() == ["EP1 ST", "EP1"]
+    assert survey.attributes["method"].tolist() == ["11", "14"]
+    assert "classifications 1, 4: all are read" in " ".join(survey.notes)
+    east_first = read(tmp_path, "a.dc", text.replace("111111\r\n10NM", "111121\r\n10NM"))
+    assert east_first.points[0].tolist() == [4024238.12, 752646.125, 320.565]
+
+
+@pytest.mark.parametrize("length", ["2", "3"])
+def test_dc_feet_are_of_whoever_says_which(tmp_path, length):
+    text = dc_header(f"1{length}1111") + sdr33("69KI", "1", "200", "100", "50")
+    refused("is in feet and does not say which", tmp_path, "a.dc", text)
+    survey = read(tmp_path, "a.dc", text, crs="EPSG:2264")
+    assert survey.points.tolist() == [[100, 200, 50]]
+    assert survey.elevation_unit == ts.Unit.of("US survey foot")
+    assert read(tmp_path, "a.dc", text, z_unit="ft").elevation_unit == ts.Unit.of("ft")
+
+
+def test_dc_positions_and_observations_are_left_out_and_told(tmp_path):
+    text = dc_header() + sdr33("08KI", "A", "1", "2", "3", "GS") + gnss("A") + gnss("B")
+    text += sdr33("79TP", "A", "12", "90.5", "100.25", "20.5") + sdr33("69KI", "C", "1", "2", "")
+    survey = read(tmp_path, "a.dc", text)
+    assert survey.points.tolist() == [[2, 1, 3]]
+    assert survey.skipped == {
+        "points without elevation": 1,
+        "positions (66) of GNSS without grid coordinates": 1,
+        "observations (79), which are not reduced,": 1,
+    }
+    said = " ".join(survey.notes)
+    assert "1 position (66) of GNSS without grid coordinates is left out: line 5." in said
+    assert "1 observation (79), which are not reduced, is left out: line 6." in said
+
+
+def test_a_dc_file_of_gnss_positions_alone_is_refused(tmp_path):
+    refused(
+        r"holds no point with coordinates: 2 positions \(66\) .*export the job with grid",
+        tmp_path, "a.dc", dc_header() + gnss("A") + gnss("B"),
+    )  # fmt: skip
+
+
+def test_a_last_dc_record_that_may_be_cut_is_left_out(tmp_path):
+    whole = dc_header() + sdr33("69KI", "9", "1", "2", "3")
+    text = whole + sdr33("69KI", "10", "1", "2", "320.565000000000").rstrip("\n")
+    assert len(read(tmp_path, "a.dc", text)) == 2
+    for length in range(1, 14):
+        survey = read(tmp_path, "a.dc", text[:-length])
+        assert survey.skipped == {"records without an end that may be cut": 1}
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("10NMSITE\n", "begins with '10NMSITE', and a Trimble DC file with the record 00"),
+        (dc_header(units="191111"), "units of the header are '191111'"),
+        ("00NMSC V10-70 (synthetic)\n", "units of the header are ''"),
+        (dc_header() + sdr33("69KI", "9", "51O.5", "9", "1"), "line 3: '51O.5' stands where"),
+        (dc_header() + sdr33("69KI", "9", "1e999", "9", "1"), "line 3: '1e999' stands where"),
+        (dc_header(), "holds no point with coordinates"),
+    ],
+)
+def test_faults_of_dc(tmp_path, text, words):
+    refused(words, tmp_path, "a.dc", text, format="dc")
+
+
 # ------------------------------------------------------------------ JobXML
 
 
@@ -422,7 +511,10 @@ def test_the_content_shows_the_format_whatever_the_suffix(tmp_path):
     assert len(read(tmp_path, "a.txt", GSI8)) == 2
     assert len(read(tmp_path, "b.csv", header() + sdr33("08TP", "9", "1", "2", "3"))) == 1
     assert len(read(tmp_path, "c.xml", job(point("PointRecord", "1", grid=(1, 2, 3))))) == 1
-    for name in ("gsi", "sdr", "jobxml"):
+    assert is_dc(dc_header().encode())
+    assert not is_dc(header().encode())
+    assert len(read(tmp_path, "d.txt", dc_header() + sdr33("69KI", "9", "1", "2", "3"))) == 1
+    for name in ("gsi", "sdr", "jobxml", "dc"):
         assert ts.find_format(name).write is None
 
 

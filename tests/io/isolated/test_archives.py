@@ -51,6 +51,11 @@ def test_a_raster_in_a_zip_archive(tmp_path):
     assert np.array_equal(read(path, stride=9).points, expected.points)
 
 
+def test_hidden_files_in_a_folder_are_not_data(tmp_path):
+    path = pack(tmp_path / "a.zip", **{"tiles/a.csv": ROWS, "tiles/.b.csv": b"1,2,3\n"})
+    assert len(read(path).points) == 3
+
+
 def test_a_zipped_shapefile(tmp_path):
     pytest.importorskip("pyogrio")
     points = np.random.default_rng(1).random((9, 3)) + np.array([752_640, 4_024_180, 300])

@@ -301,6 +301,34 @@ def with_keys(path, *keys, texts=b""):
     return path
 
 
+@pytest.mark.parametrize("target", [None, "EPSG:32616", "EPSG:2274"])
+@pytest.mark.parametrize("second", [9001, 9003])
+@pytest.mark.parametrize("first", [9001, 9003])
+@pytest.mark.parametrize("systems", [(32616, 32616), (32616, 2274), (2274, 32616)])
+def test_elevations_of_tiles_are_in_one_unit(tmp_path, systems, first, second, target):
+    """What lies 304.32 feet or metres high lies as high among other tiles, in metres."""
+    if target is None and systems[0] != systems[1]:
+        target = "EPSG:26916"
+    with_keys(tmp_path / "a.las", (3072, systems[0]), (4099, first))
+    with_keys(tmp_path / "b.las", (3072, systems[1]), (4099, second))
+    apart = [read(tmp_path / name, crs=target) for name in ("a.las", "b.las")]
+    both = read_lidar(tmp_path, crs=target)
+    metres = [one.points[:, 2] * one.elevation_unit.metres for one in apart]
+    found = both.points[:, 2] * both.elevation_unit.metres
+    assert np.allclose(found, np.concatenate(metres), rtol=1e-12, atol=0)
+    converted = any(note.startswith("The elevations of 'b.las' were") for note in both.notes)
+    assert converted == (apart[0].elevation_unit != apart[1].elevation_unit)
+
+
+@pytest.mark.parametrize("target", [None, "EPSG:32616"])
+def test_a_tile_without_unit_is_not_mixed_with_others(tmp_path, target):
+    with_keys(tmp_path / "a.las", (3072, 32616))
+    with_keys(tmp_path / "b.las", (3072, 32616), (4099, 9003))
+    assert "unknown and US survey foot" in refuse(tmp_path, crs=target)
+    with_keys(tmp_path / "b.las", (3072, 32616), (4099, 9001))
+    assert read_lidar(tmp_path, crs=target, z_unit="m").elevation_unit.name == "metre"
+
+
 @pytest.mark.parametrize(
     ("keys", "crs", "unit"),
     [
@@ -369,6 +397,102 @@ def test_a_crs_that_is_not_understood_needs_the_right_one(tmp_path):
     made.write(tmp_path / "odd.laz")
     assert "odd.laz" in refuse(tmp_path / "odd.laz", CrsError)
     assert read(tmp_path / "odd.laz", crs="EPSG:32616").crs == "EPSG:32616"
+
+
+def as_key_record(*keys):
+    content = struct.pack("<4H", 1, 1, 0, len(keys))
+    content += b"".join(struct.pack("<4H", key, 0, 1, value) for key, value in keys)
+    return laspy.VLR("LASF_Projection", 34735, "", content)
+
+
+def as_text_record(crs):
+    return laspy.vlrs.known.WktCoordinateSystemVlr(pyproj.CRS(crs).to_wkt("WKT1_GDAL"))
+
+
+def with_records(path, *records, offsets=None):
+    made = make_cloud(20)
+    header = laspy.LasHeader(version="1.4", point_format=6)
+    header.scales = made.header.scales
+    header.offsets = made.header.offsets if offsets is None else np.array(offsets)
+    header.vlrs.extend(records)
+    laspy.LasData(header, made.points).write(path)
+    return path
+
+
+@pytest.mark.parametrize(
+    "records",
+    [
+        [as_text_record("EPSG:32617"), as_key_record((1024, 1), (3072, 32616))],
+        [as_key_record((1024, 1), (3072, 32616)), as_text_record("EPSG:2274")],
+        [as_text_record("EPSG:32616"), as_text_record("EPSG:32617")],
+    ],
+)
+def test_records_that_name_different_crs_are_refused_until_told(tmp_path, records):
+    path = with_records(tmp_path / "two.las", *records)
+    message = refuse(path, CrsError)
+    assert "names two CRSs that differ" in message
+    assert "about (7527" in message
+    survey = read(path, crs="EPSG:32616")
+    assert survey.crs == "EPSG:32616"
+    assert np.abs(survey.points[:, 0] - 752_740).max() < 200
+    assert any("two CRSs" in note for note in survey.notes)
+
+
+@pytest.mark.parametrize(
+    ("text", "key"), [("EPSG:32616", 32616), ("EPSG:6345", 26916), ("EPSG:32616+5703", 32616)]
+)
+def test_records_that_agree_within_a_metre_are_one(tmp_path, text, key):
+    path = with_records(tmp_path / "one.las", as_text_record(text), as_key_record((3072, key)))
+    assert read(path).crs.is_same(text)
+
+
+def test_keys_tell_the_unit_of_elevations_that_the_text_does_not(tmp_path):
+    keys = as_key_record((1024, 1), (3072, 2274), (4099, 9003))
+    survey = read(with_records(tmp_path / "feet.las", as_text_record("EPSG:2274"), keys))
+    assert survey.elevation_unit.name == "US survey foot"
+    text = as_text_record("EPSG:32616+5703")
+    path = with_records(tmp_path / "both.las", text, as_key_record((3072, 32616), (4099, 9002)))
+    assert "metre by its WKT and in foot by its keys" in refuse(path)
+
+
+def test_a_geocentric_crs_of_projected_coordinates_needs_the_right_one(tmp_path):
+    path = with_records(tmp_path / "odd.las", as_text_record("EPSG:4978"))
+    message = refuse(path, CrsError)
+    assert "Geocentric" in message
+    assert "declare the CRS of its coordinates, which are about (7527" in message
+    survey = read(path, crs="EPSG:32616")
+    assert survey.crs == "EPSG:32616"
+    assert any("Geocentric" in note for note in survey.notes)
+
+
+def test_geocentric_coordinates_are_refused_whatever_is_declared(tmp_path):
+    middle = (-1_276_000.0, -4_717_000, 4_085_000)
+    path = with_records(tmp_path / "earth.las", as_text_record("EPSG:4978"), offsets=middle)
+    for options in ({}, {"crs": "EPSG:32616"}):
+        assert "centre of the Earth indeed" in refuse(path, CrsError, **options)
+
+
+def test_degrees_that_cannot_be_degrees_are_refused_as_such(tmp_path):
+    path = with_records(tmp_path / "odd.las", as_key_record((1024, 2), (2048, 4326)))
+    assert "the CRS of the file is another one" in refuse(path, CrsError)
+
+
+def test_points_beyond_the_bounds_of_the_header_are_told(tmp_path, cloud):
+    cloud.write(tmp_path / "a.las")
+    assert not any("bounds" in note for note in read(tmp_path / "a.las").notes)
+    notes = read(patched(tmp_path / "a.las", 131, "<3d", 0.001, 0.001, 10.0)).notes
+    assert any("outside the bounds that 'patched.las' gives" in note for note in notes)
+    notes = read(patched(tmp_path / "a.las", 179, "<6d", *[0.0] * 6)).notes  # none given
+    assert not any("bounds" in note for note in notes)
+
+
+def test_extra_bytes_of_several_numbers_come_apart(tmp_path, cloud):
+    cloud.add_extra_dim(laspy.ExtraBytesParams("tint", "3u1"))
+    cloud.tint = np.arange(3 * len(cloud.points)).reshape(-1, 3) % 251
+    cloud.write(tmp_path / "a.las")
+    found = read(tmp_path / "a.las", attributes=["tint"], withheld=True).attributes
+    assert list(found) == ["tint[0]", "tint[1]", "tint[2]"]
+    assert np.array_equal(np.stack(list(found.values()), axis=1), cloud.tint)
 
 
 # ------------------------------------------------------------------------ header lies

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import json
+import re
 import subprocess
 import sys
 
@@ -80,6 +81,66 @@ def test_cjio_reads_our_file(tmp_path):
     low, high = tin.points.min(axis=0), tin.points.max(axis=0)
     assert [float(value) for value in bbox] == pytest.approx([*low, *high])
     assert [ring for (ring,) in boundaries] == tin.triangles.tolist()
+
+
+_TOP = {"type", "version", "metadata", "transform", "CityObjects", "vertices"}
+_URL = re.compile(r"^https?://www\.opengis\.net/def/crs/[^/]+/[^/]+/\d+$")
+
+
+def list_faults(city):
+    """Return what of the schema of CityJSON 2.0 a file with one terrain breaks."""
+    transform, metadata = city.get("transform", {}), city.get("metadata", {})
+    faults = {
+        "members": not set(city) <= _TOP or not {*_TOP} - {"metadata"} <= set(city),
+        "version": (city.get("type"), city.get("version")) != ("CityJSON", "2.0"),
+        "transform": set(transform) != {"scale", "translate"}
+        or any(len(row) != 3 for row in transform.values()),
+        "vertices": any(
+            len(row) != 3 or any(type(one) is not int for one in row) for row in city["vertices"]
+        ),
+        "metadata": not set(metadata) <= {"geographicalExtent", "referenceSystem"}
+        or len(metadata.get("geographicalExtent", [0] * 6)) != 6
+        or not _URL.match(metadata.get("referenceSystem", "https://www.opengis.net/def/crs/A/0/1")),
+    }
+    for terrain in city["CityObjects"].values():
+        faults["terrain"] = terrain["type"] != "TINRelief" or not set(terrain) <= {
+            "type",
+            "attributes",
+            "geometry",
+            "geographicalExtent",
+        }
+        for shape in terrain["geometry"]:
+            faults["shape"] = (
+                set(shape) != {"type", "lod", "boundaries"}
+                or shape["type"] != "CompositeSurface"
+                or re.fullmatch(r"[0-3](\.[0-3])?", shape["lod"]) is None
+            )
+            corners = [corner for (ring,) in shape["boundaries"] for corner in ring]
+            faults["rings"] = any(len(ring) < 3 for (ring,) in shape["boundaries"]) or any(
+                type(one) is not int or not 0 <= one < len(city["vertices"]) for one in corners
+            )
+    return {name for name, is_wrong in faults.items() if is_wrong}
+
+
+@pytest.mark.filterwarnings("ignore::tinsmith.errors.LossWarning")
+@pytest.mark.parametrize(
+    ("crs", "options"),
+    [
+        ("EPSG:32616", {}),
+        ("EPSG:2274", {"precision": 0.001}),
+        (None, {}),
+        ("EPSG:32616+5703", {"precision": 0.01}),
+        ("+proj=tmerc +lon_0=9 +x_0=1000 +ellps=GRS80", {}),
+    ],
+)
+def test_what_the_schema_of_version_2_0_asks_for(tmp_path, crs, options):
+    tin = hills(crs=crs, unit=None)
+    city = json.loads(ts.write(tin, tmp_path / "a.city.json", **options).read_text())
+    assert list_faults(city) == set()
+    assert list_faults({**city, "vertices": [[0.5, 1, 2]]}) == {"vertices", "rings"}
+    assert list_faults({name: city[name] for name in city if name != "transform"}) == {
+        "members", "transform"
+    }  # fmt: skip
 
 
 def test_a_crs_without_a_number_is_kept_and_told(tmp_path):

@@ -305,3 +305,43 @@ def test_a_file_that_is_open_elsewhere_is_neither_read_nor_written(path):
         ts.read(path)
     with pytest.raises(ts.WriteError, match="open in another program"):
         ts.write(tin, path)
+
+
+COLUMNS = {
+    "number": np.arange(44),
+    "code": [f"C{i}ä" for i in range(44)],
+    "weight": np.where(np.arange(44) % 7 == 0, np.nan, np.arange(44) / 4),
+    "seen": np.arange(44) % 2 == 0,
+    "mixed": np.array([None, 1, 2.5, "x"] * 11, object),
+    "short": np.arange(44).astype("i2"),
+    "large": np.arange(44).astype("u8") + 2**63,
+    "half": np.arange(44).astype("f2"),
+    "day": np.array(["2026-11-22"] * 44, "M8[D]"),
+    "Vertex": np.arange(44),
+    'we "ird; DROP': np.arange(44),
+    "big endian": np.arange(44).astype(">i4"),
+}
+
+
+def test_attributes_of_every_type_come_back(tmp_path):
+    points = np.random.default_rng(5).random((44, 3)) * 100
+    survey = ts.Survey(points=points, attributes=COLUMNS)
+    tin = ts.triangulate(survey, breaklines=[[[1, 1, 5], [99, 99, 5]]])
+    tin.insert([[50.5, 50.25, 3]])
+    tin.remove([3, 7])
+    path = ts.write(tin, tmp_path / "a.gpkg")
+    found = ts.read(path)
+    assert ts.write(found, tmp_path / "b.gpkg").read_bytes() == path.read_bytes()
+    for name, column in tin.row_attributes.items():
+        kept = found.row_attributes[name]
+        assert kept.dtype == column.dtype.newbyteorder("=")
+        for one, other in zip(column.tolist(), kept.tolist(), strict=True):
+            assert one == other or (one != one and other != other)
+    found.undo(2)
+    assert len(found.attributes["code"]) == len(found.points)
+    frame = pytest.importorskip("pyogrio").read_dataframe(
+        path, layer="vertices", read_geometry=False
+    )
+    assert frame["code"].tolist() == tin.attributes["code"].tolist()
+    assert {"Vertex_2", 'we "ird; DROP'} <= set(frame.columns)
+    assert frame["vertex"].tolist() == list(range(len(tin.points)))

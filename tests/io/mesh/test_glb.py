@@ -222,7 +222,7 @@ def test_pictures_that_do_not_fit(tmp_path):
     with pytest.raises(ts.ReadError, match="shows nothing of the surface"):
         ts.write(tin, tmp_path / "a.glb", texture=elsewhere)
     other = make_picture(tmp_path / "other.tif", crs="EPSG:25832")
-    with pytest.raises(ts.CrsError, match="bring the picture to"):
+    with pytest.raises(ts.ReadError, match="shows nothing of the surface"):
         ts.write(tin, tmp_path / "a.glb", texture=other)
     half = make_picture(tmp_path / "half.tif", west=745_150.0)
     with pytest.warns(ts.LossWarning, match="does not reach over"):
@@ -235,8 +235,10 @@ def test_pictures_that_do_not_fit(tmp_path):
         ts.write(tin, tmp_path / "a.glb", texture=tmp_path / "nothing.tif")
     with pytest.raises(ts.ReadError, match="only files of this machine"):
         ts.write(tin, tmp_path / "a.glb", texture="https://example.org/o.tif")
-    with pytest.raises(ts.OptionError, match="texture"):
+    with pytest.raises(ts.OptionError, match="path of a GeoTIFF"):
         ts.write(tin, tmp_path / "a.glb", texture=7)
+    with pytest.raises(ts.OptionError, match="texture"):
+        ts.write(tin, tmp_path / "a.glb", drape=half, texture=half)
 
 
 @pytest.mark.parametrize(

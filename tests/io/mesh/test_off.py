@@ -59,7 +59,7 @@ def test_forms_of_the_file(tmp_path, text):
         ("OFF\n4\n0 0 0\n", "the numbers of vertices and of faces are needed"),
         ("OFF\n-1 2 0\n0 0 0\n", "a count is negative"),
         ("4OFF\n" + BODY, "more than three dimensions"),
-        (f"OFF BINARY\n{BODY}", "no OFF file in text"),
+        (f"OFF BINARY\n{BODY}", "is a binary OFF file, and only those in text"),
         ("OFF\n" + BODY.replace("3 0 2 3", "3 0 2"), "fewer corners than it promises"),
         ("OFF\n" + BODY.replace("3 0 2 3", "3 0 2 4"), "names vertex 4"),
         ("OFF\n" + BODY.replace("0 3 8", "0 3 inf"), "not finite"),

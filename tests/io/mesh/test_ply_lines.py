@@ -62,6 +62,7 @@ def test_edges_of_other_programs_are_no_lines(path):
     [
         (b"comment line: hard", b"comment line: herd", "tells no line"),
         (b'"pond"', b'"pond', "tells no line"),
+        (b"comment line: hard 0", b"comment line: hard 2147483648", "tells no line"),
         (b'1 "pond"', b'10 "pond"', "edges, and there are"),
         (b'1 "pond"', b'0 "pond"', "its lines have"),
         (b"property int vertex1", b"property int vertex3", "without vertex1 and vertex2"),

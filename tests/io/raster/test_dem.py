@@ -245,18 +245,48 @@ def test_window_that_the_raster_does_not_have(raster, window):
 def test_cells_are_no_more_than_an_int32_can_number(monkeypatch, stride):
     monkeypatch.setattr(reading, "measure_free_memory", lambda: 1 << 60)
     most = np.iinfo(np.int32).max
-    reading._require_few_cells(
-        SimpleNamespace(width=stride * most, height=1, stride=stride), Path("a")
-    )
+    reading._require_few_cells(reading._Cells(0, 0, stride * most, 1, stride), Path("a"))
     with pytest.raises(ReadError, match=f"{most + 1:,} cells .* {most:,} are the most that a TIN"):
-        reading._require_few_cells(
-            SimpleNamespace(width=stride * most + 1, height=1, stride=stride), Path("a")
-        )
+        reading._require_few_cells(reading._Cells(0, 0, stride * most + 1, 1, stride), Path("a"))
 
 
 @pytest.mark.parametrize("stride", [0, -2, 6, 100, 1.5, "2"])
 def test_stride_that_cannot_be(raster, stride):
     assert "1 to 5" in fault(raster(heights()), OptionError, stride=stride)
+
+
+@pytest.mark.parametrize("most", [4, 5, 12, 29, 54, 100, 366, 10**9])
+def test_no_more_cells_than_wanted(raster, most):
+    """The smallest stride for which they are no more, found by trying each."""
+    array = heights(61, 37)
+    array[0, 0] = -1
+    path = raster(array, nodata=-1)
+    stride = next(n for n in range(1, 60) if -(-61 // n) * -(-37 // n) <= most)
+    found, wanted = read(path, most_cells=most), read(path, stride=min(stride, 36))
+    np.testing.assert_array_equal(found.points, wanted.points)
+    left_out = 61 * 37 - len(found.points) - 1
+    if stride == 1:
+        assert found.skipped == wanted.skipped
+        assert not any("of 2,257 cells" in note for note in found.notes)
+    else:
+        assert found.skipped == {"nodata cells": 1, "cells between samples": left_out}
+        told = f"One row and column of {min(stride, 36)} is read: {len(found.points) + 1:,} of"
+        assert any(told in note for note in found.notes)
+
+
+def test_a_narrow_raster_keeps_two_rows(raster):
+    found = read(raster(heights(3, 400)), most_cells=50)
+    assert len(found.points) == 2 * 200
+    assert found.skipped["cells between samples"] == 800
+
+
+@pytest.mark.parametrize("most", [3, 0, -1, 1.5, "9", True])
+def test_a_number_of_cells_that_cannot_be(raster, most):
+    assert "from 4 on" in fault(raster(heights()), OptionError, most_cells=most)
+
+
+def test_a_stride_and_a_number_of_cells_are_one_too_many(raster):
+    assert "stride" in fault(raster(heights()), OptionError, most_cells=9, stride=2)
 
 
 # ------------------------------------------------------------------ CRS

@@ -61,6 +61,48 @@ def test_types_of_values(tmp_path, form, dtype):
         assert found.nodata == 0
 
 
+def test_cells_may_be_written_as_they_are(tmp_path):
+    made = raster(700, 513)
+    path = ts.write(made, tmp_path / "a.tif", compression="none", overviews="none")
+    with rasterio.open(path) as found:
+        assert found.compression is None
+        np.testing.assert_array_equal(found.read(1), made.bands["elevation"])
+    assert path.stat().st_size > 700 * 513 * 8
+
+
+def test_deflate_is_the_usual_compression_of_cells_and_overviews(tmp_path):
+    with rasterio.open(ts.write(raster(1200, 1100), tmp_path / "a.tif")) as found:
+        assert found.compression.name == "deflate"
+        assert found.tags(ns="IMAGE_STRUCTURE")["PREDICTOR"] == "3"
+    with rasterio.open(tmp_path / "a.tif", overview_level=0) as found:
+        assert found.tags(ns="IMAGE_STRUCTURE")["PREDICTOR"] == "3"
+
+
+def test_another_compression_is_refused(tmp_path):
+    with pytest.raises(OptionError, match="'lerc'"):
+        ts.write(raster(), tmp_path / "a.tif", compression="lerc")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("form", FORMATS)
+@pytest.mark.parametrize("dtype", ["uint8", "float64"])
+def test_bytes_do_not_depend_on_the_number_of_cores(tmp_path, monkeypatch, form, dtype):
+    made = raster(1100, 1300, dtype=dtype)
+    written = set()
+    for threads in ("1", "2", "5"):
+        monkeypatch.setattr(geotiff, "_ALL", threads)
+        written.add(ts.write(made, tmp_path / "a.tif", format=form).read_bytes())
+    assert len(written) == 1
+
+
+def test_a_large_draft_of_a_cog_is_compressed(tmp_path, monkeypatch):
+    made = raster(600, 600)
+    one = ts.write(made, tmp_path / "one.tif", format="cog").read_bytes()
+    monkeypatch.setattr(geotiff, "_LARGEST_DRAFT", 1000)
+    other = ts.write(made, tmp_path / "other.tif", format="cog").read_bytes()
+    assert one == other
+
+
 def test_several_bands_share_the_type_that_holds_all(tmp_path):
     bands = {"a": np.full((4, 5), 7, np.uint8), "slope": np.full((4, 5), 0.1)}
     made = ts.Raster(bands, grid(4, 5), units={"a": None, "slope": "°"})

@@ -291,7 +291,7 @@ def test_a_tin_opens_in_qgis(tmp_path):
     paths = [ts.write(tin, tmp_path / name) for name in ("a.ply", "a.gpkg")]
     told = run_qgis(tmp_path, *paths)
     counts = (len(tin.points), len(tin.triangles))
-    assert told["ply"] == [True, *counts, ["Bed Elevation"], "EPSG:32616"]
+    assert told["ply"] == [True, *counts, ["Bed Elevation", "number"], "EPSG:32616"]
     assert told["vertices"] == [True, len(tin.points), "EPSG:32616"]
     assert told["triangles"] == [True, len(tin.triangles), "EPSG:32616"]
     assert told["lines"] == [True, len(tin.lines), "EPSG:32616"]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pickle
+
 import numpy as np
 import pytest
 import shapely
@@ -206,8 +208,12 @@ def test_any_number_of_threads_and_any_blocks_give_the_same_bits(at):
     whole = elevations(ts.rasterize(tin, spacing=0.15, at=at, threads=1))
     again = ts.rasterize(tin, spacing=0.15, at=at, threads=4, lazy=True).bands["elevation"]
     np.testing.assert_array_equal(again[:, :], whole)
-    if at == "center":
-        np.testing.assert_array_equal(again[13:300, 55:601], whole[13:300, 55:601])
+    for rows, columns in (
+        (slice(13, 300), slice(55, 601)),
+        (slice(256, 257), slice(0, 1)),
+        (slice(3, 20), slice(250, 300)),
+    ):
+        np.testing.assert_array_equal(again[rows, columns], whole[rows, columns])
     assert again[5:5, :].shape == (0, whole.shape[1])
 
 
@@ -424,3 +430,26 @@ def test_the_far_edge_of_a_grid_is_its_cells_away():
         assert grid.bounds.xmin <= tin.bounds.xmin
         assert grid.bounds.xmax >= tin.bounds.xmax
         ts.rasterize(tin, grid=grid, lazy=True)
+
+
+def test_a_centre_on_an_edge_is_the_smallest_triangle_whatever_its_place():
+    """Triangles in an order that has nothing to do with where they lie."""
+    side = np.arange(9.0)
+    x, y = (axis.ravel() for axis in np.meshgrid(side, side))
+    even = ts.triangulate(np.column_stack([x, y, np.zeros(81)]))
+    order = rng(4).permutation(len(even.triangles))
+    steep = even.points + np.column_stack([np.zeros((81, 2)), rng(5).integers(0, 9, 81)])
+    tin = ts.TIN.from_triangles(steep, even.triangles[order])
+    grid = ts.Grid(ts.Bounds(-0.5, -0.5, 8.5, 8.5), shape=(9, 9), spacing=1.0)
+    found = ts.rasterize(tin, grid=grid, value="slope").bands["slope"]
+    centers = np.column_stack([np.tile(side, 9), np.repeat(side[::-1], 9)])
+    triangle = tin.locate(centers)
+    np.testing.assert_array_equal(found.ravel(), ts.slope(tin)[triangle])
+
+
+def test_a_lazy_raster_can_be_copied_to_another_process():
+    tin = ts.triangulate([[0, 0, 1], [4, 0, 5], [0, 4, 9]])
+    raster = ts.rasterize(tin, spacing=1, lazy=True)
+    band = raster.bands["elevation"]
+    before = band[0:4, 0:4]
+    np.testing.assert_array_equal(pickle.loads(pickle.dumps(band))[0:4, 0:4], before)

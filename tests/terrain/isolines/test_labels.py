@@ -52,6 +52,7 @@ def test_rotation_on_planes(slope, rotation, uphill):
     labels = ts.contour_labels(ts.contours(tin, levels=[0]), spacing=20)
     assert labels.columns["rotation"] == pytest.approx([rotation])
     assert labels.columns["uphill"].tolist() == [uphill]
+    assert labels.coordinates[0, :2] == pytest.approx([0, 0], abs=1e-12)  # the middle of the line
 
 
 @pytest.mark.parametrize(

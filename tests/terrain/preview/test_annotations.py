@@ -11,8 +11,6 @@ import pytest
 
 from tinsmith import triangulate
 from tinsmith.terrain.preview.annotations import (
-    INK,
-    PAPER,
     Caption,
     Sheet,
     annotate,
@@ -26,6 +24,7 @@ from tinsmith.terrain.preview.camera import (
     project_ground_axes,
 )
 from tinsmith.terrain.preview.overlay import Overlay, _find_wide_font
+from tinsmith.terrain.preview.palette import Palette
 from tinsmith.terrain.preview.scene import add_lights, place_vertices
 from tinsmith.terrain.preview.tints import interpolate_tints
 from tinsmith.terrain.units import METRE, find_ground
@@ -33,6 +32,7 @@ from tinsmith.tin import Bounds
 
 pv = pytest.importorskip("pyvista")
 
+INK, GREY, PAPER, WARNING = Palette()
 SHEET = Sheet(1400.0, 900.0)
 EXTENT = 500.0
 
@@ -226,26 +226,49 @@ def test_the_margins_keep_the_terrain_from_the_words():
     assert overlay.place_of("Title")[1] > overlay.place_of("Subtitle")[1] > above[1]
 
 
-def test_a_title_too_long_for_the_sheet_is_cut_and_shows_it():
-    overlay = Recorder()
-    camera = pv.Camera()
+def written_title(title, subtitle="short"):
+    """The lines of a title as an overlay is asked to write them, with their sizes."""
+    overlay, camera = Recorder(), pv.Camera()
     aim(camera, np.eye(3), view=VIEWS["top"], frame=SHEET.frame, size=(1400, 900))
-    caption = Caption("word " * 60, "short", 1.0, (0.0, 1.0), "m", METRE)
-    annotate(overlay, SHEET, caption, camera)
-    (title,) = [said for said, *_ in overlay.texts if said.startswith("word")]
-    assert title.endswith("...")
-    assert 0.8 * 1312 < overlay.measure_text(title, size=30.0) <= 1312
+    annotate(overlay, SHEET, Caption(title, subtitle, 1.0, (0.0, 1.0), "m", METRE), camera)
+    written = zip(overlay.texts, overlay.styles, strict=True)
+    lines = [(said, y, size) for (said, _, y, _), (_, size, bold) in written if bold]
+    return overlay, [line for line in lines if line[0] != "N"]
 
 
-@pytest.mark.parametrize("length", [100, 101])
-def test_a_title_is_cut_to_the_last_letter_that_fits(length):
-    overlay = Recorder()
-    camera = pv.Camera()
-    aim(camera, np.eye(3), view=VIEWS["top"], frame=SHEET.frame, size=(1400, 900))
-    annotate(overlay, SHEET, Caption("x" * length, "short", 1.0, (0.0, 1.0), "m", METRE), camera)
-    (title,) = [said for said, *_ in overlay.texts if said.startswith("x")]
-    letter = overlay.measure_text("x", size=30.0)
-    assert 1312 - letter < overlay.measure_text(title, size=30.0) <= 1312
+@pytest.mark.parametrize("count", [1, 14, 15, 30, 60, 80])
+def test_a_long_title_is_written_whole_in_smaller_letters_and_more_lines(count):
+    title = " ".join(["word"] * count)
+    overlay, lines = written_title(title)
+    assert " ".join(said for said, *_ in lines) == title
+    assert len(lines) == {1: 1, 14: 1, 15: 1, 30: 2, 60: 3, 80: 3}[count]
+    assert len({size for *_, size in lines}) == 1
+    heights = [y for _, y, _ in lines] + [overlay.place_of("short")[1]]
+    for (said, y, size), below in zip(lines, heights[1:], strict=True):
+        assert overlay.measure_text(said, size=size) <= 1312
+        assert y - below >= 1.2 * min(size, 17.0)
+        assert y + size < SHEET.height
+    assert heights[-1] > SHEET.frame.ymax + 8.0
+
+
+@pytest.mark.parametrize("words", ["word " * 200, "x" * 10_000, "x " * 5_000])
+def test_a_title_too_long_for_three_lines_is_cut_and_shows_it(words):
+    overlay, lines = written_title(words.strip())
+    assert len(lines) == 3
+    *whole, (last, _, size) = lines
+    assert last.endswith("...")
+    assert 1312 - 6 * 0.6 * size < overlay.measure_text(last, size=size) <= 1312
+    assert not any(said.endswith("...") for said, *_ in whole)
+    kept = "".join(said for said, *_ in lines).removesuffix("...").replace(" ", "")
+    assert words.replace(" ", "").startswith(kept)
+
+
+def test_a_subtitle_is_cut_to_the_last_letter_that_fits():
+    overlay, _ = written_title("Title", "y" * 300)
+    (subtitle,) = [said for said, *_ in overlay.texts if said.startswith("y")]
+    letter = overlay.measure_text("y", size=17.0)
+    assert 1312 - letter < overlay.measure_text(subtitle, size=17.0) <= 1312
+    assert subtitle.endswith("...")
 
 
 def test_every_word_stands_where_the_layout_has_it():
@@ -260,13 +283,14 @@ def test_every_word_stands_where_the_layout_has_it():
         ("Title", 44.0, 838.0, "left"),
         ("Subtitle", 44.0, 808.0, "left"),
         ("N", *letter, "center"),
-        ("0", 140.0, 76.0, "center"),
-        ("50", 140.0 + 50 * pixels, 76.0, "center"),
-        ("100", 140.0 + 100 * pixels, 76.0, "center"),
-        ("m", 140.0 + 100 * pixels + 0.6 * 15 * 3 / 2 + 5.0, 76.0, "left"),
-        ("true from left to right", 140.0, 38.0, "left"),
-        ("Vertical exaggeration 2\N{MULTIPLICATION SIGN}", 500.0, 62.0, "left"),
-        (VIEWS["oblique"].caption, 500.0, 38.0, "left"),
+        ("0", 156.0, 76.0, "center"),
+        ("50", 156.0 + 50 * pixels, 76.0, "center"),
+        ("100", 156.0 + 100 * pixels, 76.0, "center"),
+        ("m", 156.0 + 100 * pixels + 0.6 * 15 * 3 / 2 + 5.0, 76.0, "left"),
+        ("true from left to right", 156.0, 38.0, "left"),
+        ("Vertical exaggeration 2\N{MULTIPLICATION SIGN}", 500.0, 84.0, "left"),
+        (VIEWS["oblique"].caption, 500.0, 61.0, "left"),
+        ("Light from the northwest, 45° high", 500.0, 38.0, "left"),
         ("Elevation (m)", 956.0, 84.0, "left"),
         ("312", 956.0, 43.0, "center"),
         ("399", 1356.0, 43.0, "center"),
@@ -302,7 +326,7 @@ def test_words_have_the_size_and_colour_of_their_rank():
 )
 def test_the_exaggeration_is_put_in_words(view, factor, words):
     overlay, _ = annotated(view, exaggeration=factor)
-    assert overlay.place_of(words).tolist() == [500.0, 62.0]
+    assert overlay.place_of(words).tolist() == [500.0, 84.0]
 
 
 @pytest.mark.parametrize(
@@ -360,7 +384,7 @@ def test_the_settings_of_vtk_come_back_after_drawing():
     try:
         for backend in (words.MathText, words.FreeType):
             words.SetDefaultBackend(backend)
-            with drawing._keep_vtk_plain():
+            with drawing.keep_vtk_plain():
                 assert words.GetDefaultBackend() == words.FreeType
             assert words.GetDefaultBackend() == backend
     finally:

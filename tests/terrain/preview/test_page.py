@@ -90,6 +90,10 @@ def test_coordinates_come_back_to_a_millimetre():
 # ------------------------------------------------------------------ the document
 
 
+def test_numbers_are_read_to_a_millimetre():
+    assert content(ts.preview(hills(50)).to_html())["decimals"] == [3, 3]
+
+
 def test_nothing_outside_is_asked_for():
     page = ts.preview(hills(20)).to_html()
     addresses = set(re.findall(r"(?:src|href)=[\"']?([a-z]+:[^\"' >]*)", page))

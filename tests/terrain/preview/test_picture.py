@@ -197,9 +197,10 @@ class TestPicture:
         assert list(tmp_path.iterdir()) == [path]
 
     def test_annotations_follow_the_camera(self, monkeypatch):
-        module = sys.modules["tinsmith.terrain.preview.picture"]
+        module = sys.modules["tinsmith.terrain.preview.stage"]
         written = []
         monkeypatch.setattr(opengl, "require_window", lambda: None)
+        monkeypatch.setattr(opengl, "require_on_screen", lambda kind: None)
         monkeypatch.setattr(
             module.Overlay, "draw_text", lambda self, place, words, *_, **__: written.append(words)
         )
@@ -561,6 +562,18 @@ def test_a_window_needs_a_display(monkeypatch, window, display, platform, is_ref
             opengl.require_window()
     else:
         opengl.require_window()
+
+
+@pytest.mark.usefixtures("can_draw")
+def test_a_display_that_cannot_be_reached_is_none(monkeypatch):
+    """VTK then draws where nobody sees it, and comes back at once."""
+    monkeypatch.setattr(opengl, "require_window", lambda: None)
+    monkeypatch.setenv("DISPLAY", ":987")
+    plotter = pv.Plotter
+    monkeypatch.setattr(pv, "Plotter", lambda *, off_screen, **k: plotter(off_screen=True, **k))
+    monkeypatch.setattr(plotter, "show", lambda self, **_: pytest.fail("a window was opened"))
+    with pytest.raises(RenderError, match="no display to open a window on"):
+        preview(hill(steps=3), size=(400, 250)).show()
 
 
 @pytest.mark.usefixtures("fresh_probe")

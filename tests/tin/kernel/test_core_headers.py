@@ -13,22 +13,34 @@ import pytest
 
 ROOT = Path(__file__).parents[3]
 CORE = ROOT / "tin" / "cpp"
+PRODUCTS = ROOT / "terrain" / "cpp"  # kernels of terrain, which include headers of the core
 COMPILER = os.environ.get("CXX") or "g++"
 OPTIONS = [
     "-std=c++17",
     "-ffp-contract=off",
     "-Wall",
     "-Wextra",
+    "-Wpedantic",
     "-Werror",
     "-pthread",
     f"-I{CORE}",
+    f"-I{PRODUCTS}",
 ]
 HEADERS = sorted(
-    path.relative_to(CORE).as_posix()
-    for path in CORE.rglob("*.hpp")
+    path.relative_to(folder).as_posix()
+    for folder in (CORE, PRODUCTS)
+    for path in folder.rglob("*.hpp")
     if path.parent.name != "python"  # the bindings, which need nanobind
 )
 LONGEST_FUNCTION = 50
+
+
+def list_sources(*suffixes, folders=(CORE, PRODUCTS)):
+    found = [path for folder in folders for path in folder.rglob("*") if path.suffix in suffixes]
+    assert len(found) > 2
+    return sorted(found)
+
+
 CLANG_FORMAT = shutil.which("clang-format", path=str(Path(sys.executable).parent)) or shutil.which(
     "clang-format"
 )
@@ -57,11 +69,28 @@ def test_each_header_can_be_included_alone(header, tmp_path):
 
 
 @needs_compiler
-def test_the_core_works_without_python(tmp_path):
-    """Built in every way, changed, located, refined; proven in C++ by the exact predicates."""
-    program = tmp_path / "use_core"
-    compile_with("-O1", ROOT / "tests" / "cpp" / "use_core.cpp", "-o", program)
+@pytest.mark.parametrize("name", ["use_core", "use_products"])
+def test_the_core_works_without_python(name, tmp_path):
+    """Built in every way, changed, located, refined; proven in C++ by the exact predicates.
+
+    What is derived from planes is known: contours, volumes, rasters.
+    """
+    program = tmp_path / name
+    compile_with("-O1", ROOT / "tests" / "cpp" / f"{name}.cpp", "-o", program)
     assert output_of(program) == "sound\n"
+
+
+@needs_compiler
+def test_no_header_warns(tmp_path):
+    """All in one program, of the core and of terrain, with every warning an error."""
+    source = tmp_path / "all.cpp"
+    source.write_text("".join(f'#include "{header}"\n' for header in HEADERS) + "int main() {}\n")
+    compile_with("-fsyntax-only", source)
+
+
+def test_no_two_headers_have_one_name():
+    names = [path.name for path in list_sources(".hpp", ".inc")]
+    assert sorted(names) == sorted(set(names))
 
 
 @needs_compiler
@@ -75,7 +104,7 @@ def test_the_example_prints_what_its_page_says(tmp_path):
 
 
 def test_only_the_bindings_know_python():
-    for path in [*CORE.rglob("*.hpp"), *CORE.rglob("*.inc")]:
+    for path in list_sources(".hpp", ".inc"):
         if path.parent.name != "python":
             assert not re.search(r"nanobind|Python\.h", path.read_text()), path
 
@@ -87,14 +116,10 @@ def test_the_page_lists_every_folder():
 
 @pytest.mark.skipif(CLANG_FORMAT is None, reason="needs clang-format")
 def test_formatting():
-    sources = [
-        str(path)
-        for folder in (CORE, ROOT / "tests" / "cpp")
-        for path in sorted(folder.rglob("*"))
-        if path.suffix in {".hpp", ".cpp", ".inc"}
-    ]
+    folders = [CORE, PRODUCTS, ROOT / "tests" / "cpp", ROOT / "benchmarks" / "cgal"]
+    sources = list_sources(".hpp", ".cpp", ".inc", folders=folders)
     done = subprocess.run(
-        [CLANG_FORMAT, "--dry-run", "--Werror", *sources],
+        [CLANG_FORMAT, "--dry-run", "--Werror", *map(str, sources)],
         capture_output=True,
         text=True,
         check=False,
@@ -119,6 +144,6 @@ def function_lengths(text):
 
 
 def test_functions_are_short():
-    for path in [*CORE.rglob("*.hpp"), *CORE.rglob("*.inc"), *CORE.rglob("*.cpp")]:
+    for path in list_sources(".hpp", ".inc", ".cpp"):
         for length, line in function_lengths(path.read_text()):
             assert length <= LONGEST_FUNCTION, f"{path.name}: {length} lines: {line}"

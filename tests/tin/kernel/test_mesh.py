@@ -244,7 +244,8 @@ def test_regions_between_barriers():
     mesh.force(ring)
     triangles, neighbors, fixed = mesh.arrays()
     xy = np.array([[0.0, 0], [4, 0], [4, 4], [0, 4], [1, 1], [3, 1], [3, 3], [1, 3]])
-    region, largest = _kernel.regions(xy, triangles, neighbors, fixed)
+    points = np.column_stack([xy, np.zeros(len(xy))])
+    region, largest = _kernel.regions(points, triangles, neighbors, fixed)
     is_inner = (triangles >= 4).all(axis=1)
     assert len(largest) == 2
     assert len(set(region[is_inner])) == len(set(region[~is_inner])) == 1

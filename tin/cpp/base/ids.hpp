@@ -16,7 +16,9 @@ enum class Vertex : std::int32_t {};
 enum class Triangle : std::uint32_t {};
 
 // An edge as seen from one triangle: 4 * triangle + number of the corner opposite the edge. It is
-// directed with that triangle on its left.
+// directed with that triangle on its left. So half-edges are the corners of a corner table
+// (Rossignac, Safonova and Szymczak, "3D compression made simple: Edgebreaker on a corner table",
+// 2001), with a number to spare for each triangle.
 //
 //              corner 2
 //              .      .
@@ -43,6 +45,13 @@ constexpr std::int32_t number(Vertex v) { return static_cast<std::int32_t>(v); }
 constexpr std::uint32_t number(Triangle t) { return static_cast<std::uint32_t>(t); }
 constexpr std::uint32_t number(HalfEdge e) { return static_cast<std::uint32_t>(e); }
 
+// As arrays of triangles hold them: kNoTriangle as kNoNeighbor.
+constexpr std::int32_t index_of(Triangle t) { return static_cast<std::int32_t>(number(t)); }
+constexpr Triangle triangle_numbered(std::int64_t index) {
+  return Triangle{static_cast<std::uint32_t>(index)};
+}
+static_assert(index_of(kNoTriangle) == kNoNeighbor);
+
 constexpr HalfEdge half_edge(Triangle triangle, std::uint32_t corner) {
   return HalfEdge{4 * number(triangle) + corner};
 }
@@ -59,6 +68,10 @@ constexpr std::size_t entry_of(Triangle triangle, std::uint32_t corner) {
   return std::size_t{3} * number(triangle) + corner;
 }
 constexpr std::size_t entry_of(HalfEdge e) { return entry_of(triangle_of(e), corner_of(e)); }
+constexpr HalfEdge half_edge_at(std::size_t entry) {
+  return half_edge(triangle_numbered(static_cast<std::int64_t>(entry / 3)),
+                   static_cast<std::uint32_t>(entry % 3));
+}
 
 // for (const HalfEdge e : half_edges(triangle))
 class HalfEdges {

@@ -110,7 +110,8 @@ class SegmentRaster {
   std::vector<std::uint64_t> bits_;
 };
 
-// Few points, by the bits of their eastings.
+// Few points, by the bits of their coordinates: a filter of Bloom, "Space/time trade-offs in hash
+// coding with allowable errors" (1970), with one hash.
 class PointFilter {
  public:
   PointFilter(const Point* points, std::int32_t count) : bits_(std::size_t{1} << (kBits - 6)) {

@@ -64,16 +64,16 @@ class TouchSearch {
                               IsAsked&& is_asked, Team& team) {
     gather(first_vertex, vertex_count, is_asked, team);
     std::vector<std::vector<NumberPair>> found(team.size());
-    if (team.is_stopped() || vertices_.empty()) return {};
+    if (team.is_stopped() || items_.empty()) return {};
     visit_in_blocks(segments_.count, team,
                     [&](int part, std::int32_t segment) { search(segment, found[part]); });
     return sorted_together(found);
   }
 
  private:
-  struct Vertex {
+  struct Item {
     Point point;
-    std::int32_t number;
+    std::int32_t vertex;
   };
 
   // The vertices that a raster of the segments cannot rule out, in spatial order.
@@ -96,13 +96,13 @@ class TouchSearch {
     }
     const auto count = static_cast<std::int32_t>(numbers.size());
     const HilbertOrder order(count, [&](std::int32_t i) { return segments_.points[numbers[i]]; });
-    vertices_.resize(count);
+    items_.resize(count);
     for (std::int32_t i = 0; i < count; ++i) {
       const std::int32_t v = numbers[order[i]];
-      vertices_[i] = {segments_.points[v], v};
+      items_[i] = {segments_.points[v], v};
     }
     tree_ = BoxTree(count, [&](std::int32_t i) {
-      const Point p = vertices_[i].point;
+      const Point p = items_[i].point;
       return Box::of(p, p);
     });
   }
@@ -115,10 +115,9 @@ class TouchSearch {
     const auto wanted = [&](const Box& box, std::int64_t) { return band.meets(box); };
     tree_.visit_leaves_if(wanted, [&](std::int32_t begin, std::int32_t end) {
       for (std::int32_t i = begin; i < end; ++i) {
-        const Vertex& vertex = vertices_[i];
-        if (vertex.number == first || vertex.number == second) continue;
-        if (!touches_interior(a, b, vertex.point, distance)) continue;
-        found.push_back({segment, vertex.number});
+        const auto& [point, vertex] = items_[i];
+        if (vertex == first || vertex == second) continue;
+        if (touches_interior(a, b, point, distance)) found.push_back({segment, vertex});
       }
       return false;
     });
@@ -126,7 +125,7 @@ class TouchSearch {
 
   Segments segments_;
   Reach reach_;
-  std::vector<Vertex> vertices_;
+  std::vector<Item> items_;
   BoxTree tree_;
 };
 

@@ -7,7 +7,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "../base/ids.hpp"
@@ -20,34 +22,33 @@ namespace tinsmith {
 class alignas(kCacheLine) GrownPart {
  public:
   GrownPart() = default;
-  GrownPart(Range own, Triangles triangles, std::int32_t count, Triangle last_shared)
+  GrownPart(Range own, Triangles triangles, std::uint32_t count, Triangle last_shared)
       : own_(own), triangles_(triangles), count_(count) {
-    if (last_shared != kNoTriangle) number_seam(static_cast<std::int32_t>(number(last_shared)));
+    if (last_shared != kNoTriangle) number_seam(last_shared);
   }
 
   // Triangles whose first vertex is in the range.
-  std::int32_t kept() const { return count_ - dropped_; }
+  std::uint32_t kept() const { return count_ - dropped_; }
 
   // Write the kept triangles from number `base` on, with corners renumbered; edges across to
   // other parts are left open. `out` may be the part's own arrays if base is 0.
   template <typename RowOf>
-  void write(std::int32_t base, Triangles out, const RowOf& row_of) {
-    base_ = base;
-    for (std::int32_t triangle = 0; triangle < count_; ++triangle) {
-      const std::int32_t at = number_of(triangle);
-      if (at == kDropped) continue;
-      const std::size_t from = 3 * static_cast<std::size_t>(triangle);
-      const std::int32_t corners[3] = {triangles_.corners[from], triangles_.corners[from + 1],
-                                       triangles_.corners[from + 2]};
-      const std::size_t to = 3 * static_cast<std::size_t>(base + at);
-      for (int k = 0; k < 3; ++k) {
-        out.corners[to + k] = row_of(corners[k]);
-        const std::int32_t neighbor = neighbor_of(from + k);
-        out.neighbors[to + k] = neighbor;
+  void write(std::uint32_t base, Triangles out, const RowOf& row_of) {
+    shift_ = base - dropped_;
+    for (Triangle& t : seam_number_) {
+      if (t != kNoTriangle) t = Triangle{number(t) + base};
+    }
+    for (const Triangle t : Ids<Triangle>(count_)) {
+      const Triangle written = number_of(t);
+      if (written == kNoTriangle) continue;
+      const Vertex corners[3] = {corner(t, 0), corner(t, 1), corner(t, 2)};
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        out.corners[entry_of(written, k)] = number(row_of(corners[k]));
+        const std::int32_t neighbor = neighbor_of(t, k);
+        out.neighbors[entry_of(written, k)] = neighbor;
         if (neighbor == kUnknownNeighbor) {
-          open_.push_back({corners[(k + 1) % 3], corners[(k + 2) % 3],
-                           half_edge(Triangle{static_cast<std::uint32_t>(base + at)},
-                                     static_cast<std::uint32_t>(k))});
+          open_.push_back(
+              {corners[corner_after(k)], corners[corner_before(k)], half_edge(written, k)});
         }
       }
     }
@@ -55,31 +56,29 @@ class alignas(kCacheLine) GrownPart {
 
   // An edge to another part: from vertex to vertex, as the half-edge of a written triangle.
   struct OpenEdge {
-    std::int32_t from, to;
+    Vertex from, to;
     HalfEdge edge;
   };
   const std::vector<OpenEdge>& open() const { return open_; }
 
  private:
-  static constexpr std::int32_t kDropped = -1;
-
-  std::int32_t corner(std::int32_t triangle, int k) const {
-    return triangles_.corners[3 * static_cast<std::size_t>(triangle) + k];
+  Vertex corner(Triangle t, std::uint32_t k) const {
+    return Vertex{triangles_.corners[entry_of(t, k)]};
   }
-  bool is_shared(std::int32_t triangle) const {
-    return std::min(corner(triangle, 1), corner(triangle, 2)) < own_.begin;
+  bool is_shared(Triangle t) const {
+    return number(std::min(corner(t, 1), corner(t, 2))) < own_.begin;
   }
 
   // Number the triangles up to the last vertex that has shared ones.
-  void number_seam(std::int32_t last_shared) {
-    seam_number_.reserve(last_shared + 1);
-    for (std::int32_t begin = 0; begin <= last_shared;) {
-      const std::int32_t vertex = corner(begin, 0);
+  void number_seam(Triangle last_shared) {
+    seam_number_.reserve(std::size_t{number(last_shared)} + 1);
+    for (std::uint32_t begin = 0; begin <= number(last_shared);) {
+      const Vertex vertex = corner(Triangle{begin}, 0);
       bool has_shared = false;
-      std::int32_t end = begin;
-      for (; end < count_ && corner(end, 0) == vertex; ++end) {
-        has_shared |= is_shared(end);
-        seam_number_.push_back(end - dropped_);
+      std::uint32_t end = begin;
+      for (; end < count_ && corner(Triangle{end}, 0) == vertex; ++end) {
+        has_shared |= is_shared(Triangle{end});
+        seam_number_.push_back(Triangle{end - dropped_});
       }
       if (has_shared) number_group(begin, end);
       begin = end;
@@ -87,59 +86,60 @@ class alignas(kCacheLine) GrownPart {
   }
 
   // Triangles of one vertex, some of them shared: the others in canonical order.
-  void number_group(std::int32_t begin, std::int32_t end) {
-    std::vector<std::int32_t> kept;
-    for (std::int32_t triangle = begin; triangle < end; ++triangle) {
-      if (!is_shared(triangle)) kept.push_back(triangle);
-      seam_number_[triangle] = kDropped;
+  void number_group(std::uint32_t begin, std::uint32_t end) {
+    std::vector<Triangle> kept;
+    for (std::uint32_t i = begin; i < end; ++i) {
+      if (!is_shared(Triangle{i})) kept.push_back(Triangle{i});
+      seam_number_[i] = kNoTriangle;
     }
     sort_canonically(kept);
-    std::int32_t next = begin - dropped_;
-    for (const std::int32_t triangle : kept) seam_number_[triangle] = next++;
+    std::uint32_t next = begin - dropped_;
+    for (const Triangle t : kept) seam_number_[number(t)] = Triangle{next++};
     dropped_ = end - next;
   }
 
   // Triangles of one vertex: sectors by the vertex they start at, then counter-clockwise.
-  void sort_canonically(std::vector<std::int32_t>& kept) const {
-    std::vector<std::int32_t> sorted;
-    const auto starting_at = [&](std::int32_t vertex) {
+  void sort_canonically(std::vector<Triangle>& kept) const {
+    std::vector<Triangle> sorted;
+    const auto starting_at = [&](Vertex vertex) {
       return std::find_if(kept.begin(), kept.end(),
-                          [&](std::int32_t t) { return corner(t, 1) == vertex; });
+                          [&](Triangle t) { return corner(t, 1) == vertex; });
     };
-    std::vector<std::int32_t> starts;
-    for (const std::int32_t t : kept) {
-      const bool follows = std::any_of(kept.begin(), kept.end(), [&](std::int32_t before) {
+    std::vector<Triangle> starts;
+    for (const Triangle t : kept) {
+      const bool follows = std::any_of(kept.begin(), kept.end(), [&](Triangle before) {
         return corner(before, 2) == corner(t, 1);
       });
       if (!follows) starts.push_back(t);
     }
     std::sort(starts.begin(), starts.end(),
-              [this](std::int32_t a, std::int32_t b) { return corner(a, 1) < corner(b, 1); });
-    for (const std::int32_t start : starts) {
+              [this](Triangle a, Triangle b) { return corner(a, 1) < corner(b, 1); });
+    for (const Triangle start : starts) {
       auto at = std::find(kept.begin(), kept.end(), start);
       for (; at != kept.end(); at = starting_at(corner(sorted.back(), 2))) sorted.push_back(*at);
     }
     kept = std::move(sorted);
   }
 
-  std::int32_t number_of(std::int32_t triangle) const {
-    const bool is_at_seam = triangle < static_cast<std::int32_t>(seam_number_.size());
-    return is_at_seam ? seam_number_[triangle] : triangle - dropped_;
+  // Among those written, kNoTriangle if it is dropped.
+  Triangle number_of(Triangle t) const {
+    const bool is_at_seam = number(t) < seam_number_.size();
+    return is_at_seam ? seam_number_[number(t)] : Triangle{number(t) + shift_};
   }
 
-  std::int32_t neighbor_of(std::size_t half_edge) const {
-    const std::int32_t neighbor = triangles_.neighbors[half_edge];
+  std::int32_t neighbor_of(Triangle t, std::uint32_t k) const {
+    const std::int32_t neighbor = triangles_.neighbors[entry_of(t, k)];
     if (neighbor < 0) return neighbor;
-    const std::int32_t at = number_of(neighbor);
-    return at == kDropped ? kUnknownNeighbor : base_ + at;
+    const Triangle written = number_of(triangle_numbered(neighbor));
+    return written == kNoTriangle ? kUnknownNeighbor : index_of(written);
   }
 
   Range own_{0, 0};
   Triangles triangles_{nullptr, nullptr};
-  std::int32_t count_ = 0;
-  std::int32_t dropped_ = 0;
-  std::int32_t base_ = 0;
-  std::vector<std::int32_t> seam_number_;  // of the first triangles; the rest follow on
+  std::uint32_t count_ = 0;
+  std::uint32_t dropped_ = 0;
+  std::uint32_t shift_ = 0;            // of the triangles behind the seam, when they are written
+  std::vector<Triangle> seam_number_;  // of the first triangles, from 0 until they are written
   std::vector<OpenEdge> open_;
 };
 
@@ -161,8 +161,8 @@ inline void join_open_edges(const std::vector<GrownPart>& parts, Triangles out) 
       continue;
     }
     const HalfEdge e = open[i].edge, f = open[i + 1].edge;
-    out.neighbors[entry_of(e)] = static_cast<std::int32_t>(number(triangle_of(f)));
-    out.neighbors[entry_of(f)] = static_cast<std::int32_t>(number(triangle_of(e)));
+    out.neighbors[entry_of(e)] = index_of(triangle_of(f));
+    out.neighbors[entry_of(f)] = index_of(triangle_of(e));
     ++i;
   }
 }

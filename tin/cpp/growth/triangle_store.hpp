@@ -21,22 +21,22 @@ struct Triangles {
 // have one each, on cache lines of its own.
 class alignas(kCacheLine) TriangleStore {
  public:
-  explicit TriangleStore(Triangles enough) : arrays_(enough), capacity_(INT32_MAX) {}
+  explicit TriangleStore(Triangles enough) : arrays_(enough), capacity_(UINT32_MAX) {}
   explicit TriangleStore(std::int64_t expected) { enlarge(expected); }
 
-  std::int32_t size() const { return size_; }
-  Triangle next() const { return Triangle{static_cast<std::uint32_t>(size_)}; }
+  std::uint32_t size() const { return size_; }
+  Triangle next() const { return Triangle{size_}; }
   Triangles arrays() const { return arrays_; }
 
   // The new triangle's edges have no neighbours yet.
   Triangle add(Vertex a, Vertex b, Vertex c) {
     if (size_ == capacity_) enlarge(std::int64_t{2} * capacity_);
-    const std::size_t at = 3 * static_cast<std::size_t>(size_);
+    const std::size_t at = entry_of(next(), 0);
     arrays_.corners[at] = number(a);
     arrays_.corners[at + 1] = number(b);
     arrays_.corners[at + 2] = number(c);
     std::fill_n(arrays_.neighbors + at, 3, kUnknownNeighbor);
-    return Triangle{static_cast<std::uint32_t>(size_++)};
+    return Triangle{size_++};
   }
 
   // Two half-edges are the sides of one edge; one of them may be the outside or unknown.
@@ -48,25 +48,24 @@ class alignas(kCacheLine) TriangleStore {
 
  private:
   static std::int32_t neighbor_at(HalfEdge beyond) {
-    return beyond == kOutside ? kNoNeighbor
-                              : static_cast<std::int32_t>(number(triangle_of(beyond)));
+    return beyond == kOutside ? kNoNeighbor : index_of(triangle_of(beyond));
   }
 
   void enlarge(std::int64_t capacity) {
     StreamedArray<std::int32_t> corners = streamed_array<std::int32_t>(3 * capacity);
     StreamedArray<std::int32_t> neighbors = streamed_array<std::int32_t>(3 * capacity);
-    std::copy_n(arrays_.corners, 3 * static_cast<std::int64_t>(size_), corners.get());
-    std::copy_n(arrays_.neighbors, 3 * static_cast<std::int64_t>(size_), neighbors.get());
+    std::copy_n(arrays_.corners, std::size_t{3} * size_, corners.get());
+    std::copy_n(arrays_.neighbors, std::size_t{3} * size_, neighbors.get());
     corners_ = std::move(corners);
     neighbors_ = std::move(neighbors);
     arrays_ = {corners_.get(), neighbors_.get()};
-    capacity_ = static_cast<std::int32_t>(capacity);
+    capacity_ = static_cast<std::uint32_t>(capacity);
   }
 
   StreamedArray<std::int32_t> corners_, neighbors_;
   Triangles arrays_{nullptr, nullptr};
-  std::int32_t capacity_ = 0;
-  std::int32_t size_ = 0;
+  std::uint32_t capacity_ = 0;
+  std::uint32_t size_ = 0;
 };
 
 }  // namespace tinsmith

@@ -29,7 +29,7 @@ class CanonicalOrder {
       : grid_(grid),
         triangles_(mesh.triangles.get()),
         count_(mesh.count),
-        number_of_(scratch_array<std::int32_t>(mesh.count)),
+        number_of_(scratch_array<Triangle>(mesh.count)),
         end_of_(grid.count() + std::size_t{1}) {}
 
   // `out` has room for all triangles but the ghosts. Returns false if `keep_going` did.
@@ -51,20 +51,20 @@ class CanonicalOrder {
   // After `write`: flags[3 * triangle + corner] = is_set(half-edge of the mesh).
   template <typename Flag, typename IsSet>
   void write_flags(Flag* flags, IsSet&& is_set) const {
-    for (std::uint32_t t = 0; t < count_; ++t) {
-      if (number_of_[t] == kNoNeighbor) continue;
-      const std::uint32_t corner = first_corner(triangles_[t]);
-      Flag* const flag = flags + std::int64_t{3} * number_of_[t];
-      flag[0] = is_set(half_edge(Triangle{t}, corner));
-      flag[1] = is_set(half_edge(Triangle{t}, corner_after(corner)));
-      flag[2] = is_set(half_edge(Triangle{t}, corner_before(corner)));
+    for (const Triangle t : Ids<Triangle>(count_)) {
+      if (number_of_[number(t)] == kNoTriangle) continue;
+      const std::uint32_t corner = first_corner(triangles_[number(t)]);
+      Flag* const flag = flags + entry_of(number_of_[number(t)], 0);
+      flag[0] = is_set(half_edge(t, corner));
+      flag[1] = is_set(half_edge(t, corner_after(corner)));
+      flag[2] = is_set(half_edge(t, corner_before(corner)));
     }
   }
 
  private:
   struct Ray {  // a triangle of the star in hand, without the vertex that owns it
-    std::int32_t from, to;
-    std::int32_t triangle;
+    Vertex from, to;
+    Triangle triangle;
     std::int32_t next;  // the ray that starts at `to`
     bool is_start;      // no ray ends at `from`
   };
@@ -114,7 +114,7 @@ class CanonicalOrder {
       const std::uint32_t first = first_corner(triangle);
       const Vertex owner = triangle.corner[first];
       if (owner == kGhost) {
-        number_of_[t] = kNoNeighbor;
+        number_of_[t] = kNoTriangle;
         continue;
       }
       const std::int32_t at = end_of_[number(owner) + 1]++;
@@ -132,7 +132,7 @@ class CanonicalOrder {
       const std::int32_t after = end_of_[v + 1];
       const std::int32_t owned = after - begin;
       if (owned == 1) {
-        number_of_[neighbors_[begin]] = begin;
+        number_of_[neighbors_[begin]] = triangle_numbered(begin);
       } else if (owned == 2) {
         order_two(begin);
       } else if (owned > 2) {
@@ -152,15 +152,16 @@ class CanonicalOrder {
     corner[2] = is_swapped ? other_to : to;
     corner[4] = is_swapped ? from : other_from;
     corner[5] = is_swapped ? to : other_to;
-    number_of_[neighbors_[begin]] = begin + is_swapped;
-    number_of_[neighbors_[begin + 1]] = begin + !is_swapped;
+    number_of_[neighbors_[begin]] = triangle_numbered(begin + is_swapped);
+    number_of_[neighbors_[begin + 1]] = triangle_numbered(begin + !is_swapped);
   }
 
   void order_star(Vertex v, std::int32_t begin, std::int32_t end) {
     rays_.clear();
     for (std::int32_t i = begin; i < end; ++i) {
       const std::int32_t* const corner = corners_ + std::int64_t{3} * i;
-      rays_.push_back({corner[1], corner[2], neighbors_[i], kNoRay, true});
+      rays_.push_back(
+          {Vertex{corner[1]}, Vertex{corner[2]}, triangle_numbered(neighbors_[i]), kNoRay, true});
     }
     if (end - begin <= kFewRays) {
       link_few_rays();
@@ -198,7 +199,7 @@ class CanonicalOrder {
     for (Ray& ray : rays_) {
       const auto found =
           std::lower_bound(rays_.begin(), rays_.end(), ray.to,
-                           [](const Ray& other, std::int32_t to) { return other.from < to; });
+                           [](const Ray& other, Vertex to) { return other.from < to; });
       const bool is_found = found != rays_.end() && found->from == ray.to;
       link(ray, is_found ? static_cast<std::int32_t>(found - rays_.begin()) : kNoRay);
     }
@@ -207,46 +208,48 @@ class CanonicalOrder {
   std::int32_t nearest_ray(Vertex v) const {
     const Point center = grid_.point(v);
     const auto is_nearer = [&](const Ray& a, const Ray& b) {
-      const int order = compare_distances(center, grid_.point(static_cast<Vertex>(a.from)),
-                                          grid_.point(static_cast<Vertex>(b.from)));
+      const int order = compare_distances(center, grid_.point(a.from), grid_.point(b.from));
       return order < 0 || (order == 0 && a.from < b.from);
     };
     const auto nearest = std::min_element(rays_.begin(), rays_.end(), is_nearer);
     return static_cast<std::int32_t>(nearest - rays_.begin());
   }
 
-  // Returns the number after the sector's last.
-  std::int32_t number_sector(std::int32_t start, std::int32_t number) {
+  // Returns the place after the sector's last.
+  std::int32_t number_sector(std::int32_t start, std::int32_t place) {
     std::int32_t i = start;
     do {
       const Ray& ray = rays_[i];
-      std::int32_t* const corner = corners_ + std::int64_t{3} * number;
-      corner[1] = ray.from;
-      corner[2] = ray.to;
-      number_of_[ray.triangle] = number++;
+      std::int32_t* const corner = corners_ + std::int64_t{3} * place;
+      corner[1] = number(ray.from);
+      corner[2] = number(ray.to);
+      number_of_[number(ray.triangle)] = triangle_numbered(place++);
       i = ray.next;
     } while (i != kNoRay && i != start);
-    return number;
+    return place;
   }
 
   void write_neighbors(std::int64_t begin, std::int64_t end) {
-    const std::int32_t* const number_of = number_of_.get();
+    const Triangle* const number_of = number_of_.get();
     for (std::int64_t t = begin; t < end; ++t) {
-      if (number_of[t] == kNoNeighbor) continue;
+      if (number_of[t] == kNoTriangle) continue;
       const GhostTriangle& triangle = triangles_[t];
       const std::uint32_t first = first_corner(triangle);
-      std::int32_t* const neighbor = neighbors_ + std::int64_t{3} * number_of[t];
-      neighbor[0] = number_of[number(triangle_of(triangle.twin[first]))];
-      neighbor[1] = number_of[number(triangle_of(triangle.twin[corner_after(first)]))];
-      neighbor[2] = number_of[number(triangle_of(triangle.twin[corner_before(first)]))];
+      const auto beyond = [&](std::uint32_t corner) {
+        return index_of(number_of[number(triangle_of(triangle.twin[corner]))]);
+      };
+      std::int32_t* const neighbor = neighbors_ + entry_of(number_of[t], 0);
+      neighbor[0] = beyond(first);
+      neighbor[1] = beyond(corner_after(first));
+      neighbor[2] = beyond(corner_before(first));
     }
   }
 
   const PointGrid& grid_;
   const GhostTriangle* triangles_;
   std::uint32_t count_;
-  ScratchArray<std::int32_t> number_of_;  // of each triangle of the mesh; ghosts have none
-  std::vector<std::int32_t> end_of_;      // of each owner's triangles, the ghost's in front
+  ScratchArray<Triangle> number_of_;  // of each triangle of the mesh; kNoTriangle of ghosts
+  std::vector<std::int32_t> end_of_;  // of each owner's triangles, the ghost's in front
   std::int32_t* corners_ = nullptr;
   std::int32_t* neighbors_ = nullptr;
   std::vector<Ray> rays_;

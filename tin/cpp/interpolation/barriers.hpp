@@ -19,13 +19,6 @@ inline bool is_open(const Surface& surface, const bool* barriers, Triangle t, st
          surface.is_triangle(surface.neighbor(t, k));
 }
 
-inline std::uint32_t corner_facing(const Surface& surface, Triangle t, Triangle neighbor) {
-  for (std::uint32_t k = 0; k < 2; ++k) {
-    if (surface.neighbor(t, k) == neighbor) return k;
-  }
-  return 2;
-}
-
 // The triangles of a surface after Lawson's flips of every open edge that is not locally Delaunay:
 // the constrained Delaunay triangulation of the vertices, with barriers and the boundary as
 // constraints.
@@ -69,7 +62,7 @@ class FlippedTriangles {
   // A neighbour that does not name this triangle as its own neighbour is left alone.
   static bool is_illegal(const Surface& surface, Triangle t, std::uint32_t k) {
     const Triangle other = surface.neighbor(t, k);
-    const std::uint32_t j = corner_facing(surface, other, t);
+    const std::uint32_t j = surface.corner_facing(other, t);
     if (surface.neighbor(other, j) != t) return false;
     return in_circle(surface.corner(t, 0), surface.corner(t, 1), surface.corner(t, 2),
                      surface.corner(other, j)) > 0;
@@ -98,13 +91,13 @@ class FlippedTriangles {
   //        \ | /             \   /
   //          b                 b
   void flip(Triangle left, std::uint32_t a) {
-    const Triangle right{static_cast<std::uint32_t>(neighbors_[entry_of(left, a)])};
-    const std::uint32_t d = corner_facing(surface(), right, left);
+    const Triangle right = surface().neighbor(left, a);
+    const std::uint32_t d = surface().corner_facing(right, left);
     const std::uint32_t b = corner_after(a), c = corner_before(a);
     const Side ab = side(left, c), ca = side(left, b);
     const Side dc = side(right, corner_before(d)), bd = side(right, corner_after(d));
-    const std::int32_t at_a = corners_[entry_of(left, a)], at_b = corners_[entry_of(left, b)];
-    const std::int32_t at_c = corners_[entry_of(left, c)], at_d = corners_[entry_of(right, d)];
+    const Vertex at_a = surface().vertex(left, a), at_b = surface().vertex(left, b);
+    const Vertex at_c = surface().vertex(left, c), at_d = surface().vertex(right, d);
     set_triangle(left, {at_a, at_b, at_d}, bd, {right, false}, ab);
     set_triangle(right, {at_a, at_d, at_c}, dc, ca, {left, false});
     rename(bd.beyond, right, left);
@@ -118,34 +111,28 @@ class FlippedTriangles {
     bool is_barrier;
   };
   struct Corners {
-    std::int32_t first, second, third;
+    Vertex first, second, third;
   };
 
   Side side(Triangle t, std::uint32_t k) const {
-    const std::size_t entry = entry_of(t, k);
-    return {Triangle{static_cast<std::uint32_t>(neighbors_[entry])}, barriers_[entry] != 0};
+    return {surface().neighbor(t, k), barriers_[entry_of(t, k)] != 0};
   }
 
   // The sides lie opposite the first, second and third corner.
   void set_triangle(Triangle t, Corners corners, Side first, Side second, Side third) {
-    const std::int32_t vertices[3] = {corners.first, corners.second, corners.third};
+    const Vertex vertices[3] = {corners.first, corners.second, corners.third};
     const Side sides[3] = {first, second, third};
     for (std::uint32_t k = 0; k < 3; ++k) {
-      corners_[entry_of(t, k)] = vertices[k];
-      neighbors_[entry_of(t, k)] = static_cast<std::int32_t>(number(sides[k].beyond));
+      corners_[entry_of(t, k)] = number(vertices[k]);
+      neighbors_[entry_of(t, k)] = index_of(sides[k].beyond);
       barriers_[entry_of(t, k)] = sides[k].is_barrier;
     }
   }
 
   void rename(Triangle t, Triangle from, Triangle to) {
     if (!given_.is_triangle(t)) return;
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      std::int32_t& neighbor = neighbors_[entry_of(t, k)];
-      if (neighbor == static_cast<std::int32_t>(number(from))) {
-        neighbor = static_cast<std::int32_t>(number(to));
-        return;
-      }
-    }
+    const std::uint32_t k = surface().corner_facing(t, from);
+    if (surface().neighbor(t, k) == from) neighbors_[entry_of(t, k)] = index_of(to);
   }
 
   Surface given_{};

@@ -21,7 +21,7 @@
 #include <limits>
 #include <vector>
 
-#include "double_double.hpp"
+#include "../predicates/double_double.hpp"
 #include "long_number.hpp"
 #include "neighbor_ring.hpp"
 
@@ -41,7 +41,7 @@ inline double difference<double>(double a, double b) {
 template <typename Real>
 constexpr int kKeptDigits = 53;
 template <>
-inline constexpr int kKeptDigits<DoubleDouble> = 104;
+inline constexpr int kKeptDigits<TwoDoubles> = 104;
 template <>
 inline constexpr int kKeptDigits<LongNumber> = 300;
 
@@ -101,8 +101,8 @@ class NaturalNeighbors {
     const auto& ring = cavity_.ring();
     scratch.neighbors.clear();
     for (const auto& edge : ring) {
-      const double* row = surface_.points + 3 * static_cast<std::size_t>(number(edge.start));
-      scratch.neighbors.push_back({difference<Real>(row[0], p.x), difference<Real>(row[1], p.y)});
+      const Point v = surface_.point(edge.start);
+      scratch.neighbors.push_back({difference<Real>(v.x, p.x), difference<Real>(v.y, p.y)});
     }
     scratch.weights.assign(ring.size(), Real(0.0));
     scratch.cancelled = scratch.extent = 0.0;
@@ -237,10 +237,10 @@ class NaturalNeighbors {
   double weighted_mean() const {
     const auto& ring = cavity_.ring();
     const std::size_t main = std::max_element(weights_.begin(), weights_.end()) - weights_.begin();
-    const double z = elevation_of(ring[main].start);
+    const double z = surface_.elevation(ring[main].start);
     double half_rise = 0.0, total = 0.0, lowest = z, highest = z;
     for (std::size_t i = 0; i < ring.size(); ++i) {
-      const double z_i = elevation_of(ring[i].start);
+      const double z_i = surface_.elevation(ring[i].start);
       half_rise += weights_[i] * (0.5 * z_i - 0.5 * z);
       total += weights_[i];
       lowest = std::min(lowest, z_i);
@@ -249,16 +249,12 @@ class NaturalNeighbors {
     return std::min(std::max(z + 2.0 * (half_rise / total), lowest), highest);
   }
 
-  double elevation_of(Vertex v) const {
-    return surface_.points[3 * static_cast<std::size_t>(number(v)) + 2];
-  }
-
   Surface surface_;
   const bool* barriers_;
   NaturalWeights kind_;
   NeighborRing cavity_;
   Scratch<double> doubles_;
-  Scratch<DoubleDouble> double_doubles_;
+  Scratch<TwoDoubles> double_doubles_;
   Scratch<LongNumber> long_numbers_;
   std::vector<double> weights_;
 };

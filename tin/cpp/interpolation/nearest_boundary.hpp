@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <stdexcept>
 #include <vector>
 
 #include "../base/box.hpp"
@@ -30,10 +31,29 @@ class NearestBoundary {
         if (!surface.is_triangle(surface.neighbor(t, k))) found.push_back(half_edge(t, k));
       }
     }
+    if (found.empty()) throw std::invalid_argument("the surface has no boundary");
     const auto count = static_cast<std::int32_t>(found.size());
     const HilbertOrder order(count, [&](std::int32_t i) { return box_of(found[i]).center(); });
     for (std::int32_t i = 0; i < count; ++i) edges_.push_back(found[order[i]]);
     tree_ = BoxTree(count, [this](std::int32_t i) { return box_of(edges_[i]); });
+  }
+
+  // The edge nearest to each of many points, which are finite, as 3 * triangle + corner, and the
+  // share of the way along it. False if asked to stop.
+  template <typename KeepGoing>
+  bool find_all(const Point* points, std::int32_t count, std::int32_t* edges, double* shares,
+                KeepGoing&& keep_going) const {
+    constexpr std::int32_t kPointsPerQuestion = 4096;
+    const HilbertOrder order(points, count);
+    HalfEdge last = kNoHalfEdge;
+    for (std::int32_t i = 0; i < count; ++i) {
+      if (i % kPointsPerQuestion == 0 && !keep_going()) return false;
+      const BoundaryPlace place = find(points[order[i]], last);
+      last = place.edge;
+      edges[order[i]] = static_cast<std::int32_t>(entry_of(place.edge));
+      shares[order[i]] = place.share;
+    }
+    return true;
   }
 
   // Of several at the same distance, as doubles compare, that on the smallest edge. The edge that

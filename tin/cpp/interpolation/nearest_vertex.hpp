@@ -24,18 +24,13 @@ class NearestVertex {
   Vertex find_ordered(Point p, Triangle t) {
     Vertex nearest = surface_.vertex(t, 0);
     for (std::uint32_t k = 1; k < 3; ++k) nearest = nearer(p, nearest, surface_.vertex(t, k));
-    if (point_of(nearest) == p || !ring_.collect(surface_, nullptr, p, t)) return nearest;
+    if (surface_.point(nearest) == p || !ring_.collect(surface_, nullptr, p, t)) return nearest;
     for (const auto& edge : ring_.ring()) nearest = nearer(p, nearest, edge.start);
     return nearest;
   }
 
-  Point point_of(Vertex v) const {
-    const double* row = surface_.points + 3 * static_cast<std::size_t>(number(v));
-    return {row[0], row[1]};
-  }
-
   Vertex nearer(Point p, Vertex one, Vertex other) const {
-    const int further = compare_distances(p, point_of(one), point_of(other));
+    const int further = compare_distances(p, surface_.point(one), surface_.point(other));
     if (further == 0) {
       return ordered_.given_number(one) < ordered_.given_number(other) ? one : other;
     }

@@ -80,7 +80,7 @@ class NeighborRing {
     }
     const auto place = static_cast<std::int32_t>(triangles_.size());
     const auto start = static_cast<std::int32_t>(ring_.size());
-    const std::uint32_t apex = corner_facing(surface, beyond, edge.triangle);
+    const std::uint32_t apex = surface.corner_facing(beyond, edge.triangle);
     triangles_.push_back(beyond);
     open_.push_back({beyond, kEndOfInnerEdge, static_cast<std::int32_t>(inner_.size())});
     inner_.push_back({start, start, edge.place, place});

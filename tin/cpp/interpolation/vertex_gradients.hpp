@@ -10,7 +10,8 @@
 // The equations A g = b have 2 by 2 blocks D on their diagonal, of each sector its own edges. An
 // edge adds (4 2; 2 4) to A and (4 0; 0 4) to D, a barrier to both the same: so all eigenvalues of
 // D^-1 A lie in [1/2, 3/2], and Chebyshev's iteration gains a factor of 2 + sqrt(3) a sweep on any
-// surface, whatever its numbering.
+// surface, whatever its numbering (Golub and Varga, "Chebyshev semi-iterative methods, successive
+// overrelaxation iterative methods, and second order Richardson iterative methods", 1961).
 #pragma once
 
 #include <cmath>
@@ -74,23 +75,22 @@ class VertexGradients {
     for (const Triangle t : Ids<Triangle>(surface_.triangle_count)) {
       for (std::uint32_t k = 0; k < 3; ++k) {
         if (sector_[entry_of(t, k)] != kNoSector) continue;
-        turn_about(t, k, false);
-        turn_about(t, k, true);
+        turn_about(half_edge(t, k), Surface::Turn::kCounterClockwise);
+        turn_about(half_edge(t, k), Surface::Turn::kClockwise);
         ++sector_count_;
       }
     }
   }
 
-  void turn_about(Triangle t, std::uint32_t k, bool is_clockwise) {
-    const Vertex pivot = surface_.vertex(t, k);
+  void turn_about(HalfEdge opposite, Surface::Turn turn) {
     for (;;) {
-      sector_[entry_of(t, k)] = sector_count_;
-      const std::uint32_t side = is_clockwise ? corner_before(k) : corner_after(k);
-      if (!is_open(surface_, barriers_, t, side)) return;
-      t = surface_.neighbor(t, side);
-      k = 0;
-      while (k < 2 && surface_.vertex(t, k) != pivot) ++k;
-      if (sector_[entry_of(t, k)] != kNoSector) return;
+      sector_[entry_of(opposite)] = sector_count_;
+      const std::uint32_t k = corner_of(opposite);
+      const std::uint32_t side =
+          turn == Surface::Turn::kClockwise ? corner_before(k) : corner_after(k);
+      if (!is_open(surface_, barriers_, triangle_of(opposite), side)) return;
+      opposite = surface_.next_about(opposite, turn);
+      if (sector_[entry_of(opposite)] != kNoSector) return;
     }
   }
 

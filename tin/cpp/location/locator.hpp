@@ -1,7 +1,8 @@
 // Point location: which triangle holds a point, and which is the surface's elevation there?
 //
 // A short walk over neighbours, from the triangle of the query before, guesses; a tree of boxes
-// proves. The walk is believed only where floating point is certain that the query lies strictly
+// proves. The walk (a visibility walk of Devillers, Pion and Teillaud, "Walking in a triangulation",
+// 2002, that leaves across the edge with the query furthest beyond it) is believed only where floating point is certain that the query lies strictly
 // inside a triangle. All else - on an edge or a vertex, outside, across a gap, too far away - is
 // decided by testing every triangle whose box holds the query, exactly. So the answer needs no
 // convex boundary, no Delaunay triangles and no sound neighbours.
@@ -30,16 +31,14 @@ class Locator {
         copy_(surface),
         surface_(copy_.surface()),
         tree_(static_cast<std::int32_t>(surface.triangle_count),
-              [&](std::int32_t i) { return surface_.box_of(triangle_at(i)); }) {}
+              [&](std::int32_t i) { return surface_.box_of(triangle_numbered(i)); }) {}
 
   // Triangle of each query, -1 outside. False if asked to stop.
   template <typename KeepGoing>
   bool locate(const Point* queries, std::int64_t count, std::int32_t* result,
               KeepGoing&& keep_going) const {
     return visit_queries(queries, count, keep_going, [&](std::int64_t i, Point, Triangle triangle) {
-      result[i] = triangle == kNoTriangle
-                      ? kNoNeighbor
-                      : static_cast<std::int32_t>(number(copy_.given_number(triangle)));
+      result[i] = index_of(triangle == kNoTriangle ? triangle : copy_.given_number(triangle));
     });
   }
 
@@ -59,7 +58,7 @@ class Locator {
   void visit_near(const Near& band, Visit&& visit) const {
     const auto wanted = [&](const Box& box, std::int64_t) { return band.meets(box); };
     tree_.visit_leaves_if(wanted, [&](std::int32_t begin, std::int32_t end) {
-      for (std::int32_t i = begin; i < end; ++i) visit(copy_.given_number(triangle_at(i)));
+      for (std::int32_t i = begin; i < end; ++i) visit(copy_.given_number(triangle_numbered(i)));
       return false;
     });
   }
@@ -105,8 +104,6 @@ class Locator {
   static constexpr std::int32_t kBlock = 4096;  // fits the first-level cache
   static constexpr int kLongestWalk = 24;       // as costly as a search
 
-  static Triangle triangle_at(std::int32_t i) { return Triangle{static_cast<std::uint32_t>(i)}; }
-
   Triangle find(Point p, Triangle start) const {
     const Triangle guess = start == kNoTriangle ? kNoTriangle : walk(p, start);
     return guess == kNoTriangle ? search(p) : guess;
@@ -143,7 +140,7 @@ class Locator {
     Triangle best = kNoTriangle, smallest = kNoTriangle;  // the largest number of all
     tree_.visit_leaves(p, [&](std::int32_t begin, std::int32_t end) {
       for (std::int32_t i = begin; i < end; ++i) {
-        const Triangle triangle = triangle_at(i), given = copy_.given_number(triangle);
+        const Triangle triangle = triangle_numbered(i), given = copy_.given_number(triangle);
         if (given > smallest) continue;
         const Within within = position(p, triangle);
         if (within == Within::kOutside) continue;

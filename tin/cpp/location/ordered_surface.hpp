@@ -31,11 +31,12 @@ class OrderedSurface {
         given_(scratch_array<Triangle>(given.triangle_count)),
         point_count_(given.point_count),
         triangle_count_(given.triangle_count) {
-    const ScratchArray<std::int32_t> rank = order_points(given);
-    const ScratchArray<Triangle> ordered = order_triangles(given, rank.get());
+    const ScratchArray<Vertex> vertices = order_points(given);
+    const ScratchArray<Triangle> ordered = order_triangles(given, vertices.get());
     for (const Triangle t : Ids<Triangle>(triangle_count_)) {
       for (std::uint32_t k = 0; k < 3; ++k) {
-        corners_[entry_of(t, k)] = rank[number(given.vertex(given_number(t), k))];
+        const Vertex v = vertices[number(given.vertex(given_number(t), k))];
+        corners_[entry_of(t, k)] = number(v);
       }
       if (given.neighbors != nullptr) join(t, given, ordered.get());
     }
@@ -64,38 +65,35 @@ class OrderedSurface {
 
  private:
   // Returns the new number of each point.
-  ScratchArray<std::int32_t> order_points(const Surface& given) {
-    const HilbertOrder order(point_count_, [&](std::int32_t i) {
-      const double* row = given.points + 3 * static_cast<std::size_t>(i);
-      return Point{row[0], row[1]};
-    });
-    auto rank = scratch_array<std::int32_t>(point_count_);
-    for (std::int32_t i = 0; i < point_count_; ++i) {
-      const double* row = given.points + 3 * static_cast<std::size_t>(order[i]);
-      std::copy(row, row + 3, points_.get() + 3 * static_cast<std::size_t>(i));
-      given_vertices_[i] = Vertex{order[i]};
-      rank[order[i]] = i;
+  ScratchArray<Vertex> order_points(const Surface& given) {
+    const HilbertOrder order(point_count_, [&](std::int32_t i) { return given.point(Vertex{i}); });
+    auto vertices = scratch_array<Vertex>(point_count_);
+    for (const Vertex v : Ids<Vertex>(point_count_)) {
+      const Vertex its = Vertex{order[number(v)]};
+      std::copy_n(given.row(its), 3, points_.get() + 3 * static_cast<std::size_t>(number(v)));
+      given_vertices_[number(v)] = its;
+      vertices[number(its)] = v;
     }
-    return rank;
+    return vertices;
   }
 
   // By their first vertices (counting sort). Returns the new number of each triangle.
-  ScratchArray<Triangle> order_triangles(const Surface& given, const std::int32_t* rank) {
-    auto first = scratch_array<std::int32_t>(triangle_count_);
+  ScratchArray<Triangle> order_triangles(const Surface& given, const Vertex* vertices) {
+    auto first = scratch_array<Vertex>(triangle_count_);
     auto end = scratch_array<std::uint32_t>(std::size_t(point_count_));
     std::fill(end.get(), end.get() + point_count_, 0u);
     for (const Triangle t : Ids<Triangle>(triangle_count_)) {
-      const auto rank_of = [&](std::uint32_t k) { return rank[number(given.vertex(t, k))]; };
-      first[number(t)] = std::min({rank_of(0), rank_of(1), rank_of(2)});
-      ++end[first[number(t)]];
+      const auto corner = [&](std::uint32_t k) { return vertices[number(given.vertex(t, k))]; };
+      first[number(t)] = std::min({corner(0), corner(1), corner(2)});
+      ++end[number(first[number(t)])];
     }
     std::uint32_t total = 0;
     for (std::int32_t i = 0; i < point_count_; ++i) total += std::exchange(end[i], total);
     auto ordered = scratch_array<Triangle>(triangle_count_);
     for (const Triangle t : Ids<Triangle>(triangle_count_)) {
-      const std::uint32_t place = end[first[number(t)]]++;
-      ordered[number(t)] = Triangle{place};
-      given_[place] = t;
+      const Triangle place{end[number(first[number(t)])]++};
+      ordered[number(t)] = place;
+      given_[number(place)] = t;
     }
     return ordered;
   }
@@ -103,9 +101,8 @@ class OrderedSurface {
   void join(Triangle t, const Surface& given, const Triangle* ordered) {
     for (std::uint32_t k = 0; k < 3; ++k) {
       const Triangle beyond = given.neighbor(given_number(t), k);
-      neighbors_[entry_of(t, k)] = given.is_triangle(beyond)
-                                       ? static_cast<std::int32_t>(number(ordered[number(beyond)]))
-                                       : kNoNeighbor;
+      neighbors_[entry_of(t, k)] =
+          given.is_triangle(beyond) ? index_of(ordered[number(beyond)]) : kNoNeighbor;
     }
   }
 

@@ -21,6 +21,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <stdexcept>
 #include <vector>
 
 #include "../constraints/intersection_point.hpp"
@@ -35,11 +36,22 @@ struct TraceBreaks {
   std::vector<Point> places;
   std::vector<double> elevations;       // NaN where there is no surface
   std::vector<double> ratios;           // 0 at the first end, 1 at the second
-  std::vector<std::int32_t> vertices;   // that are there, else -1
+  std::vector<Vertex> vertices;         // that are there, else kNoVertex
   std::vector<std::int32_t> edges;      // crossed, or on which an end lies, else -1
   std::vector<std::int32_t> triangles;  // through which the segment goes on, -1 outside
   std::vector<std::int32_t> along;      // edge along which it goes on, else -1
   // Edges stand as 3 * triangle + corner opposite, of their smaller triangle.
+
+  std::size_t size() const { return places.size(); }
+  void resize(std::size_t count) {
+    places.resize(count);
+    elevations.resize(count);
+    ratios.resize(count);
+    vertices.resize(count);
+    edges.resize(count);
+    triangles.resize(count);
+    along.resize(count);
+  }
 };
 
 class SegmentTrace {
@@ -72,17 +84,19 @@ class SegmentTrace {
   struct Touch {
     Key key;
     Triangle triangle;
-    std::int32_t vertex, edge;
+    Vertex vertex;
+    HalfEdge edge;
   };
   struct Way {
     Key from, to;
     Triangle triangle;
-    std::int32_t along;
+    HalfEdge along;
   };
   struct Spot {
     Key key;
     Triangle triangle;  // the smallest
-    std::int32_t vertex, edge;
+    Vertex vertex;
+    HalfEdge edge;
     Point place;
     double ratio, elevation;
     std::int32_t way;  // that goes on from here
@@ -92,7 +106,8 @@ class SegmentTrace {
   // A vertex or an edge of a triangle that the line through A-B meets, and which side of it A and
   // B are: +1 where the spot is after the end, 0 there, -1 before it.
   struct Feature {
-    std::int32_t vertex, edge;
+    Vertex vertex;
+    HalfEdge edge;
     Key key;
     int from_a, from_b;
   };
@@ -126,7 +141,7 @@ class SegmentTrace {
     const bool is_same_way = side[third] > 0;
     const std::uint32_t first = is_same_way ? corner_after(third) : corner_before(third);
     const std::uint32_t second = is_same_way ? corner_before(third) : corner_after(third);
-    add_way(t, vertex_feature(t, first), vertex_feature(t, second), number_of(t, third));
+    add_way(t, vertex_feature(t, first), vertex_feature(t, second), half_edge(t, third));
   }
 
   // The line comes in over the edge from its left to its right, and goes out over the other.
@@ -138,29 +153,30 @@ class SegmentTrace {
       if (side[k] < 0 && side[next] > 0) out = edge_feature(t, k, false);
       if (side[k] == 0) (side[next] > 0 ? out : in) = vertex_feature(t, k);
     }
-    add_way(t, in, out, kNone);
+    add_way(t, in, out, kNoHalfEdge);
   }
 
   Feature vertex_feature(Triangle t, std::uint32_t corner) const {
-    const Point v = surface_.corner(t, corner);
-    const auto key = static_cast<Key>(number(surface_.vertex(t, corner)));
-    return {static_cast<std::int32_t>(key), kNone, key << 32 | key, order(a_, v), order(b_, v)};
+    const Vertex v = surface_.vertex(t, corner);
+    const Point p = surface_.point(v);
+    return {v, kNoHalfEdge, key_of(v, v), order(a_, p), order(b_, p)};
   }
 
   // Edge from corner k to the next, with the triangle on its left.
   Feature edge_feature(Triangle t, std::uint32_t k, bool is_in) const {
     const std::uint32_t next = corner_after(k);
-    const Point p = surface_.corner(t, k), q = surface_.corner(t, next);
-    const auto u = static_cast<Key>(number(surface_.vertex(t, k)));
-    const auto v = static_cast<Key>(number(surface_.vertex(t, next)));
+    const Vertex u = surface_.vertex(t, k), v = surface_.vertex(t, next);
+    const Point p = surface_.point(u), q = surface_.point(v);
     const int at_a = orientation(p, q, a_), at_b = orientation(p, q, b_);
-    return {kNone, number_of(t, corner_before(k)), std::min(u, v) << 32 | std::max(u, v),
+    return {kNoVertex, half_edge(t, corner_before(k)), key_of(std::min(u, v), std::max(u, v)),
             is_in ? -at_a : at_a, is_in ? -at_b : at_b};
   }
 
-  static std::int32_t number_of(Triangle t, std::uint32_t opposite) {
-    return static_cast<std::int32_t>(entry_of(t, opposite));
+  static Key key_of(Vertex smaller, Vertex larger) {
+    return static_cast<Key>(number(smaller)) << 32 | static_cast<Key>(number(larger));
   }
+  static Vertex smaller_of(Key key) { return Vertex{static_cast<std::int32_t>(key >> 32)}; }
+  static Vertex larger_of(Key key) { return Vertex{static_cast<std::int32_t>(key & UINT32_MAX)}; }
 
   // Of points on the line: +1 if q comes after p, -1 before.
   int order(Point p, Point q) const {
@@ -169,13 +185,13 @@ class SegmentTrace {
   }
 
   // What of the way from `in` to `out` lies within the segment.
-  void add_way(Triangle t, const Feature& in, const Feature& out, std::int32_t along) {
+  void add_way(Triangle t, const Feature& in, const Feature& out, HalfEdge along) {
     if (in.from_b > 0 || out.from_a < 0) return;
     if (in.from_b == 0 || out.from_a == 0) {
       add_touch(t, in.from_b == 0 ? in : out);
       return;
     }
-    const Feature inner{kNone, along, 0, 0, 0};
+    const Feature inner{kNoVertex, along, 0, 0, 0};
     const Key from = in.from_a < 0 ? add_end(t, inner, kFirstEnd) : add_touch(t, in);
     const Key to = out.from_b > 0 ? add_end(t, inner, kSecondEnd) : add_touch(t, out);
     ways_.push_back({from, to, t, along});
@@ -208,10 +224,10 @@ class SegmentTrace {
       }
       Spot& spot = spots_.back();
       spot.vertex = std::max(spot.vertex, touch.vertex);
-      if (spot.edge == kNone) spot.edge = touch.edge;
+      if (spot.edge == kNoHalfEdge) spot.edge = touch.edge;
     }
     for (Spot& spot : spots_) {
-      if (spot.vertex != kNone) spot.edge = kNone;
+      if (spot.vertex != kNoVertex) spot.edge = kNoHalfEdge;
       measure(spot);
     }
   }
@@ -230,7 +246,7 @@ class SegmentTrace {
     for (std::size_t i = 0; i < ways_.size(); ++i) {
       const Way& way = ways_[i];
       if (i > 0 && ways_[i - 1].from == way.from) {
-        if (ways_[i - 1].to != way.to || way.along == kNone) return false;
+        if (ways_[i - 1].to != way.to || way.along == kNoHalfEdge) return false;
         continue;
       }
       Spot& next = spots_[find(way.to)];
@@ -269,7 +285,7 @@ class SegmentTrace {
   }
 
   static Spot outside(Point place, double ratio) {
-    return {0, kNoTriangle, kNone, kNone, place, ratio, kNoElevation, kNone, false};
+    return {0, kNoTriangle, kNoVertex, kNoHalfEdge, place, ratio, kNoElevation, kNone, false};
   }
 
   static void add(TraceBreaks& breaks, const Spot& spot, const Way* way) {
@@ -277,35 +293,29 @@ class SegmentTrace {
     breaks.elevations.push_back(spot.elevation + 0.0);
     breaks.ratios.push_back(spot.ratio);
     breaks.vertices.push_back(spot.vertex);
-    breaks.edges.push_back(spot.edge);
-    breaks.triangles.push_back(way == nullptr ? kNone
-                                              : static_cast<std::int32_t>(number(way->triangle)));
-    breaks.along.push_back(way == nullptr ? kNone : way->along);
+    breaks.edges.push_back(as_entry(spot.edge));
+    breaks.triangles.push_back(index_of(way == nullptr ? kNoTriangle : way->triangle));
+    breaks.along.push_back(as_entry(way == nullptr ? kNoHalfEdge : way->along));
+  }
+  static std::int32_t as_entry(HalfEdge e) {
+    return e == kNoHalfEdge ? kNone : static_cast<std::int32_t>(entry_of(e));
   }
 
   // ------------------------------------------------------------------ measures
 
-  Point point(std::int32_t vertex) const {
-    const double* row = surface_.points + 3 * static_cast<std::size_t>(vertex);
-    return {row[0], row[1]};
-  }
-  double elevation(std::int32_t vertex) const {
-    return surface_.points[3 * static_cast<std::size_t>(vertex) + 2];
-  }
-
   // evaluate(part, whole) of the share of A-B that comes before a spot within it, exactly.
   template <typename Evaluate>
   auto with_ratio(const Spot& spot, Evaluate&& evaluate) const {
-    if (spot.vertex != kNone) {
-      const Point v = point(spot.vertex);
+    if (spot.vertex != kNoVertex) {
+      const Point v = surface_.point(spot.vertex);
       const bool is_wide = std::fabs(b_.x - a_.x) >= std::fabs(b_.y - a_.y);
       return is_wide ? evaluate(expand(exact_difference(v.x, a_.x)),
                                 expand(exact_difference(b_.x, a_.x)))
                      : evaluate(expand(exact_difference(v.y, a_.y)),
                                 expand(exact_difference(b_.y, a_.y)));
     }
-    const Point p = point(static_cast<std::int32_t>(spot.key >> 32));
-    const Point q = point(static_cast<std::int32_t>(spot.key & UINT32_MAX));
+    const Point p = surface_.point(smaller_of(spot.key));
+    const Point q = surface_.point(larger_of(spot.key));
     const auto at_a = detail::exact_twice_area(p, q, a_);
     return evaluate(at_a, at_a - detail::exact_twice_area(p, q, b_));
   }
@@ -317,9 +327,9 @@ class SegmentTrace {
       spot.elevation = locator_.elevation_at(spot.place, spot.triangle);
       return;
     }
-    if (spot.vertex == kNone) return measure_crossing(spot);
-    spot.place = point(spot.vertex);
-    spot.elevation = elevation(spot.vertex);
+    if (spot.vertex == kNoVertex) return measure_crossing(spot);
+    spot.place = surface_.point(spot.vertex);
+    spot.elevation = surface_.elevation(spot.vertex);
     spot.ratio = exact_ratio(spot);
   }
 
@@ -331,10 +341,9 @@ class SegmentTrace {
 
   // The distances of the edge's ends from A-B divide the edge, those of A and B from the edge A-B.
   void measure_crossing(Spot& spot) const {
-    const auto u = static_cast<std::int32_t>(spot.key >> 32);
-    const auto v = static_cast<std::int32_t>(spot.key & UINT32_MAX);
-    const Point p = point(u), q = point(v);
-    const double low = elevation(u), high = elevation(v);
+    const Vertex u = smaller_of(spot.key), v = larger_of(spot.key);
+    const Point p = surface_.point(u), q = surface_.point(v);
+    const double low = surface_.elevation(u), high = surface_.elevation(v);
     const detail::AreaEstimate at_p(a_, b_, p), at_q(a_, b_, q);
     Point& place = spot.place;
     if (!detail::divide_between(at_p, at_q, q.x, p.x, place.x) ||
@@ -344,18 +353,13 @@ class SegmentTrace {
     if (!detail::divide_between({p, q, a_}, {p, q, b_}, 1.0, 0.0, spot.ratio)) {
       spot.ratio = exact_ratio(spot);
     }
-    if (!is_exact(low) || !is_exact(high)) {
+    if (!is_in_exact_range(low) || !is_in_exact_range(high)) {
       spot.elevation = locator_.elevation_at(place, spot.triangle);
     } else if (!detail::divide_between(at_p, at_q, high, low, spot.elevation)) {
       const auto s = detail::exact_twice_area(a_, b_, p);
       const auto t = detail::exact_twice_area(a_, b_, q);
       spot.elevation = detail::rounded_quotient(s * high - t * low, s - t);
     }
-  }
-
-  static bool is_exact(double elevation) {
-    const double size = std::fabs(elevation);
-    return size == 0.0 || (size >= kSmallestCoordinate && size <= kLargestCoordinate);
   }
 
   // +1 if s comes after t along the segment, -1 before. Rounded ratios are in order, unless equal.
@@ -382,5 +386,33 @@ class SegmentTrace {
   std::vector<Spot> spots_;
   std::vector<std::int32_t> heads_;
 };
+
+// The breaks of segments one after the other, up to the first for which there are none.
+struct TracedSegments {
+  TraceBreaks breaks;
+  std::vector<std::int64_t> offsets{0};  // where those of each segment begin, and the end
+
+  std::int64_t count() const { return static_cast<std::int64_t>(offsets.size()) - 1; }
+};
+
+// Incomplete if asked to stop.
+template <typename KeepGoing>
+TracedSegments trace_segments(const Locator& locator, const Point* starts, const Point* ends,
+                              std::int64_t count, KeepGoing&& keep_going) {
+  constexpr std::int64_t kSegmentsPerQuestion = 64;
+  TracedSegments traced;
+  SegmentTrace trace(locator);
+  for (std::int64_t i = 0; i < count; ++i) {
+    if (i % kSegmentsPerQuestion == 0 && !keep_going()) break;
+    if (starts[i] == ends[i]) throw std::invalid_argument("ends of a segment must be apart");
+    const std::size_t before = traced.breaks.size();
+    if (!trace.append(starts[i], ends[i], traced.breaks)) {
+      traced.breaks.resize(before);
+      break;
+    }
+    traced.offsets.push_back(static_cast<std::int64_t>(traced.breaks.size()));
+  }
+  return traced;
+}
 
 }  // namespace tinsmith

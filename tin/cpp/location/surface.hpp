@@ -1,4 +1,4 @@
-// A surface as arrays, and its elevation in a triangle.
+// A surface as arrays: places, turning about its vertices, and its elevation in a triangle.
 #pragma once
 
 #include <algorithm>
@@ -13,31 +13,59 @@
 
 namespace tinsmith {
 
-// Triangles by number, as the caller holds them.
+// As the caller holds it.
 struct Surface {
-  const double* points;  // x, y, z
-  const std::int32_t* corners;
-  const std::int32_t* neighbors;
+  const double* points;           // three numbers a vertex: x, y, z
+  const std::int32_t* corners;    // three a triangle
+  const std::int32_t* neighbors;  // likewise, kNoNeighbor outside; null where nobody asks
   std::int32_t point_count;
   std::uint32_t triangle_count;
 
-  Point corner(Triangle t, std::uint32_t k) const {
-    const double* row = points + 3 * static_cast<std::size_t>(number(vertex(t, k)));
-    return {row[0], row[1]};
-  }
-  double elevation(Triangle t, std::uint32_t k) const {
-    return points[3 * static_cast<std::size_t>(number(vertex(t, k))) + 2];
-  }
+  const double* row(Vertex v) const { return points + 3 * static_cast<std::size_t>(number(v)); }
+  Point point(Vertex v) const { return {row(v)[0], row(v)[1]}; }
+  double elevation(Vertex v) const { return row(v)[2]; }
+
   Vertex vertex(Triangle t, std::uint32_t k) const { return Vertex{corners[entry_of(t, k)]}; }
+  Point corner(Triangle t, std::uint32_t k) const { return point(vertex(t, k)); }
+  double elevation(Triangle t, std::uint32_t k) const { return elevation(vertex(t, k)); }
   Triangle neighbor(Triangle t, std::uint32_t k) const {
-    return Triangle{static_cast<std::uint32_t>(neighbors[entry_of(t, k)])};
+    return triangle_numbered(neighbors[entry_of(t, k)]);
   }
   bool is_triangle(Triangle t) const { return number(t) < triangle_count; }
 
+  // The corner that is not on the edge to a neighbour, and the one that is a vertex; the last one
+  // if there is none.
+  std::uint32_t corner_facing(Triangle t, Triangle beyond) const {
+    return neighbor(t, 0) == beyond ? 0 : neighbor(t, 1) == beyond ? 1 : 2;
+  }
+  std::uint32_t corner_at(Triangle t, Vertex v) const {
+    return vertex(t, 0) == v ? 0 : vertex(t, 1) == v ? 1 : 2;
+  }
+
+  // Turning about a vertex, which is opposite an edge of its triangle: the same of the next
+  // triangle counter-clockwise, or clockwise. kNoHalfEdge where there is none.
+  enum class Turn { kCounterClockwise, kClockwise };
+  HalfEdge next_about(HalfEdge opposite, Turn turn) const {
+    const Triangle t = triangle_of(opposite);
+    const std::uint32_t k = corner_of(opposite);
+    const Triangle beyond =
+        neighbor(t, turn == Turn::kClockwise ? corner_before(k) : corner_after(k));
+    return is_triangle(beyond) ? half_edge(beyond, corner_at(beyond, vertex(t, k))) : kNoHalfEdge;
+  }
+
+  // Without a way out of the loops, many are compared at once.
   bool has_sound_corners() const {
     bool sound = true;
     for (std::int64_t i = 0; i < std::int64_t{3} * triangle_count; ++i) {
-      sound &= corners[i] >= 0 && corners[i] < point_count;
+      sound &= static_cast<std::uint32_t>(corners[i]) < static_cast<std::uint32_t>(point_count);
+    }
+    return sound;
+  }
+  // Each is a triangle or kNoNeighbor.
+  bool has_sound_neighbors() const {
+    bool sound = true;
+    for (std::int64_t i = 0; i < std::int64_t{3} * triangle_count; ++i) {
+      sound &= static_cast<std::uint32_t>(neighbors[i]) + 1 <= triangle_count;
     }
     return sound;
   }
@@ -59,8 +87,16 @@ struct Surface {
   }
 };
 
-// Twice the areas opposite the corners of the parts into which p divides a triangle; their signs
-// are exact.
+// +1 for each triangle that is counter-clockwise, -1 for one that is clockwise, 0 for a flat one.
+inline void write_turns(const Surface& surface, std::int8_t* turns) {
+  for (const Triangle t : Ids<Triangle>(surface.triangle_count)) {
+    turns[number(t)] = static_cast<std::int8_t>(
+        orientation(surface.corner(t, 0), surface.corner(t, 1), surface.corner(t, 2)));
+  }
+}
+
+// Barycentric coordinates: twice the areas opposite the corners of the parts into which p divides a
+// triangle; their signs are exact.
 struct CornerWeights {
   double of[3];
 
@@ -79,7 +115,7 @@ struct CornerWeights {
   // weight keep the digits that the elevations share, and give a vertex exactly its own elevation;
   // differences of halves cannot overflow.
   double mean_of(const double (&elevations)[3]) const {
-    const std::uint32_t main = heaviest(), next = (main + 1) % 3, last = (main + 2) % 3;
+    const std::uint32_t main = heaviest(), next = corner_after(main), last = corner_before(main);
     const double sum = total();
     const double z = elevations[main], z_next = elevations[next], z_last = elevations[last];
     const double half_rise =

@@ -142,7 +142,9 @@ class Corridor {
       const auto other = std::lower_bound(
           twice_.begin(), twice_.end(), edge->outer,
           [](const BoundaryEdge* candidate, HalfEdge sought) { return candidate->inner < sought; });
-      if (other == twice_.end()) throw std::logic_error("a corridor's boundary is not closed");
+      if (other == twice_.end() || (*other)->inner != edge->outer) {
+        throw std::logic_error("a corridor's boundary is not closed");
+      }
       mesh.join(edge->made, (*other)->made);
       mesh.fix(edge->made, edge->is_fixed);
     }

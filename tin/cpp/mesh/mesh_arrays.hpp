@@ -52,8 +52,8 @@ class TriangleCopy {
       hull_.push_back(half_edge(t, k));
       return kNoHalfEdge;
     }
-    const Triangle across{static_cast<std::uint32_t>(neighbor)};
-    const auto own = static_cast<std::int32_t>(number(t));
+    const Triangle across = triangle_numbered(neighbor);
+    const std::int32_t own = index_of(t);
     const std::int32_t* const back = given_.neighbors + entry_of(across, 0);
     return half_edge(across, (back[1] == own) + 2u * (back[2] == own));
   }
@@ -138,10 +138,10 @@ class MeshArrays {
  private:
   void gather_vertices() {
     points_.reserve(editor_.count());
-    number_of_.resize(editor_.slots(), kNoNumber);
+    number_of_.resize(editor_.slots(), kNoVertex);
     for (const Vertex v : editor_.vertices()) {
       if (!mesh_.is_alive(v)) continue;
-      number_of_[number(v)] = static_cast<std::int32_t>(points_.size());
+      number_of_[number(v)] = Vertex{static_cast<std::int32_t>(points_.size())};
       points_.push_back(editor_.point(v));
     }
   }
@@ -160,7 +160,7 @@ class MeshArrays {
         const Vertex v = mesh_[t].corner[k];
         const HalfEdge twin = mesh_[t].twin[k];
         ghosts_ += v == kGhost;
-        to.corner[k] = v == kGhost ? kGhost : sweep_of[number_of_[number(v)]];
+        to.corner[k] = v == kGhost ? kGhost : sweep_of[number(number_of_[number(v)])];
         to.twin[k] =
             in_copy.empty() ? twin : half_edge(in_copy[number(triangle_of(twin))], corner_of(twin));
       }
@@ -181,13 +181,11 @@ class MeshArrays {
     return in_copy;
   }
 
-  static constexpr std::int32_t kNoNumber = -1;
-
   const MeshEditor& editor_;
   const Mesh& mesh_;
-  ScratchVector<Point> points_;            // of the vertices, without gaps
-  ScratchVector<std::int32_t> number_of_;  // of each slot
-  std::vector<Triangle> slot_of_;          // of each triangle of the copy; empty if the same
+  ScratchVector<Point> points_;      // of the vertices, without gaps
+  ScratchVector<Vertex> number_of_;  // of each slot
+  std::vector<Triangle> slot_of_;    // of each triangle of the copy; empty if the same
   std::uint32_t ghosts_ = 0;
 };
 

@@ -2,59 +2,73 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "../base/ids.hpp"
-#include "../predicates/predicates.hpp"
+#include "../location/surface.hpp"
 
 namespace tinsmith {
 
 struct Regions {
   std::vector<std::int32_t> region_of;  // each triangle's region
-  std::vector<std::int32_t> largest;    // each region's largest triangle, the first among equals
+  std::vector<Triangle> largest;        // each region's largest triangle, the first among equals
 };
 
-// Triangles as three corners and three neighbours each; `is_barrier` tells of the edge opposite
-// each corner; `xy` holds the vertices.
-inline Regions find_regions(const Point* xy, const std::int32_t* corners,
-                            const std::int32_t* neighbors, const bool* is_barrier,
-                            std::int32_t count) {
-  constexpr std::int32_t kNoRegion = -1;
-  Regions found;
-  found.region_of.assign(count, kNoRegion);
-  std::vector<std::int32_t> open;
-  const auto area = [&](std::int32_t t) {
-    const std::int32_t* const c = corners + 3 * std::int64_t{t};
-    const Point a = xy[c[0]];
-    const double bx = xy[c[1]].x - a.x, by = xy[c[1]].y - a.y;
-    const double cx = xy[c[2]].x - a.x, cy = xy[c[2]].y - a.y;
-    return bx * cy - by * cx;
-  };
-  for (std::int32_t first = 0; first < count; ++first) {
-    if (found.region_of[first] != kNoRegion) continue;
-    const auto region = static_cast<std::int32_t>(found.largest.size());
-    std::int32_t largest = first;
+class RegionSearch {
+ public:
+  // `is_barrier` tells of the edge opposite each corner.
+  RegionSearch(const Surface& surface, const bool* is_barrier)
+      : surface_(surface), is_barrier_(is_barrier) {}
+
+  Regions find() {
+    found_.region_of.assign(surface_.triangle_count, kNoRegion);
+    for (const Triangle t : Ids<Triangle>(surface_.triangle_count)) {
+      if (found_.region_of[number(t)] == kNoRegion) found_.largest.push_back(spread_from(t));
+    }
+    return std::move(found_);
+  }
+
+ private:
+  static constexpr std::int32_t kNoRegion = -1;
+
+  // Number the region that a triangle belongs to; returns its largest triangle.
+  Triangle spread_from(Triangle first) {
+    Triangle largest = first;
     double largest_area = area(first);
-    open.assign(1, first);
-    found.region_of[first] = region;
-    while (!open.empty()) {
-      const std::int32_t t = open.back();
-      open.pop_back();
+    reach(first);
+    while (!open_.empty()) {
+      const Triangle t = open_.back();
+      open_.pop_back();
       const double size = area(t);
       if (size > largest_area || (size == largest_area && t < largest)) {
         largest = t;
         largest_area = size;
       }
-      for (std::int64_t i = 3 * std::int64_t{t}; i < 3 * std::int64_t{t} + 3; ++i) {
-        const std::int32_t next = neighbors[i];
-        if (next == kNoNeighbor || is_barrier[i] || found.region_of[next] != kNoRegion) continue;
-        found.region_of[next] = region;
-        open.push_back(next);
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const Triangle next = surface_.neighbor(t, k);
+        if (next == kNoTriangle || is_barrier_[entry_of(t, k)]) continue;
+        if (found_.region_of[number(next)] == kNoRegion) reach(next);
       }
     }
-    found.largest.push_back(largest);
+    return largest;
   }
-  return found;
-}
+
+  void reach(Triangle t) {
+    found_.region_of[number(t)] = static_cast<std::int32_t>(found_.largest.size());
+    open_.push_back(t);
+  }
+
+  // Doubled, in doubles.
+  double area(Triangle t) const {
+    const Point a = surface_.corner(t, 0), b = surface_.corner(t, 1), c = surface_.corner(t, 2);
+    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+  }
+
+  Surface surface_;
+  const bool* is_barrier_;
+  Regions found_;
+  std::vector<Triangle> open_;
+};
 
 }  // namespace tinsmith

@@ -10,11 +10,6 @@
 
 namespace tinsmith {
 
-inline bool is_in_exact_range(double coordinate) {
-  const double size = std::fabs(coordinate);
-  return size == 0.0 || (size >= kSmallestCoordinate && size <= kLargestCoordinate);
-}
-
 // Copy rows of (x, y, z), with -0.0 turned into 0.0 so that equal coordinates are equal bytes.
 // Returns whether all are finite, and x and y within the range in which predicates are exact.
 inline bool copy_clean(const double* from, std::int64_t count, double* to, Team& team) {

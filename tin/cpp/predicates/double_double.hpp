@@ -1,9 +1,9 @@
-// Numbers of twice the digits, for values that must be rounded correctly and rarely are close to the
-// middle between two doubles.
+// Numbers of twice the digits of a double: sums of two doubles.
 //
-// A value is a sum of two doubles; sums and products lose a few units of 2^-104 of their terms
-// (Dekker, "A floating-point technique for extending the available precision", 1971). Whoever rounds
-// one knows how far off it may be, and leaves to exact arithmetic what is too close to a middle.
+// Sums and products lose a few units of 2^-104 of their terms (Dekker, "A floating-point technique
+// for extending the available precision", 1971). They are for values, never for decisions: whoever
+// rounds one knows how far off it may be, and leaves to exact arithmetic what is too close to the
+// middle between two doubles.
 #pragma once
 
 #include <cmath>
@@ -16,25 +16,31 @@
 
 namespace tinsmith {
 
+// For |small| <= |large|.
+inline TwoDoubles quick_sum(double large, double small) {
+  const double sum = large + small;
+  return {sum, small - (sum - large)};
+}
+
 inline TwoDoubles operator-(TwoDoubles a) { return {-a.high, -a.low}; }
 
 inline TwoDoubles operator+(TwoDoubles a, TwoDoubles b) {
   const TwoDoubles high = exact_sum(a.high, b.high);
   const TwoDoubles low = exact_sum(a.low, b.low);
-  const TwoDoubles sum = exact_sum(high.high, high.low + low.high);
-  return exact_sum(sum.high, sum.low + low.low);
+  const TwoDoubles sum = quick_sum(high.high, high.low + low.high);
+  return quick_sum(sum.high, sum.low + low.low);
 }
 
 inline TwoDoubles operator-(TwoDoubles a, TwoDoubles b) { return a + -b; }
 
 inline TwoDoubles operator*(TwoDoubles a, TwoDoubles b) {
   const TwoDoubles product = exact_product(a.high, b.high);
-  return exact_sum(product.high, product.low + (a.high * b.low + a.low * b.high));
+  return quick_sum(product.high, product.low + (a.high * b.low + a.low * b.high));
 }
 
 inline TwoDoubles operator*(TwoDoubles a, double b) {
   const TwoDoubles product = exact_product(a.high, b);
-  return exact_sum(product.high, product.low + a.low * b);
+  return quick_sum(product.high, product.low + a.low * b);
 }
 
 inline TwoDoubles operator/(TwoDoubles a, TwoDoubles b) {
@@ -42,8 +48,8 @@ inline TwoDoubles operator/(TwoDoubles a, TwoDoubles b) {
   const TwoDoubles rest = a - b * first;
   const double second = rest.high / b.high;
   const TwoDoubles more = rest - b * second;
-  const TwoDoubles sum = exact_sum(first, second);
-  return exact_sum(sum.high, sum.low + more.high / b.high);
+  const TwoDoubles sum = quick_sum(first, second);
+  return quick_sum(sum.high, sum.low + more.high / b.high);
 }
 
 namespace detail {

@@ -11,9 +11,15 @@
 
 namespace tinsmith {
 
+// high + low is exact, or good to twice the digits of a double (double_double.hpp).
 struct TwoDoubles {
-  double high;
-  double low;  // high + low is exact
+  double high, low;
+
+  TwoDoubles() = default;
+  TwoDoubles(double value) : TwoDoubles(value, 0.0) {}  // NOLINT: a double is one of them
+  TwoDoubles(double high_part, double low_part) : high(high_part), low(low_part) {}
+
+  explicit operator double() const { return high; }
 };
 
 inline TwoDoubles exact_sum(double a, double b) {

@@ -26,6 +26,11 @@ namespace tinsmith {
 constexpr double kSmallestCoordinate = 0x1p-200;
 constexpr double kLargestCoordinate = 0x1p250;
 
+inline bool is_in_exact_range(double coordinate) {
+  const double size = std::fabs(coordinate);
+  return size == 0.0 || (size >= kSmallestCoordinate && size <= kLargestCoordinate);
+}
+
 constexpr double kUnitRoundoff = 0x1p-53;
 
 namespace detail {
@@ -86,7 +91,8 @@ class IntegerInCircle {
   int sign() const { return bits_ <= kBitsFor128 ? sign_modulo_128() : sign_modulo_192(); }
 
  private:
-  using Integer = unsigned __int128;  // wraps around by definition
+  __extension__ using Integer = unsigned __int128;  // wraps around by definition
+  __extension__ using SignedInteger = __int128;
   static constexpr int kMostBits = 58;
   static constexpr int kBitsFor128 = 42;
 
@@ -125,7 +131,7 @@ class IntegerInCircle {
     const Integer determinant = (adx * adx + ady * ady) * (bdx * cdy - cdx * bdy) +
                                 (bdx * bdx + bdy * bdy) * (cdx * ady - adx * cdy) +
                                 (cdx * cdx + cdy * cdy) * (adx * bdy - bdx * ady);
-    const auto value = static_cast<__int128>(determinant);
+    const auto value = static_cast<SignedInteger>(determinant);
     return (value > 0) - (value < 0);
   }
 
@@ -153,7 +159,7 @@ class IntegerInCircle {
   }
 
   Integer product(int i, int j) const {
-    return static_cast<Integer>(static_cast<__int128>(value_[i]) * value_[j]);
+    return static_cast<Integer>(static_cast<SignedInteger>(value_[i]) * value_[j]);
   }
 
   std::int64_t value_[6];

@@ -14,20 +14,18 @@
 #include "../constraints/contacts.hpp"
 #include "../constraints/point_in_polygon.hpp"
 #include "../constraints/touches.hpp"
-#include "arrays.hpp"
+#include "conversion.hpp"
 
 namespace tinsmith::python {
 
-inline void require_numbers(const std::int32_t* numbers, std::size_t count, std::int32_t limit) {
-  const auto is_sound = [limit](std::int32_t i) { return i >= 0 && i < limit; };
-  if (!std::all_of(numbers, numbers + count, is_sound)) {
-    throw std::invalid_argument("every number must be that of an existing row");
-  }
+inline void require_numbers(const GivenPairs& pairs, std::int32_t limit) {
+  if (are_all(pairs, [limit](std::int32_t i) { return i >= 0 && i < limit; })) return;
+  throw std::invalid_argument("every number must be that of an existing row");
 }
 
 inline Segments segments_of(const GivenXy& xy, const GivenPairs& segments) {
   const Point* points = exact_points_of(xy);
-  require_numbers(segments.data(), 2 * segments.shape(0), row_count(xy.shape(0)));
+  require_numbers(segments, row_count(xy.shape(0)));
   return {points, segments.data(), row_count(segments.shape(0))};
 }
 
@@ -76,7 +74,7 @@ inline auto contacts(const GivenXy& xy, const GivenPairs& segments, double dista
 
 inline Xy intersections(const GivenXy& xy, const GivenPairs& segments, const GivenPairs& pairs) {
   const Segments given = segments_of(xy, segments);
-  require_numbers(pairs.data(), 2 * pairs.shape(0), given.count);
+  require_numbers(pairs, given.count);
   const std::int32_t count = row_count(pairs.shape(0));
   const auto found =
       unlocked(1, [&](Team& team) { return find_intersections(given, pairs.data(), count, team); });

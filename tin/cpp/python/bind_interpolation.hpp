@@ -4,20 +4,18 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/pair.h>
 
-#include <cmath>
+#include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <stdexcept>
 #include <utility>
-#include <vector>
 
 #include "../interpolation/batch.hpp"
-#include "../interpolation/natural_neighbors.hpp"
+#include "../interpolation/natural_surface.hpp"
 #include "../interpolation/nearest_boundary.hpp"
 #include "../interpolation/nearest_vertex.hpp"
-#include "../interpolation/smooth_patches.hpp"
-#include "arrays.hpp"
+#include "../interpolation/smooth_surface.hpp"
 #include "bind_location.hpp"
+#include "conversion.hpp"
 
 namespace tinsmith::python {
 
@@ -28,86 +26,52 @@ inline const bool* barriers_of(const HeldLocator& locator, const GivenFlags& bar
   return barriers.data();
 }
 
-// A surface that is Delaunay but for its barriers: the given one, or one of its own.
 class HeldNaturalNeighbors {
  public:
   HeldNaturalNeighbors(const HeldLocator& locator, const GivenFlags& barriers)
-      : given_(locator.locator()) {
-    const bool* flags = barriers_of(locator, barriers);
-    unlocked(1, [&](Team& team) {
-      flipped_.build(given_.surface(), flags, [&] { return team.keeps_going(0); });
-      if (flipped_.is_flipped()) own_ = std::make_unique<Locator>(flipped_.surface());
-      barriers_ = now().ordered().order_flags(own_ ? flipped_.barriers() : flags);
-      return 0;
-    });
-  }
+      : surface_(unlocked(1, [&, flags = barriers_of(locator, barriers)](Team& team) {
+          return NaturalSurface(locator.locator(), flags, [&] { return team.keeps_going(0); });
+        })) {}
 
   Elevations interpolate(const GivenXy& xy, NaturalWeights kind, int threads) const {
-    return elevations_at(now(), xy, threads, [&] {
-      return NaturalNeighbors(now().ordered().surface(), barriers_.get(), kind);
-    });
+    return elevations_at(surface_.locator(), xy, threads, [&] { return surface_.neighbors(kind); });
   }
 
-  bool is_flipped() const { return own_ != nullptr; }
+  bool is_flipped() const { return surface_.is_flipped(); }
 
  private:
-  const Locator& now() const { return own_ ? *own_ : given_; }
-
-  const Locator& given_;
-  FlippedTriangles flipped_;
-  std::unique_ptr<Locator> own_;
-  ScratchArray<bool> barriers_;  // in the locator's order
+  NaturalSurface surface_;
 };
 
 class HeldSmoothPatches {
  public:
   HeldSmoothPatches(const HeldLocator& locator, const GivenFlags& barriers, int threads)
-      : locator_(locator.locator()),
-        ordered_(locator_.ordered().numbers()),
-        barriers_(locator_.ordered().order_flags(barriers_of(locator, barriers))),
-        gradients_(unlocked(threads,
-                            [&](Team& team) {
-                              return std::make_unique<VertexGradients>(locator_.ordered().surface(),
-                                                                       barriers_.get(), team);
-                            })),
-        patches_(locator_.ordered().surface(), barriers_.get(), *gradients_) {}
+      : surface_(unlocked(threads, [&, flags = barriers_of(locator, barriers)](Team& team) {
+          return SmoothSurface(locator.locator(), flags, team);
+        })) {}
 
   Elevations interpolate(const GivenXy& xy, int threads) const {
-    return elevations_at(locator_, xy, threads, [&] { return patches_; });
+    return elevations_at(surface_.locator(), xy, threads, [&] { return surface_.patches(); });
   }
 
   // Edges as 3 * triangle + corner.
-  Elevations on_edges(const GivenNumbers& edges, const Given<double, -1>& shares) const {
+  Elevations on_edges(const GivenNumbers& edges, const GivenValues& shares) const {
     const std::size_t count = edges.shape(0);
-    const std::int64_t entries = std::int64_t{3} * locator_.surface().triangle_count;
+    if (shares.shape(0) != count) throw std::invalid_argument("each edge needs a share");
     auto result = streamed_array<double>(count);
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::int32_t edge = edges.data()[i];
-      if (edge < 0 || edge >= entries) throw std::invalid_argument("there is no such edge");
-      result[i] = patches_.on_edge(ordered_[edge / 3], edge % 3, shares.data()[i]);
-    }
+    surface_.write_on_edges(edges.data(), shares.data(), count, result.get());
     return hand_over<Elevations>(std::move(result), {count});
   }
 
   Xy gradients() const {
-    const std::uint32_t count = locator_.surface().triangle_count;
-    auto result = streamed_array<double>(std::size_t{6} * count);
-    for (const Triangle t : Ids<Triangle>(count)) {
-      for (std::uint32_t k = 0; k < 3; ++k) {
-        const Gradient gradient = gradients_->at(ordered_[number(t)], k);
-        result[2 * entry_of(t, k)] = gradient.x;
-        result[2 * entry_of(t, k) + 1] = gradient.y;
-      }
-    }
-    return hand_over<Xy>(std::move(result), {std::size_t{3} * count, 2});
+    const std::size_t corners = std::size_t{3} * surface_.locator().surface().triangle_count;
+    auto result = streamed_array<double>(2 * corners);
+    surface_.write_gradients(result.get());
+    return hand_over<Xy>(std::move(result), {corners, 2});
   }
 
  private:
-  const Locator& locator_;
-  ScratchArray<Triangle> ordered_;  // the locator's number of each triangle
-  ScratchArray<bool> barriers_;     // in the locator's order
-  std::unique_ptr<VertexGradients> gradients_;
-  SmoothPatches patches_;
+  SmoothSurface surface_;
 };
 
 class HeldNearestBoundary {
@@ -120,18 +84,9 @@ class HeldNearestBoundary {
     const Point* points = exact_points_of(xy);
     auto edges = streamed_array<std::int32_t>(count);
     auto shares = streamed_array<double>(count);
-    unlocked(1, [&](Team& team) {
-      const HilbertOrder order(points, row_count(count));
-      HalfEdge last = kNoHalfEdge;
-      for (std::size_t i = 0; i < count; ++i) {
-        if (i % 4096 == 0 && !team.keeps_going(0)) break;
-        const std::int32_t row = order[static_cast<std::int32_t>(i)];
-        const BoundaryPlace place = boundary_.find(points[row], last);
-        last = place.edge;
-        edges[row] = static_cast<std::int32_t>(entry_of(place.edge));
-        shares[row] = place.share;
-      }
-      return 0;
+    run_unlocked(1, [&](Team& team) {
+      boundary_.find_all(points, row_count(count), edges.get(), shares.get(),
+                         [&] { return team.keeps_going(0); });
     });
     return {hand_over<Numbers>(std::move(edges), {count}),
             hand_over<Elevations>(std::move(shares), {count})};

@@ -13,7 +13,7 @@
 #include "../interpolation/batch.hpp"
 #include "../location/locator.hpp"
 #include "../location/segment_trace.hpp"
-#include "arrays.hpp"
+#include "conversion.hpp"
 
 namespace tinsmith::python {
 
@@ -22,10 +22,9 @@ template <typename Make>
 Elevations elevations_at(const Locator& locator, const GivenXy& xy, int threads, Make&& make) {
   const std::size_t count = xy.shape(0);
   auto result = streamed_array<double>(count);
-  unlocked(threads, [&](Team& team) {
+  run_unlocked(threads, [&](Team& team) {
     interpolate_all(locator, points_of(xy), static_cast<std::int64_t>(count), result.get(), team,
                     make);
-    return 0;
   });
   return hand_over<Elevations>(std::move(result), {count});
 }
@@ -42,9 +41,13 @@ class HeldLocator {
       : points_(points), triangles_(triangles), neighbors_(neighbors), locator_(index()) {}
 
   Numbers locate(const GivenXy& xy) const {
-    return answer<Numbers, std::int32_t>(xy, [&](std::int64_t count, std::int32_t* result) {
-      return locator_.locate(points_of(xy), count, result, no_signal);
+    const std::size_t count = xy.shape(0);
+    auto result = streamed_array<std::int32_t>(count);
+    run_unlocked(1, [&](Team& team) {
+      locator_.locate(points_of(xy), static_cast<std::int64_t>(count), result.get(),
+                      [&] { return team.keeps_going(0); });
     });
+    return hand_over<Numbers>(std::move(result), {count});
   }
 
   Elevations interpolate(const GivenXy& xy, int threads) const {
@@ -62,82 +65,30 @@ class HeldLocator {
     if (ends.shape(0) != starts.shape(0)) {
       throw std::invalid_argument("starts and ends must have the same number of rows");
     }
-    TraceBreaks breaks;
-    std::vector<std::int64_t> offsets{0};
-    bool is_stopped = false;
-    {
-      nb::gil_scoped_release release;
-      SegmentTrace trace(locator_);
-      for (std::int64_t i = 0; i < count && !is_stopped; ++i) {
-        if (from[i] == to[i]) throw std::invalid_argument("ends of a segment must be apart");
-        if (!trace.append(from[i], to[i], breaks)) break;
-        offsets.push_back(static_cast<std::int64_t>(breaks.places.size()));
-        is_stopped = i % kSegmentsAtATime == 0 && !no_signal();
-      }
-    }
-    if (is_stopped) throw nb::python_error();
-    const auto done = static_cast<std::int64_t>(offsets.size()) - 1;
-    const std::size_t rows = offsets.back();
-    shorten(breaks, rows);
-    return {copy_over<Offsets, std::int64_t>(offsets, {offsets.size()}),
-            copy_over<Xy, double>(breaks.places, {rows, 2}),
-            copy_over<Elevations, double>(breaks.elevations, {rows}),
-            copy_over<Elevations, double>(breaks.ratios, {rows}),
+    const TracedSegments traced = unlocked(1, [&](Team& team) {
+      return trace_segments(locator_, from, to, count, [&] { return team.keeps_going(0); });
+    });
+    const TraceBreaks& breaks = traced.breaks;
+    return {copy_over<Offsets, std::int64_t>(traced.offsets, {traced.offsets.size()}),
+            copy_over<Xy, double>(breaks.places, {breaks.size(), 2}),
+            copy_over<Elevations, double>(breaks.elevations, {breaks.size()}),
+            copy_over<Elevations, double>(breaks.ratios, {breaks.size()}),
             hand_over(breaks.vertices),
             hand_over(breaks.edges),
             hand_over(breaks.triangles),
             hand_over(breaks.along),
-            done < count ? done : -1};
+            traced.count() < count ? traced.count() : -1};
   }
 
   const Locator& locator() const { return locator_; }
   const Surface& surface() const { return locator_.surface(); }
 
  private:
-  static constexpr std::int64_t kSegmentsAtATime = 64;  // before Ctrl-C is asked for
-
-  // Leave out what a segment that failed has begun.
-  static void shorten(TraceBreaks& breaks, std::size_t rows) {
-    breaks.places.resize(rows);
-    breaks.elevations.resize(rows);
-    breaks.ratios.resize(rows);
-    breaks.vertices.resize(rows);
-    breaks.edges.resize(rows);
-    breaks.triangles.resize(rows);
-    breaks.along.resize(rows);
-  }
-
   Locator index() const {
-    if (triangles_.shape(0) != neighbors_.shape(0)) {
-      throw std::invalid_argument("triangles and neighbors must have the same number of rows");
-    }
-    if (triangles_.shape(0) > INT32_MAX / 3 || points_.shape(0) > INT32_MAX / 3) {
-      throw std::invalid_argument("more triangles or points than 32-bit indices can number");
-    }
-    const Surface surface{points_.data(), triangles_.data(), neighbors_.data(),
-                          static_cast<std::int32_t>(points_.shape(0)),
-                          static_cast<std::uint32_t>(triangles_.shape(0))};
     nb::gil_scoped_release release;
-    if (!surface.has_sound_points()) {
-      throw std::invalid_argument("points must be finite and within the exact range");
-    }
-    if (!surface.has_sound_corners()) {
-      throw std::invalid_argument("triangles must hold vertex numbers from 0 to n - 1");
-    }
+    const Surface surface = surface_of(points_, triangles_, &neighbors_);
+    require_exact_points(surface);
     return Locator(surface);
-  }
-
-  template <typename Array, typename T, typename Run>
-  static Array answer(const GivenXy& xy, Run run) {
-    const std::size_t count = xy.shape(0);
-    auto result = streamed_array<T>(count);
-    bool is_complete = false;
-    {
-      nb::gil_scoped_release release;
-      is_complete = run(static_cast<std::int64_t>(count), result.get());
-    }
-    if (!is_complete) throw nb::python_error();
-    return hand_over<Array>(std::move(result), {count});
   }
 
   GivenXyz points_;

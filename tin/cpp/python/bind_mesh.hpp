@@ -5,7 +5,6 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/tuple.h>
 
-#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <stdexcept>
@@ -17,7 +16,7 @@
 #include "../mesh/mesh_arrays.hpp"
 #include "../mesh/regions.hpp"
 #include "../mesh/triangle_joining.hpp"
-#include "arrays.hpp"
+#include "conversion.hpp"
 
 namespace tinsmith::python {
 
@@ -122,39 +121,26 @@ class HeldMesh {
 };
 
 // Region of each triangle, and the largest triangle of each region.
-inline auto regions(const GivenXy& xy, const GivenTriples& triangles, const GivenTriples& neighbors,
-                    const GivenFlags& barrier) {
-  if (neighbors.shape(0) != triangles.shape(0) || barrier.shape(0) != triangles.shape(0)) {
-    throw std::invalid_argument("triangles, neighbors and barrier must have as many rows");
+inline auto regions(const GivenXyz& points, const GivenTriples& triangles,
+                    const GivenTriples& neighbors, const GivenFlags& barrier) {
+  const Surface surface = surface_of(points, triangles, &neighbors);
+  if (barrier.shape(0) != triangles.shape(0) || !surface.has_sound_neighbors()) {
+    throw std::invalid_argument("neighbors and barriers must be those of the triangles");
   }
   const Regions found = [&] {
     nb::gil_scoped_release release;
-    return find_regions(points_of(xy), triangles.data(), neighbors.data(), barrier.data(),
-                        static_cast<std::int32_t>(triangles.shape(0)));
+    return RegionSearch(surface, barrier.data()).find();
   }();
   return std::make_tuple(hand_over(found.region_of), hand_over(found.largest));
 }
 
-inline void require_corners(const GivenTriples& triangles, std::int64_t point_count) {
-  if (triangles.shape(0) > INT32_MAX / 3) {
-    throw std::invalid_argument("more triangles than 32-bit indices can number");
-  }
-  for (std::size_t i = 0; i < 3 * triangles.shape(0); ++i) {
-    if (triangles.data()[i] < 0 || triangles.data()[i] >= point_count) {
-      throw std::invalid_argument("triangles must hold vertex numbers from 0 to n - 1");
-    }
-  }
-}
-
 // The triangle across each edge, and whether the triangles fit together.
 inline auto join_triangles(const GivenTriples& triangles, std::int32_t vertex_count) {
-  require_corners(triangles, vertex_count);
+  const Surface surface = corners_of(triangles, vertex_count);
   auto neighbors = streamed_array<std::int32_t>(3 * triangles.shape(0));
   const bool is_sound = [&] {
     nb::gil_scoped_release release;
-    return TriangleJoining(triangles.data(), static_cast<std::uint32_t>(triangles.shape(0)),
-                           vertex_count)
-        .join(neighbors.get());
+    return TriangleJoining(surface).join(neighbors.get());
   }();
   return std::make_tuple(hand_over<Triples>(std::move(neighbors), {triangles.shape(0), 3}),
                          is_sound);
@@ -162,24 +148,14 @@ inline auto join_triangles(const GivenTriples& triangles, std::int32_t vertex_co
 
 // Signs of the areas of triangles, seen from above.
 inline Signs turns_of_triangles(const GivenXyz& points, const GivenTriples& triangles) {
-  require_corners(triangles, static_cast<std::int64_t>(points.shape(0)));
-  for (std::size_t i = 0; i < 3 * points.shape(0); i += 3) {
-    if (!std::isfinite(points.data()[i]) || !std::isfinite(points.data()[i + 1])) {
-      throw std::invalid_argument("every coordinate must be finite");
-    }
+  const Surface surface = surface_of(points, triangles);
+  require_exact_points(surface);
+  auto result = streamed_array<std::int8_t>(surface.triangle_count);
+  {
+    nb::gil_scoped_release release;
+    write_turns(surface, result.get());
   }
-  const std::size_t count = triangles.shape(0);
-  auto result = streamed_array<std::int8_t>(count);
-  nb::gil_scoped_release release;
-  const Surface surface{points.data(), triangles.data(), nullptr,
-                        static_cast<std::int32_t>(points.shape(0)),
-                        static_cast<std::uint32_t>(count)};
-  for (const Triangle t : Ids<Triangle>(surface.triangle_count)) {
-    result[number(t)] = static_cast<std::int8_t>(
-        orientation(surface.corner(t, 0), surface.corner(t, 1), surface.corner(t, 2)));
-  }
-  nb::gil_scoped_acquire acquire;
-  return hand_over<Signs>(std::move(result), {count});
+  return hand_over<Signs>(std::move(result), {surface.triangle_count});
 }
 
 inline void bind_mesh(nb::module_& m) {
@@ -187,7 +163,7 @@ inline void bind_mesh(nb::module_& m) {
         "The triangle across each edge, and whether the triangles fit together.");
   m.def("turns_of_triangles", &turns_of_triangles, "points"_a.noconvert(),
         "triangles"_a.noconvert(), "+1 for a counter-clockwise triangle, -1 clockwise, 0 flat.");
-  m.def("regions", &regions, "xy"_a.noconvert(), "triangles"_a.noconvert(),
+  m.def("regions", &regions, "points"_a.noconvert(), "triangles"_a.noconvert(),
         "neighbors"_a.noconvert(), "barrier"_a.noconvert(),
         "The region of each triangle between barrier edges, and each region's largest triangle.");
   nb::class_<HeldMesh>(m, "Mesh", "A constrained Delaunay triangulation that can be changed.")

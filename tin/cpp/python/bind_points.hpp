@@ -4,7 +4,6 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/tuple.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <stdexcept>
@@ -14,7 +13,7 @@
 
 #include "../points/cleaning.hpp"
 #include "../points/snapping.hpp"
-#include "arrays.hpp"
+#include "conversion.hpp"
 
 namespace tinsmith::python {
 
@@ -43,21 +42,13 @@ inline Numbers snap(const GivenXyz& points, double distance) {
 // Whether predicates are exact for every coordinate but those that are not a number.
 inline bool are_in_exact_range(const GivenXy& xy) {
   nb::gil_scoped_release release;
-  bool are_exact = true;
-  const std::size_t count = 2 * xy.shape(0);
-  for (std::size_t i = 0; i < count; ++i) {
-    const double size = std::fabs(xy.data()[i]);
-    are_exact &= !(size > kLargestCoordinate) & !((size < kSmallestCoordinate) & (size > 0.0));
-  }
-  return are_exact;
+  return are_all(xy, [](double c) { return std::isnan(c) || is_in_exact_range(c); });
 }
 
 // The expansions of the exact stage hold finite numbers only.
 inline void require_finite(const GivenXy& xy) {
-  const double* end = xy.data() + 2 * xy.shape(0);
-  if (!std::all_of(xy.data(), end, [](double c) { return std::isfinite(c); })) {
-    throw std::invalid_argument("every coordinate must be finite");
-  }
+  if (are_all(xy, [](double c) { return std::isfinite(c); })) return;
+  throw std::invalid_argument("every coordinate must be finite");
 }
 
 // decide(a, b, ...) for every row.

@@ -8,8 +8,8 @@
 #include <tuple>
 
 #include "../refinement/refine.hpp"
-#include "arrays.hpp"
 #include "bind_mesh.hpp"
+#include "conversion.hpp"
 
 namespace tinsmith::python {
 
@@ -20,8 +20,8 @@ inline auto refine_arrays(const GivenRows& points, const GivenTriples& triangles
   MeshEditor editor = editor_from(points, triangles, neighbors, fixed);
   const Refined refined = [&] {
     nb::gil_scoped_release release;
-    return refine(editor, {least_angle, largest_area, longest_edge}, kept_whole.data(),
-                  kept_whole.shape(0), most, no_signal);
+    return refine(editor, {least_angle, largest_area, longest_edge}, pairs_of(kept_whole), most,
+                  no_signal);
   }();
   if (refined.ended == Refiner::Ended::kStopped) throw nb::python_error();
   return std::make_tuple(copy_over<Xy, double>(refined.points, {refined.points.size(), 2}),

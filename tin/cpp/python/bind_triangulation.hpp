@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "../triangulation.hpp"
-#include "arrays.hpp"
+#include "conversion.hpp"
 
 namespace tinsmith::python {
 

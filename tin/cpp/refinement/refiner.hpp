@@ -5,17 +5,17 @@
 // (1993), with the off-centres of Uengoer, "Off-centers: a new type of Steiner points" (2004):
 //
 //   1. A segment (a fixed edge; every edge of the boundary is one) that a corner beside it
-//   encroaches
-//      upon, or that is too long, is split. Points put inside the surface before and now within
-//      the circle on the segment are taken out first.
+//      encroaches upon, or that is too long, is split. Points put inside the surface before and now
+//      within the circle on the segment are taken out first.
 //   2. A bad triangle gets a point at its remedy. If a segment is in the way, or the point would
 //      encroach upon one, that segment is split instead.
 //
 // At an input vertex with a small angle, segments are split on circles around it whose radii are
-// powers of two, so that both sides are cut alike and do not cut each other on and on [Ruppert
-// 1995]. A triangle whose shortest edge joins two such segments at one circle, across the mouth of
-// an angle below 60 degrees, is left [Miller, Pav, Walkington 2003], and so is one that only edges
-// much shorter than any of the input could mend: this is why it always ends.
+// powers of two, so that both sides are cut alike and do not cut each other on and on (Ruppert). A
+// triangle whose shortest edge joins two such segments at one circle, across the mouth of an angle
+// below 60 degrees, is left (Miller, Pav and Walkington, "When and why Ruppert's algorithm works",
+// 2003), and so is one that only edges much shorter than any of the input could mend: this is why
+// it always ends.
 #pragma once
 
 #include <algorithm>

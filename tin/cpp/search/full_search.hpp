@@ -79,13 +79,12 @@ class ThirdPointSearch {
   // neighbours come after it in the sweep, so only those are looked at; of equally near ones the
   // first in the sweep is taken.
   Vertex nearest() {
-    double radius = cell_;
-    while (true) {
+    for (double radius = cell_; std::isfinite(radius);) {
       const std::int32_t found = nearest_in(Disc{box_around(radius)});
-      const double distance = found < 0 ? HUGE_VAL : distance_to(found);
-      if (distance <= radius) return static_cast<Vertex>(found);
-      radius = found < 0 ? 2.0 * radius : distance;
+      if (found >= 0 && distance_to(found) <= radius) return static_cast<Vertex>(found);
+      radius = found < 0 ? 2.0 * radius : distance_to(found);
     }
+    throw std::logic_error("a point has no other one after it in the sweep");
   }
 
   SearchCounts& counts() { return counts_; }

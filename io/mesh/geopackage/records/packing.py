@@ -15,6 +15,7 @@ from .....tin.constraints.breaklines import Lines
 from .....tin.constraints.constraint_set import LineSet
 from .....tin.constraints.constraint_table import ConstraintTable
 from .....tin.report import Crossings, Edit, Overruled, Report, Unmended
+from .columns import pack_columns
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -60,6 +61,8 @@ def pack_tin(tin: TIN) -> Record:
         **_pack_version(version, packer),
         "edits": packer.pack(origin.edits),
     }
+    if tin.row_attributes:
+        document["attributes"] = pack_columns(tin.row_attributes, packer.pack)
     if origin.inputs is not None:
         document |= _pack_inputs(origin.inputs, version, packer)
     if origin.given is not None:

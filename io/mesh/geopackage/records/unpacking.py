@@ -16,6 +16,7 @@ from .....tin.surface import TIN
 from .....tin.triangulation import Triangulation
 from .....tin.validation.points import as_points
 from .....tin.validation.triangles import as_flags, as_triangles, turn_counter_clockwise
+from .columns import unpack_columns
 from .packing import CLASSES, take_rows
 from .requirements import (
     require,
@@ -79,6 +80,9 @@ def _unpack_tin(record: Record, *mesh: NDArray[Any]) -> TIN:
         lines=version.lines,
         crs=unpack(document["crs"]),
         elevation_unit=unpack(document["elevation_unit"]),
+        row_attributes=unpack_columns(
+            document.get("attributes", []), unpack, len(version.vertex_of)
+        ),
     )
     if inputs is not None:
         inputs = replace(inputs, crs=tin.crs, elevation_unit=tin.elevation_unit)

@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..options import writing_options
-from ..parameters import input_file, output_files, report_option
-from ..paths import name_file
+from ..parameters import input_files, output_files, report_option
+from ..paths import describe_inputs, name_files
 from ..request import surface_options
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
     from ...tin import TIN, Survey
@@ -25,36 +26,37 @@ __all__ = ["build"]
 
 
 @click.command(short_help="Build a TIN from elevation points.")
-@input_file("points")
+@input_files("points")
 @output_files
 @report_option(
     "JSON file that accounts for every row merged or left out, and every crossing of lines."
 )
 @surface_options(writing_options)
 def build(
-    points: Path,
+    points: tuple[Path, ...],
     report: Path | None,
     request: Request,
 ) -> None:
     """Build the exact Delaunay TIN of the elevation points in POINTS, and of lines.
 
-    POINTS is a text file of survey points (CSV, TXT, XYZ) or an elevation raster (DEM).
-    'tinsmith formats' lists what can be read and written. Breaklines, a boundary, holes and water
-    come from vector files, in any CRS, or from the codes of the points.
+    POINTS is a text file of survey points (CSV, TXT, XYZ) or an elevation raster (DEM); several
+    files, or a folder of tiles, are one survey. 'tinsmith formats' lists what can be read and
+    written. Breaklines, a boundary, holes and water come from vector files, in any CRS, or from the
+    codes of the points.
 
     \b
     Example:
       tinsmith build sample_data/site_survey.csv --crs EPSG:32616 --codes -o site.geojson
       tinsmith build sample_data/jacksboro.tif --stride 4 -o hills.ply -o hills.stl
     """  # noqa: D301 - click reads the control character
-    from ..files import add_lines, build_tin, read_input, write_text
+    from ..files import add_lines, build_tin, read_inputs, write_text
     from ..output.console import format_json
     from ..output.summaries import describe_report
 
     how, console = request.how, request.console
-    planned = request.plan(request.list_inputs(points), "TIN", report=report)
-    found = read_input(points, request.reading, console)
-    survey = add_lines(_require_survey(found, points), how, console)
+    planned = request.plan(request.list_inputs(*points), "TIN", report=report)
+    found = read_inputs(points, request.reading, console)
+    survey = add_lines(_require_survey(found, points[0]), how, console)
     tin = build_tin(survey, how, console)
     gaps = _find_gaps(tin, request)
     planned.write("TIN", tin)
@@ -86,7 +88,9 @@ def _require_survey(found: Survey | TIN, path: Path) -> Survey:
     return found
 
 
-def _summarise_build(points: Path, survey: Survey, tin: TIN, gaps: list[str]) -> list[Row]:
+def _summarise_build(
+    points: Sequence[Path], survey: Survey, tin: TIN, gaps: list[str]
+) -> list[Row]:
     from ..output.line_summaries import describe_counts, summarise_lines
     from ..output.summaries import (
         summarise_crs,
@@ -96,7 +100,7 @@ def _summarise_build(points: Path, survey: Survey, tin: TIN, gaps: list[str]) ->
     )
 
     return [
-        ("Points", f"{len(survey):,} from {name_file(points)}"),
+        ("Points", f"{len(survey):,} from {name_files(points)}"),
         *summarise_reading(survey),
         *summarise_merges(tin.report, survey),
         *summarise_lines(survey, tin),
@@ -108,13 +112,18 @@ def _summarise_build(points: Path, survey: Survey, tin: TIN, gaps: list[str]) ->
 
 
 def _describe_build(
-    points: Path, survey: Survey, tin: TIN, gaps: list[str], planned: Products, started: float
+    points: Sequence[Path],
+    survey: Survey,
+    tin: TIN,
+    gaps: list[str],
+    planned: Products,
+    started: float,
 ) -> dict[str, Any]:
     from ..output.line_summaries import count_lines
     from ..output.summaries import describe_report, describe_survey, describe_tin
 
     return {
-        "input": str(points),
+        "input": describe_inputs(points),
         "survey": describe_survey(survey),
         "tin": describe_tin(tin),
         "counts": count_lines(tin.report),

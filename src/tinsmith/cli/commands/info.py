@@ -8,8 +8,8 @@ import click
 
 from ..options import coding_options, console_options, reading_options
 from ..output.failures import Failure
-from ..parameters import input_file
-from ..paths import OUTPUT, make_title, name_file
+from ..parameters import input_files
+from ..paths import OUTPUT, describe_inputs, make_title, name_file, name_files
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -22,7 +22,7 @@ __all__ = ["info"]
 
 
 @click.command(short_help="Describe a file of points or a TIN.")
-@input_file("file")
+@input_files("files")
 @click.option(
     "--plot",
     metavar="FILE",
@@ -32,11 +32,14 @@ __all__ = ["info"]
 @reading_options
 @coding_options
 @console_options
-def info(file: Path, plot: Path | None, reading: Reading, how: Coding, console: Console) -> None:
-    """Describe FILE: survey points, an elevation raster or a TIN.
+def info(
+    files: tuple[Path, ...], plot: Path | None, reading: Reading, how: Coding, console: Console
+) -> None:
+    """Describe FILES: survey points, an elevation raster or a TIN.
 
-    Counts, extent, elevations and CRS; of a TIN also areas, slopes and the shapes of its
-    triangles; with --codes the lines that the codes of points make, and what is odd in them.
+    Several files of points are one survey. Counts, extent, elevations and CRS; of a TIN also
+    areas, slopes and the shapes of its triangles; with --codes the lines that the codes of points
+    make, and what is odd in them.
 
     \b
     Example:
@@ -44,12 +47,12 @@ def info(file: Path, plot: Path | None, reading: Reading, how: Coding, console: 
       tinsmith info sample_data/site_survey.csv --crs EPSG:32616 --json
     """  # noqa: D301 - click reads the control character
     from ...tin import TIN
-    from ..files import add_coded_lines, list_inputs, read_input, require_picture
+    from ..files import add_coded_lines, list_inputs, read_inputs, require_picture
     from ..output.summaries import describe_survey, summarise_survey
 
     if plot is not None:
-        require_picture(plot, place="--plot", inputs=list_inputs(file, how))
-    found = read_input(file, reading, console)
+        require_picture(plot, place="--plot", inputs=list_inputs(*files, how=how))
+    found, file = read_inputs(files, reading, console), files[0]
     if isinstance(found, TIN):
         if how.has_codes:
             raise Failure(f"'{file}' holds a TIN, and codes are those of points.")
@@ -61,9 +64,9 @@ def info(file: Path, plot: Path | None, reading: Reading, how: Coding, console: 
         )
     found = add_coded_lines(found, how)
     if console.as_json:
-        console.answer([], {"input": str(file)} | describe_survey(found))
+        console.answer([], {"input": describe_inputs(files)} | describe_survey(found))
     else:
-        console.answer([("File", name_file(file)), *summarise_survey(found)], {})
+        console.answer([("File", name_files(files)), *summarise_survey(found)], {})
 
 
 def _describe(tin: TIN, file: Path, plot: Path | None, console: Console) -> None:

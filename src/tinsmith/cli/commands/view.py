@@ -2,26 +2,55 @@
 
 from __future__ import annotations
 
+import re
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from ...policies import Tint
 from ..options import console_options, reading_options, triangulating_options
-from ..output.failures import note_written
-from ..parameters import input_file, number_option, picture_option
-from ..paths import make_title
+from ..output.failures import note_written, tell_warning
+from ..parameters import (
+    choice_option,
+    input_files,
+    number_option,
+    parse_numbers,
+    picture_option,
+)
+from ..paths import INPUT, Named, describe_inputs, make_title
 
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from ...tin import Survey
     from ..options import Reading, Triangulating
     from ..output.console import Console, Row
 
 __all__ = ["view"]
 
+_MOST_CELLS = 1_000_000
+_UNNAMED = "Terrain surface"
+
+
+def _parse_size(
+    ctx: click.Context,  # noqa: ARG001 - click's signature
+    param: click.Parameter,
+    value: str | None,
+) -> tuple[int, int] | None:
+    """Return width and height, given as 1600x1000 or 1600,1000."""
+    if value is None:
+        return None
+    found = re.fullmatch(r"\s*(\d{1,9})\s*[xX,\N{MULTIPLICATION SIGN}]\s*(\d{1,9})\s*", value)
+    if found is None:
+        raise click.UsageError(
+            f"Invalid {param.opts[0]} '{value}': it must be width and height, such as 1600x1000."
+        )
+    return int(found[1]), int(found[2])
+
 
 @click.command(short_help="Show a TIN in 3D: in a window, as a page, as a picture.")
-@input_file("file")
+@input_files("files")
 @picture_option("Picture to write (.png, .jpg, .tif) instead of opening a window.")
 @number_option("--exaggeration", "FACTOR", "Vertical exaggeration; chosen if absent.")
 @click.option("--edges", is_flag=True, help="Draw the edges of the triangles.")
@@ -32,19 +61,62 @@ __all__ = ["view"]
     help="Draw breaklines and rings.",
 )
 @click.option("--top", is_flag=True, help="Look straight down, north up.")
+@click.option(
+    "--ortho",
+    metavar="FILE",
+    type=INPUT,
+    help="Picture of the ground to drape over the surface: a GeoTIFF in any CRS, or another with "
+    "its place.",
+)
+@number_option("--azimuth", "DEGREES", "Where the viewer stands, clockwise from north.")
+@number_option("--tilt", "DEGREES", "Height of the viewer above the horizon, 90 from above.")
+@click.option(
+    "--full",
+    is_flag=True,
+    help="Show every cell of a large raster; default a sample of a million, or half as many in a "
+    "page.",
+)
 @click.option("--title", metavar="TEXT", help="Title in the picture; default the file's name.")
+@click.option(
+    "--size",
+    metavar="WIDTHxHEIGHT",
+    callback=_parse_size,
+    help="Pixels of a picture or window; default 1600x1000.",
+)
+@number_option("--dpi", "NUMBER", "Dots per inch written into a picture, for printing.")
+@click.option(
+    "--sun",
+    metavar="AZIMUTH,ALTITUDE",
+    callback=parse_numbers,
+    help="Light in a picture, degrees from north and above the horizon; default 315,45.",
+)
+@click.option(
+    "--background",
+    metavar="COLOR",
+    help="white, black, light, dark, or as #e8edf2; default white.",
+)
+@click.option(
+    "--elevations",
+    metavar="LOW,HIGH",
+    callback=parse_numbers,
+    help="Range of the tints in a picture; default that of the surface.",
+)
+@choice_option("--tint", Tint, "What colours tell in a picture.", default="elevation")
+@number_option("--contours", "INTERVAL", "Draw contours in a picture, in the unit of elevations.")
 @reading_options
 @triangulating_options
 @console_options
 def view(
-    file: Path,
+    files: tuple[Path, ...],
     output: Path | None,
+    ortho: Path | None,
+    full: bool,
     reading: Reading,
     how: Triangulating,
     console: Console,
     **drawing: Any,
 ) -> None:
-    """Show the TIN in FILE, or of the points in it.
+    """Show the TIN in FILES, or of the points in them.
 
     \b
     Example:
@@ -52,26 +124,53 @@ def view(
     """  # noqa: D301 - click reads the control character
     from ...terrain import preview
     from ...terrain.preview.presentation import PREVIEW_SUFFIXES
-    from ..files import list_inputs, read_tin, require_picture
+    from ..files import list_inputs, read_tin_of_files, require_picture
 
+    inputs = list_inputs(*files, how=how)
+    if ortho is not None:
+        inputs.append(Named(ortho, "the picture to drape"))
     if output is not None:
-        require_picture(
-            output, place="--output", inputs=list_inputs(file, how), suffixes=PREVIEW_SUFFIXES
-        )
+        require_picture(output, place="--output", inputs=inputs, suffixes=PREVIEW_SUFFIXES)
 
-    tin, survey = read_tin(file, reading, how, console)
+    if not full and reading.stride is None:
+        reading = replace(reading, most_cells=_choose_most_cells(output))
+    tin, survey = read_tin_of_files(files, reading, how, console)
+    sample = None if survey is None else _describe_sample(survey)
     top = drawing.pop("top")
-    drawing["title"] = drawing["title"] or make_title(file)
+    drawing["title"] = drawing["title"] or make_title(files[0])
+    if sample is not None:
+        console.summarise([("Sampled", f"{sample} are shown; --full shows all")])
+        drawing["title"] = f"{drawing['title'] or _UNNAMED} ({sample})"
     with console.steps() as steps, steps.step("Drawing"):
         seen = "top" if top else "oblique"
-        shown: Any = preview(tin, survey=survey, output=output, view=seen, **drawing)
+        shown = preview(tin, survey=survey, drape=ortho, view=seen, **drawing)
         if output is None:
             shown.show()
+        else:
+            shown.save(output)
+    for note in shown.notes:
+        tell_warning(note)
     if output is not None:
         note_written(output)
         console.summarise(_summarise_picture(output))
         if console.as_json:
-            console.answer([], {"input": str(file), "output": str(output)})
+            record = {"input": describe_inputs(files), "output": str(output)}
+            console.answer([], record | ({} if sample is None else {"sample": sample}))
+
+
+def _choose_most_cells(output: Path | None) -> int:
+    """Return how many cells of a raster are shown at most: pages are sent by mail."""
+    is_page = output is not None and output.suffix.lower().startswith(".htm")
+    return _MOST_CELLS // 2 if is_page else _MOST_CELLS
+
+
+def _describe_sample(survey: Survey) -> str | None:
+    """Return how many cells of a raster were read, if not all were."""
+    from ...io.raster.dem import LEFT_OUT
+
+    left_out = survey.skipped.get(LEFT_OUT, 0)
+    read = len(survey.points) + survey.skipped.get("nodata cells", 0)
+    return f"{read:,} of {read + left_out:,} cells" if left_out else None
 
 
 def _summarise_picture(output: Path) -> list[Row]:

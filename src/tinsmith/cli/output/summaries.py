@@ -79,6 +79,7 @@ def describe_tin(tin: TIN) -> dict[str, Any]:
         "rings": len(tin.rings),
         "constrained_edges": count_constrained_edges(tin),
         "lines": {kind: tin.lines.kinds.count(kind) for kind in sorted(set(tin.lines.kinds))},
+        "attributes": list(tin.attributes),
         **_describe_place(tin),
         **_describe_ground(tin),
         "notes": list(tin.report.notes),
@@ -196,6 +197,7 @@ def summarise_tin(tin: TIN) -> list[Row]:
     rows = [
         ("TIN", describe_counts(tin)),
         ("Edges", f"{len(tin.edges):,}, {sum(map(len, tin.boundary)):,} of them on the boundary"),
+        *([("Columns", ", ".join(tin.attributes))] if tin.attributes else []),
         *summarise_extent(tin),
     ]
     if record["area"] is not None:

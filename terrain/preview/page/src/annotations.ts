@@ -99,3 +99,36 @@ export function chooseBar(unitsPerPixel: number, pixels: number): [length: numbe
   const length = [5, 2, 1].map((n) => n * power).find((n) => n <= most) ?? power;
   return [length, length / unitsPerPixel];
 }
+
+/** Draw the legend as it stands on the page: title, ramp and numbers. */
+export function drawLegend(pen: CanvasRenderingContext2D, legend: HTMLElement, view: HTMLElement): void {
+  const [width, left, top] = [208, view.clientWidth - 224, view.clientHeight - 52];
+  pen.font = "14px system-ui, sans-serif";
+  pen.fillText(legend.querySelector("figcaption")!.textContent ?? "", left, top, width);
+  const colors = legend.querySelector<HTMLElement>("#ramp")!.dataset.colors!.split(" ");
+  const ink = pen.fillStyle;
+  colors.forEach((color, k) => {
+    pen.fillStyle = color;
+    pen.fillRect(left + (k * width) / colors.length, top + 8, width / colors.length + 0.5, 12);
+  });
+  pen.fillStyle = ink;
+  pen.font = "12px system-ui, sans-serif";
+  const ticks = [...legend.querySelectorAll("#ticks span")].map((one) => one.textContent ?? "");
+  ticks.forEach((text, k) => {
+    pen.textAlign = k === 0 ? "left" : k === ticks.length - 1 ? "right" : "center";
+    pen.fillText(text, left + (k * width) / (ticks.length - 1), top + 34);
+  });
+  pen.textAlign = "left";
+}
+
+/** Draw the arrow of the page, turned to the north. */
+export function drawNorth(pen: CanvasRenderingContext2D, x: number, y: number, heading: number): void {
+  pen.save();
+  pen.translate(x, y);
+  pen.rotate((-heading * Math.PI) / 180);
+  pen.fill(new Path2D("M0-17 6 8 0 4-6 8Z"));
+  pen.textAlign = "center";
+  pen.font = "600 12px system-ui, sans-serif";
+  pen.fillText("N", 0, -20);
+  pen.restore();
+}

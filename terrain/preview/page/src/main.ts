@@ -1,8 +1,17 @@
 /** The page: unpacks the surfaces, shows them, and answers to mouse, touch and keys. */
 
-import { drawLabels, drawMeasured, chooseBar, type Marked } from "./annotations";
+import {
+  chooseBar,
+  drawLabels,
+  drawLegend,
+  drawMeasured,
+  drawNorth,
+  type Marked,
+} from "./annotations";
 import { type Tint, TINTS } from "./material";
-import { measureArea, measureLine, profileAlong } from "./measuring";
+import { type Factors, makeGround } from "./ground";
+import { crossesItself, measureArea, measureLine, profileAlong } from "./measuring";
+import { decodeOrtho } from "./ortho";
 import { readPayload, type Payload } from "./payload";
 import { chooseTicks, drawProfile } from "./profile";
 import { Model, Stage } from "./scene";
@@ -15,8 +24,12 @@ const TITLES: Record<Tint, string> = {
   aspect: "Aspect",
   difference: "Cut and fill",
   plain: "Plain",
+  ortho: "Ortho",
 };
-const CURVES = ["#0b5fa5", "#c2185b", "#2e7d32", "#e65100", "#6a1b9a"];
+const CURVES = {
+  light: ["#0b5fa5", "#c2185b", "#2e7d32", "#b84300", "#6a1b9a"],
+  dark: ["#6cb2f0", "#f48fb1", "#81c784", "#ffab70", "#ce93d8"],
+};
 const START = { azimuth: 195, tilt: 35 };
 const STEEPEST = 60;
 const THEMES = { light: "#f4f2ee", dark: "#171b1f" };
@@ -38,11 +51,14 @@ class Page {
   marked: Marked[] = [];
   tint: Tint = "elevation";
   dark = false;
+  readonly ground: (y: number) => Factors;
 
   constructor(
     readonly payload: Payload,
     readonly stage: Stage,
+    readonly isDraped: boolean,
   ) {
+    this.ground = makeGround(payload);
     stage.drawn = () => this.annotate();
   }
 
@@ -53,7 +69,7 @@ class Page {
     this.resize();
     this.setExaggeration(this.payload.exaggeration);
     this.setTheme(matchMedia("(prefers-color-scheme: dark)").matches);
-    this.setTint("elevation");
+    this.setTint(this.isDraped ? "ortho" : "elevation");
     this.stage.look(START.azimuth, START.tilt);
     this.stage.draw();
   }
@@ -63,8 +79,8 @@ class Page {
   private fillPanel(): void {
     const tints = find<HTMLSelectElement>("tint");
     const compared = this.stage.models.some((model) => model.surface.difference !== null);
-    for (const tint of TINTS)
-      if (tint !== "difference" || compared) tints.add(new Option(TITLES[tint], tint));
+    const absent: Partial<Record<Tint, boolean>> = { difference: !compared, ortho: !this.isDraped };
+    for (const tint of TINTS) if (!absent[tint]) tints.add(new Option(TITLES[tint], tint));
     for (const place of document.querySelectorAll(".elevation-unit"))
       place.textContent = this.payload.units.elevation;
     find<HTMLInputElement>("interval").value = String(this.chooseInterval());
@@ -140,28 +156,32 @@ class Page {
 
   private showLegend(): void {
     const legend = find<HTMLElement>("legend");
-    legend.hidden = this.tint === "plain";
-    if (this.tint === "plain") return;
+    const shown = this.tint === "ortho" && !this.payload.ortho!.isWhole ? "elevation" : this.tint;
+    legend.hidden = shown === "plain" || shown === "ortho";
+    if (shown === "plain" || shown === "ortho") return;
     const unit = this.payload.units.elevation;
-    const [low, high] = this.range(this.tint);
+    const [low, high] = this.range(shown);
     const shift = this.payload.origin[2];
-    const digits = Math.min(this.payload.decimals[1], high - low > 5 ? 1 : 3);
-    const elevation = (z: number): string => (z + shift).toFixed(digits);
-    const ends: Record<Exclude<Tint, "plain">, [string, string[]]> = {
+    const digits = Math.min(Math.max(0, 2 - Math.floor(Math.log10(high - low))), 20);
+    const elevation = (z: number): string => fix(z + shift, digits);
+    const ends: Record<Exclude<Tint, "plain" | "ortho">, [string, string[]]> = {
       elevation: [joinUnit("Elevation", unit), [low, (low + high) / 2, high].map(elevation)],
       slope: ["Slope, degrees", ["0", "15", "30", "45", "60+"]],
       aspect: ["Aspect, facing", ["N", "E", "S", "W", "N"]],
-      difference: [joinUnit("Cut (below 0) and fill", unit), [low, 0, high].map((v) => v.toFixed(2))],
+      difference: [joinUnit("Cut (below 0) and fill", unit), [low, 0, high].map((v) => fix(v, digits))],
     };
-    const [title, ticks] = ends[this.tint];
+    const [title, ticks] = ends[shown];
     legend.querySelector("figcaption")!.textContent = title;
     find<HTMLElement>("ramp").style.background =
-      `linear-gradient(to right, ${this.payload.ramps[this.tint].join(", ")})`;
+      `linear-gradient(to right, ${this.payload.ramps[shown].join(", ")})`;
+    find<HTMLElement>("ramp").dataset.colors = this.payload.ramps[shown].join(" ");
     find<HTMLElement>("ticks").replaceChildren(...ticks.map((text) => makeText("span", text)));
   }
 
   setExaggeration(factor: number): void {
     const slider = find<HTMLInputElement>("exaggeration");
+    slider.max = String(Math.max(2, Math.log10(factor)));
+    slider.min = String(Math.min(-1, Math.log10(factor)));
     slider.value = String(Math.log10(factor));
     slider.setAttribute("aria-valuetext", `${Number(factor.toPrecision(3))} times`);
     find<HTMLOutputElement>("factor").value = `\u00d7 ${Number(factor.toPrecision(3))}`;
@@ -183,6 +203,7 @@ class Page {
     const button = find<HTMLButtonElement>("theme");
     button.setAttribute("aria-pressed", String(dark));
     this.stage.setBackground(THEMES[theme]);
+    if (this.tool === "distance") this.showMeasured();
   }
 
   // ---------------------------------------------------------------- events
@@ -196,6 +217,11 @@ class Page {
     on("interval", "input", () => this.setContours());
     on("edges", "change", (target) => {
       for (const model of this.stage.models) model.showEdges(target.checked);
+      this.stage.request();
+    });
+    on("shading", "change", (target) => {
+      for (const { material } of this.stage.models)
+        material.uniforms.shading.value = target.checked ? 1 : 0;
       this.stage.request();
     });
     on("above", "click", () => this.stage.look(180, 90));
@@ -217,11 +243,22 @@ class Page {
   private listenToPointer(): void {
     let down: [number, number] | null = null;
     let waiting = false;
-    this.view.addEventListener("pointerdown", (e) => (down = [e.offsetX, e.offsetY]));
+    const pressed = new Set<number>();
+    this.view.addEventListener("pointerdown", (e) => {
+      pressed.add(e.pointerId);
+      // Two fingers move and zoom: none of them points at a place.
+      down = pressed.size === 1 ? [e.offsetX, e.offsetY] : null;
+    });
+    this.view.addEventListener("pointercancel", (e) => {
+      pressed.delete(e.pointerId);
+      down = null;
+    });
     this.view.addEventListener("pointerup", (e) => {
-      if (down === null || this.tool === "none") return;
-      if (Math.hypot(e.offsetX - down[0], e.offsetY - down[1]) < CLICK_PIXELS)
-        this.mark(e.offsetX, e.offsetY);
+      pressed.delete(e.pointerId);
+      if (down === null || e.button !== 0) return;
+      if (Math.hypot(e.offsetX - down[0], e.offsetY - down[1]) >= CLICK_PIXELS) return;
+      if (this.tool === "none") this.read(e.offsetX, e.offsetY);
+      else this.mark(e.offsetX, e.offsetY);
     });
     this.view.addEventListener("pointermove", (e) => {
       if (waiting || e.buttons !== 0) return;
@@ -272,12 +309,13 @@ class Page {
     const unit = geographic ? "\u00b0" : ` ${units.horizontal}`;
     const [x, y] = [hit.x / scale[0] + origin[0], hit.y / scale[1] + origin[1]];
     const parts = [
-      `${names[0]} ${x.toFixed(decimals[0])}${unit}`,
-      `${names[1]} ${y.toFixed(decimals[0])}${unit}`,
-      `Elevation ${(hit.z + origin[2]).toFixed(decimals[1])} ${units.elevation}`,
+      `${names[0]} ${fix(x, decimals[0])}${unit}`,
+      `${names[1]} ${fix(y, decimals[0])}${unit}`,
+      `Elevation ${fix(hit.z + origin[2], decimals[1])} ${units.elevation}`,
       `Slope ${model.surface.slope(hit.triangle).toFixed(1)}\u00b0`,
     ];
-    if (this.stage.models.length > 1) parts.push(model.surface.data.name);
+    // Isolated, for a name written from right to left would turn the numbers round.
+    if (this.stage.models.length > 1) parts.push(`\u2068${model.surface.data.name.slice(0, 80)}\u2069`);
     return parts.map((part) => part.trim()).join("   ");
   }
 
@@ -318,16 +356,25 @@ class Page {
       return;
     }
     const { units, elevationScale, decimals } = this.payload;
-    const { length, groundLength, rise } = measureLine(this.marked, elevationScale);
+    const { length, covered, groundLength, rise } = measureLine(
+      this.marked,
+      elevationScale,
+      this.ground,
+    );
+    const say = (value: number): string => `${value.toFixed(decimals[0])} ${units.horizontal}`.trim();
+    const isWhole = covered > length * (1 - 1e-6);
     const text =
-      `Distance ${length.toFixed(decimals[0])} ${units.horizontal}, ` +
-      `along the ground ${groundLength.toFixed(decimals[0])} ${units.horizontal}, ` +
-      `rise ${rise.toFixed(decimals[1])} ${units.elevation}`;
+      `Distance ${say(length)}, along the ground ${say(groundLength)}` +
+      `${isWhole ? "" : ` on the ${say(covered)} that are on the surface`}, ` +
+      `rise ${fix(rise, decimals[1])} ${units.elevation}`.trimEnd();
     const shift = this.payload.origin[2];
-    const curves = this.stage.models.map((model, k) => ({
-      name: model.surface.data.name,
-      color: CURVES[k % CURVES.length],
-      pieces: profileAlong(this.marked, k, this.stage.models).map((piece) =>
+    const colors = CURVES[this.dark ? "dark" : "light"];
+    // What is coloured by cut and fill is one of the other surfaces once more.
+    const models = this.stage.models.filter(({ surface }) => surface.difference === null);
+    const curves = models.map(({ surface }, k) => ({
+      name: surface.data.name,
+      color: colors[k % colors.length],
+      pieces: profileAlong(this.marked, surface, this.ground).map((piece) =>
         piece.map(([d, z]): [number, number] => [d, z + shift]),
       ),
     }));
@@ -341,9 +388,13 @@ class Page {
       return;
     }
     const { units, decimals } = this.payload;
-    const { area, perimeter } = measureArea(this.marked);
+    const { area, perimeter } = measureArea(this.marked, this.ground);
     const unit = units.horizontal;
-    const text = `Area ${area.toFixed(decimals[0])} ${unit}\u00b2, perimeter ${perimeter.toFixed(decimals[0])} ${unit}`;
+    const square = unit === "" ? "" : ` ${unit}\u00b2`;
+    const around = `perimeter ${perimeter.toFixed(decimals[0])} ${unit}`.trim();
+    const text = crossesItself(this.marked)
+      ? "The sides of the polygon cross: its area cannot be told."
+      : `Area ${area.toFixed(decimals[0])}${square}, ${around}`;
     box.replaceChildren(makeText("span", text));
   }
 
@@ -399,8 +450,17 @@ class Page {
     const width = bar.querySelector("i")!.getBoundingClientRect().width;
     pen.fillRect(16, this.view.clientHeight - 24, width, 3);
     pen.fillText(`${bar.querySelector("span")!.textContent ?? ""}, ${this.payload.crs}`, 16, this.view.clientHeight - 32);
+    const legend = find<HTMLElement>("legend");
+    if (!legend.hidden) drawLegend(pen, legend, this.view);
+    drawNorth(pen, this.view.clientWidth - 40, 40, this.stage.heading);
     return sheet.toDataURL("image/png");
   }
+}
+
+/** Write a number with so many decimals, and nought without a minus. */
+function fix(value: number, decimals: number): string {
+  const text = value.toFixed(decimals);
+  return Number(text) === 0 ? (0).toFixed(decimals) : text;
 }
 
 function joinUnit(words: string, unit: string): string {
@@ -431,17 +491,24 @@ function makeSwitch(
     sample.style.borderColor = color;
     label.append(sample);
   }
-  label.append(title);
+  const words = document.createElement("span");
+  Object.assign(words, { textContent: title, dir: "auto", title });
+  label.append(words);
   return label;
 }
 
 /** Show the terrain as a flat picture, and say why. */
-function showStill(payload: Payload, surface: Surface, words: HTMLElement): void {
+function showStill(
+  payload: Payload,
+  surface: Surface,
+  picture: ImageBitmap | null,
+  words: HTMLElement,
+): void {
   words.textContent = "This browser has no WebGL, so the terrain is shown as a still picture.";
   words.style.inset = "auto 10% 24px";
   const canvas = find<HTMLCanvasElement>("notes");
   [canvas.width, canvas.height] = [canvas.clientWidth, canvas.clientHeight];
-  drawStill(canvas, surface, payload);
+  drawStill(canvas, surface, payload, picture);
   for (const id of ["panel", "north", "bar", "legend"])
     document.getElementById(id)?.setAttribute("style", "display: none");
 }
@@ -450,13 +517,15 @@ async function open(): Promise<Page | null> {
   const words = find<HTMLElement>("wait");
   const payload = readPayload("terrain");
   const surfaces: Surface[] = [];
+  const ground = makeGround(payload);
   for (const data of payload.surfaces)
-    surfaces.push(await Surface.unpack(data, payload.elevationScale));
+    surfaces.push(await Surface.unpack(data, payload.elevationScale, ground));
+  const picture = payload.ortho === null ? null : await decodeOrtho(payload.ortho);
   let stage: Stage;
   try {
     stage = new Stage(find<HTMLCanvasElement>("view"), payload);
   } catch {
-    showStill(payload, surfaces[surfaces.length - 1], words);
+    showStill(payload, surfaces[surfaces.length - 1], picture, words);
     return null;
   }
   for (const surface of surfaces) {
@@ -464,7 +533,8 @@ async function open(): Promise<Page | null> {
     await model.addLayers();
     stage.add(model);
   }
-  const page = new Page(payload, stage);
+  if (picture !== null) stage.drape(picture);
+  const page = new Page(payload, stage, picture !== null);
   page.start();
   words.remove();
   return page;

@@ -2,7 +2,7 @@
 
 import { Color, DataTexture, DoubleSide, LinearFilter, RGBAFormat, ShaderMaterial, SRGBColorSpace, Vector3 } from "three";
 
-export const TINTS = ["elevation", "slope", "aspect", "difference", "plain"] as const;
+export const TINTS = ["elevation", "slope", "aspect", "difference", "plain", "ortho"] as const;
 export type Tint = (typeof TINTS)[number];
 
 /** Light from the northwest at 45 degrees, as on printed maps. */
@@ -35,6 +35,10 @@ uniform float base;
 uniform vec3 light;
 uniform vec3 plain;
 uniform vec3 ink;
+uniform float shading;
+uniform sampler2D ortho;
+uniform vec3 across;
+uniform vec3 down;
 varying vec3 ground;
 varying vec3 lit;
 varying float changed;
@@ -54,14 +58,20 @@ void main() {
   if (face.z < 0.0) face = -face;
   float elevation = ground.z / elevationScale;
   float place;
-  if (tint == 0) place = (elevation - range.x) / (range.y - range.x);
+  if (tint == 0 || tint == 5) place = (elevation - range.x) / (range.y - range.x);
   else if (tint == 1) place = degrees(acos(clamp(face.z, -1.0, 1.0))) / range.y;
   else if (tint == 2) place = fract(degrees(atan(face.x, face.y)) / 360.0);
   else if (tint == 3) place = 0.5 + 0.5 * changed / range.y;
   else place = 0.0;
   vec3 color = tint == 4 ? plain : texture2D(ramp, vec2(clamp(place, 0.0, 1.0), 0.5)).rgb;
   float shade = max(dot(normalize(lit), light), 0.0) / light.z;
-  color *= mix(0.42, 1.0, clamp(shade, 0.0, 1.35));
+  float brightness = mix(1.0, mix(0.42, 1.0, clamp(shade, 0.0, 1.35)), shading);
+  vec2 at = vec2(dot(across, vec3(ground.xy, 1.0)), dot(down, vec3(ground.xy, 1.0)));
+  vec4 pixel = texture2D(ortho, at);
+  if (tint == 5 && all(greaterThanEqual(at, vec2(0.0))) && all(lessThanEqual(at, vec2(1.0))))
+    // A photograph has shadows of its own: the light adds half as much.
+    color = mix(brightness * color, vec3(0.0), pixel.a) + mix(1.0, brightness, 0.5) * pixel.rgb;
+  else color *= brightness;
   if (interval > 0.0) {
     float steps = (elevation + base) / interval;
     float line = max(0.75 * contour(steps, 0.6), contour(steps / 5.0, 1.1));
@@ -104,6 +114,10 @@ export function makeTerrainMaterial(elevationScale: number): ShaderMaterial {
       light: { value: LIGHT },
       plain: { value: new Color(PLAIN) },
       ink: { value: new Color("#3b2c1a") },
+      shading: { value: 1 },
+      ortho: { value: null },
+      across: { value: new Vector3() },
+      down: { value: new Vector3() },
     },
   });
 }

@@ -49,6 +49,17 @@ export interface UnitNames {
   elevation: string;
 }
 
+/** A picture of the ground. */
+export interface OrthoData {
+  kind: "jpeg" | "png" | "webp";
+  /** Whether it covers every vertex of the surfaces. */
+  isWhole: boolean;
+  /** Affine: from x and y of the page to the place from the left and from the top, 0 to 1. */
+  place: [number, number, number, number, number, number];
+  /** The file in base64. */
+  data: string;
+}
+
 export interface Payload {
   title: string;
   subtitle: string;
@@ -60,12 +71,15 @@ export interface Payload {
   scale: [number, number];
   /** Whether eastings and northings are longitudes and latitudes. */
   geographic: boolean;
+  /** Its half axis in metres, squared eccentricity, and radians of a unit; null on a map. */
+  ellipsoid: [number, number, number] | null;
   /** Digits after the point: of eastings and northings, of elevations. */
   decimals: [number, number];
   /** Horizontal units in one unit of elevation. */
   elevationScale: number;
   exaggeration: number;
   ramps: Record<"elevation" | "slope" | "aspect" | "difference", string[]>;
+  ortho: OrthoData | null;
   surfaces: SurfaceData[];
 }
 

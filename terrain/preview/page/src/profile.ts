@@ -18,7 +18,7 @@ export function drawProfile(curves: Curve[], units: { horizontal: string; elevat
   if (points.length === 0) return svg;
   const right = Math.max(...extent(points, 0)) || 1;
   let [low, high] = extent(points, 1);
-  if (high - low < 1e-9) [low, high] = [low - 0.5, high + 0.5];
+  if (!(high > low)) [low, high] = [low - 0.5, high + 0.5];
   const x = (value: number): number =>
     MARGIN.left + (value / right) * (SIZE[0] - MARGIN.left - MARGIN.right);
   const y = (value: number): number =>
@@ -43,8 +43,10 @@ function label(words: string, unit: string): string {
 export function chooseTicks(low: number, high: number, most: number): number[] {
   const power = 10 ** Math.floor(Math.log10((high - low) / most));
   const step = [1, 2, 5, 10].map((n) => n * power).find((n) => (high - low) / n <= most) ?? power;
+  const first = Math.ceil(low / step);
   const ticks: number[] = [];
-  for (let k = Math.ceil(low / step); k * step <= high; k += 1) ticks.push(k * step);
+  // Counted, for beyond 2^53 a number and the next one are the same.
+  for (let k = 0; k <= most && (first + k) * step <= high; k += 1) ticks.push((first + k) * step);
   return ticks;
 }
 

@@ -24,11 +24,15 @@ import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
 
 import { makeRamp, makeTerrainMaterial, type Tint, TINTS } from "./material";
+import { Pace, simplify } from "./detail";
+import { makeOrthoTexture } from "./ortho";
 import type { LineLayer, Payload } from "./payload";
 import type { Hit, Surface, Vector } from "./surface";
 import { type Lines, unpackLines, unpackRows } from "./unpacking";
 
 const FIELD_OF_VIEW = 30;
+/** Share of width and height that the terrain takes at most, beside what is written around it. */
+const FILLED = 0.86;
 const FULL_CIRCLE = 2 * Math.PI;
 
 /** One surface with all that is drawn with it. */
@@ -38,6 +42,9 @@ export class Model {
   readonly layers = new Map<string, LineSegments2>();
   labels: { places: Float64Array; texts: string[]; marks: Points } | null = null;
   private edges: LineSegments | null = null;
+  private readonly geometry: BufferGeometry;
+  private readonly fine: BufferAttribute;
+  private coarse: BufferAttribute | undefined;
 
   constructor(
     readonly surface: Surface,
@@ -45,9 +52,20 @@ export class Model {
   ) {
     this.material = makeTerrainMaterial(payload.elevationScale);
     this.material.uniforms.base.value = payload.origin[2];
-    const mesh = new Mesh(makeGeometry(surface), this.material);
+    this.geometry = makeGeometry(surface);
+    this.fine = this.geometry.index!;
+    const mesh = new Mesh(this.geometry, this.material);
     mesh.frustumCulled = false;
     this.group.add(mesh);
+  }
+
+  /** Draw fewer triangles, or all of them. */
+  setCoarse(isCoarse: boolean): void {
+    if (isCoarse && this.coarse === undefined) {
+      const kept = simplify(this.surface);
+      this.coarse = kept === null ? this.fine : new BufferAttribute(kept, 1);
+    }
+    this.geometry.setIndex(isCoarse ? this.coarse! : this.fine);
   }
 
   async addLayers(): Promise<void> {
@@ -81,7 +99,7 @@ export class Model {
   paint(tint: Tint, ramps: Record<string, ReturnType<typeof makeRamp>>, range: [number, number]): void {
     const { uniforms } = this.material;
     uniforms.tint.value = TINTS.indexOf(tint);
-    uniforms.ramp.value = tint === "plain" ? null : ramps[tint];
+    uniforms.ramp.value = tint === "plain" ? null : ramps[tint === "ortho" ? "elevation" : tint];
     uniforms.range.value = range;
   }
 }
@@ -96,6 +114,8 @@ export class Stage {
   readonly ramps: Record<string, ReturnType<typeof makeRamp>> = {};
   /** Called after each picture. */
   drawn: () => void = () => undefined;
+  readonly pace = new Pace(() => this.setDetail());
+  private isCoarse = false;
   private waiting = false;
   private exaggeration = 1;
   private readonly low = new Vector3();
@@ -126,6 +146,17 @@ export class Stage {
     } else {
       this.low.min(new Vector3(...low));
       this.high.max(new Vector3(...high));
+    }
+  }
+
+  /** Drape a picture over all surfaces. */
+  drape(picture: ImageBitmap): void {
+    const { place } = this.payload.ortho!;
+    const texture = makeOrthoTexture(picture, this.renderer.capabilities.getMaxAnisotropy());
+    for (const { material } of this.models) {
+      material.uniforms.ortho.value = texture;
+      material.uniforms.across.value.fromArray(place, 0);
+      material.uniforms.down.value.fromArray(place, 3);
     }
   }
 
@@ -161,9 +192,8 @@ export class Stage {
     middle.z *= this.lift;
     const half = new Vector3().subVectors(high, low).multiplyScalar(0.5);
     half.z *= this.lift;
-    const narrow = Math.min(this.camera.aspect, 1);
-    const away = half.length() / Math.tan(((FIELD_OF_VIEW / 2) * Math.PI) / 180) / narrow;
-    const [a, t] = [(azimuth * Math.PI) / 180, (Math.min(tilt, 89.99) * Math.PI) / 180];
+    const [a, t] = [(azimuth * Math.PI) / 180, (Math.min(tilt, 89.9999) * Math.PI) / 180];
+    const away = this.findDistance(half, a, t);
     this.controls.target.copy(middle);
     this.camera.position.set(
       middle.x + away * Math.sin(a) * Math.cos(t),
@@ -174,6 +204,26 @@ export class Stage {
     this.controls.maxDistance = 6 * away;
     this.controls.update();
     this.request();
+  }
+
+  /** Return how far from its middle a box is seen whole, from a direction in radians. */
+  private findDistance(half: Vector3, azimuth: number, tilt: number): number {
+    const tangent = Math.tan(((FIELD_OF_VIEW / 2) * Math.PI) / 180) * FILLED;
+    const near = [Math.sin(azimuth) * Math.cos(tilt), Math.cos(azimuth) * Math.cos(tilt), Math.sin(tilt)];
+    const right = [-Math.cos(azimuth), Math.sin(azimuth), 0];
+    const up = [-Math.sin(azimuth) * Math.sin(tilt), -Math.cos(azimuth) * Math.sin(tilt), Math.cos(tilt)];
+    const reach = (axis: number[], corner: Vector3): number =>
+      axis[0] * corner.x + axis[1] * corner.y + axis[2] * corner.z;
+    let away = 0;
+    for (const x of [-1, 1])
+      for (const y of [-1, 1])
+        for (const z of [-1, 1]) {
+          const corner = new Vector3(x * half.x, y * half.y, z * half.z);
+          const across = Math.abs(reach(right, corner)) / (tangent * this.camera.aspect);
+          const along = Math.abs(reach(up, corner)) / tangent;
+          away = Math.max(away, reach(near, corner) + Math.max(across, along));
+        }
+    return away || 1;
   }
 
   private boundVisible(): [Vector3, Vector3] {
@@ -281,18 +331,45 @@ export class Stage {
     this.waiting = true;
     requestAnimationFrame(() => {
       this.waiting = false;
+      this.pace.note(performance.now());
+      this.setDetail();
       this.draw();
     });
   }
 
+  /** Fit the number of triangles and pixels to the pace of the pictures. */
+  private setDetail(): void {
+    const { isCoarse } = this.pace;
+    if (this.isCoarse === isCoarse) return;
+    this.isCoarse = isCoarse;
+    for (const model of this.models) model.setCoarse(isCoarse);
+    const ratio = Math.min(window.devicePixelRatio, 2);
+    this.renderer.setPixelRatio(isCoarse ? ratio / 2 : ratio);
+    if (!isCoarse) this.request();
+  }
+
   draw(): void {
-    const far = this.camera.position.distanceTo(this.controls.target);
-    const size = this.span + Math.abs(this.high.z - this.low.z) * this.lift;
-    this.camera.near = Math.max(far - 2 * size, far / 200);
-    this.camera.far = far + 2 * size;
-    this.camera.updateProjectionMatrix();
+    this.fitDepths();
     this.renderer.render(this.scene, this.camera);
     this.drawn();
+  }
+
+  /** Let the depths that the picture holds end at the box around the surfaces. */
+  private fitDepths(): void {
+    const ahead = this.camera.getWorldDirection(new Vector3());
+    let [nearest, farthest] = [Infinity, -Infinity];
+    for (const x of [this.low.x, this.high.x])
+      for (const y of [this.low.y, this.high.y])
+        for (const z of [this.low.z, this.high.z]) {
+          const depth = new Vector3(x, y, z * this.lift).sub(this.camera.position).dot(ahead);
+          nearest = Math.min(nearest, depth);
+          farthest = Math.max(farthest, depth);
+        }
+    const away = this.camera.position.distanceTo(this.controls.target);
+    // In the midst of it what is far behind the target may flicker, as what is near must be seen.
+    this.camera.near = nearest > 0 ? Math.max(0.9 * nearest, away / 20000) : away / 200;
+    this.camera.far = Math.max(1.1 * farthest, 2 * this.camera.near);
+    this.camera.updateProjectionMatrix();
   }
 }
 
@@ -306,7 +383,8 @@ function makeGeometry(surface: Surface): BufferGeometry {
   return geometry;
 }
 
-/** Return the normals of the true surface at the vertices, each triangle counted by its area. */
+/** Return the normals of the true surface at the vertices, each triangle counted by its area seen
+ *  from above: so steep slivers along a hull do not darken their neighbours. */
 function averageNormals(surface: Surface): Float32Array {
   const { positions: p, triangles, elevationScale: s } = surface;
   const normals = new Float32Array(p.length);
@@ -315,10 +393,11 @@ function averageNormals(surface: Surface): Float32Array {
     const [ux, uy, uz] = [p[b] - p[a], p[b + 1] - p[a + 1], (p[b + 2] - p[a + 2]) * s];
     const [vx, vy, vz] = [p[c] - p[a], p[c + 1] - p[a + 1], (p[c + 2] - p[a + 2]) * s];
     const [nx, ny, nz] = [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx];
+    const weight = nz / (Math.hypot(nx, ny, nz) || 1);
     for (const i of [a, b, c]) {
-      normals[i] += nx;
-      normals[i + 1] += ny;
-      normals[i + 2] += nz;
+      normals[i] += weight * nx;
+      normals[i + 1] += weight * ny;
+      normals[i + 2] += weight * nz;
     }
   }
   for (let i = 0; i < normals.length; i += 3) {

@@ -3,7 +3,12 @@
 import type { Payload } from "./payload";
 import type { Surface } from "./surface";
 
-export function drawStill(canvas: HTMLCanvasElement, surface: Surface, payload: Payload): void {
+export function drawStill(
+  canvas: HTMLCanvasElement,
+  surface: Surface,
+  payload: Payload,
+  picture: ImageBitmap | null,
+): void {
   const [width, height] = [surface.high[0] - surface.low[0], surface.high[1] - surface.low[1]];
   const scale = Math.min(canvas.width / width, canvas.height / height) * 0.94;
   const pen = canvas.getContext("2d");
@@ -24,6 +29,15 @@ export function drawStill(canvas: HTMLCanvasElement, surface: Surface, payload: 
     pen.fill();
     pen.stroke();
   }
+  if (picture === null) return;
+  // Only where triangles have been drawn; a pixel of the picture is the unit of lengths.
+  const [a, b, x, d, e, y] = payload.ortho!.place;
+  const toPage = new DOMMatrix([scale, 0, 0, -scale, left - surface.low[0] * scale, bottom + surface.low[1] * scale]);
+  const toPicture = new DOMMatrix([a, d, b, e, x, y]);
+  pen.globalCompositeOperation = "source-atop";
+  pen.setTransform(toPage.multiply(toPicture.inverse()).scale(1 / picture.width, 1 / picture.height));
+  pen.drawImage(picture, 0, 0);
+  pen.resetTransform();
 }
 
 function shade(color: string, surface: Surface, triangle: number): string {

@@ -1,5 +1,6 @@
 /** A surface in numbers: where a place lies on it, what a ray hits, what a line crosses. */
 
+import type { Factors } from "./ground";
 import type { SurfaceData } from "./payload";
 import { unpackRows, unpackTriangles } from "./unpacking";
 
@@ -25,6 +26,9 @@ export type ProfilePoint = [distance: number, elevation: number];
 
 const TRIANGLES_PER_CELL = 2;
 
+/** Share of a triangle by which a ray may pass beside it: no gap opens where rounding parts two. */
+const SEAM = 1e-9;
+
 export class Surface {
   /** x, y, z of each vertex from the origin, in units of the coordinates. */
   readonly positions: Float64Array;
@@ -47,6 +51,7 @@ export class Surface {
     readonly difference: Float32Array | null,
     /** Horizontal units in one unit of elevation. */
     readonly elevationScale: number,
+    readonly ground: (y: number) => Factors,
   ) {
     const [across, up] = data.step;
     this.positions = new Float64Array(vertices.length);
@@ -60,35 +65,29 @@ export class Surface {
     this.fillCells();
   }
 
-  static async unpack(data: SurfaceData, elevationScale: number): Promise<Surface> {
+  static async unpack(
+    data: SurfaceData,
+    elevationScale: number,
+    ground: (y: number) => Factors,
+  ): Promise<Surface> {
     const vertices = await unpackRows(data.vertices);
     const triangles = await unpackTriangles(data.triangles);
     const steps = data.difference === null ? null : await unpackRows(data.difference);
     const difference = steps === null ? null : Float32Array.from(steps, (n) => n * data.step[1]);
-    return new Surface(data, vertices, triangles, difference, elevationScale);
+    return new Surface(data, vertices, triangles, difference, elevationScale, ground);
   }
 
   get triangleCount(): number {
     return this.triangles.length / 3;
   }
 
-  /** Return the triangle that holds a place and the elevation there, or null off the surface. */
-  locate(x: number, y: number): Hit | null {
-    const cell = this.cellAt(x, y);
-    if (cell < 0) return null;
-    for (let k = this.starts[cell]; k < this.starts[cell + 1]; k += 1) {
-      const z = this.elevationIn(this.members[k], x, y);
-      if (z !== null) return { triangle: this.members[k], x, y, z };
-    }
-    return null;
-  }
-
   /** Return the steepness of a triangle in degrees, both units taken into account. */
   slope(triangle: number): number {
     const [a, b, c] = this.corners(triangle);
     const s = this.elevationScale;
-    const u = [b[0] - a[0], b[1] - a[1], (b[2] - a[2]) * s];
-    const v = [c[0] - a[0], c[1] - a[1], (c[2] - a[2]) * s];
+    const [east, north] = this.ground((a[1] + b[1] + c[1]) / 3);
+    const u = [(b[0] - a[0]) * east, (b[1] - a[1]) * north, (b[2] - a[2]) * s];
+    const v = [(c[0] - a[0]) * east, (c[1] - a[1]) * north, (c[2] - a[2]) * s];
     const n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
     return (Math.atan2(Math.hypot(n[0], n[1]), n[2]) * 180) / Math.PI;
   }
@@ -116,7 +115,8 @@ export class Surface {
     if (found < 0) return null;
     const x = from[0] + best * direction[0];
     const y = from[1] + best * direction[1];
-    const z = (from[2] + best * direction[2]) / lift;
+    // Of the plane, not of the ray, whose digits end where the camera is far away.
+    const z = this.planeAt(this.corners(found), [x, y], [0, 0, 0], 0);
     return { triangle: found, x, y, z };
   }
 
@@ -148,16 +148,6 @@ export class Surface {
     return [this.positions[i], this.positions[i + 1], this.positions[i + 2]];
   }
 
-  private elevationIn(triangle: number, x: number, y: number): number | null {
-    const [a, b, c] = this.corners(triangle);
-    const u = (b[0] - x) * (c[1] - y) - (c[0] - x) * (b[1] - y);
-    const v = (c[0] - x) * (a[1] - y) - (a[0] - x) * (c[1] - y);
-    const w = (a[0] - x) * (b[1] - y) - (b[0] - x) * (a[1] - y);
-    const area = u + v + w;
-    if (u < 0 || v < 0 || w < 0 || area <= 0) return null;
-    return (u * a[2] + v * b[2] + w * c[2]) / area;
-  }
-
   /** Moeller and Trumbore (1997): where along the ray the triangle is hit, infinity if it is not. */
   private intersect(triangle: number, from: Vector, direction: Vector, lift: number): number {
     const [a, b, c] = this.corners(triangle);
@@ -168,10 +158,10 @@ export class Surface {
     if (determinant === 0) return Infinity;
     const s: Vector = [from[0] - a[0], from[1] - a[1], from[2] - a[2] * lift];
     const u = dot(s, p) / determinant;
-    if (u < 0 || u > 1) return Infinity;
+    if (u < -SEAM || u > 1 + SEAM) return Infinity;
     const q = cross(s, e);
     const v = dot(direction, q) / determinant;
-    if (v < 0 || u + v > 1) return Infinity;
+    if (v < -SEAM || u + v > 1 + SEAM) return Infinity;
     const t = dot(f, q) / determinant;
     return t >= 0 ? t : Infinity;
   }
@@ -234,13 +224,40 @@ export class Surface {
     const { triangles, positions: p } = this;
     for (let t = 0; t < this.triangleCount; t += 1) {
       const [a, b, c] = [3 * triangles[3 * t], 3 * triangles[3 * t + 1], 3 * triangles[3 * t + 2]];
-      const left = this.columnOf(Math.min(p[a], p[b], p[c]));
-      const right = this.columnOf(Math.max(p[a], p[b], p[c]));
       const bottom = this.rowOf(Math.min(p[a + 1], p[b + 1], p[c + 1]));
       const top = this.rowOf(Math.max(p[a + 1], p[b + 1], p[c + 1]));
-      for (let row = bottom; row <= top; row += 1)
+      for (let row = bottom; row <= top; row += 1) {
+        const [left, right] = this.columnsOf(a, b, c, bottom === top ? -1 : row);
         for (let column = left; column <= right; column += 1) take(row * this.columns + column, t);
+      }
     }
+  }
+
+  /** Return the columns that a triangle reaches in a row, or in any if the row is -1: all of the
+   *  box around a long triangle aslant would be most of the cells. */
+  private columnsOf(a: number, b: number, c: number, row: number): [number, number] {
+    const p = this.positions;
+    if (row < 0)
+      return [this.columnOf(Math.min(p[a], p[b], p[c])), this.columnOf(Math.max(p[a], p[b], p[c]))];
+    const margin = 1e-6 * this.cell;
+    const low = this.low[1] + row * this.cell - margin;
+    const high = low + this.cell + 2 * margin;
+    let [left, right] = [Infinity, -Infinity];
+    for (let k = 0; k < 3; k += 1) {
+      const i = k === 0 ? a : k === 1 ? b : c;
+      const j = k === 0 ? b : k === 1 ? c : a;
+      const [y0, y1] = [p[i + 1], p[j + 1]];
+      if (Math.max(y0, y1) < low || Math.min(y0, y1) > high) continue;
+      const slant = y1 === y0 ? 0 : (p[j] - p[i]) / (y1 - y0);
+      const x0 = y1 === y0 ? p[i] : p[i] + slant * (Math.min(Math.max(y0, low), high) - y0);
+      const x1 = y1 === y0 ? p[j] : p[i] + slant * (Math.min(Math.max(y1, low), high) - y0);
+      left = Math.min(left, x0, x1);
+      right = Math.max(right, x0, x1);
+    }
+    return [
+      Math.max(this.columnOf(left - margin), 0),
+      Math.min(this.columnOf(right + margin), this.columns - 1),
+    ];
   }
 
   private columnOf(x: number): number {
@@ -249,12 +266,6 @@ export class Surface {
 
   private rowOf(y: number): number {
     return Math.floor((y - this.low[1]) / this.cell);
-  }
-
-  private cellAt(x: number, y: number): number {
-    const inside =
-      x >= this.low[0] && x <= this.high[0] && y >= this.low[1] && y <= this.high[1];
-    return inside ? this.rowOf(y) * this.columns + this.columnOf(x) : -1;
   }
 
   /** Return from where to where along a ray it is inside the box around the surface. */

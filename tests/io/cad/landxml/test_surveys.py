@@ -157,3 +157,33 @@ def test_survey_points_are_read_in_time(write):
     rows = "".join(f'<CgPoint name="{k}">{k} {k} 1</CgPoint>' for k in range(20_000))
     survey = ts.read(write(document(points=f"<CgPoints>{rows}</CgPoints>", units=METRIC)))
     assert np.array_equal(survey.points[:, 0], np.arange(20_000))
+
+
+def test_points_that_are_planned_or_gone_are_told(tmp_path):
+    points = """<CgPoints><CgPoint name="1" state="existing">0 0 5</CgPoint>
+<CgPoint name="2" state="proposed">0 9 6</CgPoint><CgPoint name="3">9 9 7</CgPoint>
+<CgPoint name="4" state="destroyed">9 0 8</CgPoint>
+<CgPoint name="5" state="proposed">4 4 8</CgPoint></CgPoints>"""
+    path = tmp_path / "a.xml"
+    path.write_text(document("", points=points))
+    survey = ts.read(path)
+    assert survey.attributes["state"].tolist() == [
+        "existing", "proposed", "", "destroyed", "proposed",
+    ]  # fmt: skip
+    assert survey.notes[-1] == (
+        "Of 5 survey points 2 proposed and 1 destroyed, by their state, are read as the others "
+        "are: the attribute state tells them apart."
+    )
+    path.write_text(document("", points=points.replace("proposed", "existing").replace(
+        'state="destroyed"', "")))  # fmt: skip
+    assert not any("by their state" in note for note in ts.read(path).notes)
+
+
+def test_plan_features_and_alignments_are_told(tmp_path):
+    line = "<CoordGeom><Line><Start>0 0 1</Start><End>5 5 2</End></Line></CoordGeom>"
+    planned = f"""<PlanFeatures><PlanFeature name="kerb">{line}</PlanFeature>
+<PlanFeature name="wall">{line}</PlanFeature></PlanFeatures>
+<Alignments><Alignment name="road" length="7" staStart="0">{line}</Alignment></Alignments>"""
+    path = tmp_path / "a.xml"
+    path.write_text(document("", points=POINTS + planned))
+    assert "Not read: 2 plan features, 1 alignment." in ts.read(path).notes

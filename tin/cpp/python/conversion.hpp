@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <cstring>
 #include <initializer_list>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -18,6 +19,7 @@
 #include "../base/ids.hpp"
 #include "../base/parallel.hpp"
 #include "../base/point.hpp"
+#include "../location/surface.hpp"
 #include "../predicates/predicates.hpp"
 
 namespace tinsmith::python {
@@ -34,6 +36,7 @@ using GivenRows = Given<double, -1, -1>;  // x, y and perhaps more
 using GivenTriples = Given<std::int32_t, -1, 3>;
 using GivenPairs = Given<std::int32_t, -1, 2>;
 using GivenNumbers = Given<std::int32_t, -1>;
+using GivenValues = Given<double, -1>;
 using GivenFlags = Given<bool, -1, 3>;
 
 // and as they go there.
@@ -67,15 +70,17 @@ Array copy_over(const std::vector<Value>& values, std::initializer_list<std::siz
   return hand_over<Array>(std::move(data), shape);
 }
 
-inline Numbers hand_over(const std::vector<std::int32_t>& values) {
-  return copy_over<Numbers, std::int32_t>(values, {values.size()});
-}
-inline Numbers hand_over(const std::vector<Vertex>& values) {
+// Of numbers, vertices or triangles.
+template <typename Id>
+Numbers hand_over(const std::vector<Id>& values) {
   return copy_over<Numbers, std::int32_t>(values, {values.size()});
 }
 
-inline std::int32_t row_count(std::size_t rows) {
-  if (rows > static_cast<std::size_t>(INT32_MAX / 4)) {
+constexpr std::int32_t kMostRows = INT32_MAX / 4;
+constexpr std::int32_t kMostTriangles = INT32_MAX / 3;
+
+inline std::int32_t row_count(std::size_t rows, std::int32_t most = kMostRows) {
+  if (rows > static_cast<std::size_t>(most)) {
     throw std::invalid_argument("more rows than 32-bit indices can number");
   }
   return static_cast<std::int32_t>(rows);
@@ -95,14 +100,46 @@ inline const Point* points_of(const GivenXy& xy) {
   return reinterpret_cast<const Point*>(xy.data());
 }
 
+template <typename Array, typename Test>
+bool are_all(const Array& values, Test&& test) {
+  return std::all_of(values.data(), values.data() + values.size(), test);
+}
+
 // Points that the predicates can compute with.
 inline const Point* exact_points_of(const GivenXy& xy) {
-  const double* end = xy.data() + 2 * static_cast<std::size_t>(row_count(xy.shape(0)));
-  const auto is_exact = [](double c) { return std::fabs(c) <= kLargestCoordinate; };
-  if (!std::all_of(xy.data(), end, is_exact)) {
+  row_count(xy.shape(0));
+  if (!are_all(xy, [](double c) { return std::fabs(c) <= kLargestCoordinate; })) {
     throw std::invalid_argument("every coordinate must be finite and within the exact range");
   }
   return points_of(xy);
+}
+
+// Triangles of vertices that are there.
+inline Surface corners_of(const GivenTriples& triangles, std::int32_t vertex_count) {
+  const auto count = static_cast<std::uint32_t>(row_count(triangles.shape(0), kMostTriangles));
+  const Surface surface{nullptr, triangles.data(), nullptr, vertex_count, count};
+  if (!surface.has_sound_corners()) {
+    throw std::invalid_argument("triangles must hold vertex numbers from 0 to n - 1");
+  }
+  return surface;
+}
+
+// Points and neighbours, if they are given, as they come.
+inline Surface surface_of(const GivenXyz& points, const GivenTriples& triangles,
+                          const GivenTriples* neighbors = nullptr) {
+  Surface surface = corners_of(triangles, row_count(points.shape(0)));
+  surface.points = points.data();
+  if (neighbors == nullptr) return surface;
+  if (neighbors->shape(0) != triangles.shape(0)) {
+    throw std::invalid_argument("triangles and neighbors must have the same number of rows");
+  }
+  surface.neighbors = neighbors->data();
+  return surface;
+}
+
+inline void require_exact_points(const Surface& surface) {
+  if (surface.has_sound_points()) return;
+  throw std::invalid_argument("points must be finite and within the exact range");
 }
 
 // Ask Python whether Ctrl-C was pressed.
@@ -111,20 +148,26 @@ inline bool no_signal() {
   return PyErr_CheckSignals() == 0;
 }
 
-// What `search(team)` finds without Python's lock, unless it was stopped.
-template <typename Search>
-auto unlocked(int threads, Search&& search) {
+// work(team) without Python's lock; throws if it was stopped.
+template <typename Work>
+void run_unlocked(int threads, Work&& work) {
   if (threads < 1) throw std::invalid_argument("at least one thread is needed");
   bool is_stopped = false;
-  auto found = [&] {
+  {
     nb::gil_scoped_release release;
     Team team(threads, no_signal);
-    auto result = search(team);
+    work(team);
     is_stopped = team.is_stopped();
-    return result;
-  }();
+  }
   if (is_stopped) throw nb::python_error();
-  return found;
+}
+
+// What `search(team)` finds, likewise.
+template <typename Search>
+auto unlocked(int threads, Search&& search) {
+  std::optional<decltype(search(std::declval<Team&>()))> found;
+  run_unlocked(threads, [&](Team& team) { found.emplace(search(team)); });
+  return std::move(*found);
 }
 
 }  // namespace tinsmith::python

@@ -1,0 +1,167 @@
+"""Trimble DC files (.dc) of Survey Controller, Survey Pro and Access: points with coordinates.
+
+Records have fields at fixed columns: two letters of what they are, two of what they come from, then
+fields of 16 columns. Read are 00 header (units, order of coordinates), 69 grid position and, of
+older programs, 08 coordinates: name, northing, easting, elevation, code; behind them one digit each
+for method and classification. A position of GNSS (66 geographic, 67 a vector, 68 local) needs the
+job's datum, projection, calibration and geoid, an observation (70, 79, 80) the corrections of the
+instrument: neither is reduced here.
+
+References: North Carolina DOT, TSCe Survey Controller, DC v10.0 file record definitions (header and
+columns); Traverse PC, Trimble DC10.7 (which record is what).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from ....crs import METRE
+from ....errors import ReadError
+from ...delimited.cells import is_number
+from ...delimited.lines import read_lines
+from .records import Book
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from ....crs import CrsLike, UnitLike
+    from ....tin import Survey
+    from ...delimited.lines import TextLines
+
+__all__ = ["read"]
+
+_WIDTH = 16
+_POINTS = ("69", "08")
+_END_OF_NUMBERS = 4 + 4 * _WIDTH
+_END_OF_CODE = _END_OF_NUMBERS + _WIDTH
+_POSITIONS = ("66", "68")
+_OBSERVATIONS = ("67", "70", "79", "80")
+
+
+def read(
+    path: Path,
+    *,
+    crs: CrsLike | None = None,
+    z_unit: UnitLike | None = None,
+    encoding: str | None = None,
+    source_crs: CrsLike | None = None,
+) -> Survey:
+    """Read points of a Trimble DC file.
+
+    Parameters
+    ----------
+    path : Path
+    crs : CRS, str, int or pyproj.CRS, optional
+    z_unit : Unit or str, optional
+        Which feet the file is in, if it is in feet.
+    encoding : str, optional
+    source_crs : CRS, str, int or pyproj.CRS, optional
+        CRS in which the file's coordinates are, if not ``crs``.
+
+    Returns
+    -------
+    Survey
+        Of the grid positions (69) and coordinates (08), with ``number``, ``description`` (the
+        codes), and ``method`` with the method and classification if there are several. Positions of
+        GNSS and observations of points that have no such record are left out and counted.
+
+    Raises
+    ------
+    ReadError
+        If it has no header, a number is none, or no point has coordinates.
+    """
+    lines = read_lines(path, encoding=encoding)
+    reader = _Reader(lines, path)
+    for number in range(len(lines)):
+        line = lines.decode_line(number)
+        is_last = number == len(lines) - 1 and not lines.is_whole
+        if is_last and line[:2] in _POINTS and len(line) < _END_OF_NUMBERS:
+            reader.book.leave_out("records without an end that may be cut", number + 1)
+        else:
+            reader.read_record(line, number + 1)
+    reader.finish()
+    return reader.book.make_survey(crs=crs, z_unit=z_unit, source_crs=source_crs)
+
+
+class _Reader:
+    """Takes records as they come."""
+
+    def __init__(self, lines: TextLines, path: Path) -> None:
+        self.book = Book(path, "Trimble")
+        self.is_east_first = self._read_header(lines, path)
+        self._known: set[str] = set()
+        self._waiting: list[tuple[int, str, str]] = []
+
+    def _read_header(self, lines: TextLines, path: Path) -> bool:
+        """Read units and the order of coordinates, and return whether eastings come first."""
+        head = next((lines.decode_line(i) for i in range(len(lines)) if not lines.is_blank[i]), "")
+        if not head.startswith("00"):
+            raise ReadError(
+                f"'{path}' begins with '{head[:20]}', and a Trimble DC file with the record 00.",
+                path=path,
+                lines=[1],
+            )
+        length, order = head[41:42], head[44:45]
+        if length not in ("1", "2", "3") or order not in ("1", "2"):
+            raise ReadError(
+                f"'{path}', line 1: the units of the header are '{head[40:46].strip()}', and they "
+                "must be digits for angles, lengths (1, 2 or 3), pressure, temperature, order of "
+                "coordinates (1 or 2) and direction of angles.",
+                path=path,
+                lines=[1],
+            )
+        self.book.unit = METRE if length == "1" else None
+        return order == "2"
+
+    def read_record(self, line: str, number: int) -> None:
+        """Take one record; of kinds that say nothing of points none."""
+        kind = line[:2]
+        if kind in _POINTS:
+            self._read_point(line, number)
+        elif kind in _POSITIONS or kind in _OBSERVATIONS:
+            self._waiting.append((number, kind, line[4 : 4 + _WIDTH].strip()))
+
+    def _read_point(self, line: str, number: int) -> None:
+        name, *cells, code = (
+            line[at : at + _WIDTH].strip() for at in range(4, _END_OF_CODE, _WIDTH)
+        )
+        first, second, z = (self._number(cell, number) for cell in cells)
+        x, y = (first, second) if self.is_east_first else (second, first)
+        self._known.add(name)
+        self.book.add(name, (x, y, z), code, number, line[_END_OF_CODE : _END_OF_CODE + 2].strip())
+
+    def finish(self) -> None:
+        """Account for positions and observations of points that have no coordinates."""
+        for number, kind, name in self._waiting:
+            if kind in _OBSERVATIONS:
+                what = f"observations ({kind}), which are not reduced,"
+            elif name in self._known:
+                continue
+            else:
+                what = f"positions ({kind}) of GNSS without grid coordinates"
+            self.book.leave_out(what, number)
+        classes = sorted({method[1:2] for method in self.book.methods} - {""})
+        if len(classes) > 1:
+            self.book.notes.append(
+                f"Its points have the classifications {', '.join(classes)}: all are read, for the "
+                "attribute method (its second digit) to choose from."
+            )
+        if self._waiting and not self.book.points:
+            self.book.notes.insert(
+                0, "export the job with grid coordinates, or as JobXML with its reductions."
+            )
+
+    def _number(self, cell: str, line: int) -> float:
+        """Return the number of a field, NaN if it is empty."""
+        if cell in ("", "?"):
+            return math.nan
+        value = float(cell) if is_number(cell, ".") else math.inf
+        if math.isinf(value):
+            raise ReadError(
+                f"'{self.book.path}', line {line}: '{cell[:30]}' stands where a coordinate must "
+                "be.",
+                path=self.book.path,
+                lines=[line],
+            )
+        return value

@@ -1,0 +1,208 @@
+"""``tinsmith plan``: a TIN on sheets of paper, true to scale."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ..._sentences import counted
+from ...policies import (
+    ContourLabeling,
+    GridStyle,
+    PaperOrientation,
+    PointMarking,
+    SheetLayout,
+)
+from ..options import console_options, reading_options, triangulating_options
+from ..output.failures import Failure, note_written
+from ..parameters import choice_option, input_file, number_option, output_option
+from ..paths import LINES, Named, make_title, require_separate
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from ...terrain import Plan
+    from ...tin import TIN
+    from ..options import Reading, Triangulating
+    from ..output.console import Console, Row
+
+__all__ = ["plan"]
+
+
+@click.command(short_help="Draw a plan on paper, true to scale: PDF, SVG, PNG.")
+@input_file("file")
+@output_option("Plan to write (.pdf, .svg, .png).", required=True)
+@click.option(
+    "--scale",
+    metavar="SCALE",
+    help="Such as 500 for 1:500, or '1\"=20 ft'; default the largest usual one that fits.",
+)
+@click.option(
+    "--paper",
+    metavar="NAME",
+    default="A3",
+    show_default=True,
+    help="A4 to A0, Letter, Legal, Tabloid, 'ANSI A' to 'ANSI E', 'ARCH A' to 'ARCH E', or width "
+    "and height in millimetres such as 900x600.",
+)
+@choice_option("--orientation", PaperOrientation, "Of the paper; default whatever fits better.")
+@choice_option(
+    "--layout",
+    SheetLayout,
+    "All on one sheet, rows of sheets, or strips along the axis of a long surface.",
+    default="single",
+)
+@click.option(
+    "--axis", "axis_file", metavar="FILE", type=LINES, help="Vector file of the axis of strips."
+)
+@number_option("--interval", "HEIGHT", "Between contours; chosen if absent.")
+@number_option(
+    "--smooth",
+    "HEIGHT",
+    "Round contours, as far as the surface stays within this much of the level.",
+)
+@choice_option("--labels", ContourLabeling, "Contours whose elevation is written.", default="index")
+@choice_option("--points", PointMarking, "What is drawn at points.", default="none")
+@choice_option("--grid", GridStyle, "How the coordinate grid is drawn.", default="crosses")
+@click.option("--title", metavar="TEXT", help="Default the file's name.")
+@click.option("--date", metavar="TEXT", help="Date of the plan, as it is to be written.")
+@click.option(
+    "--ground-unit",
+    metavar="UNIT",
+    help="Unit of eastings and northings, where the CRS is not known.",
+)
+@number_option(
+    "--dpi", "N", "Pixels to an inch of a PNG.", type=click.IntRange(50, 1200), default=200
+)
+@reading_options
+@triangulating_options
+@console_options
+def plan(
+    file: Path,
+    outputs: tuple[Path, ...],
+    reading: Reading,
+    how: Triangulating,
+    console: Console,
+    dpi: int,
+    **asked: Any,
+) -> None:
+    """Draw the TIN in FILE, or that of the points in it, on sheets of paper, true to scale.
+
+    Contours with their elevations, lines, water, points, a coordinate grid, title block, north
+    arrow, scale bar and legend. Several sheets are pages of a PDF, or files of their own.
+
+    \b
+    Example:
+      tinsmith plan sample_data/site_survey.csv --crs EPSG:32616 --codes --scale 1000 -o plan.pdf
+    """  # noqa: D301 - click reads the control character
+    from ... import terrain
+    from ..files import read_tin
+
+    if asked["scale"] is None and asked["layout"] != "single":
+        raise click.UsageError(f"--layout {asked['layout']} needs --scale.")
+    inputs = _list_inputs(file, how, asked["axis_file"])
+    _require_plans(outputs, inputs)
+    tin, survey = read_tin(file, reading, how, console)
+    asked["title"] = asked["title"] or make_title(file)
+    asked["paper"] = _parse_paper(asked["paper"])
+    axis, notes = _read_axis(asked.pop("axis_file"), tin)
+    with console.step("Drawing"):
+        made = terrain.plan(tin, axis=axis, survey=survey, **asked)
+    written = [path for output in outputs for path in _save(made, output, dpi, inputs, console)]
+    notes += made.notes
+    console.summarise(_summarise_plan(made, written, notes))
+    if console.as_json:
+        console.answer([], _describe_plan(file, made, written, notes))
+
+
+# ---------------------------------------------------------------- what is given
+
+
+def _list_inputs(file: Path, how: Triangulating, axis: Path | None) -> list[Named]:
+    from ...io.vector.survey_lines import split_layer
+    from ..files import list_inputs
+
+    more = [] if axis is None else [Named(split_layer(axis)[0], "the file of --axis")]
+    return [*list_inputs(file, how=how), *more]
+
+
+def _require_plans(outputs: Sequence[Path], inputs: Sequence[Named]) -> None:
+    """Refuse outputs of another suffix, and such as would overwrite an input."""
+    from ...terrain.sheets.files import PLAN_SUFFIXES
+
+    require_separate(inputs, [Named(path, "--output") for path in outputs])
+    for path in outputs:
+        if path.suffix.lower() not in PLAN_SUFFIXES:
+            raise Failure(
+                f"Cannot write a plan to '{path}': its name must end in {', '.join(PLAN_SUFFIXES)}."
+            )
+
+
+def _parse_paper(text: str) -> str | tuple[float, float]:
+    """Return the name of a paper, or width and height such as 900x600."""
+    parts = text.lower().replace("mm", "").split("x")
+    try:
+        width, height = (float(part) for part in parts)
+    except ValueError:
+        return text
+    return width, height
+
+
+def _read_axis(path: Path | None, tin: TIN) -> tuple[Any, list[str]]:
+    """Return the line that strips follow, in the CRS of the TIN, and notes on it."""
+    from ...io.vector.geometries import read_geometries
+    from ...io.vector.survey_lines import split_layer
+    from ...terrain import Features
+
+    if path is None:
+        return None, []
+    name, layer = split_layer(path)
+    found = read_geometries(name, crs=tin.crs, layer=layer)
+    if found.kind == "points":
+        raise Failure(f"'{name}' has points: an axis is a line.")
+    return Features.of_lines(found.coordinates, found.offsets[0], crs=found.crs), list(found.notes)
+
+
+# ---------------------------------------------------------------- what is made
+
+
+def _save(
+    made: Plan, output: Path, dpi: int, inputs: Sequence[Named], console: Console
+) -> list[Path]:
+    """Write the sheets; files of their own must not overwrite an input either."""
+    require_separate(inputs, [Named(path, "--output") for path in made.list_files(output)])
+    with console.step(f"Writing {output.name}"):
+        written = made.save(output, dpi=dpi)
+    for path in written:
+        note_written(path)
+    return written
+
+
+def _summarise_plan(made: Plan, written: Sequence[Path], notes: Sequence[str]) -> list[Row]:
+    from ..output.summaries import describe_file_size
+
+    files = [f"{path} ({describe_file_size(path)})" for path in written]
+    return [
+        ("Scale", made.scale_text),
+        ("Sheets", f"{counted(len(made), 'sheet')}, {made.paper_name}"),
+        ("Contours", f"every {made.interval:.12g}"),
+        *[("Note", note) for note in notes],
+        ("Written", "\n".join(files)),
+    ]
+
+
+def _describe_plan(
+    file: Path, made: Plan, written: Sequence[Path], notes: Sequence[str]
+) -> dict[str, Any]:
+    return {
+        "input": str(file),
+        "scale": made.scale,
+        "paper": list(made.paper),
+        "sheets": len(made),
+        "interval": made.interval,
+        "frames": made.frames.tolist(),
+        "notes": list(notes),
+        "outputs": [str(path) for path in written],
+    }

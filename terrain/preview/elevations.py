@@ -1,0 +1,79 @@
+"""Elevations of a picture: the range of nearly all, and the few that are far off it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["ElevationRange", "find_elevation_range"]
+
+_LEAST_POINTS = 20
+"""Of fewer points none is said to be far off the others."""
+
+_MOST_SHARE = 0.01
+"""Share of the points, at either end, that may be far off."""
+
+_GAP = 4.0
+"""Ranges of the others that a point lies beyond them, at least, to be far off."""
+
+
+class ElevationRange(NamedTuple):
+    """The range of elevations that a picture shows.
+
+    Attributes
+    ----------
+    low, high : float
+        Lowest and highest elevation but for those far off.
+    is_far_off : (n,) bool array
+        Which points are left out.
+    """
+
+    low: float
+    high: float
+    is_far_off: NDArray[np.bool_]
+
+
+def find_elevation_range(elevations: NDArray[np.float64], extent: float) -> ElevationRange:
+    """Find the range of elevations, without a blunder that would hide all relief.
+
+    Parameters
+    ----------
+    elevations : (n,) float64 array
+        At least one.
+    extent : float
+        Greatest extent in the plane, in the unit of the elevations: how far off a point is if all
+        others are level.
+
+    Returns
+    -------
+    ElevationRange
+        Left out are at most one point in a hundred at either end (one of 20 to 100 points), if
+        they lie further beyond the next one than four times the range of all between the ends.
+
+    Examples
+    --------
+    >>> range_ = find_elevation_range(np.append(np.linspace(310.0, 320.0, 99), 9999.0), 250.0)
+    >>> range_.low, range_.high, range_.is_far_off.sum()
+    (310.0, 320.0, np.int64(1))
+    """
+    count = len(elevations)
+    ordered = np.sort(elevations)
+    first, last = 0, count - 1
+    if count >= _LEAST_POINTS:
+        tail = max(1, int(_MOST_SHARE * count))
+        core = float(ordered[-1 - tail] - ordered[tail])
+        gap = _GAP * core if core > 0 else extent
+        last = count - 1 - _count_beyond(np.diff(ordered[-1 - tail :]), gap)
+        first = _count_beyond(np.diff(ordered[: tail + 1])[::-1], gap)
+    low, high = float(ordered[first]), float(ordered[last])
+    return ElevationRange(low, high, (elevations < low) | (elevations > high))
+
+
+def _count_beyond(steps: NDArray[np.float64], gap: float) -> int:
+    """Return how many of the outermost points lie beyond the first step outwards above a gap."""
+    is_wide = steps > gap
+    return len(steps) - int(is_wide.argmax()) if is_wide.any() else 0

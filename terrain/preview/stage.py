@@ -1,0 +1,376 @@
+"""Stage: terrain, light, camera and annotations in place, in a window or off screen."""
+
+from __future__ import annotations
+
+from dataclasses import astuple, dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ... import _optional
+from ..._sentences import counted
+from ...tin import Bounds
+from ..isolines import contours
+from ..lift import choose_origin
+from ..linework import add_lines, add_polylines
+from ..rounding import format_number
+from ..units import find_ground
+from .annotations import Caption, Sheet, annotate
+from .camera import aim, measure_pixels_per_unit, place_camera, project_ground_axes
+from .corridor import cut_into_strips, find_corridor, measure_mean_width
+from .overlay import Overlay
+from .ramps import measure_tint
+from .scene import (
+    BLOCK_SHARE,
+    add_lights,
+    add_ortho,
+    add_terrain,
+    choose_exaggeration,
+    fade_edges,
+    measure_extent,
+    measure_relief,
+    place_vertices,
+    round_exaggeration,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from ...tin import TIN
+    from ..units import Ground
+    from .camera import View
+    from .corridor import Corridor, Strips
+    from .elevations import ElevationRange
+    from .look import Look
+    from .ortho import Ortho
+
+__all__ = [
+    "Show",
+    "Stage",
+    "add_stage",
+    "describe_far_off",
+    "fit_sheet",
+    "make_stage",
+    "open_plotter",
+    "place_on_stage",
+]
+
+_PURPOSE = "A preview"
+
+_DESIGN_SIZE = (1600.0, 1000.0)
+"""Picture size for which the annotations are laid out, pixels."""
+
+_RELIEF_OF_STRIP = 0.5
+"""Share of a corridor's width that the relief within a strip takes, at least."""
+
+_CONTOUR_COLOR = (88, 66, 48)
+_CONTOUR_WIDTH = 0.9
+
+_LEAST_WIDTH = 2.0
+"""Depths of the block that the ground is wide, at least, to stand on a block: else it would hide
+behind its own wall."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stage:
+    """What is to be drawn, and how.
+
+    Attributes
+    ----------
+    tin : TIN
+    ground : Ground
+    look : Look
+    view : View
+    shown : ElevationRange
+        Elevations that must be in the picture.
+    caption : Caption
+    has_block : bool
+    strips : Strips or None
+        Pieces of a corridor.
+    ortho : Ortho or None
+        Picture draped over the surface.
+    """
+
+    tin: TIN
+    ground: Ground
+    look: Look
+    view: View
+    shown: ElevationRange
+    caption: Caption
+    has_block: bool
+    strips: Strips | None
+    ortho: Ortho | None = None
+
+    @property
+    def exaggeration(self) -> float:
+        """Factor on heights."""
+        return self.caption.exaggeration
+
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """The vertices as drawn."""
+        return place_vertices(self.tin, self.ground, self.exaggeration)
+
+
+def make_stage(
+    tin: TIN, look: Look, ortho: Ortho | None = None, *, has_strips: bool = True
+) -> Stage:
+    """Choose all that the caller left open.
+
+    Parameters
+    ----------
+    tin : TIN
+    look : Look
+    ortho : Ortho, optional
+    has_strips : bool, optional
+        Cut a corridor into strips, if nobody chose where to look from.
+    """
+    _optional.load("pyvista", _PURPOSE)
+    ground = find_ground(tin)
+    shown = measure_relief(tin, ground)
+    view = look.seen_from
+    corridor = find_corridor(tin, ground) if look.azimuth is None else None
+    factor = look.exaggeration or choose_exaggeration(tin, ground)
+    strips = None
+    if corridor is not None:
+        view = replace(view, azimuth=corridor.find_side(view.azimuth))
+        if has_strips:
+            factor, strips = _cut(tin, ground, look, view)
+    caption = _make_caption(tin, ground, look, shown, factor, corridor, strips)
+    is_covered = ortho is not None and ortho.gap == 0.0
+    caption = replace(caption, has_tints=look.tint != "plain" and not is_covered)
+    depth = BLOCK_SHARE * measure_extent(tin, ground)
+    has_block = strips is None and measure_mean_width(tin, ground) >= _LEAST_WIDTH * depth
+    return Stage(tin, ground, look, view, shown, caption, has_block, strips, ortho)
+
+
+def _cut(tin: TIN, ground: Ground, look: Look, view: View) -> tuple[float, Strips | None]:
+    """Return the exaggeration and the strips of a corridor; None where one alone is enough."""
+    frame = fit_sheet(look.size)[0].frame
+    edges = tin.edges
+
+    def cut(factor: float) -> Strips:
+        return cut_into_strips(place_vertices(tin, ground, factor), edges, view, frame)
+
+    factor = look.exaggeration
+    if factor is None:
+        relief = _measure_relief_in(cut(1.0), tin, ground, view)
+        factor = round_exaggeration(_RELIEF_OF_STRIP * measure_mean_width(tin, ground), relief)
+    strips = cut(factor)
+    return factor, strips if len(strips.lows) > 1 else None
+
+
+def _measure_relief_in(strips: Strips, tin: TIN, ground: Ground, view: View) -> float:
+    """Return the median of the relief within each strip that has ground."""
+    points = place_vertices(tin, ground, 1.0)
+    strip = np.searchsorted(strips.edges[1:-1], points @ view.axes[0], side="right")
+    lows, highs = np.full(len(strips.lows), np.inf), np.full(len(strips.lows), -np.inf)
+    np.minimum.at(lows, strip, points[:, 2])
+    np.maximum.at(highs, strip, points[:, 2])
+    return float(np.median((highs - lows)[highs >= lows]))
+
+
+class Show:
+    """A plotter with terrain, light, camera and annotations in place.
+
+    Parameters
+    ----------
+    stage : Stage
+    window : tuple of int
+        Width and height of the window, pixels.
+    off_screen : bool
+
+    Attributes
+    ----------
+    plotter : pyvista.Plotter
+    surfaces : list of pyvista.Actor
+        The surface, and what is draped over it.
+    overlay : Overlay
+        With the annotations.
+    after_update : callable or None
+        Called when annotations were drawn anew, which then cover what was drawn before.
+    """
+
+    def __init__(self, stage: Stage, window: tuple[int, int], *, off_screen: bool) -> None:
+        self.stage = stage
+        self.plotter = open_plotter(stage, window, off_screen=off_screen)
+        self.overlay = Overlay(self.plotter.renderer)
+        self._drawn_for: tuple[object, ...] = ()
+        self.surfaces: list[Any] = []
+        self._terrain: list[str] = []
+        self.after_update: Callable[[], None] | None = None
+        if stage.strips is None:
+            self._aim(self._build(window), window)
+        else:
+            height = fit_sheet(window)[0].height / stage.strips.scale
+            place_camera(
+                self.plotter.camera, stage.points, view=stage.view, middle=(0.0, 0.0), height=height
+            )
+        self.update()
+
+    def _aim(self, seen: NDArray[np.float64], window: tuple[int, int]) -> None:
+        sheet, factor = fit_sheet(window)
+        frame = Bounds(*(factor * side for side in astuple(sheet.frame)))
+        aim(self.plotter.camera, seen, view=self.stage.view, frame=frame, size=window)
+        self.plotter.renderer.ResetCameraClippingRange()
+
+    def _build(self, window: tuple[int, int]) -> NDArray[np.float64]:
+        """Add the terrain, and return what must be seen."""
+        before = set(self.plotter.renderer.actors)
+        self.surfaces, seen = add_stage(self.plotter, self.stage, fit_sheet(window)[1])
+        self._terrain = [name for name in self.plotter.renderer.actors if name not in before]
+        return seen
+
+    def rebuild(self, stage: Stage) -> None:
+        """Draw another stage of the same surface, seen from where the camera stands."""
+        self.stage = stage
+        for name in self._terrain:
+            self.plotter.remove_actor(name, render=False, reset_camera=False)
+        self._build(tuple(self.plotter.window_size))
+        self._drawn_for = ()
+        self.update()
+        self.plotter.renderer.ResetCameraClippingRange()
+
+    def update(self, *_: object) -> None:
+        """Make the annotations true for the present camera and window, if these have changed."""
+        camera, (width, height) = self.plotter.camera, self.plotter.window_size
+        state = (width, height, camera.parallel_scale, project_ground_axes(camera).tobytes())
+        if state == self._drawn_for:
+            return
+        self._drawn_for = state
+        sheet, self.overlay.factor = fit_sheet((width, height))
+        pixels = measure_pixels_per_unit(camera, sheet.height)
+        for surface in self.surfaces:
+            fade_edges(surface, self.stage.tin, self.stage.ground, pixels)
+        annotate(self.overlay, sheet, self.stage.caption, camera)
+        if self.after_update is not None:
+            self.after_update()
+
+
+def open_plotter(stage: Stage, window: tuple[int, int], *, off_screen: bool) -> Any:
+    """Return a plotter with background and light, and nothing in it."""
+    pv = _optional.load("pyvista", _PURPOSE)
+    plotter = pv.Plotter(off_screen=off_screen, window_size=list(window), lighting="none")
+    plotter.set_background([part / 255 for part in stage.caption.palette.paper])
+    add_lights(plotter, stage.look.sun)
+    return plotter
+
+
+def add_stage(plotter: Any, stage: Stage, factor: float) -> tuple[list[Any], NDArray[np.float64]]:
+    """Add terrain and lines to a plotter; return actors with edges, and what must be seen.
+
+    Parameters
+    ----------
+    plotter : pyvista.Plotter
+    stage : Stage
+    factor : float
+        Window pixels for one design pixel.
+    """
+    points = stage.points
+    surface, seen = add_terrain(
+        plotter,
+        stage.tin,
+        points,
+        edges=stage.look.edges,
+        elevations=stage.caption.elevations,
+        tint=stage.look.tint,
+        is_far_off=stage.shown.is_far_off,
+        has_block=stage.has_block,
+    )
+    surfaces = [surface]
+    if stage.ortho is not None:
+        surfaces.append(add_ortho(plotter, stage.tin, points, stage.ortho, surface))
+    if stage.look.lines:
+        add_lines(plotter, stage.tin, points, factor=factor)
+    if stage.look.contours is not None:
+        _add_contours(plotter, stage, stage.look.contours, factor)
+    return surfaces, seen
+
+
+def _add_contours(plotter: Any, stage: Stage, interval: float, factor: float) -> None:
+    """Draw contour lines, index contours heavier."""
+    found = contours(stage.tin, interval)
+    places = place_on_stage(stage, found.coordinates)
+    for is_index, width in ((False, _CONTOUR_WIDTH), (True, 2 * _CONTOUR_WIDTH)):
+        chosen = np.flatnonzero(found.columns["is_index"] == is_index)
+        if len(chosen):
+            lines = places, found.offsets[0], chosen
+            add_polylines(plotter, *lines, color=_CONTOUR_COLOR, width=width * factor)
+
+
+def place_on_stage(stage: Stage, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return where points, (k, 3) in the units of the TIN, are drawn."""
+    placed: NDArray[np.float64] = (points - choose_origin(stage.tin)) * stage.ground.scale
+    return placed * (1.0, 1.0, stage.exaggeration)
+
+
+def fit_sheet(window: tuple[int, int]) -> tuple[Sheet, float]:
+    """Return the sheet that fills a window, and the window pixels for one design pixel."""
+    factor = min(full / design for full, design in zip(window, _DESIGN_SIZE, strict=True))
+    return Sheet(window[0] / factor, window[1] / factor), factor
+
+
+# ----------------------------------------------------------------------- words
+
+
+def _make_caption(
+    tin: TIN,
+    ground: Ground,
+    look: Look,
+    shown: ElevationRange,
+    factor: float,
+    corridor: Corridor | None,
+    strips: Strips | None,
+) -> Caption:
+    parts = [f"{len(tin.points):,} points, {len(tin.triangles):,} triangles", ground.crs_name]
+    if corridor is not None and strips is not None:
+        parts.append(_describe_strips(strips, ground))
+    ends = look.elevations or (shown.low, shown.high)
+    return Caption(
+        title=" ".join(look.title.split()),
+        subtitle="  \N{MIDDLE DOT}  ".join(parts),
+        exaggeration=factor,
+        elevations=ends,
+        elevation_caption=ground.elevation_caption,
+        unit=ground.unit,
+        sun=look.sun,
+        warning=_warn(tin, look, shown),
+        palette=look.palette,
+        legend=measure_tint(tin, look.tint, ends, ground.elevation_caption)[1],
+    )
+
+
+def _describe_strips(strips: Strips, ground: Ground) -> str:
+    length = format_number(strips.length, step=1.0 if strips.length >= 100 else 0.01)
+    unit = f" {ground.unit.symbol}" if ground.unit.symbol else ""
+    return f"{len(strips.lows)} strips of {length}{unit}, to read from left to right, then down"
+
+
+def _warn(tin: TIN, look: Look, shown: ElevationRange) -> str:
+    """Return what the tints leave out: elevations far off, or outside of what is asked for."""
+    if look.elevations is None:
+        return describe_far_off(tin, shown)
+    elevations = tin.points[:, 2]
+    low, high = look.elevations
+    count = int(((elevations < low) | (elevations > high)).sum())
+    return f"{counted(count, 'elevation')} out of this range" if count else ""
+
+
+def describe_far_off(tin: TIN, shown: ElevationRange) -> str:
+    """Return how many elevations are far off all others, and the farthest; "" if none.
+
+    Parameters
+    ----------
+    tin : TIN
+    shown : ElevationRange
+    """
+    far = tin.points[shown.is_far_off, 2]
+    if len(far) == 0:
+        return ""
+    worst = far[np.abs(far - (shown.low + shown.high) / 2).argmax()]
+    number = f"{worst:,.12g}"
+    if len(far) == 1:
+        return f"1 elevation far off all others: {number}"
+    return f"{len(far):,} elevations far off all others, such as {number}"

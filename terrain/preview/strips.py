@@ -1,0 +1,123 @@
+"""Strips: a corridor drawn piece by piece, one below the other, in one picture."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ..rounding import format_number
+from .camera import place_camera
+from .corridor import STRIP_GAP
+from .scene import fade_edges
+from .stage import add_stage, fit_sheet, open_plotter
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+    from .annotations import Sheet
+    from .corridor import Strips
+    from .stage import Show, Stage
+
+__all__ = ["label_strips", "paste_strips", "place_strips"]
+
+_LABEL_SIZE = 13.0
+_LABEL_RISE = 7.0
+
+
+class _Place(NamedTuple):
+    """Where a strip stands: its left and upper edge and its height, design pixels."""
+
+    left: float
+    top: float
+    height: float
+
+
+def place_strips(strips: Strips, sheet: Sheet) -> list[_Place]:
+    """Return where each strip stands on a sheet, the first at the top.
+
+    Parameters
+    ----------
+    strips : Strips
+    sheet : Sheet
+    """
+    frame = sheet.frame
+    heights = (strips.highs - strips.lows) * strips.scale
+    left = frame.xmin + (frame.width - strips.length * strips.scale) / 2
+    gap = max((frame.height - float(heights.sum())) / len(heights), STRIP_GAP)
+    tops = frame.ymax - gap * np.arange(1, len(heights) + 1) - np.cumsum(heights) + heights
+    return [_Place(left, *row) for row in zip(tops.tolist(), heights.tolist(), strict=True)]
+
+
+def label_strips(show: Show) -> None:
+    """Write above each strip of a picture where along the axis it begins and ends."""
+    strips, caption = show.stage.strips, show.stage.caption
+    if strips is None:
+        return
+    sheet, _ = fit_sheet(tuple(show.plotter.window_size))
+    unit = f" {caption.unit.symbol}" if caption.unit.symbol else ""
+    step = 1.0 if strips.length >= 100 else 0.01
+    along = [format_number(value - strips.edges[0], step=step) for value in strips.edges]
+    for place, start, stop in zip(place_strips(strips, sheet), along, along[1:], strict=False):
+        words = f"{start} to {stop}{unit}"
+        corner = (place.left, place.top + _LABEL_RISE)
+        show.overlay.draw_text(corner, words, caption.palette.grey, size=_LABEL_SIZE)
+
+
+def paste_strips(pixels: NDArray[np.uint8], stage: Stage) -> None:
+    """Draw the strips of a corridor into a picture that has all but the terrain.
+
+    Parameters
+    ----------
+    pixels : (height, width, 3) uint8 array
+    stage : Stage
+        Of a surface that is no corridor nothing is drawn.
+    """
+    if stage.strips is None:
+        return
+    height, width = pixels.shape[:2]
+    sheet, factor = fit_sheet((width, height))
+    drawn = _draw_strips(stage, stage.strips, factor)
+    for place, strip in zip(place_strips(stage.strips, sheet), drawn, strict=True):
+        row, column = round(height - factor * place.top), round(factor * place.left)
+        room = pixels[row : row + strip.shape[0], column : column + strip.shape[1]]
+        room[:] = strip[: room.shape[0], : room.shape[1]]
+
+
+def _draw_strips(stage: Stage, strips: Strips, factor: float) -> Iterator[NDArray[np.uint8]]:
+    """Draw each strip alone, as large as it is in the picture."""
+    scale = factor * strips.scale
+    heights = [math.ceil(scale * one) for one in (strips.highs - strips.lows)]
+    window = max(math.ceil(scale * strips.length), 1), max(*heights, 1)
+    plotter = open_plotter(stage, window, off_screen=True)
+    try:
+        surfaces, seen = add_stage(plotter, stage, factor)
+        for surface in surfaces:
+            fade_edges(surface, stage.tin, stage.ground, strips.scale)
+        for k, height in enumerate(heights):
+            _look_at_strip(plotter, seen, stage, strips, k, window[1] / scale)
+            plotter.render()  # a screenshot alone keeps the picture before
+            shot = np.array(plotter.screenshot(return_img=True))
+            spare = (window[1] - height) // 2
+            yield shot[spare : spare + height]
+    finally:
+        plotter.close()
+
+
+def _look_at_strip(
+    plotter: Any,
+    seen: NDArray[np.float64],
+    stage: Stage,
+    strips: Strips,
+    k: int,
+    height: float,
+) -> None:
+    middle = (
+        float(strips.edges[k] + strips.edges[k + 1]) / 2,
+        float(strips.lows[k] + strips.highs[k]) / 2,
+    )
+    place_camera(plotter.camera, seen, view=stage.view, middle=middle, height=height)
+    plotter.renderer.ResetCameraClippingRange()

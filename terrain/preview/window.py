@@ -1,0 +1,327 @@
+"""A window in which a surface is turned, exaggerated, coloured, read and cut."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, get_args
+
+import numpy as np
+
+from ... import _optional
+from ...errors import TinsmithError
+from ...policies import Tint
+from ..lift import choose_origin
+from ..linework import add_polylines
+from ..rounding import round_down
+from ..sections import profile
+from ..slope import slope
+from . import opengl
+from .overlay import Overlay
+from .picture import keep_vtk_plain
+from .stage import Show, fit_sheet, make_stage, place_on_stage
+
+if TYPE_CHECKING:
+    from ...tin import TIN
+    from ..results import Table
+    from .look import Look
+    from .ortho import Ortho
+
+__all__ = ["Reading", "Window", "open_window"]
+
+_PURPOSE = "A preview"
+
+_TINTS = get_args(Tint)
+_LEVELS = 12
+"""Contour levels, about, when the window chooses their interval."""
+
+_MOST_EXAGGERATION = 20.0
+_MARK_COLOR = (200, 30, 60)
+_MARK_SIZE = 12.0
+_SECTION_WIDTH = 3.0
+_CHART_PLACE, _CHART_SIZE = (0.52, 0.16), (0.46, 0.3)
+_HELP = (
+    "drag to turn, Shift to move, wheel to zoom, T tint, C contours, P read under the pointer, "
+    "X section between the last two places, Q close"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """What the surface is at a place, in the units of the TIN.
+
+    Attributes
+    ----------
+    easting, northing, elevation : float
+        Elevation as :meth:`tinsmith.TIN.interpolate` gives it.
+    slope : float
+        Of the triangle there, degrees.
+    """
+
+    easting: float
+    northing: float
+    elevation: float
+    slope: float
+
+
+class Window:
+    """A surface in a window that follows mouse and keys.
+
+    Parameters
+    ----------
+    tin : TIN
+    look : Look
+    ortho : Ortho, optional
+    off_screen : bool, optional
+        Draw where nobody sees it.
+    """
+
+    def __init__(
+        self, tin: TIN, look: Look, ortho: Ortho | None = None, *, off_screen: bool = False
+    ) -> None:
+        stage = make_stage(tin, look, ortho, has_strips=False)
+        self.show = Show(stage, look.size, off_screen=off_screen)
+        self.readings: list[Reading] = []
+        self._slopes = slope(tin)
+        self._words = Overlay(self.show.plotter.renderer)
+        self._marks: list[Any] = []
+        self._section: Table | None = None
+        self._chart: Any = None
+        self._line = ""
+        self._slider: Any = None
+        self.show.after_update = self._raise_words
+        self._raise_words()
+
+    @property
+    def stage(self) -> Any:
+        """What is drawn now."""
+        return self.show.stage
+
+    # ------------------------------------------------------------------ drawing
+
+    def set_exaggeration(self, factor: float) -> None:
+        """Draw heights with another factor."""
+        stage = self.stage
+        look = replace(stage.look, exaggeration=factor)
+        caption = replace(stage.caption, exaggeration=factor)
+        self._rebuild(replace(stage, look=look, caption=caption))
+
+    def set_tint(self, tint: Tint) -> None:
+        """Colour by elevation, slope or aspect, or not at all."""
+        look = replace(self.stage.look, tint=tint)
+        words = make_stage(self.stage.tin, look, self.stage.ortho, has_strips=False).caption
+        caption = replace(words, exaggeration=self.stage.exaggeration)
+        self._rebuild(replace(self.stage, look=look, caption=caption))
+
+    def set_contours(self, interval: float | None) -> None:
+        """Draw contours at an interval, in the unit of elevations; None for none."""
+        self._rebuild(replace(self.stage, look=replace(self.stage.look, contours=interval)))
+
+    def change_tint(self) -> None:
+        """Colour by what comes next."""
+        self.set_tint(_TINTS[(_TINTS.index(self.stage.look.tint) + 1) % len(_TINTS)])
+
+    def toggle_contours(self) -> None:
+        """Draw contours at a round interval, or none."""
+        shown = self.stage.shown
+        relief = shown.high - shown.low
+        is_off = self.stage.look.contours is None and relief > 0
+        self.set_contours(round_down(relief / _LEVELS * 1.3) if is_off else None)
+
+    def _rebuild(self, stage: Any) -> None:
+        self.show.rebuild(stage)
+        self._mark()
+
+    # ------------------------------------------------------------------ reading
+
+    def pick(self, x: float, y: float) -> Reading | None:
+        """Read the surface at a place of the window.
+
+        Parameters
+        ----------
+        x, y : float
+            Pixels from the lower left.
+
+        Returns
+        -------
+        Reading or None
+            None where there is no surface; the last two readings are kept for a section.
+        """
+        from vtkmodules.vtkRenderingCore import vtkCellPicker
+
+        picker = vtkCellPicker()
+        picker.SetTolerance(0.0)
+        picker.AddPickList(self.show.surfaces[0])
+        picker.PickFromListOn()
+        if not picker.Pick(x, y, 0.0, self.show.plotter.renderer):
+            self._say("No surface there.")
+            return None
+        found = self.read(np.array(picker.GetPickPosition()))
+        if found is not None:
+            self.readings = [*self.readings[-1:], found]
+            self._section = None
+            self._say(self.describe(found))
+            self._mark()
+        return found
+
+    def read(self, place: Any) -> Reading | None:
+        """Read the surface at a place as it is drawn, (3,) array; None off the surface."""
+        tin, scale = self.stage.tin, self.stage.ground.scale
+        xy = (place[:2] / scale[:2] + choose_origin(tin)[:2])[np.newaxis]
+        triangle = int(tin.locate(xy)[0])
+        if triangle < 0:
+            return None
+        elevation = float(tin.interpolate(xy)[0])
+        return Reading(float(xy[0, 0]), float(xy[0, 1]), elevation, float(self._slopes[triangle]))
+
+    def describe(self, found: Reading) -> str:
+        """Return a reading in words, in the units of the CRS."""
+        ground, crs = self.stage.ground, self.stage.tin.crs
+        is_geographic = crs is not None and crs.is_geographic
+        digits = 7 if is_geographic else 3
+        across = "°" if is_geographic else f" {ground.unit.symbol}".rstrip()
+        up = f" {ground.elevation_caption}".rstrip()
+        return (
+            f"Easting {found.easting:,.{digits}f}{across}   "
+            f"Northing {found.northing:,.{digits}f}{across}   "
+            f"Elevation {found.elevation:,.3f}{up}   Slope {found.slope:.1f}°"
+        )
+
+    def cut_section(self) -> Table | None:
+        """Draw the profile between the last two readings; None if there are fewer."""
+        if len(self.readings) < 2:
+            self._say("A section needs two places: point at each and press P.")
+            return None
+        ends = [(one.easting, one.northing) for one in self.readings]
+        try:
+            table = profile(self.stage.tin, ends)
+        except TinsmithError as error:
+            self._say(str(error))
+            return None
+        self._section = table
+        self._draw_chart(table)
+        self._mark()
+        return table
+
+    def _draw_chart(self, table: Table) -> None:
+        pv = _optional.load("pyvista", _PURPOSE)
+        if self._chart is not None:
+            self.show.plotter.remove_chart(self._chart)
+        unit, up = self.stage.ground.unit.symbol, self.stage.ground.elevation_caption
+        self._chart = pv.Chart2D(
+            size=_CHART_SIZE,
+            loc=_CHART_PLACE,
+            x_label=f"Distance ({unit})" if unit else "Distance",
+            y_label=f"Elevation ({up})" if up else "Elevation",
+        )
+        self._chart.background_color = (1.0, 1.0, 1.0, 0.9)
+        self._chart.line(np.array(table["station"]), np.array(table["elevation"]), color="k")
+        self.show.plotter.add_chart(self._chart)
+
+    def _mark(self) -> None:
+        """Show the last readings, and the section between them, on the surface."""
+        plotter = self.show.plotter
+        for actor in self._marks:
+            plotter.remove_actor(actor, render=False)
+        self._marks = []
+        if not self.readings:
+            return
+        places = [(one.easting, one.northing, one.elevation) for one in self.readings]
+        drawn = place_on_stage(self.stage, np.array(places))
+        options = {"color": _MARK_COLOR, "lighting": False, "pickable": False}
+        self._marks.append(
+            plotter.add_points(
+                drawn, point_size=_MARK_SIZE, render_points_as_spheres=True, **options
+            )
+        )
+        if self._section is not None:
+            self._marks.append(self._draw_section(self._section))
+
+    def _draw_section(self, table: Table) -> Any:
+        """Draw the line of a section along the surface, where there is one."""
+        ends = np.array([(one.easting, one.northing) for one in self.readings])
+        station, elevation = np.array(table["station"]), np.array(table["elevation"])
+        share = (station / station[-1])[:, np.newaxis]
+        places = np.column_stack([ends[0] + share * (ends[1] - ends[0]), elevation])
+        seen = np.isfinite(elevation)
+        pairs = np.flatnonzero(seen[:-1] & seen[1:])
+        drawn = place_on_stage(self.stage, places)[np.column_stack([pairs, pairs + 1])]
+        return add_polylines(
+            self.show.plotter,
+            drawn.reshape(-1, 3),
+            np.arange(0, 2 * len(pairs) + 1, 2),
+            np.arange(len(pairs)),
+            color=_MARK_COLOR,
+            width=_SECTION_WIDTH,
+        )
+
+    def _say(self, words: str) -> None:
+        """Write a line below the title, until the next one."""
+        self._line = words
+        self._raise_words()
+
+    def _raise_words(self) -> None:
+        """Draw the line, what keys do, and the slider over the annotations."""
+        sheet, self._words.factor = fit_sheet(tuple(self.show.plotter.window_size))
+        palette, left = self.stage.caption.palette, sheet.frame.xmin
+        self._words.clear()
+        self._words.draw_text((left, 14.0), _HELP, palette.grey, size=13)
+        if self._line:
+            place = (left, sheet.frame.ymax - 14.0)
+            self._words.draw_text(place, self._line, palette.ink, size=17)
+        if self._slider is not None:
+            knob, renderer = self._slider.GetRepresentation(), self.show.plotter.renderer
+            renderer.RemoveViewProp(knob)
+            renderer.AddViewProp(knob)
+
+    # ------------------------------------------------------------------ the user
+
+    def connect(self) -> None:
+        """Follow mouse, keys and slider."""
+        plotter = self.show.plotter
+        plotter.enable_anti_aliasing("msaa", multi_samples=8)
+        plotter.enable_terrain_style(mouse_wheel_zooms=True)
+        plotter.camera.AddObserver("ModifiedEvent", self.show.update)
+        plotter.render_window.AddObserver("WindowResizeEvent", self.show.update)
+        keys = {
+            "t": self.change_tint,
+            "c": self.toggle_contours,
+            "p": self._pick_under_pointer,
+            "x": self.cut_section,
+        }
+        for key, action in keys.items():
+            plotter.add_key_event(key, action)
+        factor = self.stage.exaggeration
+        self._slider = plotter.add_slider_widget(
+            self._slide,
+            (min(1.0, factor), max(_MOST_EXAGGERATION, factor)),
+            value=factor,
+            title="Vertical exaggeration",
+            pointa=(0.72, 0.93),
+            pointb=(0.97, 0.93),
+            color=[part / 255 for part in self.stage.caption.palette.ink],
+            interaction_event="end",
+            fmt="%.1f",
+            style="modern",
+            slider_width=0.02,
+            tube_width=0.004,
+            title_height=0.018,
+        )
+
+    def _slide(self, value: float) -> None:
+        factor = round(value, 1) or value
+        if factor != self.stage.exaggeration:
+            self.set_exaggeration(factor)
+
+    def _pick_under_pointer(self) -> None:
+        self.pick(*self.show.plotter.iren.get_event_position())
+
+
+def open_window(tin: TIN, look: Look, ortho: Ortho | None = None) -> None:
+    """Show a surface in a window, and wait until it is closed."""
+    _optional.load("pyvista", _PURPOSE)
+    opengl.require_window()
+    with keep_vtk_plain():
+        window = Window(tin, look, ortho)
+        opengl.require_on_screen(window.show.plotter.render_window.GetClassName())
+        window.connect()
+        window.show.plotter.show(title=window.stage.caption.title)

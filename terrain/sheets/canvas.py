@@ -1,0 +1,158 @@
+"""Canvas: a sheet of paper on which lines, areas and texts are drawn in millimetres."""
+
+from __future__ import annotations
+
+import warnings
+from collections import Counter
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ... import _optional
+from .lettering import FONT, PURPOSE
+from .papers import MM_PER_INCH
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+    from typing import IO
+
+    from numpy.typing import NDArray
+
+    from .papers import Paper
+
+__all__ = ["INK", "METADATA", "POINTS_PER_MM", "Canvas", "Pen", "drawing_rules"]
+
+INK = "#222222"
+POINTS_PER_MM = 72.0 / MM_PER_INCH
+
+_RULES = {
+    "font.family": [FONT],
+    "pdf.fonttype": 42,  # letters stay text, in a font that is embedded
+    "svg.fonttype": "none",
+    "svg.hashsalt": "tinsmith",  # the same bytes every time
+    "path.simplify": False,
+    "lines.scale_dashes": False,
+    "agg.path.chunksize": 20_000,
+}
+METADATA: dict[str, dict[str, None]] = {
+    "pdf": {"CreationDate": None, "Creator": None, "Producer": None},
+    "svg": {"Date": None, "Creator": None},
+    "png": {"Software": None},
+}
+
+
+class Pen(NamedTuple):
+    """How a line is drawn: its colour, and its width and dashes in millimetres."""
+
+    color: str
+    width: float
+    dashes: tuple[float, ...] = ()
+
+
+@contextmanager
+def drawing_rules() -> Iterator[None]:
+    """Draw by matplotlib's own defaults and ours, whatever the user has set for other pictures.
+
+    Letters that the font lacks are drawn as boxes, which the notes of a plan tell.
+    """
+    matplotlib = _optional.load("matplotlib", PURPOSE)
+    with matplotlib.rc_context(), warnings.catch_warnings():
+        matplotlib.rcdefaults()
+        matplotlib.rcParams.update(_RULES)
+        warnings.filterwarnings("ignore", message="Glyph .* missing from")
+        yield
+
+
+class Canvas:
+    """A sheet of paper; the origin is its lower left corner. Used within :func:`drawing_rules`.
+
+    Parameters
+    ----------
+    paper : Paper
+    """
+
+    def __init__(self, paper: Paper) -> None:
+        size = paper.width / MM_PER_INCH, paper.height / MM_PER_INCH
+        figure = _optional.load("matplotlib.figure", PURPOSE).Figure(figsize=size)
+        self.figure: Any = figure
+        self._axes: Any = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+        self._axes.set_xlim(0.0, paper.width)
+        self._axes.set_ylim(0.0, paper.height)
+        self._axes.set_axis_off()
+        self._order = 1
+        self._names: Counter[str] = Counter()
+
+    def draw_paths(self, parts: Sequence[NDArray[np.float64]], pen: Pen, name: str) -> None:
+        """Draw polylines; ``name`` is that of their group in an SVG."""
+        if len(parts) == 0:
+            return
+        collections = _optional.load("matplotlib.collections", PURPOSE)
+        style: Any = "solid"
+        if pen.dashes:
+            style = (0.0, [POINTS_PER_MM * dash for dash in pen.dashes])
+        drawn = collections.LineCollection(
+            list(parts),
+            colors=pen.color,
+            linewidths=POINTS_PER_MM * pen.width,
+            linestyles=[style],
+            capstyle="butt" if pen.dashes else "round",
+            zorder=self._take_order(),
+        )
+        drawn.set_gid(self._number(name))
+        self._axes.add_collection(drawn, autolim=False)
+
+    def fill(self, rings: Sequence[NDArray[np.float64]], color: str, name: str) -> None:
+        """Fill the area within rings, each closed; what lies in two of them is left out."""
+        path = _optional.load("matplotlib.path", PURPOSE).Path
+        patch = _optional.load("matplotlib.patches", PURPOSE).PathPatch
+        codes = [
+            np.array([path.MOVETO, *[path.LINETO] * (len(ring) - 2), path.CLOSEPOLY])
+            for ring in rings
+        ]
+        shape = path(np.concatenate(list(rings)), np.concatenate(codes))
+        drawn = patch(shape, facecolor=color, edgecolor="none", zorder=self._take_order())
+        drawn.set_gid(self._number(name))
+        self._axes.add_patch(drawn)
+
+    def write(
+        self,
+        place: tuple[float, float],
+        text: str,
+        *,
+        size: float,
+        color: str = INK,
+        rotation: float = 0.0,
+        across: str = "left",
+        up: str = "baseline",
+        name: str | None = None,
+    ) -> None:
+        """Write a text on one line; ``size`` is that of its letters in millimetres."""
+        self._axes.text(
+            *place,
+            text,
+            fontsize=POINTS_PER_MM * size,
+            color=color,
+            rotation=rotation,
+            rotation_mode="anchor",
+            ha=across,
+            va=up,
+            parse_math=False,
+            gid=None if name is None else self._number(name),
+            zorder=self._take_order(),
+        )
+
+    def save(self, stream: IO[bytes], kind: str, *, dpi: int) -> None:
+        """Write the sheet as PDF, SVG or PNG, with no clock and no version in its bytes."""
+        self.figure.savefig(stream, format=kind, dpi=dpi, metadata=METADATA[kind])
+
+    def _number(self, name: str) -> str:
+        """Return a name that nothing has on the sheet: an SVG has each once."""
+        self._names[name] += 1
+        count = self._names[name]
+        return name if count == 1 else f"{name}-{count}"
+
+    def _take_order(self) -> float:
+        """Return the next place in the order of drawing: later things lie on top."""
+        self._order += 1
+        return float(self._order)

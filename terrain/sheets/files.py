@@ -1,0 +1,111 @@
+"""Files: sheets as pages of a PDF, or as SVGs and PNGs, all of them whole or none."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from ... import _optional
+from ..._atomic import as_path, replacing, replacing_files, require_writable
+from ...errors import OptionError, RenderError
+from ...tin.validation.options import is_whole_number
+from .canvas import METADATA, drawing_rules
+from .lettering import PURPOSE
+from .papers import MM_PER_INCH
+
+if TYPE_CHECKING:
+    import os
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from .canvas import Canvas
+
+__all__ = ["PLAN_SUFFIXES", "list_files", "write_sheets"]
+
+PLAN_SUFFIXES = (".pdf", ".svg", ".png")
+"""File name endings of what can be written."""
+
+_DPI = (50, 1200)
+_MOST_PIXELS = 150_000_000
+"""A0 at 260 dpi; 600 MB while it is drawn."""
+
+
+def list_files(path: str | os.PathLike[str], count: int) -> list[Path]:
+    """Return the names of the files of so many sheets.
+
+    Raises
+    ------
+    OptionError
+        If the path is none.
+    RenderError
+        If its suffix is another.
+
+    Examples
+    --------
+    >>> [file.name for file in list_files("plan.svg", 12)][::11]
+    ['plan-01.svg', 'plan-12.svg']
+    """
+    file = as_path(path, "path")
+    suffix = file.suffix.lower()
+    if suffix not in PLAN_SUFFIXES:
+        raise RenderError(
+            f"Cannot write a plan to '{file}': its name must end in {', '.join(PLAN_SUFFIXES)}."
+        )
+    if suffix == ".pdf" or count == 1:
+        return [file]
+    digits = len(str(count))
+    return [
+        file.with_name(f"{file.stem}-{number:0{digits}}{file.suffix}")
+        for number in range(1, count + 1)
+    ]
+
+
+def write_sheets(
+    path: str | os.PathLike[str],
+    canvases: Iterator[Canvas],
+    count: int,
+    size: tuple[float, float],
+    dpi: int,
+    title: str,
+) -> list[Path]:
+    """Write sheets; each is drawn when it is written."""
+    files = list_files(path, count)
+    kind = files[0].suffix.lower().lstrip(".")
+    _require_pixels(dpi, size, kind)
+    for file in files:
+        require_writable(file)
+    _optional.load("matplotlib", PURPOSE)
+    with drawing_rules():
+        if kind == "pdf":
+            _write_pages(files[0], canvases, title)
+        else:
+            _write_each(files, canvases, kind, dpi)
+    return files
+
+
+def _write_pages(file: Path, canvases: Iterator[Canvas], title: str) -> None:
+    pages = _optional.load("matplotlib.backends.backend_pdf", PURPOSE).PdfPages
+    with (
+        replacing(file) as stream,
+        pages(stream, metadata={**METADATA["pdf"], "Title": title}) as document,
+    ):
+        for canvas in canvases:
+            document.savefig(canvas.figure)
+
+
+def _write_each(files: list[Path], canvases: Iterator[Canvas], kind: str, dpi: int) -> None:
+    with replacing_files(files[0]) as first:
+        for file, canvas in zip(files, canvases, strict=True):
+            with first.with_name(file.name).open("wb") as stream:
+                canvas.save(stream, kind, dpi=dpi)
+
+
+def _require_pixels(dpi: Any, size: tuple[float, float], kind: str) -> None:
+    low, high = _DPI
+    if not is_whole_number(dpi) or not low <= dpi <= high:
+        raise OptionError("dpi", dpi, f"a whole number from {low} to {high}")
+    pixels = size[0] * size[1] * (dpi / MM_PER_INCH) ** 2
+    if kind == "png" and pixels > _MOST_PIXELS:
+        fitting = int(dpi * (_MOST_PIXELS / pixels) ** 0.5)
+        raise OptionError(
+            "dpi", dpi, f"at most {fitting} on this paper, or the picture has too many pixels"
+        )

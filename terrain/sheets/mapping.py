@@ -1,0 +1,416 @@
+"""Mapping: what is drawn of the ground within the frame of a sheet."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from decimal import Decimal
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ..isolines import contour_labels
+from ..results import Features
+from .canvas import Canvas, Pen
+from .clipping import Paths, clip_paths, join_paths
+from .grid import draw_grid
+from .lettering import measure_text
+from .placing import Room, outline_text
+from .windows import list_corners, turn
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .contents import Contents, Marks
+    from .windows import MatchLine, Window
+
+__all__ = [
+    "CONTOUR_PENS",
+    "LINE_PENS",
+    "MATCH_PEN",
+    "OUTLINE_PEN",
+    "WATER",
+    "Drawn",
+    "draw_map",
+    "draw_outline",
+]
+
+CONTOUR_PENS = {False: Pen("#8a5a33", 0.13), True: Pen("#7a4a23", 0.35)}
+LINE_PENS = {
+    "soft": Pen("#40444a", 0.25, (2.0, 1.0)),
+    "hard": Pen("#222226", 0.35),
+    "hole": Pen("#963a22", 0.35, (4.0, 1.0, 0.8, 1.0)),
+    "boundary": Pen("#963a22", 0.5),
+    "water": Pen("#185c98", 0.35),
+}
+OUTLINE_PEN = Pen("#888888", 0.25)
+MATCH_PEN = Pen("#b0006d", 0.5, (6.0, 2.0))
+WATER = "#cfe5f5"
+_FRAME_PEN = Pen("#222222", 0.35)
+_MARK_PEN = Pen("#222222", 0.18)
+_MARK = 0.7
+"""Half a point's cross, millimetres."""
+_LETTERS = 2.0
+_POINT_LETTERS = 1.5
+_CAPITAL = 0.73
+"""Height of digits by the size of letters."""
+_SPACING = 110.0
+"""Millimetres between the labels of a contour."""
+_MATCH_INSET = 4.0
+_MOST_MARK_LABELS = 20_000
+
+
+@dataclass(eq=False)
+class Drawn:
+    """What was drawn on a sheet, for its legend and the notes.
+
+    Attributes
+    ----------
+    kinds : set of str
+        "contour", "index contour", kinds of lines, "water area", "outline", "point", "match line".
+    labels : int
+        Elevations that were written on contours.
+    crowded : int
+        Points whose labels had no room.
+    """
+
+    kinds: set[str]
+    labels: int = 0
+    crowded: int = 0
+
+
+class _Text(NamedTuple):
+    center: tuple[float, float]
+    rotation: float
+    text: str
+    corners: NDArray[np.float64]
+    source: int  # the contour that it is of
+
+
+def draw_map(
+    canvas: Canvas,
+    window: Window,
+    contents: Contents,
+    *,
+    labeling: str,
+    grid: str,
+    numbers: tuple[int, ...],
+) -> Drawn:
+    """Draw the ground of a window: water, contours, lines, points, grid, match lines, frame.
+
+    Parameters
+    ----------
+    canvas : Canvas
+    window : Window
+    contents : Contents
+    labeling : {"index", "all", "none"}
+    grid : {"crosses", "lines", "none"}
+    numbers : tuple of int
+        Of the sheet of each window, as match lines name them.
+    """
+    drawn, room = Drawn(set()), Room(window.frame)
+    _fill_water(canvas, window, contents, drawn)
+    draw_grid(canvas, window, grid)
+    for match in window.matches:  # first, for their texts to have room
+        _draw_match(canvas, window, match, numbers[match.window], room, drawn)
+    _draw_contours(canvas, window, contents, labeling, room, drawn)
+    _draw_linework(canvas, window, contents, drawn)
+    if contents.marks is not None:
+        _draw_marks(canvas, window, contents.marks, room, drawn)
+    _draw_frame(canvas, window)
+    return drawn
+
+
+def draw_outline(canvas: Canvas, window: Window, contents: Contents, *, grid: str) -> Drawn:
+    """Draw the edge, the lines and the water of a surface alone, with grid and frame."""
+    drawn = Drawn(set())
+    _fill_water(canvas, window, contents, drawn)
+    draw_grid(canvas, window, grid)
+    _draw_linework(canvas, window, contents, drawn)
+    _draw_frame(canvas, window)
+    return drawn
+
+
+def _draw_linework(canvas: Canvas, window: Window, contents: Contents, drawn: Drawn) -> None:
+    _draw_paths(canvas, window, contents.outline, OUTLINE_PEN, "outline", drawn)
+    for kind, paths in contents.linework.items():
+        _draw_paths(canvas, window, paths, LINE_PENS[kind], kind, drawn)
+
+
+def _draw_frame(canvas: Canvas, window: Window) -> None:
+    corners = list_corners(window.frame)
+    canvas.draw_paths([corners[[0, 1, 2, 3, 0]]], _FRAME_PEN, "frame")
+
+
+def _list_sides(window: Window) -> tuple[float, float, float, float]:
+    frame = window.frame
+    return frame.xmin, frame.ymin, frame.xmax, frame.ymax
+
+
+def clip_to_window(paths: Paths, window: Window) -> Paths:
+    """Return what a window shows of paths on the ground, on paper."""
+    moved = Paths(window.to_paper(paths.coordinates), paths.offsets, paths.sources)
+    return clip_paths(moved, window.frame)
+
+
+def _draw_paths(
+    canvas: Canvas, window: Window, paths: Paths, pen: Pen, kind: str, drawn: Drawn
+) -> None:
+    parts = clip_to_window(paths, window).parts()
+    if parts:
+        canvas.draw_paths(parts, pen, kind if kind == "outline" else f"{kind}-lines")
+        drawn.kinds.add(kind)
+
+
+def _fill_water(canvas: Canvas, window: Window, contents: Contents, drawn: Drawn) -> None:
+    import shapely
+
+    box = shapely.box(*_list_sides(window))
+    for face in contents.footprint.faces[contents.footprint.is_water]:
+        moved = shapely.make_valid(shapely.transform(face, window.to_paper))
+        for part in shapely.get_parts(shapely.intersection(moved, box)):
+            if shapely.area(part) > 0:
+                rings = [shapely.get_coordinates(ring) for ring in shapely.get_rings(part)]
+                canvas.fill(rings, WATER, "water")
+                drawn.kinds.add("water area")
+
+
+# ---------------------------------------------------------------- contours
+
+
+def _draw_contours(
+    canvas: Canvas, window: Window, contents: Contents, labeling: str, room: Room, drawn: Drawn
+) -> None:
+    lines = contents.contours
+    whole = Paths.whole(lines.coordinates[:, :2], lines.offsets[0])
+    seen = clip_to_window(whole, window)
+    is_index = lines.columns["is_index"]
+    texts: list[_Text] = []
+    if labeling != "none":
+        barriers = _list_barriers(window, contents)
+        texts = _choose_labels(_place_labels(seen, lines, labeling), barriers, room)
+    cut = _cut_out(seen, texts)
+    for flag, kind in ((False, "contour"), (True, "index contour")):
+        parts = cut.choose(is_index == flag)
+        if parts:
+            canvas.draw_paths(parts, CONTOUR_PENS[flag], f"{kind.replace(' ', '-')}s")
+            drawn.kinds.add(kind)
+    for text in texts:
+        canvas.write(
+            text.center,
+            text.text,
+            size=_LETTERS,
+            color=CONTOUR_PENS[True].color,
+            rotation=text.rotation,
+            across="center",
+            up="center_baseline",
+            name="contour-label",
+        )
+    drawn.labels += len(texts)
+
+
+def _list_barriers(window: Window, contents: Contents) -> Any:
+    """Return the lines that labels should not lie on, in a tree."""
+    import shapely
+
+    parts = [
+        part
+        for paths in contents.linework.values()
+        for part in clip_to_window(paths, window).parts()
+    ]
+    return shapely.STRtree([shapely.LineString(part) for part in parts])
+
+
+def _choose_labels(texts: list[_Text], barriers: Any, room: Room) -> list[_Text]:
+    """Keep the labels that have room; one on a line only where its contour has no other."""
+    import shapely
+
+    boxes = shapely.polygons(np.array([text.corners for text in texts]).reshape(-1, 4, 2))
+    hit = np.zeros(len(texts), np.bool_)
+    hit[barriers.query(boxes, predicate="intersects")[0]] = True
+    free = [text for text, is_hit in zip(texts, hit, strict=True) if not is_hit]
+    kept = [text for text in free if room.take(text.corners)]
+    named = {text.source for text in kept}
+    for text in (text for text, is_hit in zip(texts, hit, strict=True) if is_hit):
+        if text.source not in named and room.take(text.corners):
+            kept.append(text)
+            named.add(text.source)
+    return kept
+
+
+def _place_labels(seen: Paths, lines: Features, labeling: str) -> list[_Text]:
+    """Return the labels of contours as they are seen, upright on this sheet."""
+    if len(seen.sources) == 0:
+        return []
+    columns = lines.columns
+    is_index = columns["is_index"]
+    firsts, lasts = seen.offsets[:-1], seen.offsets[1:] - 1
+    is_closed = (seen.coordinates[firsts] == seen.coordinates[lasts]).all(axis=1)
+    shown = Features.of_lines(
+        seen.coordinates,
+        seen.offsets,
+        columns={
+            "elevation": columns["elevation"][seen.sources],
+            "is_index": is_index[seen.sources],
+            "is_closed": is_closed,
+        },
+    )
+    # where the surface has index contours, others have no labels even if a sheet shows no index
+    is_silent = labeling == "index" and is_index.any() and not shown.columns["is_index"].any()
+    if is_silent:
+        return []
+    labels = contour_labels(shown, spacing=_SPACING, index_only=labeling == "index")
+    written = _write_levels(columns["elevation"])
+    rows = zip(
+        labels.coordinates[:, :2].tolist(),
+        labels.columns["rotation"].tolist(),
+        [written[level] for level in labels.columns["elevation"].tolist()],
+        seen.sources[labels.columns["line"]].tolist(),
+        strict=True,
+    )
+    return [_outline(tuple(place), *rest) for place, *rest in rows]
+
+
+def _outline(center: tuple[float, float], rotation: float, text: str, source: int) -> _Text:
+    width = measure_text(text, _LETTERS) + 1.0
+    corners = outline_text(center, width, _CAPITAL * _LETTERS + 0.8, rotation)
+    return _Text(center, rotation, text, corners, source)
+
+
+def _write_levels(levels: NDArray[np.float64]) -> dict[float, str]:
+    """Write levels with as many decimals as the finest of them has."""
+    values = np.unique(levels).tolist()
+    decimals = max((_count_decimals(value) for value in values), default=0)
+    return {value: f"{value + 0.0:.{decimals}f}" for value in values}
+
+
+def _count_decimals(value: float) -> int:
+    """Return how many decimals the shortest way to write a number has."""
+    return max(0, -int(Decimal(str(value)).normalize().as_tuple().exponent))
+
+
+def _cut_out(paths: Paths, texts: list[_Text]) -> Paths:
+    """Leave the lines out that run through a text."""
+    import shapely
+
+    if not texts or len(paths.sources) == 0:
+        return paths
+    parts = paths.parts()
+    lines = shapely.linestrings(
+        paths.coordinates, indices=np.repeat(np.arange(len(parts)), np.diff(paths.offsets))
+    )
+    boxes = shapely.polygons([text.corners for text in texts])
+    hit, box = shapely.STRtree(boxes).query(lines, predicate="intersects")
+    kept: list[NDArray[np.float64]] = []
+    sources: list[int] = []
+    for number, part in enumerate(parts):
+        own = boxes[box[hit == number]]
+        left = [part] if len(own) == 0 else _subtract(lines[number], own)
+        kept += left
+        sources += [int(paths.sources[number])] * len(left)
+    return join_paths(kept, sources)
+
+
+def _subtract(line: Any, boxes: NDArray[Any]) -> list[NDArray[np.float64]]:
+    import shapely
+
+    rest = shapely.difference(line, shapely.union_all(boxes))
+    pieces = [shapely.get_coordinates(part) for part in shapely.get_parts(rest)]
+    return [piece for piece in pieces if len(piece) > 1]
+
+
+# ---------------------------------------------------------------- points
+
+
+def _draw_marks(canvas: Canvas, window: Window, marks: Marks, room: Room, drawn: Drawn) -> None:
+    places = window.to_paper(marks.places)
+    west, south, east, north = _list_sides(window)
+    x, y = places[:, 0], places[:, 1]
+    is_seen = (
+        (x - _MARK >= west) & (x + _MARK <= east) & (y - _MARK >= south) & (y + _MARK <= north)
+    )
+    seen = np.flatnonzero(is_seen)
+    if len(seen) == 0:
+        return
+    arms = _MARK * np.array([[(-1, 0), (1, 0)], [(0, -1), (0, 1)]])
+    crosses = (places[seen, None, None, :] + arms).reshape(-1, 2, 2)
+    canvas.draw_paths(list(crosses), _MARK_PEN, "points")
+    drawn.kinds.add("point")
+    for number in seen[:_MOST_MARK_LABELS].tolist():
+        drawn.crowded += not _write_mark(canvas, marks, number, places[number], room)
+    if marks.numbers or marks.elevations:
+        drawn.crowded += max(0, len(seen) - _MOST_MARK_LABELS)
+
+
+def _write_mark(
+    canvas: Canvas, marks: Marks, number: int, place: NDArray[np.float64], room: Room
+) -> bool:
+    """Write the number above and the elevation below on the right of a point, if there is room."""
+    texts = [
+        (written[number], side, name)
+        for written, side, name in (
+            (marks.numbers, 1.0, "point-number"),
+            (marks.elevations, -1.0, "point-elevation"),
+        )
+        if written and written[number]
+    ]
+    if not texts:
+        return True
+    height = _CAPITAL * _POINT_LETTERS + 0.3
+    width = max(measure_text(text, _POINT_LETTERS) for text, _, _ in texts)
+    low = min(0.0 if side > 0 else -height for _, side, _ in texts)
+    top = max(height if side > 0 else 0.0 for _, side, _ in texts)
+    x, y = float(place[0]) + _MARK + 0.2, float(place[1])
+    if not room.take(outline_text((x + width / 2, y + (low + top) / 2), width, top - low)):
+        return False
+    for text, side, name in texts:
+        beside = y + 0.15 if side > 0 else y - height + 0.15
+        canvas.write((x, beside), text, size=_POINT_LETTERS, name=name)
+    return True
+
+
+# ---------------------------------------------------------------- match lines
+
+
+def _draw_match(
+    canvas: Canvas, window: Window, match: MatchLine, number: int, room: Room, drawn: Drawn
+) -> None:
+    parts = clip_paths(join_paths([window.to_paper(match.ends)]), window.frame).parts()
+    if not parts:
+        return
+    canvas.draw_paths(parts, MATCH_PEN, "match-lines")
+    drawn.kinds.add("match line")
+    start, end = parts[0][0], parts[0][-1]
+    text = f"Match line: sheet {number}"
+    width = measure_text(text, _LETTERS)
+    east, north = (end - start).tolist()
+    if math.hypot(east, north) < width + 2 * _MATCH_INSET:
+        return
+    rotation = turn_upright(math.degrees(math.atan2(north, east)))
+    high, low = (start, end) if start[1] >= end[1] else (end, start)
+    inward = (low - high) / np.hypot(*(low - high))
+    middle = high + (0.5 * width + _MATCH_INSET) * inward  # away from the surface in mid-frame
+    above = turn(np.array([0.0, 1.0]), rotation)
+    center = tuple((middle + (0.5 * _LETTERS + 0.5) * above).tolist())
+    room.take(outline_text(center, width, _LETTERS, rotation))
+    canvas.write(
+        tuple((middle + 0.7 * above).tolist()),
+        text,
+        size=_LETTERS,
+        color=MATCH_PEN.color,
+        rotation=rotation,
+        across="center",
+        name="match-label",
+    )
+
+
+def turn_upright(rotation: float) -> float:
+    """Return the direction of a text along a line that is read upright, above -90 up to 90.
+
+    Examples
+    --------
+    >>> turn_upright(135.0), turn_upright(-90.0)
+    (-45.0, 90.0)
+    """
+    turned = -((-rotation + 90.0) % 180.0) + 90.0
+    return turned + 0.0

@@ -1,0 +1,254 @@
+"""Title block: title, what the drawing says of itself, north arrow, scale bar and legend."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ...tin import Bounds
+from ..rounding import format_number, round_down
+from .canvas import INK, Pen
+from .grid import PEN as GRID_PEN
+from .lettering import fit_text
+from .mapping import CONTOUR_PENS, LINE_PENS, MATCH_PEN, OUTLINE_PEN, WATER
+from .windows import list_corners, turn
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from ...crs import Unit
+    from .canvas import Canvas
+    from .layout import Layout
+    from .windows import Window
+
+__all__ = ["Caption", "draw_title_block"]
+
+_BORDER = Pen(INK, 0.5)
+_RULE = Pen(INK, 0.25)
+_THIN = Pen(INK, 0.13)
+_GRAY = "#666666"
+_LEGEND = {
+    "contour": "contour",
+    "index contour": "index contour",
+    "hard": "breakline",
+    "soft": "soft breakline",
+    "boundary": "boundary",
+    "hole": "hole",
+    "water": "water's edge",
+    "water area": "water",
+    "outline": "edge of the surface",
+    "point": "survey point",
+    "sheet": "sheet",
+    "match line": "match line",
+    "grid": "coordinate grid",
+}
+_PENS = {
+    "contour": CONTOUR_PENS[False],
+    "index contour": CONTOUR_PENS[True],
+    **LINE_PENS,
+    "outline": OUTLINE_PEN,
+    "match line": MATCH_PEN,
+    "sheet": MATCH_PEN._replace(dashes=()),
+}
+
+
+class Caption(NamedTuple):
+    """What a title block says.
+
+    Attributes
+    ----------
+    title : str
+    facts : tuple of str
+        CRS, elevations, contours, points: a line each.
+    scale : str
+    sheet : str
+        "Sheet 1 of 3".
+    date : str
+    unit : Unit
+        Of the coordinates.
+    """
+
+    title: str
+    facts: tuple[str, ...]
+    scale: str
+    sheet: str
+    date: str
+    unit: Unit
+
+
+def draw_title_block(
+    canvas: Canvas, layout: Layout, window: Window, caption: Caption, kinds: Sequence[str]
+) -> bool:
+    """Draw border and title block; tell whether all of its texts had room.
+
+    Parameters
+    ----------
+    canvas : Canvas
+    layout : Layout
+    window : Window
+    caption : Caption
+    kinds : sequence of str
+        What the legend explains.
+    """
+    border = list_corners(layout.border)
+    canvas.draw_paths([border[[0, 1, 2, 3, 0]]], _BORDER, "border")
+    top = layout.title.ymax
+    rules = [np.array([(layout.border.xmin, top), (layout.border.xmax, top)])]
+    for cell in (layout.scales, layout.title):
+        rules.append(np.array([(cell.xmin, cell.ymin), (cell.xmin, cell.ymax)]))
+    canvas.draw_paths(rules, _RULE, "rules")
+    _draw_legend(canvas, layout, kinds)
+    _draw_north_arrow(canvas, layout, window.angle)
+    _draw_scale_bar(canvas, layout, window, caption)
+    return _draw_title(canvas, layout, caption)
+
+
+# ---------------------------------------------------------------- title
+
+
+def _draw_title(canvas: Canvas, layout: Layout, caption: Caption) -> bool:
+    """Write title and facts on the left, scale, date and sheet below on the right."""
+    cell, factor = layout.title, layout.factor
+    pad, foot = 2.0 * factor, 9.5 * factor
+    width = cell.width - 2 * pad
+    fitted = fit_text(caption.title, width, size=4.2 * factor, least=2.0 * factor, lines=2)
+    line = 1.3 * fitted.size
+    y = cell.ymax - pad
+    for text in fitted.lines:
+        canvas.write(
+            (cell.xmin + pad, y - 0.8 * fitted.size),
+            text,
+            size=fitted.size,
+            name="title",
+        )
+        y -= line
+    facts = Bounds(cell.xmin + pad, cell.ymin + foot, cell.xmax - pad, y - 0.6 * factor)
+    is_cut = _write_facts(canvas, facts, caption.facts, factor)
+    return not (_draw_foot(canvas, layout, caption, foot) | is_cut | fitted.is_cut)
+
+
+def _write_facts(canvas: Canvas, room: Bounds, facts: Sequence[str], factor: float) -> bool:
+    """Write a line for each fact, smaller where there are many; tell whether one was cut."""
+    step = min(3.6 * factor, room.height / max(1, len(facts)))
+    size = min(2.2 * factor, 0.72 * step)
+    is_cut = False
+    for number, fact in enumerate(facts):
+        fitted = fit_text(fact, room.width, size=size, least=0.72 * size)
+        place = (room.xmin, room.ymax - number * step - 0.75 * step)
+        canvas.write(place, fitted.lines[0], size=fitted.size, name="fact")
+        is_cut |= fitted.is_cut
+    return is_cut
+
+
+def _draw_foot(canvas: Canvas, layout: Layout, caption: Caption, height: float) -> bool:
+    cell, factor = layout.title, layout.factor
+    top = cell.ymin + height
+    shares = np.cumsum([0.0, 0.4, 0.3, 0.3]) * cell.width + cell.xmin
+    rules = [np.array([(cell.xmin, top), (cell.xmax, top)])]
+    rules += [np.array([(x, cell.ymin), (x, top)]) for x in shares[1:-1]]
+    canvas.draw_paths(rules, _THIN, "rules")
+    is_cut = False
+    for number, (head, text) in enumerate(
+        (("Scale", caption.scale), ("Date", caption.date), ("", caption.sheet))
+    ):
+        left, width = float(shares[number]) + factor, float(np.diff(shares)[number]) - 2 * factor
+        if head:
+            canvas.write((left, top - 2.4 * factor), head, size=1.6 * factor, color=_GRAY)
+        fitted = fit_text(text, width, size=3.0 * factor, least=1.5 * factor)
+        canvas.write(
+            (left, cell.ymin + 2.0 * factor), fitted.lines[0], size=fitted.size, name="fact"
+        )
+        is_cut |= fitted.is_cut
+    return is_cut
+
+
+# ---------------------------------------------------------------- north and scale
+
+
+def _draw_north_arrow(canvas: Canvas, layout: Layout, angle: float) -> None:
+    """Draw an arrow to grid north, turned against the sheet."""
+    cell, factor = layout.scales, layout.factor
+    middle = np.array([cell.xmin + cell.width / 2, cell.ymin + 0.66 * cell.height])
+    shape = factor * np.array([(0.0, 8.0), (-2.6, -6.0), (0.0, -3.6), (2.6, -6.0), (0.0, 8.0)])
+    canvas.fill([turn(shape[[0, 1, 2, 0]], -angle) + middle], INK, "north-arrow")
+    canvas.draw_paths([turn(shape, -angle) + middle], _RULE, "north-arrow-outline")
+    beside = turn(np.array([4.6 * factor, 5.4 * factor]), -angle) + middle
+    canvas.write(
+        tuple(beside.tolist()),
+        "N",
+        size=3.2 * factor,
+        rotation=-angle,
+        across="center",
+        up="center_baseline",
+        name="north",
+    )
+
+
+def _draw_scale_bar(canvas: Canvas, layout: Layout, window: Window, caption: Caption) -> None:
+    """Draw a bar of four parts, black and white, with its ends and middle labelled."""
+    cell, factor = layout.scales, layout.factor
+    room = cell.width - 12.0 * factor
+    length = round_down(room / window.mm_per_unit, leads=(1.0, 2.0, 4.0, 5.0, 8.0))
+    width, height = length * window.mm_per_unit, 1.5 * factor
+    left, low = cell.xmin + (cell.width - width) / 2, cell.ymin + 3.4 * factor
+    for part in range(4):
+        box = Bounds(left + part * width / 4, low, left + (part + 1) * width / 4, low + height)
+        ring = list_corners(box)[[0, 1, 2, 3, 0]]
+        canvas.fill([ring], INK if part % 2 == 0 else "white", "scale-bar-part")
+    outline = list_corners(Bounds(left, low, left + width, low + height))
+    canvas.draw_paths([outline[[0, 1, 2, 3, 0]]], _THIN, "scale-bar")
+    for share in (0.0, 0.5, 1.0):
+        canvas.write(
+            (left + share * width, low + height + 0.8 * factor),
+            format_number(share * length, step=length / 2),
+            size=1.9 * factor,
+            across="center",
+            name="scale-bar-label",
+        )
+    canvas.write(
+        (left + width / 2, low - 0.7 * factor),
+        caption.unit.symbol or caption.unit.name,
+        size=1.9 * factor,
+        across="center",
+        up="top",
+        name="scale-bar-unit",
+    )
+
+
+# ---------------------------------------------------------------- legend
+
+
+def _draw_legend(canvas: Canvas, layout: Layout, kinds: Sequence[str]) -> None:
+    """Explain what is drawn, in columns from left to right."""
+    cell, factor = layout.legend, layout.factor
+    listed = [kind for kind in _LEGEND if kind in kinds]
+    step, head = 4.6 * factor, 5.4 * factor
+    rows = int((cell.height - head - factor) // step)
+    columns = max(1, -(-len(listed) // rows))
+    width = min(46.0 * factor, (cell.width - 2 * factor) / columns)
+    left, top = cell.xmin + 2.5 * factor, cell.ymax - head
+    canvas.write((left, cell.ymax - 3.8 * factor), "Legend", size=2.2 * factor, color=_GRAY)
+    for number, kind in enumerate(listed):
+        x = left + (number // rows) * width
+        y = top - (number % rows + 0.5) * step
+        _draw_sample(canvas, kind, x, y, factor)
+        room = width - 13.0 * factor
+        fitted = fit_text(_LEGEND[kind], room, size=2.2 * factor, least=1.2 * factor)
+        canvas.write((x + 11.5 * factor, y), fitted.lines[0], size=fitted.size,
+                     up="center_baseline", name="legend")  # fmt: skip
+
+
+def _draw_sample(canvas: Canvas, kind: str, x: float, y: float, factor: float) -> None:
+    width = 9.5 * factor
+    if kind == "water area":
+        box = list_corners(Bounds(x, y - 1.3 * factor, x + width, y + 1.3 * factor))
+        canvas.fill([box[[0, 1, 2, 3, 0]]], WATER, "legend-sample")
+        return
+    if kind in ("point", "grid"):
+        arm, pen = (0.7, _THIN) if kind == "point" else (2.0, GRID_PEN)
+        middle = np.array([x + width / 2, y])
+        cross = [np.array([middle - step, middle + step]) for step in arm * np.eye(2)]
+        canvas.draw_paths(cross, pen, "legend-sample")
+        return
+    canvas.draw_paths([np.array([(x, y), (x + width, y)])], _PENS[kind], "legend-sample")

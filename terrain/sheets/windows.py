@@ -1,0 +1,87 @@
+"""Windows: the rectangle of ground that a sheet shows, and where it lies on paper."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...tin import Bounds
+
+__all__ = ["MatchLine", "Window", "list_corners", "turn"]
+
+
+class MatchLine(NamedTuple):
+    """Where another sheet goes on.
+
+    Attributes
+    ----------
+    ends : (2, 2) float64 array
+        On the ground.
+    window : int
+        Number of the other sheet's window, from 0.
+    """
+
+    ends: NDArray[np.float64]
+    window: int
+
+
+@dataclass(frozen=True, eq=False)
+class Window:
+    """A rectangle of ground on a sheet.
+
+    Attributes
+    ----------
+    center : tuple of float
+        Easting and northing in the middle of the frame.
+    angle : float
+        Direction that is to the right on the sheet, degrees counter-clockwise from east.
+    mm_per_unit : float
+        Length of a unit of the coordinates on paper.
+    frame : Bounds
+        Of the map on paper, millimetres from the lower left corner of the sheet.
+    matches : tuple of MatchLine
+    """
+
+    center: tuple[float, float]
+    angle: float
+    mm_per_unit: float
+    frame: Bounds
+    matches: tuple[MatchLine, ...] = field(default=())
+
+    def to_paper(self, xy: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return where places on the ground are on paper, millimetres."""
+        moved = self.mm_per_unit * (np.asarray(xy, np.float64)[..., :2] - self.center)
+        turned = turn(moved, -self.angle) + self.frame.center
+        placed: NDArray[np.float64] = turned
+        return placed
+
+    def to_ground(self, mm: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the places on the ground of places on paper."""
+        moved = (np.asarray(mm, np.float64) - self.frame.center) / self.mm_per_unit
+        found: NDArray[np.float64] = turn(moved, self.angle) + self.center
+        return found
+
+    @property
+    def corners(self) -> NDArray[np.float64]:
+        """Corners of the frame on the ground, (4, 2), from the lower left one to the right."""
+        return self.to_ground(list_corners(self.frame))
+
+
+def turn(xy: NDArray[np.float64], angle: float) -> NDArray[np.float64]:
+    """Turn vectors counter-clockwise by degrees; by none they stay the same to the bit."""
+    if angle == 0.0:
+        return xy
+    cos, sin = np.cos(np.radians(angle)), np.sin(np.radians(angle))
+    x, y = xy[..., 0], xy[..., 1]
+    return np.stack([cos * x - sin * y, sin * x + cos * y], axis=-1)
+
+
+def list_corners(box: Bounds) -> NDArray[np.float64]:
+    """Return the corners of a rectangle, from the lower left one to the right."""
+    west, south, east, north = box.xmin, box.ymin, box.xmax, box.ymax
+    return np.array([(west, south), (east, south), (east, north), (west, north)])

@@ -1,0 +1,166 @@
+// The kernels of terrain without Python: contours, bands, volumes, the overlay and rasters of planes,
+// whose answers are known. Prints what is wrong and returns 1, or prints "sound".
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "earthwork/overlay.hpp"
+#include "earthwork/storage.hpp"
+#include "earthwork/volumes.hpp"
+#include "gridding/centers.hpp"
+#include "gridding/means.hpp"
+#include "isolines/band_filling.hpp"
+#include "isolines/line_arrays.hpp"
+#include "isolines/line_smoothing.hpp"
+#include "triangulation.hpp"
+
+using namespace tinsmith;
+
+namespace {
+
+int faults = 0;
+
+void expect(bool holds, const std::string& what) {
+  if (holds) return;
+  std::printf("not so: %s\n", what.c_str());
+  ++faults;
+}
+
+bool is_close(double value, double wanted) { return std::fabs(value - wanted) < 1e-7; }
+
+bool keep_going() { return true; }
+
+// A square of 100 by 100 with points inside, on the plane base + slope * x.
+struct Plane {
+  std::vector<double> xyz;
+  Triangulation made;
+
+  Plane(double base, double slope, unsigned seed) {
+    std::mt19937 rng(seed);
+    std::uniform_real_distribution<double> unit(0.0, 100.0);
+    std::vector<Point> points{{0, 0}, {100, 0}, {100, 100}, {0, 100}};
+    for (int i = 0; i < 500; ++i) points.push_back({unit(rng), unit(rng)});
+    for (const Point p : points) xyz.insert(xyz.end(), {p.x, p.y, base + slope * p.x});
+    const PointRows rows{xyz.data(), static_cast<std::int64_t>(points.size()), 3};
+    made = Triangulator(rows, Options{}, keep_going).run();
+  }
+
+  Surface surface() const {
+    return {xyz.data(), made.corners.get(), made.neighbors.get(),
+            static_cast<std::int32_t>(xyz.size() / 3),
+            static_cast<std::uint32_t>(made.triangle_count)};
+  }
+};
+
+void contour() {
+  const Plane plane(0.0, 0.1, 1);
+  const std::vector<double> values{2.0, 5.0};
+  const isolines::Levels levels{values.data(), 2};
+  Team team(1, keep_going);
+  const isolines::TracedLines lines = isolines::trace_lines(plane.surface(), levels, team);
+  const isolines::LineArrays arrays(lines, levels);
+  expect(arrays.count == 2, "a plane has one line a level");
+  for (std::size_t k = 0; k < arrays.count; ++k) {
+    expect(is_close(arrays.length[k], 100.0), "a line runs straight across the square");
+  }
+  const isolines::TracedLines again =
+      isolines::lines_of({arrays.xyz.get(), arrays.offsets.get(), arrays.level.get(),
+                          arrays.is_closed.get(), arrays.count},
+                         levels);
+  expect(again.points.size() == lines.points.size(), "lines come back from their arrays");
+  const isolines::Bands bands = isolines::fill_bands(plane.surface(), levels, team);
+  expect(bands.band.size() == 3, "two levels divide the square into three");
+}
+
+void refuse_open_boundary() {
+  for (const Point end : {Point{2, 2}, Point{0, -1}}) {
+    try {
+      isolines::RingTracer({{{0, 0}, {1, 0}}, {{1, 0}, {1, 1}}, {{1, 1}, end}}).trace();
+      expect(false, "a boundary that does not close is refused");
+    } catch (const std::logic_error&) {
+    }
+  }
+}
+
+// With points only where the line turns: none but its ends.
+void simplify() {
+  const Plane plane(0.0, 0.1, 1);
+  const double level = 5.0;
+  const isolines::Levels levels{&level, 1};
+  Team team(1, keep_going);
+  const isolines::TracedLines lines = isolines::trace_lines(plane.surface(), levels, team);
+  const std::vector<Point> points(lines.points.begin(), lines.points.end());
+  std::vector<std::int32_t> triangles(points.size());
+  Locator(plane.surface())
+      .locate(points.data(), static_cast<std::int64_t>(points.size()), triangles.data(),
+              keep_going);
+  isolines::LineSmoother smoother(plane.surface(), levels, lines, triangles.data(), team);
+  smoother.simplify(0.01);
+  expect(smoother.take().points.size() < points.size() / 2, "a straight line needs few points");
+}
+
+// The planes 0 and -1 + x / 50 meet at x = 50: a wedge of 2500 is cut, another one filled.
+void measure_earthwork() {
+  const Plane flat(0.0, 0.0, 2), ramp(-1.0, 0.02, 3);
+  const std::vector<std::int32_t> groups(flat.surface().triangle_count, 0);
+  for (const int threads : {1, 3}) {
+    Team team(threads, keep_going);
+    const auto sums =
+        earthwork::sum_between(flat.surface(), groups.data(), 1, ramp.surface(), 1.0, team);
+    const auto row = sums[0].values();
+    expect(is_close(row[0], 10000.0), "the whole square is compared");
+    expect(is_close(row[3], 2500.0) && is_close(row[4], 2500.0), "two wedges are cut and filled");
+  }
+  Team team(1, keep_going);
+  const earthwork::Overlay overlay(flat.surface(), ramp.surface(), team);
+  double area = 0.0;
+  for (std::size_t cell = 0; cell + 1 < overlay.offsets.size(); ++cell) {
+    const auto first = overlay.offsets[cell], last = overlay.offsets[cell + 1] - 1;
+    for (std::int64_t i = first, j = last; i <= last; j = i++) {
+      const auto& p = overlay.vertices[number(overlay.corners[j])];
+      const auto& q = overlay.vertices[number(overlay.corners[i])];
+      area += 0.5 * (p.x * q.y - p.y * q.x);
+    }
+  }
+  expect(is_close(area, 10000.0), "the cells of the overlay cover the square");
+  const double level = 0.0;
+  const auto stored = earthwork::Storage(ramp.surface(), &level, 1, 1.0, team).rows();
+  expect(is_close(stored[0][0], 5000.0), "half of the ramp lies under its middle");
+  expect(is_close(stored[0][2], 2500.0), "and holds a wedge");
+}
+
+void draw_raster() {
+  const Plane plane(3.0, 0.1, 4);
+  std::vector<double> centers, northings, edges, north_edges;
+  for (int i = 0; i < 10; ++i) centers.push_back(5.0 + 10.0 * i);
+  for (int i = 0; i <= 10; ++i) edges.push_back(10.0 * i);
+  northings.assign(centers.rbegin(), centers.rend());
+  north_edges.assign(edges.rbegin(), edges.rend());
+  const CellGrid grid{centers.data(), northings.data(), 10, 10, 10.0};
+  std::vector<double> values(100), means(100);
+  Team team(2, keep_going);
+  CenterScan::run(plane.surface(), grid, nullptr, values.data(), team);
+  MeanScan::run(plane.surface(), grid, edges.data(), north_edges.data(), nullptr, means.data(),
+                team);
+  for (int i = 0; i < 100; ++i) {
+    const double wanted = 3.0 + 0.1 * centers[i % 10];
+    expect(is_close(values[i], wanted), "a cell has the plane's elevation at its centre");
+    expect(is_close(means[i], wanted), "which is its mean");
+  }
+}
+
+}  // namespace
+
+int main() {
+  contour();
+  refuse_open_boundary();
+  simplify();
+  measure_earthwork();
+  draw_raster();
+  if (faults == 0) std::puts("sound");
+  return faults == 0 ? 0 : 1;
+}
