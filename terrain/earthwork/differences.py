@@ -14,16 +14,18 @@ from .. import _kernel
 from ..results import Features, Table
 from . import zones as parts
 from .cells import fan_out
-from .meshes import as_mesh, cut_at_zero, mend, rebuild
+from .meshes import as_mesh, cut_at_zero, mend, part_places, rebuild
 from .reference import Reference, Surface, find_common_reference, require_finite
 from .statistics import percentiles
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from numpy.typing import NDArray
 
     from ...tin import TIN
+
+    _Mesh = tuple[NDArray[np.float64], NDArray[np.int32]]
 
 __all__ = ["Difference", "difference"]
 
@@ -31,6 +33,9 @@ _SHARE_OF_VOLUME = 1e-7
 """Of the area times the largest difference: so much the volumes of the TIN may be off."""
 _ROUNDINGS = 4.0
 """Or what so many roundings of every coordinate change: surfaces that agree differ by no more."""
+
+_MOST_VERTICES = (2**31 - 1) // 4
+"""Of an overlay: the kernel numbers them in 32 bits."""
 
 _SHARES = {"p05": 5.0, "p25": 25.0, "median": 50.0, "p75": 75.0, "p95": 95.0}
 
@@ -195,7 +200,7 @@ def difference(tin: TIN, other: TIN) -> Difference:
     (array([1.]), ['cut', 'fill'])
     """
     reference, first, second = find_common_reference(tin, other, "Differences")
-    made = _kernel.overlay(first.points, first.triangles, second.points, second.triangles)
+    made = _overlay(first, second)
     if len(made.triangles) == 0:
         raise PointsError(
             f"The surfaces do not overlap: one covers {_describe_extent(first)}, the other "
@@ -208,10 +213,49 @@ def difference(tin: TIN, other: TIN) -> Difference:
     triangles, cells = fan_out(made.offsets, made.corners)
     slack = _measure_rounding(first, second, made.vertices, triangles, made.triangles[cells])
     given = cut_at_zero(made.vertices, triangles)
-    points, triangles = mend(*given) or _rebuild(*given, _make_holder(tin, other))
-    surface = as_mesh(points, triangles, crs=reference.crs, elevation_unit=reference.elevation_unit)
-    _require_agreement(surface, sums, slack)
+    made_sound = _make_sound(*given, _make_holder(tin, other))
+    surface = _choose_surface(made_sound, reference, sums, slack)
     return Difference(surface, reference.notes, reference, sums)
+
+
+def _choose_surface(
+    candidates: Iterator[_Mesh], reference: Reference, sums: dict[str, float], slack: float
+) -> TIN:
+    """Return the first mesh whose volumes are those of the surfaces.
+
+    Raises
+    ------
+    PointsError
+        If there is none: rounding has moved a wall, or left nothing.
+    """
+    least = np.inf
+    for mesh in candidates:
+        surface = as_mesh(*mesh, crs=reference.crs, elevation_unit=reference.elevation_unit)
+        apart = _measure_disagreement(surface, sums)
+        most = max(sums["highest"], -sums["lowest"])
+        if apart <= _SHARE_OF_VOLUME * sums["area"] * most + _ROUNDINGS * slack:
+            return surface
+        least = min(least, apart)
+    if np.isfinite(least):
+        raise PointsError(
+            "The surfaces have walls that are thinner than coordinates can tell: the volume of "
+            f"their difference as a TIN would be off by {least:.3g}. Round the points of both to "
+            "a unit that they are surveyed in, such as a millimetre."
+        )
+    raise PointsError(
+        "What both surfaces cover is thinner than coordinates can tell: round the points of both "
+        "to a unit that they are surveyed in, such as a millimetre."
+    )
+
+
+def _overlay(first: Surface, second: Surface) -> _kernel.OverlayMesh:
+    try:
+        return _kernel.overlay(first.points, first.triangles, second.points, second.triangles)
+    except OverflowError:
+        raise PointsError(
+            f"The overlay of both surfaces has more than {_MOST_VERTICES:,} vertices: subtract "
+            "parts of them."
+        ) from None
 
 
 def _sum_differences(first: Surface, second: Surface) -> dict[str, float]:
@@ -265,17 +309,10 @@ def _measure_rises(surface: Surface) -> NDArray[np.float64]:
     return rises
 
 
-def _require_agreement(surface: TIN, sums: dict[str, float], slack: float) -> None:
-    """Refuse a TIN whose volumes are not those of the surfaces: rounding has moved a wall."""
+def _measure_disagreement(surface: TIN, sums: dict[str, float]) -> float:
+    """Return by how much a volume of a TIN is not that of the surfaces."""
     found = _sum_classes(surface)
-    most = max(sums["highest"], -sums["lowest"])
-    apart = max(abs(found[name] - sums[name]) for name in ("cut", "fill"))
-    if apart > _SHARE_OF_VOLUME * sums["area"] * most + _ROUNDINGS * slack:
-        raise PointsError(
-            "The surfaces have walls that are thinner than coordinates can tell: the volume of "
-            f"their difference as a TIN would be off by {apart:.3g}. Round the points of both to "
-            "a unit that they are surveyed in, such as a millimetre."
-        )
+    return max(abs(found[name] - sums[name]) for name in ("cut", "fill"))
 
 
 def _sum_classes(surface: TIN) -> dict[str, float]:
@@ -288,12 +325,19 @@ def _sum_classes(surface: TIN) -> dict[str, float]:
     return {"cut": float(sums[0, column("cut")]), "fill": float(sums[2, column("fill")])}
 
 
-def _rebuild(
+def _make_sound(
     points: NDArray[np.float64], triangles: NDArray[np.int32], holds: Callable[[Any], Any]
-) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    """Triangulate the overlay anew; where a new vertex moved the zero line, cut once more."""
-    found = rebuild(points, triangles, holds)
-    return mend(*cut_at_zero(*found)) or found
+) -> Iterator[_Mesh]:
+    """Yield the overlay mended, with walls a rounding wider, and triangulated anew.
+
+    Where a new vertex moved the zero line, it is cut once more.
+    """
+    for placed in (points, part_places(points, triangles)):
+        mended = mend(placed, triangles)
+        if mended is not None:
+            yield mended
+    for found in rebuild(points, triangles, holds):
+        yield mend(*cut_at_zero(*found)) or found
 
 
 def _make_holder(tin: TIN, other: TIN) -> Callable[[Any], Any]:

@@ -12,18 +12,18 @@ from ...tin.report import Report
 from .cells import turns
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
 
-__all__ = ["as_mesh", "cut_at_zero", "mend", "number_parts", "rebuild"]
+__all__ = ["as_mesh", "cut_at_zero", "mend", "number_parts", "part_places", "rebuild"]
 
 _MOST_ROUNDS = 64
 """Flat triangles lie side by side in short chains; each round takes one off an end."""
 
 
-_ROUNDINGS = 64
-"""Of the largest coordinate: lines closer than this may be brought together."""
+_SNAPS = (0.0, 64.0)
+"""Roundings of the largest coordinate: lines closer than this may be brought together."""
 
 
 def mend(
@@ -76,7 +76,7 @@ def as_mesh(points: NDArray[np.float64], triangles: NDArray[np.int32], **referen
 
 def rebuild(
     points: NDArray[np.float64], triangles: NDArray[np.int32], holds: Callable[[Any], Any]
-) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+) -> Iterator[tuple[NDArray[np.float64], NDArray[np.int32]]]:
     """Triangulate anew with all edges as lines, which are split where rounding lets them cross.
 
     Parameters
@@ -86,28 +86,26 @@ def rebuild(
     holds : function
         Whether places, (k, 2), are inside: what is not is cut away.
 
-    Raises
+    Yields
     ------
-    PointsError
-        If nothing that coordinates can tell is left.
+    points, triangles
+        Sound ones: without snapping, then snapped.
     """
     start, end = topology.directed_edges(triangles)
     once = np.unique(topology.edge_keys(np.stack([start, end], axis=-1), len(points)))
     pairs = np.stack([once // len(points), once % len(points)], axis=1)
     pairs = pairs[(points[pairs[:, 0], :2] != points[pairs[:, 1], :2]).any(axis=1)]
     lines = list(points[pairs])
-    for snap in (0.0, _ROUNDINGS * float(np.spacing(np.abs(points[:, :2]).max()))):
+    rounding = float(np.spacing(np.abs(points[:, :2]).max()))
+    for roundings in _SNAPS:
+        snap = roundings * rounding
         try:
             tin = triangulate(points, breaklines=lines, duplicates="first", snap=snap)
         except (LinesError, PointsError):  # lines meet anew wherever they are split
             continue
         found = _drop_unused(tin.points, tin.triangles[_is_inside(tin, holds)])
         if _is_sound(*found):
-            return found
-    raise PointsError(
-        "What both surfaces cover is thinner than coordinates can tell: round the points of both "
-        "to a unit that they are surveyed in, such as a millimetre."
-    )
+            yield found
 
 
 def _is_inside(tin: TIN, holds: Callable[[Any], Any]) -> NDArray[np.bool_]:
@@ -162,6 +160,36 @@ def _merge_places(points: NDArray[np.float64], triangles: NDArray[np.int32]) -> 
     merged = kept[triangles]
     a, b, c = merged.T
     return np.ascontiguousarray(merged[(a != b) & (b != c) & (c != a)])
+
+
+def part_places(points: NDArray[np.float64], triangles: NDArray[np.int32]) -> NDArray[np.float64]:
+    """Move vertices of one place and different elevations apart, by a rounding each.
+
+    They are the top and the foot of a wall, rounded to one place: each goes towards the middle of
+    its triangles, weighted by their areas, so that both sides keep their elevations.
+    """
+    is_wall = _find_walls(points)
+    corners = points[triangles, :2]
+    (ux, uy), (vx, vy) = (corners[:, 1] - corners[:, 0]).T, (corners[:, 2] - corners[:, 0]).T
+    ways = (corners.mean(axis=1)[:, None] - corners) * np.abs(ux * vy - uy * vx)[:, None, None]
+    pull = np.zeros((len(points), 2))
+    np.add.at(pull, triangles, ways)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        toward = np.nan_to_num(pull / np.hypot(*pull.T)[:, None])
+    parted = points.copy()
+    parted[is_wall, :2] += float(np.spacing(np.abs(points[:, :2]).max())) * toward[is_wall]
+    return parted
+
+
+def _find_walls(points: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Tell which points share their place with one of another elevation."""
+    order = np.lexsort((points[:, 1], points[:, 0]))
+    starts = np.flatnonzero(np.append(True, (np.diff(points[order, :2], axis=0) != 0).any(axis=1)))
+    heights = points[order, 2]
+    differs = np.minimum.reduceat(heights, starts) < np.maximum.reduceat(heights, starts)
+    found = np.empty(len(points), np.bool_)
+    found[order] = np.repeat(differs, np.diff(np.append(starts, len(points))))
+    return found
 
 
 def _remove_flat(

@@ -163,7 +163,7 @@ class Overlay {
 
   Vertex new_vertex(Point p, double difference, std::array<Vertex, 2> origin) {
     if (vertices.size() >= static_cast<std::size_t>(INT32_MAX / 4)) {
-      throw std::length_error("the overlay has more vertices than 32-bit indices can number");
+      throw std::overflow_error("the overlay has more vertices than 32-bit indices can number");
     }
     vertices.push_back({p.x, p.y, difference});
     origins.push_back(origin);

@@ -237,7 +237,7 @@ def test_a_design_with_vertices_on_edges_of_the_ground_is_subtracted():
     assert np.nanmax(np.abs(kept)) < 1e-6
 
 
-def test_walls_thinner_than_rounding_are_refused():
+def test_a_wall_of_one_rounding_is_subtracted():
     wall = [
         [1.0, 0, 0],
         [0.1, 1.0, 0],
@@ -245,8 +245,52 @@ def test_walls_thinner_than_rounding_are_refused():
         [np.nextafter(1 / 3, 0), np.nextafter(2 / 3, 0), 644],
     ]
     ground = [[0.3, 15.0, 0], [0.1, 0, 0], [0, 0, 0]]
-    with pytest.raises(ts.PointsError, match="can tell"):
+    tin, other = ts.triangulate(ground), ts.triangulate(wall)
+    found, volume = ts.difference(tin, other), ts.volume(tin, other)
+    assert ts.check(found.tin).ok
+    assert found.tin.area == pytest.approx(volume["area"][0], abs=1e-15)
+    assert (found.cut, found.fill) == (volume["cut"][0], volume["fill"][0])
+
+
+def test_walls_thinner_than_rounding_are_refused():
+    ground = [
+        [1.0336479412594338e17, -0.15634202208331283, 3.0],
+        [-15598271020717.594, -1.2831047343797965e19, 3.0],
+        [-1.53439544386518e28, -1.332709236434574e-23, 3.0],
+    ]
+    wall = [
+        [1.144897596257742e59, -1.8028027087038767e43, 4.0],
+        [-1.400701662182006e-58, 1.31538072620857e-47, 4.0],
+        [1.0806810080139007e-06, -15954112808.24771, 3.0],
+    ]
+    with pytest.raises(ts.PointsError, match="have walls that are thinner than coordinates"):
         ts.difference(ts.triangulate(ground), ts.triangulate(wall))
+
+
+def test_a_step_at_edges_that_meet_but_for_a_rounding_keeps_both_elevations():
+    """Merging the places of top and foot gave one of the sides the other's elevation."""
+    ground = [[1039, 948, 3], [1065, 1000, 3], [1033, 1056, 3], [1025, 1060, 3], [967, 944, 3]]
+    design = [[1025, 1060, 4], [967, 944, 4], [1065, 1000, 3], [976.8, 949.6, 3]]
+    tin, other = ts.triangulate(ground), ts.triangulate([*design, [967, 944, 3]], duplicates="mean")
+    found = ts.difference(tin, other)
+    assert ts.check(found.tin).ok
+    volume = ts.volume(tin, other)
+    relief = abs(found.tin.points[:, 2]).max()
+    within = 1e-7 * volume["area"][0] * relief
+    zones = found.zones.columns
+    for kind in ("cut", "fill"):
+        assert zones["volume"][zones["kind"] == kind].sum() == pytest.approx(
+            volume[kind][0], abs=within
+        )
+
+
+def test_an_overlay_of_too_many_vertices_is_refused(monkeypatch):
+    def overlay(*_):
+        raise OverflowError
+
+    monkeypatch.setattr("tinsmith.terrain._kernel.overlay", overlay)
+    with pytest.raises(ts.PointsError, match="more than 536,870,911 vertices: subtract parts"):
+        ts.difference(square([0] * 4), square([1] * 4))
 
 
 def test_surfaces_apart_are_refused():
