@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <memory>
 #include <random>
 #include <stdexcept>
@@ -12,6 +11,7 @@
 
 #include "constraints/contacts.hpp"
 #include "constraints/point_in_polygon.hpp"
+#include "expectations.hpp"
 #include "location/locator.hpp"
 #include "mesh/checked_mesh.hpp"
 #include "mesh/mesh_arrays.hpp"
@@ -21,16 +21,6 @@
 using namespace tinsmith;
 
 namespace {
-
-int faults = 0;
-
-void expect(bool holds, const std::string& what) {
-  if (holds) return;
-  std::printf("not so: %s\n", what.c_str());
-  ++faults;
-}
-
-bool keep_going() { return true; }
 
 // Arrays of triangles, whoever made them.
 struct Arrays {
@@ -234,6 +224,5 @@ int main() {
   locate(random_points(2000, 0.0, 5));
   refine_square();
   meet();
-  if (faults == 0) std::puts("sound");
-  return faults == 0 ? 0 : 1;
+  return tell_faults();
 }
