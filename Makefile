@@ -71,8 +71,8 @@ fuzz: $(READY) ## Run random campaigns: MINUTES= or CASES=, SEED=, CAMPAIGN=
 # The tests of tin and a slice of the campaigns about it with ASan and UBSan, those of threads with
 # TSan. SANITIZE_CASES= makes the slice longer. Python alone captures: reports go past it.
 SANITIZE_CASES ?= 200
-SANITIZE_CAMPAIGNS ?= points lines edits refine voronoi contours volumes sections interpolation
-SANITIZE_PRODUCTS := $(addprefix tests/terrain/,isolines earthwork gridding sections)
+SANITIZE_CAMPAIGNS ?= points lines edits refine voronoi contours volumes sections interpolation rasters
+SANITIZE_PRODUCTS := $(addprefix tests/terrain/,isolines earthwork gridding relief sections)
 SANITIZE := tests/sanitizers/run.sh $(BIN)/python
 SANITIZE_PYTEST := -m pytest -q -p no:cacheprovider --capture=sys --timeout 1800
 .PHONY: sanitize sanitize-address sanitize-thread
@@ -83,7 +83,7 @@ sanitize-address: $(READY)
 	$(SANITIZE) address -m fuzz --no-memory-limit --folder build/sanitize/fuzz --cases $(SANITIZE_CASES) --seed $(SEED) $(addprefix --campaign ,$(SANITIZE_CAMPAIGNS))
 sanitize-thread: $(READY)
 	$(BIN)/python -m pip install --quiet --group sanitize
-	$(SANITIZE) thread $(SANITIZE_PYTEST) tests/tin/test_threads.py tests/tin/editing/test_concurrency.py
+	$(SANITIZE) thread $(SANITIZE_PYTEST) tests/tin/test_threads.py tests/tin/editing/test_concurrency.py tests/terrain/earthwork/test_volumes.py tests/terrain/gridding/test_rasters.py
 
 # make mutants MUTANTS=60 SEED=3 KIND=core; survivors are listed in build/mutants, too.
 MUTANTS ?= 150
@@ -99,7 +99,7 @@ mutants: $(READY) ## Change the code at random and list what the tests miss: MUT
 format: $(READY) ## Format the code
 	$(BIN)/ruff format .
 	$(BIN)/ruff check --fix .
-	$(BIN)/clang-format -i $$(git ls-files "t*/cpp/*.hpp" "tin/cpp/*.inc" "t*/cpp/*.cpp")
+	$(BIN)/clang-format -i $$(git ls-files "t*/cpp/*.hpp" "tin/cpp/*.inc" "t*/cpp/*.cpp" "tests/cpp/*.cpp" "benchmarks/cgal/*.cpp" "benchmarks/cgal/*.hpp")
 
 clean: ## Remove what was built
 	rm -rf $(VENV) build demo

@@ -133,9 +133,9 @@ void draw_raster() {
   const CellGrid grid{centers.data(), northings.data(), 10, 10, 10.0};
   std::vector<double> values(100), means(100);
   Team team(2, keep_going);
-  CenterScan::run(plane.surface(), grid, nullptr, values.data(), team);
-  MeanScan::run(plane.surface(), grid, edges.data(), north_edges.data(), nullptr, means.data(),
-                team);
+  const OrderedSurface ordered(plane.surface());
+  CenterScan::run(ordered, grid, nullptr, values.data(), team);
+  MeanScan::run(ordered, grid, edges.data(), north_edges.data(), nullptr, means.data(), team);
   for (int i = 0; i < 100; ++i) {
     const double wanted = 3.0 + 0.1 * centers[i % 10];
     expect(is_close(values[i], wanted), "a cell has the plane's elevation at its centre");
