@@ -16,6 +16,7 @@
 #include "isolines/band_filling.hpp"
 #include "isolines/line_arrays.hpp"
 #include "isolines/line_smoothing.hpp"
+#include "location/locator.hpp"
 #include "triangulation.hpp"
 
 using namespace tinsmith;
