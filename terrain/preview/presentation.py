@@ -18,7 +18,7 @@ from ..units import find_ground
 from .alignment import Aligned, align
 from .look import Look, make_look
 from .ortho import Ortho, read_ortho
-from .page.content import describe_page, find_labels
+from .page.content import Start, describe_page, find_labels
 from .page.document import make_document
 from .picture import PICTURE_SUFFIXES, write_picture
 from .scene import choose_exaggeration, measure_relief
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ...policies import Tint
+    from ..units import Ground
 
 __all__ = ["PREVIEW_SUFFIXES", "Preview", "preview"]
 
@@ -153,7 +154,6 @@ class Preview:
         """
         tins = list(self._surfaces.values())
         ground = find_ground(tins[-1])
-        factor = self._look.exaggeration or choose_exaggeration(tins[-1], ground)
         surfaces, changes = _add_difference(self._surfaces)
         points, survey = self._aligned.labelled, self._survey
         labels = None if points is None or survey is None else find_labels(points, survey)
@@ -161,13 +161,26 @@ class Preview:
             surfaces,
             ground,
             title=" ".join(self._look.title.split()),
-            exaggeration=factor,
+            start=self._choose_start(ground),
             changes=changes,
             labels=labels,
             notes=(*self._aligned.notes, *self.notes, *(self._ortho.told if self._ortho else ())),
             ortho=self._ortho,
         )
         return make_document(content)
+
+    def _choose_start(self, ground: Ground) -> Start:
+        """Choose how the page looks when it is opened, far off elevations left out."""
+        look, tins = self._look, list(self._surfaces.values())
+        ranges = [measure_relief(tin, find_ground(tin)) for tin in tins]
+        relief = (min(one.low for one in ranges), max(one.high for one in ranges))
+        return Start(
+            exaggeration=look.exaggeration or choose_exaggeration(tins[-1], ground),
+            elevations=look.elevations or relief,
+            relief=relief,
+            tint=look.tint,
+            interval=look.contours or 0.0,
+        )
 
     def _repr_html_(self) -> str:
         page = escape(self.to_html(), quote=True)

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from ...units import Ground
     from ..ortho import Ortho
 
-__all__ = ["Labels", "describe_page", "find_labels"]
+__all__ = ["Labels", "Start", "describe_page", "find_labels"]
 
 _STEPS = 2**22
 """Steps of a coordinate from end to end, at least: 0.3 mm in a kilometre."""
@@ -59,6 +59,28 @@ class Labels(NamedTuple):
     texts: tuple[str, ...]
 
 
+class Start(NamedTuple):
+    """How a page looks when it is opened.
+
+    Attributes
+    ----------
+    exaggeration : float
+    elevations : tuple of float
+        Lowest and highest of the tints.
+    relief : tuple of float
+        Lowest and highest but for those far off all others.
+    tint : {"elevation", "slope", "aspect", "plain"}
+    interval : float
+        Of contours, 0 for none.
+    """
+
+    exaggeration: float
+    elevations: tuple[float, float]
+    relief: tuple[float, float]
+    tint: Tint
+    interval: float
+
+
 class _Steps(NamedTuple):
     """Coordinates as whole numbers: from an origin, in steps across and up; how far they span."""
 
@@ -80,7 +102,7 @@ def describe_page(
     ground: Ground,
     *,
     title: str,
-    exaggeration: float,
+    start: Start,
     changes: Mapping[str, NDArray[np.float64]],
     labels: Labels | None,
     notes: Sequence[str],
@@ -94,7 +116,7 @@ def describe_page(
         By name, all in one CRS; at least one.
     ground : Ground
     title : str
-    exaggeration : float
+    start : Start
     changes : mapping of str to (n,) float64 array
         Cut and fill at the vertices of surfaces.
     labels : Labels or None
@@ -129,7 +151,7 @@ def describe_page(
             _count_decimals(steps.up, steps.spans[2]),
         ],
         "elevationScale": float(ground.scale[2]),
-        "exaggeration": exaggeration,
+        **start._asdict(),
         "ramps": _make_ramps(),
         "ortho": None if ortho is None else _describe_ortho(ortho, steps),
         "surfaces": described,

@@ -94,6 +94,26 @@ def test_numbers_are_read_to_a_millimetre():
     assert content(ts.preview(hills(50)).to_html())["decimals"] == [3, 3]
 
 
+def test_one_blunder_hides_no_relief(tmp_path):
+    """Tints, contours and the first view are those of the ground; the note tells of the blunder."""
+    points = hills(300).points.copy()
+    points[77, 2] = 9999.0
+    tin = ts.triangulate(points, crs="EPSG:32616", z_unit="m")
+    shown = ts.preview(tin, tint="slope", contours=2.5)
+    page = content(shown.to_html())
+    assert page["elevations"] == page["relief"] == [points[:, 2].min(), np.sort(points[:, 2])[-2]]
+    assert "9,999" in page["notes"]
+    with open_page(shown.save(tmp_path / "a.html")) as opened:
+        away, tint, interval = run(
+            opened,
+            """const c = p.stage.camera.position.distanceTo(p.stage.controls.target);
+          return [c, p.tint, document.getElementById("interval").value];""",
+        )
+        assert opened.is_checked("#contours")
+    assert away < 2000
+    assert (tint, interval) == ("slope", "2.5")
+
+
 def test_nothing_outside_is_asked_for():
     page = ts.preview(hills(20)).to_html()
     addresses = set(re.findall(r"(?:src|href)=[\"']?([a-z]+:[^\"' >]*)", page))

@@ -69,7 +69,8 @@ class Page {
     this.resize();
     this.setExaggeration(this.payload.exaggeration);
     this.setTheme(matchMedia("(prefers-color-scheme: dark)").matches);
-    this.setTint(this.isDraped ? "ortho" : "elevation");
+    this.setTint(this.isDraped ? "ortho" : this.payload.tint);
+    if (this.payload.interval > 0) this.setContours();
     this.stage.look(START.azimuth, START.tilt);
     this.stage.draw();
   }
@@ -83,7 +84,8 @@ class Page {
     for (const tint of TINTS) if (!absent[tint]) tints.add(new Option(TITLES[tint], tint));
     for (const place of document.querySelectorAll(".elevation-unit"))
       place.textContent = this.payload.units.elevation;
-    find<HTMLInputElement>("interval").value = String(this.chooseInterval());
+    find<HTMLInputElement>("contours").checked = this.payload.interval > 0;
+    find<HTMLInputElement>("interval").value = String(this.payload.interval || this.chooseInterval());
     this.fillSurfaces();
     this.fillLayers();
   }

@@ -78,6 +78,13 @@ export interface Payload {
   /** Horizontal units in one unit of elevation. */
   elevationScale: number;
   exaggeration: number;
+  /** Lowest and highest elevation of the tints. */
+  elevations: [number, number];
+  /** Lowest and highest but for those far off all others. */
+  relief: [number, number];
+  /** Colours and interval of contours (0: none) at the start. */
+  tint: "elevation" | "slope" | "aspect" | "plain";
+  interval: number;
   ramps: Record<"elevation" | "slope" | "aspect" | "difference", string[]>;
   ortho: OrthoData | null;
   surfaces: SurfaceData[];

@@ -169,8 +169,10 @@ export class Stage {
     return Math.max(this.high.x - this.low.x, this.high.y - this.low.y) || 1;
   }
 
+  /** Range of the tints, from the origin. */
   get elevations(): [number, number] {
-    return [this.low.z, this.high.z];
+    const [low, high] = this.payload.elevations, base = this.payload.origin[2];
+    return [low - base, high - base];
   }
 
   exaggerate(factor: number): void {
@@ -233,6 +235,10 @@ export class Stage {
       low.min(new Vector3(...surface.low));
       high.max(new Vector3(...surface.high));
     }
+    // What is far off all others may leave the view, or nothing else would be seen.
+    const [lowest, highest] = this.payload.relief, base = this.payload.origin[2];
+    low.z = Math.max(low.z, Math.min(lowest - base, high.z));
+    high.z = Math.min(high.z, Math.max(highest - base, low.z));
     return [low, high];
   }
 
