@@ -1181,6 +1181,13 @@ def test_a_last_number_that_was_cut_is_no_elevation(tmp_path, length):
     assert survey.skipped_lines == {"bad rows": (7,)}
 
 
+def test_rows_are_those_of_the_file_without_the_last(tmp_path):
+    path = tmp_path / "cut.csv"
+    path.write_text(CUT.replace("\n5,", "\n4,")[:-3])
+    survey = ts.read(path, skip_bad=True)
+    assert survey.notes[-1] == "1 point number occurs more than once: 4 in lines 5, 6."
+
+
 def test_a_last_number_with_fewer_decimals_than_any_is_told_or_no_doubt(tmp_path):
     path = tmp_path / "cut.csv"
     ragged = CUT.replace("301.375", "301.5").replace("302.375", "302.25")

@@ -100,6 +100,17 @@ def test_cut_files_are_refused(tmp_path, name, keep):
         ts.read(folder)
 
 
+def test_a_mask_whose_counts_contradict_is_refused(tmp_path):
+    folder = copy(tmp_path)
+    mask = bytearray((folder / "tmsk.adf").read_bytes())
+    start = len(mask) - 2 * int.from_bytes((folder / "tmsx.adf").read_bytes()[-4:], "big")
+    words = int.from_bytes(mask[start : start + 4], "big")
+    mask[start : start + 4] = (words + 1).to_bytes(4, "big")
+    (folder / "tmsk.adf").write_bytes(mask)
+    with pytest.raises(ts.ReadError, match="promises"):
+        ts.read(folder)
+
+
 def test_a_missing_file_is_named(tmp_path):
     folder = copy(tmp_path)
     (folder / "tmsk.adf").unlink()

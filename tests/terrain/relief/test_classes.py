@@ -131,6 +131,19 @@ def test_classes_tile_the_surface(unit):
     assert made.units["area"] == "m²"
 
 
+def test_usual_breaks_are_those_of_the_page():
+    """The limits that docs/slope.md gives for degrees."""
+    made = ts.slope_classes(ts.triangulate([[0, 0, 0], [9, 0, 0], [9, 9, 0], [0, 9, 60]]))
+    assert set(made.columns["upper"]) <= {2.0, 5.0, 10.0, 15.0, 25.0, 35.0, 45.0, 90.0}
+    cuts = [
+        set(ts.slope_classes(plane).columns["lower"])
+        | set(ts.slope_classes(plane).columns["upper"])
+        for slope in (14.99, 15.01)
+        for plane in [ts.triangulate([[0, 0, 0], [0, 9, 0], [9, 0, 9 * np.tan(np.radians(slope))]])]
+    ]
+    assert cuts == [{10.0, 15.0}, {15.0, 25.0}]
+
+
 @pytest.mark.parametrize("unit", ["degrees", "percent", "ratio"])
 def test_every_triangle_lies_in_the_class_of_its_slope(unit):
     tin = rough()
