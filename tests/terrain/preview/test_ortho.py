@@ -308,16 +308,18 @@ def test_what_is_no_file(tmp_path):
 # ------------------------------------------------------------------ where it is seen
 
 READ = """(places) => window.terrain.then((p) => {
-  const gl = p.stage.renderer.getContext(), c = new Uint8Array(4), o = p.payload.origin;
+  const gl = p.stage.renderer.getContext(), o = p.payload.origin;
+  const [width, height] = [p.view.width, p.view.height], all = new Uint8Array(4 * width * height);
   const ratio = p.view.width / p.view.clientWidth;
   const surface = p.stage.models[0].surface;
   document.getElementById("shading").click();
   p.stage.draw();
+  gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, all);
   const seen = places.map(([x, y, z]) => {
     const s = p.payload.scale;
     const at = p.stage.project((x - o[0]) * s[0], (y - o[1]) * s[1], z - o[2]);
-    gl.readPixels(at[0] * ratio, p.view.height - at[1] * ratio, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, c);
-    return [...c]; });
+    const at_pixel = Math.floor(height - at[1] * ratio) * width + Math.floor(at[0] * ratio);
+    return [...all.slice(4 * at_pixel, 4 * at_pixel + 4)]; });
   document.getElementById("shading").click();
   return seen; })"""
 
