@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
@@ -40,7 +41,7 @@ from .reprojection.joining import join_surveys
 
 if TYPE_CHECKING:
     import os
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from ..crs import CrsLike, UnitLike
 
@@ -65,6 +66,7 @@ def read(
     format: str | None = None,  # noqa: A002 - the word that users of the package know
     crs: CrsLike | None = None,
     z_unit: UnitLike | None = None,
+    remote: bool = False,
     **options: Any,
 ) -> Any:
     """Read elevation points or a TIN; the reader is chosen by content and suffix.
@@ -85,6 +87,9 @@ def read(
         Unit of the file's elevations ("m", "ft", "US survey foot"), where the file itself does not
         say. After a reprojection they have the unit of ``crs``: see
         :func:`tinsmith.transform_points`.
+    remote : bool
+        Whether paths may be addresses of HTTP or HTTPS, which are copied to a temporary file.
+        Nothing is fetched otherwise.
     **options
         Options of the reader, see :meth:`Format.options`.
 
@@ -119,7 +124,7 @@ def read(
     ...     ts.read(Path(folder, "surface.ply"))
     <TIN: 3 vertices, 1 triangle, z 5 to 8, crs EPSG:32616>
     """
-    return read_as_wished(path, {}, format=format, crs=crs, z_unit=z_unit, **options)
+    return read_as_wished(path, {}, format=format, crs=crs, z_unit=z_unit, remote=remote, **options)
 
 
 def read_as_wished(
@@ -129,6 +134,7 @@ def read_as_wished(
     format: str | None = None,  # noqa: A002 - as in read
     crs: CrsLike | None = None,
     z_unit: UnitLike | None = None,
+    remote: bool = False,
     **options: Any,
 ) -> Survey | TIN:
     """Read a file as :func:`read`, with options that count for the formats which have them.
@@ -139,12 +145,26 @@ def read_as_wished(
     wishes : mapping of str to object
         Options of readers; one that the chosen reader does not have is left out.
     """
+    if not isinstance(remote, bool):
+        raise OptionError("remote", remote, "True or False")
     asked = _Asked(format, _collect_declared(crs, z_unit), options, wishes)
-    if isinstance(path, list | tuple):
-        return _read_several(_require_paths(path), asked)
-    one = cast("str | os.PathLike[str]", path)
-    require_local(one)
-    return _read_path(as_path(one), asked)
+    places = path if isinstance(path, list | tuple) else [cast("str | os.PathLike[str]", path)]
+    with ExitStack() as copies:
+        if remote:
+            places = [copies.enter_context(_localise(place)) for place in places]
+        return _read_several(_require_paths(places), asked)
+
+
+@contextmanager
+def _localise(place: str | os.PathLike[str]) -> Iterator[str | os.PathLike[str]]:
+    """Yield a copy of what an address holds; anything else as it is."""
+    from .isolated.downloads import download, is_web_address  # HTTP costs time to load
+
+    if not (isinstance(place, str | Path) and is_web_address(place)):
+        yield place
+        return
+    with download(place) as copy:
+        yield copy
 
 
 def _name_folder(survey: Survey, folder: Path, tiles: Sequence[Path]) -> Survey:

@@ -112,6 +112,7 @@ def _read_once(path: Path, options: dict[str, Any]) -> Survey | TIN:
     asked = {name: value for name, value in options.items() if name not in _WISHES}
     wishes = {name: value for name, value in options.items() if name in _WISHES}
     if path == STANDARD:
+        asked.pop("remote", None)
         return read_stream(open_standard_input(), name_file(path), wishes, **asked)
     return read_as_wished(path, wishes, **asked)
 

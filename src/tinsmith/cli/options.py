@@ -78,6 +78,7 @@ class Reading:
     join: bool | None = None
     variable: str | None = None
     tile: str | None = None
+    remote: bool | None = None
 
 
 @dataclass(frozen=True)
@@ -244,6 +245,12 @@ _READING = (
         "Reproject what was read to this CRS; the input must name its own, or --crs does.",
     ),
     click.option("--format", metavar="NAME", help="Format of the input, whatever it looks like."),
+    click.option(
+        "--remote",
+        is_flag=True,
+        default=None,
+        help="Let the input be an address (https://...), which is downloaded first.",
+    ),
     click.option(
         "--columns",
         metavar="LAYOUT",
