@@ -59,6 +59,10 @@ page: ## Build the code of the 3D page anew from its sources; needs Node.js
 	@cd terrain/preview/page && rm -rf node_modules
 	PYTHONPATH=tests $(BIN)/python -m support.pages > terrain/preview/page/viewer.sha256
 
+.PHONY: slow
+slow: $(READY) ## Run the tests of many seconds that `make test` leaves to CI
+	$(BIN)/python -m pytest -q -n $(WORKERS) -m slow
+
 proof: $(READY) ## Run the long proofs
 	$(BIN)/python -m pytest -q -m proof
 

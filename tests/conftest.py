@@ -1,4 +1,4 @@
-"""What all tests share: long proofs run only when asked for; pictures need OpenGL."""
+"""What all tests share: long proofs and slow tests run when asked for; pictures need OpenGL."""
 
 from __future__ import annotations
 
@@ -28,8 +28,7 @@ def can_draw():
 
 
 def pytest_collection_modifyitems(config, items):
-    if "proof" in config.option.markexpr:
-        return
-    proofs = [item for item in items if item.get_closest_marker("proof")]
-    config.hook.pytest_deselected(items=proofs)
-    items[:] = [item for item in items if not item.get_closest_marker("proof")]
+    left_out = [name for name in ("proof", "slow") if name not in config.option.markexpr]
+    left = {item for name in left_out for item in items if item.get_closest_marker(name)}
+    config.hook.pytest_deselected(items=[item for item in items if item in left])
+    items[:] = [item for item in items if item not in left]

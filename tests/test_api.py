@@ -171,17 +171,20 @@ def judge(request, users_folder):
     return judge
 
 
+@pytest.mark.slow
 def test_the_readme_passes_type_checkers(judge):
     text = (ROOT / "README.md").read_text()
     lines, found = judge("\n".join(re.findall(r"```python\n(.*?)```", text, re.DOTALL)))
     assert lines == [], found
 
 
+@pytest.mark.slow
 def test_flat_names_and_those_of_packages_pass_type_checkers(judge):
     lines, found = judge(FLAT)
     assert lines == [], found
 
 
+@pytest.mark.slow
 def test_type_checkers_refuse_names_that_are_not_there(judge):
     lines, found = judge(TYPOS)
     assert lines == [5, 6, 7, 8, 9, 10, 11], found

@@ -283,6 +283,7 @@ def test_tasks_survive_their_file(tmp_path):
             np.testing.assert_array_equal(array, found)
 
 
+@pytest.mark.slow
 def test_every_tool_holds_the_lines():
     outcome = lines.run(1_000, names=["raster lines", "nested rings"], repeats=1)
     present = lines.find_line_tools(ALL_LINE_TOOLS, LINE_TOOLS, "constrained", Outcome())
@@ -340,6 +341,7 @@ def test_batch_is_as_many_points_again():
     assert len(task.afterwards()) == len(np.unique(task.afterwards()[:, :2], axis=0)) == 600
 
 
+@pytest.mark.slow
 def test_every_tool_edits():
     outcome = edits.run(400, repeats=1)
     present = lines.find_line_tools(ALL_EDIT_TOOLS, EDIT_TOOLS, "edits", Outcome())
@@ -450,6 +452,7 @@ def test_report_is_a_page_data_and_a_plot(tmp_path, capsys):
     assert str(tmp_path / "benchmarks.md") in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_report_has_lines_and_edits(tmp_path):
     arguments = ["lines", "edits", "--points", "400", "--only", "hills", "--repeats", "1",
                  "--output", str(tmp_path)]  # fmt: skip

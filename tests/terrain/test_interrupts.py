@@ -78,6 +78,7 @@ def test_sums_of_heights_end_soon_after_the_signal():
     signal.signal(signal.SIGALRM, before)
 
 
+@pytest.mark.slow
 def test_lines_of_many_levels_end_soon_after_the_signal(soon):
     x, y = np.meshgrid(np.arange(60.0), np.arange(60.0))
     z = np.random.default_rng(1).random(x.size)

@@ -199,7 +199,7 @@ def test_a_header_parted_otherwise_that_does_not_fit_is_refused(survey):
 def test_every_double_is_the_nearest_to_its_text(survey, values, style, decimal):
     texts = [style.format(value) for value in values[: len(values) // 3 * 3]]
     rows = [texts[i : i + 3] for i in range(0, len(texts), 3)]
-    content = "x;y;z\n" + "\n".join(";".join(row).replace(".", decimal) for row in rows)
+    content = "x;y;z\n" + "\n".join(";".join(row).replace(".", decimal) for row in rows) + "\n"
     found = survey(content, decimal=decimal)
     expected = np.array([[float(text) for text in row] for row in rows])
     assert found.points.tobytes() == expected.tobytes()

@@ -223,6 +223,7 @@ def test_differences_of_small_grids_are_sound(points, others, scale, is_far):
         assert zones["volume"][zones["kind"] == kind].sum() == pytest.approx(volume, abs=1e-6)
 
 
+@pytest.mark.slow
 def test_a_design_with_vertices_on_edges_of_the_ground_is_subtracted():
     """As a program makes it that computes daylight points: on the edges but for rounding."""
     ground = rough(300, 50, origin=UTM)

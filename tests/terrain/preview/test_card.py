@@ -203,6 +203,7 @@ def test_a_card_needs_neither_pyvista_nor_matplotlib_nor_pillow():
     assert (done.returncode, done.stderr) == (0, "")
 
 
+@pytest.mark.slow
 def test_an_exported_notebook_shows_card_and_page_without_a_network(tmp_path):
     """As nbconvert writes them: outputs of cells one below the other in one file."""
     tin = hills(300)

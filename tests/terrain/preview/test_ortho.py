@@ -329,6 +329,7 @@ def read_canvas(page, tin, places):
     return np.array(page.evaluate(READ, np.column_stack([places, z]).tolist()))[:, :3].astype(int)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("crs", ["EPSG:32616", "EPSG:4326"])
 def test_the_page_shows_each_colour_at_its_place(tmp_path, crs):
     path = write_raster(tmp_path / "a.tif", paint_quarters(400))

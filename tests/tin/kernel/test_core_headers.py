@@ -68,6 +68,7 @@ def test_each_header_can_be_included_alone(header, tmp_path):
     compile_with("-fsyntax-only", source)
 
 
+@pytest.mark.slow
 @needs_compiler
 @pytest.mark.parametrize("name", ["use_core", "use_products"])
 def test_the_core_works_without_python(name, tmp_path):
@@ -80,6 +81,7 @@ def test_the_core_works_without_python(name, tmp_path):
     assert output_of(program) == "sound\n"
 
 
+@pytest.mark.slow
 @needs_compiler
 def test_no_header_warns(tmp_path):
     """All in one program, of the core and of terrain, with every warning an error."""
@@ -93,6 +95,7 @@ def test_no_two_headers_have_one_name():
     assert sorted(names) == sorted(set(names))
 
 
+@pytest.mark.slow
 @needs_compiler
 def test_the_example_prints_what_its_page_says(tmp_path):
     page = (CORE / "README.md").read_text()
