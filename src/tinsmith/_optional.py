@@ -17,6 +17,7 @@ _EXTRA_OF = {
     "matplotlib": "plot",
     "meshio": "mesh",
     "netCDF4": "mesh",
+    "pandas": "interop",
     "pyarrow": "interop",
     "pyogrio": "vector",
     "pyvista": "view",

@@ -78,6 +78,11 @@ class Table(Frozen):
         -------
         pandas.DataFrame
 
+        Raises
+        ------
+        MissingExtraError
+            If pandas is not installed.
+
         Examples
         --------
         >>> import tinsmith as ts
@@ -85,8 +90,7 @@ class Table(Frozen):
         >>> frame.attrs["units"]
         {'level': 'm'}
         """
-        import pandas as pd
-
+        pd = _optional.load("pandas", "Turning a table into a DataFrame")
         frame = pd.DataFrame({name: values.copy() for name, values in self.columns.items()})
         units = {name: unit_text(self.units, name) for name in self.units}
         frame.attrs |= {"name": self.name, "units": units, "notes": list(self.notes)}
