@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 import warnings
 from importlib.machinery import PathFinder
@@ -65,12 +64,13 @@ def entry_points(*, group: str) -> Iterable[EntryPoint]:
 def _may_have(place: Path, section: bytes) -> bool:
     """Whether a distribution among modules may have a section of entry points; an archive may."""
     try:
-        names = [name for name in os.listdir(place) if name.endswith((".dist-info", ".egg-info"))]
+        inside = list(place.iterdir())
     except NotADirectoryError:
         return True
     except OSError:
         return False
-    return any(section in _read_entry_points(place / name) for name in names)
+    metadata = [one for one in inside if one.suffix in (".dist-info", ".egg-info")]
+    return any(section in _read_entry_points(one) for one in metadata)
 
 
 def _read_entry_points(folder: Path) -> bytes:

@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .. import __version__
+from .._sentences import suggest
 from ..io.isolated.forking import permit_forks
+from .command_list import SECTIONS, SUMMARIES
 from .output.failures import show_failure, tell_warning, translate_failures
 from .output.streams import (
     Terminated,
@@ -26,11 +28,7 @@ if TYPE_CHECKING:
 
 __all__ = ["main"]
 
-_BUILT_IN = (
-    *("build", "info", "check", "view", "compare", "refine", "edit", "convert", "formats"),
-    *("contours", "slope", "hillshade", "profile", "volume", "diff", "drape"),
-    *("interpolate", "raster", "plan"),
-)
+_BUILT_IN = tuple(SUMMARIES)
 
 
 class _Commands(click.Group):
@@ -53,8 +51,10 @@ class _Commands(click.Group):
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """List the commands of the package, then those of plug-ins; tell of faulty ones."""
+        for heading, summaries in SECTIONS.items():
+            with formatter.section(heading):
+                formatter.write_dl(list(summaries.items()))
         added = self.list_commands(ctx)[len(_BUILT_IN) :]
-        self._list_commands_under("Commands", _BUILT_IN, ctx, formatter)
         self._list_commands_under("Commands of plug-ins", added, ctx, formatter)
         for fault in describe_faults(_BUILT_IN):
             tell_warning(fault)
@@ -108,6 +108,12 @@ class _Commands(click.Group):
         """Find the command, and tell if a plug-in has one of the same name."""
         for fault in describe_faults(_BUILT_IN, args[0]) if args and args[0] in _BUILT_IN else []:
             tell_warning(fault)
+        name = args[0] if args else ""
+        if not name.startswith("-") and self.get_command(ctx, name) is None:
+            if ctx.resilient_parsing:
+                return None, None, args[1:]
+            meant = suggest(name, self.list_commands(ctx))
+            raise click.UsageError(f"No such command '{name}'.{meant}", ctx)
         return super().resolve_command(ctx, args)
 
 
