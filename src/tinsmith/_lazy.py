@@ -7,6 +7,8 @@ from importlib import import_module
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
+from ._optional import describe_missing
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
@@ -47,7 +49,13 @@ def lazy_names(
 
     def load(name: str) -> Any:
         if name in module_of:
-            return getattr(import_module(module_of[name], package), name)
+            try:
+                return getattr(import_module(module_of[name], package), name)
+            except ModuleNotFoundError as error:
+                missing = describe_missing(error)
+                if missing is None:
+                    raise
+                raise missing from error
         if name in modules:
             return import_module(f".{name}", package)
         raise AttributeError(f"module '{package}' has no attribute '{name}'")

@@ -465,15 +465,15 @@ def test_formats_tells_what_is_installed(monkeypatch, is_there):
         monkeypatch.setattr("tinsmith._optional.find_spec", lambda name: None)
     rows = run("formats").stdout.splitlines()
     row = next(number for number, row in enumerate(rows) if row.split()[:1] == ["cog"])
-    assert rows[row].split()[:4] == ["cog", "-", "Raster", "tinsmith[raster]"]
+    assert rows[row].split()[:4] == ["cog", "-", "Raster", "-"]
     assert ("not installed" not in rows[row + 1]) == is_there
     assert " installed" in rows[row + 1]
 
 
 def test_formats_names_the_extras():
     shown = " ".join(run("formats").stdout.split())
-    assert "tinsmith[raster]" in shown
-    assert "tinsmith[view]" in shown
+    assert "tinsmith[mesh]" in shown
+    assert "tinsmith[vector]" in shown
 
 
 def test_mean_slope_is_weighted_by_area(tmp_path):
