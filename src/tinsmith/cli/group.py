@@ -5,6 +5,8 @@ from __future__ import annotations
 import signal
 import sys
 from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -117,11 +119,28 @@ class _Commands(click.Group):
         return super().resolve_command(ctx, args)
 
 
+def _tell_version(ctx: click.Context) -> None:
+    """Say which version runs, and for which Python and machine its core was compiled."""
+    core = find_spec("tinsmith.tin._core")
+    name = "" if core is None or core.origin is None else Path(core.origin).name
+    build = name.removeprefix("_core.").rpartition(".")[0] or "missing"
+    python = ".".join(map(str, sys.version_info[:3]))
+    click.echo(f"tinsmith {__version__} (core {build}, Python {python})")
+    ctx.exit()
+
+
 @click.command(
     cls=_Commands,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
 )
-@click.version_option(__version__, message="tinsmith %(version)s")
+@click.option(
+    "--version",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=lambda ctx, _, is_asked: is_asked and _tell_version(ctx),
+    help="Show the version, that of the compiled core and Python's, and exit.",
+)
 def main() -> None:
     """Turn elevation points into exact terrain surfaces (TINs).
 
