@@ -63,6 +63,19 @@ page: ## Build the code of the 3D page anew from its sources; needs Node.js
 slow: $(READY) ## Run the tests of many seconds that `make test` leaves to CI
 	$(BIN)/python -m pytest -q -n $(WORKERS) -m slow
 
+# dist/ gets the same bytes for the same commit: times are those of the commit. The wheel is for this
+# machine; those of all platforms are made by cibuildwheel.
+DIST := SOURCE_DATE_EPOCH=$$(git log -1 --format=%ct) $(BIN)/python -m pip wheel --quiet --no-deps
+.PHONY: dist
+dist: $(READY) ## Build the source distribution and a wheel of it into dist/
+	@rm -rf dist && mkdir dist
+	SOURCE_DATE_EPOCH=$$(git log -1 --format=%ct) $(BIN)/python -c "from scikit_build_core.build import build_sdist as b; b('dist')"
+	$(DIST) --wheel-dir dist dist/*.tar.gz
+
+.PHONY: dist-check
+dist-check: dist ## Test what is in dist/: contents, installation without a compiler, small jobs
+	TINSMITH_DIST=$(CURDIR)/dist $(BIN)/python -m pytest -q -m slow tests/packaging
+
 proof: $(READY) ## Run the long proofs
 	$(BIN)/python -m pytest -q -m proof
 

@@ -37,7 +37,6 @@ from .registry import (
     require_options,
     signatures,
 )
-from .reprojection.joining import join_surveys
 
 if TYPE_CHECKING:
     import os
@@ -211,6 +210,8 @@ def join_files(found: Sequence[Survey | TIN], paths: Sequence[Path]) -> Survey:
                 path=path,
             )
         surveys.append(one)
+    from .reprojection.joining import join_surveys
+
     return join_surveys(surveys, _name_apart(paths))
 
 

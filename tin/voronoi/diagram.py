@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ... import _optional
 from ..._sentences import counted
 from ...errors import LinesError, OptionError
 from .. import _kernel
@@ -98,8 +99,7 @@ class Voronoi:
         >>> ts.voronoi(tin, pad=0).to_shapely()[0].area
         4.0
         """
-        import shapely
-
+        shapely = _optional.load("shapely")
         parts = _make_polygons(Rings(self.coords, self.part_offsets))
         whole = np.bincount(self._cell_of_part, minlength=len(self))
         cells = np.full(len(self), shapely.Polygon(), object)
@@ -201,8 +201,7 @@ def _list_corners(box: Bounds) -> NDArray[np.float64]:
 
 def _as_boundary(boundary: Bounds | ArrayLike) -> NDArray[np.float64]:
     """Return the ring of a boundary, counter-clockwise."""
-    import shapely
-
+    shapely = _optional.load("shapely")
     given = _list_corners(boundary) if isinstance(boundary, Bounds) else boundary
     ring = as_ring(given, "the boundary")[:, :2].copy()
     region = shapely.Polygon(ring)
@@ -216,8 +215,7 @@ def _as_boundary(boundary: Bounds | ArrayLike) -> NDArray[np.float64]:
 
 def _clip(cells: Rings, ring: NDArray[np.float64]) -> Voronoi:
     """Return the parts of cells inside a ring; cells that it does not cut stay as they are."""
-    import shapely
-
+    shapely = _optional.load("shapely")
     region = shapely.Polygon(ring)
     shapely.prepare(region)
     near = _find_near(cells, Bounds.of(ring))
@@ -257,8 +255,7 @@ def _keep_only(rings: Rings, which: NDArray[np.int64]) -> Rings:
 
 def _find_parts_inside(region: Any, shapes: NDArray[Any]) -> tuple[NDArray[Any], NDArray[np.int64]]:
     """Return the polygons in which shapes meet a region, and the shape that each is a part of."""
-    import shapely
-
+    shapely = _optional.load("shapely")
     # Corners rounded to coordinates can make a cell of rounding width cross itself.
     broken = ~shapely.is_valid(shapes)
     shapes[broken] = shapely.make_valid(shapes[broken])
@@ -270,8 +267,7 @@ def _find_parts_inside(region: Any, shapes: NDArray[Any]) -> tuple[NDArray[Any],
 
 def _make_polygons(rings: Rings) -> NDArray[Any]:
     """Return the rings that are not empty as shapely polygons."""
-    import shapely
-
+    shapely = _optional.load("shapely")
     counts = np.diff(rings.offsets)
     ring = np.repeat(np.arange(np.count_nonzero(counts)), counts[counts > 0])
     polygons: NDArray[Any] = shapely.polygons(shapely.linearrings(rings.coords, indices=ring))
@@ -280,8 +276,7 @@ def _make_polygons(rings: Rings) -> NDArray[Any]:
 
 def _get_rings(polygons: NDArray[Any]) -> Rings:
     """Return the outer rings of polygons, counter-clockwise, the first corner not repeated."""
-    import shapely
-
+    shapely = _optional.load("shapely")
     coords, ring = shapely.get_coordinates(polygons, return_index=True)
     is_last = np.append(ring[1:] != ring[:-1], True)[: len(ring)]
     coords, ring = coords[~is_last], ring[~is_last]

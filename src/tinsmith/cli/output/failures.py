@@ -155,8 +155,11 @@ def _make_interruption(ctx: click.Context, number: int) -> Interruption:
 
 
 def _make_failure(error: Exception, owner: str) -> click.ClickException:
+    from ..._optional import describe_missing
     from ...errors import OptionError, TinsmithError
 
+    if isinstance(error, ImportError):
+        error = describe_missing(error) or error
     if isinstance(error, OptionError):
         return refuse_option(error)
     if isinstance(error, TinsmithError):
