@@ -4,6 +4,10 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from ..errors import CrsError, FormatError, OptionError, ReadError, WriteError
+    from .bridges.features import to_features
+    from .bridges.meshes import from_mesh, to_meshio, to_pyvista, to_trimesh
+    from .bridges.rasters import from_raster, to_rasterio
+    from .bridges.ugrid import to_ugrid
     from .field_survey import field_codes as field_codes
     from .field_survey.field_codes import lines_from_codes
     from .reading import read
@@ -20,6 +24,10 @@ else:  # a type checker takes every name for one that such a __getattr__ has
     __getattr__, __dir__ = lazy_names(
         __name__,
         {
+            ".bridges.features": ("to_features",),
+            ".bridges.meshes": ("from_mesh", "to_meshio", "to_pyvista", "to_trimesh"),
+            ".bridges.rasters": ("from_raster", "to_rasterio"),
+            ".bridges.ugrid": ("to_ugrid",),
             ".field_survey": ("field_codes",),  # where the module was before
             ".field_survey.field_codes": ("lines_from_codes",),
             ".reprojection.surfaces": ("reproject",),
@@ -42,6 +50,8 @@ __all__ = [
     "ReadError",
     "WriteError",
     "find_format",
+    "from_mesh",
+    "from_raster",
     "known_formats",
     "length_unit",
     "lines_from_codes",
@@ -51,6 +61,12 @@ __all__ = [
     "read_rings",
     "read_water",
     "reproject",
+    "to_features",
+    "to_meshio",
+    "to_pyvista",
+    "to_rasterio",
+    "to_trimesh",
+    "to_ugrid",
     "transform_points",
     "with_lines",
     "write",

@@ -8,6 +8,7 @@ from .charts.isolines import contour_map
 from .charts.profiles import profile_picture
 from .charts.relief import relief_map
 from .charts.sections import section_picture
+from .charts.triangles import to_matplotlib
 from .earthwork import Difference, difference, stage_storage, volume
 from .gridding import height_above, rasterize
 from .isolines import ContourCheck, check_contours, contour_bands, contour_labels, contours
@@ -58,5 +59,6 @@ __all__ = [
     "slope_classes",
     "slope_statistics",
     "stage_storage",
+    "to_matplotlib",
     "volume",
 ]

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import Field, FrozenInstanceError, make_dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, Never
+from dataclasses import Field, FrozenInstanceError, make_dataclass, replace
+from typing import TYPE_CHECKING, Any, ClassVar, Never, Self
 
 import numpy as np
 
-from .._notebook import make_card
+from .._methods import call_method
 from .._sentences import counted
 from ..crs import CRS, Unit, require_one_unit, scale_elevations, shorten_crs
 from ..errors import choice
-from ..policies import Extrapolation, InterpolationMethod
+from ..policies import Extrapolation, FeatureKind, InterpolationMethod
 from . import topology
 from .building.assembly import assemble
 from .building.attributes import Attributes, as_columns, as_row_attributes
@@ -91,6 +91,10 @@ class TIN(Editable):
     between two edits; for several attributes that belong together take ``tin.triangulation``, or a
     copy first. Copies (``copy.copy``, ``copy.deepcopy``, pickles) share nothing that changes: each
     is edited on its own, and takes back the edits made before it was copied.
+
+    ``len`` is the number of triangles. Two TINs are equal if they are the same surface to the last
+    bit: vertices, triangles, lines, attributes, CRS and unit; report and edits do not count. What
+    can be edited has no hash. As ``__geo_interface__`` and stream of Arrow it is its triangles.
 
     Examples
     --------
@@ -774,7 +778,7 @@ class TIN(Editable):
         """
         from .voronoi.diagram import divide_plane
 
-        return divide_plane(self.points, boundary=boundary, pad=pad)
+        return replace(divide_plane(self.points, boundary=boundary, pad=pad), crs=self.crs)
 
     def __repr__(self) -> str:
         surface = self._current.triangulation
@@ -786,7 +790,161 @@ class TIN(Editable):
         )
 
     def _repr_html_(self) -> str | None:
-        return make_card(self)
+        card: str | None = call_method("TIN._repr_html_", self)
+        return card
+
+    # ---------------------------------------------------------------- as a value
+
+    def copy(self) -> Self:
+        """Return a copy that is edited on its own, and takes back the edits made before.
+
+        Examples
+        --------
+        >>> tin = TIN.from_triangles([[0, 0, 1], [1, 0, 2], [0, 1, 3]], [[0, 1, 2]])
+        >>> other = tin.copy()
+        >>> other.set_elevation(0, 9.0)
+        >>> tin == other, tin.points[0, 2]
+        (False, 1.0)
+        """
+        return self.__copy__()
+
+    def __len__(self) -> int:
+        return len(self.triangles)
+
+    def __eq__(self, other: object) -> bool:
+        """Whether both are the same surface, whatever rows and edits they come from."""
+        if not isinstance(other, TIN):
+            return NotImplemented
+        one, two = self._current, other._current
+        mine, theirs = one.triangulation, two.triangulation
+        return (
+            (self.crs, self.elevation_unit) == (other.crs, other.elevation_unit)
+            and np.array_equal(mine.points, theirs.points)
+            and np.array_equal(mine.triangles, theirs.triangles)
+            and np.array_equal(mine.constrained, theirs.constrained)
+            and one.lines.is_same(two.lines)
+            and _have_same_values(self.attributes, other.attributes)
+        )
+
+    # Edits change it.
+    __hash__ = None  # type: ignore[assignment]
+
+    # ---------------------------------------------------------------- other libraries
+
+    def to_crs(self, crs: CrsLike, *, z_unit: UnitLike | None = None) -> TIN:
+        """Return the TIN in another CRS: :func:`tinsmith.reproject` of it.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> points = [[751428, 4020862, 1032], [751438, 4020862, 1031], [751428, 4020872, 1030]]
+        >>> ts.triangulate(points, crs="EPSG:32616").to_crs("EPSG:32617").points[0].round(1)
+        array([ 212642.6, 4021976.8,    1032. ])
+        """
+        moved: TIN = call_method("TIN.to_crs", self, crs, z_unit=z_unit)
+        return moved
+
+    def to_geodataframe(self, kind: FeatureKind = "triangles") -> Any:
+        """Return its parts as a GeoDataFrame: :func:`tinsmith.to_features` of it.
+
+        Parameters
+        ----------
+        kind : {"triangles", "points", "edges", "lines", "hull"}
+
+        Returns
+        -------
+        geopandas.GeoDataFrame
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8]])
+        >>> float(tin.to_geodataframe().area.sum())
+        12.0
+        """
+        return call_method("TIN.to_geodataframe", self, kind)
+
+    def plot(
+        self,
+        ax: Any = None,
+        *,
+        values: str | ArrayLike | None = "elevation",
+        edges: bool | None = None,
+        lines: bool = True,
+        colorbar: bool = True,
+        **options: Any,
+    ) -> Any:
+        """Draw it in plan with matplotlib.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Default: new ones of ``matplotlib.pyplot``.
+        values : {"elevation", "slope"}, or (n,) or (m,) array, optional
+            What the colours show: elevations, slopes in degrees, a number for each vertex or for
+            each triangle; None for no colours.
+        edges : bool, optional
+            Whether to draw the edges; default up to 5,000 triangles.
+        lines : bool
+            Whether to draw breaklines, boundary, holes and water.
+        colorbar : bool
+            Whether to draw a scale of the colours beside new axes.
+        **options
+            Of ``Axes.tripcolor``: ``cmap``, ``vmin``, ``alpha``.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+
+        Raises
+        ------
+        MissingExtraError
+            If matplotlib is not installed.
+        OptionError
+            If ``values`` is none of these.
+
+        Examples
+        --------
+        >>> import matplotlib.figure
+        >>> import tinsmith as ts
+        >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8]])
+        >>> axes = tin.plot(matplotlib.figure.Figure().add_subplot())
+        >>> axes.get_xlabel()
+        'easting'
+        """
+        return call_method(
+            "TIN.plot",
+            self,
+            ax,
+            values=values,
+            edges=edges,
+            lines=lines,
+            colorbar=colorbar,
+            **options,
+        )
+
+    @property
+    def __geo_interface__(self) -> dict[str, Any]:
+        """The triangles as GeoJSON-like values, in their own CRS."""
+        collection: dict[str, Any] = call_method("TIN.__geo_interface__", self)
+        return collection
+
+    def __arrow_c_stream__(self, requested_schema: object | None = None) -> object:
+        """Return the triangles as a stream of Arrow, as :class:`tinsmith.Features` has them."""
+        stream: object = call_method("TIN.__arrow_c_stream__", self, requested_schema)
+        return stream
+
+
+def _have_same_values(one: Mapping[str, NDArray[Any]], other: Mapping[str, NDArray[Any]]) -> bool:
+    """Whether columns have the same names and values; what is missing is the same."""
+    if list(one) != list(other):
+        return False
+    pairs = [(one[name], other[name]) for name in one]
+    return all(
+        first.dtype == second.dtype
+        and np.array_equal(first, second, equal_nan=first.dtype.kind == "f")
+        for first, second in pairs
+    )
 
 
 def _with_length_one(vectors: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     from .io import (
         Format,
         find_format,
+        from_mesh,
+        from_raster,
         known_formats,
         length_unit,
         lines_from_codes,
@@ -38,6 +40,12 @@ if TYPE_CHECKING:
         read_rings,
         read_water,
         reproject,
+        to_features,
+        to_meshio,
+        to_pyvista,
+        to_rasterio,
+        to_trimesh,
+        to_ugrid,
         transform_points,
         with_lines,
         write,
@@ -50,6 +58,7 @@ if TYPE_CHECKING:
         profile_picture,
         relief_map,
         section_picture,
+        to_matplotlib,
     )
     from .terrain.earthwork import Difference, difference, stage_storage, volume
     from .terrain.gridding import height_above, rasterize
@@ -98,10 +107,19 @@ if TYPE_CHECKING:
     from .tin.voronoi import voronoi
 else:  # a type checker takes every name for one that such a __getattr__ has
     from ._lazy import lazy_names
-    from ._notebook import register_card
+    from ._methods import register_methods
 
-    # What tin cannot make itself, for it knows no pictures.
-    register_card("TIN", "tinsmith.terrain.preview.card:make_card")
+    # What tin cannot do itself, for it knows no pictures, features and files.
+    register_methods(
+        {
+            "TIN._repr_html_": "tinsmith.terrain.preview.card:make_card",
+            "TIN.plot": "tinsmith.terrain.charts.triangles:plot_tin",
+            "TIN.to_crs": "tinsmith.io.reprojection.surfaces:reproject",
+            "TIN.to_geodataframe": "tinsmith.io.bridges.features:build_frame",
+            "TIN.__geo_interface__": "tinsmith.io.bridges.features:build_collection",
+            "TIN.__arrow_c_stream__": "tinsmith.io.bridges.features:build_stream",
+        }
+    )
 
     __getattr__, __dir__ = lazy_names(
         __name__,
@@ -128,6 +146,8 @@ else:  # a type checker takes every name for one that such a __getattr__ has
             ".io": (
                 "Format",
                 "find_format",
+                "from_mesh",
+                "from_raster",
                 "known_formats",
                 "length_unit",
                 "lines_from_codes",
@@ -137,6 +157,12 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "read_rings",
                 "read_water",
                 "reproject",
+                "to_features",
+                "to_meshio",
+                "to_pyvista",
+                "to_rasterio",
+                "to_trimesh",
+                "to_ugrid",
                 "transform_points",
                 "with_lines",
                 "write",
@@ -162,6 +188,7 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "section_picture",
                 "slope",
                 "stage_storage",
+                "to_matplotlib",
                 "volume",
             ),
             ".io.raster.cells": ("rasterize",),  # which reads the file of `like`, too
@@ -259,6 +286,8 @@ __all__ = [
     "drape",
     "earthwork_map",
     "find_format",
+    "from_mesh",
+    "from_raster",
     "height_above",
     "hillshade",
     "histogram",
@@ -290,6 +319,13 @@ __all__ = [
     "stage_storage",
     "terrain",
     "tin",
+    "to_features",
+    "to_matplotlib",
+    "to_meshio",
+    "to_pyvista",
+    "to_rasterio",
+    "to_trimesh",
+    "to_ugrid",
     "transform_points",
     "triangulate",
     "volume",

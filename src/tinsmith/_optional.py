@@ -21,6 +21,7 @@ _EXTRA_OF = {
     "pyogrio": "vector",
     "pyvista": "view",
     "rasterio": "raster",
+    "trimesh": "interop",
     "xarray": "interop",
 }
 
