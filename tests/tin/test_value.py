@@ -84,3 +84,45 @@ def test_to_crs_is_reproject():
     assert tin.to_crs(2274, z_unit="m").elevation_unit.name == "US survey foot"
     with pytest.raises(ts.CrsError, match="not known"):
         ts.triangulate(POINTS).to_crs("EPSG:32617")
+
+
+def test_one_place_gives_a_number_and_two_arrays_their_shape():
+    tin = ts.triangulate(POINTS)
+    x, y = np.random.default_rng(1).random((2, 4, 5)) * 10
+    places = np.stack([x, y], axis=-1)
+    for method in ("linear", "natural", "nearest"):
+        wanted = tin.interpolate(places.reshape(-1, 2), method).reshape(4, 5)
+        np.testing.assert_array_equal(tin.interpolate(x, y, method=method), wanted)
+    one = tin.interpolate(5.0, 5.0)
+    assert type(one) is float
+    assert one == tin.interpolate([[5.0, 5.0]])[0]
+    assert np.isnan(tin.interpolate(-5.0, 5.0))
+    assert tin.interpolate([], []).shape == (0,)
+    np.testing.assert_array_equal(tin.interpolate(x[0], 5.0), tin.interpolate(x[0], [5.0] * 5))
+
+
+@pytest.mark.parametrize(
+    ("x", "y", "words"),
+    [
+        ([1, 2], [1, 2, 3], r"x of shape \(2,\) and y of shape \(3,\)"),
+        (["a"], [1], "no table of real numbers"),
+        ([[1.0, 2.0]], [1.0, 2.0, 3.0], "x of shape"),
+        (np.ma.array([1.0], mask=[True]), [1.0], "masked"),
+        (np.inf, 1.0, "infinite|not finite|range"),
+    ],
+)
+def test_coordinates_that_do_not_fit_are_refused(x, y, words):
+    with pytest.raises(ts.PointsError, match=words):
+        ts.triangulate(POINTS).interpolate(x, y)
+
+
+def test_files_of_the_other_kind_are_refused(tmp_path):
+    tin = build()
+    surface, points = ts.write(tin, tmp_path / "a.gpkg"), tmp_path / "b.csv"
+    ts.write(ts.Survey(points=POINTS), points)
+    assert ts.read_tin(surface) == tin
+    assert len(ts.read_points(points)) == 30
+    with pytest.raises(ts.ReadError, match="holds a TIN, not points alone"):
+        ts.read_points(surface)
+    with pytest.raises(ts.ReadError, match="points alone, no TIN"):
+        ts.read_tin(points)

@@ -14,7 +14,7 @@ from ...terrain.lift import choose_origin
 from ...tin import TIN
 from ...tin.checking.overlaps import describe_overlaps
 from ...tin.validation.options import require_tin
-from ..mesh.common import (
+from .common import (
     add_notes,
     choose_reference,
     cut_into_fans,
@@ -22,7 +22,7 @@ from ..mesh.common import (
     format_crs,
     format_unit,
 )
-from ..mesh.vtk_child import read_dataset
+from .vtk_child import read_dataset
 
 if TYPE_CHECKING:
     import pyvista

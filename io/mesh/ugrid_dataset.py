@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from ... import _optional
 from ...tin.validation.options import require_tin
-from ..mesh.ugrid import write_content
+from .ugrid import write_content
 
 if TYPE_CHECKING:
     from ...tin import TIN

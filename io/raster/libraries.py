@@ -15,8 +15,8 @@ from ... import _optional
 from ...errors import OptionError
 from ...terrain.results import Raster
 from ...tin.validation.options import require_type
-from ..raster.dem import Affine, Header, make_survey
-from ..raster.gdal_child import cut_strips, describe
+from .dem import Affine, Header, make_survey
+from .gdal_child import cut_strips, describe
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -314,7 +314,7 @@ def to_rasterio(raster: Raster) -> Any:
     """
     rasterio = _optional.load("rasterio.io", "Handing a raster over to rasterio")
     require_type("raster", raster, Raster)
-    from ..raster.geotiff import write
+    from .geotiff import write
 
     with TemporaryDirectory() as folder:
         path = Path(folder, "raster.tif")

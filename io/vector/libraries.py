@@ -11,7 +11,7 @@ from ...errors import OptionError
 from ...terrain.results import Features
 from ...tin import TIN, Survey, Voronoi
 from ...tin.topology import find_offsets
-from ..vector.surface_features import make_features
+from .surface_features import make_features
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -52,7 +52,7 @@ def to_features(surface: TIN | Survey | Voronoi, kind: FeatureKind | None = None
     >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8]], crs="EPSG:32616")
     >>> to_features(tin)
     <Features triangles: 2 polygons, columns id, slope, aspect, area, crs EPSG:32616>
-    >>> to_features(tin, "edges").to_geodataframe().length.max()
+    >>> float(to_features(tin, "edges").to_geodataframe().length.max())
     5.0
     >>> to_features(ts.voronoi(tin, pad=0)).columns["area"]
     array([3., 3., 3., 3.])

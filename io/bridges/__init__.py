@@ -1,1 +1,0 @@
-"""TINs in the hands of other libraries, and theirs as TINs and surveys."""
