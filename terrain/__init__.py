@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from .charts.profiles import profile_picture
     from .charts.relief import relief_map
     from .charts.sections import section_picture
+    from .charts.triangles import to_matplotlib
     from .earthwork import Difference, difference, stage_storage, volume
     from .gridding import height_above, rasterize
     from .isolines import ContourCheck, check_contours, contour_bands, contour_labels, contours
@@ -60,6 +61,7 @@ else:  # a type checker takes every name for one that such a __getattr__ has
             ".sheets": ("Plan", "plan"),
             ".simplification": ("simplify",),
             ".slope": ("aspect", "slope"),
+            ".charts.triangles": ("to_matplotlib",),
         },
     )
 
@@ -103,5 +105,6 @@ __all__ = [
     "slope_classes",
     "slope_statistics",
     "stage_storage",
+    "to_matplotlib",
     "volume",
 ]
