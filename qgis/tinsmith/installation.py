@@ -17,7 +17,7 @@ from .command import (
     locate_script,
     make_environment,
 )
-from .process import Speaker, run_program
+from .process import Failed, Speaker, run_program
 
 LEAST_PYTHON = (3, 11)
 _EXTRAS = "raster,vector,mesh,plot,cad,lidar"
@@ -97,6 +97,9 @@ def install(python: str, source: str, feedback: Any) -> Path:
     try:
         _fill(folder, python, source, feedback)
         (folder / "complete").touch()
+    except Failed as failed:
+        shutil.rmtree(folder, ignore_errors=True)
+        raise QgsProcessingException(f"'{source}' is not installed: {failed}") from failed
     except BaseException:
         shutil.rmtree(folder, ignore_errors=True)
         raise

@@ -85,8 +85,11 @@ def _read_event(line: str) -> dict[str, Any] | None:
     return event if isinstance(event, dict) and event.get("event") in known else None
 
 
-class Failed(QgsProcessingException):
-    """The program ended with an error; ``answer`` is what it wrote to stdout."""
+class Failed(Exception):
+    """The program ended with an error; ``answer`` is what it wrote to stdout.
+
+    QGIS takes its own class of exceptions for a sentence, one derived from it for a bug.
+    """
 
     def __init__(self, sentence: str, answer: str) -> None:
         super().__init__(sentence)
@@ -109,9 +112,10 @@ def run_program(arguments: list[str], speaker: Speaker, feedback: Any, folder: s
 
     Raises
     ------
+    Failed
+        With the program's own sentence.
     QgsProcessingException
-        With the program's own sentence if it fails (as :class:`Failed`), or if the user cancels;
-        the process has then ended.
+        If the user cancels; the process has then ended.
     """
     feedback.pushCommandInfo(" ".join(map(shlex.quote, arguments)))
     process = subprocess.Popen(

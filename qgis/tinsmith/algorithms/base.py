@@ -21,7 +21,7 @@ from ..command import find_command
 from ..icons import load_icon
 from ..inputs import Files, Found, Lines, Surface
 from ..options import Option, describe
-from ..process import Speaker, run_program
+from ..process import Failed, Speaker, run_program
 from ..results import load_file
 
 EXTRA = "EXTRA"
@@ -161,6 +161,7 @@ class CommandAlgorithm(QgsProcessingAlgorithm):
     def __init__(self) -> None:
         super().__init__()
         self.found: dict[str, Found | None] = {}
+        self._fault: Exception | None = None
         self._to_load: list[tuple[str, str, str]] = []
 
     # ------------------------------------------------------------ what QGIS asks
@@ -246,17 +247,32 @@ class CommandAlgorithm(QgsProcessingAlgorithm):
     # ------------------------------------------------------------ runs
 
     def prepareAlgorithm(self, parameters: dict[str, Any], context: Any, feedback: Any) -> bool:
-        """Look at the layers of surfaces, in the main thread, which owns them."""
-        self.found = {one.name: one.find(self, parameters, context) for one in self.surfaces}
+        """Look at the layers, in the main thread, which owns them; QGIS hears of faults later.
+
+        What is raised here it would replace by a general sentence.
+        """
+        try:
+            self.look(parameters, context)
+        except QgsProcessingException as error:
+            self._fault = error
         return True
+
+    def look(self, parameters: dict[str, Any], context: Any) -> None:
+        """Find the surfaces."""
+        self.found = {one.name: one.find(self, parameters, context) for one in self.surfaces}
 
     def processAlgorithm(
         self, parameters: dict[str, Any], context: Any, feedback: Any
     ) -> dict[str, Any]:
         """Run the command in a temporary folder."""
+        if self._fault is not None:
+            raise self._fault
         root = QgsProcessingUtils.tempFolder()
         with tempfile.TemporaryDirectory(prefix="tinsmith-", dir=root) as folder:
-            return self.make(Run(self, parameters, context, feedback, folder))
+            try:
+                return self.make(Run(self, parameters, context, feedback, folder))
+            except Failed as failed:
+                raise QgsProcessingException(str(failed)) from failed
 
     def make(self, run: Run) -> dict[str, Any]:
         """Run the command; return the outputs."""

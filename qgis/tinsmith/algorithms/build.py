@@ -164,7 +164,7 @@ class BuildAlgorithm(CommandAlgorithm):
         self.addOutput(QgsProcessingOutputNumber("VERTICES", "Vertices"))
         self.addOutput(QgsProcessingOutputNumber("TRIANGLES", "Triangles"))
 
-    def prepareAlgorithm(self, parameters: dict[str, Any], context: Any, feedback: Any) -> bool:
+    def look(self, parameters: dict[str, Any], context: Any) -> None:
         """Find the one source of points that is given."""
         given = [name for name in ("POINTS", "DEM", "FILE") if parameters.get(name)]
         if len(given) != 1:
@@ -178,7 +178,6 @@ class BuildAlgorithm(CommandAlgorithm):
         elif given == ["FILE"]:
             found = Found(path=self.parameterAsFile(parameters, "FILE", context))
         self.found = {"POINTS": found}
-        return True
 
     def make(self, run: Run) -> dict[str, Any]:
         """Build."""

@@ -59,12 +59,12 @@ class RasterAlgorithm(CommandAlgorithm):
         made = QgsProcessingParameterRasterDestination("OUTPUT", "Raster")
         self.addParameter(describe(made, "GeoTIFF, or ASC."))
 
-    def prepareAlgorithm(self, parameters: dict[str, Any], context: Any, feedback: Any) -> bool:
-        """Look at the layers."""
+    def look(self, parameters: dict[str, Any], context: Any) -> None:
+        """Find the surface, and the raster whose cells are taken."""
+        super().look(parameters, context)
         self._like = ""
         if parameters.get("LIKE"):
             self._like = find_raster(self, parameters, "LIKE", context).path
-        return super().prepareAlgorithm(parameters, context, feedback)
 
     def make(self, run: Run) -> dict[str, Any]:
         """Rasterize."""

@@ -9,7 +9,6 @@ import json
 import os
 import sys
 import traceback
-
 from pathlib import Path
 
 from qgis.core import (
