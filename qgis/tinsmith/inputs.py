@@ -111,10 +111,11 @@ class Surface:
     def define(self) -> list[Any]:
         """Return the parameters."""
         kinds = [QgsProcessing.TypeMesh, QgsProcessing.TypeVectorPoint, QgsProcessing.TypeRaster]
-        layer = QgsProcessingParameterMapLayer(self.name, self.words, None, True, kinds)
+        words = f"{self.words}: a mesh, points or a DEM"
+        layer = QgsProcessingParameterMapLayer(self.name, words, None, True, kinds)
         column = QgsProcessingParameterField(
             f"{self.name}_Z_FIELD",
-            f"{self.words}: field of elevations, if a layer of points",
+            f"{self.words}: field of elevations, of points without Z",
             None,
             self.name,
             QgsProcessingParameterField.Any,
@@ -123,7 +124,7 @@ class Surface:
         )
         file = QgsProcessingParameterFile(
             f"{self.name}_FILE",
-            f"{self.words}: or any file tinsmith reads",
+            f"{self.words}: or a file that is no layer",
             QgsProcessingParameterFile.File,
             "",
             None,

@@ -21,6 +21,11 @@ _MESHES = (".ply", ".nc", ".2dm")
 _TABLES = (".csv", ".tsv")
 _VECTORS = (".gpkg", ".geojson", ".fgb", ".shp", ".dxf", *_TABLES)
 
+_EDGES_ALONE = (
+    "QGIS colors the breaklines alone of a PLY mesh that has any: write .nc or .2dm to see its "
+    "faces colored."
+)
+
 
 class Styler(QgsProcessingLayerPostProcessorInterface):
     """Styles a layer once it is loaded."""
@@ -47,7 +52,7 @@ def style_on_loading(path: str, style: Callable[[Any], None], context: Any) -> N
         context.layerToLoadOnCompletionDetails(path).setPostProcessor(Styler(style))
 
 
-def load_file(path: str, name: str, output: str, context: Any) -> None:
+def load_file(path: str, name: str, output: str, context: Any, feedback: Any) -> None:
     """Have a file loaded that is no output layer of Processing: a mesh, a table, any other.
 
     Nothing is loaded where no project is open, or if QGIS has no layer for such a file.
@@ -59,6 +64,8 @@ def load_file(path: str, name: str, output: str, context: Any) -> None:
     context.temporaryLayerStore().addMapLayer(layer)
     details = QgsProcessingContext.LayerDetails(name, project, output)
     if isinstance(layer, QgsMeshLayer):
+        if layer.dataProvider().edgeCount() > 0:
+            feedback.pushWarning(_EDGES_ALONE)
         details.setPostProcessor(Styler(style_mesh))
     context.addLayerToLoadOnCompletion(layer.id(), details)
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 from qgis.core import (
+    NULL,
     QgsCategorizedSymbolRenderer,
     QgsColorRampShader,
     QgsFillSymbol,
     QgsGradientColorRamp,
     QgsGradientStop,
-    QgsHillshadeRenderer,
     QgsLineSymbol,
     QgsMeshDatasetIndex,
     QgsPalLayerSettings,
@@ -91,11 +91,6 @@ def style_hillshade(layer: Any) -> None:
     layer.setRenderer(QgsSingleBandGrayRenderer(layer.dataProvider(), 1))
 
 
-def style_relief(layer: Any) -> None:
-    """Show a raster of elevations as a hillshade that QGIS makes itself."""
-    layer.setRenderer(QgsHillshadeRenderer(layer.dataProvider(), 1, 315, 45))
-
-
 # ---------------------------------------------------------------- vectors
 
 
@@ -156,13 +151,21 @@ def style_labels(layer: Any) -> None:
 
 def style_bands(layer: Any) -> None:
     """Color the bands between contours by the ramp of elevations."""
-    rows = sorted({(one["from"], one["to"]) for one in layer.getFeatures()})
+    rows = {(one["from"], one["to"]) for one in layer.getFeatures()}
+    rows_upwards = sorted(rows, key=lambda row: (row[0] != NULL, row[0] if row[0] != NULL else 0))
     ramp = make_elevation_ramp()
     categories = [
-        _categorise(low, f"{low:g} to {high:g}", ramp.color(k / max(len(rows) - 1, 1)).name())
-        for k, (low, high) in enumerate(rows)
+        _categorise(row[0], _name_band(*row), ramp.color(k / max(len(rows) - 1, 1)).name())
+        for k, row in enumerate(rows_upwards)
     ]
     layer.setRenderer(QgsCategorizedSymbolRenderer("from", categories))
+
+
+def _name_band(low: Any, high: Any) -> str:
+    """Return the limits of a band; the lowest and the highest have one each."""
+    if low == NULL or high == NULL:
+        return f"below {high:g}" if low == NULL else f"above {low:g}"
+    return f"{low:g} to {high:g}"
 
 
 def style_classes(layer: Any) -> None:

@@ -27,7 +27,7 @@ from ..results import load_file
 EXTRA = "EXTRA"
 LOAD = "LOAD"
 MESH_FILES = (
-    "PLY mesh (*.ply);;UGRID mesh (*.nc);;2DM mesh (*.2dm);;GeoPackage of a whole TIN (*.gpkg);;"
+    "UGRID mesh (*.nc);;PLY mesh (*.ply);;2DM mesh (*.2dm);;GeoPackage of a whole TIN (*.gpkg);;"
     "LandXML (*.xml);;DXF drawing (*.dxf);;Any other (*.*)"
 )
 TABLE_FILES = "CSV table (*.csv);;JSON table (*.json)"
@@ -229,8 +229,8 @@ class CommandAlgorithm(QgsProcessingAlgorithm):
     def add_mesh_output(self, words: str) -> None:
         """Add a TIN as an output, and whether it is loaded."""
         help_text = (
-            "PLY and UGRID keep the CRS and open as mesh layers; a GeoPackage keeps everything "
-            "that tinsmith knows."
+            "UGRID and PLY keep the CRS and open as mesh layers; of a PLY with breaklines QGIS "
+            "colors the breaklines alone. A GeoPackage keeps everything that tinsmith knows."
         )
         self.add_file_output("OUTPUT", words, MESH_FILES, help_text)
         self.add_loading("Load the result as a layer")
@@ -291,7 +291,7 @@ class CommandAlgorithm(QgsProcessingAlgorithm):
     def postProcessAlgorithm(self, context: Any, feedback: Any) -> dict[str, Any]:
         """Load what Processing does not load itself, in the main thread."""
         for made in self._to_load:
-            load_file(*made, context)
+            load_file(*made, context, feedback)
         return {}
 
     def load_later(self, run: Run, path: str, name: str) -> None:
