@@ -30,16 +30,16 @@ SURVEY = HERE.parent / "sample_data" / "site_survey.csv"
 CRS = "EPSG:32616"
 MAP_SIZE = QSize(1200, 860)
 MAP_DPI = 110
-DIALOG_SIZE = (900, 760)
+DIALOG_SIZE = (900, 860)
 
 
 def main(folder: Path = HERE) -> None:
     """Run two algorithms, draw what they load, and the dialog of one."""
     app = start_qgis()
     with TemporaryDirectory() as made:
-        tin, contours = run_algorithms(Path(made))
+        survey, tin, contours = run_algorithms(Path(made))
         draw_map([contours, tin], folder / "qgis-map.png")
-        draw_dialog("tinsmith:contours", {"INPUT": tin.id(), "INTERVAL": 0.5}, folder)
+        draw_dialog("tinsmith:build", {"POINTS": survey.id(), "MAX_EDGE": 39}, folder)
     del app
     sys.stdout.flush()
     os._exit(0)  # QGIS crashes where layers are left as it ends
@@ -53,6 +53,7 @@ def start_qgis():
     sys.path[:0] = [str(HERE.parent / "qgis"), str(plugins)]
     from processing.core.Processing import Processing
     from processing.gui.AlgorithmDialog import AlgorithmDialog  # noqa: F401 - registers widgets
+
     from tinsmith.plugin import TinsmithPlugin
 
     Processing.initialize()
@@ -62,7 +63,10 @@ def start_qgis():
 
 
 def run_algorithms(folder: Path):
-    """Build the sample's TIN and its contours; return their layers as they are loaded."""
+    """Make layers of the sample's points, its TIN and its contours, as they are loaded."""
+    given = {"INPUT_FILE": str(SURVEY), "CRS": CRS, "OUTPUT": str(folder / "site_survey.gpkg")}
+    survey = run("tinsmith:convert", given)
+    survey.setName("site_survey")
     tin = run(
         "tinsmith:build",
         {
@@ -70,11 +74,11 @@ def run_algorithms(folder: Path):
             "CRS": CRS,
             "EXTRA": "--codes",
             "MAX_EDGE": 39,
-            "OUTPUT": str(folder / "site.ply"),
+            "OUTPUT": str(folder / "site.nc"),
         },
     )
     given = {"INPUT": tin.id(), "INTERVAL": 0.5, "OUTPUT": str(folder / "contours.gpkg")}
-    return tin, run("tinsmith:contours", given)
+    return survey, tin, run("tinsmith:contours", given)
 
 
 def run(name: str, parameters: dict):

@@ -63,7 +63,8 @@ class Files:
         """
         has_crs = source.sourceCrs().isValid()
         path = self.choose_path(source.sourceName(), ".gpkg" if has_crs else ".fgb")
-        layer = source.materialize(QgsFeatureRequest(), feedback)
+        in_order = QgsFeatureRequest().addOrderBy("$id")  # a selection has none
+        layer = source.materialize(in_order, feedback)
         how = _choose_writing(layer, path.stem, has_crs)
         how.feedback = feedback
         context = QgsCoordinateTransformContext()

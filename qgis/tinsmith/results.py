@@ -84,7 +84,8 @@ def open_layer(path: str, name: str) -> Any:
 def _choose_part(path: str, suffix: str) -> str:
     """Return what to open of a file: of a TIN in a GeoPackage its triangles."""
     if suffix == ".gpkg":
-        parts = QgsVectorLayer(path, "parts", "ogr").dataProvider().subLayers()
+        whole = QgsVectorLayer(path, "parts", "ogr")  # kept while its provider is asked
+        parts = whole.dataProvider().subLayers() if whole.isValid() else []
         if any(part.split("!!::!!")[1] == "triangles" for part in parts):
             return f"{path}|layername=triangles"
     return path
