@@ -28,6 +28,9 @@ from qgis.core import (
 from .options import describe, name_crs
 from .process import CANCELLED
 
+POINTS, POLYGONS = QgsProcessing.TypeVectorPoint, QgsProcessing.TypeVectorPolygon
+ANY_FILE = "All files (*)"
+"""With names without a dot, too."""
 _MOST_LETTERS = 40
 """Of a layer's name in that of a temporary file."""
 
@@ -130,6 +133,7 @@ class Surface:
             "",
             None,
             True,
+            ANY_FILE,
         )
         return [
             describe(layer, "A mesh layer (a TIN), a layer of points with Z, or a DEM."),
@@ -276,23 +280,20 @@ def _find_missing_crs(layer: Any) -> str:
 
 @dataclass(frozen=True)
 class Lines:
-    """A layer of lines or polygons that the command reads by an option of its own."""
+    """A layer of lines, or of polygons or points, that the command reads by an option."""
 
     name: str
     words: str
     flag: str
     help_text: str
-    polygons: bool = False
+    kind: Any = QgsProcessing.TypeVectorLine
     required: bool = False
     advanced: bool = False
 
     def define(self) -> Any:
         """Return the parameter."""
-        kinds = [QgsProcessing.TypeVectorPolygon]
-        if not self.polygons:
-            kinds = [QgsProcessing.TypeVectorLine]
         made = QgsProcessingParameterFeatureSource(
-            self.name, self.words, kinds, None, not self.required
+            self.name, self.words, [self.kind], None, not self.required
         )
         return describe(made, self.help_text, self.flag, self.advanced)
 

@@ -94,6 +94,7 @@ def test_tins_are_those_of_the_package(tmp_path, survey):
         "dem": job("build", DEM="dem", STRIDE=16, OUTPUT=tmp_path / "dem.2dm"),
         "file": job("build", FILE=SURVEY, CRS=UTM, EXTRA="--codes", OUTPUT=tmp_path / "file.gpkg"),
         "refine": job("refine", INPUT="ground", MAX_AREA=400, OUTPUT=tmp_path / "fine.ply"),
+        "simplify": job("simplify", INPUT="ground", TOLERANCE=0.5, OUTPUT=tmp_path / "few.ply"),
         "check": job("check", INPUT="no crs", OUTPUT=tmp_path / "found.json"),
         "unsound": job("check", INPUT_FILE=tmp_path / "twice.obj"),
         "convert": job("convert", INPUT="no crs", OUTPUT=tmp_path / "again.gpkg"),
@@ -111,6 +112,7 @@ def test_tins_are_those_of_the_package(tmp_path, survey):
     mesh = told["field"]["layers"]["TIN"]
     assert (mesh["crs"], mesh["type"]) == (UTM, "QgsMeshLayer")
     assert_same_tin(ts.read(tmp_path / "fine.ply"), ts.refine(tin, max_area=400))
+    assert_same_tin(ts.read(tmp_path / "few.ply"), ts.simplify(tin, tolerance=0.5))
     assert_same_tin(ts.read(tmp_path / "again.gpkg"), tin)
     assert told["check"]["outputs"] == {
         "SOUND": True, "PROBLEMS": 0, "OUTPUT": str(tmp_path / "found.json")

@@ -12,7 +12,7 @@ import pytest
 
 from .qgis_meshes import has_qgis
 
-__all__ = ["PLUGIN", "drive", "make_environment", "require_qgis"]
+__all__ = ["PLUGIN", "ROOT", "drive", "make_environment", "require_qgis"]
 
 ROOT = Path(__file__).parents[2]
 PLUGIN = ROOT / "qgis"
@@ -33,9 +33,19 @@ def make_environment(folder):
     runtime.mkdir(mode=0o700, exist_ok=True)
     environment = {**os.environ, "QT_QPA_PLATFORM": "offscreen", "XDG_RUNTIME_DIR": str(runtime)}
     environment |= {"HOME": str(runtime), "PYTHONDONTWRITEBYTECODE": "1"}
-    environment["PATH"] = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    environment["PATH"] = f"{link_command(folder)}{os.pathsep}{os.defpath}"
     environment.pop("PYTHONPATH", None)
     return environment
+
+
+def link_command(folder):
+    """Return a folder with the command alone: QGIS takes its Python from PATH, too."""
+    programs = folder / "programs"
+    programs.mkdir(exist_ok=True)
+    link = programs / "tinsmith"
+    if not link.exists():
+        link.symlink_to(Path(sys.executable).with_name("tinsmith"))
+    return programs
 
 
 def drive(folder, layers, jobs, **environment):

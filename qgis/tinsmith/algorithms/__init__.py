@@ -10,6 +10,7 @@ from .install import InstallAlgorithm
 from .profile import ProfileAlgorithm
 from .raster import RasterAlgorithm
 from .refine import RefineAlgorithm
+from .simplify import SimplifyAlgorithm
 from .slope import SlopeAlgorithm
 from .volume import StorageAlgorithm, VolumeAlgorithm
 
@@ -24,6 +25,7 @@ ALGORITHMS = (
     StorageAlgorithm,
     RasterAlgorithm,
     RefineAlgorithm,
+    SimplifyAlgorithm,
     CheckAlgorithm,
     ConvertAlgorithm,
     InstallAlgorithm,

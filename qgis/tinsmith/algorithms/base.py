@@ -298,3 +298,10 @@ class CommandAlgorithm(QgsProcessingAlgorithm):
         """Have the output, a file, loaded once the run is over, if the user wants it."""
         if self.parameterAsBool(run.parameters, LOAD, run.context):
             self._to_load.append((path, name, "OUTPUT"))
+
+    def make_mesh(self, run: Run, name: str) -> dict[str, Any]:
+        """Run a command that makes a TIN of a surface; return the output and its counts."""
+        paths, named = run.list_outputs("OUTPUT")
+        counts = run.run([*self.list_inputs(run), *named])["tin"]
+        self.load_later(run, paths["OUTPUT"], name)
+        return {**paths, "VERTICES": counts["vertices"], "TRIANGLES": counts["triangles"]}

@@ -14,7 +14,7 @@ from qgis.core import (
     QgsProcessingParameterRasterLayer,
 )
 
-from ..inputs import Found, Lines, find_raster, list_point_arguments
+from ..inputs import ANY_FILE, POLYGONS, Found, Lines, find_raster, list_point_arguments
 from ..options import choice, crs, describe, elevation_unit, number, switch
 from .base import CommandAlgorithm, Run
 
@@ -58,17 +58,17 @@ class BuildAlgorithm(CommandAlgorithm):
             "Lines that are edges but no breaks of slope.",
             advanced=True,
         ),
-        Lines("BOUNDARY", "Boundary", "--boundary", "The surface ends there.", polygons=True),
-        Lines("HOLES", "Holes", "--holes", "No surface inside.", polygons=True, advanced=True),
+        Lines("BOUNDARY", "Boundary", "--boundary", "The surface ends there.", kind=POLYGONS),
+        Lines("HOLES", "Holes", "--holes", "No surface inside.", kind=POLYGONS, advanced=True),
         Lines(
             "ERASE",
             "Areas to erase",
             "--erase",
             "Points inside are left out and spanned.",
-            polygons=True,
+            kind=POLYGONS,
             advanced=True,
         ),
-        Lines("WATER", "Water", "--water", "Flat polygons.", polygons=True, advanced=True),
+        Lines("WATER", "Water", "--water", "Flat polygons.", kind=POLYGONS, advanced=True),
     )
     options = (
         number(
@@ -141,7 +141,7 @@ class BuildAlgorithm(CommandAlgorithm):
         )
         dem = QgsProcessingParameterRasterLayer("DEM", "or a DEM", None, True)
         file = QgsProcessingParameterFile(
-            "FILE", "or a file of points", QgsProcessingParameterFile.File, "", None, True
+            "FILE", "or a file of points", QgsProcessingParameterFile.File, "", None, True, ANY_FILE
         )
         help_text = "Survey text, instruments, lidar, LandXML, DXF: what is no layer of QGIS."
         self.addParameter(

@@ -14,6 +14,7 @@ from qgis.core import (
 
 from ..command import Command, find_command
 from ..icons import load_icon
+from ..inputs import ANY_FILE
 from ..installation import find_python, install
 from ..options import describe
 
@@ -50,7 +51,7 @@ class InstallAlgorithm(QgsProcessingAlgorithm):
         """Add what to install, and with which Python."""
         source = QgsProcessingParameterString("SOURCE", "What to install", None, False, True)
         python = QgsProcessingParameterFile(
-            "PYTHON", "Python to use", QgsProcessingParameterFile.File, "", None, True
+            "PYTHON", "Python to use", QgsProcessingParameterFile.File, "", None, True, ANY_FILE
         )
         help_text = (
             "A wheel of tinsmith, the folder of its sources (which needs a C++ compiler), or what "

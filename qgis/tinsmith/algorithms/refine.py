@@ -36,7 +36,4 @@ class RefineAlgorithm(CommandAlgorithm):
 
     def make(self, run: Run) -> dict[str, Any]:
         """Refine."""
-        paths, named = run.list_outputs("OUTPUT")
-        counts = run.run([*self.list_inputs(run), *named])["tin"]
-        self.load_later(run, paths["OUTPUT"], "Refined TIN")
-        return {**paths, "VERTICES": counts["vertices"], "TRIANGLES": counts["triangles"]}
+        return self.make_mesh(run, "Refined TIN")

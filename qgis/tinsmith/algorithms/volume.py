@@ -10,7 +10,7 @@ from qgis.core import (
     QgsProcessingParameterVectorDestination,
 )
 
-from ..inputs import Lines, Surface
+from ..inputs import POLYGONS, Lines, Surface
 from ..options import describe, number
 from ..results import style_on_loading
 from ..styles import style_earthwork
@@ -32,7 +32,7 @@ class VolumeAlgorithm(CommandAlgorithm):
         "row for each in the table."
     )
     surfaces = (_GROUND, Surface("DESIGN", "Design", False))
-    lines = (Lines("REGIONS", "Regions", "--regions", "Polygons to measure in.", polygons=True),)
+    lines = (Lines("REGIONS", "Regions", "--regions", "Polygons to measure in.", kind=POLYGONS),)
     options = (number("BASE", "or a level", "--base", "Elevation in place of a design."),)
 
     def add_outputs(self) -> None:
@@ -74,7 +74,7 @@ class StorageAlgorithm(CommandAlgorithm):
     summary = "Tabulates area and volume of the water that stands on a TIN at each level."
     explanation = "Rows whose water reaches the boundary are marked: there it would run off."
     surfaces = (_GROUND,)
-    lines = (Lines("REGIONS", "Region", "--regions", "Where water stands.", polygons=True),)
+    lines = (Lines("REGIONS", "Region", "--regions", "Where water stands.", kind=POLYGONS),)
     options = (
         number("LEVEL", "Level", "--level", "Elevation of one row."),
         number("INTERVAL", "or a row at multiples of", "--interval", "Of this height.", least=0.0),
