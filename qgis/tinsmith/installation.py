@@ -111,11 +111,11 @@ def install(python: str, source: str, feedback: Any) -> Path:
 def _fill(folder: Path, python: str, source: str, feedback: Any) -> None:
     speaker = Speaker(feedback, {})
     feedback.setProgressText(f"Making an environment with {python}")
-    run_program([python, "-m", "venv", str(folder)], speaker, feedback, str(folder.parent))
+    run_program([python, "-m", "venv", str(folder)], speaker, feedback)
     feedback.setProgressText(f"Installing {source}")
     pip = [str(locate_script(folder, "python")), "-m", "pip", "--disable-pip-version-check"]
     wanted = source if "[" in Path(source).name else f"{source}[{_EXTRAS}]"
-    said = run_program([*pip, "install", wanted], speaker, feedback, str(folder.parent))
+    said = run_program([*pip, "install", wanted], speaker, feedback)
     for line in said.splitlines():
         feedback.pushConsoleInfo(line)
     if not locate_script(folder, "tinsmith").exists():

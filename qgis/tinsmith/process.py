@@ -96,8 +96,10 @@ class Failed(Exception):
         self.answer = answer
 
 
-def run_program(arguments: list[str], speaker: Speaker, feedback: Any, folder: str) -> str:
+def run_program(arguments: list[str], speaker: Speaker, feedback: Any) -> str:
     """Run a program until it ends or the user cancels; return what it writes to stdout.
+
+    It runs in the folder of QGIS, from which paths that the user has given lead.
 
     Parameters
     ----------
@@ -107,8 +109,6 @@ def run_program(arguments: list[str], speaker: Speaker, feedback: Any, folder: s
         Hears what it writes to stderr.
     feedback : QgsProcessingFeedback
         Tells whether the user has cancelled.
-    folder : str
-        Where it runs.
 
     Raises
     ------
@@ -124,7 +124,6 @@ def run_program(arguments: list[str], speaker: Speaker, feedback: Any, folder: s
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         env=make_environment(),
-        cwd=folder,
         **list_process_options(),
     )
     try:

@@ -129,7 +129,7 @@ class Run:
         """Run the command; return its result."""
         words = [self._command.path, *arguments, "--events", "--json"]
         speaker = Speaker(self.feedback, self.files.names)
-        answer = run_program(words, speaker, self.feedback, str(self.files.folder))
+        answer = run_program(words, speaker, self.feedback)
         self.feedback.setProgress(100)
         result: dict[str, Any] = json.loads(answer) if answer.strip() else {}
         return result
