@@ -478,5 +478,10 @@ console_options = _gather(
     "console",
     Console,
     click.option("--json", "as_json", is_flag=True, help="Write the result as JSON to stdout."),
+    click.option(
+        "--events",
+        is_flag=True,
+        help="Write progress, summary, warnings and errors to stderr as JSON, a line each.",
+    ),
     click.option("-q", "--quiet", is_flag=True, help="No summary, no progress."),
 )
