@@ -8,7 +8,7 @@ from urllib.parse import unquote, urlsplit
 
 import click
 import pytest
-from support.blocks import ROOT, list_pages, name_page, read_blocks
+from support.blocks import ROOT, list_pages, name_page, read_blocks, remove_code
 from support.processes import run
 
 import tinsmith as ts
@@ -17,13 +17,6 @@ from tinsmith.cli import main
 INDEX = ROOT / "docs" / "index.md"
 NOT_IN_SITE = {"README.md"}  # a first screen of its own, which the index begins with, too
 LINK = re.compile(r"!?\[(?:[^\[\]]|\[[^\]]*\])*\]\(([^()\s]+)\)")
-FENCE = re.compile(r"^(`{3,}).*?^\1", re.DOTALL | re.MULTILINE)
-
-
-def remove_code(text):
-    """Return a page's text without what it shows as code."""
-    return re.sub(r"``[^`]+``|`[^`\n]+`", "code", FENCE.sub("", text))
-
 
 # -------------------------------------------------------------------------------- navigation
 

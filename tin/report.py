@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from .._notebook import make_card
 from .._sentences import counted
 from .types import Frozen
 
@@ -573,3 +574,6 @@ class Report(Frozen):
             f"{counted(self.n_vertices, 'vertex', 'vertices')}, "
             f"{counted(self.n_triangles, 'triangle')}, {counted(merged, 'row')} merged away>"
         )
+
+    def _repr_html_(self) -> str | None:
+        return make_card(self)

@@ -100,8 +100,13 @@ else:  # a type checker takes every name for one that such a __getattr__ has
     from ._lazy import lazy_names
     from ._notebook import register_card
 
-    # What tin cannot make itself, for it knows no pictures.
+    # What records cannot make themselves, for they know no pictures.
     register_card("TIN", "tinsmith.terrain.preview.card:make_card")
+    register_card("Survey", "tinsmith.terrain.cards.survey:make_survey_card")
+    register_card("Report", "tinsmith.terrain.cards.survey:make_report_card")
+    register_card("Features", "tinsmith.terrain.cards.results:make_features_card")
+    register_card("Raster", "tinsmith.terrain.cards.results:make_raster_card")
+    register_card("Table", "tinsmith.terrain.cards.results:make_table_card")
 
     __getattr__, __dir__ = lazy_names(
         __name__,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from ..._notebook import make_card
 from ..._sentences import counted
 from ...errors import OptionError
 from ...tin.types import Frozen
@@ -95,3 +96,6 @@ class Table(Frozen):
     def __repr__(self) -> str:
         title = f" {self.name}" if self.name else ""
         return f"<Table{title}: {counted(len(self), 'row')}, columns {', '.join(self.columns)}>"
+
+    def _repr_html_(self) -> str | None:
+        return make_card(self)

@@ -57,3 +57,8 @@ def list_sessions(page):
             command, _, output = part.partition("\n")
             found.append((command, output))
     return found
+
+
+def remove_code(text):
+    """Return a page's text without what it shows as code."""
+    return re.sub(r"``[^`]+``|`[^`\n]+`", "code", _BLOCK.sub("", text))
