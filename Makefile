@@ -51,7 +51,7 @@ bench: $(READY) ## Time kernel, lines, edits, queries, readers, writers beside t
 
 .PHONY: docs
 docs: $(READY) ## Build the site of the documentation into build/site; a warning is an error
-	$(BIN)/sphinx-build -q -W --keep-going -c docs -d build/doctrees . build/site
+	$(BIN)/sphinx-build -q -E -W --keep-going -c docs -d build/doctrees . build/site
 	@echo "build/site/index.html"
 
 .PHONY: gallery

@@ -40,7 +40,7 @@ nb_execution_mode = "off"  # the tests run the notebooks; their outputs are kept
 autodoc_typehints = "none"  # docstrings give types
 autodoc_member_order = "groupwise"
 napoleon_google_docstring = False
-napoleon_use_ivar = True
+napoleon_custom_sections = [("Attributes", "params_style")]
 napoleon_use_rtype = False
 
 html_theme = "furo"

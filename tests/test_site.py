@@ -1,5 +1,6 @@
 """The site of the documentation: every page in its navigation, no link without an end."""
 
+import json
 import re
 import sys
 from html.parser import HTMLParser
@@ -47,7 +48,7 @@ def test_the_overview_names_every_page_that_a_reader_may_want():
     body = INDEX.read_text().split("## In a minute")[1]
     linked = {(INDEX.parent / target).resolve() for target in LINK.findall(remove_code(body))}
     subjects = {page for page in (ROOT / "docs").glob("*.md") if page != INDEX}
-    missing = sorted(page.name for page in subjects - linked - {ROOT / "docs" / "meshes.md"})
+    missing = sorted(page.name for page in subjects - linked)
     assert not missing, f"name in the overview of docs/index.md: {missing}"
 
 
@@ -130,6 +131,42 @@ def test_the_reference_of_commands_has_every_option(reference):
         for option in command.params:
             if isinstance(option, click.Option) and not option.hidden:
                 assert max(option.opts, key=len) in text[f"tinsmith {name}"]
+
+
+# ----------------------------------------------------------------------------------- notebooks
+
+NOTEBOOKS = sorted((ROOT / "docs" / "notebooks").glob("*.ipynb"))
+
+
+def list_outputs(notebook):
+    """Return what each cell says, and of what kinds its pictures are."""
+    found = []
+    for cell in notebook.cells:
+        for output in cell.get("outputs", ()):
+            data = output.get("data", {"text/plain": output.get("text")})
+            found.append((sorted(data), data.get("text/plain")))
+    return found
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_notebooks_run_and_say_what_they_show(path, monkeypatch):
+    nbformat = pytest.importorskip("nbformat")
+    monkeypatch.syspath_prepend(str(ROOT / "docs"))
+    from make_notebooks import run_notebook
+
+    kept = nbformat.read(path, as_version=4)
+    assert list_outputs(run_notebook(path)) == list_outputs(kept), "run docs/make_notebooks.py"
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_notebooks_are_small_and_have_run(path):
+    assert path.stat().st_size < 1_000_000
+    cells = [cell for cell in json.loads(path.read_text())["cells"] if cell["cell_type"] == "code"]
+    assert [cell["execution_count"] for cell in cells] == list(range(1, len(cells) + 1))
+    said = [output for cell in cells for output in cell["outputs"]]
+    assert not [one for one in said if one["output_type"] == "error"]
+    assert sum("image/png" in one.get("data", {}) for one in said) >= 2
 
 
 # ------------------------------------------------------------------------------------ the site

@@ -190,7 +190,7 @@ def _list_options(
 
 
 def _link_options(options: Iterable[click.Option], before: str) -> nodes.paragraph:
-    found = nodes.paragraph("", f"{before} ")
+    found = nodes.paragraph("", f"{before} ", classes=["options"])
     for k, option in enumerate(options):
         flag = max(option.opts, key=len)
         link = nodes.reference("", "", nodes.literal(flag, flag), refid=_anchor(option))
