@@ -116,6 +116,11 @@ else:  # a type checker takes every name for one that such a __getattr__ has
     register_methods(
         {
             "TIN._repr_html_": "tinsmith.terrain.preview.card:make_card",
+            "Survey._repr_html_": "tinsmith.terrain.cards.survey:make_survey_card",
+            "Report._repr_html_": "tinsmith.terrain.cards.survey:make_report_card",
+            "Features._repr_html_": "tinsmith.terrain.cards.results:make_features_card",
+            "Raster._repr_html_": "tinsmith.terrain.cards.results:make_raster_card",
+            "Table._repr_html_": "tinsmith.terrain.cards.results:make_table_card",
             "TIN.plot": "tinsmith.terrain.charts.triangles:plot_tin",
             "TIN.to_crs": "tinsmith.io.reprojection.surfaces:reproject",
             "TIN.to_geodataframe": "tinsmith.io.vector.libraries:build_frame",

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from ... import _optional
+from ..._methods import make_card
 from ..._sentences import counted
 from ...errors import OptionError
 from ...tin.types import Frozen
@@ -102,3 +103,6 @@ class Table(Frozen):
     def __repr__(self) -> str:
         title = f" {self.name}" if self.name else ""
         return f"<Table{title}: {counted(len(self), 'row')}, columns {', '.join(self.columns)}>"
+
+    def _repr_html_(self) -> str:
+        return make_card(self)

@@ -144,7 +144,7 @@ def _tell_version(ctx: click.Context) -> None:
     is_flag=True,
     is_eager=True,
     expose_value=False,
-    callback=lambda ctx, _, is_asked: is_asked and _tell_version(ctx),
+    callback=lambda ctx, _, is_asked: _tell_version(ctx) if is_asked else None,
     help="Show the version, that of the compiled core and Python's, and exit.",
 )
 def main() -> None:
