@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from .._notebook import make_card
+from .._methods import call_method
 from .._sentences import counted
 from .types import Frozen
 
@@ -628,5 +628,6 @@ class Report(Frozen):
             f"{counted(self.n_triangles, 'triangle')}, {counted(merged, 'row')} merged away>"
         )
 
-    def _repr_html_(self) -> str | None:
-        return make_card(self)
+    def _repr_html_(self) -> str:
+        card: str = call_method("Report._repr_html_", self)
+        return card

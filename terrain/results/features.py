@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
 
-from ..._notebook import make_card
+from ..._methods import call_method
 from ..._sentences import counted
 from ...crs import CRS, Unit, require_one_unit, shorten_crs
 from ...errors import OptionError
@@ -261,8 +261,9 @@ class Features(Frozen):
         title = f" {self.name}" if self.name else ""
         return f"<Features{title}: {self._count()}{names}, crs {shorten_crs(self.crs)}>"
 
-    def _repr_html_(self) -> str | None:
-        return make_card(self)
+    def _repr_html_(self) -> str:
+        card: str = call_method("Features._repr_html_", self)
+        return card
 
     def _count(self) -> str:
         noun = self.kind[:-1]

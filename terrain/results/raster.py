@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._notebook import make_card
+from ..._methods import call_method
 from ..._sentences import counted
 from ...crs import CRS, shorten_crs
 from ...errors import OptionError
@@ -130,8 +130,9 @@ class Raster(Frozen):
             f"crs {shorten_crs(self.crs)}>"
         )
 
-    def _repr_html_(self) -> str | None:
-        return make_card(self)
+    def _repr_html_(self) -> str:
+        card: str = call_method("Raster._repr_html_", self)
+        return card
 
 
 def _as_band(name: str, values: Any, shape: tuple[int, ...]) -> Any:

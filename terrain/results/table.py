@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from ..._notebook import make_card
+from ... import _optional
+from ..._methods import call_method
 from ..._sentences import counted
 from ...errors import OptionError
 from ...tin.types import Frozen
@@ -79,6 +80,11 @@ class Table(Frozen):
         -------
         pandas.DataFrame
 
+        Raises
+        ------
+        MissingExtraError
+            If pandas is not installed.
+
         Examples
         --------
         >>> import tinsmith as ts
@@ -86,9 +92,10 @@ class Table(Frozen):
         >>> frame.attrs["units"]
         {'level': 'm'}
         """
-        import pandas as pd
-
-        frame = pd.DataFrame({name: values.copy() for name, values in self.columns.items()})
+        pandas = _optional.load("pandas", "Turning a table into a DataFrame")
+        frame: pd.DataFrame = pandas.DataFrame(
+            {name: values.copy() for name, values in self.columns.items()}
+        )
         units = {name: unit_text(self.units, name) for name in self.units}
         frame.attrs |= {"name": self.name, "units": units, "notes": list(self.notes)}
         return frame
@@ -97,5 +104,6 @@ class Table(Frozen):
         title = f" {self.name}" if self.name else ""
         return f"<Table{title}: {counted(len(self), 'row')}, columns {', '.join(self.columns)}>"
 
-    def _repr_html_(self) -> str | None:
-        return make_card(self)
+    def _repr_html_(self) -> str:
+        card: str = call_method("Table._repr_html_", self)
+        return card

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._notebook import make_card
+from ..._methods import call_method
 from ..._sentences import counted
 from ...crs import CRS, Unit, require_one_unit, shorten_crs
 from ...errors import OptionError
@@ -151,8 +151,9 @@ class Survey:
             f"<Survey: {counted(len(self), 'point')}{origin}{names}, crs {shorten_crs(self.crs)}>"
         )
 
-    def _repr_html_(self) -> str | None:
-        return make_card(self)
+    def _repr_html_(self) -> str:
+        card: str = call_method("Survey._repr_html_", self)
+        return card
 
 
 def _as_lines(name: str, lines: Any) -> Sequence[Any]:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["simplify"]
 
 
-@click.command(short_help="Leave out points that a TIN within a tolerance can do without.")
+@click.command()
 @input_file("file")
 @output_files
 @number_option(
