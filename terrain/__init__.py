@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from .results import Features, Raster, Table
     from .sections import cross_sections, drape, profile, section_lines
     from .sheets import Plan, plan
+    from .simplification import simplify
     from .slope import aspect, slope
 else:  # a type checker takes every name for one that such a __getattr__ has
     from .._lazy import lazy_names
@@ -57,6 +58,7 @@ else:  # a type checker takes every name for one that such a __getattr__ has
             ".results": ("Features", "Raster", "Table"),
             ".sections": ("cross_sections", "drape", "profile", "section_lines"),
             ".sheets": ("Plan", "plan"),
+            ".simplification": ("simplify",),
             ".slope": ("aspect", "slope"),
         },
     )
@@ -96,6 +98,7 @@ __all__ = [
     "relief_map",
     "section_lines",
     "section_picture",
+    "simplify",
     "slope",
     "slope_classes",
     "slope_statistics",

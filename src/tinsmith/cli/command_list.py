@@ -12,6 +12,7 @@ SECTIONS = {
         "view": "Show a TIN in 3D: in a window, as a page, as a picture.",
         "compare": "Compare the paper's algorithms with the exact kernel.",
         "refine": "Make a finite element mesh of a TIN.",
+        "simplify": "Leave out points that a TIN within a tolerance can do without.",
         "edit": "Change a TIN by a script of edits.",
         "convert": "Write points or a TIN in another format.",
         "formats": "List the formats that can be read and written.",
