@@ -10,6 +10,7 @@ from .charts.relief import relief_map
 from .charts.sections import section_picture
 from .earthwork import Difference, difference, stage_storage, volume
 from .gridding import height_above, rasterize
+from .hydrology import depressions, flow_path, pits, ponds, ridges_and_valleys
 from .isolines import ContourCheck, check_contours, contour_bands, contour_labels, contours
 from .lift import lift
 from .preview import Preview, preview
@@ -39,19 +40,24 @@ __all__ = [
     "contours",
     "cross_sections",
     "curvature",
+    "depressions",
     "difference",
     "drape",
     "earthwork_map",
+    "flow_path",
     "height_above",
     "hillshade",
     "histogram",
     "lift",
+    "pits",
     "plan",
+    "ponds",
     "preview",
     "profile",
     "profile_picture",
     "rasterize",
     "relief_map",
+    "ridges_and_valleys",
     "section_lines",
     "section_picture",
     "slope",

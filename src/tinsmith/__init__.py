@@ -53,6 +53,7 @@ if TYPE_CHECKING:
     )
     from .terrain.earthwork import Difference, difference, stage_storage, volume
     from .terrain.gridding import height_above, rasterize
+    from .terrain.hydrology import depressions, flow_path, pits, ponds, ridges_and_valleys
     from .terrain.isolines import (
         ContourCheck,
         check_contours,
@@ -166,6 +167,13 @@ else:  # a type checker takes every name for one that such a __getattr__ has
             ),
             ".io.raster.cells": ("rasterize",),  # which reads the file of `like`, too
             ".terrain.gridding": ("height_above",),
+            ".terrain.hydrology": (
+                "depressions",
+                "flow_path",
+                "pits",
+                "ponds",
+                "ridges_and_valleys",
+            ),
             ".terrain.relief": (
                 "aspect_classes",
                 "curvature",
@@ -255,10 +263,12 @@ __all__ = [
     "contours",
     "cross_sections",
     "curvature",
+    "depressions",
     "difference",
     "drape",
     "earthwork_map",
     "find_format",
+    "flow_path",
     "height_above",
     "hillshade",
     "histogram",
@@ -268,7 +278,9 @@ __all__ = [
     "lift",
     "lines_from_codes",
     "paper",
+    "pits",
     "plan",
+    "ponds",
     "preview",
     "profile",
     "profile_picture",
@@ -282,6 +294,7 @@ __all__ = [
     "refine",
     "relief_map",
     "reproject",
+    "ridges_and_valleys",
     "section_lines",
     "section_picture",
     "slope",

@@ -17,8 +17,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from .columns import Units
+    from .parts import FeatureParts
 
-__all__ = ["Table"]
+__all__ = ["Table", "tabulate_columns"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -95,3 +96,10 @@ class Table(Frozen):
     def __repr__(self) -> str:
         title = f" {self.name}" if self.name else ""
         return f"<Table{title}: {counted(len(self), 'row')}, columns {', '.join(self.columns)}>"
+
+
+def tabulate_columns(features: FeatureParts) -> Table:
+    """Return the columns of features as a table, without their geometries."""
+    return Table(
+        dict(features.columns), units=dict(features.units), name=features.name, notes=features.notes
+    )
