@@ -18,6 +18,7 @@ from .relief import aspect_classes, curvature, hillshade, slope_classes, slope_s
 from .results import Features, Raster, Table
 from .sections import cross_sections, drape, profile, section_lines
 from .sheets import Plan, plan
+from .sight import line_of_sight, viewshed, visible_vertices
 from .simplification import simplify
 from .slope import aspect, slope
 
@@ -50,6 +51,7 @@ __all__ = [
     "hillshade",
     "histogram",
     "lift",
+    "line_of_sight",
     "pits",
     "plan",
     "ponds",
@@ -66,5 +68,7 @@ __all__ = [
     "slope_classes",
     "slope_statistics",
     "stage_storage",
+    "viewshed",
+    "visible_vertices",
     "volume",
 ]

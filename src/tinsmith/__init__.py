@@ -73,6 +73,7 @@ if TYPE_CHECKING:
     from .terrain.results import Features, Raster, Table
     from .terrain.sections import cross_sections, drape, profile, section_lines
     from .terrain.sheets import Plan, plan
+    from .terrain.sight import line_of_sight, viewshed, visible_vertices
     from .terrain.simplification import simplify
     from .terrain.slope import aspect, slope
     from .tin import (
@@ -208,6 +209,11 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "refine",
                 "triangulate",
             ),
+            ".terrain.sight": (
+                "line_of_sight",
+                "viewshed",
+                "visible_vertices",
+            ),
             ".tin.voronoi": ("voronoi",),
         },
     )
@@ -278,6 +284,7 @@ __all__ = [
     "known_formats",
     "length_unit",
     "lift",
+    "line_of_sight",
     "lines_from_codes",
     "paper",
     "pits",
@@ -308,6 +315,8 @@ __all__ = [
     "tin",
     "transform_points",
     "triangulate",
+    "viewshed",
+    "visible_vertices",
     "volume",
     "voronoi",
     "with_lines",

@@ -65,6 +65,7 @@ def flow(file: Path, find: FlowProduct, request: Request, **asked: Any) -> None:
       tinsmith flow site.ply --find paths --from 752700 4024300 -o path.geojson
     """  # noqa: D301 - click reads the control character
     from ...terrain.results.table import tabulate_columns
+    from ..output.line_summaries import describe_features
 
     _require_fitting(find, asked)
     more = [] if asked["points"] is None else [_name_points(asked["points"])]
@@ -74,7 +75,9 @@ def flow(file: Path, find: FlowProduct, request: Request, **asked: Any) -> None:
         found = _find(tin, find, asked)
     planned.write("Features", found)
     planned.write("Table", tabulate_columns(found))
-    request.finish(planned, _summarise(tin, found), lambda: _describe(file, find, found))
+    request.finish(
+        planned, _summarise(tin, found), lambda: describe_features(file, found, find=find)
+    )
 
 
 def _require_fitting(find: str, asked: dict[str, Any]) -> None:
@@ -144,17 +147,3 @@ def _describe_row(found: Features, row: int) -> str:
             unit = unit_text(found.units, name) or ""
             parts.append(f"{name.replace('_', ' ')} {text} {unit}".strip())
     return ", ".join(parts)
-
-
-def _describe(file: Path, find: str, found: Features) -> dict[str, Any]:
-    from ...terrain.results.columns import unit_text
-
-    names = list(found.columns)
-    rows = zip(*(column.tolist() for column in found.columns.values()), strict=True)
-    return {
-        "input": str(file),
-        "find": find,
-        "found": [dict(zip(names, row, strict=True)) for row in rows],
-        "units": {name: unit_text(found.units, name) for name in found.units},
-        "notes": list(found.notes),
-    }
