@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from .sheets import Plan, plan
     from .simplification import simplify
     from .slope import aspect, slope
+    from .hydrology import depressions, flow_path, pits, ponds, ridges_and_valleys
+    from .sight import line_of_sight, viewshed, visible_vertices
 else:  # a type checker takes every name for one that such a __getattr__ has
     from .._lazy import lazy_names
 
@@ -62,6 +64,8 @@ else:  # a type checker takes every name for one that such a __getattr__ has
             ".simplification": ("simplify",),
             ".slope": ("aspect", "slope"),
             ".charts.triangles": ("to_matplotlib",),
+            ".hydrology": ("depressions", "flow_path", "pits", "ponds", "ridges_and_valleys",),
+            ".sight": ("line_of_sight", "viewshed", "visible_vertices",),
         },
     )
 
@@ -85,19 +89,25 @@ __all__ = [
     "contours",
     "cross_sections",
     "curvature",
+    "depressions",
     "difference",
     "drape",
     "earthwork_map",
+    "flow_path",
     "height_above",
     "hillshade",
     "histogram",
     "lift",
+    "line_of_sight",
+    "pits",
     "plan",
+    "ponds",
     "preview",
     "profile",
     "profile_picture",
     "rasterize",
     "relief_map",
+    "ridges_and_valleys",
     "section_lines",
     "section_picture",
     "simplify",
@@ -105,6 +115,11 @@ __all__ = [
     "slope_classes",
     "slope_statistics",
     "stage_storage",
+<<<<<<< HEAD
     "to_matplotlib",
+=======
+    "viewshed",
+    "visible_vertices",
+>>>>>>> water
     "volume",
 ]
