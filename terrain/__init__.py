@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from .charts.triangles import to_matplotlib
     from .earthwork import Difference, difference, stage_storage, volume
     from .gridding import height_above, rasterize
+    from .hydrology import depressions, flow_path, pits, ponds, ridges_and_valleys
     from .isolines import ContourCheck, check_contours, contour_bands, contour_labels, contours
     from .lift import lift
     from .preview import Preview, preview
@@ -21,10 +22,9 @@ if TYPE_CHECKING:
     from .results import Features, Raster, Table
     from .sections import cross_sections, drape, profile, section_lines
     from .sheets import Plan, plan
+    from .sight import line_of_sight, viewshed, visible_vertices
     from .simplification import simplify
     from .slope import aspect, slope
-    from .hydrology import depressions, flow_path, pits, ponds, ridges_and_valleys
-    from .sight import line_of_sight, viewshed, visible_vertices
 else:  # a type checker takes every name for one that such a __getattr__ has
     from .._lazy import lazy_names
 
@@ -64,8 +64,18 @@ else:  # a type checker takes every name for one that such a __getattr__ has
             ".simplification": ("simplify",),
             ".slope": ("aspect", "slope"),
             ".charts.triangles": ("to_matplotlib",),
-            ".hydrology": ("depressions", "flow_path", "pits", "ponds", "ridges_and_valleys",),
-            ".sight": ("line_of_sight", "viewshed", "visible_vertices",),
+            ".hydrology": (
+                "depressions",
+                "flow_path",
+                "pits",
+                "ponds",
+                "ridges_and_valleys",
+            ),
+            ".sight": (
+                "line_of_sight",
+                "viewshed",
+                "visible_vertices",
+            ),
         },
     )
 
@@ -115,11 +125,8 @@ __all__ = [
     "slope_classes",
     "slope_statistics",
     "stage_storage",
-<<<<<<< HEAD
     "to_matplotlib",
-=======
     "viewshed",
     "visible_vertices",
->>>>>>> water
     "volume",
 ]

@@ -196,7 +196,8 @@ def _faces_away(tin: TIN, eye: NDArray[np.float64]) -> NDArray[np.bool_]:
     normals = np.cross(b - a, c - a)
     sizes = np.abs(normals) * np.abs(eye - a)
     offsets = (normals * (eye - a)).sum(axis=1)
-    return offsets < -1e-12 * sizes.sum(axis=1)
+    is_below: NDArray[np.bool_] = offsets < -1e-12 * sizes.sum(axis=1)
+    return is_below
 
 
 def _as_features(
