@@ -10,6 +10,7 @@ from .charts.relief import relief_map
 from .charts.sections import section_picture
 from .earthwork import Difference, difference, stage_storage, volume
 from .gridding import height_above, rasterize
+from .ground_filter import GroundPoints, ground
 from .isolines import ContourCheck, check_contours, contour_bands, contour_labels, contours
 from .lift import lift
 from .preview import Preview, preview
@@ -23,6 +24,7 @@ __all__ = [
     "ContourCheck",
     "Difference",
     "Features",
+    "GroundPoints",
     "OptionError",
     "Plan",
     "Preview",
@@ -42,6 +44,7 @@ __all__ = [
     "difference",
     "drape",
     "earthwork_map",
+    "ground",
     "height_above",
     "hillshade",
     "histogram",

@@ -53,6 +53,7 @@ if TYPE_CHECKING:
     )
     from .terrain.earthwork import Difference, difference, stage_storage, volume
     from .terrain.gridding import height_above, rasterize
+    from .terrain.ground_filter import GroundPoints, ground
     from .terrain.isolines import (
         ContourCheck,
         check_contours,
@@ -166,6 +167,7 @@ else:  # a type checker takes every name for one that such a __getattr__ has
             ),
             ".io.raster.cells": ("rasterize",),  # which reads the file of `like`, too
             ".terrain.gridding": ("height_above",),
+            ".terrain.ground_filter": ("GroundPoints", "ground"),
             ".terrain.relief": (
                 "aspect_classes",
                 "curvature",
@@ -219,6 +221,7 @@ __all__ = [
     "Format",
     "FormatError",
     "Grid",
+    "GroundPoints",
     "Lines",
     "LinesError",
     "LossWarning",
@@ -259,6 +262,7 @@ __all__ = [
     "drape",
     "earthwork_map",
     "find_format",
+    "ground",
     "height_above",
     "hillshade",
     "histogram",
