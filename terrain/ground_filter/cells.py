@@ -55,9 +55,7 @@ class Cells:
         grid.reshape(-1)[self.number[rows]] = elevations[rows]
         return grid
 
-    def values_at(
-        self, grid: NDArray[np.float64], rows: NDArray[np.int64]
-    ) -> NDArray[np.float64]:
+    def values_at(self, grid: NDArray[np.float64], rows: NDArray[np.int64]) -> NDArray[np.float64]:
         """Return the values of a grid in the cells of some points."""
         return grid.reshape(-1)[self.number[rows]]
 

@@ -18,7 +18,8 @@ from ..georeference import describe_unknown
 from .cells import lay_cells
 from .parameters import Parameters
 from .returns import are_noise, may_be_ground
-from .seeds import find_low_noise, find_seeds, surround
+from .seeds import find_low_noise, find_seeds
+from .surroundings import surround
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -75,7 +76,7 @@ class GroundPoints:
     @property
     def is_ground(self) -> NDArray[np.bool_]:
         """Whether each point is ground."""
-        return self.classification == GROUND
+        return np.equal(self.classification, GROUND)
 
     @property
     def counts(self) -> dict[str, int]:
@@ -264,7 +265,7 @@ def _make_metric(points: NDArray[np.float64], across: float, up: float) -> NDArr
     """Return fresh points in metres from the least easting, northing and elevation."""
     if len(points) == 0:
         raise PointsError("There are no points: the ground is found among some.")
-    metric = points - points.min(axis=0)
+    metric: NDArray[np.float64] = points - points.min(axis=0)
     metric *= (across, across, up)
     metric[metric < _SMALLEST] = 0.0
     return metric

@@ -77,10 +77,10 @@ def least_around(grid: Grid, core: int, reach: int) -> Grid:
     ----------
     grid : (m, n) float64 array
     core, reach : int
-        Cells further than the first and no further than the second, in columns or rows; their
-        difference is even.
+        Cells further than the first and no further than the second, in columns or rows. The width
+        of that frame is odd, and larger than twice the first.
     """
-    half, away = (reach - core) // 2, (reach + core + 1) // 2
+    half, away = (reach - core - 1) // 2, (reach + core + 1) // 2
     padded = np.pad(grid, away + half, constant_values=np.inf)
     squares = _reduce_square(padded, half, np.minimum)
     columns, rows = grid.shape

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -55,6 +55,6 @@ def may_be_ground(
     return may_be, tuple(notes)
 
 
-def _find_numbers(survey: Survey, name: str) -> NDArray[np.generic] | None:
+def _find_numbers(survey: Survey, name: str) -> NDArray[Any] | None:
     values = survey.attributes.get(name)
     return values if values is not None and values.dtype.kind in "iuf" else None

@@ -24,17 +24,14 @@ if TYPE_CHECKING:
     from .cells import Cells
     from .parameters import Parameters
 
-__all__ = ["find_low_noise", "find_seeds", "surround"]
+__all__ = ["find_low_noise", "find_seeds"]
 
-_CORE, _REACH = 2, 6
+_CORE, _REACH = 2, 7
 """A group of low points is no wider than this to each side, and compared with points up to there;
 in cells."""
 
 _ROUNDS = 5
 """How often low points are looked for again, when others that hid them have gone."""
-
-_STEP = 5.0
-"""Between the points that are put around the seeds, metres."""
 
 
 def find_low_noise(
@@ -93,39 +90,3 @@ def _find_objects(
             is_object |= grid - opened > rise
         grid = opened
     return is_object
-
-
-def surround(
-    points: NDArray[np.float64], seeds: NDArray[np.float64], margin: float
-) -> NDArray[np.float64]:
-    """Return points around all others, each as high as the seed that is nearest to the side."""
-    low, high = points[:, :2].min(axis=0) - margin, points[:, :2].max(axis=0) + margin
-    sides = [_line_side(seeds, low, high, axis, is_high) for axis in (0, 1) for is_high in (0, 1)]
-    ring = np.concatenate(sides)
-    _, first = np.unique(ring[:, :2], axis=0, return_index=True)
-    return ring[first]
-
-
-def _line_side(
-    seeds: NDArray[np.float64],
-    low: NDArray[np.float64],
-    high: NDArray[np.float64],
-    axis: int,
-    is_high: int,
-) -> NDArray[np.float64]:
-    """Return points along a side on which the coordinate ``axis`` is least or largest."""
-    along = 1 - axis
-    count = max(2, int(np.ceil((high - low)[along] / _STEP)) + 1)
-    places = np.linspace(low[along], high[along], count)
-    edge = (high if is_high else low)[axis]
-    nearest = np.rint((seeds[:, along] - low[along]) / (places[1] - places[0])).astype(np.int64)
-    away = np.abs(seeds[:, axis] - edge)
-    order = np.lexsort((seeds[:, along], seeds[:, 2], away, nearest))
-    bins, first = np.unique(nearest[order], return_index=True)
-    after = np.clip(np.searchsorted(bins, np.arange(count)), 0, len(bins) - 1)
-    before = np.maximum(after - 1, 0)
-    is_before = np.abs(bins[before] - np.arange(count)) < np.abs(bins[after] - np.arange(count))
-    chosen = order[first[np.where(is_before, before, after)]]
-    side = np.empty((count, 3))
-    side[:, axis], side[:, along], side[:, 2] = edge, places, seeds[chosen, 2]
-    return side

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..._sentences import counted
+from ..options import writing_options
 from ..parameters import input_files, number_option, output_files
 from ..request import surface_options
-from ..options import writing_options
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
