@@ -18,6 +18,7 @@ from .relief import aspect_classes, curvature, hillshade, slope_classes, slope_s
 from .results import Features, Raster, Table
 from .sections import cross_sections, drape, profile, section_lines
 from .sheets import Plan, plan
+from .simplification import simplify
 from .slope import aspect, slope
 
 __all__ = [
@@ -57,6 +58,7 @@ __all__ = [
     "relief_map",
     "section_lines",
     "section_picture",
+    "simplify",
     "slope",
     "slope_classes",
     "slope_statistics",

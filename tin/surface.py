@@ -16,6 +16,7 @@ from . import topology
 from .building.assembly import assemble
 from .building.attributes import Attributes, as_columns, as_row_attributes
 from .building.moving import move_inputs, move_points, require_move
+from .building.reference import require_crs
 from .constraints.breaklines import Lines
 from .editing.editable import Editable
 from .editing.version import Version
@@ -509,6 +510,7 @@ class TIN(Editable):
         >>> tin.locate([[1, 1], [3, 3]])
         array([ 0, -1], dtype=int32)
         """
+        require_crs(xy, self._crs, "places")
         return self._current.triangulation.locator.locate(as_xy(xy))
 
     def interpolate(
@@ -596,6 +598,7 @@ class TIN(Editable):
         choice("method", method, InterpolationMethod)
         if extrapolate is not None:
             choice("extrapolate", extrapolate, Extrapolation)
+        require_crs(xy, self._crs, "places")
         places, is_one = as_places(xy)
         elevations = self._current.interpolator.interpolate(
             places, method, extrapolate=extrapolate is not None, threads=threads
@@ -632,6 +635,7 @@ class TIN(Editable):
         >>> tin.closest_vertex([[3, 1], [2, 2], [-9, 9]])
         array([1, 0, 2], dtype=int32)
         """
+        require_crs(xy, self._crs, "places")
         return self._current.triangulation.nearest.find(as_xy(xy))
 
     # ---------------------------------------------------------------- connections

@@ -73,6 +73,7 @@ if TYPE_CHECKING:
     from .terrain.results import Features, Raster, Table
     from .terrain.sections import cross_sections, drape, profile, section_lines
     from .terrain.sheets import Plan, plan
+    from .terrain.simplification import simplify
     from .terrain.slope import aspect, slope
     from .tin import (
         TIN,
@@ -161,6 +162,7 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "profile_picture",
                 "relief_map",
                 "section_picture",
+                "simplify",
                 "slope",
                 "stage_storage",
                 "volume",
@@ -288,6 +290,7 @@ __all__ = [
     "reproject",
     "section_lines",
     "section_picture",
+    "simplify",
     "slope",
     "slope_classes",
     "slope_statistics",

@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 __all__ = ["main"]
 
 _BUILT_IN = (
-    *("build", "info", "check", "view", "compare", "refine", "edit", "convert", "formats"),
-    *("ground", "contours", "slope", "hillshade", "profile", "volume", "diff", "drape"),
+    *("build", "info", "check", "view", "compare", "refine", "simplify", "edit", "convert"),
+    *("formats", "ground", "contours", "slope", "hillshade", "profile", "volume", "diff", "drape"),
     *("interpolate", "raster", "plan"),
 )
 
