@@ -13,7 +13,7 @@ from pictures import FOLDER, draw, save
 import tinsmith as ts
 
 SIDE = 240.0
-STRIP = 118.0, 122.0
+STRIP = 170.0, 176.0
 COLORS = {"ground": "#8c6d46", "others": "#4c9a52", "low noise": "#d62728"}
 
 
@@ -27,7 +27,7 @@ def make_points(seed=4):
         z[inside] = z[inside].max() + 5 - 0.4 * abs(y[inside] - north)
     wood = (np.sin(x / 31) * np.sin(y / 37) > 0.3) & (rng.uniform(size=len(x)) < 0.4)
     z[wood] += rng.uniform(2, 16, int(wood.sum()))
-    low = rng.choice(len(x), 12, replace=False)
+    low = rng.choice(len(x), 120, replace=False)
     z[low] -= rng.uniform(4, 12, len(low))
     return np.column_stack([x, y, z]).round(2)
 
