@@ -22,13 +22,14 @@ def make_points(seed=4):
     rng = np.random.default_rng(seed)
     x, y = rng.uniform(0, SIDE, (2, int(SIDE**2)))
     z = 210 + 14 * np.sin(x / 50) * np.cos(y / 65) + 0.06 * x + rng.normal(0, 0.03, len(x))
+    bare = z.copy()
     for east, north, half in [(50, 60, 9), (120, 118, 10), (185, 70, 7), (70, 180, 12)]:
         inside = (abs(x - east) < half) & (abs(y - north) < 0.7 * half)
         z[inside] = z[inside].max() + 5 - 0.4 * abs(y[inside] - north)
     wood = (np.sin(x / 31) * np.sin(y / 37) > 0.3) & (rng.uniform(size=len(x)) < 0.4)
     z[wood] += rng.uniform(2, 16, int(wood.sum()))
-    low = rng.choice(len(x), 120, replace=False)
-    z[low] -= rng.uniform(4, 12, len(low))
+    low = rng.choice(len(x), 60, replace=False)
+    z[low] = bare[low] - rng.uniform(4, 12, len(low))
     return np.column_stack([x, y, z]).round(2)
 
 
