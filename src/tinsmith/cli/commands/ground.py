@@ -38,7 +38,7 @@ _PARAMETERS = (
 )
 
 
-@click.command(short_help="Tell the ground from buildings, plants and noise.")
+@click.command()
 @input_files("points")
 @output_files
 @number_option("--building", "METRES", "Width of the largest building.", default=40.0)
