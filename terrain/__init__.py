@@ -42,6 +42,7 @@ else:  # a type checker takes every name for one that such a __getattr__ has
             ".charts.sections": ("section_picture",),
             ".earthwork": ("Difference", "difference", "stage_storage", "volume"),
             ".gridding": ("height_above", "rasterize"),
+            ".ground_filter": ("GroundPoints", "ground", "GroundPoints", "ground"),
             ".isolines": (
                 "ContourCheck",
                 "check_contours",
@@ -83,6 +84,7 @@ __all__ = [
     "ContourCheck",
     "Difference",
     "Features",
+    "GroundPoints",
     "OptionError",
     "Plan",
     "Preview",
@@ -104,6 +106,7 @@ __all__ = [
     "drape",
     "earthwork_map",
     "flow_path",
+    "ground",
     "height_above",
     "hillshade",
     "histogram",

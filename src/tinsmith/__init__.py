@@ -64,6 +64,7 @@ if TYPE_CHECKING:
     )
     from .terrain.earthwork import Difference, difference, stage_storage, volume
     from .terrain.gridding import height_above, rasterize
+    from .terrain.ground_filter import GroundPoints, ground
     from .terrain.hydrology import depressions, flow_path, pits, ponds, ridges_and_valleys
     from .terrain.isolines import (
         ContourCheck,
@@ -213,6 +214,7 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "ponds",
                 "ridges_and_valleys",
             ),
+            ".terrain.ground_filter": ("GroundPoints", "ground"),
             ".terrain.relief": (
                 "aspect_classes",
                 "curvature",
@@ -271,6 +273,7 @@ __all__ = [
     "Format",
     "FormatError",
     "Grid",
+    "GroundPoints",
     "Lines",
     "LinesError",
     "LossWarning",
@@ -315,6 +318,7 @@ __all__ = [
     "flow_path",
     "from_mesh",
     "from_raster",
+    "ground",
     "height_above",
     "hillshade",
     "histogram",
