@@ -9,6 +9,7 @@ from .charts.profiles import profile_picture
 from .charts.relief import relief_map
 from .charts.sections import section_picture
 from .earthwork import Difference, difference, stage_storage, volume
+from .flats import flats, mend_flats
 from .gridding import height_above, rasterize
 from .isolines import ContourCheck, check_contours, contour_bands, contour_labels, contours
 from .lift import lift
@@ -43,10 +44,12 @@ __all__ = [
     "difference",
     "drape",
     "earthwork_map",
+    "flats",
     "height_above",
     "hillshade",
     "histogram",
     "lift",
+    "mend_flats",
     "plan",
     "preview",
     "profile",

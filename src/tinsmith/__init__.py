@@ -52,6 +52,7 @@ if TYPE_CHECKING:
         section_picture,
     )
     from .terrain.earthwork import Difference, difference, stage_storage, volume
+    from .terrain.flats import flats, mend_flats
     from .terrain.gridding import height_above, rasterize
     from .terrain.isolines import (
         ContourCheck,
@@ -154,8 +155,10 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "contours",
                 "difference",
                 "earthwork_map",
+                "flats",
                 "histogram",
                 "lift",
+                "mend_flats",
                 "Preview",
                 "preview",
                 "profile_picture",
@@ -261,6 +264,7 @@ __all__ = [
     "drape",
     "earthwork_map",
     "find_format",
+    "flats",
     "height_above",
     "hillshade",
     "histogram",
@@ -269,6 +273,7 @@ __all__ = [
     "length_unit",
     "lift",
     "lines_from_codes",
+    "mend_flats",
     "paper",
     "plan",
     "preview",

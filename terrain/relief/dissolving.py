@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from ...tin import TIN
 
-__all__ = ["Dissolved", "dissolve"]
+__all__ = ["Dissolved", "dissolve", "number_components"]
 
 
 class Dissolved(NamedTuple):
@@ -66,7 +66,7 @@ def dissolve(tin: TIN, classes: NDArray[np.int64]) -> Dissolved:
         nothing = np.zeros(1, np.int64)
         return Dissolved(nothing[:0], nothing, nothing, nothing, nothing[:0])
     neighbors = _part_classes(tin.neighbors, classes)
-    parts = _number_components(neighbors)
+    parts = number_components(neighbors)
     rings = _trace_rings(tin.triangles, neighbors, parts, classes)
     return _as_levels(rings, _sort_exteriors_first(rings, classes, tin.points), classes)
 
@@ -85,7 +85,7 @@ def _part_classes(neighbors: NDArray[np.int32], classes: NDArray[np.int64]) -> N
     return np.where(is_same, neighbors, np.int32(NO_NEIGHBOR))
 
 
-def _number_components(neighbors: NDArray[np.int32]) -> NDArray[np.int64]:
+def number_components(neighbors: NDArray[np.int32]) -> NDArray[np.int64]:
     """Return the smallest triangle that each is connected to.
 
     Roots hook onto the smallest root beside them, then every path is halved until it is one step
