@@ -65,6 +65,8 @@ if TYPE_CHECKING:
     from .terrain.earthwork import Difference, difference, stage_storage, volume
     from .terrain.flats import flats, mend_flats
     from .terrain.gridding import height_above, rasterize
+    from .terrain.ground_filter import GroundPoints, ground
+    from .terrain.hydrology import depressions, flow_path, pits, ponds, ridges_and_valleys
     from .terrain.isolines import (
         ContourCheck,
         check_contours,
@@ -84,6 +86,7 @@ if TYPE_CHECKING:
     from .terrain.results import Features, Raster, Table
     from .terrain.sections import cross_sections, drape, profile, section_lines
     from .terrain.sheets import Plan, plan
+    from .terrain.sight import line_of_sight, viewshed, visible_vertices
     from .terrain.simplification import simplify
     from .terrain.slope import aspect, slope
     from .tin import (
@@ -207,6 +210,14 @@ else:  # a type checker takes every name for one that such a __getattr__ has
             ),
             ".io.raster.cells": ("rasterize",),  # which reads the file of `like`, too
             ".terrain.gridding": ("height_above",),
+            ".terrain.hydrology": (
+                "depressions",
+                "flow_path",
+                "pits",
+                "ponds",
+                "ridges_and_valleys",
+            ),
+            ".terrain.ground_filter": ("GroundPoints", "ground"),
             ".terrain.relief": (
                 "aspect_classes",
                 "curvature",
@@ -239,6 +250,11 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "refine",
                 "triangulate",
             ),
+            ".terrain.sight": (
+                "line_of_sight",
+                "viewshed",
+                "visible_vertices",
+            ),
             ".tin.voronoi": ("voronoi",),
         },
     )
@@ -260,6 +276,7 @@ __all__ = [
     "Format",
     "FormatError",
     "Grid",
+    "GroundPoints",
     "Lines",
     "LinesError",
     "LossWarning",
@@ -296,13 +313,16 @@ __all__ = [
     "contours",
     "cross_sections",
     "curvature",
+    "depressions",
     "difference",
     "drape",
     "earthwork_map",
     "find_format",
     "flats",
+    "flow_path",
     "from_mesh",
     "from_raster",
+    "ground",
     "height_above",
     "hillshade",
     "histogram",
@@ -310,10 +330,13 @@ __all__ = [
     "known_formats",
     "length_unit",
     "lift",
+    "line_of_sight",
     "lines_from_codes",
     "mend_flats",
     "paper",
+    "pits",
     "plan",
+    "ponds",
     "preview",
     "profile",
     "profile_picture",
@@ -329,6 +352,7 @@ __all__ = [
     "refine",
     "relief_map",
     "reproject",
+    "ridges_and_valleys",
     "section_lines",
     "section_picture",
     "simplify",
@@ -347,6 +371,8 @@ __all__ = [
     "to_ugrid",
     "transform_points",
     "triangulate",
+    "viewshed",
+    "visible_vertices",
     "volume",
     "voronoi",
     "with_lines",
