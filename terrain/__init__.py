@@ -1,31 +1,90 @@
 """What is derived from a TIN: slope, 3D models, previews, charts. Knows no files."""
 
-from ..errors import OptionError, RenderError
-from .charts.comparison import comparison_picture
-from .charts.earthwork import earthwork_map
-from .charts.histogram import histogram
-from .charts.isolines import contour_map
-from .charts.profiles import profile_picture
-from .charts.relief import relief_map
-from .charts.sections import section_picture
-from .earthwork import Difference, difference, stage_storage, volume
-from .gridding import height_above, rasterize
-from .hydrology import depressions, flow_path, pits, ponds, ridges_and_valleys
-from .isolines import ContourCheck, check_contours, contour_bands, contour_labels, contours
-from .lift import lift
-from .preview import Preview, preview
-from .relief import aspect_classes, curvature, hillshade, slope_classes, slope_statistics
-from .results import Features, Raster, Table
-from .sections import cross_sections, drape, profile, section_lines
-from .sheets import Plan, plan
-from .sight import line_of_sight, viewshed, visible_vertices
-from .simplification import simplify
-from .slope import aspect, slope
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ..errors import OptionError, RenderError
+    from .charts.comparison import comparison_picture
+    from .charts.earthwork import earthwork_map
+    from .charts.histogram import histogram
+    from .charts.isolines import contour_map
+    from .charts.profiles import profile_picture
+    from .charts.relief import relief_map
+    from .charts.sections import section_picture
+    from .charts.triangles import to_matplotlib
+    from .earthwork import Difference, difference, stage_storage, volume
+    from .gridding import height_above, rasterize
+    from .hydrology import depressions, flow_path, pits, ponds, ridges_and_valleys
+    from .isolines import ContourCheck, check_contours, contour_bands, contour_labels, contours
+    from .lift import lift
+    from .preview import Preview, preview
+    from .relief import aspect_classes, curvature, hillshade, slope_classes, slope_statistics
+    from .results import Features, Raster, Table
+    from .sections import cross_sections, drape, profile, section_lines
+    from .sheets import Plan, plan
+    from .sight import line_of_sight, viewshed, visible_vertices
+    from .simplification import simplify
+    from .slope import aspect, slope
+else:  # a type checker takes every name for one that such a __getattr__ has
+    from .._lazy import lazy_names
+
+    # A small job starts at once, as it loads what it uses.
+    __getattr__, __dir__ = lazy_names(
+        __name__,
+        {
+            "..errors": ("OptionError", "RenderError"),
+            ".charts.comparison": ("comparison_picture",),
+            ".charts.earthwork": ("earthwork_map",),
+            ".charts.histogram": ("histogram",),
+            ".charts.isolines": ("contour_map",),
+            ".charts.profiles": ("profile_picture",),
+            ".charts.relief": ("relief_map",),
+            ".charts.sections": ("section_picture",),
+            ".earthwork": ("Difference", "difference", "stage_storage", "volume"),
+            ".gridding": ("height_above", "rasterize"),
+            ".ground_filter": ("GroundPoints", "ground", "GroundPoints", "ground"),
+            ".isolines": (
+                "ContourCheck",
+                "check_contours",
+                "contour_bands",
+                "contour_labels",
+                "contours",
+            ),
+            ".lift": ("lift",),
+            ".preview": ("Preview", "preview"),
+            ".relief": (
+                "aspect_classes",
+                "curvature",
+                "hillshade",
+                "slope_classes",
+                "slope_statistics",
+            ),
+            ".results": ("Features", "Raster", "Table"),
+            ".sections": ("cross_sections", "drape", "profile", "section_lines"),
+            ".sheets": ("Plan", "plan"),
+            ".simplification": ("simplify",),
+            ".slope": ("aspect", "slope"),
+            ".charts.triangles": ("to_matplotlib",),
+            ".hydrology": (
+                "depressions",
+                "flow_path",
+                "pits",
+                "ponds",
+                "ridges_and_valleys",
+            ),
+            ".sight": (
+                "line_of_sight",
+                "viewshed",
+                "visible_vertices",
+            ),
+        },
+    )
 
 __all__ = [
     "ContourCheck",
     "Difference",
     "Features",
+    "GroundPoints",
     "OptionError",
     "Plan",
     "Preview",
@@ -47,6 +106,7 @@ __all__ = [
     "drape",
     "earthwork_map",
     "flow_path",
+    "ground",
     "height_above",
     "hillshade",
     "histogram",
@@ -68,6 +128,7 @@ __all__ = [
     "slope_classes",
     "slope_statistics",
     "stage_storage",
+    "to_matplotlib",
     "viewshed",
     "visible_vertices",
     "volume",

@@ -33,8 +33,8 @@ def main(folder: pathlib.Path = FOLDER) -> None:
     rows = zip(*(seen.columns[name] for name in ("class", "color", "share")), strict=True)
     for shape, (name, color, share) in zip(seen.to_shapely(), rows, strict=True):
         paths = [Path.make_compound_path(*map(as_path, list_rings(one))) for one in shape.geoms]
-        patches = PathCollection(paths, facecolors=color, label=f"{name}: {share:.0f} %")
-        axes.add_collection(patches)
+        axes.add_collection(PathCollection(paths, facecolors=color))
+        axes.plot([], [], "s", color=color, markersize=10, label=f"{name}: {share:.0f} %")
     contours = ts.contours(tin, 20)
     lines = [contours.coordinates[a:b, :2] for a, b in pairwise(contours.offsets[0].tolist())]
     axes.add_collection(LineCollection(lines, colors="#444444", linewidths=0.4))

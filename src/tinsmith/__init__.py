@@ -29,15 +29,25 @@ if TYPE_CHECKING:
     from .io import (
         Format,
         find_format,
+        from_mesh,
+        from_raster,
         known_formats,
         length_unit,
         lines_from_codes,
         read,
         read_lines,
+        read_points,
         read_polygons,
         read_rings,
+        read_tin,
         read_water,
         reproject,
+        to_features,
+        to_meshio,
+        to_pyvista,
+        to_rasterio,
+        to_trimesh,
+        to_ugrid,
         transform_points,
         with_lines,
         write,
@@ -50,9 +60,11 @@ if TYPE_CHECKING:
         profile_picture,
         relief_map,
         section_picture,
+        to_matplotlib,
     )
     from .terrain.earthwork import Difference, difference, stage_storage, volume
     from .terrain.gridding import height_above, rasterize
+    from .terrain.ground_filter import GroundPoints, ground
     from .terrain.hydrology import depressions, flow_path, pits, ponds, ridges_and_valleys
     from .terrain.isolines import (
         ContourCheck,
@@ -101,10 +113,24 @@ if TYPE_CHECKING:
     from .tin.voronoi import voronoi
 else:  # a type checker takes every name for one that such a __getattr__ has
     from ._lazy import lazy_names
-    from ._notebook import register_card
+    from ._methods import register_methods
 
-    # What tin cannot make itself, for it knows no pictures.
-    register_card("TIN", "tinsmith.terrain.preview.card:make_card")
+    # What tin cannot do itself, for it knows no pictures, features and files.
+    register_methods(
+        {
+            "TIN._repr_html_": "tinsmith.terrain.preview.card:make_card",
+            "Survey._repr_html_": "tinsmith.terrain.cards.survey:make_survey_card",
+            "Report._repr_html_": "tinsmith.terrain.cards.survey:make_report_card",
+            "Features._repr_html_": "tinsmith.terrain.cards.results:make_features_card",
+            "Raster._repr_html_": "tinsmith.terrain.cards.results:make_raster_card",
+            "Table._repr_html_": "tinsmith.terrain.cards.results:make_table_card",
+            "TIN.plot": "tinsmith.terrain.charts.triangles:plot_tin",
+            "TIN.to_crs": "tinsmith.io.reprojection.surfaces:reproject",
+            "TIN.to_geodataframe": "tinsmith.io.vector.libraries:build_frame",
+            "TIN.__geo_interface__": "tinsmith.io.vector.libraries:build_collection",
+            "TIN.__arrow_c_stream__": "tinsmith.io.vector.libraries:build_stream",
+        }
+    )
 
     __getattr__, __dir__ = lazy_names(
         __name__,
@@ -131,15 +157,25 @@ else:  # a type checker takes every name for one that such a __getattr__ has
             ".io": (
                 "Format",
                 "find_format",
+                "from_mesh",
+                "from_raster",
                 "known_formats",
                 "length_unit",
                 "lines_from_codes",
                 "read",
                 "read_lines",
+                "read_points",
                 "read_polygons",
                 "read_rings",
+                "read_tin",
                 "read_water",
                 "reproject",
+                "to_features",
+                "to_meshio",
+                "to_pyvista",
+                "to_rasterio",
+                "to_trimesh",
+                "to_ugrid",
                 "transform_points",
                 "with_lines",
                 "write",
@@ -166,6 +202,7 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "simplify",
                 "slope",
                 "stage_storage",
+                "to_matplotlib",
                 "volume",
             ),
             ".io.raster.cells": ("rasterize",),  # which reads the file of `like`, too
@@ -177,6 +214,7 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "ponds",
                 "ridges_and_valleys",
             ),
+            ".terrain.ground_filter": ("GroundPoints", "ground"),
             ".terrain.relief": (
                 "aspect_classes",
                 "curvature",
@@ -235,6 +273,7 @@ __all__ = [
     "Format",
     "FormatError",
     "Grid",
+    "GroundPoints",
     "Lines",
     "LinesError",
     "LossWarning",
@@ -277,6 +316,9 @@ __all__ = [
     "earthwork_map",
     "find_format",
     "flow_path",
+    "from_mesh",
+    "from_raster",
+    "ground",
     "height_above",
     "hillshade",
     "histogram",
@@ -297,8 +339,10 @@ __all__ = [
     "rasterize",
     "read",
     "read_lines",
+    "read_points",
     "read_polygons",
     "read_rings",
+    "read_tin",
     "read_water",
     "refine",
     "relief_map",
@@ -313,6 +357,13 @@ __all__ = [
     "stage_storage",
     "terrain",
     "tin",
+    "to_features",
+    "to_matplotlib",
+    "to_meshio",
+    "to_pyvista",
+    "to_rasterio",
+    "to_trimesh",
+    "to_ugrid",
     "transform_points",
     "triangulate",
     "viewshed",

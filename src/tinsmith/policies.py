@@ -23,6 +23,7 @@ __all__ = [
     "FeatureKind",
     "FlowProduct",
     "GridStyle",
+    "GroundReturns",
     "InterpolationMethod",
     "LineKind",
     "LineReading",
@@ -49,6 +50,9 @@ CrossingPolicy: TypeAlias = Literal["split", "error"]
 
 TrimPolicy: TypeAlias = Literal["perimeter", "everywhere"]
 """Where triangles with too long an edge are dropped: from the outside inwards, or everywhere."""
+
+GroundReturns: TypeAlias = Literal["last", "all"]
+"""Which returns of a pulse may be ground."""
 
 BreaklineKind: TypeAlias = Literal["hard", "soft"]
 """Whether a line of edges is a break of the slope."""

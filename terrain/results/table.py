@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from ... import _optional
+from ..._methods import make_card
 from ..._sentences import counted
 from ...errors import OptionError
 from ...tin.types import Frozen
@@ -79,6 +81,11 @@ class Table(Frozen):
         -------
         pandas.DataFrame
 
+        Raises
+        ------
+        MissingExtraError
+            If pandas is not installed.
+
         Examples
         --------
         >>> import tinsmith as ts
@@ -86,9 +93,10 @@ class Table(Frozen):
         >>> frame.attrs["units"]
         {'level': 'm'}
         """
-        import pandas as pd
-
-        frame = pd.DataFrame({name: values.copy() for name, values in self.columns.items()})
+        pandas = _optional.load("pandas", "Turning a table into a DataFrame")
+        frame: pd.DataFrame = pandas.DataFrame(
+            {name: values.copy() for name, values in self.columns.items()}
+        )
         units = {name: unit_text(self.units, name) for name in self.units}
         frame.attrs |= {"name": self.name, "units": units, "notes": list(self.notes)}
         return frame
@@ -96,6 +104,9 @@ class Table(Frozen):
     def __repr__(self) -> str:
         title = f" {self.name}" if self.name else ""
         return f"<Table{title}: {counted(len(self), 'row')}, columns {', '.join(self.columns)}>"
+
+    def _repr_html_(self) -> str:
+        return make_card(self)
 
 
 def tabulate_columns(features: FeatureParts) -> Table:

@@ -270,7 +270,7 @@ def test_options_out_of_range_are_refused(tmp_path, options):
 
 def test_without_pyvista_the_extra_is_named(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "pyvista", None)
-    with pytest.raises(MissingExtraError, match=r"A preview needs pyvista.*tinsmith\[view\]"):
+    with pytest.raises(MissingExtraError, match=r"A preview needs pyvista.*pip install pyvista"):
         preview(hill(steps=3), output=tmp_path / "a.png")
 
 

@@ -8,7 +8,7 @@ import click
 
 from ...policies import FlowProduct
 from ..output.failures import Failure
-from ..parameters import choice_option, input_file, number_option, output_files
+from ..parameters import Command, choice_option, input_file, number_option, output_files
 from ..paths import LINES, Named
 from ..request import surface_options
 
@@ -33,7 +33,7 @@ _FLAGS = {
 }
 
 
-@click.command(short_help="Find flow paths, pits, depressions, ponds, ridges and valleys.")
+@click.command(cls=Command)
 @input_file("file")
 @output_files
 @choice_option("--find", FlowProduct, "What to find.", default="depressions")

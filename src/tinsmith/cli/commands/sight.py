@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..parameters import input_file, number_option, output_files
+from ..parameters import Command, input_file, number_option, output_files
 from ..request import surface_options
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ __all__ = ["sight"]
 _SHOWN = 12
 
 
-@click.command(short_help="Find what is seen from a place: lines of sight, a viewshed.")
+@click.command(cls=Command)
 @input_file("file")
 @output_files
 @click.option("--from", "eye", metavar="X Y", nargs=2, type=float, required=True, help="The eye.")
