@@ -16,7 +16,7 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 .PHONY: help setup demo test check bench proof fuzz format clean
 
 help: ## List the commands
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-8s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-11s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 setup: $(READY) ## Build the core and install everything into .venv
 
@@ -36,6 +36,7 @@ check: $(READY) $(TREE) ## Lint, formatting, types, import contract
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	cd $(TREE) && ../../$(BIN)/mypy --config-file ../../pyproject.toml
+	cd qgis && ../$(BIN)/mypy --config-file ../pyproject.toml --allow-subclassing-any
 	cd $(TREE) && PYTHONPATH=. ../../$(BIN)/lint-imports --config ../../pyproject.toml
 
 # The folders as the one package that they are once installed. Tools that look for modules on disk
@@ -49,9 +50,18 @@ bench: $(READY) ## Time kernel, lines, edits, queries, readers, writers beside t
 	$(BIN)/python -m pip install --quiet --group bench
 	$(BIN)/python -m benchmarks
 
+.PHONY: docs
+docs: $(READY) ## Build the site of the documentation into build/site; a warning is an error
+	$(BIN)/sphinx-build -q -E -W --keep-going -c docs -d build/doctrees . build/site
+	@echo "build/site/index.html"
+
 .PHONY: gallery
 gallery: $(READY) ## Draw the pictures of docs/gallery.md anew
 	@set -e; for script in docs/gallery/*.py; do $(BIN)/python $$script; done
+
+.PHONY: qgis-plugin
+qgis-plugin: ## Pack the QGIS plugin as a zip into build/
+	@$(PYTHON) qgis/make_plugin.py
 
 .PHONY: page
 page: ## Build the code of the 3D page anew from its sources; needs Node.js

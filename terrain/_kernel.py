@@ -18,6 +18,7 @@ __all__ = [
     "TILE_SIDE",
     "GriddedSurface",
     "OverlayMesh",
+    "densify",
     "fill_bands",
     "fit_quadratics",
     "overlay",
@@ -40,6 +41,8 @@ triangle_normals = _core.triangle_normals
 vertex_normals = _core.vertex_normals
 shade_planes = _core.shade_planes
 fit_quadratics = _core.fit_quadratics
+
+densify = _core.densify
 
 trace_contours = _core.trace_contours
 smooth_contours = _core.smooth_contours

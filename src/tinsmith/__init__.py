@@ -29,15 +29,25 @@ if TYPE_CHECKING:
     from .io import (
         Format,
         find_format,
+        from_mesh,
+        from_raster,
         known_formats,
         length_unit,
         lines_from_codes,
         read,
         read_lines,
+        read_points,
         read_polygons,
         read_rings,
+        read_tin,
         read_water,
         reproject,
+        to_features,
+        to_meshio,
+        to_pyvista,
+        to_rasterio,
+        to_trimesh,
+        to_ugrid,
         transform_points,
         with_lines,
         write,
@@ -50,9 +60,12 @@ if TYPE_CHECKING:
         profile_picture,
         relief_map,
         section_picture,
+        to_matplotlib,
     )
     from .terrain.earthwork import Difference, difference, stage_storage, volume
     from .terrain.gridding import height_above, rasterize
+    from .terrain.ground_filter import GroundPoints, ground
+    from .terrain.hydrology import depressions, flow_path, pits, ponds, ridges_and_valleys
     from .terrain.isolines import (
         ContourCheck,
         check_contours,
@@ -72,6 +85,7 @@ if TYPE_CHECKING:
     from .terrain.results import Features, Raster, Table
     from .terrain.sections import cross_sections, drape, profile, section_lines
     from .terrain.sheets import Plan, plan
+    from .terrain.sight import line_of_sight, viewshed, visible_vertices
     from .terrain.simplification import simplify
     from .terrain.slope import aspect, slope
     from .tin import (
@@ -99,10 +113,24 @@ if TYPE_CHECKING:
     from .tin.voronoi import voronoi
 else:  # a type checker takes every name for one that such a __getattr__ has
     from ._lazy import lazy_names
-    from ._notebook import register_card
+    from ._methods import register_methods
 
-    # What tin cannot make itself, for it knows no pictures.
-    register_card("TIN", "tinsmith.terrain.preview.card:make_card")
+    # What tin cannot do itself, for it knows no pictures, features and files.
+    register_methods(
+        {
+            "TIN._repr_html_": "tinsmith.terrain.preview.card:make_card",
+            "Survey._repr_html_": "tinsmith.terrain.cards.survey:make_survey_card",
+            "Report._repr_html_": "tinsmith.terrain.cards.survey:make_report_card",
+            "Features._repr_html_": "tinsmith.terrain.cards.results:make_features_card",
+            "Raster._repr_html_": "tinsmith.terrain.cards.results:make_raster_card",
+            "Table._repr_html_": "tinsmith.terrain.cards.results:make_table_card",
+            "TIN.plot": "tinsmith.terrain.charts.triangles:plot_tin",
+            "TIN.to_crs": "tinsmith.io.reprojection.surfaces:reproject",
+            "TIN.to_geodataframe": "tinsmith.io.vector.libraries:build_frame",
+            "TIN.__geo_interface__": "tinsmith.io.vector.libraries:build_collection",
+            "TIN.__arrow_c_stream__": "tinsmith.io.vector.libraries:build_stream",
+        }
+    )
 
     __getattr__, __dir__ = lazy_names(
         __name__,
@@ -129,15 +157,25 @@ else:  # a type checker takes every name for one that such a __getattr__ has
             ".io": (
                 "Format",
                 "find_format",
+                "from_mesh",
+                "from_raster",
                 "known_formats",
                 "length_unit",
                 "lines_from_codes",
                 "read",
                 "read_lines",
+                "read_points",
                 "read_polygons",
                 "read_rings",
+                "read_tin",
                 "read_water",
                 "reproject",
+                "to_features",
+                "to_meshio",
+                "to_pyvista",
+                "to_rasterio",
+                "to_trimesh",
+                "to_ugrid",
                 "transform_points",
                 "with_lines",
                 "write",
@@ -164,10 +202,19 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "simplify",
                 "slope",
                 "stage_storage",
+                "to_matplotlib",
                 "volume",
             ),
             ".io.raster.cells": ("rasterize",),  # which reads the file of `like`, too
             ".terrain.gridding": ("height_above",),
+            ".terrain.hydrology": (
+                "depressions",
+                "flow_path",
+                "pits",
+                "ponds",
+                "ridges_and_valleys",
+            ),
+            ".terrain.ground_filter": ("GroundPoints", "ground"),
             ".terrain.relief": (
                 "aspect_classes",
                 "curvature",
@@ -200,6 +247,11 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "refine",
                 "triangulate",
             ),
+            ".terrain.sight": (
+                "line_of_sight",
+                "viewshed",
+                "visible_vertices",
+            ),
             ".tin.voronoi": ("voronoi",),
         },
     )
@@ -221,6 +273,7 @@ __all__ = [
     "Format",
     "FormatError",
     "Grid",
+    "GroundPoints",
     "Lines",
     "LinesError",
     "LossWarning",
@@ -257,10 +310,15 @@ __all__ = [
     "contours",
     "cross_sections",
     "curvature",
+    "depressions",
     "difference",
     "drape",
     "earthwork_map",
     "find_format",
+    "flow_path",
+    "from_mesh",
+    "from_raster",
+    "ground",
     "height_above",
     "hillshade",
     "histogram",
@@ -268,9 +326,12 @@ __all__ = [
     "known_formats",
     "length_unit",
     "lift",
+    "line_of_sight",
     "lines_from_codes",
     "paper",
+    "pits",
     "plan",
+    "ponds",
     "preview",
     "profile",
     "profile_picture",
@@ -278,12 +339,15 @@ __all__ = [
     "rasterize",
     "read",
     "read_lines",
+    "read_points",
     "read_polygons",
     "read_rings",
+    "read_tin",
     "read_water",
     "refine",
     "relief_map",
     "reproject",
+    "ridges_and_valleys",
     "section_lines",
     "section_picture",
     "simplify",
@@ -293,8 +357,17 @@ __all__ = [
     "stage_storage",
     "terrain",
     "tin",
+    "to_features",
+    "to_matplotlib",
+    "to_meshio",
+    "to_pyvista",
+    "to_rasterio",
+    "to_trimesh",
+    "to_ugrid",
     "transform_points",
     "triangulate",
+    "viewshed",
+    "visible_vertices",
     "volume",
     "voronoi",
     "with_lines",

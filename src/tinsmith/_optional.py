@@ -23,6 +23,7 @@ _EXTRA_OF = {
     "pandas": "interop",
     "pyarrow": "interop",
     "pyogrio": "vector",
+    "trimesh": "interop",
     "xarray": "interop",
 }
 

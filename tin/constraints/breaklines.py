@@ -228,6 +228,19 @@ class Lines(Frozen):
             for kind, own in zip(self.kinds, self.sources.tolist(), strict=True)
         )
 
+    def is_same(self, other: Lines) -> bool:
+        """Tell whether these are the same lines through the same vertices.
+
+        Examples
+        --------
+        >>> Lines().is_same(Lines())
+        True
+        """
+        arrays = ("vertices", "offsets", "sources")
+        return (self.kinds, self.names) == (other.kinds, other.names) and all(
+            np.array_equal(getattr(self, name), getattr(other, name)) for name in arrays
+        )
+
     def with_breakline(self, vertices: list[int], line: Breakline) -> Lines:
         """Return the lines, all of them breaklines, and a further one through some vertices.
 

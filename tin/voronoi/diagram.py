@@ -22,6 +22,8 @@ from .cells import Rings, cells_in_box, measure_signed_areas
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from ...crs import CRS
+
 __all__ = ["Voronoi", "divide_plane"]
 
 _PAD_SHARE = 0.1
@@ -45,6 +47,8 @@ class Voronoi:
         same as ``offsets``.
     boundary : (b, 2) float64 array, CRS units
         Corners of the ring that the cells are clipped to.
+    crs : CRS or None
+        That of the TIN.
 
     Examples
     --------
@@ -61,6 +65,7 @@ class Voronoi:
     offsets: NDArray[np.int64]
     part_offsets: NDArray[np.int64]
     boundary: NDArray[np.float64]
+    crs: CRS | None = None
 
     def __post_init__(self) -> None:
         for array in (self.coords, self.offsets, self.part_offsets, self.boundary):
@@ -74,7 +79,7 @@ class Voronoi:
         """Area of each cell, (n,) float64 array, CRS units squared; 0 outside the boundary."""
         parts = measure_signed_areas(Rings(self.coords, self.part_offsets))
         areas: NDArray[np.float64] = np.zeros(len(self))
-        np.add.at(areas, self._cell_of_part, parts)
+        np.add.at(areas, self.cell_of_part, parts)
         areas.flags.writeable = False
         return areas
 
@@ -101,16 +106,17 @@ class Voronoi:
         """
         shapely = _optional.load("shapely")
         parts = _make_polygons(Rings(self.coords, self.part_offsets))
-        whole = np.bincount(self._cell_of_part, minlength=len(self))
+        whole = np.bincount(self.cell_of_part, minlength=len(self))
         cells = np.full(len(self), shapely.Polygon(), object)
-        is_single = (whole == 1)[self._cell_of_part]
-        cells[self._cell_of_part[is_single]] = parts[is_single]
+        is_single = (whole == 1)[self.cell_of_part]
+        cells[self.cell_of_part[is_single]] = parts[is_single]
         for cell in np.flatnonzero(whole > 1):
-            cells[cell] = shapely.multipolygons(parts[self._cell_of_part == cell])
+            cells[cell] = shapely.multipolygons(parts[self.cell_of_part == cell])
         return cells
 
     @cached_property
-    def _cell_of_part(self) -> NDArray[np.int64]:
+    def cell_of_part(self) -> NDArray[np.int64]:
+        """The cell that each part belongs to, (p,) int64 array."""
         filled = np.flatnonzero(np.diff(self.offsets))
         return filled[np.searchsorted(self.offsets[filled + 1], self.part_offsets[1:])]
 

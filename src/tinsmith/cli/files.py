@@ -50,7 +50,7 @@ __all__ = [
 _TEXT_FORMATS = ("delimited", "geojson", "obj", "off", "2dm", "cityjson", "csv", "json")
 """Formats that a terminal can show."""
 
-_WISHES = ("most_cells",)
+_WISHES = ("most_cells", "attributes")
 """Options of commands, not of users, which count where the format has them."""
 
 

@@ -15,6 +15,7 @@ from .. import __version__
 from .._sentences import suggest
 from ..io.isolated.forking import permit_forks
 from .command_list import SECTIONS, SUMMARIES
+from .output.events import note_events
 from .output.failures import show_failure, tell_warning, translate_failures
 from .output.streams import (
     Terminated,
@@ -98,6 +99,11 @@ class _Commands(click.Group):
         except Terminated as ended:
             return 128 + ended.number
         return code if isinstance(code, int) else 0
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Parse the group's own options, and remember how what follows is to be told."""
+        note_events(ctx, args)
+        return super().parse_args(ctx, args)
 
     def invoke(self, ctx: click.Context) -> Any:
         accept_any_text()

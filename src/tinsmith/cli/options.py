@@ -76,6 +76,7 @@ class Reading:
     returns: str | None = None
     resolution: float | None = None
     every: int | None = None
+    attributes: str | None = None
     layer: str | None = None
     z_field: str | None = None
     lines_as: str | None = None
@@ -478,5 +479,10 @@ console_options = _gather(
     "console",
     Console,
     click.option("--json", "as_json", is_flag=True, help="Write the result as JSON to stdout."),
+    click.option(
+        "--events",
+        is_flag=True,
+        help="Write progress, summary, warnings and errors to stderr as JSON, a line each.",
+    ),
     click.option("-q", "--quiet", is_flag=True, help="No summary, no progress."),
 )

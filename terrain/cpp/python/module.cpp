@@ -3,6 +3,7 @@
 
 #include "bind_earthwork.hpp"
 #include "bind_gridding.hpp"
+#include "bind_ground.hpp"
 #include "bind_isolines.hpp"
 #include "bind_relief.hpp"
 
@@ -12,4 +13,5 @@ NB_MODULE(_core, m) {
   tinsmith::python::bind_gridding(m);
   tinsmith::python::bind_earthwork(m);
   tinsmith::python::bind_relief(m);
+  tinsmith::python::bind_ground(m);
 }
