@@ -67,6 +67,7 @@ def write_others(ground):
     ts.write(ts.Features.of_lines(ends, [0, 2], crs=CRS, name="axis"), "centreline.gpkg")
     Path("places.csv").write_text("x,y\n752700,4024250\n752800,4024300\n")
     ts.write(ts.rasterize(ground, spacing=2.0), "other.tif")
+    ts.write(ts.contours(ground, interval=1.0), "lines.gpkg")
     write_grey(ground, "ortho.tif")
 
 
