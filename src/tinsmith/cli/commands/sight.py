@@ -59,6 +59,11 @@ def sight(file: Path, eye: tuple[float, float], request: Request, **asked: Any) 
 
     if asked["targets"] and asked["radius"] is not None:
         raise click.UsageError("--radius is for a viewshed, without --to.")
+    coefficient = asked["sight_refraction"]
+    if coefficient is not None and not asked["curvature"]:
+        raise click.UsageError("--sight-refraction is for --curvature.")
+    if coefficient is not None and not -1.0 <= coefficient <= 1.0:
+        raise click.UsageError("--sight-refraction is a coefficient from -1 to 1.")
     planned = request.plan_products(request.list_inputs(file), "Features", "Table")
     tin = request.read_tin(file)
     targets, radius = asked.pop("targets"), asked.pop("radius")
