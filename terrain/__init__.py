@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from .charts.triangles import to_matplotlib
     from .earthwork import Difference, difference, stage_storage, volume
     from .gridding import height_above, rasterize
-    from .ground_filter import GroundPoints, ground
+    from .hydrology import depressions, flow_path, pits, ponds, ridges_and_valleys
     from .isolines import ContourCheck, check_contours, contour_bands, contour_labels, contours
     from .lift import lift
     from .preview import Preview, preview
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from .results import Features, Raster, Table
     from .sections import cross_sections, drape, profile, section_lines
     from .sheets import Plan, plan
+    from .sight import line_of_sight, viewshed, visible_vertices
     from .simplification import simplify
     from .slope import aspect, slope
 else:  # a type checker takes every name for one that such a __getattr__ has
@@ -41,7 +42,7 @@ else:  # a type checker takes every name for one that such a __getattr__ has
             ".charts.sections": ("section_picture",),
             ".earthwork": ("Difference", "difference", "stage_storage", "volume"),
             ".gridding": ("height_above", "rasterize"),
-            ".ground_filter": ("GroundPoints", "ground"),
+            ".ground_filter": ("GroundPoints", "ground", "GroundPoints", "ground"),
             ".isolines": (
                 "ContourCheck",
                 "check_contours",
@@ -64,6 +65,18 @@ else:  # a type checker takes every name for one that such a __getattr__ has
             ".simplification": ("simplify",),
             ".slope": ("aspect", "slope"),
             ".charts.triangles": ("to_matplotlib",),
+            ".hydrology": (
+                "depressions",
+                "flow_path",
+                "pits",
+                "ponds",
+                "ridges_and_valleys",
+            ),
+            ".sight": (
+                "line_of_sight",
+                "viewshed",
+                "visible_vertices",
+            ),
         },
     )
 
@@ -88,20 +101,26 @@ __all__ = [
     "contours",
     "cross_sections",
     "curvature",
+    "depressions",
     "difference",
     "drape",
     "earthwork_map",
+    "flow_path",
     "ground",
     "height_above",
     "hillshade",
     "histogram",
     "lift",
+    "line_of_sight",
+    "pits",
     "plan",
+    "ponds",
     "preview",
     "profile",
     "profile_picture",
     "rasterize",
     "relief_map",
+    "ridges_and_valleys",
     "section_lines",
     "section_picture",
     "simplify",
@@ -110,5 +129,7 @@ __all__ = [
     "slope_statistics",
     "stage_storage",
     "to_matplotlib",
+    "viewshed",
+    "visible_vertices",
     "volume",
 ]

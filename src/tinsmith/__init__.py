@@ -65,6 +65,7 @@ if TYPE_CHECKING:
     from .terrain.earthwork import Difference, difference, stage_storage, volume
     from .terrain.gridding import height_above, rasterize
     from .terrain.ground_filter import GroundPoints, ground
+    from .terrain.hydrology import depressions, flow_path, pits, ponds, ridges_and_valleys
     from .terrain.isolines import (
         ContourCheck,
         check_contours,
@@ -84,6 +85,7 @@ if TYPE_CHECKING:
     from .terrain.results import Features, Raster, Table
     from .terrain.sections import cross_sections, drape, profile, section_lines
     from .terrain.sheets import Plan, plan
+    from .terrain.sight import line_of_sight, viewshed, visible_vertices
     from .terrain.simplification import simplify
     from .terrain.slope import aspect, slope
     from .tin import (
@@ -205,6 +207,13 @@ else:  # a type checker takes every name for one that such a __getattr__ has
             ),
             ".io.raster.cells": ("rasterize",),  # which reads the file of `like`, too
             ".terrain.gridding": ("height_above",),
+            ".terrain.hydrology": (
+                "depressions",
+                "flow_path",
+                "pits",
+                "ponds",
+                "ridges_and_valleys",
+            ),
             ".terrain.ground_filter": ("GroundPoints", "ground"),
             ".terrain.relief": (
                 "aspect_classes",
@@ -237,6 +246,11 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "quality",
                 "refine",
                 "triangulate",
+            ),
+            ".terrain.sight": (
+                "line_of_sight",
+                "viewshed",
+                "visible_vertices",
             ),
             ".tin.voronoi": ("voronoi",),
         },
@@ -296,10 +310,12 @@ __all__ = [
     "contours",
     "cross_sections",
     "curvature",
+    "depressions",
     "difference",
     "drape",
     "earthwork_map",
     "find_format",
+    "flow_path",
     "from_mesh",
     "from_raster",
     "ground",
@@ -310,9 +326,12 @@ __all__ = [
     "known_formats",
     "length_unit",
     "lift",
+    "line_of_sight",
     "lines_from_codes",
     "paper",
+    "pits",
     "plan",
+    "ponds",
     "preview",
     "profile",
     "profile_picture",
@@ -328,6 +347,7 @@ __all__ = [
     "refine",
     "relief_map",
     "reproject",
+    "ridges_and_valleys",
     "section_lines",
     "section_picture",
     "simplify",
@@ -346,6 +366,8 @@ __all__ = [
     "to_ugrid",
     "transform_points",
     "triangulate",
+    "viewshed",
+    "visible_vertices",
     "volume",
     "voronoi",
     "with_lines",

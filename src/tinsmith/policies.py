@@ -21,6 +21,7 @@ __all__ = [
     "EmptyCircleRule",
     "Extrapolation",
     "FeatureKind",
+    "FlowProduct",
     "GridStyle",
     "GroundReturns",
     "InterpolationMethod",
@@ -103,6 +104,9 @@ EmptyCircleRule: TypeAlias = Literal["angle", "open"]
 
 DistanceRule: TypeAlias = Literal["circle", "ties"]
 """Among which points the paper's distance decides."""
+
+FlowProduct: TypeAlias = Literal["paths", "pits", "depressions", "ponds", "ridges"]
+"""What is found where water runs on a surface."""
 
 InterpolationMethod: TypeAlias = Literal["linear", "nearest", "laplace", "natural", "c1"]
 """What lies between the vertices of a TIN."""

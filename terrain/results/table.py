@@ -19,8 +19,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from .columns import Units
+    from .parts import FeatureParts
 
-__all__ = ["Table"]
+__all__ = ["Table", "tabulate_columns"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -106,3 +107,10 @@ class Table(Frozen):
 
     def _repr_html_(self) -> str:
         return make_card(self)
+
+
+def tabulate_columns(features: FeatureParts) -> Table:
+    """Return the columns of features as a table, without their geometries."""
+    return Table(
+        dict(features.columns), units=dict(features.units), name=features.name, notes=features.notes
+    )
