@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from .earthwork import Difference, difference, stage_storage, volume
     from .flats import flats, mend_flats
     from .gridding import height_above, rasterize
+    from .ground_filter import GroundPoints, ground
     from .hydrology import depressions, flow_path, pits, ponds, ridges_and_valleys
     from .isolines import ContourCheck, check_contours, contour_bands, contour_labels, contours
     from .lift import lift
@@ -44,7 +45,7 @@ else:  # a type checker takes every name for one that such a __getattr__ has
             ".earthwork": ("Difference", "difference", "stage_storage", "volume"),
             ".flats": ("flats", "mend_flats"),
             ".gridding": ("height_above", "rasterize"),
-            ".ground_filter": ("GroundPoints", "ground", "GroundPoints", "ground"),
+            ".ground_filter": ("GroundPoints", "ground"),
             ".isolines": (
                 "ContourCheck",
                 "check_contours",
