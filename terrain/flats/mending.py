@@ -82,8 +82,10 @@ def mend_flats(tin: TIN) -> TIN:
     >>> lines = [[[x, y, z] for x, y in one] for one, z in ((ring, 5), (outer, 0))]
     >>> tin = ts.triangulate(ts.Survey(points=lines[0] + lines[1], breaklines=lines))
     >>> mended = ts.mend_flats(tin)
-    >>> 5 < mended.points[:, 2].max() < 10, (mended.attributes["origin"] == "added").sum()
-    (True, 1)
+    >>> bool(5 < mended.points[:, 2].max() < 10)
+    True
+    >>> mended.attributes["origin"].tolist().count("added")
+    1
     """
     require_tin(tin)
     regions = find_regions(tin)
