@@ -9,7 +9,7 @@ import click
 
 from ..._sentences import counted
 from ..options import writing_options
-from ..parameters import input_files, number_option, output_files
+from ..parameters import Command, input_files, number_option, output_files
 from ..request import surface_options
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ _PARAMETERS = (
 )
 
 
-@click.command()
+@click.command(cls=Command)
 @input_files("points")
 @output_files
 @number_option("--building", "METRES", "Width of the largest building.", default=40.0)
