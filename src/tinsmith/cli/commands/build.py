@@ -31,11 +31,18 @@ __all__ = ["build"]
 @report_option(
     "JSON file that accounts for every row merged or left out, and every crossing of lines."
 )
+@click.option(
+    "--from-contours",
+    is_flag=True,
+    help="POINTS are contour lines, which become breaklines: where they leave the surface flat, "
+    "points are added along ridges, valleys, peaks and pits, and marked.",
+)
 @surface_options(writing_options)
 def build(
     points: tuple[Path, ...],
     report: Path | None,
     request: Request,
+    from_contours: bool,
 ) -> None:
     """Build the exact Delaunay TIN of the elevation points in POINTS, and of lines.
 
@@ -48,21 +55,30 @@ def build(
     Example:
       tinsmith build sample_data/site_survey.csv --crs EPSG:32616 --codes -o site.geojson
       tinsmith build sample_data/jacksboro.tif --stride 4 -o hills.ply -o hills.stl
+      tinsmith build --from-contours contours.gpkg --z-field elevation -o hills.gpkg
     """  # noqa: D301 - click reads the control character
+    from ...terrain import mend_flats
+    from ..contour_input import as_contours, require_contours
     from ..files import add_lines, build_tin, read_inputs, write_text
     from ..output.console import format_json
     from ..output.summaries import describe_report
 
     how, console = request.how, request.console
     planned = request.plan(request.list_inputs(*points), "TIN", report=report)
-    found = read_inputs(points, request.reading, console)
-    survey = add_lines(_require_survey(found, points[0]), how, console)
+    reading = as_contours(request.reading, points) if from_contours else request.reading
+    survey = _require_survey(read_inputs(points, reading, console), points[0])
+    if from_contours:
+        require_contours(survey, points[0])
+    survey = add_lines(survey, how, console)
     tin = build_tin(survey, how, console)
+    if from_contours:
+        with request.step("Mending flat triangles"):
+            tin = mend_flats(tin)
     gaps = _find_gaps(tin, request)
     planned.write("TIN", tin)
     if report is not None:
         write_text(report, format_json(describe_report(tin.report, survey, gaps)) + "\n")
-    rows = _summarise_build(points, survey, tin, gaps)
+    rows = _summarise_build(points, survey, tin, gaps, is_mended=from_contours)
     describe = partial(_describe_build, points, survey, tin, gaps, planned, request.started)
     request.finish(planned, rows, describe)
 
@@ -89,7 +105,7 @@ def _require_survey(found: Survey | TIN, path: Path) -> Survey:
 
 
 def _summarise_build(
-    points: Sequence[Path], survey: Survey, tin: TIN, gaps: list[str]
+    points: Sequence[Path], survey: Survey, tin: TIN, gaps: list[str], *, is_mended: bool
 ) -> list[Row]:
     from ..output.line_summaries import describe_counts, summarise_lines
     from ..output.summaries import (
@@ -105,10 +121,21 @@ def _summarise_build(
         *summarise_merges(tin.report, survey),
         *summarise_lines(survey, tin),
         ("TIN", describe_counts(tin)),
+        *_summarise_flats(tin, is_mended=is_mended),
         *(("Gaps", gap) for gap in gaps),
         *summarise_extent(tin),
         summarise_crs(tin.crs),
     ]
+
+
+def _summarise_flats(tin: TIN, *, is_mended: bool) -> list[Row]:
+    """Tell what was mended, or else of flat triangles if the points look like contours."""
+    from ...terrain.flats.finding import describe_flats
+
+    if is_mended:
+        return [("Contours", tin.report.notes[-1])]
+    advice = "'tinsmith build --from-contours' takes contour lines and mends them."
+    return [("Flats", f"{sentence}: {advice}") for sentence in describe_flats(tin)]
 
 
 def _describe_build(
