@@ -1,6 +1,8 @@
 """What is derived from a TIN: slope, 3D models, previews, charts. Knows no files."""
 
 from ..errors import OptionError, RenderError
+from .blunders import blunders
+from .charts.blunders import blunder_map
 from .charts.comparison import comparison_picture
 from .charts.earthwork import earthwork_map
 from .charts.histogram import histogram
@@ -31,6 +33,8 @@ __all__ = [
     "Table",
     "aspect",
     "aspect_classes",
+    "blunder_map",
+    "blunders",
     "check_contours",
     "comparison_picture",
     "contour_bands",

@@ -20,6 +20,9 @@ __all__ = [
     "OverlayMesh",
     "fill_bands",
     "fit_quadratics",
+    "leave_one_out",
+    "list_neighbors",
+    "measure_neighbors",
     "overlay",
     "shade_planes",
     "smooth_contours",
@@ -40,6 +43,10 @@ triangle_normals = _core.triangle_normals
 vertex_normals = _core.vertex_normals
 shade_planes = _core.shade_planes
 fit_quadratics = _core.fit_quadratics
+
+leave_one_out = _core.leave_one_out
+list_neighbors = _core.list_neighbors
+measure_neighbors = _core.measure_neighbors
 
 trace_contours = _core.trace_contours
 smooth_contours = _core.smooth_contours

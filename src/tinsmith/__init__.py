@@ -43,6 +43,7 @@ if TYPE_CHECKING:
         write,
     )
     from .terrain import (
+        blunder_map,
         comparison_picture,
         contour_map,
         earthwork_map,
@@ -51,6 +52,7 @@ if TYPE_CHECKING:
         relief_map,
         section_picture,
     )
+    from .terrain.blunders import blunders
     from .terrain.earthwork import Difference, difference, stage_storage, volume
     from .terrain.gridding import height_above, rasterize
     from .terrain.isolines import (
@@ -145,6 +147,8 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "ContourCheck",
                 "Difference",
                 "aspect",
+                "blunder_map",
+                "blunders",
                 "check_contours",
                 "comparison_picture",
                 "contour_bands",
@@ -245,6 +249,8 @@ __all__ = [
     "__version__",
     "aspect",
     "aspect_classes",
+    "blunder_map",
+    "blunders",
     "check",
     "check_contours",
     "compare",

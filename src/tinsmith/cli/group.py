@@ -29,7 +29,7 @@ __all__ = ["main"]
 _BUILT_IN = (
     *("build", "info", "check", "view", "compare", "refine", "edit", "convert", "formats"),
     *("contours", "slope", "hillshade", "profile", "volume", "diff", "drape"),
-    *("interpolate", "raster", "plan"),
+    *("interpolate", "raster", "plan", "inspect"),
 )
 
 

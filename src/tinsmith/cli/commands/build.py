@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ...tin import TIN, Survey
+    from ..output.blunder_summaries import Suspects
     from ..output.console import Row
     from ..products import Products
     from ..request import Request
@@ -31,10 +32,17 @@ __all__ = ["build"]
 @report_option(
     "JSON file that accounts for every row merged or left out, and every crossing of lines."
 )
+@click.option(
+    "--drop-blunders",
+    is_flag=True,
+    help="Leave out the points that look like blunders, but for doubtful ones; the report names "
+    "each. 'tinsmith inspect' shows them first.",
+)
 @surface_options(writing_options)
 def build(
     points: tuple[Path, ...],
     report: Path | None,
+    drop_blunders: bool,
     request: Request,
 ) -> None:
     """Build the exact Delaunay TIN of the elevation points in POINTS, and of lines.
@@ -50,6 +58,7 @@ def build(
       tinsmith build sample_data/jacksboro.tif --stride 4 -o hills.ply -o hills.stl
     """  # noqa: D301 - click reads the control character
     from ..files import add_lines, build_tin, read_inputs, write_text
+    from ..output.blunder_summaries import describe_suspects, tell_suspects
     from ..output.console import format_json
     from ..output.summaries import describe_report
 
@@ -58,13 +67,28 @@ def build(
     found = read_inputs(points, request.reading, console)
     survey = add_lines(_require_survey(found, points[0]), how, console)
     tin = build_tin(survey, how, console)
+    suspects = _find_blunders(tin, request, drop=drop_blunders)
     gaps = _find_gaps(tin, request)
     planned.write("TIN", tin)
+    account = describe_report(tin.report, survey, gaps) | describe_suspects(suspects)
     if report is not None:
-        write_text(report, format_json(describe_report(tin.report, survey, gaps)) + "\n")
-    rows = _summarise_build(points, survey, tin, gaps)
-    describe = partial(_describe_build, points, survey, tin, gaps, planned, request.started)
+        write_text(report, format_json(account) + "\n")
+    told = [*tell_suspects(suspects), *(("Gaps", gap) for gap in gaps)]
+    rows = _summarise_build(points, survey, tin, told)
+    describe = partial(_describe_build, points, survey, tin, account, planned, request.started)
     request.finish(planned, rows, describe)
+
+
+def _find_blunders(tin: TIN, request: Request, *, drop: bool) -> Suspects:
+    """Look for points that look like blunders, and leave them out where that is asked for."""
+    from ...terrain.blunders import blunders, drop_blunders, screen
+    from ..output.blunder_summaries import Suspects
+
+    with request.step("Checking points"):
+        if not drop:
+            return Suspects(screen(tin), None)
+        table = blunders(tin)
+        return Suspects(table, drop_blunders(tin, table))
 
 
 def _find_gaps(tin: TIN, request: Request) -> list[str]:
@@ -89,7 +113,7 @@ def _require_survey(found: Survey | TIN, path: Path) -> Survey:
 
 
 def _summarise_build(
-    points: Sequence[Path], survey: Survey, tin: TIN, gaps: list[str]
+    points: Sequence[Path], survey: Survey, tin: TIN, told: list[Row]
 ) -> list[Row]:
     from ..output.line_summaries import describe_counts, summarise_lines
     from ..output.summaries import (
@@ -105,7 +129,7 @@ def _summarise_build(
         *summarise_merges(tin.report, survey),
         *summarise_lines(survey, tin),
         ("TIN", describe_counts(tin)),
-        *(("Gaps", gap) for gap in gaps),
+        *told,
         *summarise_extent(tin),
         summarise_crs(tin.crs),
     ]
@@ -115,19 +139,19 @@ def _describe_build(
     points: Sequence[Path],
     survey: Survey,
     tin: TIN,
-    gaps: list[str],
+    account: dict[str, Any],
     planned: Products,
     started: float,
 ) -> dict[str, Any]:
     from ..output.line_summaries import count_lines
-    from ..output.summaries import describe_report, describe_survey, describe_tin
+    from ..output.summaries import describe_survey, describe_tin
 
     return {
         "input": describe_inputs(points),
         "survey": describe_survey(survey),
         "tin": describe_tin(tin),
         "counts": count_lines(tin.report),
-        "report": describe_report(tin.report, survey, gaps),
+        "report": account,
         "outputs": [
             {
                 "path": str(one.path),
