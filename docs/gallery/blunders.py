@@ -28,7 +28,9 @@ def main(folder: Path = FOLDER) -> None:
     points[1711, :2] = points[1711, 1::-1]
     spoilt = replace(survey, points=points)
     tin = ts.triangulate(spoilt)
-    figure = ts.blunder_map(tin, ts.blunders(tin), title="Points of the site that look like blunders")
+    figure = ts.blunder_map(
+        tin, ts.blunders(tin), title="Points of the site that look like blunders"
+    )
     save(draw(figure, DPI), folder / "blunders.png")
 
 

@@ -197,14 +197,14 @@ class _Reach(NamedTuple):
 
     Attributes
     ----------
-    count : int
+    size : int
         Of those others.
     owners : (k,) int64 array
         Their places, ascending.
     vertices : (k,) int32 array
     """
 
-    count: int
+    size: int
     owners: NDArray[np.int64]
     vertices: NDArray[np.int32]
 
@@ -231,14 +231,14 @@ class _Reach(NamedTuple):
         So a second blunder beside the first hides neither.
         """
         left = self._measure(known)
-        helpers = self.vertices[_find_largest(self.count, self.owners, np.abs(left))]
+        helpers = self.vertices[_find_largest(self.size, self.owners, np.abs(left))]
         helpers = np.unique(helpers)
         own = known.xyz[helpers, 2].copy()
         known.xyz[helpers, 2] -= np.nan_to_num(known.measure(helpers))
         left = np.abs(self._measure(known))
         left[np.isin(self.vertices, helpers)] = 0.0
         known.xyz[helpers, 2] = own
-        most = np.zeros(self.count)
+        most = np.zeros(self.size)
         np.maximum.at(most, self.owners, left)
         return most
 
