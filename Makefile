@@ -16,7 +16,7 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 .PHONY: help setup demo test check bench proof fuzz format clean
 
 help: ## List the commands
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-8s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-11s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 setup: $(READY) ## Build the core and install everything into .venv
 
@@ -36,6 +36,7 @@ check: $(READY) $(TREE) ## Lint, formatting, types, import contract
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	cd $(TREE) && ../../$(BIN)/mypy --config-file ../../pyproject.toml
+	cd qgis && ../$(BIN)/mypy --config-file ../pyproject.toml --allow-subclassing-any
 	cd $(TREE) && PYTHONPATH=. ../../$(BIN)/lint-imports --config ../../pyproject.toml
 
 # The folders as the one package that they are once installed. Tools that look for modules on disk
@@ -53,6 +54,10 @@ bench: $(READY) ## Time kernel, lines, edits, queries, readers, writers beside t
 gallery: $(READY) ## Draw the pictures of docs/gallery.md anew
 	@set -e; for script in docs/gallery/*.py; do $(BIN)/python $$script; done
 
+.PHONY: qgis-plugin
+qgis-plugin: ## Pack the QGIS plugin as a zip into build/
+	@$(PYTHON) qgis/make_plugin.py
+
 .PHONY: page
 page: ## Build the code of the 3D page anew from its sources; needs Node.js
 	cd terrain/preview/page && npm ci --silent && npm run --silent check && npm run --silent build
@@ -62,6 +67,19 @@ page: ## Build the code of the 3D page anew from its sources; needs Node.js
 .PHONY: slow
 slow: $(READY) ## Run the tests of many seconds that `make test` leaves to CI
 	$(BIN)/python -m pytest -q -n $(WORKERS) -m slow
+
+# dist/ gets the same bytes for the same commit: times are those of the commit. The wheel is for this
+# machine; those of all platforms are made by cibuildwheel.
+DIST := SOURCE_DATE_EPOCH=$$(git log -1 --format=%ct) $(BIN)/python -m pip wheel --quiet --no-deps
+.PHONY: dist
+dist: $(READY) ## Build the source distribution and a wheel of it into dist/
+	@rm -rf dist && mkdir dist
+	SOURCE_DATE_EPOCH=$$(git log -1 --format=%ct) $(BIN)/python -c "from scikit_build_core.build import build_sdist as b; b('dist')"
+	$(DIST) --wheel-dir dist dist/*.tar.gz
+
+.PHONY: dist-check
+dist-check: dist ## Test what is in dist/: contents, installation without a compiler, small jobs
+	TINSMITH_DIST=$(CURDIR)/dist $(BIN)/python -m pytest -q -m slow tests/packaging
 
 proof: $(READY) ## Run the long proofs
 	$(BIN)/python -m pytest -q -m proof

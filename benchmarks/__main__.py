@@ -13,9 +13,11 @@ from .datasets.points import DATASETS
 from .measure import Outcome
 from .report.machine import describe
 from .report.page import write_report
-from .sections import answers, edits, kernel, lines, locate, readers, variants, writers
+from .sections import answers, edits, kernel, lines, locate, readers, startup, variants, writers
 
-SIMPLE = {module.SECTION: module for module in (variants, edits, readers, writers, answers)}
+SIMPLE = {
+    module.SECTION: module for module in (variants, edits, readers, writers, answers, startup)
+}
 SECTIONS = (
     kernel.SECTION,
     variants.SECTION,
@@ -25,6 +27,7 @@ SECTIONS = (
     readers.SECTION,
     writers.SECTION,
     answers.SECTION,
+    startup.SECTION,
 )
 RESULTS = Path(__file__).parent / "results"
 LEAST_POINTS = 200

@@ -6,10 +6,14 @@ if TYPE_CHECKING:
     from ..errors import CrsError, FormatError, OptionError, ReadError, WriteError
     from .field_survey import field_codes as field_codes
     from .field_survey.field_codes import lines_from_codes
-    from .reading import read
+    from .mesh.libraries import from_mesh, to_meshio, to_pyvista, to_trimesh
+    from .mesh.ugrid_dataset import to_ugrid
+    from .raster.libraries import from_raster, to_rasterio
+    from .reading import read, read_points, read_tin
     from .registry import Format, find_format, known_formats
     from .reprojection.surfaces import reproject
     from .reprojection.transformation import LengthUnit, length_unit, transform_points
+    from .vector.libraries import to_features
     from .vector.reading import read_lines, read_polygons, read_rings, read_water
     from .vector.survey_lines import with_lines
     from .writing import write
@@ -20,12 +24,16 @@ else:  # a type checker takes every name for one that such a __getattr__ has
     __getattr__, __dir__ = lazy_names(
         __name__,
         {
+            ".vector.libraries": ("to_features",),
+            ".mesh.libraries": ("from_mesh", "to_meshio", "to_pyvista", "to_trimesh"),
+            ".raster.libraries": ("from_raster", "to_rasterio"),
+            ".mesh.ugrid_dataset": ("to_ugrid",),
             ".field_survey": ("field_codes",),  # where the module was before
             ".field_survey.field_codes": ("lines_from_codes",),
             ".reprojection.surfaces": ("reproject",),
             ".reprojection.transformation": ("LengthUnit", "length_unit", "transform_points"),
             "..errors": ("CrsError", "FormatError", "OptionError", "ReadError", "WriteError"),
-            ".reading": ("read",),
+            ".reading": ("read", "read_points", "read_tin"),
             ".registry": ("Format", "find_format", "known_formats"),
             ".vector.reading": ("read_lines", "read_polygons", "read_rings", "read_water"),
             ".vector.survey_lines": ("with_lines",),
@@ -42,15 +50,25 @@ __all__ = [
     "ReadError",
     "WriteError",
     "find_format",
+    "from_mesh",
+    "from_raster",
     "known_formats",
     "length_unit",
     "lines_from_codes",
     "read",
     "read_lines",
+    "read_points",
     "read_polygons",
     "read_rings",
+    "read_tin",
     "read_water",
     "reproject",
+    "to_features",
+    "to_meshio",
+    "to_pyvista",
+    "to_rasterio",
+    "to_trimesh",
+    "to_ugrid",
     "transform_points",
     "with_lines",
     "write",

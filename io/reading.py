@@ -37,7 +37,6 @@ from .registry import (
     require_options,
     signatures,
 )
-from .reprojection.joining import join_surveys
 
 if TYPE_CHECKING:
     import os
@@ -45,7 +44,15 @@ if TYPE_CHECKING:
 
     from ..crs import CrsLike, UnitLike
 
-__all__ = ["detect", "join_files", "read", "read_as_wished", "read_stream"]
+__all__ = [
+    "detect",
+    "join_files",
+    "read",
+    "read_as_wished",
+    "read_points",
+    "read_stream",
+    "read_tin",
+]
 
 _NO_WISHES: Mapping[str, Any] = MappingProxyType({})
 _SHOWN = 5
@@ -192,6 +199,76 @@ def _read_several(paths: Sequence[Path], asked: _Asked) -> Survey | TIN:
     return found[0] if len(found) == 1 else join_files(found, paths)
 
 
+def read_points(
+    path: str | os.PathLike[str] | Sequence[str | os.PathLike[str]], **options: Any
+) -> Survey:
+    """Read elevation points: :func:`read` for programs that need to know what they get.
+
+    Parameters
+    ----------
+    path : path-like or sequence of path-like
+    **options
+        As of :func:`read`.
+
+    Returns
+    -------
+    Survey
+
+    Raises
+    ------
+    ReadError
+        If the file holds a TIN; else as :func:`read`.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> survey = ts.Survey(points=[[0, 0, 5], [4, 0, 6], [0, 3, 8]])
+    >>> with TemporaryDirectory() as folder:
+    ...     ts.read_points(ts.write(survey, Path(folder, "points.csv")), crs="EPSG:32616")
+    <Survey: 3 points from points.csv, crs EPSG:32616>
+    """
+    found = read(path, **options)
+    if isinstance(found, Survey):
+        return found
+    raise ReadError(f"'{path}' holds a TIN, not points alone: read_tin reads it.")
+
+
+def read_tin(path: str | os.PathLike[str], **options: Any) -> TIN:
+    """Read a TIN: :func:`read` for programs that need to know what they get.
+
+    Parameters
+    ----------
+    path : path-like
+    **options
+        As of :func:`read`.
+
+    Returns
+    -------
+    TIN
+
+    Raises
+    ------
+    ReadError
+        If the file holds points alone; else as :func:`read`.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [0, 3, 8]], crs="EPSG:32616")
+    >>> with TemporaryDirectory() as folder:
+    ...     ts.read_tin(ts.write(tin, Path(folder, "surface.ply"))) == tin
+    True
+    """
+    found = read(path, **options)
+    if isinstance(found, TIN):
+        return found
+    raise ReadError(f"'{path}' holds points alone, no TIN: triangulate makes one of them.")
+
+
 def join_files(found: Sequence[Survey | TIN], paths: Sequence[Path]) -> Survey:
     """Return the surveys of files as one.
 
@@ -211,6 +288,8 @@ def join_files(found: Sequence[Survey | TIN], paths: Sequence[Path]) -> Survey:
                 path=path,
             )
         surveys.append(one)
+    from .reprojection.joining import join_surveys
+
     return join_surveys(surveys, _name_apart(paths))
 
 

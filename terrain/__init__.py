@@ -1,25 +1,73 @@
 """What is derived from a TIN: slope, 3D models, previews, charts. Knows no files."""
 
-from ..errors import OptionError, RenderError
-from .blunders import blunders
-from .charts.blunders import blunder_map
-from .charts.comparison import comparison_picture
-from .charts.earthwork import earthwork_map
-from .charts.histogram import histogram
-from .charts.isolines import contour_map
-from .charts.profiles import profile_picture
-from .charts.relief import relief_map
-from .charts.sections import section_picture
-from .earthwork import Difference, difference, stage_storage, volume
-from .gridding import height_above, rasterize
-from .isolines import ContourCheck, check_contours, contour_bands, contour_labels, contours
-from .lift import lift
-from .preview import Preview, preview
-from .relief import aspect_classes, curvature, hillshade, slope_classes, slope_statistics
-from .results import Features, Raster, Table
-from .sections import cross_sections, drape, profile, section_lines
-from .sheets import Plan, plan
-from .slope import aspect, slope
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ..errors import OptionError, RenderError
+    from .charts.blunders import blunder_map
+    from .charts.comparison import comparison_picture
+    from .charts.earthwork import earthwork_map
+    from .charts.histogram import histogram
+    from .charts.isolines import contour_map
+    from .charts.profiles import profile_picture
+    from .charts.relief import relief_map
+    from .charts.sections import section_picture
+    from .charts.triangles import to_matplotlib
+    from .earthwork import Difference, difference, stage_storage, volume
+    from .gridding import height_above, rasterize
+    from .inspection import blunders
+    from .isolines import ContourCheck, check_contours, contour_bands, contour_labels, contours
+    from .lift import lift
+    from .preview import Preview, preview
+    from .relief import aspect_classes, curvature, hillshade, slope_classes, slope_statistics
+    from .results import Features, Raster, Table
+    from .sections import cross_sections, drape, profile, section_lines
+    from .sheets import Plan, plan
+    from .simplification import simplify
+    from .slope import aspect, slope
+else:  # a type checker takes every name for one that such a __getattr__ has
+    from .._lazy import lazy_names
+
+    # A small job starts at once, as it loads what it uses.
+    __getattr__, __dir__ = lazy_names(
+        __name__,
+        {
+            "..errors": ("OptionError", "RenderError"),
+            ".charts.blunders": ("blunder_map",),
+            ".charts.comparison": ("comparison_picture",),
+            ".charts.earthwork": ("earthwork_map",),
+            ".charts.histogram": ("histogram",),
+            ".charts.isolines": ("contour_map",),
+            ".charts.profiles": ("profile_picture",),
+            ".charts.relief": ("relief_map",),
+            ".charts.sections": ("section_picture",),
+            ".earthwork": ("Difference", "difference", "stage_storage", "volume"),
+            ".gridding": ("height_above", "rasterize"),
+            ".inspection": ("blunders",),
+            ".isolines": (
+                "ContourCheck",
+                "check_contours",
+                "contour_bands",
+                "contour_labels",
+                "contours",
+            ),
+            ".lift": ("lift",),
+            ".preview": ("Preview", "preview"),
+            ".relief": (
+                "aspect_classes",
+                "curvature",
+                "hillshade",
+                "slope_classes",
+                "slope_statistics",
+            ),
+            ".results": ("Features", "Raster", "Table"),
+            ".sections": ("cross_sections", "drape", "profile", "section_lines"),
+            ".sheets": ("Plan", "plan"),
+            ".simplification": ("simplify",),
+            ".slope": ("aspect", "slope"),
+            ".charts.triangles": ("to_matplotlib",),
+        },
+    )
 
 __all__ = [
     "ContourCheck",
@@ -58,9 +106,11 @@ __all__ = [
     "relief_map",
     "section_lines",
     "section_picture",
+    "simplify",
     "slope",
     "slope_classes",
     "slope_statistics",
     "stage_storage",
+    "to_matplotlib",
     "volume",
 ]

@@ -112,6 +112,9 @@ tin.triangles = tin.triangles
 ts.slope(tin).mx()
 ts.voronoi(tin, bounday=None)
 ts.TIN.closest_vertex(tin)
+ts.read_points("a.csv").pionts
+ts.read_tin("a.ply").trianlges
+tin.interpolate(1.0, 2.0).trianlges
 reveal_type(ts.slope)
 reveal_type(tin.closest_vertex([[0, 0]]))
 """
@@ -187,10 +190,10 @@ def test_flat_names_and_those_of_packages_pass_type_checkers(judge):
 @pytest.mark.slow
 def test_type_checkers_refuse_names_that_are_not_there(judge):
     lines, found = judge(TYPOS)
-    assert lines == [5, 6, 7, 8, 9, 10, 11], found
+    assert lines == [5, 6, 7, 8, 9, 10, 11, 12, 13, 14], found
     notes = dict(re.findall(r"program.py:(\d+):.*(?:note|information): (.*)", found))
-    assert "TIN, *, unit: " in notes["12"], found
-    assert "int" in notes["13"], found
+    assert "TIN, *, unit: " in notes["15"], found
+    assert "int" in notes["16"], found
 
 
 # -------------------------------------------------------------------- values of a wrong type

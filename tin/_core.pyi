@@ -113,6 +113,18 @@ class Mesh:
     def release(self, segments: Ints) -> int: ...
     def arrays(self, threads: int = ...) -> tuple[Ints, Ints, Flags]: ...
 
+def simplify(
+    points: Doubles,
+    vertex_rows: Ints,
+    holders: Ints,
+    vertices: Doubles,
+    triangles: Ints,
+    neighbors: Ints,
+    fixed: Flags,
+    tolerance: float,
+    most: int,
+    prunes: bool,
+) -> tuple[Ints, int]: ...
 def refine(
     points: Doubles,
     triangles: Ints,

@@ -41,6 +41,7 @@ __all__ = [
     "places_in_rings",
     "refine",
     "regions",
+    "simplify",
     "snap",
     "touches",
     "turns_of_triangles",
@@ -62,6 +63,7 @@ SmoothPatches = _core.SmoothPatches
 Mesh = _core.Mesh
 refine = _core.refine
 regions = _core.regions
+simplify = _core.simplify
 orientation = _core.orientation
 in_circle = _core.in_circle
 compare_distances = _core.compare_distances

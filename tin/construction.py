@@ -16,18 +16,19 @@ if TYPE_CHECKING:
     from ..crs import CrsLike, UnitLike
     from ..policies import CrossingPolicy, DuplicatePolicy, TrimPolicy
     from .constraints.breaklines import Breakline, Water
+    from .types import GeometriesLike, PointsLike
 
 __all__ = ["triangulate"]
 
 
 def triangulate(
-    points: Survey | ArrayLike,
+    points: Survey | PointsLike,
     *,
-    breaklines: Sequence[Breakline | ArrayLike] = (),
-    boundary: Sequence[Any] = (),
-    holes: Sequence[Any] = (),
-    erase: Sequence[Any] = (),
-    water: Sequence[Water] = (),
+    breaklines: Sequence[Breakline | ArrayLike] | GeometriesLike = (),
+    boundary: Sequence[Any] | GeometriesLike = (),
+    holes: Sequence[Any] | GeometriesLike = (),
+    erase: Sequence[Any] | GeometriesLike = (),
+    water: Sequence[Water] | GeometriesLike = (),
     max_edge: float | None = None,
     trim: TrimPolicy = "perimeter",
     crossing: CrossingPolicy = "split",
@@ -50,11 +51,15 @@ def triangulate(
     points : Survey or (n, 3) array
         Easting and northing in CRS units, elevation. A survey's own lines are used as well. A
         structured array, data frame or mapping is taken by its columns' names (x, y, z; easting,
-        northing, elevation; lon, lat, height), shapely's points by their coordinates. Masked rows
-        are left out, and named in the report.
-    breaklines : sequence of Breakline or arrays
+        northing, elevation; lon, lat, height), points of shapely, GeoPandas or a
+        ``__geo_interface__`` by their coordinates. Masked rows are left out, and named in the
+        report.
+    breaklines : sequence of Breakline or arrays, or geometries
         Polylines that must be edges: (k, 3) arrays hard ones, (k, 2) arrays draped on the surface
-        of everything that has elevations, with a vertex wherever they cross an edge of it.
+        of everything that has elevations, with a vertex wherever they cross an edge of it. Here and
+        for other lines, geometries are those of shapely, a GeoSeries or GeoDataFrame, Features, or
+        whatever has a ``__geo_interface__``; each part counts as a line. Their columns ``kind``,
+        ``priority`` and ``name`` are honoured.
     boundary : sequence of (k, 2) or (k, 3) arrays, or polygons
         Rings: only the surface inside is kept; a ring within a ring cuts out an island. Draped if
         without elevations; what lies beyond the surface of the points is left out.
@@ -65,9 +70,10 @@ def triangulate(
     erase : sequence of (k, 2) arrays, or polygons
         Rings: the points strictly inside are left out, and the surface spans them. As for holes, a
         polygon's islands stay.
-    water : sequence of Water
+    water : sequence of Water, or geometries
         Flat polygons: points and parts of breaklines inside are left out, all vertices on the ring
-        are put at its elevation.
+        are put at its elevation. That of a geometry is in a column ``z``, ``level``, ``elevation``
+        or ``height``, else that of its corners, if all are equal.
     max_edge : float, optional
         Drop triangles at edges longer than this that are no lines, CRS units.
     trim : {"perimeter", "everywhere"}
@@ -89,8 +95,8 @@ def triangulate(
     threads : int, optional
         Number of threads; default every core, where it pays. The result is the same.
     crs : CRS, str, int or pyproj.CRS, optional
-        Coordinate reference system of the points: a code ("EPSG:32616"), number, WKT; default the
-        survey's own.
+        Coordinate reference system of the points: a code ("EPSG:32616"), number, WKT; default that
+        of the survey, points or lines.
     z_unit : Unit or str, optional
         Unit of all elevations ("m", "ft", "US survey foot"), lines included; default the survey's
         own, else that of the CRS's vertical axis, else not known.
@@ -106,7 +112,7 @@ def triangulate(
         the exact range, if fewer than three places are distinct, if all are collinear, or
         (``duplicates="error"``) if two rows coincide.
     CrsError
-        If the CRS is unknown, or another than the survey's own.
+        If the CRS is unknown, or another than that of the survey, the points or the lines.
     OptionError
         If an option is none of the allowed; if ``z_unit`` is unknown, or another than the one that
         survey or CRS give.

@@ -22,6 +22,7 @@ __all__ = [
     "Merge",
     "Overruled",
     "Report",
+    "Simplification",
     "Unmended",
 ]
 
@@ -33,6 +34,7 @@ LEFT_OUT = (
     "trimmed",
     "removed by an edit",
     "masked",
+    "simplified away",
 )
 """Why a row of points has no vertex; ``Report.left_out_why`` holds places in this list."""
 
@@ -241,6 +243,48 @@ class Unmended(NamedTuple):
         ]
 
 
+class Simplification(NamedTuple):
+    """What :func:`tinsmith.simplify` left out, and how far that is from the surface now.
+
+    Attributes
+    ----------
+    points : int
+        Vertices of the surface that was given.
+    vertices : int
+        Those that are left.
+    required : int
+        Of these, vertices of lines, corners of the boundary, and those that were to be kept.
+    needless : int
+        Vertices that were inserted first and found needless later.
+    tolerance : float or None
+        As it was asked for, in the unit of elevations; None where a number of points was.
+    largest_error, rms_error : float
+        Difference of elevation between the points given and the surface that is left: the largest,
+        and the root of the mean square over all points.
+    """
+
+    points: int
+    vertices: int
+    required: int
+    needless: int
+    tolerance: float | None
+    largest_error: float
+    rms_error: float
+
+    def sentence(self) -> str:
+        """Tell it in one sentence."""
+        share = 100.0 * self.vertices / self.points
+        return (
+            f"Simplified from {counted(self.points, 'point')} to {self.vertices:,} "
+            f"({share:.3g} %): largest error {self.largest_error:.4g}, "
+            f"RMS error {self.rms_error:.4g}."
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain values, ready for JSON."""
+        return self._asdict()
+
+
 def _make_none_overruled() -> Overruled:
     return Overruled(_make_no_rows(), _make_no_rows(), np.empty(0), np.empty(0))
 
@@ -294,6 +338,8 @@ class Report(Frozen):
         What was done to the TIN since.
     unmended : Unmended
         Triangles that refinement had to leave. None after an edit, which numbers triangles anew.
+    simplification : Simplification or None
+        What :func:`tinsmith.simplify` left out. None after an edit.
 
     Examples
     --------
@@ -324,6 +370,7 @@ class Report(Frozen):
     notes: Sequence[str] = ()
     edits: Sequence[Edit] = ()
     unmended: Unmended = field(default_factory=Unmended.none)
+    simplification: Simplification | None = None
 
     def after_edits(
         self, vertex_of: NDArray[np.int32], n_vertices: int, n_triangles: int, edits: Sequence[Edit]
@@ -346,11 +393,12 @@ class Report(Frozen):
             merged_vertices=vertex_of[self.merged_rows[self.merged_offsets[:-1]]],
             edits=edits,
             unmended=Unmended.none(),
+            simplification=None,
         )
         return report.with_removed(vertex_of)
 
-    def with_removed(self, vertex_of: NDArray[np.int32]) -> Report:
-        """Return the report with the rows that have no vertex; what is new is due to an edit.
+    def with_removed(self, vertex_of: NDArray[np.int32], why: str = "removed by an edit") -> Report:
+        """Return the report with the rows that have no vertex; those that are new, and why.
 
         Examples
         --------
@@ -361,10 +409,10 @@ class Report(Frozen):
         [3]
         """
         lost = np.flatnonzero(vertex_of < 0).astype(np.int32)
-        why = np.full(len(lost), LEFT_OUT.index("removed by an edit"), np.int8)
+        codes = np.full(len(lost), LEFT_OUT.index(why), np.int8)
         before = np.isin(lost, self.left_out_rows)
-        why[before] = self.left_out_why[np.searchsorted(self.left_out_rows, lost[before])]
-        return replace(self, left_out_rows=lost, left_out_why=why)
+        codes[before] = self.left_out_why[np.searchsorted(self.left_out_rows, lost[before])]
+        return replace(self, left_out_rows=lost, left_out_why=codes)
 
     def with_rows(self, rows: NDArray[np.int64], n_rows: int) -> Report:
         """Return the report with row ``i`` called ``rows[i]``; those between were removed.
@@ -530,7 +578,12 @@ class Report(Frozen):
             "notes": list(self.notes),
             "edits": [edit.to_dict() for edit in self.edits],
             "unmended": self.unmended.to_list(),
+            **self._describe_simplification(),
         }
+
+    def _describe_simplification(self) -> dict[str, Any]:
+        found = self.simplification
+        return {} if found is None else {"simplification": found.to_dict()}
 
     def _list_left_out(self) -> dict[str, list[int]]:
         return {

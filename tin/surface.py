@@ -2,27 +2,28 @@
 
 from __future__ import annotations
 
-from dataclasses import Field, FrozenInstanceError, make_dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, Never
+from dataclasses import Field, FrozenInstanceError, make_dataclass, replace
+from typing import TYPE_CHECKING, Any, ClassVar, Never, Self, overload
 
 import numpy as np
 
-from .._notebook import make_card
+from .._methods import call_method
 from .._sentences import counted
 from ..crs import CRS, Unit, require_one_unit, scale_elevations, shorten_crs
 from ..errors import choice
-from ..policies import Extrapolation, InterpolationMethod
+from ..policies import Extrapolation, FeatureKind, InterpolationMethod
 from . import topology
 from .building.assembly import assemble
 from .building.attributes import Attributes, as_columns, as_row_attributes
 from .building.moving import move_inputs, move_points, require_move
+from .building.reference import require_crs
 from .constraints.breaklines import Lines
 from .editing.editable import Editable
 from .editing.version import Version
 from .report import Report
 from .triangulation import Triangulation
 from .types import seal
-from .validation.points import as_places, as_points, as_xy
+from .validation.points import as_pairs, as_places, as_points, as_xy
 from .validation.triangles import as_flags, as_triangles, turn_counter_clockwise
 from .validation.vertices import as_vertex, as_vertex_pairs
 
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
 
     from ..crs import CrsLike, UnitLike
     from .building.inputs import BuildInputs
-    from .types import Bounds
+    from .types import Bounds, PointsLike
     from .voronoi.diagram import Voronoi
 
 
@@ -90,6 +91,10 @@ class TIN(Editable):
     between two edits; for several attributes that belong together take ``tin.triangulation``, or a
     copy first. Copies (``copy.copy``, ``copy.deepcopy``, pickles) share nothing that changes: each
     is edited on its own, and takes back the edits made before it was copied.
+
+    ``len`` is the number of triangles. Two TINs are equal if they are the same surface to the last
+    bit: vertices, triangles, lines, attributes, CRS and unit; report and edits do not count. What
+    can be edited has no hash. As ``__geo_interface__`` and stream of Arrow it is its triangles.
 
     Examples
     --------
@@ -509,22 +514,56 @@ class TIN(Editable):
         >>> tin.locate([[1, 1], [3, 3]])
         array([ 0, -1], dtype=int32)
         """
+        require_crs(xy, self._crs, "places")
         return self._current.triangulation.locator.locate(as_xy(xy))
 
+    @overload
     def interpolate(
         self,
-        xy: ArrayLike,
-        method: InterpolationMethod = "linear",
+        xy: float,
+        y: float,
         *,
+        method: InterpolationMethod = ...,
+        extrapolate: Extrapolation | None = ...,
+        threads: int | None = ...,
+    ) -> float: ...
+    @overload
+    def interpolate(
+        self,
+        xy: PointsLike,
+        y: InterpolationMethod = ...,
+        *,
+        extrapolate: Extrapolation | None = ...,
+        threads: int | None = ...,
+    ) -> NDArray[np.float64]: ...
+    @overload
+    def interpolate(
+        self,
+        xy: PointsLike,
+        y: ArrayLike | None = ...,
+        *,
+        method: InterpolationMethod = ...,
+        extrapolate: Extrapolation | None = ...,
+        threads: int | None = ...,
+    ) -> NDArray[np.float64]: ...
+    def interpolate(
+        self,
+        xy: Any,
+        y: Any = None,
+        *,
+        method: InterpolationMethod | None = None,
         extrapolate: Extrapolation | None = None,
         threads: int | None = None,
-    ) -> NDArray[np.float64]:
+    ) -> Any:
         """Interpolate the elevation at each place.
 
         Parameters
         ----------
         xy : (k, 2) array, CRS units
-            Or (2,), one place.
+            Or (2,), one place; with ``y`` eastings alone, a number or an array.
+        y : float or array, optional
+            Northings, of the same shape, or that broadcasts with it. The word of a method
+            is taken for ``method``.
         method : {"linear", "nearest", "laplace", "natural", "c1"}
             What lies between the vertices:
 
@@ -547,14 +586,15 @@ class TIN(Editable):
         -------
         (k,) float64 array
             Elevation, NaN outside the surface; at a vertex exactly the vertex's own. For one place
-            a number.
+            a number; for eastings and northings of another shape an array of it.
 
         Raises
         ------
         OptionError
             If ``method`` or ``extrapolate`` is none of the words.
         PointsError
-            As :meth:`locate`, or if ``threads`` is no whole number above 0.
+            As :meth:`locate`, if eastings and northings do not fit, or if ``threads`` is no whole
+            number above 0.
 
         Notes
         -----
@@ -590,17 +630,32 @@ class TIN(Editable):
         array([2. , 1.5, nan])
         >>> tin.interpolate([[3, 3]], method="natural", extrapolate="nearest")
         array([2.5])
-        >>> float(tin.interpolate([1, 1]))
+        >>> tin.interpolate(1, 1)
         1.75
         """
+        if method is None and np.asarray(y).dtype.kind == "U":  # one word, or a list of them
+            y, method = None, y
+        if y is not None:
+            return self._interpolate_pairs(xy, y, method, extrapolate, threads)
+        method = "linear" if method is None else method
         choice("method", method, InterpolationMethod)
         if extrapolate is not None:
             choice("extrapolate", extrapolate, Extrapolation)
+        require_crs(xy, self._crs, "places")
         places, is_one = as_places(xy)
         elevations = self._current.interpolator.interpolate(
             places, method, extrapolate=extrapolate is not None, threads=threads
         )
         return elevations.reshape(())[()] if is_one else elevations
+
+    def _interpolate_pairs(self, x: Any, y: Any, *options: Any) -> Any:
+        """Interpolate at eastings and northings given apart."""
+        method, extrapolate, threads = options
+        places, shape = as_pairs(x, y)
+        found = self.interpolate(
+            places, method=method, extrapolate=extrapolate, threads=threads
+        ).reshape(shape)
+        return found if shape else float(found)
 
     def closest_vertex(self, xy: ArrayLike) -> NDArray[np.int32]:
         """Find the vertex nearest to each place, in the plane.
@@ -632,6 +687,7 @@ class TIN(Editable):
         >>> tin.closest_vertex([[3, 1], [2, 2], [-9, 9]])
         array([1, 0, 2], dtype=int32)
         """
+        require_crs(xy, self._crs, "places")
         return self._current.triangulation.nearest.find(as_xy(xy))
 
     # ---------------------------------------------------------------- connections
@@ -770,7 +826,7 @@ class TIN(Editable):
         """
         from .voronoi.diagram import divide_plane
 
-        return divide_plane(self.points, boundary=boundary, pad=pad)
+        return replace(divide_plane(self.points, boundary=boundary, pad=pad), crs=self.crs)
 
     def __repr__(self) -> str:
         surface = self._current.triangulation
@@ -782,7 +838,161 @@ class TIN(Editable):
         )
 
     def _repr_html_(self) -> str | None:
-        return make_card(self)
+        card: str | None = call_method("TIN._repr_html_", self)
+        return card
+
+    # ---------------------------------------------------------------- as a value
+
+    def copy(self) -> Self:
+        """Return a copy that is edited on its own, and takes back the edits made before.
+
+        Examples
+        --------
+        >>> tin = TIN.from_triangles([[0, 0, 1], [1, 0, 2], [0, 1, 3]], [[0, 1, 2]])
+        >>> other = tin.copy()
+        >>> other.set_elevation(0, 9.0)
+        >>> tin == other
+        False
+        """
+        return self.__copy__()
+
+    def __len__(self) -> int:
+        return len(self.triangles)
+
+    def __eq__(self, other: object) -> bool:
+        """Whether both are the same surface, whatever rows and edits they come from."""
+        if not isinstance(other, TIN):
+            return NotImplemented
+        one, two = self._current, other._current
+        mine, theirs = one.triangulation, two.triangulation
+        return (
+            (self.crs, self.elevation_unit) == (other.crs, other.elevation_unit)
+            and np.array_equal(mine.points, theirs.points)
+            and np.array_equal(mine.triangles, theirs.triangles)
+            and np.array_equal(mine.constrained, theirs.constrained)
+            and one.lines.is_same(two.lines)
+            and _have_same_values(self.attributes, other.attributes)
+        )
+
+    # Edits change it.
+    __hash__ = None  # type: ignore[assignment]
+
+    # ---------------------------------------------------------------- other libraries
+
+    def to_crs(self, crs: CrsLike, *, z_unit: UnitLike | None = None) -> TIN:
+        """Return the TIN in another CRS: :func:`tinsmith.reproject` of it.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> points = [[751428, 4020862, 1032], [751438, 4020862, 1031], [751428, 4020872, 1030]]
+        >>> ts.triangulate(points, crs="EPSG:32616").to_crs("EPSG:32617").bounds.xmin
+        212642.559...
+        """
+        moved: TIN = call_method("TIN.to_crs", self, crs, z_unit=z_unit)
+        return moved
+
+    def to_geodataframe(self, kind: FeatureKind = "triangles") -> Any:
+        """Return its parts as a GeoDataFrame: :func:`tinsmith.to_features` of it.
+
+        Parameters
+        ----------
+        kind : {"triangles", "points", "edges", "lines", "hull"}
+
+        Returns
+        -------
+        geopandas.GeoDataFrame
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8]])
+        >>> float(tin.to_geodataframe().area.sum())
+        12.0
+        """
+        return call_method("TIN.to_geodataframe", self, kind)
+
+    def plot(
+        self,
+        ax: Any = None,
+        *,
+        values: str | ArrayLike | None = "elevation",
+        edges: bool | None = None,
+        lines: bool = True,
+        colorbar: bool = True,
+        **options: Any,
+    ) -> Any:
+        """Draw it in plan with matplotlib.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Default: new ones of ``matplotlib.pyplot``.
+        values : {"elevation", "slope"}, or (n,) or (m,) array, optional
+            What the colours show: elevations, slopes in degrees, a number for each vertex or for
+            each triangle; None for no colours.
+        edges : bool, optional
+            Whether to draw the edges; default up to 5,000 triangles.
+        lines : bool
+            Whether to draw breaklines, boundary, holes and water.
+        colorbar : bool
+            Whether to draw a scale of the colours beside new axes.
+        **options
+            Of ``Axes.tripcolor``: ``cmap``, ``vmin``, ``alpha``.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+
+        Raises
+        ------
+        MissingExtraError
+            If matplotlib is not installed.
+        OptionError
+            If ``values`` is none of these.
+
+        Examples
+        --------
+        >>> import matplotlib.figure
+        >>> import tinsmith as ts
+        >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8]])
+        >>> axes = tin.plot(matplotlib.figure.Figure().add_subplot())
+        >>> axes.get_xlabel()
+        'easting'
+        """
+        return call_method(
+            "TIN.plot",
+            self,
+            ax,
+            values=values,
+            edges=edges,
+            lines=lines,
+            colorbar=colorbar,
+            **options,
+        )
+
+    @property
+    def __geo_interface__(self) -> dict[str, Any]:
+        """The triangles as GeoJSON-like values, in their own CRS."""
+        collection: dict[str, Any] = call_method("TIN.__geo_interface__", self)
+        return collection
+
+    def __arrow_c_stream__(self, requested_schema: object | None = None) -> object:
+        """Return the triangles as a stream of Arrow, as :class:`tinsmith.Features` has them."""
+        stream: object = call_method("TIN.__arrow_c_stream__", self, requested_schema)
+        return stream
+
+
+def _have_same_values(one: Mapping[str, NDArray[Any]], other: Mapping[str, NDArray[Any]]) -> bool:
+    """Whether columns have the same names and values; what is missing is the same."""
+    if list(one) != list(other):
+        return False
+    pairs = [(one[name], other[name]) for name in one]
+    return all(
+        first.dtype == second.dtype
+        and np.array_equal(first, second, equal_nan=first.dtype.kind == "f")
+        for first, second in pairs
+    )
 
 
 def _with_length_one(vectors: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -3,16 +3,39 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeAlias, TypeVar
 
 import numpy as np
 
 from ..errors import OptionError
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from collections.abc import Mapping
 
-__all__ = ["Bounds", "Finding", "Frozen", "Grid", "seal"]
+    from numpy.typing import ArrayLike, NDArray
+
+__all__ = [
+    "Bounds",
+    "Finding",
+    "Frozen",
+    "GeometriesLike",
+    "Grid",
+    "PointsLike",
+    "SupportsGeoInterface",
+    "seal",
+]
+
+
+class SupportsGeoInterface(Protocol):
+    """What has geometries as mappings: those of shapely, GeoPandas, and many others."""
+
+    @property
+    def __geo_interface__(self) -> Any:
+        """As GeoJSON has them."""
+
+
+GeometriesLike: TypeAlias = "SupportsGeoInterface | Mapping[str, Any]"
+PointsLike: TypeAlias = "ArrayLike | SupportsGeoInterface | Mapping[str, Any]"
 
 Array = TypeVar("Array", bound="np.ndarray[Any, Any]")
 

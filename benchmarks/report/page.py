@@ -13,7 +13,7 @@ from ..measure import OURS, Outcome, Result, is_installed
 from ..peers.answers import AS_MANY, EQUAL
 from ..peers.line_tools import ALL_LINE_TOOLS
 from ..peers.triangulators import CGAL, KERNEL
-from ..sections import answers, edits, kernel, lines, locate, readers, writers
+from ..sections import answers, edits, kernel, lines, locate, readers, startup, writers
 from ..sections import variants as ways
 from .goals import judge_goals
 
@@ -416,4 +416,9 @@ SECTIONS: dict[str, Callable[[list[Result], str], str]] = {
         "Writers", "triangles", "From the TIN to the file; every file is read back and compared.\n"
     ),
     answers.SECTION: _format_answers_part,
+    startup.SECTION: _make_part_formatter(
+        "Starting up",
+        "points",
+        "The command line on so little that starting takes most of the time; fresh processes.\n",
+    ),
 }

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ...crs import CRS, Unit
-from ...errors import CrsError, OptionError, ReadError
+from ...errors import OptionError, ReadError
 from ...terrain.area_of_use import AreaOfUse
 from ..reprojection.placement import settle_unit
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from ...crs import CrsLike, UnitLike
 
-__all__ = ["Declared", "Measures", "Stated", "choose_measures", "require_own_crs"]
+__all__ = ["Declared", "Measures", "Stated", "choose_measures"]
 
 
 class Stated(NamedTuple):
@@ -217,21 +217,3 @@ def _look_at_area(measures: Measures, target: CRS | None, sample: NDArray[np.flo
     if area.is_local(rows):
         return measures
     return measures.tell(f"Most points lie outside the area of {area.label}.")
-
-
-def require_own_crs(measures: Measures, declared: CRS | None, path: Path) -> None:
-    """Refuse to reproject a TIN.
-
-    Raises
-    ------
-    CrsError
-        If another CRS is wanted than that of the file.
-    """
-    own = measures.source
-    if declared is not None and own is not None and not own.is_same(declared):
-        raise CrsError(
-            f"'{path}' is in {own.label}, and {declared.label} is another CRS: a TIN is not "
-            "reprojected, since its triangles would be no Delaunay triangles there; build it anew "
-            "from its points.",
-            crs=declared,
-        )

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ..._sentences import counted
-from ...errors import PointsError, ReadError
 from ...tin import TIN
-from ...tin.checking.overlaps import describe_overlaps
 from ...tin.constraints.breaklines import Lines
 from ...tin.topology import directed_edges, edge_keys, find_offsets
+from ..mesh.common import add_notes, make_tin
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -20,10 +18,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from ...crs import CRS, Unit
     from ...policies import LineKind
+    from ..mesh.common import Reference
 
-__all__ = ["EdgeLine", "Mesh", "make_tin", "merge_equal_points"]
+__all__ = ["EdgeLine", "Mesh", "make_tin_with_lines", "merge_equal_points"]
 
 
 _SAME_PLACE = 1e-6
@@ -93,37 +91,22 @@ def merge_equal_points(mesh: Mesh) -> Mesh:
     return Mesh(mesh.points[is_used], number[triangles], mesh.constrained, notes)
 
 
-def make_tin(
-    mesh: Mesh,
-    lines: Sequence[EdgeLine],
-    path: Path,
-    *,
-    crs: CRS | None,
-    elevation_unit: Unit | None,
+def make_tin_with_lines(
+    mesh: Mesh, lines: Sequence[EdgeLine], path: Path, *, reference: Reference
 ) -> TIN:
-    """Make a TIN; lines that run along its edges become its lines.
-
-    Raises
-    ------
-    ReadError
-        As ``TIN.from_triangles`` raises PointsError.
-    """
-    try:
-        tin = TIN.from_triangles(
-            mesh.points,
-            mesh.triangles,
-            constrained=mesh.constrained,
-            crs=crs,
-            z_unit=elevation_unit,
-        )
-    except PointsError as error:
-        raise ReadError(f"'{path}' holds no TIN. {error}", path=path) from error
-    notes = list(mesh.notes)
-    if lines:
-        tin, told = _add_lines(tin, lines)
-        notes += told
-    notes += describe_overlaps(tin)
-    return tin.replace(report=replace(tin.report, notes=notes)) if notes else tin
+    """Make a TIN as every mesh does; lines that run along its edges become its lines."""
+    tin = make_tin(
+        mesh.points,
+        mesh.triangles,
+        path,
+        constrained=mesh.constrained,
+        reference=reference,
+        notes=mesh.notes,
+    )
+    if not lines:
+        return tin
+    tin, told = _add_lines(tin, lines)
+    return add_notes(tin, told) if told else tin
 
 
 # ------------------------------------------------------------------ lines along edges

@@ -9,6 +9,7 @@ from functools import lru_cache
 __all__ = [
     "BLANKS",
     "is_grouped",
+    "is_infinite",
     "is_missing",
     "is_number",
     "is_number_like",
@@ -65,6 +66,11 @@ def is_missing(cell: str) -> bool:
     return len(cell) <= _LONGEST_NUMBER and _MISSING.fullmatch(cell) is not None
 
 
+def is_infinite(cell: str) -> bool:
+    """Whether a cell is a word for infinity."""
+    return len(cell) <= _LONGEST_NUMBER and _INFINITE.fullmatch(cell) is not None
+
+
 def is_number_like(cell: str, decimal: str) -> bool:
     """Whether a cell stands where a number should: one, nothing, or a word for "no number"."""
     return len(cell) <= _LONGEST_NUMBER and _is_number_like(cell, decimal)
@@ -76,7 +82,7 @@ def _is_number_like(cell: str, decimal: str) -> bool:
     return (
         is_number(cell, decimal)
         or is_missing(cell)
-        or _INFINITE.fullmatch(cell) is not None
+        or is_infinite(cell)
         or is_grouped(cell, decimal)
     )
 

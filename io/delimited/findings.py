@@ -205,15 +205,13 @@ def find_repeated_numbers(numbers: NDArray[Any] | None, rows: NDArray[np.int64])
         return []
     if numbers.dtype.kind in "iu" and (numbers[1:] > numbers[:-1]).all():
         return []
-    import pandas as pd
-
-    series = pd.Series(numbers)
-    is_repeated = (series.duplicated(keep=False) & series.notna() & (series != "")).to_numpy()
-    if not is_repeated.any():
-        return []
     places: dict[Any, list[int]] = {}
-    for row in np.flatnonzero(is_repeated).tolist():
-        places.setdefault(numbers[row], []).append(row)
+    for row, number in enumerate(numbers.tolist()):
+        if number != "" and number == number:  # no NaN
+            places.setdefault(number, []).append(row)
+    places = {number: at for number, at in places.items() if len(at) > 1}
+    if not places:
+        return []
     shown = "; ".join(
         f"{_format_value(one)} in {_name_lines(rows[at])}"
         for one, at in list(places.items())[:_SHOWN]

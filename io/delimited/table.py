@@ -1,4 +1,4 @@
-"""The rows of a table become arrays: checked for shape, parsed by pandas, checked for numbers.
+"""The rows of a table become arrays: checked for shape, parsed, checked for numbers.
 
 A row that is wrong is a fault with its line; whether faults are refused or left out is for the
 caller to say.
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import csv
 from dataclasses import dataclass
-from io import BytesIO, StringIO
+from io import StringIO
 from itertools import chain
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -16,6 +16,7 @@ import numpy as np
 
 from ..._sentences import counted, inflect
 from ...errors import ReadError
+from .cell_bounds import find_cell_bounds
 from .cells import (
     BLANKS,
     is_grouped,
@@ -28,14 +29,15 @@ from .cells import (
 )
 from .columns import COORDINATES
 from .content import Column
+from .parsing import parse_column
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
     from pathlib import Path
 
-    import pandas as pd
     from numpy.typing import NDArray
 
+    from .cell_bounds import CellBounds
     from .columns import Columns
     from .layout import Layout
     from .lines import TextLines
@@ -52,7 +54,6 @@ __all__ = [
 
 _SHOWN = 5
 _QUOTED_ROWS = 2_000
-_QUOTE, _SPACE, _TAB, _LINE_FEED = b'" \t\n'
 _REWRITTEN_DELIMITER = "\t"
 _GROUP_DIGITS = 3
 
@@ -71,13 +72,14 @@ class Cells:
 
     Attributes
     ----------
-    frame : DataFrame
+    columns : tuple of (n,) arrays
+        As :func:`.parsing.parse_column` returns them.
     rows : (n,) int64 array
-        Line number (from 0) of each row of the frame.
+        Line number (from 0) of each row.
     faults : tuple of Fault
     """
 
-    frame: pd.DataFrame
+    columns: tuple[NDArray[Any], ...]
     rows: NDArray[np.int64]
     faults: tuple[Fault, ...] = ()
 
@@ -112,54 +114,33 @@ def read_cells(lines: TextLines, layout: Layout, path: Path) -> Cells:
 
     Notes
     -----
-    Rows whose quotes and delimiters are regular go to pandas as they are; others are rewritten
+    Rows whose quotes and delimiters are regular are parsed as they are; others are rewritten
     one by one, by the rules of Python's csv module, on the way. Every number is the float64
     nearest to its text.
     """
     data = lines.join(layout.rows)
-    if _is_regular(data, layout):
-        return Cells(
-            _parse_with_pandas(data, layout.delimiter, layout, len(layout.rows), path), layout.rows
-        )
+    if layout.delimiter != layout.decimal:
+        bounds = find_cell_bounds(data, layout.delimiter, layout.count)
+        if bounds is not None:
+            return Cells(_parse_columns(bounds, layout), layout.rows)
     data, rows, faults = _rewrite_rows(lines, layout)
     if len(rows) == 0:
         raise describe_faults_of_rows(faults, len(layout.rows), lines, layout, path)
-    frame = _parse_with_pandas(data, _REWRITTEN_DELIMITER, layout, len(rows), path)
-    return Cells(frame, rows, tuple(faults))
-
-
-def _parse_with_pandas(
-    data: bytes, delimiter: str, layout: Layout, n_rows: int, path: Path
-) -> pd.DataFrame:
-    import pandas as pd
-
-    numbers = [i for i in range(layout.count) if i not in layout.text_columns]
-    # From pandas 3.1 on every number is parsed exactly, and asking for it is deprecated.
-    is_exact = tuple(int(part) for part in pd.__version__.split(".")[:2]) >= (3, 1)
-    options: dict[str, Any] = {} if is_exact else {"float_precision": "round_trip"}
-    options |= {
-        "sep": r"\s+" if delimiter == BLANKS else delimiter,
-        "header": None,
-        "names": list(range(layout.count)),
-        "index_col": False,
-        "dtype": dict.fromkeys(sorted(layout.text_columns), object),
-        "decimal": layout.decimal,
-        "skipinitialspace": True,
-        "skip_blank_lines": False,
-        "keep_default_na": False,
-        "na_values": {i: [""] for i in numbers},
-        "encoding": "utf-8",
-        "engine": "c",
-        "low_memory": False,
-    }
-    frame: pd.DataFrame = pd.read_csv(BytesIO(data), **options)
-    if len(frame) != n_rows:
+    bounds = find_cell_bounds(data, _REWRITTEN_DELIMITER, layout.count)
+    if bounds is None or len(bounds) != len(rows):
         raise ReadError(
-            f"'{path}' has {n_rows} rows, but the parser made {len(frame)} of them: "
+            f"'{path}' has {counted(len(rows), 'row')}, but the parser makes others of them: "
             "check its quotes.",
             path=path,
         )
-    return frame
+    return Cells(_parse_columns(bounds, layout), rows, tuple(faults))
+
+
+def _parse_columns(bounds: CellBounds, layout: Layout) -> tuple[NDArray[Any], ...]:
+    return tuple(
+        parse_column(bounds, i, decimal=layout.decimal, is_text=i in layout.text_columns)
+        for i in range(layout.count)
+    )
 
 
 def describe_faults_of_rows(
@@ -193,70 +174,6 @@ def describe_faults_of_rows(
 # ------------------------------------------------------------------ shape
 
 
-def _is_regular(data: bytes, layout: Layout) -> bool:
-    """Whether every row has the right number of cells by a count that pandas agrees with."""
-    if layout.delimiter == layout.decimal:
-        return False
-    codes = np.frombuffer(data, np.uint8)
-    ends = np.append(np.flatnonzero(codes == _LINE_FEED), len(codes))
-    starts = np.append(0, ends[:-1] + 1)
-    if layout.delimiter == BLANKS:
-        return b'"' not in data and _has_even_words(codes, starts, ends, layout.count)
-    places = np.flatnonzero(codes == ord(layout.delimiter))
-    if b'"' in data:
-        quotes = np.flatnonzero(codes == _QUOTE)
-        if not _are_plain(quotes, codes, ord(layout.delimiter), ends):
-            return False
-        places = _drop_quoted(places, quotes)
-    return _has_even(places, starts, ends, layout.count - 1)
-
-
-def _has_even(
-    places: NDArray[np.int64], starts: NDArray[np.int64], ends: NDArray[np.int64], count: int
-) -> bool:
-    """Whether exactly ``count`` of the places (ascending) lie in every line."""
-    if len(places) != count * len(starts):
-        return False
-    by_line = places.reshape(-1, count)
-    return bool((by_line[:, 0] >= starts).all() and (by_line[:, -1] < ends).all())
-
-
-def _has_even_words(
-    codes: NDArray[np.uint8], starts: NDArray[np.int64], ends: NDArray[np.int64], count: int
-) -> bool:
-    is_gap = (codes == _SPACE) | (codes == _TAB) | (codes == _LINE_FEED)
-    is_word_start = ~is_gap
-    is_word_start[1:] &= is_gap[:-1]
-    return _has_even(np.flatnonzero(is_word_start), starts, ends, count)
-
-
-def _are_plain(
-    quotes: NDArray[np.int64], codes: NDArray[np.uint8], delimiter: int, ends: NDArray[np.int64]
-) -> bool:
-    """Whether no quote stands where only care can read it.
-
-    Quotes are plain if they are closed on their line, open at the start of a cell, and close at
-    the end of one or are doubled.
-    """
-    if len(quotes) % 2:
-        return False
-    opening, closing = quotes[0::2], quotes[1::2]
-    if (np.searchsorted(ends, opening) != np.searchsorted(ends, closing)).any():
-        return False
-    before, behind = opening - 1, closing + 1
-    beside = codes[np.concatenate([before[before >= 0], behind[behind < len(codes)]])]
-    return bool(np.isin(beside, [delimiter, _QUOTE, _LINE_FEED]).all())
-
-
-def _drop_quoted(places: NDArray[np.int64], quotes: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return the places (ascending) that do not lie between an opening and its closing quote."""
-    first = np.searchsorted(places, quotes[0::2])
-    counts = np.searchsorted(places, quotes[1::2]) - first
-    running = np.cumsum(counts)
-    total = int(running[-1])
-    return np.delete(places, np.repeat(first - running + counts, counts) + np.arange(total))
-
-
 def _rewrite_rows(lines: TextLines, layout: Layout) -> tuple[bytes, NDArray[np.int64], list[Fault]]:
     """Write the rows anew with plain quotes; leave those out that have not the right cells."""
     text = StringIO(newline="")
@@ -275,7 +192,7 @@ def _rewrite_rows(lines: TextLines, layout: Layout) -> tuple[bytes, NDArray[np.i
             kept.append(line)
         else:
             faults.append(Fault(line, "columns", f"has {len(cells)}"))
-    return text.getvalue().encode(), np.array(kept, np.int64), faults
+    return text.getvalue().removesuffix("\n").encode(), np.array(kept, np.int64), faults
 
 
 def _iterate_cells(lines: TextLines, layout: Layout) -> Iterator[tuple[int, str, list[str] | str]]:
@@ -351,10 +268,10 @@ class _Numbers(NamedTuple):
     n_grouped: int = 0
 
 
-def _parse_numbers(column: pd.Series[Any], layout: Layout, *, has_groups: bool) -> _Numbers:
+def _parse_numbers(column: NDArray[Any], layout: Layout, *, has_groups: bool) -> _Numbers:
     """Read the numbers of a column, those with thousands separators where these are proved."""
-    if column.dtype.kind in "fiu":
-        values = column.to_numpy(np.float64)
+    if column.dtype.kind in "fi":
+        values = column.astype(np.float64)
         return _Numbers(values, np.isnan(values))
     if column.dtype.kind == "b":
         return _Numbers(np.full(len(column), np.nan), np.zeros(len(column), np.bool_))
@@ -369,11 +286,11 @@ def _parse_numbers(column: pd.Series[Any], layout: Layout, *, has_groups: bool) 
     return _Numbers(values, missing, len(grouped))
 
 
-def _strip_texts(column: pd.Series[Any]) -> list[str]:
-    return [cell.strip() for cell in column.fillna("").astype(str)]
+def _strip_texts(column: NDArray[Any]) -> list[str]:
+    return [cell.strip() for cell in column.tolist()]
 
 
-def _has_groups(frame: pd.DataFrame, columns: Iterable[int], layout: Layout) -> bool:
+def _has_groups(cells: Cells, columns: Iterable[int], layout: Layout) -> bool:
     """Whether separators of thousands are proved: by the caller, the decimal mark, or a cell.
 
     1,234 alone may be 1.234; beside 12.5 or 4,024,240 it is a thousand and more.
@@ -384,24 +301,24 @@ def _has_groups(frame: pd.DataFrame, columns: Iterable[int], layout: Layout) -> 
     return any(
         proves_groups(cell, mark) or (mark in cell and is_number(cell, mark))
         for i in columns
-        if frame[i].dtype.kind not in "fiub"
-        for cell in _strip_texts(frame[i])
+        if cells.columns[i].dtype.kind not in "fib"
+        for cell in _strip_texts(cells.columns[i])
     )
 
 
 def describe_columns(cells: Cells, layout: Layout) -> list[Column]:
     """Describe what is in each column, to tell what it means."""
     numeric = [i for i in range(layout.count) if i not in layout.mostly_text]
-    has_groups = _has_groups(cells.frame, numeric, layout)
+    has_groups = _has_groups(cells, numeric, layout)
     return [
-        _describe_column(cells.frame[i], i, layout, has_groups=has_groups)
+        _describe_column(cells.columns[i], i, layout, has_groups=has_groups)
         for i in range(layout.count)
     ]
 
 
-def _describe_column(column: pd.Series[Any], i: int, layout: Layout, *, has_groups: bool) -> Column:
+def _describe_column(column: NDArray[Any], i: int, layout: Layout, *, has_groups: bool) -> Column:
     if i in layout.mostly_text:
-        distinct = column.nunique() / len(column)
+        distinct = len(set(column.tolist())) / len(column)
         return Column(np.full(len(column), np.nan), is_text=True, distinct_share=distinct)
     numbers = _parse_numbers(column, layout, has_groups=has_groups)
     values = numbers.values
@@ -443,9 +360,9 @@ def read_table(cells: Cells, layout: Layout, columns: Columns, lines: TextLines)
     lines : TextLines
         For sentences.
     """
-    has_groups = _has_groups(cells.frame, columns.coordinates, layout)
+    has_groups = _has_groups(cells, columns.coordinates, layout)
     numbers = [
-        _parse_numbers(cells.frame[column], layout, has_groups=has_groups)
+        _parse_numbers(cells.columns[column], layout, has_groups=has_groups)
         for column in columns.coordinates
     ]
     points = np.column_stack([one.values for one in numbers])
@@ -459,7 +376,7 @@ def read_table(cells: Cells, layout: Layout, columns: Columns, lines: TextLines)
         )
     ]
     good = np.delete(np.arange(len(points)), bad) if len(bad) else slice(None)
-    attributes = _collect_attributes(cells.frame, columns)
+    attributes = _collect_attributes(cells, columns)
     return Table(
         points[good],
         {name: values[good] for name, values in attributes.items()},
@@ -480,25 +397,18 @@ def _describe_fault(lines: TextLines, layout: Layout, columns: Columns, line: in
 # ------------------------------------------------------------------ attributes
 
 
-def _collect_attributes(frame: pd.DataFrame, columns: Columns) -> dict[str, NDArray[Any]]:
+def _collect_attributes(cells: Cells, columns: Columns) -> dict[str, NDArray[Any]]:
     """Return the columns that are no coordinates, by role or name; empty unnamed ones are left."""
     roles = {column: role for role, column in columns.roles.items()}
     attributes: dict[str, NDArray[Any]] = {}
     for column, name in enumerate(columns.names):
         if roles.get(column) in COORDINATES:
             continue
-        values = _choose_values(frame[column])
+        values = cells.columns[column]
         if name == f"column {column + 1}" and _is_empty(values):
             continue
         attributes[roles.get(column, name)] = values
     return attributes
-
-
-def _choose_values(column: pd.Series[Any]) -> NDArray[Any]:
-    """Return numbers as they are, anything else as text, an empty cell as an empty text."""
-    if column.dtype.kind in "fiub":
-        return column.to_numpy()
-    return column.fillna("").to_numpy(dtype=object)
 
 
 def _is_empty(values: NDArray[Any]) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import numpy as np
@@ -59,9 +60,18 @@ def read_points(path: str, *, shown: str, wanted: dict[str, Any]) -> Iterator[An
         3) int32, ``classes``, the points of each class, and the attributes by their names.
     """
     done = 0
-    for points in _iterate_chunks(path, shown, wanted):
+    for points in _prefetch(_iterate_chunks(path, shown, wanted)):
         answer, done = _select(points, wanted, done)
         yield answer
+
+
+def _prefetch(chunks: Iterator[Any]) -> Iterator[Any]:
+    """Yield chunks while a thread decompresses the one behind."""
+    with ThreadPoolExecutor(1) as thread:
+        coming = thread.submit(next, chunks, None)
+        while (points := coming.result()) is not None:
+            coming = thread.submit(next, chunks, None)
+            yield points
 
 
 def _iterate_chunks(path: str, shown: str, wanted: dict[str, Any]) -> Iterator[Any]:

@@ -37,6 +37,7 @@ __all__ = [
     "make_tin",
     "read_content",
     "require_factor",
+    "require_own_crs",
     "require_tin",
     "require_writable",
 ]
@@ -140,17 +141,28 @@ def choose_reference(
         If the file names a unit that is none.
     """
     declared, own = CRS.of(crs), _find_crs(found_crs, crs is not None)
+    require_own_crs(own, declared, path)
+    system = declared if own is None else own
+    known = _find_unit(found_unit, path)
+    vertical = None if system is None else system.vertical_unit
+    return Reference(system, settle_unit(Unit.of(z_unit), known or vertical, path))
+
+
+def require_own_crs(own: CRS | None, declared: CRS | None, path: Path) -> None:
+    """Refuse to reproject a TIN.
+
+    Raises
+    ------
+    CrsError
+        If another CRS is wanted than that of the file.
+    """
     if declared is not None and own is not None and not own.is_same(declared):
         raise CrsError(
             f"'{path}' is in {own.label}, and {declared.label} is another CRS: a TIN is not "
             "reprojected, since its triangles would be no Delaunay triangles there; build it anew "
             "from its points.",
-            crs=crs,
+            crs=declared,
         )
-    system = declared if own is None else own
-    known = _find_unit(found_unit, path)
-    vertical = None if system is None else system.vertical_unit
-    return Reference(system, settle_unit(Unit.of(z_unit), known or vertical, path))
 
 
 def _find_crs(text: str | None, is_declared: bool) -> CRS | None:

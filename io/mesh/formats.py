@@ -70,7 +70,6 @@ FORMATS = (
     _make(
         *("vtk", "VTK XML mesh (opens in ParaView)", ".vtp", ".vtu"),
         module="vtk",
-        extra="view",
         sniff=signatures.is_vtk_xml,
         writes=("TIN",),
         precision=_EXACT,

@@ -133,15 +133,15 @@ def _read_record(header: bytes) -> tuple[NDArray[np.float64], str | None, str | 
 
 def _merge_corners(corners: NDArray[np.float32]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Return the distinct places in the order in which they first occur, and their numbers."""
-    from pandas import factorize
-
     corners = corners + np.float32(0.0)  # turns -0.0 into 0.0, so that equal places are equal bits
     bits = np.ascontiguousarray(corners).view(np.uint32).astype(np.uint64)
-    plane, _ = factorize((bits[:, 0] << np.uint64(32)) | bits[:, 1])
-    numbers, places = factorize((plane.astype(np.uint64) << np.uint64(32)) | bits[:, 2])
-    first = np.empty(len(places), np.int64)
-    first[numbers[::-1]] = np.arange(len(numbers))[::-1]
-    return corners[first].astype(np.float64), numbers.reshape(-1, 3).astype(np.int64)
+    _, plane = np.unique((bits[:, 0] << np.uint64(32)) | bits[:, 1], return_inverse=True)
+    keys = (plane.astype(np.uint64) << np.uint64(32)) | bits[:, 2]
+    _, first, places = np.unique(keys, return_index=True, return_inverse=True)
+    in_order = np.argsort(first)  # by the first corner at each place
+    numbers = np.empty(len(first), np.int64)
+    numbers[in_order] = np.arange(len(first))
+    return corners[first[in_order]].astype(np.float64), numbers[places].reshape(-1, 3)
 
 
 def write(

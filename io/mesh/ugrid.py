@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from ...tin import TIN, Survey
     from .common import Reference
 
-__all__ = ["read", "write"]
+__all__ = ["read", "write", "write_content"]
 
 _MESH = "mesh2d"
 _CRS_VARIABLE = "projected_coordinate_system"
@@ -240,15 +240,20 @@ def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None 
     with replacing_path(path) as beside:
         try:
             with netcdf.Dataset(str(beside), "w", format="NETCDF4") as data:
-                _write_topology(data, tin)
-                _write_nodes(data, tin)
-                _write_faces(data, tin)
-                if tin.constrained.any():
-                    _write_edges(data, tin)
+                write_content(data, tin)
         except RuntimeError as error:
             raise WriteError(f"Cannot write '{path}': {error}.", path=path) from error
     if progress is not None:
         progress(1.0)
+
+
+def write_content(data: Any, tin: TIN) -> None:
+    """Write a TIN into a data set of netCDF4 that is open and empty."""
+    _write_topology(data, tin)
+    _write_nodes(data, tin)
+    _write_faces(data, tin)
+    if tin.constrained.any():
+        _write_edges(data, tin)
 
 
 def _write_topology(data: Any, tin: TIN) -> None:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["catch_errors", "load_vtk_class", "prepare", "read_mesh"]
+__all__ = ["catch_errors", "load_vtk_class", "prepare", "read_dataset", "read_mesh"]
 
 _NO_FACES = frozenset({0, 1, 2, 3, 4})  # empty cell, vertices, lines
 _FACES = frozenset({5, 7, 9})  # triangle, polygon, quadrilateral
@@ -53,8 +53,18 @@ def read_mesh(path: str, shown: str, *, kind: str) -> Answer:
         reader.Update()
     if errors or reader.GetErrorCode():
         raise Refusal(f"'{shown}' is a damaged VTK XML file.")
-    found = pv.wrap(reader.GetOutput())
-    faces = _read_poly_data(found, shown) if kind == "PolyData" else _read_faces(found, shown)
+    return read_dataset(pv.wrap(reader.GetOutput()), shown)
+
+
+def read_dataset(found: Any, shown: str) -> Answer:
+    """Return the points and faces of a PolyData or UnstructuredGrid of PyVista.
+
+    Parameters and answer are those of :func:`read_mesh`.
+    """
+    is_poly_data = hasattr(found, "GetPolys")
+    if not (is_poly_data or hasattr(found, "celltypes")):
+        raise Refusal(f"'{shown}' is neither a PolyData nor an UnstructuredGrid.")
+    faces = _read_poly_data(found, shown) if is_poly_data else _read_faces(found, shown)
     attributes = _read_point_attributes(found)
     arrays: dict[str, NDArray[Any]] = {
         "points": np.array(found.points, np.float64).reshape(-1, 3),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import os
 from dataclasses import dataclass, replace
+from functools import partial
 from numbers import Integral, Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -24,13 +25,18 @@ from .virtual import is_virtual, require_plain_sources
 from .voids import trace_rings
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from contextlib import AbstractContextManager
+    from typing import TypeAlias
 
     from numpy.typing import NDArray
 
     from ...crs import CrsLike, UnitLike
+    from ..isolated import Answer
 
-__all__ = ["LEFT_OUT", "is_raster", "read", "read_georeference"]
+    OpenStrips: TypeAlias = Callable[[dict[str, Any]], AbstractContextManager[Iterator[Answer]]]
+
+__all__ = ["LEFT_OUT", "Affine", "Header", "is_raster", "make_survey", "read", "read_georeference"]
 
 _STRIP_CELLS = 4_000_000
 """Cells read at a time, so that memory holds little but the points."""
@@ -136,7 +142,45 @@ def read(
     Scale and offset of the band are applied. The raster is read in strips; memory is 48 bytes
     for each valid cell at most, and a strip.
     """
-    dataset = _read_header(path)
+    header = _read_header(path)
+    return make_survey(
+        header,
+        partial(_stream_strips, header),
+        crs=crs,
+        z_unit=z_unit,
+        band=band,
+        window=window,
+        stride=stride,
+        most_cells=most_cells,
+        nodata=nodata,
+        fill=fill,
+    )
+
+
+def make_survey(
+    dataset: Header,
+    open_strips: OpenStrips,
+    *,
+    crs: CrsLike | None,
+    z_unit: UnitLike | None,
+    band: int | None,
+    window: Sequence[int] | Bounds | None,
+    stride: int | None,
+    most_cells: int | None = None,
+    nodata: float | Sequence[float] | None,
+    fill: bool,
+) -> Survey:
+    """Make a survey of the cells of a raster, as :func:`read` does.
+
+    Parameters
+    ----------
+    dataset : Header
+    open_strips : callable
+        Takes what to read, and gives the strips that ``gdal_child.read_strips`` yields.
+    crs, z_unit, band, window, stride, most_cells, nodata, fill
+        As of :func:`read`.
+    """
+    path = dataset.path
     number = _choose_band(dataset, band, path)
     _require_elevation_band(dataset, number, band is not None, path)
     target, source = CRS.of(crs), CRS.of(dataset.crs)
@@ -146,7 +190,7 @@ def read(
     marks = parse_nodata(nodata)
     _require_few_cells(cells, path)
     place(_find_middle(dataset), source=source, target=target, path=path)
-    points, valid, n_nodata = _read_points(dataset, number, cells, marks)
+    points, valid, n_nodata = _read_points(dataset, open_strips, number, cells, marks)
     if len(points) == 0:
         raise ReadError(
             f"'{path}': of {counted(n_nodata, 'cell')} of band {number}, none has an elevation but "
@@ -234,7 +278,7 @@ def is_raster(path: Path) -> bool:
 # ------------------------------------------------------------------ the dataset
 
 
-class _Affine(NamedTuple):
+class Affine(NamedTuple):
     """Easting is ``a * column + b * row + c``, northing ``d * column + e * row + f``."""
 
     a: float
@@ -251,22 +295,22 @@ class _Affine(NamedTuple):
             column * self.d + row * self.e + self.f,
         )
 
-    def invert(self) -> _Affine:
+    def invert(self) -> Affine:
         """Return the transform from easting and northing to columns and rows."""
         a, b, c, d, e, f = self
         area = a * e - b * d
-        return _Affine(
+        return Affine(
             *(e / area, -b / area, (b * f - c * e) / area),
             *(-d / area, a / area, (c * d - a * f) / area),
         )
 
 
-_NOWHERE = _Affine(1.0, 0.0, 0.0, 0.0, 1.0, 0.0)
+_NOWHERE = Affine(1.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 """What GDAL tells of a raster without a georeference."""
 
 
 @dataclass(frozen=True, slots=True)
-class _Header:
+class Header:
     """What a raster says of itself, and how its cells are read; see raster_gdal.header."""
 
     path: Path
@@ -276,14 +320,14 @@ class _Header:
     dtypes: list[str]
     width: int
     height: int
-    transform: _Affine
+    transform: Affine
     block_height: int
     block_width: int
     scales: list[float]
     offsets: list[float]
     units: list[str | None]
     crs: str | None
-    limits: Limits
+    limits: Limits | None
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:
@@ -294,15 +338,15 @@ class _Header:
         return float(x.min()), float(y.min()), float(x.max()), float(y.max())
 
 
-def _read_header(path: Path) -> _Header:
+def _read_header(path: Path) -> Header:
     """Let a child open a raster, and return what it says of itself."""
     _optional.require("rasterio", "Reading a raster")
     limits = choose_limits(_measure_files(path))
     found = run_isolated(
         f"{_choose_reader(path)}:read_header", _name_for_gdal(path), path=path, limits=limits
     ).value
-    transform = _Affine(*found.pop("transform"))
-    return _Header(path=path, transform=transform, limits=limits, **found)
+    transform = Affine(*found.pop("transform"))
+    return Header(path=path, transform=transform, limits=limits, **found)
 
 
 def _choose_reader(path: Path) -> str:
@@ -320,7 +364,7 @@ def _measure_files(path: Path) -> int:
     return sum(one.stat().st_size for one in [path, *sources] if one.is_file())
 
 
-def _choose_band(dataset: _Header, band: int | None, path: Path) -> int:
+def _choose_band(dataset: Header, band: int | None, path: Path) -> int:
     if dataset.count == 0:
         parts = ", ".join(dataset.subdatasets[:5])
         raise ReadError(
@@ -337,7 +381,7 @@ def _choose_band(dataset: _Header, band: int | None, path: Path) -> int:
     return int(number)
 
 
-def _require_elevation_band(dataset: _Header, band: int, is_told: bool, path: Path) -> None:
+def _require_elevation_band(dataset: Header, band: int, is_told: bool, path: Path) -> None:
     """Refuse pictures, complex numbers and rasters whose place is unknown."""
     meaning = dataset.colours[band - 1]
     if meaning in _COLOURS and not is_told:
@@ -351,7 +395,7 @@ def _require_elevation_band(dataset: _Header, band: int, is_told: bool, path: Pa
     _require_position(dataset, path)
 
 
-def _require_position(dataset: _Header, path: Path) -> None:
+def _require_position(dataset: Header, path: Path) -> None:
     """Refuse a raster whose cells have no place, or one that is no area."""
     if dataset.transform == _NOWHERE:
         raise ReadError(
@@ -372,7 +416,7 @@ def _require_position(dataset: _Header, path: Path) -> None:
 
 
 def _find_elevation_unit(
-    dataset: _Header, band: int, source: CRS | None, declared: Unit | None
+    dataset: Header, band: int, source: CRS | None, declared: Unit | None
 ) -> tuple[Unit | None, list[str]]:
     """Return the unit that band, vertical axis or caller give, and a note on one not understood."""
     path, word = dataset.path, str(dataset.units[band - 1] or "").strip()
@@ -393,7 +437,7 @@ def _find_elevation_unit(
     )
 
 
-def _find_middle(dataset: _Header) -> NDArray[np.float64]:
+def _find_middle(dataset: Header) -> NDArray[np.float64]:
     x, y = dataset.transform.apply(dataset.width / 2, dataset.height / 2)
     return np.array([[x, y, 0.0]])
 
@@ -402,7 +446,7 @@ def _find_middle(dataset: _Header) -> NDArray[np.float64]:
 
 
 def _choose_cells(
-    dataset: _Header,
+    dataset: Header,
     window: Sequence[int] | Bounds | None,
     stride: int | None,
     path: Path,
@@ -451,7 +495,7 @@ def _describe_sample(cells: _Cells, left_out: int) -> list[str]:
     ]
 
 
-def _cut_window(dataset: _Header, window: Sequence[int], path: Path) -> tuple[int, int, int, int]:
+def _cut_window(dataset: Header, window: Sequence[int], path: Path) -> tuple[int, int, int, int]:
     size = f"the raster has {counted(dataset.width, 'column')} and {counted(dataset.height, 'row')}"
     try:
         numbers = tuple(window)
@@ -470,7 +514,7 @@ def _cut_window(dataset: _Header, window: Sequence[int], path: Path) -> tuple[in
     return column, row, width, height
 
 
-def _cut_bounds(dataset: _Header, bounds: Bounds, path: Path) -> tuple[int, int, int, int]:
+def _cut_bounds(dataset: Header, bounds: Bounds, path: Path) -> tuple[int, int, int, int]:
     """Return the cells of the smallest upright window that covers the bounds."""
     limits = (bounds.xmin, bounds.ymin, bounds.xmax, bounds.ymax)
     if not all(isinstance(one, Real) and np.isfinite(one) for one in limits):
@@ -509,8 +553,24 @@ def _require_few_cells(cells: _Cells, path: Path) -> None:
 # ------------------------------------------------------------------ points
 
 
+def _stream_strips(
+    dataset: Header, where: dict[str, Any]
+) -> AbstractContextManager[Iterator[Answer]]:
+    """Let a child read the strips of a file."""
+    return stream_isolated(
+        f"{_choose_reader(dataset.path)}:read_strips",
+        {**_name_for_gdal(dataset.path), **where},
+        path=dataset.path,
+        limits=dataset.limits,
+    )
+
+
 def _read_points(
-    dataset: _Header, band: int, cells: _Cells, marks: NDArray[np.float64]
+    dataset: Header,
+    open_strips: OpenStrips,
+    band: int,
+    cells: _Cells,
+    marks: NDArray[np.float64],
 ) -> tuple[NDArray[np.float64], NDArray[np.bool_], int]:
     """Return the points of valid cells, which cells are valid, and how many have no elevation."""
     strips = _cut_into_strips(dataset, cells)
@@ -519,12 +579,7 @@ def _read_points(
     found: list[NDArray[np.float64]] = []
     kept: list[NDArray[np.bool_]] = []
     n_nodata = 0
-    with stream_isolated(
-        f"{_choose_reader(dataset.path)}:read_strips",
-        {**_name_for_gdal(dataset.path), **window, "rows": ends},
-        path=dataset.path,
-        limits=dataset.limits,
-    ) as answers:
+    with open_strips({**window, "rows": ends}) as answers:
         for rows, answer in zip(strips, answers, strict=False):
             points, keep, missing = _read_strip(dataset, band, cells, rows, answer.arrays, marks)
             found.append(points)
@@ -535,7 +590,7 @@ def _read_points(
     return np.concatenate(found), np.concatenate(kept), n_nodata
 
 
-def _cut_into_strips(dataset: _Header, cells: _Cells) -> list[NDArray[np.int64]]:
+def _cut_into_strips(dataset: Header, cells: _Cells) -> list[NDArray[np.int64]]:
     """Cut the rows wanted into strips."""
     height = _choose_strip_height(dataset, cells)
     end = cells.row + cells.height
@@ -545,14 +600,14 @@ def _cut_into_strips(dataset: _Header, cells: _Cells) -> list[NDArray[np.int64]]
     return [rows for rows in strips if len(rows)]
 
 
-def _choose_strip_height(dataset: _Header, cells: _Cells) -> int:
+def _choose_strip_height(dataset: Header, cells: _Cells) -> int:
     """Return a number of rows that are whole blocks of the file, of some million cells."""
     block = max(1, dataset.block_height)
     return max(1, _STRIP_CELLS // (block * cells.width)) * block
 
 
 def _read_strip(
-    dataset: _Header,
+    dataset: Header,
     band: int,
     cells: _Cells,
     rows: NDArray[np.int64],
@@ -588,7 +643,7 @@ def _require_finite_centres(points: NDArray[np.float64], band: int, path: Path) 
 
 
 def _compute_centres(
-    dataset: _Header, columns: NDArray[np.int64], rows: NDArray[np.int64]
+    dataset: Header, columns: NDArray[np.int64], rows: NDArray[np.int64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return easting and northing of the cell centres, (rows, columns) arrays."""
     x, y = dataset.transform.apply(columns[None, :] + 0.5, rows[:, None] + 0.5)

@@ -13,7 +13,7 @@ def _make(name: str, description: str, function: str) -> Format:
     write = f"{__package__}.geotiff:{function}"
     kinds: dict[str, Any] = {"suffixes": (".tif", ".tiff"), "writes": ("Raster",)}
     kinds["precision"] = "Every cell comes back bit for bit."
-    return Format(name=name, description=description, write=write, extra="raster", **kinds)
+    return Format(name=name, description=description, write=write, **kinds)
 
 
 FORMATS = (
@@ -26,7 +26,6 @@ FORMATS = (
             *(".jp2", ".png", ".jpg", ".grb", ".grb2", ".ntf"),
         ),
         read="tinsmith.io.raster.dem:read",
-        extra="raster",
         sniff=signatures.is_raster,
     ),
     _make("geotiff", "GeoTIFF", "write"),

@@ -12,7 +12,7 @@ import numpy as np
 from ..isolated import Answer
 from ..isolated.gdal import RASTER_DRIVERS, REFERRING_DRIVERS, make_environment
 
-__all__ = ["ENVIRONMENT", "prepare", "read_header", "read_strips"]
+__all__ = ["ENVIRONMENT", "cut_strips", "describe", "prepare", "read_header", "read_strips"]
 
 ENVIRONMENT = make_environment()
 
@@ -34,22 +34,26 @@ def _require_plain_drivers(unwanted: set[str]) -> None:
 def read_header(path: str, *, is_virtual: bool = False) -> Answer:
     """Return what a raster says of itself; keys as the attributes of a rasterio dataset."""
     with _open_raster(path, is_virtual) as dataset:
-        value = {
-            "count": dataset.count,
-            "subdatasets": list(dataset.subdatasets[:5]),
-            "colours": [one.name for one in dataset.colorinterp],
-            "dtypes": list(dataset.dtypes),
-            "width": dataset.width,
-            "height": dataset.height,
-            "transform": list(dataset.transform[:6]),
-            "block_height": int(dataset.block_shapes[0][0]) if dataset.count else 1,
-            "block_width": int(dataset.block_shapes[0][1]) if dataset.count else 1,
-            "scales": list(dataset.scales),
-            "offsets": list(dataset.offsets),
-            "units": [unit or None for unit in dataset.units],
-            "crs": dataset.crs.to_wkt() if dataset.crs else None,
-        }
-    return Answer(value, {})
+        return Answer(describe(dataset), {})
+
+
+def describe(dataset: Any) -> dict[str, Any]:
+    """Return what a dataset of rasterio says of itself."""
+    return {
+        "count": dataset.count,
+        "subdatasets": list(dataset.subdatasets[:5]),
+        "colours": [one.name for one in dataset.colorinterp],
+        "dtypes": list(dataset.dtypes),
+        "width": dataset.width,
+        "height": dataset.height,
+        "transform": list(dataset.transform[:6]),
+        "block_height": int(dataset.block_shapes[0][0]) if dataset.count else 1,
+        "block_width": int(dataset.block_shapes[0][1]) if dataset.count else 1,
+        "scales": list(dataset.scales),
+        "offsets": list(dataset.offsets),
+        "units": [unit or None for unit in dataset.units],
+        "crs": dataset.crs.to_wkt() if dataset.crs else None,
+    }
 
 
 def read_strips(
@@ -76,14 +80,21 @@ def read_strips(
         Every how many of the rows and columns.
     is_virtual : bool
     """
-    from rasterio.windows import Window
-
     with _open_raster(path, is_virtual) as dataset:
-        for first, last in rows:
-            window = Window(column, first, width, last - first + 1)
-            values = dataset.read(band, window=window)[::stride, ::stride]
-            valid = _find_valid(dataset, band, window, values, stride)
-            yield Answer(None, {"values": values, "valid": valid.astype(np.uint8)})
+        yield from cut_strips(
+            dataset, band=band, column=column, width=width, rows=rows, stride=stride
+        )
+
+
+def cut_strips(
+    dataset: Any, *, band: int, column: int, width: int, rows: list[list[int]], stride: int
+) -> Iterator[Answer]:
+    """Yield what :func:`read_strips` does, of a dataset that is open."""
+    for first, last in rows:
+        window = ((first, last + 1), (column, column + width))
+        values = dataset.read(band, window=window)[::stride, ::stride]
+        valid = _find_valid(dataset, band, window, values, stride)
+        yield Answer(None, {"values": values, "valid": valid.astype(np.uint8)})
 
 
 def _find_valid(dataset: Any, band: int, window: Any, values: Any, stride: int) -> Any:

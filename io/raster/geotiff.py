@@ -34,7 +34,6 @@ _LEVEL = 4
 """Of deflate: a third quicker than the usual 6, for files that are 1 to 10 percent larger."""
 _ALL = "ALL_CPUS"
 _LARGEST_DRAFT = 1 << 30
-_MOST_SIDE = 2**31 - 1
 _WIDER = {"bool": "uint8", "float16": "float32"}
 _PARTS = (".aux.xml", ".ovr", ".msk", ".ovr.msk")
 """What GDAL keeps beside a raster, and would use with the new one."""

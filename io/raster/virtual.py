@@ -9,12 +9,12 @@ from __future__ import annotations
 
 from pathlib import Path
 from typing import TYPE_CHECKING
-from xml.etree import ElementTree as ET
 
 from ...errors import ReadError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+    from xml.etree import ElementTree as ET
 
 __all__ = ["is_virtual", "require_plain_sources"]
 
@@ -71,6 +71,8 @@ def require_plain_sources(path: Path) -> list[Path]:
 
 
 def _parse_text(path: Path) -> ET.Element:
+    from xml.etree import ElementTree as ET
+
     try:
         if path.stat().st_size > LARGEST_TEXT:
             raise _describe_refused_mosaic(path, f"is larger than {LARGEST_TEXT:,} bytes")

@@ -120,8 +120,8 @@ class Format:
         Examples
         --------
         >>> import tinsmith as ts
-        >>> ts.find_format("cog").needs
-        'tinsmith[raster]'
+        >>> ts.find_format("dxf").needs
+        'tinsmith[cad]'
         """
         return f"{_OWN}[{self.extra}]" if self.extra else ""
 

@@ -84,8 +84,12 @@ def is_raster(head: bytes) -> bool:
 
 
 def is_ugrid(head: bytes) -> bool:
-    """Whether the file is a UGRID mesh: netCDF that speaks of the topology of a mesh."""
-    return head.startswith((b"CDF", b"\x89HDF")) and b"mesh_topology" in head
+    """Whether the file is a UGRID mesh: netCDF of that convention, or with a mesh's topology.
+
+    In netCDF-4 the convention is told at the head, the topology where the mesh has its variable.
+    """
+    is_netcdf = head.startswith((b"CDF", b"\x89HDF"))
+    return is_netcdf and (b"mesh_topology" in head or b"UGRID-" in head)
 
 
 def is_ply(head: bytes) -> bool:

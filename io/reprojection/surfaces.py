@@ -197,11 +197,7 @@ class _Mover:
         return self.move_ring(line)
 
     def move_region(self, region: Any) -> Any:
-        """Move a ring, a list of rings, or a polygon of shapely."""
-        if hasattr(region, "geom_type"):
-            import shapely
-
-            return shapely.transform(region, self.move_ring, include_z=bool(region.has_z))
+        """Move a ring, or a list of rings."""
         if isinstance(region, list | tuple) and np.ndim(region[0]) == 2:
             return [self.move_ring(ring) for ring in region]
         return self.move_ring(region)

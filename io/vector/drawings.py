@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ... import _optional
 from ..._sentences import counted
 from ...errors import OptionError, ReadError
 from ..cad.dxf.drawing import Drawing, read_drawing
@@ -87,8 +88,7 @@ def read_drawing_features(
 def _gather_shapes(
     drawing: Drawing, *, lines_only: bool
 ) -> tuple[NDArray[np.object_], dict[str, NDArray[Any]]]:
-    import shapely
-
+    shapely = _optional.load("shapely")
     shapes = [shapely.LineString(rows) for rows in drawing.lines]
     layers = drawing.arrays["line_layers"].tolist()
     told = drawing.value["line_names"] or [[]] * len(shapes)

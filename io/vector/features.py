@@ -184,8 +184,7 @@ def _parse_shapes(
     arrays: dict[str, NDArray[Any]], path: Path, *, has_surfaces: bool
 ) -> NDArray[np.object_]:
     """Return geometries of shapely; TINs and the like as polygons where surfaces may be."""
-    import shapely
-
+    shapely = _optional.load("shapely")
     wkb, lengths = arrays["wkb"].tobytes(), arrays["lengths"]
     ends = np.cumsum(np.maximum(lengths, 0))
     parts = zip((ends - np.maximum(lengths, 0)).tolist(), ends.tolist(), strict=True)
@@ -208,8 +207,7 @@ def _parse_shapes(
 
 def _drop_without_geometry(features: Features) -> Features:
     """Leave out the features that have no geometry, and note them."""
-    import shapely
-
+    shapely = _optional.load("shapely")
     is_empty = shapely.is_missing(features.geometries) | shapely.is_empty(features.geometries)
     if not is_empty.any():
         return features

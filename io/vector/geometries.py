@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ... import _optional
 from ..._atomic import as_path
 from ...crs import CRS
 from ...errors import ReadError
@@ -63,8 +64,7 @@ def read_geometries(
     CrsError
         If they cannot be brought into the CRS.
     """
-    import shapely
-
+    shapely = _optional.load("shapely")
     read = read_features(as_path(path), layer=layer)
     wanted = Wanted(CRS.of(crs))
     shapes = shapely.orient_polygons(shapely.force_2d(read.geometries))
@@ -86,8 +86,7 @@ def read_geometries(
 
 
 def _find_kind(shapes: NDArray[np.object_], read: Layer) -> Any:
-    import shapely
-
+    shapely = _optional.load("shapely")
     types = shapely.get_type_id(shapes).tolist()
     kinds = [_KIND_OF.get(one, "collections") for one in types]
     other = next((row for row, kind in enumerate(kinds) if kind != kinds[0]), None)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from ..._atomic import replacing_files
 from ...errors import WriteError
+from ..mesh.geopackage.journals import require_closed
 from .ogr import describe, write_layer
 
 if TYPE_CHECKING:
@@ -16,8 +17,6 @@ if TYPE_CHECKING:
 __all__ = ["write"]
 
 _OWN_COLUMNS = ("fid", "geom")
-_JOURNALS = ("-wal", "-journal")
-"""What SQLite keeps beside a file in use, and would play into any file of that name."""
 
 
 def write(features: Features, path: Path) -> None:
@@ -52,11 +51,4 @@ def _require_free(features: Features, path: Path) -> None:
                 f"Cannot write '{path}': a column '{name}' is {why}, capitals aside: rename it.",
                 path=path,
             )
-    for end in _JOURNALS:
-        journal = path.with_name(path.name + end)
-        if journal.exists():
-            raise WriteError(
-                f"Cannot write '{path}': it is open in another program, as '{journal.name}' beside "
-                "it shows; close it there first.",
-                path=path,
-            )
+    require_closed(path)

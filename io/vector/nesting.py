@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ... import _optional
 from ...errors import ReadError
 
 if TYPE_CHECKING:
@@ -32,8 +33,7 @@ def note_nesting(polygons: Sequence[Sequence[NDArray[np.float64]]], path: Path) 
     ReadError
         If two overlap or are equal: whether the surface lies there is anybody's guess.
     """
-    import shapely
-
+    shapely = _optional.load("shapely")
     if len(polygons) < 2:
         return []
     shapes = shapely.make_valid(np.array([_shape(rings) for rings in polygons], object))
@@ -68,7 +68,6 @@ def _describe_nesting(count: int, path: Path) -> list[str]:
 
 
 def _shape(rings: Sequence[NDArray[np.float64]]) -> Any:
-    import shapely
-
+    shapely = _optional.load("shapely")
     outer, *islands = [ring[:, :2] for ring in rings]
     return shapely.Polygon(outer, islands)

@@ -139,8 +139,7 @@ def encode_geometries(features: Features) -> NDArray[np.object_]:
     equal = encode_equal_shapes(features)
     if equal is not None:
         return equal.astype(object)
-    import shapely
-
+    shapely = _optional.load("shapely")
     dimension = 3 if features.has_elevations else 2
     geometries = build_geometries(features)
     written: Any = shapely.to_wkb(geometries, output_dimension=dimension, flavor="iso")

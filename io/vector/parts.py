@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple, NoReturn
 
 import numpy as np
 
+from ... import _optional
 from ..._sentences import counted
 from ...crs import assume_elevation_unit
 from ...errors import ReadError
@@ -98,8 +99,7 @@ def split_into_parts(
     CrsError
         If the lines cannot be brought into the CRS.
     """
-    import shapely
-
+    shapely = _optional.load("shapely")
     lines = _split_geometries(features)
     xyz = shapely.get_coordinates(lines.shapes, include_z=True)
     bounds = find_offsets(shapely.get_num_coordinates(lines.shapes))
@@ -127,8 +127,7 @@ def split_into_parts(
 
 def _split_geometries(features: Features) -> _Lines:
     """Take collections and polygons apart."""
-    import shapely
-
+    shapely = _optional.load("shapely")
     shapes, rows = features.geometries, np.arange(len(features.geometries))
     while (shapely.get_type_id(shapes) > _POLYGON).any():
         shapes, index = shapely.get_parts(shapes, return_index=True)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ... import _optional
 from ..._sentences import counted
 from ...crs import CRS, Unit
 from ...errors import OptionError, ReadError, choice
@@ -150,8 +151,7 @@ def _find_unit(features: Features, declared: Unit | None) -> Unit | None:
 
 def _list_kinds(features: Features) -> set[int]:
     """Return the kinds of single geometries, with collections taken apart."""
-    import shapely
-
+    shapely = _optional.load("shapely")
     shapes, _ = _take_apart(features)
     found = np.unique(shapely.get_type_id(shapes[~shapely.is_empty(shapes)])).tolist()
     return {_LINE if kind == _RING else int(kind) for kind in found}
@@ -159,8 +159,7 @@ def _list_kinds(features: Features) -> set[int]:
 
 def _take_apart(features: Features) -> tuple[NDArray[np.object_], NDArray[np.int64]]:
     """Return single geometries, and the row of the feature of each; collections may be nested."""
-    import shapely
-
+    shapely = _optional.load("shapely")
     shapes, rows = features.geometries, np.arange(len(features.geometries))
     while (shapely.get_type_id(shapes) > _POLYGON).any():
         shapes, index = shapely.get_parts(shapes, return_index=True)
@@ -169,8 +168,7 @@ def _take_apart(features: Features) -> tuple[NDArray[np.object_], NDArray[np.int
 
 
 def _gather_points(features: Features) -> _Vertices:
-    import shapely
-
+    shapely = _optional.load("shapely")
     xyz, rows = shapely.get_coordinates(features.geometries, include_z=True, return_index=True)
     has_z = shapely.has_z(features.geometries)[rows]
     return _Vertices(xyz, rows, np.arange(len(xyz) + 1), has_z)
@@ -178,8 +176,7 @@ def _gather_points(features: Features) -> _Vertices:
 
 def _gather_lines(features: Features) -> _Vertices:
     """Return the vertices of lines and rings; the last of a closed one is left out of no line."""
-    import shapely
-
+    shapely = _optional.load("shapely")
     shapes, rows = _take_apart(features)
     is_polygon = shapely.get_type_id(shapes) == _POLYGON
     rings, of_polygon = shapely.get_rings(shapes[is_polygon], return_index=True)
@@ -304,8 +301,7 @@ def _take_rows(survey: Survey, keep: NDArray[np.bool_]) -> Survey:
 
 def _are_triangles(features: Features) -> bool:
     """Whether every polygon has three corners with elevations, and no island."""
-    import shapely
-
+    shapely = _optional.load("shapely")
     shapes, _ = _take_apart(features)
     return bool(
         shapely.has_z(shapes).all()
@@ -316,8 +312,7 @@ def _are_triangles(features: Features) -> bool:
 
 def _make_triangles(features: Features, asked: _Asked) -> TIN:
     """Return the TIN of triangles; corners at one place, to the last bit, are one vertex."""
-    import shapely
-
+    shapely = _optional.load("shapely")
     if asked.z_field not in (None, "geometry"):
         raise OptionError("z_field", asked.z_field, "geometry, where polygons are triangles")
     if len(asked.nodata):

@@ -29,15 +29,25 @@ if TYPE_CHECKING:
     from .io import (
         Format,
         find_format,
+        from_mesh,
+        from_raster,
         known_formats,
         length_unit,
         lines_from_codes,
         read,
         read_lines,
+        read_points,
         read_polygons,
         read_rings,
+        read_tin,
         read_water,
         reproject,
+        to_features,
+        to_meshio,
+        to_pyvista,
+        to_rasterio,
+        to_trimesh,
+        to_ugrid,
         transform_points,
         with_lines,
         write,
@@ -51,10 +61,11 @@ if TYPE_CHECKING:
         profile_picture,
         relief_map,
         section_picture,
+        to_matplotlib,
     )
-    from .terrain.blunders import blunders
     from .terrain.earthwork import Difference, difference, stage_storage, volume
     from .terrain.gridding import height_above, rasterize
+    from .terrain.inspection import blunders
     from .terrain.isolines import (
         ContourCheck,
         check_contours,
@@ -74,6 +85,7 @@ if TYPE_CHECKING:
     from .terrain.results import Features, Raster, Table
     from .terrain.sections import cross_sections, drape, profile, section_lines
     from .terrain.sheets import Plan, plan
+    from .terrain.simplification import simplify
     from .terrain.slope import aspect, slope
     from .tin import (
         TIN,
@@ -100,10 +112,19 @@ if TYPE_CHECKING:
     from .tin.voronoi import voronoi
 else:  # a type checker takes every name for one that such a __getattr__ has
     from ._lazy import lazy_names
-    from ._notebook import register_card
+    from ._methods import register_methods
 
-    # What tin cannot make itself, for it knows no pictures.
-    register_card("TIN", "tinsmith.terrain.preview.card:make_card")
+    # What tin cannot do itself, for it knows no pictures, features and files.
+    register_methods(
+        {
+            "TIN._repr_html_": "tinsmith.terrain.preview.card:make_card",
+            "TIN.plot": "tinsmith.terrain.charts.triangles:plot_tin",
+            "TIN.to_crs": "tinsmith.io.reprojection.surfaces:reproject",
+            "TIN.to_geodataframe": "tinsmith.io.vector.libraries:build_frame",
+            "TIN.__geo_interface__": "tinsmith.io.vector.libraries:build_collection",
+            "TIN.__arrow_c_stream__": "tinsmith.io.vector.libraries:build_stream",
+        }
+    )
 
     __getattr__, __dir__ = lazy_names(
         __name__,
@@ -130,15 +151,25 @@ else:  # a type checker takes every name for one that such a __getattr__ has
             ".io": (
                 "Format",
                 "find_format",
+                "from_mesh",
+                "from_raster",
                 "known_formats",
                 "length_unit",
                 "lines_from_codes",
                 "read",
                 "read_lines",
+                "read_points",
                 "read_polygons",
                 "read_rings",
+                "read_tin",
                 "read_water",
                 "reproject",
+                "to_features",
+                "to_meshio",
+                "to_pyvista",
+                "to_rasterio",
+                "to_trimesh",
+                "to_ugrid",
                 "transform_points",
                 "with_lines",
                 "write",
@@ -164,8 +195,10 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "profile_picture",
                 "relief_map",
                 "section_picture",
+                "simplify",
                 "slope",
                 "stage_storage",
+                "to_matplotlib",
                 "volume",
             ),
             ".io.raster.cells": ("rasterize",),  # which reads the file of `like`, too
@@ -265,6 +298,8 @@ __all__ = [
     "drape",
     "earthwork_map",
     "find_format",
+    "from_mesh",
+    "from_raster",
     "height_above",
     "hillshade",
     "histogram",
@@ -282,20 +317,30 @@ __all__ = [
     "rasterize",
     "read",
     "read_lines",
+    "read_points",
     "read_polygons",
     "read_rings",
+    "read_tin",
     "read_water",
     "refine",
     "relief_map",
     "reproject",
     "section_lines",
     "section_picture",
+    "simplify",
     "slope",
     "slope_classes",
     "slope_statistics",
     "stage_storage",
     "terrain",
     "tin",
+    "to_features",
+    "to_matplotlib",
+    "to_meshio",
+    "to_pyvista",
+    "to_rasterio",
+    "to_trimesh",
+    "to_ugrid",
     "transform_points",
     "triangulate",
     "volume",

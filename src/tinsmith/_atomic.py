@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import secrets
 import shutil
 from contextlib import contextmanager
 from pathlib import Path
@@ -156,7 +155,7 @@ def _require_replaceable(path: Path, target: Path) -> None:
 
 def _choose_path_beside(target: Path) -> Path:
     """Return a new name in the folder of the target: hidden, with its suffix."""
-    return target.with_name(f".{target.stem[:_STEM]}-{secrets.token_hex(4)}{target.suffix}")
+    return target.with_name(f".{target.stem[:_STEM]}-{os.urandom(4).hex()}{target.suffix}")
 
 
 def _create(beside: Path, target: Path) -> None:
@@ -193,7 +192,7 @@ def replacing_files(path: Path, *, parts: Sequence[str] = ()) -> Iterator[Path]:
     with _translate_faults(path):
         target = _find_target(path)
         _require_replaceable(path, target)
-        folder = target.with_name(f".{target.stem[:_STEM]}-{secrets.token_hex(4)}")
+        folder = target.with_name(f".{target.stem[:_STEM]}-{os.urandom(4).hex()}")
         try:  # begins before the folder is there, so that no signal can come in between
             folder.mkdir()
             yield folder / target.name
@@ -239,8 +238,8 @@ def replacing_folder(path: Path, *, marker: str) -> Iterator[Path]:
     with _translate_faults(path):
         target = _find_target(path)
         _require_replaceable_folder(path, target, marker)
-        fresh = target.with_name(f".{target.name[:_STEM]}-{secrets.token_hex(4)}")
-        old = target.with_name(f".{target.name[:_STEM]}-{secrets.token_hex(4)}")
+        fresh = target.with_name(f".{target.name[:_STEM]}-{os.urandom(4).hex()}")
+        old = target.with_name(f".{target.name[:_STEM]}-{os.urandom(4).hex()}")
         try:
             fresh.mkdir()
             yield fresh

@@ -2,13 +2,30 @@
 
 from __future__ import annotations
 
+import sys
 from importlib import import_module
+from types import ModuleType
 from typing import TYPE_CHECKING, Any
+
+from ._optional import describe_missing
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
 __all__ = ["lazy_names"]
+
+
+class _Package(ModuleType):
+    """A package whose public names are not hidden by modules of the same names.
+
+    Python binds a module to its package as soon as it is loaded: ``slope``, once the function
+    ``slope`` of the module ``slope`` is used.
+    """
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        is_hiding = isinstance(value, ModuleType) and name in self.__dict__.get("_lazy_names", ())
+        if not is_hiding:
+            super().__setattr__(name, value)
 
 
 def lazy_names(
@@ -26,10 +43,19 @@ def lazy_names(
     """
     module_of = {name: module for module, names in names_of.items() for name in names}
     modules = {module.split(".")[1] for module in names_of if not module.startswith("..")}
+    this = sys.modules[package]
+    this.__dict__["_lazy_names"] = frozenset(module_of)
+    this.__class__ = _Package
 
     def load(name: str) -> Any:
         if name in module_of:
-            return getattr(import_module(module_of[name], package), name)
+            try:
+                return getattr(import_module(module_of[name], package), name)
+            except ModuleNotFoundError as error:
+                missing = describe_missing(error)
+                if missing is None:
+                    raise
+                raise missing from error
         if name in modules:
             return import_module(f".{name}", package)
         raise AttributeError(f"module '{package}' has no attribute '{name}'")

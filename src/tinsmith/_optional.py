@@ -8,7 +8,10 @@ from typing import Any
 
 from .errors import MissingExtraError
 
-__all__ = ["is_installed", "load", "require"]
+__all__ = ["describe_missing", "is_installed", "load", "require"]
+
+_INCLUDED = ("numpy", "pyproj", "pyvista", "rasterio", "shapely")
+"""What every ordinary installation has; one without dependencies may lack what it does not use."""
 
 _EXTRA_OF = {
     "ezdxf": "cad",
@@ -17,23 +20,23 @@ _EXTRA_OF = {
     "matplotlib": "plot",
     "meshio": "mesh",
     "netCDF4": "mesh",
+    "pandas": "interop",
     "pyarrow": "interop",
     "pyogrio": "vector",
-    "pyvista": "view",
-    "rasterio": "raster",
+    "trimesh": "interop",
     "xarray": "interop",
 }
 
 
-def load(module: str, purpose: str) -> Any:
-    """Return a module of an optional library, or name the extra that brings it.
+def load(module: str, purpose: str = "This") -> Any:
+    """Return a module of an optional library, or name what brings it.
 
     Parameters
     ----------
     module : str
         Such as ``"pyvista"`` or ``"matplotlib.figure"``, whose figures are drawn without a screen
         and leave no state behind.
-    purpose : str
+    purpose : str, optional
         Subject of the sentence: what needs the library.
 
     Raises
@@ -45,6 +48,18 @@ def load(module: str, purpose: str) -> Any:
         return import_module(module)
     except ImportError as error:
         raise _describe_missing(module.partition(".")[0], purpose) from error
+
+
+def describe_missing(error: ImportError) -> MissingExtraError | None:
+    """Return what to install where a module was not found that comes with this package.
+
+    Parameters
+    ----------
+    error : ImportError
+    """
+    library = (error.name or "").partition(".")[0]
+    is_ours = isinstance(error, ModuleNotFoundError) and library in _INCLUDED
+    return _describe_missing(library, "This") if is_ours else None
 
 
 def require(library: str, purpose: str) -> None:
@@ -72,4 +87,4 @@ def is_installed(extra: str) -> bool:
 
 
 def _describe_missing(library: str, purpose: str) -> MissingExtraError:
-    return MissingExtraError(library, extra=_EXTRA_OF[library], purpose=purpose)
+    return MissingExtraError(library, extra=_EXTRA_OF.get(library, ""), purpose=purpose)

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import sys
 import warnings
-from importlib.metadata import entry_points
+from importlib.machinery import PathFinder
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ._sentences import printable
 from .errors import PlugInWarning
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
     from importlib.metadata import EntryPoint
 
 __all__ = ["PlugIn", "describe_failure", "find_plug_ins", "name_distribution", "warn_of_plug_in"]
@@ -46,6 +48,36 @@ def find_plug_ins(group: str) -> list[PlugIn]:
         PlugIn(one.name, name_distribution(one), one.load) for one in entry_points(group=group)
     ]
     return sorted(found, key=lambda one: (one.name, one.distribution))
+
+
+def entry_points(*, group: str) -> Iterable[EntryPoint]:
+    """Return the entry points of a group; metadata is understood only where one may be."""
+    if not any(_may_have(Path(place or "."), f"[{group}]".encode()) for place in sys.path):
+        finders = [one for one in sys.meta_path if hasattr(one, "find_distributions")]
+        if all(one is PathFinder for one in finders):
+            return ()
+    from importlib import metadata
+
+    return metadata.entry_points(group=group)
+
+
+def _may_have(place: Path, section: bytes) -> bool:
+    """Whether a distribution among modules may have a section of entry points; an archive may."""
+    try:
+        inside = list(place.iterdir())
+    except NotADirectoryError:
+        return True
+    except OSError:
+        return False
+    metadata = [one for one in inside if one.suffix in (".dist-info", ".egg-info")]
+    return any(section in _read_entry_points(one) for one in metadata)
+
+
+def _read_entry_points(folder: Path) -> bytes:
+    try:
+        return (folder / "entry_points.txt").read_bytes()
+    except OSError:
+        return b""
 
 
 def name_distribution(entry: EntryPoint) -> str:

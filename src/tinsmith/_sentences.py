@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import re
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-__all__ = ["counted", "inflect", "printable", "shown"]
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+__all__ = ["counted", "inflect", "printable", "shown", "suggest"]
 
 _INFLECTED = re.compile(r"\[([^\[|\]]*)\|([^\[|\]]*)\]")
 _ODD_LETTER = "\N{REPLACEMENT CHARACTER}"
@@ -34,6 +37,20 @@ def inflect(sentence: str, count: int) -> str:
     '{count} row is missing.'
     """
     return _INFLECTED.sub(r"\1" if count == 1 else r"\2", sentence)
+
+
+def suggest(word: str, known: Iterable[str]) -> str:
+    """Return the question whether the nearest of the known words was meant, "" if none is near.
+
+    Examples
+    --------
+    >>> suggest("biuld", ["build", "view"]), suggest("x", ["build", "view"])
+    (" Did you mean 'build'?", '')
+    """
+    from difflib import get_close_matches
+
+    near = get_close_matches(word, known, n=1)
+    return f" Did you mean '{near[0]}'?" if near else ""
 
 
 def printable(text: str) -> str:

@@ -13,6 +13,7 @@ from functools import lru_cache
 from numbers import Integral
 from typing import TYPE_CHECKING, Any, overload
 
+from . import _optional
 from ._sentences import shown
 from .errors import CrsError, OptionError
 
@@ -141,11 +142,10 @@ def _find_unit(text: str) -> Unit | None:
 @lru_cache(maxsize=1)
 def _load_epsg_units() -> dict[str, Unit]:
     """Return EPSG's units of length; PROJ's own are left out, its decimetre is a centimetre."""
-    from pyproj import get_units_map
-
+    library = _optional.load("pyproj", "Units by their EPSG names")
     return {
         re.sub(r"[^a-z0-9]", "", name.casefold()): _make_unit(name, unit.conv_factor)
-        for name, unit in get_units_map(auth_name="EPSG", category="linear").items()
+        for name, unit in library.get_units_map(auth_name="EPSG", category="linear").items()
     }
 
 
@@ -414,12 +414,10 @@ def _parsed(text: str) -> pyproj.CRS:
 
 
 def _parse(value: object) -> pyproj.CRS:
-    import pyproj
-    from pyproj.exceptions import CRSError
-
+    library = _optional.load("pyproj", "A CRS")
     try:
-        parsed = pyproj.CRS.from_user_input(value)
-    except (CRSError, TypeError, ValueError, AttributeError) as error:
+        parsed: pyproj.CRS = library.CRS.from_user_input(value)
+    except (library.exceptions.CRSError, TypeError, ValueError, AttributeError) as error:
         text = f"'{_shorten(value)}'" if isinstance(value, str) else shown(value)
         raise CrsError(
             f"Unknown CRS {text}: an authority code such as EPSG:32616, "

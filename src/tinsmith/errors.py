@@ -213,18 +213,19 @@ class RenderError(TinsmithError, RuntimeError):
 
 
 class MissingExtraError(TinsmithError, ImportError):
-    """An optional library is not installed; the sentence names the extra that brings it.
+    """A library is not installed; the sentence names the command that brings it.
 
     Attributes
     ----------
     extra : str
-        Name of the extra, as in ``pip install "tinsmith[extra]"``.
+        Name of the extra, as in ``pip install "tinsmith[extra]"``; "" for a library that an
+        ordinary installation has.
     """
 
     def __init__(self, library: str, *, extra: str, purpose: str) -> None:
+        what = f'"tinsmith[{extra}]"' if extra else library
         super().__init__(
-            f"{purpose} needs {library}, which is not installed: "
-            f'run pip install "tinsmith[{extra}]".'
+            f"{purpose} needs {library}, which is not installed: run pip install {what}."
         )
         self.extra = extra
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from ... import _optional
 from ...errors import OptionError
 from ...tin.predicates import orientation
 from ...tin.validation.options import require_tin
@@ -116,8 +117,7 @@ def _list_segments(lines: Features) -> _Segments:
 
 
 def _find_contacts(tin: TIN, segments: _Segments) -> tuple[int, int, tuple[tuple[int, int], ...]]:
-    import shapely
-
+    shapely = _optional.load("shapely")
     shapes = _build_shapes(segments.start, segments.end)
     tree = shapely.STRtree(shapes)
     contacts, shared = 0, 0
@@ -139,8 +139,7 @@ def _find_contacts(tin: TIN, segments: _Segments) -> tuple[int, int, tuple[tuple
 
 
 def _build_shapes(start: NDArray[np.float64], end: NDArray[np.float64]) -> NDArray[np.object_]:
-    import shapely
-
+    shapely = _optional.load("shapely")
     shapes: NDArray[np.object_] = shapely.linestrings(np.stack([start[:, :2], end[:, :2]], axis=1))
     return shapes
 
@@ -171,8 +170,7 @@ def _meet_in_vertex(segments: _Segments, a: int, b: int, vertices: set[tuple[flo
 
 
 def _find_largest_deviation(tin: TIN, segments: _Segments) -> float:
-    import shapely
-
+    shapely = _optional.load("shapely")
     places = np.concatenate([segments.start, segments.end])
     off = np.abs(tin.interpolate(places[:, :2]) - places[:, 2])
     largest = float(np.nanmax(off)) if np.isfinite(off).any() else 0.0

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ... import _optional
 from ..._sentences import counted
 from ...errors import PointsError
 from .measures import measure_lengths, measure_ring_areas
@@ -42,8 +43,7 @@ class PolygonParts(NamedTuple):
 
 def mend_polygons(parts: PolygonParts) -> tuple[PolygonParts, tuple[str, ...]]:
     """Make polygons valid that meet themselves, and say so."""
-    import shapely
-
+    shapely = _optional.load("shapely")
     offsets = parts.ring_offsets, parts.polygon_offsets
     shapes = shapely.from_ragged_array(shapely.GeometryType.POLYGON, parts.points, offsets)
     is_bad = ~shapely.is_valid(shapes)
@@ -65,8 +65,7 @@ def mend_polygons(parts: PolygonParts) -> tuple[PolygonParts, tuple[str, ...]]:
 
 
 def _make_valid(shapes: NDArray[np.object_]) -> NDArray[np.object_]:
-    import shapely
-
+    shapely = _optional.load("shapely")
     whole = shapely.union_all(shapely.make_valid(shapes))
     found = shapely.get_parts(whole)
     polygons = found[shapely.get_type_id(found) == shapely.GeometryType.POLYGON]
@@ -76,15 +75,13 @@ def _make_valid(shapes: NDArray[np.object_]) -> NDArray[np.object_]:
 
 def turn(polygon: Any) -> Any:
     """Return a polygon whose exterior runs counter-clockwise, and its holes clockwise."""
-    from shapely.geometry.polygon import orient
-
+    orient = _optional.load("shapely.geometry.polygon").orient
     return orient(polygon)
 
 
 def as_parts(shapes: NDArray[np.object_], band: NDArray[np.int32]) -> PolygonParts:
     """Return polygons of shapely as the kernel returns its own."""
-    import shapely
-
+    shapely = _optional.load("shapely")
     _, points, (rings, polygons) = shapely.to_ragged_array(shapes)
     return PolygonParts(
         np.ascontiguousarray(points[:, :2]),

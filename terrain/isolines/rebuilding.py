@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ... import _optional
 from ..._sentences import counted
 from .. import _kernel
 from .measures import measure_lengths, measure_ring_areas, sum_parts
@@ -80,8 +81,7 @@ def _find_wrong(tin: TIN, levels: NDArray[np.float64], parts: PolygonParts) -> N
 
 
 def _list_shapes(parts: PolygonParts) -> tuple[NDArray[np.object_], NDArray[np.int32]]:
-    import shapely
-
+    shapely = _optional.load("shapely")
     offsets = parts.ring_offsets, parts.polygon_offsets
     shapes: Any = shapely.from_ragged_array(shapely.GeometryType.POLYGON, parts.points, offsets)
     return shapes, np.asarray(parts.band, np.int32)
@@ -89,8 +89,7 @@ def _list_shapes(parts: PolygonParts) -> tuple[NDArray[np.object_], NDArray[np.i
 
 def _join_parts(tin: TIN, levels: NDArray[np.float64], band: int) -> NDArray[np.object_]:
     """Return the polygons of a band: the parts of all triangles in it, joined."""
-    import shapely
-
+    shapely = _optional.load("shapely")
     bounds = np.concatenate([[-np.inf], levels, [np.inf]])
     low, high = float(bounds[band]), float(bounds[band + 1])
     corners = tin.points[tin.triangles]

@@ -116,7 +116,7 @@ def _draw(tin: TIN, size: tuple[int, int]) -> NDArray[np.uint8]:
     span = shown.high - shown.low
     share = np.nan_to_num((heights - shown.low) / span) if span > 0 else np.full(heights.shape, 0.5)
     tints = interpolate_tints(_TINTS)[np.clip(share * (_TINTS - 1), 0, _TINTS - 1).astype(np.intp)]
-    factor = ground.scale[2] * choose_exaggeration(tin, ground)
+    factor = ground.scale[2] * choose_exaggeration(tin, ground, shown)
     light = _shade(np.clip(heights, shown.low, shown.high) * factor, pixel)
     picture = np.empty((*heights.shape, 4), np.uint8)
     picture[..., :3] = np.clip(np.rint(tints * light[..., None]), 0, 255)

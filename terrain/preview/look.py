@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypedDict
 
 from ...errors import OptionError, choice
 from ...policies import Tint
@@ -15,13 +15,32 @@ from .camera import VIEWS, View
 from .palette import Palette, choose_palette
 from .scene import NORTHWEST
 
-__all__ = ["Look", "make_look"]
+__all__ = ["Look", "LookOptions", "make_look"]
 
 _SIZE = (1600, 1000)
 _SIZE_RANGE = (200, 5000)
 _DPI_RANGE = (36, 2400)
 _COLORS = {"white": "#ffffff", "black": "#000000", "light": "#f4f2ee", "dark": "#171b1f"}
 """Backgrounds that have a name; light and dark are those of a page."""
+
+
+class LookOptions(TypedDict, total=False):
+    """What callers may ask for; :func:`make_look` has the usual values."""
+
+    exaggeration: float | None
+    edges: bool
+    lines: bool
+    size: tuple[int, int] | None
+    title: str | None
+    view: str
+    azimuth: float | None
+    tilt: float | None
+    sun: tuple[float, float] | None
+    background: str | None
+    dpi: float | None
+    elevations: tuple[float, float] | None
+    tint: Tint
+    contours: float | None
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cached_property
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Unpack, overload
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from ...tin.validation.options import require_type
 from ..earthwork import difference
 from ..units import find_ground
 from .alignment import Aligned, align
-from .look import Look, make_look
+from .look import Look, LookOptions, make_look
 from .ortho import Ortho, read_ortho
 from .page.content import Start, describe_page, find_labels
 from .page.document import make_document
@@ -30,8 +31,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from ...policies import Tint
     from ..units import Ground
+    from .elevations import ElevationRange
 
 __all__ = ["PREVIEW_SUFFIXES", "Preview", "preview"]
 
@@ -66,6 +67,11 @@ class Preview:
         self._look = look
         self._survey = survey
 
+    @cached_property
+    def _ranges(self) -> dict[str, ElevationRange]:
+        """Range of elevations of each surface, without those far off; all of them are sorted."""
+        return {n: measure_relief(tin, find_ground(tin)) for n, tin in self._surfaces.items()}
+
     @property
     def notes(self) -> tuple[str, ...]:
         """Sentences on what a viewer should know: elevations far off all others.
@@ -81,7 +87,7 @@ class Preview:
         return tuple(
             f"{words}." if len(self._surfaces) == 1 else f"{name}: {words}."
             for name, tin in self._surfaces.items()
-            if (words := describe_far_off(tin, measure_relief(tin, find_ground(tin))))
+            if (words := describe_far_off(tin, self._ranges[name]))
         )
 
     def save(self, path: str | os.PathLike[str]) -> Path:
@@ -171,11 +177,11 @@ class Preview:
 
     def _choose_start(self, ground: Ground) -> Start:
         """Choose how the page looks when it is opened, far off elevations left out."""
-        look, tins = self._look, list(self._surfaces.values())
-        ranges = [measure_relief(tin, find_ground(tin)) for tin in tins]
+        look, ranges = self._look, self._ranges.values()
         relief = (min(one.low for one in ranges), max(one.high for one in ranges))
+        last, shown = list(self._surfaces.values())[-1], list(ranges)[-1]
         return Start(
-            exaggeration=look.exaggeration or choose_exaggeration(tins[-1], ground),
+            exaggeration=look.exaggeration or choose_exaggeration(last, ground, shown),
             elevations=look.elevations or relief,
             relief=relief,
             tint=look.tint,
@@ -210,22 +216,9 @@ def preview(
     tin: TIN | Mapping[str, TIN],
     *,
     output: None = None,
-    exaggeration: float | None = None,
-    edges: bool = False,
-    lines: bool = True,
-    size: tuple[int, int] | None = None,
-    title: str | None = None,
-    view: str = "oblique",
-    azimuth: float | None = None,
-    tilt: float | None = None,
-    sun: tuple[float, float] | None = None,
-    background: str | None = None,
-    dpi: float | None = None,
-    elevations: tuple[float, float] | None = None,
-    tint: Tint = "elevation",
-    contours: float | None = None,
     survey: Survey | None = None,
     drape: str | os.PathLike[str] | None = None,
+    **look: Unpack[LookOptions],
 ) -> Preview: ...
 
 
@@ -234,22 +227,9 @@ def preview(
     tin: TIN | Mapping[str, TIN],
     *,
     output: str | os.PathLike[str],
-    exaggeration: float | None = None,
-    edges: bool = False,
-    lines: bool = True,
-    size: tuple[int, int] | None = None,
-    title: str | None = None,
-    view: str = "oblique",
-    azimuth: float | None = None,
-    tilt: float | None = None,
-    sun: tuple[float, float] | None = None,
-    background: str | None = None,
-    dpi: float | None = None,
-    elevations: tuple[float, float] | None = None,
-    tint: Tint = "elevation",
-    contours: float | None = None,
     survey: Survey | None = None,
     drape: str | os.PathLike[str] | None = None,
+    **look: Unpack[LookOptions],
 ) -> Path: ...
 
 
@@ -259,7 +239,7 @@ def preview(
     output: str | os.PathLike[str] | None = None,
     survey: Survey | None = None,
     drape: str | os.PathLike[str] | None = None,
-    **look: Any,
+    **look: Unpack[LookOptions],
 ) -> Preview | Path:
     """Show a TIN in 3D with hypsometric tints, hillshade, legend, scale bar and north arrow.
 

@@ -71,13 +71,15 @@ _STEEPNESS = math.sin(math.radians(NORTHWEST.altitude))
 level ground is always that of the legend."""
 
 
-def choose_exaggeration(tin: TIN, ground: Ground) -> float:
+def choose_exaggeration(tin: TIN, ground: Ground, shown: ElevationRange) -> float:
     """Choose a round vertical exaggeration that shows the relief.
 
     Parameters
     ----------
     tin : TIN
     ground : Ground
+    shown : ElevationRange
+        By :func:`measure_relief`.
 
     Returns
     -------
@@ -86,7 +88,6 @@ def choose_exaggeration(tin: TIN, ground: Ground) -> float:
         extent (and so to at most a fifth, if 1 is not enough); 1 for level ground. Elevations far
         off the others do not count.
     """
-    shown = measure_relief(tin, ground)
     relief = (shown.high - shown.low) * ground.scale[2]
     return round_exaggeration(RELIEF_SHARE * measure_extent(tin, ground), relief)
 

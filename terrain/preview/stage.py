@@ -132,7 +132,7 @@ def make_stage(
     shown = measure_relief(tin, ground)
     view = look.seen_from
     corridor = find_corridor(tin, ground) if look.azimuth is None else None
-    factor = look.exaggeration or choose_exaggeration(tin, ground)
+    factor = look.exaggeration or choose_exaggeration(tin, ground, shown)
     strips = None
     if corridor is not None:
         view = replace(view, azimuth=corridor.find_side(view.azimuth))

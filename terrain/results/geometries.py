@@ -25,8 +25,7 @@ def build_geometries(features: FeatureParts) -> NDArray[np.object_]:
     ----------
     features : Features
     """
-    import shapely
-
+    shapely = _optional.load("shapely")
     kind = shapely.GeometryType[features.geometry_type.upper()]
     levels: Any = features.offsets or None
     made: NDArray[np.object_] = shapely.from_ragged_array(kind, features.coordinates, levels)
@@ -56,8 +55,7 @@ def build_frame(features: FeatureParts) -> Any:
 
 def build_collection(features: FeatureParts) -> dict[str, Any]:
     """Return features as the ``__geo_interface__`` has them."""
-    from shapely.geometry import mapping
-
+    mapping = _optional.load("shapely.geometry").mapping
     names = list(features.columns)
     columns = [_as_plain_values(values) for values in features.columns.values()]
     rows = zip(*columns, strict=True) if columns else [()] * len(features)

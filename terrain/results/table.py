@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from ... import _optional
 from ..._sentences import counted
 from ...errors import OptionError
 from ...tin.types import Frozen
@@ -78,6 +79,11 @@ class Table(Frozen):
         -------
         pandas.DataFrame
 
+        Raises
+        ------
+        MissingExtraError
+            If pandas is not installed.
+
         Examples
         --------
         >>> import tinsmith as ts
@@ -85,9 +91,10 @@ class Table(Frozen):
         >>> frame.attrs["units"]
         {'level': 'm'}
         """
-        import pandas as pd
-
-        frame = pd.DataFrame({name: values.copy() for name, values in self.columns.items()})
+        pandas = _optional.load("pandas", "Turning a table into a DataFrame")
+        frame: pd.DataFrame = pandas.DataFrame(
+            {name: values.copy() for name, values in self.columns.items()}
+        )
         units = {name: unit_text(self.units, name) for name in self.units}
         frame.attrs |= {"name": self.name, "units": units, "notes": list(self.notes)}
         return frame

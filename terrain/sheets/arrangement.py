@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ... import _optional
 from ..._sentences import counted
 from ...errors import OptionError
 from ...tin import Bounds
@@ -128,8 +129,7 @@ def cut_rows(ground: Ground, layout: Layout, scale: Scale) -> list[Window]:
     OptionError
         If there would be too many.
     """
-    import shapely
-
+    shapely = _optional.load("shapely")
     length = scale.measure_unit(ground.unit)
     width, height = _find_step(layout, length)
     bounds = ground.bounds
@@ -168,8 +168,7 @@ def _find_room(layout: Layout, length: float) -> tuple[float, float]:
 
 def _find_ground(footprint: Footprint, boxes: NDArray[Any]) -> NDArray[np.bool_]:
     """Tell which rectangles hold some of a footprint."""
-    import shapely
-
+    shapely = _optional.load("shapely")
     shapely.prepare(footprint.faces)
     is_kept = np.zeros(len(boxes), np.bool_)
     for face in footprint.faces:
@@ -220,8 +219,7 @@ def cut_strip_windows(
     OptionError
         If a strip is too narrow for the ground, or there would be too many.
     """
-    import shapely
-
+    shapely = _optional.load("shapely")
     length = scale.measure_unit(ground.unit)
     width, height = _find_step(layout, length)
     area = float(shapely.area(ground.footprint.faces).sum())

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ... import _optional
 from ..isolines import contour_labels
 from ..results import Features
 from .canvas import Canvas, Pen
@@ -163,8 +164,7 @@ def _draw_paths(
 
 
 def _fill_water(canvas: Canvas, window: Window, contents: Contents, drawn: Drawn) -> None:
-    import shapely
-
+    shapely = _optional.load("shapely")
     box = shapely.box(*_list_sides(window))
     for face in contents.footprint.faces[contents.footprint.is_water]:
         moved = shapely.make_valid(shapely.transform(face, window.to_paper))
@@ -211,8 +211,7 @@ def _draw_contours(
 
 def _list_barriers(window: Window, contents: Contents) -> Any:
     """Return the lines that labels should not lie on, in a tree."""
-    import shapely
-
+    shapely = _optional.load("shapely")
     parts = [
         part
         for paths in contents.linework.values()
@@ -223,8 +222,7 @@ def _list_barriers(window: Window, contents: Contents) -> Any:
 
 def _choose_labels(texts: list[_Text], barriers: Any, room: Room) -> list[_Text]:
     """Keep the labels that have room; one on a line only where its contour has no other."""
-    import shapely
-
+    shapely = _optional.load("shapely")
     boxes = shapely.polygons(np.array([text.corners for text in texts]).reshape(-1, 4, 2))
     hit = np.zeros(len(texts), np.bool_)
     hit[barriers.query(boxes, predicate="intersects")[0]] = True
@@ -291,8 +289,7 @@ def _count_decimals(value: float) -> int:
 
 def _cut_out(paths: Paths, texts: list[_Text]) -> Paths:
     """Leave the lines out that run through a text."""
-    import shapely
-
+    shapely = _optional.load("shapely")
     if not texts or len(paths.sources) == 0:
         return paths
     parts = paths.parts()
@@ -312,8 +309,7 @@ def _cut_out(paths: Paths, texts: list[_Text]) -> Paths:
 
 
 def _subtract(line: Any, boxes: NDArray[Any]) -> list[NDArray[np.float64]]:
-    import shapely
-
+    shapely = _optional.load("shapely")
     rest = shapely.difference(line, shapely.union_all(boxes))
     pieces = [shapely.get_coordinates(part) for part in shapely.get_parts(rest)]
     return [piece for piece in pieces if len(piece) > 1]

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     PaperLike: TypeAlias = "str | tuple[float, float]"
 
-__all__ = ["MM_PER_INCH", "Paper", "list_papers"]
+__all__ = ["MM_PER_INCH", "Paper"]
 
 MM_PER_INCH = 25.4
 
@@ -98,11 +98,6 @@ class Paper:
         return tuple(
             made[word] for word in get_args(PaperOrientation) if orientation in (None, word)
         )
-
-
-def list_papers() -> tuple[str, ...]:
-    """Return the names of papers."""
-    return tuple(_SIZES)
 
 
 def _simplify(name: str) -> str:

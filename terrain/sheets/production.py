@@ -370,8 +370,7 @@ class _Wording(NamedTuple):
 
 
 def _find_ground(tin: TIN, unit: Unit) -> Ground:
-    import shapely
-
+    shapely = _optional.load("shapely")
     if len(tin.triangles) == 0:
         raise PointsError("The TIN has no triangle: there is nothing to draw.")
     footprint = find_footprint(tin)

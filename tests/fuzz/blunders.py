@@ -9,7 +9,7 @@ from support.leave_one_out import interpolate_without, rounding_of
 
 import tinsmith as ts
 from tinsmith.terrain import _kernel
-from tinsmith.terrain.blunders import drop_blunders, list_wrong_rows, screen
+from tinsmith.terrain.inspection import drop_blunders, list_wrong_rows, screen
 
 from .campaign import Campaign, Case
 from .coordinates import points

@@ -70,7 +70,7 @@ _TEXTS = (
 _VALUES = {
     **dict.fromkeys(("--snap", "--max-edge", "--min-angle", "--max-area", "--max-side"), _NUMBERS),
     **dict.fromkeys(("--max-vertices", "--sample", "--threads", "--level", "--band"), _NUMBERS),
-    **dict.fromkeys(("--stride", "--water-z", "--nodata"), _NUMBERS),
+    **dict.fromkeys(("--stride", "--water-z", "--nodata", "--tolerance", "--points"), _NUMBERS),
     **dict.fromkeys(("--arc-tolerance", "--refraction"), _NUMBERS),
     "--code-style": ("words", "civil3d", "", "nope"),
     "--code-table": (*_INPUTS, "codes.toml"),
@@ -83,7 +83,10 @@ _VALUES = {
 _WITH_VALUES = ("-o", *_VALUES)
 _WRITING = ("-o", "--report", "--plot")
 _FLAGS = ("--json", "-q", "--codes", "--conforming", "--drape", "--projected", "--fill", "--nope")
-_COMMANDS = ("build", "info", "check", "compare", "refine", "edit", "convert", "formats", "nope")
+_COMMANDS = (
+    *("build", "info", "check", "compare", "refine", "simplify", "edit", "convert", "formats"),
+    "nope",
+)
 
 
 def generate(rng: np.random.Generator) -> dict[str, Any]:

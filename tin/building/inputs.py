@@ -27,6 +27,7 @@ from ..validation.options import as_flag, require_distance, require_positive
 from ..validation.points import as_masked_points, require_three
 from ..validation.threads import thread_count
 from .constrained import LineOptions
+from .reference import adds_to, settle_crs
 from .survey import Survey
 
 if TYPE_CHECKING:
@@ -34,8 +35,11 @@ if TYPE_CHECKING:
 
     from ...crs import CrsLike, UnitLike
     from ..constraints.breaklines import Breakline, Water
+    from ..types import GeometriesLike, PointsLike
 
 __all__ = ["BuildInputs", "TrimPolicy", "gather_inputs"]
+
+_NAMES = ("points", "breaklines", "boundary", "holes", "erase", "water")
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -126,13 +130,13 @@ def _make_empty_survey() -> Survey:
 
 
 def gather_inputs(
-    points: Survey | ArrayLike,
+    points: Survey | PointsLike,
     *,
-    breaklines: Sequence[Breakline | ArrayLike],
-    boundary: Sequence[Any],
-    holes: Sequence[Any],
-    erase: Sequence[Any],
-    water: Sequence[Water],
+    breaklines: Sequence[Breakline | ArrayLike] | GeometriesLike,
+    boundary: Sequence[Any] | GeometriesLike,
+    holes: Sequence[Any] | GeometriesLike,
+    erase: Sequence[Any] | GeometriesLike,
+    water: Sequence[Water] | GeometriesLike,
     max_edge: float | None,
     trim: TrimPolicy,
     crossing: CrossingPolicy,
@@ -154,6 +158,8 @@ def gather_inputs(
     survey = points if isinstance(points, Survey) else None
     own = survey if survey is not None else _make_empty_survey()
     system, unit = _settle_reference(own, CRS.of(crs), Unit.of(z_unit))
+    given = (points, breaklines, boundary, holes, erase, water)
+    system, told = settle_crs(system, dict(zip(_NAMES, given, strict=True)))
     xyz, is_masked = as_masked_points(
         points.points if isinstance(points, Survey) else points, threads=threads
     )
@@ -184,9 +190,9 @@ def gather_inputs(
         conforming=as_flag("conforming", conforming),
         options=LineOptions(thread_count(threads, len(xyz)), duplicates, float(snap), crossing),
         crs=system,
-        elevation_unit=unit,
+        elevation_unit=require_one_unit(system, unit),
         skipped=own.skipped,
-        notes=(*own.notes, *_describe_rings(outer, inner)),
+        notes=(*own.notes, *told, *_describe_rings(outer, inner)),
     )
 
 
@@ -208,7 +214,7 @@ def _settle_reference(
     own: Survey, crs: CRS | None, unit: Unit | None
 ) -> tuple[CRS | None, Unit | None]:
     """Return CRS and unit of elevations, which a caller may add to the survey's own, not change."""
-    if crs is not None and own.crs is not None and not _adds_to(own.crs, crs):
+    if crs is not None and own.crs is not None and not adds_to(own.crs, crs):
         raise CrsError(
             f"The survey is in {own.crs.label}, and {crs.label} is another CRS: its points must be "
             "reprojected first, for example while they are read.",
@@ -218,11 +224,6 @@ def _settle_reference(
         require_same_unit(own.elevation_unit, unit, "that of the survey")
     system = own.crs if crs is None else crs
     return system, require_one_unit(system, unit or own.elevation_unit)
-
-
-def _adds_to(own: CRS, crs: CRS) -> bool:
-    """Whether a CRS is the same as another, or that with a vertical axis."""
-    return own.is_same(crs) or (own.vertical_unit is None and own.is_same(crs.horizontal))
 
 
 def _require_options(

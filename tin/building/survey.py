@@ -14,8 +14,10 @@ from ...errors import OptionError
 from ..constraints.breaklines import Breakline, Water
 from ..constraints.constraint_set import as_sequence
 from ..types import Bounds, Finding
+from ..validation.geometries import is_plain
 from ..validation.tables import Table, as_table
 from .attributes import as_columns, as_mapping
+from .reference import settle_crs
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -54,6 +56,7 @@ class Survey:
         types; what is masked becomes NaN or None.
     crs : CRS, optional
         Coordinate reference system; given as a code ("EPSG:32616"), number, WKT or ``pyproj.CRS``.
+        Default that of the points or lines given, if they have one, as a GeoDataFrame has.
     elevation_unit : Unit, optional
         Unit of all elevations, those of lines included; given as Unit or text ("m", "US survey
         foot"). Default that of the CRS's vertical axis; None if it is not known.
@@ -71,7 +74,7 @@ class Survey:
     Raises
     ------
     CrsError
-        If the CRS is unknown.
+        If the CRS is unknown, or another than that of points or lines given.
     OptionError
         If the unit is unknown, or another than that of the CRS's vertical axis, or something has
         another type.
@@ -101,7 +104,8 @@ class Survey:
     findings: Sequence[Finding] = ()
 
     def __post_init__(self) -> None:
-        crs = CRS.of(self.crs)
+        given = {"points": self.points} | {name: getattr(self, name) for name in _LINES}
+        crs, told = settle_crs(CRS.of(self.crs), given)
         object.__setattr__(self, "crs", crs)
         unit = require_one_unit(crs, Unit.of(self.elevation_unit))
         object.__setattr__(self, "elevation_unit", unit)
@@ -110,6 +114,8 @@ class Survey:
         object.__setattr__(self, "skipped", as_mapping("skipped", self.skipped))
         object.__setattr__(self, "skipped_lines", as_mapping("skipped_lines", self.skipped_lines))
         _require_texts(self)
+        if told:
+            object.__setattr__(self, "notes", [*self.notes, *told])
         table = Table(self.points) if _is_plain(self.points) else as_table(self.points, "Points")
         object.__setattr__(self, "points", table.values)
         columns = as_columns(self.attributes, table.values.shape[:1])
@@ -147,7 +153,12 @@ class Survey:
 
 def _as_lines(name: str, lines: Any) -> Sequence[Any]:
     """Return several lines or rings as a sequence; one alone is told from several."""
-    return lines if isinstance(lines, tuple | list) else as_sequence(lines, name)
+    is_ready = isinstance(lines, tuple | list) and all(map(_is_ready, lines))
+    return lines if is_ready else as_sequence(lines, name)
+
+
+def _is_ready(line: Any) -> bool:
+    return isinstance(line, Breakline | Water) or is_plain(line)
 
 
 def _require_texts(survey: Survey) -> None:

@@ -1,5 +1,1 @@
 """Proof that a TIN is what it says: levels of checks that trust nobody who made it."""
-
-from .checker import CheckResult, check
-
-__all__ = ["CheckResult", "check"]

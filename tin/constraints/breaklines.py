@@ -12,6 +12,7 @@ from ..._sentences import shown
 from ...errors import LinesError, OptionError, PointsError, choice
 from ...policies import BreaklineKind, LineKind
 from ..types import Frozen
+from ..validation.geometries import find_geometries
 from ..validation.options import is_finite_number, is_whole_number
 from ..validation.tables import as_table
 from .polylines import Polylines
@@ -227,6 +228,19 @@ class Lines(Frozen):
             for kind, own in zip(self.kinds, self.sources.tolist(), strict=True)
         )
 
+    def is_same(self, other: Lines) -> bool:
+        """Tell whether these are the same lines through the same vertices.
+
+        Examples
+        --------
+        >>> Lines().is_same(Lines())
+        True
+        """
+        arrays = ("vertices", "offsets", "sources")
+        return (self.kinds, self.names) == (other.kinds, other.names) and all(
+            np.array_equal(getattr(self, name), getattr(other, name)) for name in arrays
+        )
+
     def with_breakline(self, vertices: list[int], line: Breakline) -> Lines:
         """Return the lines, all of them breaklines, and a further one through some vertices.
 
@@ -276,7 +290,7 @@ def as_coords(coords: ArrayLike, what: str, *, least: int) -> NDArray[np.float64
         Otherwise; the sentence begins with ``what``.
     """
     subject = what[0].upper() + what[1:]
-    array = _as_numbers(coords, subject)
+    array = _as_numbers(_take_only_line(coords, subject), subject)
     if array.ndim != 2 or array.shape[1] not in (2, 3) or len(array) < least:
         raise LinesError(
             f"{subject} has shape {array.shape}: (k, 3), or (k, 2) to drape it, "
@@ -293,6 +307,22 @@ def as_coords(coords: ArrayLike, what: str, *, least: int) -> NDArray[np.float64
     array += 0.0  # no -0.0: equal coordinates are equal bytes
     array.flags.writeable = False
     return array
+
+
+def _take_only_line(given: Any, subject: str) -> Any:
+    """Return the vertices of a geometry that is one line or ring, anything else as it is."""
+    found = find_geometries(given)
+    if found is None or all(part.kind == "Point" for part in found.parts):
+        return given
+    kinds = [part.kind for part in found.parts]
+    is_one = kinds in (["LineString"], ["Polygon"]) and len(found.parts[0].rings) == 1
+    if not is_one:
+        told = ", ".join(kinds[:3]) + (", ..." if len(kinds) > 3 else "")
+        raise LinesError(
+            f"{subject} is a geometry of other than one line or ring ({told}): several are given "
+            "as a sequence."
+        )
+    return found.parts[0].rings[0]
 
 
 def _as_numbers(coords: Any, subject: str) -> NDArray[np.float64]:

@@ -12,8 +12,10 @@ from ..._sentences import shown
 from ...errors import LinesError
 from .. import _kernel
 from ..topology import find_offsets, find_owners
+from ..validation.geometries import find_geometries, is_plain
 from .breaklines import Breakline, Water, as_ring
 from .constraint_table import ConstraintTable
+from .given_geometries import convert_geometries
 from .polygons import gather_rings_of_regions
 
 if TYPE_CHECKING:
@@ -253,19 +255,36 @@ def gather_water(water: Sequence[Water]) -> list[Water]:
 
 
 def as_sequence(lines: Any, what: str) -> list[Any]:
-    """Return several lines; one line alone is told apart by its rows being numbers."""
+    """Return several lines; one line alone is told apart by its rows being numbers.
+
+    Geometries become breaklines, regions or water, as ``what`` says: one for each of their parts.
+    """
     if type(lines) in (tuple, list):
-        return list(lines)
-    if isinstance(lines, Breakline | Water) or hasattr(lines, "__geo_interface__"):
+        return _convert_each(lines, what)
+    if isinstance(lines, Breakline | Water):
         return [lines]
     if isinstance(lines, np.ndarray) and lines.ndim == 2 and lines.dtype != object:
         return [lines]
+    found = find_geometries(lines)
+    if found is not None:
+        return convert_geometries(found, what)
     if not isinstance(lines, str | bytes | Mapping):
-        with suppress(Exception):  # whatever it is, it gives no lines
-            return list(lines)
+        with suppress(TypeError):  # whatever it is, it gives no lines
+            return _convert_each(list(lines), what)
     raise LinesError(
         f"Invalid {what} {shown(lines)}: a sequence of lines is needed, each an array of vertices."
     )
+
+
+def _convert_each(lines: Sequence[Any], what: str) -> list[Any]:
+    """Put what geometries hold in their places."""
+    if all(isinstance(line, Breakline | Water) or is_plain(line) for line in lines):
+        return list(lines)
+    converted: list[Any] = []
+    for line in lines:
+        found = None if isinstance(line, Breakline | Water) else find_geometries(line)
+        converted.extend([line] if found is None else convert_geometries(found, what))
+    return converted
 
 
 def _gather_rings_of_kind(

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ...errors import LinesError
+from ..validation.geometries import find_geometries
 from .breaklines import as_ring, find_elevations_at_start
+from .given_geometries import list_regions
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -61,9 +63,9 @@ def _label_rings(regions: Sequence[Any], what: str) -> Iterator[list[tuple[Any, 
 
 def _as_rings(region: Any, what: str) -> Iterator[Sequence[Any]]:
     """Walk the regions that something given as one holds, each as a sequence of rings."""
-    interface = getattr(region, "__geo_interface__", None)
-    if interface is not None:
-        yield from _walk_geometry(interface, what)
+    found = find_geometries(region)
+    if found is not None:
+        yield from list_regions(found, what)
     elif _is_sequence_of_rings(region):
         if len(region) == 0:
             raise LinesError(f"Invalid {what}: a polygon without a ring.")
@@ -82,28 +84,3 @@ def _is_sequence_of_rings(region: Any) -> bool:
             return False
         first = first[0]
     return isinstance(first, Sequence | np.ndarray) and np.ndim(first) == 1
-
-
-def _walk_geometry(given: Mapping[str, Any], what: str) -> Iterator[Sequence[Any]]:
-    """Take collections apart; an object may be a feature or several."""
-    pending = [given]
-    while pending:
-        geometry = pending.pop(0) or {"type": "nothing"}
-        kind = geometry["type"]
-        if kind == "Polygon":
-            if len(geometry["coordinates"]):
-                yield geometry["coordinates"]
-        elif kind == "MultiPolygon":
-            yield from geometry["coordinates"]
-        elif kind in ("LinearRing", "LineString") and _is_closed(geometry["coordinates"]):
-            yield [geometry["coordinates"]]
-        elif kind == "Feature":
-            pending.insert(0, geometry["geometry"])
-        elif kind in ("FeatureCollection", "GeometryCollection"):
-            pending[:0] = geometry["features" if kind[0] == "F" else "geometries"]
-        else:
-            raise LinesError(f"Invalid {what}: a {kind} is no polygon.")
-
-
-def _is_closed(coords: Sequence[Any]) -> bool:
-    return len(coords) > 3 and tuple(coords[0]) == tuple(coords[-1])

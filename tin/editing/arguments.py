@@ -9,6 +9,8 @@ import numpy as np
 
 from ..._sentences import shown
 from ...errors import PointsError
+from ..constraints.breaklines import as_coords
+from ..validation.geometries import find_geometries
 from ..validation.points import as_elevations, as_points, clean_points
 from ..validation.tables import Table, as_table
 from ..validation.vertices import as_vertex_array
@@ -17,6 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 __all__ = [
+    "as_array",
     "as_ends",
     "as_new_points",
     "as_point",
@@ -34,6 +37,21 @@ def copy_argument(value: Any) -> Any:
     if isinstance(value, list):
         return [copy_argument(one) if isinstance(one, list) else one for one in value]
     return value.copy() if isinstance(value, np.ndarray) else value
+
+
+def as_array(given: Any) -> Any:
+    """Return points or a line with names, or of another library, as numbers that can be kept.
+
+    Anything else, and what is no such table, is returned as it is, to be refused in its place.
+    """
+    line = find_geometries(given)
+    if line is not None and any(part.kind != "Point" for part in line.parts):
+        return as_coords(given, "a breakline", least=2)
+    try:
+        values, is_masked = as_table(given, "Points", least=2)
+    except PointsError:
+        return given
+    return given if is_masked is not None else values
 
 
 def as_vertices(vertices: ArrayLike, count: int) -> NDArray[np.int64]:

@@ -11,6 +11,9 @@ from __future__ import annotations
 from threading import RLock
 from typing import TYPE_CHECKING, Any, Self, cast
 
+from ..building.reference import require_crs
+from ..validation.geometries import is_plain
+from .arguments import as_array
 from .origin import Origin
 
 if TYPE_CHECKING:
@@ -24,6 +27,9 @@ if TYPE_CHECKING:
     from .version import Version
 
 __all__ = ["Editable"]
+
+_PLACES = frozenset({"points", "point", "coords"})
+"""Arguments of edits that are coordinates."""
 
 
 class Editable:
@@ -60,6 +66,11 @@ class Editable:
             if self._version is None:
                 self._version = cast("Session", self._session).version()
             return self._version
+
+    @property
+    def _reference(self) -> dict[str, Any]:
+        """CRS and unit of the TIN, and attributes of its rows."""
+        raise NotImplementedError
 
     @property
     def edits(self) -> tuple[Edit, ...]:
@@ -376,6 +387,10 @@ class Editable:
             self._version = None
 
     def _edit(self, operation: str, **arguments: Any) -> Any:
+        for name in _PLACES & arguments.keys():
+            if not is_plain(arguments[name]):
+                require_crs(arguments[name], self._reference["crs"], f"{name} of the edit")
+                arguments[name] = as_array(arguments[name])
         with self._lock:
             result = self._open_session().do(operation, arguments)
             if self._version is not None:

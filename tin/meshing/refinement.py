@@ -15,19 +15,18 @@ import numpy as np
 from ..._sentences import counted
 from ...errors import OptionError, PointsError
 from .. import _kernel, topology
-from ..constraints.clipping import BOUNDARY, Surface
-from ..constraints.constraint_table import ConstraintTable
-from ..constraints.polylines import Polylines
-from ..constraints.pslg import Clip, Pslg, build_mesh_of_growth, find_lines_in
+from ..constraints.clipping import Surface
+from ..constraints.pslg import build_mesh_of_growth, find_lines_in
 from ..surface import TIN
 from ..validation.options import is_finite_number, is_whole_number, require_positive, require_tin
 from ..validation.threads import thread_count
+from .surface_pslg import gather_pslg, list_rings
 from .unmended import find_unmended
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from ...policies import LineKind
+    from ..constraints.pslg import Pslg
     from ..report import Report
 
 __all__ = ["LARGEST_MIN_ANGLE", "refine"]
@@ -323,7 +322,9 @@ def _build(tin: TIN, found: _Found, threads: int) -> TIN | set[tuple[int, int]]:
     of ``tin`` that are in the way of each other when they are split.
     """
     points = np.concatenate([tin.points, _lift(tin, found.xy, found.splits)])
-    pslg = _gather_pslg(tin, points, found.splits)
+    along = found.splits.along
+    rings = [along(ring) for ring in list_rings(tin)]
+    pslg = gather_pslg(tin, points, along, rings, names_boundary=True)
     growth = _kernel.grow(points, threads=threads)
     if growth.kept_row is not None:
         return found.splits.segments_of(np.flatnonzero(growth.kept_row != np.arange(len(points))))
@@ -390,53 +391,3 @@ def _note(n_new: int, n_on_segments: int) -> str:
         f"Refinement added {counted(n_new, 'point')}, "
         f"{n_on_segments:,} of them on the boundary and on lines."
     )
-
-
-def _gather_pslg(tin: TIN, points: NDArray[np.float64], splits: _Splits) -> Pslg:
-    rings = [[*ring.tolist(), int(ring[0])] for ring in tin.rings]
-    chains = [chain.tolist() for chain in tin.lines.chains()]
-    nameless = _find_edges_without_line(tin)
-    chains += nameless
-    if "boundary" not in tin.lines.kinds:
-        chains += rings
-    chains += rings
-    return Pslg(
-        points=points,
-        polylines=Polylines.of_chains([splits.along(chain) for chain in chains]),
-        constraints=_gather_constraints(tin, len(nameless), len(rings)),
-        groups=np.full(len(chains), BOUNDARY),
-        clip=Clip(has_own_boundary=True),
-        vertex_of=tin.vertex_of,
-    )
-
-
-def _gather_constraints(tin: TIN, n_nameless: int, n_rings: int) -> ConstraintTable:
-    """Return what the lines are: the TIN's own, edges of no line, rings twice, as boundary."""
-    lines = tin.lines
-    n_breaklines = sum(kind in ("hard", "soft") for kind in lines.kinds)
-    outer = np.arange(0 if "boundary" in lines.kinds else n_rings)
-    nameless = n_breaklines + np.arange(n_nameless)
-    return ConstraintTable.join(
-        [
-            ConstraintTable(
-                lines.kinds, lines.sources.astype(np.int32), np.zeros(len(lines)), lines.names
-            ),
-            _make_nameless("soft", nameless),
-            _make_nameless("boundary", outer),
-            _make_nameless("boundary", np.full(n_rings, -1)),
-        ]
-    )
-
-
-def _make_nameless(kind: LineKind, sources: NDArray[np.int64]) -> ConstraintTable:
-    return ConstraintTable.of_kind(kind, sources.astype(np.int32), np.zeros(len(sources)))
-
-
-def _find_edges_without_line(tin: TIN) -> list[list[int]]:
-    """Return the constrained edges inside the surface that are no segment of a line."""
-    is_inner = tin.constrained & (tin.neighbors > topology.NO_NEIGHBOR)
-    edges = np.unique(np.sort(topology.edges_at(tin.triangles, is_inner), axis=1), axis=0)
-    n = len(tin.points)
-    is_segment = np.isin(topology.edge_keys(edges, n), topology.edge_keys(tin.lines.segments(), n))
-    found: list[list[int]] = edges[~is_segment].tolist()
-    return found

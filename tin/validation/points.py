@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 __all__ = [
     "as_elevations",
     "as_masked_points",
+    "as_pairs",
     "as_places",
     "as_points",
     "as_xy",
@@ -118,6 +119,27 @@ def as_places(xy: Any) -> tuple[NDArray[np.float64], bool]:
     else:
         is_one = tuple(shape) == (2,)
     return as_xy([xy] if is_one else xy), is_one
+
+
+def as_pairs(x: Any, y: Any) -> tuple[NDArray[np.float64], tuple[int, ...]]:
+    """Return places of eastings and northings that are given apart, (k, 2), and their shape.
+
+    Raises
+    ------
+    PointsError
+        If they are no numbers, or their shapes do not fit; else as :func:`as_xy`.
+    """
+    columns = [as_table(one, "Query points", least=1, most=1) for one in (x, y)]
+    if any(one.is_masked is not None for one in columns):
+        raise PointsError("Query points given as x and y are masked: give rows of both.")
+    try:
+        across, up = np.broadcast_arrays(*(one.values for one in columns))
+    except ValueError:
+        raise PointsError(
+            f"Query points have x of shape {columns[0].values.shape} and y of shape "
+            f"{columns[1].values.shape}: as many are needed, or one of them single."
+        ) from None
+    return as_xy(np.stack([across.ravel(), up.ravel()], axis=1)), across.shape
 
 
 def as_elevations(values: Any) -> NDArray[np.float64]:

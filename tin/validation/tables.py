@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ...errors import PointsError
+from .geometries import find_geometries, find_shapely
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -28,6 +29,11 @@ _NAMES = {
 }
 _ROLE_OF = {name: role for role, names in _NAMES.items() for name in names}
 _SHOWN = 8
+_POINTS = (0, 4)
+"""What shapely numbers points and multipoints."""
+
+_AXES = ({"x", "y"}, {"lon", "lat"}, {"longitude", "latitude"})
+"""Names of the dimensions of a raster."""
 
 
 class Table(NamedTuple):
@@ -66,6 +72,7 @@ def as_table(given: Any, what: str, *, least: int = 3, most: int = 3) -> Table:
     """
     if _is_plain(given):
         return Table(_as_numbers(given, what))
+    _require_no_raster(given, what)
     given = _unwrap(given)
     geometry = _read_points(getattr(given, "geometry", given), what)
     names = _find_names(given)
@@ -84,6 +91,17 @@ def _is_plain(given: Any) -> bool:
     if type(given) is list:
         return all(type(row) is list for row in given)
     return type(given) in (float, int)
+
+
+def _require_no_raster(given: Any, what: str) -> None:
+    """Refuse the cells of a raster, whose rows are no points."""
+    dimensions = getattr(given, "dims", ())
+    is_named = isinstance(dimensions, tuple | Mapping)
+    has_axes = is_named and any(axes <= set(dimensions) for axes in _AXES)
+    if has_axes or (hasattr(given, "transform") and hasattr(given, "block_shapes")):
+        raise PointsError(
+            f"{what} are the cells of a raster: tinsmith.from_raster makes points of them."
+        )
 
 
 def is_masked_array(given: Any) -> bool:
@@ -202,20 +220,50 @@ def _fill_missing(column: Any) -> Any:
 # --------------------------------------------------------------------- geometries
 
 
-def _read_points(given: Any, what: str) -> NDArray[np.float64] | None:
-    """Return the coordinates of shapely's points, (n, 3) with NaN for none; None of all else."""
-    shapely = sys.modules.get("shapely")
-    if shapely is None:  # then nobody has a geometry
-        return None
+class _Places(NamedTuple):
+    """Coordinates of points, (n, 3) with NaN for no elevation, and the row each is of."""
+
+    coordinates: NDArray[np.float64]
+    rows: NDArray[np.int64]
+
+
+def _read_points(given: Any, what: str) -> _Places | None:
+    """Return the coordinates of points, those of shapely and others; None of all else."""
+    shapely = find_shapely()
+    if shapely is None:  # then nobody has one of its geometries
+        return _read_foreign_points(given, what)
     if isinstance(given, shapely.Geometry):
-        return np.asarray(shapely.get_coordinates(given, include_z=True), np.float64)
+        return _read_coordinates(shapely, np.array([given], object))
     first = next(iter(given), None) if _is_row_of_objects(given) else None
     if not isinstance(first, shapely.Geometry):
-        return None
+        return _read_foreign_points(given, what)
     geometries = np.asarray(given, object)
-    if not (shapely.get_type_id(geometries) == 0).all() or shapely.is_empty(geometries).any():
-        raise PointsError(f"{what} are geometries, but not all of them points with coordinates.")
-    return np.asarray(shapely.get_coordinates(geometries, include_z=True), np.float64)
+    is_point = np.isin(shapely.get_type_id(geometries), _POINTS)
+    if not is_point.all() or shapely.is_empty(geometries).any():
+        raise _refuse_geometries(what)
+    return _read_coordinates(shapely, geometries)
+
+
+def _read_coordinates(shapely: Any, geometries: NDArray[Any]) -> _Places:
+    found = shapely.get_coordinates(geometries, include_z=True, return_index=True)
+    return _Places(np.asarray(found[0], np.float64), np.asarray(found[1], np.int64))
+
+
+def _read_foreign_points(given: Any, what: str) -> _Places | None:
+    """Return the coordinates of what has a ``__geo_interface__`` of points."""
+    found = None if isinstance(given, list | tuple) else find_geometries(given)
+    if found is None:
+        return None
+    if any(part.kind != "Point" for part in found.parts):
+        raise _refuse_geometries(what)
+    given_rows = [_as_numbers(part.rings[0], what)[0] for part in found.parts]
+    rows = [[*row, np.nan] if len(row) == 2 else row[:3] for row in given_rows]
+    owners = np.array([part.row for part in found.parts], np.int64)
+    return _Places(np.array(rows, np.float64).reshape(-1, 3), owners)
+
+
+def _refuse_geometries(what: str) -> PointsError:
+    return PointsError(f"{what} are geometries, but not all of them points with coordinates.")
 
 
 def _is_row_of_objects(given: Any) -> bool:
@@ -226,15 +274,16 @@ def _is_row_of_objects(given: Any) -> bool:
 
 
 def _add_elevations(
-    geometry: NDArray[np.float64], given: Any, names: Sequence[Any], what: str, most: int
+    places: _Places, given: Any, names: Sequence[Any], what: str, most: int
 ) -> NDArray[np.float64]:
     """Return the columns asked for, elevations from a column if the geometries have none."""
+    geometry = places.coordinates
     if most == 2:
         return geometry[:, :2]
     column = _find_roles(names, what).get("elevation")
     is_flat = bool(np.isnan(geometry[:, 2]).all())
     if column is not None:
-        own = _stack([given[column]], what).values[:, 0]
+        own = _stack([given[column]], what).values[places.rows, 0]
         if not (is_flat or np.array_equal(own, geometry[:, 2])):
             raise PointsError(
                 f"{what} have elevations in their geometries and others in column '{column}': "

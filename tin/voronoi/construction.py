@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from ..validation.options import require_tin
@@ -69,4 +70,4 @@ def voronoi(
     array([4., 6., 6.])
     """
     require_tin(tin)
-    return divide_plane(tin.points, boundary=boundary, pad=pad)
+    return replace(divide_plane(tin.points, boundary=boundary, pad=pad), crs=tin.crs)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ... import _optional
 from ..._sentences import counted
 from ...errors import LinesError, OptionError
 from .. import _kernel
@@ -20,6 +21,8 @@ from .cells import Rings, cells_in_box, measure_signed_areas
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
+
+    from ...crs import CRS
 
 __all__ = ["Voronoi", "divide_plane"]
 
@@ -44,6 +47,8 @@ class Voronoi:
         same as ``offsets``.
     boundary : (b, 2) float64 array, CRS units
         Corners of the ring that the cells are clipped to.
+    crs : CRS or None
+        That of the TIN.
 
     Examples
     --------
@@ -60,6 +65,7 @@ class Voronoi:
     offsets: NDArray[np.int64]
     part_offsets: NDArray[np.int64]
     boundary: NDArray[np.float64]
+    crs: CRS | None = None
 
     def __post_init__(self) -> None:
         for array in (self.coords, self.offsets, self.part_offsets, self.boundary):
@@ -73,7 +79,7 @@ class Voronoi:
         """Area of each cell, (n,) float64 array, CRS units squared; 0 outside the boundary."""
         parts = measure_signed_areas(Rings(self.coords, self.part_offsets))
         areas: NDArray[np.float64] = np.zeros(len(self))
-        np.add.at(areas, self._cell_of_part, parts)
+        np.add.at(areas, self.cell_of_part, parts)
         areas.flags.writeable = False
         return areas
 
@@ -98,19 +104,19 @@ class Voronoi:
         >>> ts.voronoi(tin, pad=0).to_shapely()[0].area
         4.0
         """
-        import shapely
-
+        shapely = _optional.load("shapely")
         parts = _make_polygons(Rings(self.coords, self.part_offsets))
-        whole = np.bincount(self._cell_of_part, minlength=len(self))
+        whole = np.bincount(self.cell_of_part, minlength=len(self))
         cells = np.full(len(self), shapely.Polygon(), object)
-        is_single = (whole == 1)[self._cell_of_part]
-        cells[self._cell_of_part[is_single]] = parts[is_single]
+        is_single = (whole == 1)[self.cell_of_part]
+        cells[self.cell_of_part[is_single]] = parts[is_single]
         for cell in np.flatnonzero(whole > 1):
-            cells[cell] = shapely.multipolygons(parts[self._cell_of_part == cell])
+            cells[cell] = shapely.multipolygons(parts[self.cell_of_part == cell])
         return cells
 
     @cached_property
-    def _cell_of_part(self) -> NDArray[np.int64]:
+    def cell_of_part(self) -> NDArray[np.int64]:
+        """The cell that each part belongs to, (p,) int64 array."""
         filled = np.flatnonzero(np.diff(self.offsets))
         return filled[np.searchsorted(self.offsets[filled + 1], self.part_offsets[1:])]
 
@@ -201,8 +207,7 @@ def _list_corners(box: Bounds) -> NDArray[np.float64]:
 
 def _as_boundary(boundary: Bounds | ArrayLike) -> NDArray[np.float64]:
     """Return the ring of a boundary, counter-clockwise."""
-    import shapely
-
+    shapely = _optional.load("shapely")
     given = _list_corners(boundary) if isinstance(boundary, Bounds) else boundary
     ring = as_ring(given, "the boundary")[:, :2].copy()
     region = shapely.Polygon(ring)
@@ -216,8 +221,7 @@ def _as_boundary(boundary: Bounds | ArrayLike) -> NDArray[np.float64]:
 
 def _clip(cells: Rings, ring: NDArray[np.float64]) -> Voronoi:
     """Return the parts of cells inside a ring; cells that it does not cut stay as they are."""
-    import shapely
-
+    shapely = _optional.load("shapely")
     region = shapely.Polygon(ring)
     shapely.prepare(region)
     near = _find_near(cells, Bounds.of(ring))
@@ -257,8 +261,7 @@ def _keep_only(rings: Rings, which: NDArray[np.int64]) -> Rings:
 
 def _find_parts_inside(region: Any, shapes: NDArray[Any]) -> tuple[NDArray[Any], NDArray[np.int64]]:
     """Return the polygons in which shapes meet a region, and the shape that each is a part of."""
-    import shapely
-
+    shapely = _optional.load("shapely")
     # Corners rounded to coordinates can make a cell of rounding width cross itself.
     broken = ~shapely.is_valid(shapes)
     shapes[broken] = shapely.make_valid(shapes[broken])
@@ -270,8 +273,7 @@ def _find_parts_inside(region: Any, shapes: NDArray[Any]) -> tuple[NDArray[Any],
 
 def _make_polygons(rings: Rings) -> NDArray[Any]:
     """Return the rings that are not empty as shapely polygons."""
-    import shapely
-
+    shapely = _optional.load("shapely")
     counts = np.diff(rings.offsets)
     ring = np.repeat(np.arange(np.count_nonzero(counts)), counts[counts > 0])
     polygons: NDArray[Any] = shapely.polygons(shapely.linearrings(rings.coords, indices=ring))
@@ -280,8 +282,7 @@ def _make_polygons(rings: Rings) -> NDArray[Any]:
 
 def _get_rings(polygons: NDArray[Any]) -> Rings:
     """Return the outer rings of polygons, counter-clockwise, the first corner not repeated."""
-    import shapely
-
+    shapely = _optional.load("shapely")
     coords, ring = shapely.get_coordinates(polygons, return_index=True)
     is_last = np.append(ring[1:] != ring[:-1], True)[: len(ring)]
     coords, ring = coords[~is_last], ring[~is_last]

@@ -13,9 +13,10 @@ from ....errors import LinesError, ReadError, choice
 from ....policies import BreaklineKind, DrawingContent, LineKind
 from ....tin import Breakline, Survey, Water
 from ....tin.constraints.breaklines import as_ring
+from ...mesh.common import Reference, require_own_crs
 from ..placing import place_rows
-from ..reference import Declared, Measures, choose_measures, require_own_crs
-from ..surfaces import EdgeLine, make_tin, merge_equal_points
+from ..reference import Declared, Measures, choose_measures
+from ..surfaces import EdgeLine, make_tin_with_lines, merge_equal_points
 from .drawing import Drawing, read_drawing
 from .faces import make_mesh
 from .names import CONSTRAINED
@@ -141,7 +142,7 @@ def _choose_measures(drawing: Drawing, declared: Declared) -> Measures:
 
 
 def _read_tin(drawing: Drawing, measures: Measures, declared: Declared) -> TIN:
-    require_own_crs(measures, declared.crs, drawing.path)
+    require_own_crs(measures.source, declared.crs, drawing.path)
     faces = drawing.arrays["faces"]
     if len(faces) == 0:
         raise ReadError(
@@ -151,12 +152,11 @@ def _read_tin(drawing: Drawing, measures: Measures, declared: Declared) -> TIN:
     mesh = make_mesh(measures.apply(faces.reshape(-1, 3)).reshape(-1, 4, 3), drawing.path)
     mesh = merge_equal_points(mesh)
     notes = [*measures.notes, *mesh.notes, *drawing.describe_left_out()]
-    return make_tin(
+    return make_tin_with_lines(
         mesh._replace(notes=notes),
         _select_edge_lines(drawing, measures),
         drawing.path,
-        crs=measures.source,
-        elevation_unit=measures.elevation_unit,
+        reference=Reference(measures.source, measures.elevation_unit),
     )
 
 

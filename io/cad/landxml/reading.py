@@ -9,8 +9,9 @@ import numpy as np
 from ...._sentences import counted, shown
 from ....errors import OptionError, ReadError, choice
 from ....policies import DrawingContent
-from ..reference import Declared, Measures, choose_measures, require_own_crs
-from ..surfaces import make_tin, merge_equal_points
+from ...mesh.common import Reference, require_own_crs
+from ..reference import Declared, Measures, choose_measures
+from ..surfaces import make_tin_with_lines, merge_equal_points
 from .content import Content, Surface
 from .parser import parse
 from .source import make_survey_of_points, make_survey_of_source
@@ -113,17 +114,16 @@ def _read_tin(
 ) -> TIN:
     mesh = make_mesh(found, chosen, path)
     measures = _choose_measures(found, chosen, declared, path)
-    require_own_crs(measures, declared.crs, path)
+    require_own_crs(measures.source, declared.crs, path)
     points = measures.apply(mesh.points[:, [1, 0, 2]])
     mesh = merge_equal_points(
         mesh._replace(points=points, notes=[*notes, *measures.notes, *mesh.notes])
     )
-    return make_tin(
+    return make_tin_with_lines(
         mesh,
         select_edge_lines(chosen, measures),
         path,
-        crs=measures.source,
-        elevation_unit=measures.elevation_unit,
+        reference=Reference(measures.source, measures.elevation_unit),
     )
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .... import _optional
 from ...._sentences import counted
 from ....errors import LinesError, ReadError
 from ....policies import BreaklineKind
@@ -233,8 +234,7 @@ def _join_islands(
     """Return each void with the islands in it, and the number of islands in none."""
     if not islands:
         return list(voids), 0
-    import shapely
-
+    shapely = _optional.load("shapely")
     areas = [shapely.Polygon(ring[:, :2]) for ring in voids]
     polygons: list[list[Any]] = [[ring] for ring in voids]
     left = 0

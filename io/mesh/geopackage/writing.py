@@ -16,6 +16,7 @@ from ....terrain.slope import aspect, slope
 from ..common import format_unit, require_tin
 from .digests import digest_arrays, digest_lines
 from .geometries import make_chain_blobs, make_point_blobs, make_triangle_blobs
+from .journals import require_closed
 from .records import pack_tin
 from .records.columns import describe_layer_columns
 from .schema import (
@@ -44,9 +45,6 @@ _CHUNK = 1 << 16
 _PAGE = 1 << 15
 """Bytes of a page: a fifth faster than SQLite's own 4096, and all names of tables in the first."""
 
-_JOURNALS = ("-wal", "-journal")
-"""What SQLite keeps beside a file in use, and would play into any file of that name."""
-
 
 def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None = None) -> None:
     """Write all that a TIN is as a GeoPackage; :func:`read` gives it back, bit for bit.
@@ -67,24 +65,13 @@ def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None 
     ``tinsmith_tin`` holds the rest: the report, and what edits and undoing them need.
     """
     tin = require_tin(surface, path, format_name="a GeoPackage of a TIN")
-    _require_closed(path)
+    require_closed(path)
     with replacing_path(path) as beside:
         try:
             with closing(sqlite3.connect(beside, isolation_level=None)) as file:
                 _write_content(file, tin, progress or (lambda _: None))
         except sqlite3.Error as error:
             raise WriteError(f"Cannot write '{path}': {error}.", path=path) from error
-
-
-def _require_closed(path: Path) -> None:
-    for end in _JOURNALS:
-        journal = path.with_name(path.name + end)
-        if journal.exists():
-            raise WriteError(
-                f"Cannot write '{path}': it is open in another program, as '{journal.name}' beside "
-                "it shows; close it there first.",
-                path=path,
-            )
 
 
 def _write_content(file: sqlite3.Connection, tin: TIN, progress: Callable[[float], None]) -> None:

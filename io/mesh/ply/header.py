@@ -72,11 +72,6 @@ class Element:
     count: int
     properties: list[Property] = field(default_factory=list)
 
-    @property
-    def has_lists(self) -> bool:
-        """Whether rows can differ in length."""
-        return any(one.count_type is not None for one in self.properties)
-
 
 @dataclass(frozen=True, slots=True)
 class Header:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from .... import _optional
 from ...._atomic import replacing
 from ...._sentences import counted
 from ....errors import FormatError, WriteError, choice
@@ -285,8 +286,7 @@ def _format_hull(tin: TIN, places: Places) -> Iterator[tuple[int, str]]:
 
 def group_rings(tin: TIN) -> list[list[NDArray[np.int32]]]:
     """Group the boundary rings: an outer ring followed by its holes."""
-    from shapely import Polygon
-
+    Polygon = _optional.load("shapely").Polygon
     outer = [ring for ring in tin.rings if _measure_signed_area(tin.points[ring]) > 0]
     holes = [ring for ring in tin.rings if _measure_signed_area(tin.points[ring]) <= 0]
     outer.sort(key=lambda ring: _measure_signed_area(tin.points[ring]))

@@ -155,11 +155,13 @@ def add_coded_lines(survey: Survey, how: Coding) -> Survey:
     click.UsageError
         If there is a tolerance of curves, but no codes.
     """
-    from ..io import lines_from_codes
-
     if how.arc_tolerance is not None and not how.has_codes:
         raise click.UsageError("--arc-tolerance needs --codes, --code-table or --code-style.")
-    return lines_from_codes(survey, **how.coding) if how.has_codes else survey
+    if not how.has_codes:
+        return survey
+    from ..io import lines_from_codes
+
+    return lines_from_codes(survey, **how.coding)
 
 
 def add_lines(survey: Survey, how: Triangulating, console: Console) -> Survey:
@@ -170,13 +172,13 @@ def add_lines(survey: Survey, how: Triangulating, console: Console) -> Survey:
     click.UsageError
         If there is a height of water, but no water.
     """
-    from ..io import with_lines as with_lines_of_files
-
     if how.water_z is not None and not how.water:
         raise click.UsageError("--water-z needs --water: a file of the polygons that it is for.")
     survey = add_coded_lines(survey, how)
     if not how.files:
         return survey
+    from ..io import with_lines as with_lines_of_files
+
     with console.steps() as steps, steps.step("Reading lines"):
         return with_lines_of_files(survey, **how.files)
 
@@ -229,13 +231,15 @@ def read_tin_of_files(
 
 def list_inputs(*files: Path, how: Coding | None = None) -> list[Named]:
     """Return all files that a command reads."""
-    from ..io.vector.survey_lines import split_layer
-
     inputs = [Named(file, "the input") for file in files]
     if how is not None and how.code_table is not None:
         inputs.append(Named(how.code_table, "the file of --code-table"))
     given = getattr(how, "line_files", {})
     for flag, paths in given.items():
+        if not paths:
+            continue
+        from ..io.vector.survey_lines import split_layer
+
         inputs += [Named(split_layer(path)[0], f"the file of {flag}") for path in paths]
     return inputs
 

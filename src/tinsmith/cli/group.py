@@ -5,12 +5,17 @@ from __future__ import annotations
 import signal
 import sys
 from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from .. import __version__
+from .._sentences import suggest
 from ..io.isolated.forking import permit_forks
+from .command_list import SECTIONS, SUMMARIES
+from .output.events import note_events
 from .output.failures import show_failure, tell_warning, translate_failures
 from .output.streams import (
     Terminated,
@@ -26,11 +31,7 @@ if TYPE_CHECKING:
 
 __all__ = ["main"]
 
-_BUILT_IN = (
-    *("build", "info", "check", "view", "compare", "refine", "edit", "convert", "formats"),
-    *("contours", "slope", "hillshade", "profile", "volume", "diff", "drape"),
-    *("interpolate", "raster", "plan", "inspect"),
-)
+_BUILT_IN = tuple(SUMMARIES)
 
 
 class _Commands(click.Group):
@@ -53,8 +54,10 @@ class _Commands(click.Group):
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """List the commands of the package, then those of plug-ins; tell of faulty ones."""
+        for heading, summaries in SECTIONS.items():
+            with formatter.section(heading):
+                formatter.write_dl(list(summaries.items()))
         added = self.list_commands(ctx)[len(_BUILT_IN) :]
-        self._list_commands_under("Commands", _BUILT_IN, ctx, formatter)
         self._list_commands_under("Commands of plug-ins", added, ctx, formatter)
         for fault in describe_faults(_BUILT_IN):
             tell_warning(fault)
@@ -97,6 +100,11 @@ class _Commands(click.Group):
             return 128 + ended.number
         return code if isinstance(code, int) else 0
 
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Parse the group's own options, and remember how what follows is to be told."""
+        note_events(ctx, args)
+        return super().parse_args(ctx, args)
+
     def invoke(self, ctx: click.Context) -> Any:
         accept_any_text()
         with translate_failures(ctx, lambda: find_owner(ctx.invoked_subcommand, _BUILT_IN)):
@@ -108,14 +116,37 @@ class _Commands(click.Group):
         """Find the command, and tell if a plug-in has one of the same name."""
         for fault in describe_faults(_BUILT_IN, args[0]) if args and args[0] in _BUILT_IN else []:
             tell_warning(fault)
+        name = args[0] if args else ""
+        if not name.startswith("-") and self.get_command(ctx, name) is None:
+            if ctx.resilient_parsing:
+                return None, None, args[1:]
+            meant = suggest(name, self.list_commands(ctx))
+            raise click.UsageError(f"No such command '{name}'.{meant}", ctx)
         return super().resolve_command(ctx, args)
+
+
+def _tell_version(ctx: click.Context) -> None:
+    """Say which version runs, and for which Python and machine its core was compiled."""
+    core = find_spec("tinsmith.tin._core")
+    name = "" if core is None or core.origin is None else Path(core.origin).name
+    build = name.removeprefix("_core.").rpartition(".")[0] or "missing"
+    python = ".".join(map(str, sys.version_info[:3]))
+    click.echo(f"tinsmith {__version__} (core {build}, Python {python})")
+    ctx.exit()
 
 
 @click.command(
     cls=_Commands,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
 )
-@click.version_option(__version__, message="tinsmith %(version)s")
+@click.option(
+    "--version",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=lambda ctx, _, is_asked: is_asked and _tell_version(ctx),
+    help="Show the version, that of the compiled core and Python's, and exit.",
+)
 def main() -> None:
     """Turn elevation points into exact terrain surfaces (TINs).
 

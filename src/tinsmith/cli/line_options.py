@@ -7,7 +7,7 @@ from typing import Any
 import click
 
 from ..policies import CodeStyle, CrossingPolicy, TrimPolicy
-from .parameters import choice_option, number_option
+from .parameters import choice_option, number_option, under
 from .paths import LINES
 
 __all__ = ["CODE_OPTIONS", "LINE_OPTIONS"]
@@ -37,7 +37,8 @@ def _parse_level(
         return value
 
 
-CODE_OPTIONS = (
+CODE_OPTIONS = under(
+    "Codes of points",
     click.option(
         "--codes",
         is_flag=True,
@@ -62,7 +63,8 @@ CODE_OPTIONS = (
     ),
 )
 
-LINE_OPTIONS = (
+_LINES = under(
+    "Lines and areas",
     _make_files_option(
         "--breaklines",
         "Vector file (GeoPackage, Shapefile, GeoJSON ...) of lines that must be edges of the "
@@ -91,7 +93,6 @@ LINE_OPTIONS = (
     click.option(
         "--drape", is_flag=True, help="Take the heights of lines in files from the surface."
     ),
-    *CODE_OPTIONS,
     choice_option(
         "--crossing",
         CrossingPolicy,
@@ -101,6 +102,10 @@ LINE_OPTIONS = (
     click.option(
         "--conforming", is_flag=True, help="Split lines until every edge is Delaunay by itself."
     ),
+)
+
+_TRIMMING = under(
+    "Triangulation",
     number_option("--max-edge", "LENGTH", "Drop triangles with longer edges, in CRS units."),
     choice_option(
         "--trim",
@@ -109,3 +114,5 @@ LINE_OPTIONS = (
         default="perimeter",
     ),
 )
+
+LINE_OPTIONS = (*_LINES, *CODE_OPTIONS, *_TRIMMING)

@@ -15,7 +15,15 @@ from .flags import note_given
 from .line_options import CODE_OPTIONS, LINE_OPTIONS
 from .mesh_options import MESH_READING, MESH_WRITING
 from .output.console import Console
-from .parameters import Decorator, choice_option, crs_option, number_option
+from .parameters import (
+    Decorator,
+    FormatName,
+    Words,
+    choice_option,
+    crs_option,
+    number_option,
+    under,
+)
 
 __all__ = [
     "CODE_FLAGS",
@@ -227,7 +235,8 @@ def _parse_given(
     return value or None
 
 
-_READING = (
+_COORDINATES = under(
+    "Coordinates and units",
     crs_option(
         "--crs",
         "Coordinate reference system of points that name none, such as EPSG:32616; "
@@ -244,13 +253,26 @@ _READING = (
         "--to-crs",
         "Reproject what was read to this CRS; the input must name its own, or --crs does.",
     ),
-    click.option("--format", metavar="NAME", help="Format of the input, whatever it looks like."),
+)
+
+_INPUT = under(
+    "Input",
+    click.option(
+        "--format",
+        metavar="NAME",
+        type=FormatName("read"),
+        help="Format of the input, whatever it looks like.",
+    ),
     click.option(
         "--remote",
         is_flag=True,
         default=None,
         help="Let the input be an address (https://...), which is downloaded first.",
     ),
+)
+
+_TEXT = under(
+    "Input: text",
     click.option(
         "--columns",
         metavar="LAYOUT",
@@ -259,15 +281,17 @@ _READING = (
         "their order (x,y,z), or roles (easting=X,northing=Y,elevation=3).",
     ),
     click.option("--delimiter", metavar="TEXT", help="What separates the columns of a text file."),
-    click.option(
-        "--decimal", type=click.Choice([".", ","]), help="Decimal mark of the numbers in it."
-    ),
+    click.option("--decimal", type=Words([".", ","]), help="Decimal mark of the numbers in it."),
     click.option(
         "--skip-bad",
         is_flag=True,
         default=None,
         help="Leave out the rows of a text file that cannot be read, and name them.",
     ),
+)
+
+_RASTERS = under(
+    "Input: rasters",
     number_option("--band", "N", "Band of a raster, counted from 1.", type=int),
     click.option(
         "--window",
@@ -286,6 +310,10 @@ _READING = (
     click.option(
         "--fill", is_flag=True, default=None, help="Let the surface span the voids of a raster."
     ),
+)
+
+_MESHES = under(
+    "Input: meshes, LandXML, DXF",
     *MESH_READING,
     click.option(
         "--surface",
@@ -305,9 +333,13 @@ _READING = (
         default=None,
         help="Read texts of a DXF file that are numbers as points of that elevation.",
     ),
+)
+
+_INSTRUMENTS = under(
+    "Input: instruments",
     click.option(
         "--code-blocks",
-        type=click.Choice(("before", "after")),
+        type=Words(("before", "after")),
         help="Where the codes of a GSI file stand, seen from their points.",
     ),
     click.option(
@@ -322,6 +354,10 @@ _READING = (
         "Coefficient by which shots of GSI and SDR files are corrected for refraction and the "
         "earth's curvature, such as 0.13; default neither.",
     ),
+)
+
+_LIDAR = under(
+    "Input: lidar",
     click.option(
         "--classes", metavar="N,N", help="Classes of lidar points to take, such as 2 (ground)."
     ),
@@ -337,6 +373,10 @@ _READING = (
         help="Of COPC lidar take the levels down to this distance of points.",
     ),
     click.option("--every", metavar="N", type=int, help="Take every Nth point of lidar."),
+)
+
+_VECTORS = under(
+    "Input: vector files",
     click.option(
         "--layer",
         metavar="NAME",
@@ -355,6 +395,17 @@ _READING = (
     ),
 )
 
+_READING = (
+    *_COORDINATES,
+    *_INPUT,
+    *_TEXT,
+    *_RASTERS,
+    *_MESHES,
+    *_INSTRUMENTS,
+    *_LIDAR,
+    *_VECTORS,
+)
+
 
 def make_reading_options(*, unit_flag: str = "--unit") -> Callable[[Function], Function]:
     """Return the decorator that adds the options of reading.
@@ -371,14 +422,13 @@ def make_reading_options(*, unit_flag: str = "--unit") -> Callable[[Function], F
         help="Unit of the coordinates and elevations of a LandXML or DXF file, where it does not "
         "say, or says another one than its CRS.",
     )
-    return _gather("reading", Reading, *_READING, unit)
+    return _gather("reading", Reading, *_READING, *under("Coordinates and units", unit))
 
 
 reading_options = make_reading_options()
 
-triangulating_options = _gather(
-    "how",
-    Triangulating,
+_TRIANGULATION = under(
+    "Triangulation",
     choice_option(
         "--duplicates",
         DuplicatePolicy,
@@ -394,13 +444,17 @@ triangulating_options = _gather(
         "Number of threads; default every core. The result is the same.",
         type=click.IntRange(min=1),
     ),
-    *LINE_OPTIONS,
 )
+
+triangulating_options = _gather("how", Triangulating, *_TRIANGULATION, *LINE_OPTIONS)
 
 coding_options = _gather("how", Coding, *CODE_OPTIONS)
 
 _format_option = click.option(
-    "--output-format", metavar="NAME", help="Format of the output, whatever its suffix."
+    "--output-format",
+    metavar="NAME",
+    type=FormatName("write"),
+    help="Format of the output, whatever its suffix.",
 )
 _kind_option = choice_option("--kind", FeatureKind, "What a GeoJSON file shows.")
 
@@ -411,14 +465,23 @@ def _make_projected_option(whose: str) -> Decorator:
 
 
 _VECTOR_WRITING = (_format_option, _kind_option, _make_projected_option("points"))
-writing_options = _gather("writing", SurfaceWriting, *_VECTOR_WRITING, *MESH_WRITING)
-vector_options = _gather("writing", Writing, *_VECTOR_WRITING)
-product_options = _gather("writing", Writing, _format_option, _make_projected_option("TIN"))
-format_options = _gather("writing", Writing, _format_option)
+writing_options = _gather(
+    "writing", SurfaceWriting, *under("Output", *_VECTOR_WRITING, *MESH_WRITING)
+)
+vector_options = _gather("writing", Writing, *under("Output", *_VECTOR_WRITING))
+product_options = _gather(
+    "writing", Writing, *under("Output", _format_option, _make_projected_option("TIN"))
+)
+format_options = _gather("writing", Writing, *under("Output", _format_option))
 
 console_options = _gather(
     "console",
     Console,
     click.option("--json", "as_json", is_flag=True, help="Write the result as JSON to stdout."),
+    click.option(
+        "--events",
+        is_flag=True,
+        help="Write progress, summary, warnings and errors to stderr as JSON, a line each.",
+    ),
     click.option("-q", "--quiet", is_flag=True, help="No summary, no progress."),
 )

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, get_args
+from typing import TYPE_CHECKING, Any, get_args
 
 import click
 
+from .._sentences import suggest
 from .paths import INPUT, OUTPUT
 
 __all__ = [
+    "Command",
     "Decorator",
+    "FormatName",
+    "Words",
     "choice_option",
     "crs_option",
     "input_file",
@@ -22,9 +26,88 @@ __all__ = [
     "picture_option",
     "refuse_value",
     "report_option",
+    "under",
 ]
 
+if TYPE_CHECKING:
+    from click.shell_completion import CompletionItem
+
+_OWN = "Options"
+
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
+
+
+class Command(click.Command):
+    """A command whose help lists its own options first, then shared ones by subject."""
+
+    def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the options under their subjects."""
+        sections: dict[str, list[tuple[str, str]]] = {_OWN: []}
+        for one in self.get_params(ctx):
+            record = one.get_help_record(ctx) if isinstance(one, click.Option) else None
+            if record is not None:
+                sections.setdefault(getattr(one, "subject", _OWN), []).append(record)
+        for heading in sections:
+            with formatter.section(heading):
+                formatter.write_dl(sections[heading])
+
+
+def under(subject: str, *options: Decorator) -> tuple[Decorator, ...]:
+    """Return options whose subject is a heading in the help of commands."""
+
+    def tag(option: Decorator) -> Decorator:
+        def decorate(function: Callable[..., Any]) -> Callable[..., Any]:
+            decorated: Any = option(function)
+            decorated.__click_params__[-1].subject = subject
+            return decorated  # type: ignore[no-any-return]
+
+        return decorate
+
+    return tuple(map(tag, options))
+
+
+class Words(click.Choice[str]):
+    """One of a few words; the nearest one is named where another is given."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
+        """Return the word."""
+        try:
+            return str(super().convert(value, param, ctx))
+        except click.BadParameter as error:
+            text = f"{error.message}{suggest(str(value), self.choices)}"
+            raise click.BadParameter(text, ctx, param) from None
+
+
+class FormatName(click.ParamType[str]):
+    """A format's name, which is looked up later; shells complete it.
+
+    Parameters
+    ----------
+    way : str
+        ``"read"`` or ``"write"``: what the format can.
+    """
+
+    name = "format"
+
+    def __init__(self, way: str) -> None:
+        self._way = way
+
+    def shell_complete(
+        self,
+        ctx: click.Context,  # noqa: ARG002 - click's signature
+        param: click.Parameter,  # noqa: ARG002 - click's signature
+        incomplete: str,
+    ) -> list[CompletionItem]:
+        """Return the names that begin so."""
+        from click.shell_completion import CompletionItem
+
+        from ..io import known_formats
+
+        return [
+            CompletionItem(one.name, help=one.description)
+            for one in known_formats()
+            if getattr(one, self._way) is not None and one.name.startswith(incomplete)
+        ]
 
 
 def number_option(
@@ -62,7 +145,7 @@ def choice_option(
     names = [flag] if name is None else [flag, name]
     return click.option(
         *names,
-        type=click.Choice(get_args(words)),
+        type=Words(get_args(words)),
         default=default,
         show_default=default is not None,
         help=help,

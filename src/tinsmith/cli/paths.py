@@ -13,6 +13,8 @@ from .output.streams import escape_unprintable
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
+    from click.shell_completion import CompletionItem
+
 __all__ = [
     "INPUT",
     "LINES",
@@ -77,6 +79,17 @@ class _Name(click.ParamType["Path"]):
     """A file's name, of which ``-`` means the standard stream, and ``./-`` a file called so."""
 
     name = "file"
+
+    def shell_complete(
+        self,
+        ctx: click.Context,  # noqa: ARG002 - click's signature
+        param: click.Parameter,  # noqa: ARG002 - click's signature
+        incomplete: str,
+    ) -> list[CompletionItem]:
+        """Let the shell complete names of files."""
+        from click.shell_completion import CompletionItem
+
+        return [CompletionItem(incomplete, type="file")]
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Path:
         """Return the path."""

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from tinsmith.io import ReadError
-from tinsmith.io.delimited import table
+from tinsmith.io.delimited.cell_bounds import _drop_quoted, find_cell_bounds
 from tinsmith.io.delimited.columns import find_columns_by_word
 from tinsmith.io.delimited.layout import find_layout
 from tinsmith.io.delimited.lines import TextLines
@@ -28,6 +28,10 @@ def cells_of(text, **options):
     lines = TextLines.of(text.encode())
     layout = find_layout(lines, PATH, **options)
     return read_cells(lines, layout, PATH), layout, lines
+
+
+def is_regular(data, layout):
+    return find_cell_bounds(data, layout.delimiter, layout.count) is not None
 
 
 def table_of(text, columns="ENZ", **options):
@@ -57,40 +61,40 @@ def test_rows_taken_as_regular_read_as_by_csv(first, second):
         is_even = all(len(row) == 3 for row in rows)
     except csv.Error:
         is_even = False
-    if table._is_regular(data, layout):
+    if is_regular(data, layout):
         assert is_even
     plain = '"' not in first and '"' not in second
     if plain:
-        assert table._is_regular(data, layout) == is_even
+        assert is_regular(data, layout) == is_even
     if first in ('1,"2",3', '"1",2,3', '1,2,"3"', '1,"2,5",3', '"1","2","3"', '1,"2 ""x"" y",3'):
-        assert table._is_regular(data, layout)
+        assert is_regular(data, layout)
 
 
 @pytest.mark.parametrize(
-    ("text", "is_regular"),
+    ("text", "expected"),
     [
         ("1 2 3\n4 5 6", True), ("1  2\t3\n 4 5 6 ", True), ("1 2 3\n4 5\n6 7 8 9", False),
         ("1 2 3\n4 5 6 7", False), ('1 2 3\n4 5 "6"', False), ("1 2 3 4 5 6", False),
         ("1 2\n3\n4 5 6", False),
     ],
 )  # fmt: skip
-def test_words_between_blanks_are_counted_line_by_line(text, is_regular):
+def test_words_between_blanks_are_counted_line_by_line(text, expected):
     layout = find_layout(TextLines.of(b"1 2 3\n4 5 6\n"), PATH)
-    assert table._is_regular(text.encode(), layout) is is_regular
+    assert is_regular(text.encode(), layout) is expected
 
 
 def test_places_between_quotes_count_for_nothing():
     places = np.array([1, 4, 6, 9, 12])
-    assert table._drop_quoted(places, np.array([3, 5])).tolist() == [1, 6, 9, 12]
-    assert table._drop_quoted(places, np.array([0, 2, 5, 10])).tolist() == [4, 12]
-    assert table._drop_quoted(places, np.array([2, 3, 13, 14])).tolist() == places.tolist()
+    assert _drop_quoted(places, np.array([3, 5])).tolist() == [1, 6, 9, 12]
+    assert _drop_quoted(places, np.array([0, 2, 5, 10])).tolist() == [4, 12]
+    assert _drop_quoted(places, np.array([2, 3, 13, 14])).tolist() == places.tolist()
 
 
 def test_rows_that_are_not_regular_are_rewritten_one_by_one():
     found, _, _ = cells_of(
         'E,N,Z,D\n1,2,3,"a ""b"" c"\n4,5,6,x, y\n7,8\n9,8,7\n"1,2,3,4\n3,2,1,z\n'
     )
-    assert found.frame[3].tolist() == ['a "b" c', "x, y", "", "z"]
+    assert found.columns[3].tolist() == ['a "b" c', "x, y", "", "z"]
     assert found.rows.tolist() == [1, 2, 4, 6]
     assert [(fault.line, fault.kind, fault.what) for fault in found.faults] == [
         (3, "columns", "has 2"),
@@ -107,8 +111,8 @@ def test_rows_that_are_not_regular_are_rewritten_one_by_one():
 def test_rewritten_rows_are_all_there(count):
     text = "E,N,Z,D\n" + "".join(f"{k},1,2,a, {k}\n" for k in range(count))
     found, _, _ = cells_of(text)
-    assert found.frame[0].tolist() == list(range(count))
-    assert found.frame[3].tolist() == [f"a, {k}" for k in range(count)]
+    assert found.columns[0].tolist() == list(range(count))
+    assert found.columns[3].tolist() == [f"a, {k}" for k in range(count)]
     assert found.rows.tolist() == list(range(1, count + 1))
 
 
@@ -124,7 +128,7 @@ def test_a_description_between_blanks_takes_the_rest(row, tail):
     if tail is None:
         assert found.rows.tolist() == [1, 3]
     else:
-        assert found.frame[3].tolist()[1] == tail
+        assert found.columns[3].tolist()[1] == tail
 
 
 # ---------------------------------------------------------------------------- numbers

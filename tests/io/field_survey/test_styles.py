@@ -76,6 +76,16 @@ def test_a_style_that_is_named_is_used(style, begin, end):
     assert lines(begin, "EP1", end, begin, "EP1", code_style=style) == TWO
 
 
+def test_the_note_counts_what_makes_no_sense_in_both_styles():
+    """A figure that ends without a beginning is odd in any style."""
+    sound = ("EP1 BL", "EP1", "EP1 EL", "EP1 BL", "EP1")
+    assert "none in 'cg'" in notes(*sound)
+    odd = notes(*sound, "FL7")  # a line of one shot
+    assert "in the style 'cg'" in odd
+    assert "none in 'cg'" not in odd
+    assert " in 'words', 1 in 'cg'." in odd
+
+
 def test_a_slash_parts_words_or_begins_a_remark_and_is_refused():
     rows = ("EP1/B", "EP1", "EP1/E", "EP1/B", "EP1")
     refused("two styles, 'words' and 'slash'.*EP1 of 5 shots.*the option code_style", *rows)

@@ -112,6 +112,25 @@ def test_a_note_tells_of_the_classes_that_were_taken(tmp_path, cloud):
     assert note.endswith("taken: 2.")
 
 
+# ASPRS, LAS Specification 1.4 R15, tables 9 and 17, the first words of each meaning.
+MEANINGS = (
+    *("never classified", "unclassified", "ground", "low", "medium", "high", "building"),
+    *("low noise", "key", "water", "rail", "road", "overlap", "wire", "wire", "tower"),
+    *("wire", "bridge", "high noise"),
+)
+
+
+def test_classes_have_the_names_of_the_specification(tmp_path):
+    made = make_cloud(len(MEANINGS))
+    made.classification = np.arange(len(MEANINGS), dtype=np.uint8)
+    made.withheld = np.zeros(len(MEANINGS), np.uint8)
+    made.write(tmp_path / "all.las")
+    (note,) = (one for one in read(tmp_path / "all.las").notes if one.startswith("Classes"))
+    listed = note.partition(": ")[2].partition(". ")[0].split(", ")
+    for number, (told, meaning) in enumerate(zip(listed, MEANINGS, strict=True)):
+        assert told.startswith(f"{number} {meaning}")
+
+
 @pytest.mark.parametrize("given", [2, [2], "2", (7, 2), "2,7", "7 2", np.array([2])])
 def test_classes(tmp_path, cloud, given):
     numbers = {"2": [2], "2,7": [2, 7], "7 2": [2, 7]}.get(str(given), np.atleast_1d(given))
@@ -361,6 +380,14 @@ def test_a_vertical_crs_in_another_unit_gives_the_unit_that_is_named(tmp_path):
     assert survey.crs == "EPSG:32616"
     assert survey.elevation_unit.name == "foot"
     assert any("5773" in note for note in survey.notes)
+
+
+def test_a_vertical_crs_that_is_not_known_is_left_aside_and_told(tmp_path):
+    path = with_keys(tmp_path / "keys.las", (3072, 32616), (4096, 32001), (4099, 9003))
+    survey = read(path)
+    assert survey.crs == "EPSG:32616"
+    assert survey.elevation_unit.name == "US survey foot"
+    assert any("32001" in note for note in survey.notes)
 
 
 def test_an_own_projection_in_keys_is_understood_by_gdal(tmp_path):

@@ -126,6 +126,9 @@ def test_layer_json_lists_just_the_tiles_that_are_there(pyramid):
     }
     assert listed == set(tiles)
     assert {(0, 0, 0), (0, 1, 0)} <= listed
+    for ranges in layer["available"]:  # none continues another upwards
+        columns = [(one["startX"], one["endX"], one["startY"], one["endY"]) for one in ranges]
+        assert not any((a, b, d + 1) == other[:3] for a, b, _, d in columns for other in columns)
     for level, x, y in listed:  # each has its parent, down to both roots
         assert level == 0 or (level - 1, x // 2, y // 2) in listed
 
@@ -231,6 +234,24 @@ def test_the_horizon_point_hides_only_what_is_hidden():
     hidden = _is_hidden(cameras, horizon[None])[:, 0]
     assert 0.1 < hidden.mean() < 0.9
     assert _is_hidden(cameras[hidden], points / radii).all()
+
+
+def test_the_horizon_point_is_no_higher_than_the_tangents_ask_for():
+    """It lies where the tangent from the highest vertex to the sphere meets its direction."""
+    rng = np.random.default_rng(6)
+    for height in (0.0, 50.0, 8000.0, 300_000.0):
+        places = np.column_stack(
+            [rng.uniform(10, 12, 9), rng.uniform(45, 47, 9), np.full(9, height)]
+        )
+        points = _to_space(places)
+        scaled = points / np.array([A, A, B])
+        middle = points.mean(axis=0) / np.array([A, A, B])
+        middle /= np.linalg.norm(middle)
+        length = np.maximum(np.linalg.norm(scaled, axis=1), 1.0)
+        aside = np.arccos(np.clip(scaled @ middle / np.linalg.norm(scaled, axis=1), -1, 1))
+        wanted = (1 / np.cos(aside + np.arccos(1 / length))).max()
+        found = find_horizon_point(points, points.mean(axis=0))
+        assert np.linalg.norm(found) == pytest.approx(wanted, rel=1e-7)
 
 
 def _is_hidden(cameras, points):

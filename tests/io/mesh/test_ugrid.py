@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from support.qgis_meshes import open_in_qgis
@@ -49,6 +51,15 @@ def test_a_tin_comes_back_with_its_lines(tmp_path):
     assert sorted(back.lines.kinds) == sorted(tin.lines.kinds)
     assert (back.crs, back.elevation_unit) == (tin.crs, tin.elevation_unit)
     assert ts.check(back, level=2).problems == ()
+
+
+def test_a_large_tin_with_lines_is_known_by_its_convention(tmp_path):
+    """With lines, the topology is described behind the part of a file that is looked at."""
+    survey = Path(__file__).parents[3] / "sample_data" / "site_survey.csv"
+    tin = ts.triangulate(ts.read(survey, crs="EPSG:32616"), max_edge=39)
+    path = ts.write(tin, tmp_path / "large.nc")
+    assert b"mesh_topology" not in path.read_bytes()[:65536]
+    assert np.array_equal(ts.read(path).points, tin.points)
 
 
 @pytest.mark.parametrize("crs", ["EPSG:32616", "EPSG:4326", "EPSG:2274", "EPSG:25832+7837"])

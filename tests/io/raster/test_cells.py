@@ -21,11 +21,11 @@ def header(**given):
     usual = {
         "path": PATH, "count": 2, "subdatasets": [], "colours": ["gray", "undefined"],
         "dtypes": ["float32", "float32"], "width": 7, "height": 5,
-        "transform": dem._Affine(2.0, 0.0, 100.0, 0.0, -3.0, 500.0), "block_height": 1,
+        "transform": dem.Affine(2.0, 0.0, 100.0, 0.0, -3.0, 500.0), "block_height": 1,
         "block_width": 7, "scales": [1.0, 1.0], "offsets": [0.0, 0.0], "units": [None, None],
         "crs": None, "limits": Limits(5.0, 1 << 30),
     }  # fmt: skip
-    return dem._Header(**{**usual, **given})
+    return dem.Header(**{**usual, **given})
 
 
 def sentence_of(kind, function, *arguments):
@@ -40,7 +40,7 @@ def sentence_of(kind, function, *arguments):
 @pytest.mark.parametrize("seed", range(5))
 def test_the_inverse_leads_back(seed):
     rng = np.random.default_rng(seed)
-    affine = dem._Affine(*rng.uniform(-9, 9, 6))
+    affine = dem.Affine(*rng.uniform(-9, 9, 6))
     column, row = rng.uniform(0, 100, (2, 20))
     there = affine.apply(column, row)
     np.testing.assert_allclose(
@@ -59,7 +59,7 @@ def test_the_inverse_leads_back(seed):
     ],
 )
 def test_the_bounds_hold_all_cells(affine, bounds):
-    assert header(transform=dem._Affine(*map(float, affine))).bounds == bounds
+    assert header(transform=dem.Affine(*map(float, affine))).bounds == bounds
 
 
 def test_centres_lie_half_a_cell_in_and_the_middle_in_the_middle():
@@ -283,11 +283,11 @@ def test_the_first_band_is_the_default():
         ({"colours": ["red", "gray"]}, 2, False, None),
         ({"dtypes": ["complex64", "f4"]}, 1, False, "band 1 holds complex numbers, no elevations."),
         ({"dtypes": ["complex64", "f4"]}, 2, False, None),
-        ({"transform": dem._Affine(1, 0, 0, 0, 1, 0)}, 1, False, "has no georeference"),
-        ({"transform": dem._Affine(2, 4, 0, 1, 2, 0)}, 1, False, "in which a cell has no size"),
-        ({"transform": dem._Affine(2, 0, np.inf, 0, 1, 0)}, 1, False, "or none that is finite."),
-        ({"transform": dem._Affine(1e200, 0, 0, 0, 1e200, 0)}, 1, False, "none that is finite."),
-        ({"transform": dem._Affine(0, 2, 0, 3, 0, 0)}, 1, False, None),
+        ({"transform": dem.Affine(1, 0, 0, 0, 1, 0)}, 1, False, "has no georeference"),
+        ({"transform": dem.Affine(2, 4, 0, 1, 2, 0)}, 1, False, "in which a cell has no size"),
+        ({"transform": dem.Affine(2, 0, np.inf, 0, 1, 0)}, 1, False, "or none that is finite."),
+        ({"transform": dem.Affine(1e200, 0, 0, 0, 1e200, 0)}, 1, False, "none that is finite."),
+        ({"transform": dem.Affine(0, 2, 0, 3, 0, 0)}, 1, False, None),
     ],
 )
 def test_what_has_no_elevations_or_no_place_is_refused(given, band, is_told, words):

@@ -90,3 +90,33 @@ def test_another_table_is_no_profile():
         ts.profile_picture(ts.cross_sections(TIN, LINE, interval=5, width=4))
     with pytest.raises(ts.OptionError, match="meets a surface"):
         ts.profile_picture(ts.profile(TIN, [LINE, [[90, 90], [99, 99]]]), line=1)
+
+
+def read_number(text):
+    return float(text.replace(",", "").replace("\N{MINUS SIGN}", "-"))
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_ticks_stand_where_they_say_and_neither_crowded_nor_sparse(seed):
+    rng = np.random.default_rng(seed)
+    relief, length = 10.0 ** rng.uniform(-2, 3), 10.0 ** rng.uniform(1, 4)
+    corners = np.array([[0, 0], [length, 0], [length, length], [0, length], [0.4, 0.5]])
+    corners[4] *= length
+    z = rng.uniform(-1e3, 1e3) + relief * rng.random(5)
+    tin = ts.triangulate(np.column_stack([corners, z]))
+    line = [[0.01 * length, 0.3 * length], [0.99 * length, 0.6 * length]]
+    figure = ts.profile_picture(ts.profile(tin, line))
+    axes = figure.axes[0]
+    low, high = axes.get_ylim()
+    places = axes.get_yticks()
+    inches = axes.get_window_extent().height / figure.dpi * np.diff(places) / (high - low)
+    assert len(places) >= 2
+    assert ((places >= low) & (places <= high)).all()
+    assert inches.min() > 0.25  # room for a label
+    assert inches.max() < 1.3
+    step = places[1] - places[0]
+    for place, label in zip(places, axes.get_yticklabels(), strict=True):
+        assert abs(read_number(label.get_text()) - place) <= 1e-6 * step
+    drawn = np.concatenate([curve.get_ydata() for curve in axes.lines])
+    assert low < np.nanmin(drawn)
+    assert np.nanmax(drawn) < high

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 import tinsmith as ts
+from tinsmith.terrain._kernel import trace_contours
+from tinsmith.terrain.isolines.smoothing import TracedLines, _find_places
 
 ROUNDING = 1e-12
 
@@ -151,3 +153,21 @@ def test_more_points_than_smoothing_can_number_are_refused(monkeypatch):
         ts.contours(tin, levels=[1, 2, 3], **{option: 0.1})
         with pytest.raises(ts.OptionError, match=f"Invalid {option} 0.1: {sentence}"):
             ts.contours(tin, levels=[0.5, 1.5, 2.5, 3.5], **{option: 0.1})
+
+
+@pytest.mark.parametrize("make", [hilly, integer_grid])
+def test_each_point_of_a_line_is_known_in_a_triangle_that_holds_it(make):
+    tin = make(3)
+    kernel_arrays = (tin.points, tin.triangles, tin.neighbors)
+    lines = TracedLines(*trace_contours(*kernel_arrays, np.arange(-12.0, 12.0, 0.75)))
+    places = _find_places(tin, lines)
+    is_last = np.zeros(len(lines.coordinates), bool)
+    is_last[(lines.offsets[1:] - 1)[lines.is_closed]] = True
+    xy = lines.coordinates[~is_last, :2]
+    assert len(places) == len(xy)
+    assert (places >= 0).all()
+    a, b, c = (tin.points[tin.triangles[places, k], :2] for k in range(3))
+    for start, end in ((a, b), (b, c), (c, a)):
+        along, to = end - start, xy - start
+        length = np.hypot(*along.T)
+        assert ((along[:, 0] * to[:, 1] - along[:, 1] * to[:, 0]) / length > -1e-9).all()

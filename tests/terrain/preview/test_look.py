@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 from PIL import Image
+from support.pictures import make_dipping_plane, read_pixels
 
 from tinsmith import triangulate
 from tinsmith.terrain import OptionError, preview
@@ -19,19 +20,6 @@ from tinsmith.terrain.preview.tints import compute_lightness
 from tinsmith.terrain.units import METRE
 
 pv = pytest.importorskip("pyvista")
-
-
-def dipping(azimuth, *, steepness=0.5, extent=100.0):
-    """A plane that falls towards an azimuth."""
-    turn = math.radians(azimuth)
-    corners = np.array([(0, 0), (extent, 0), (extent, extent), (0, extent)], float)
-    z = -steepness * (corners @ (math.sin(turn), math.cos(turn)))
-    return triangulate(np.column_stack([corners, z]))
-
-
-def picture(path):
-    with Image.open(path) as image:
-        return np.asarray(image.convert("RGB")).astype(int)
 
 
 # ------------------------------------------------------------------ what is allowed
@@ -57,7 +45,7 @@ def picture(path):
     ],
 )
 def test_options_out_of_range_are_refused(tmp_path, option, values):
-    tin = dipping(0)
+    tin = make_dipping_plane(0)
     for value in values:
         with pytest.raises(OptionError) as caught:
             preview(tin, output=tmp_path / "a.png", **{option: value})
@@ -74,7 +62,7 @@ def test_a_map_has_no_tilt():
 
 def test_an_unknown_option_is_refused():
     with pytest.raises(TypeError, match="colour"):
-        preview(dipping(0), colour="red")
+        preview(make_dipping_plane(0), colour="red")
 
 
 def test_none_is_the_usual_value():
@@ -211,13 +199,13 @@ def test_slopes_towards_the_sun_are_brightest(tmp_path, azimuth):
     brightness = {}
     for fall in (0, 90, 180, 225, 270, 45):
         path = preview(
-            dipping(fall),
+            make_dipping_plane(fall),
             output=tmp_path / f"{fall}.png",
             size=(400, 250),
             view="top",
             sun=(azimuth, 40),
         )
-        brightness[fall] = picture(path)[110:130, 195:205].mean()
+        brightness[fall] = read_pixels(path)[110:130, 195:205].mean()
     assert max(brightness, key=brightness.get) == azimuth
 
 
@@ -225,9 +213,13 @@ def test_slopes_towards_the_sun_are_brightest(tmp_path, azimuth):
 @pytest.mark.parametrize("background", ["black", "dark", "light", "#204060", "#c8c8c8", "#808080"])
 def test_words_can_be_read_on_every_background(tmp_path, background):
     path = preview(
-        dipping(0), output=tmp_path / "a.png", size=(800, 500), background=background, title="X" * 9
+        make_dipping_plane(0),
+        output=tmp_path / "a.png",
+        size=(800, 500),
+        background=background,
+        title="X" * 9,
     )
-    pixels = picture(path)
+    pixels = read_pixels(path)
     paper = make_look(background=background).palette.paper
     assert (pixels[[0, -1]] == paper).all()
     assert (pixels[:, [0, -1]] == paper).all()
@@ -248,11 +240,11 @@ def test_every_grey_has_ink_that_stands_out():
 @pytest.mark.usefixtures("can_draw")
 @pytest.mark.parametrize("suffix", [".png", ".jpg", ".tif"])
 def test_dots_per_inch_are_written_into_the_picture(tmp_path, suffix):
-    path = preview(dipping(0), output=tmp_path / f"a{suffix}", size=(400, 250), dpi=300)
+    path = preview(make_dipping_plane(0), output=tmp_path / f"a{suffix}", size=(400, 250), dpi=300)
     with Image.open(path) as image:
         assert image.size == (400, 250)
         assert image.info["dpi"] == pytest.approx((300, 300), abs=0.01)
-    path = preview(dipping(0), output=tmp_path / f"b{suffix}", size=(400, 250))
+    path = preview(make_dipping_plane(0), output=tmp_path / f"b{suffix}", size=(400, 250))
     with Image.open(path) as image:
         assert image.info.get("dpi", (72, 72))[0] in {1, 72, 96}
 
@@ -270,6 +262,6 @@ def test_the_same_elevations_make_the_same_tints(tmp_path):
             view="top",
             elevations=(0, 10),
         )
-        shown[level] = picture(path)[120, 200]
+        shown[level] = read_pixels(path)[120, 200]
     assert np.abs(shown[0.0] - (77, 115, 93)).max() <= 6
     assert np.abs(shown[10.0] - (243, 233, 223)).max() <= 6

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 import subprocess
 import sys
@@ -10,6 +9,7 @@ import sys
 import numpy as np
 import pytest
 from PIL import Image
+from support.pictures import make_dipping_plane, read_pixels
 
 from tinsmith import TIN, MissingExtraError, triangulate
 from tinsmith.crs import FOOT, METRE
@@ -24,7 +24,7 @@ from tinsmith.terrain.preview.camera import (
     project_ground_axes,
 )
 from tinsmith.terrain.preview.picture import PICTURE_SUFFIXES
-from tinsmith.terrain.preview.scene import choose_exaggeration
+from tinsmith.terrain.preview.scene import choose_exaggeration, measure_relief
 from tinsmith.terrain.preview.tints import compute_lightness, interpolate_tints
 from tinsmith.terrain.rounding import choose_ticks, format_number, round_down
 from tinsmith.terrain.units import NOT_KNOWN, find_ground
@@ -36,6 +36,11 @@ WHITE = (255, 255, 255)
 TINTS = [[77, 115, 93], [112, 147, 100], [173, 172, 108], [223, 197, 153], [243, 233, 223]]
 
 
+def find_exaggeration(tin):
+    ground = find_ground(tin)
+    return choose_exaggeration(tin, ground, measure_relief(tin, ground))
+
+
 def hill(*, crs="EPSG:32616", relief=30.0, steps=25, extent=240.0):
     """A round hill on a square grid at UTM coordinates."""
     axis = np.linspace(0.0, extent, steps)
@@ -43,19 +48,6 @@ def hill(*, crs="EPSG:32616", relief=30.0, steps=25, extent=240.0):
     away = np.hypot(x - extent / 2, y - extent / 2) / extent
     z = 200.0 + relief * np.exp(-((4 * away) ** 2))
     return triangulate(np.column_stack([742_000 + x, 4_030_000 + y, z]), crs=crs)
-
-
-def dipping(azimuth, *, steepness=0.5, extent=100.0):
-    """A plane that falls towards an azimuth."""
-    turn = math.radians(azimuth)
-    corners = np.array([(0, 0), (extent, 0), (extent, extent), (0, extent)], float)
-    z = -steepness * (corners @ (math.sin(turn), math.cos(turn)))
-    return triangulate(np.column_stack([corners, z]))
-
-
-def picture(path):
-    with Image.open(path) as image:
-        return np.asarray(image.convert("RGB"))
 
 
 def in_frame(pixels):
@@ -83,7 +75,7 @@ class TestPicture:
     def test_it_has_the_size_asked_for_and_shows_terrain_on_paper(self, tmp_path, size):
         path = preview(hill(), output=tmp_path / "hill.png", size=size)
         assert path == tmp_path / "hill.png"
-        pixels = picture(path)
+        pixels = read_pixels(path)
         assert pixels.shape == (size[1], size[0], 3)
         share = is_colored(pixels).mean()
         assert 0.1 < share < 0.8
@@ -93,7 +85,7 @@ class TestPicture:
 
     def test_terrain_stays_clear_of_the_annotations(self, tmp_path):
         tin = hill(relief=200.0)
-        bare = picture(preview(tin, output=tmp_path / "a.png", size=(800, 500)))
+        bare = read_pixels(preview(tin, output=tmp_path / "a.png", size=(800, 500)))
         height, width = bare.shape[:2]
         frame = Sheet(1600, 1000).frame
         header = bare[: int(height - frame.ymax / 2) - 3]
@@ -104,8 +96,12 @@ class TestPicture:
         assert not legend[:, : width * 2 // 3].any()
 
     def test_title_and_counts_are_written(self, tmp_path):
-        named = picture(preview(hill(), output=tmp_path / "a.png", size=(800, 500), title="North"))
-        other = picture(preview(hill(), output=tmp_path / "b.png", size=(800, 500), title="South"))
+        named = read_pixels(
+            preview(hill(), output=tmp_path / "a.png", size=(800, 500), title="North")
+        )
+        other = read_pixels(
+            preview(hill(), output=tmp_path / "b.png", size=(800, 500), title="South")
+        )
         differ = (named != other).any(axis=2)
         rows = np.flatnonzero(differ.any(axis=1))
         assert len(rows)
@@ -115,13 +111,15 @@ class TestPicture:
     @pytest.mark.parametrize("title", ["$x^2$ | 5", "Größe\nPlatz", "Пример", "x" * 400])
     def test_any_title_can_be_written(self, tmp_path, title):
         path = preview(hill(steps=4), output=tmp_path / "a.png", size=(400, 250), title=title)
-        pixels = picture(path)
+        pixels = read_pixels(path)
         assert (pixels[5:25] != 255).any()
         assert (pixels[:30, -10:] == 255).all()
 
     def test_edges_are_drawn_darker(self, tmp_path):
-        plain = picture(preview(hill(), output=tmp_path / "a.png", size=(640, 400)))
-        meshed = picture(preview(hill(), output=tmp_path / "b.png", size=(640, 400), edges=True))
+        plain = read_pixels(preview(hill(), output=tmp_path / "a.png", size=(640, 400)))
+        meshed = read_pixels(
+            preview(hill(), output=tmp_path / "b.png", size=(640, 400), edges=True)
+        )
         surface = is_colored(in_frame(plain))
         change = in_frame(meshed).astype(int) - in_frame(plain)
         assert change[surface].mean() < -3
@@ -130,8 +128,8 @@ class TestPicture:
         tin = hill(steps=6)
         flags = np.ones((len(tin.triangles), 3), bool)
         broken = TIN.from_triangles(tin.points, tin.triangles, constrained=flags, crs=tin.crs)
-        plain = picture(preview(tin, output=tmp_path / "a.png", size=(640, 400), edges=True))
-        heavy = picture(preview(broken, output=tmp_path / "b.png", size=(640, 400), edges=True))
+        plain = read_pixels(preview(tin, output=tmp_path / "a.png", size=(640, 400), edges=True))
+        heavy = read_pixels(preview(broken, output=tmp_path / "b.png", size=(640, 400), edges=True))
         assert heavy.mean() < plain.mean()
 
     def test_it_is_reproducible(self, tmp_path):
@@ -141,7 +139,7 @@ class TestPicture:
 
     def test_seen_from_above_a_square_is_a_square(self, tmp_path):
         path = preview(hill(), output=tmp_path / "a.png", size=(800, 500), view="top")
-        tinted = is_colored(in_frame(picture(path)))
+        tinted = is_colored(in_frame(read_pixels(path)))
         height, width = (np.ptp(np.flatnonzero(tinted.any(axis=k))) for k in (1, 0))
         assert height == pytest.approx(width, abs=2)
         assert height == pytest.approx(Sheet(1600, 1000).frame.height / 2, abs=3)
@@ -149,9 +147,9 @@ class TestPicture:
     def test_light_comes_from_the_northwest(self, tmp_path):
         brightness = {}
         for azimuth in (315, 135, 45, 225):
-            tin = dipping(azimuth)
+            tin = make_dipping_plane(azimuth)
             path = preview(tin, output=tmp_path / f"{azimuth}.png", size=(400, 250), view="top")
-            pixels = in_frame(picture(path))
+            pixels = in_frame(read_pixels(path))
             brightness[azimuth] = pixels[is_colored(pixels)].mean()
         assert brightness[315] == max(brightness.values())
         assert brightness[135] == min(brightness.values())
@@ -159,14 +157,14 @@ class TestPicture:
     def test_level_ground_is_drawn_in_one_tint(self, tmp_path):
         tin = triangulate([[0, 0, 5], [9, 0, 5], [9, 9, 5], [0, 9, 5]])
         path = preview(tin, output=tmp_path / "a.png", size=(400, 250), view="top")
-        center = picture(path)[115:125, 195:205].reshape(-1, 3)
+        center = read_pixels(path)[115:125, 195:205].reshape(-1, 3)
         assert (center == center[0]).all()
         assert np.abs(center[0].astype(int) - interpolate_tints(257)[128]).max() <= 6
 
     def test_higher_ground_is_lighter(self, tmp_path):
         tin = triangulate([[0, 0, 0], [200, 0, 0], [200, 200, 1], [0, 200, 1]])
         path = preview(tin, output=tmp_path / "a.png", size=(400, 250), view="top", exaggeration=1)
-        column = in_frame(picture(path))
+        column = in_frame(read_pixels(path))
         column = column[5:-5, column.shape[1] // 2]
         light = compute_lightness(column)
         assert light[0] > light[-1] + 0.3
@@ -174,7 +172,9 @@ class TestPicture:
 
     def test_a_single_triangle_and_an_unknown_crs_make_a_picture(self, tmp_path):
         tin = triangulate([[0, 0, 1], [1, 0, 2], [0, 1, 3]], crs=None)
-        assert is_colored(picture(preview(tin, output=tmp_path / "a.png", size=(400, 250)))).any()
+        assert is_colored(
+            read_pixels(preview(tin, output=tmp_path / "a.png", size=(400, 250)))
+        ).any()
 
     def test_jpeg_and_tiff_are_written_too(self, tmp_path):
         for suffix, kind in ((".jpg", "JPEG"), (".TIFF", "TIFF")):
@@ -229,8 +229,8 @@ def test_large_coordinates_do_not_shake_the_picture(tmp_path, can_draw):
     near = hill()
     low = near.points.min(axis=0) * (1, 1, 0)
     shifted = TIN.from_triangles(near.points - low, near.triangles, crs=near.crs)
-    first = picture(preview(near, output=tmp_path / "a.png", size=(400, 250)))
-    second = picture(preview(shifted, output=tmp_path / "b.png", size=(400, 250)))
+    first = read_pixels(preview(near, output=tmp_path / "a.png", size=(400, 250)))
+    second = read_pixels(preview(shifted, output=tmp_path / "b.png", size=(400, 250)))
     assert np.abs(first.astype(int) - second).mean() < 0.2
 
 
@@ -270,7 +270,7 @@ def test_options_out_of_range_are_refused(tmp_path, options):
 
 def test_without_pyvista_the_extra_is_named(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "pyvista", None)
-    with pytest.raises(MissingExtraError, match=r"A preview needs pyvista.*tinsmith\[view\]"):
+    with pytest.raises(MissingExtraError, match=r"A preview needs pyvista.*pip install pyvista"):
         preview(hill(steps=3), output=tmp_path / "a.png")
 
 
@@ -354,14 +354,14 @@ def test_another_process_draws_without_a_word_on_stderr(tmp_path):
     ("relief", "expected"), [(0.0, 1), (60, 1), (24, 1), (23, 1.5), (12, 2), (5, 5), (0.9, 30)]
 )
 def test_the_exaggeration_lifts_the_relief_to_a_tenth_of_the_extent(relief, expected):
-    tin = dipping(0, steepness=relief / 240, extent=240.0)
-    assert choose_exaggeration(tin, find_ground(tin)) == expected
+    tin = make_dipping_plane(0, steepness=relief / 240, extent=240.0)
+    assert find_exaggeration(tin) == expected
 
 
 @pytest.mark.parametrize("relief", np.geomspace(0.25, 24.0, 12))
 def test_a_chosen_exaggeration_is_not_too_much(relief):
-    tin = dipping(90, steepness=relief / 240, extent=240.0)
-    drawn = choose_exaggeration(tin, find_ground(tin)) * np.ptp(tin.points[:, 2])
+    tin = make_dipping_plane(90, steepness=relief / 240, extent=240.0)
+    drawn = find_exaggeration(tin) * np.ptp(tin.points[:, 2])
     assert drawn >= 24.0 * (1 - 1e-9)
     assert drawn <= 48.0 * (1 + 1e-9)
 
@@ -533,7 +533,7 @@ def test_numbers_have_the_decimals_of_their_step(value, step, words):
 
 
 def test_an_exaggerated_picture_leaves_the_slope_true(tmp_path, can_draw):
-    tin = dipping(90, steepness=1.0)
+    tin = make_dipping_plane(90, steepness=1.0)
     before = slope(tin)
     preview(tin, output=tmp_path / "a.png", size=(400, 250), exaggeration=5)
     np.testing.assert_array_equal(slope(tin), before)

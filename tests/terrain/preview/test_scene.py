@@ -15,6 +15,7 @@ from tinsmith.terrain.preview.scene import (
     add_terrain,
     choose_exaggeration,
     fade_edges,
+    measure_relief,
     place_vertices,
 )
 from tinsmith.terrain.preview.tints import interpolate_tints
@@ -49,13 +50,15 @@ def terrain(width, height, *, relief=8.0, count=30, crs=None):
 @pytest.mark.parametrize("shape", [(1000.0, 10.0), (10.0, 1000.0)])
 def test_the_exaggeration_goes_by_the_longer_side(shape):
     tin = triangulate([[0, 0, 0], [shape[0], 0, 1], [0, shape[1], 20], [*shape, 1]])
-    assert choose_exaggeration(tin, find_ground(tin)) == 5.0
+    ground = find_ground(tin)
+    assert choose_exaggeration(tin, ground, measure_relief(tin, ground)) == 5.0
 
 
 @pytest.mark.parametrize(("relief", "factor"), [(1e-6, 100.0), (0.5, 20.0), (10.0, 1.0)])
 def test_the_exaggeration_ends_at_a_hundred(relief, factor):
     tin = triangulate([[0, 0, 0], [100, 0, relief], [0, 100, 0]])
-    assert choose_exaggeration(tin, find_ground(tin)) == factor
+    ground = find_ground(tin)
+    assert choose_exaggeration(tin, ground, measure_relief(tin, ground)) == factor
 
 
 # ------------------------------------------------------------------------- edges

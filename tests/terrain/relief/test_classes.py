@@ -9,6 +9,7 @@ import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from matplotlib.colors import to_hex
 
 import tinsmith as ts
 from tinsmith.terrain.relief.dissolving import dissolve
@@ -224,3 +225,24 @@ def test_aspect_classes_tile_the_surface():
     made = ts.aspect_classes(tin)
     assert made.columns["area"].sum() == pytest.approx(tin.area, rel=1e-12)
     assert shapely.is_valid(made.to_shapely()).all()
+
+
+@pytest.mark.parametrize("make", [ts.slope_classes, ts.aspect_classes])
+def test_the_map_draws_each_class_with_all_its_rings_and_its_color(make):
+    rng = np.random.default_rng(8)
+    tin = ts.triangulate(np.column_stack([rng.uniform(0, 90, (150, 2)), rng.uniform(0, 30, 150)]))
+    classes = make(tin)
+    (axes,) = ts.relief_map(tin, classes).axes
+    columns = classes.columns
+    shares = []
+    for patch, key, shape, color, label in zip(
+        axes.patches, axes.get_legend().get_patches(), classes.to_shapely(), columns["color"],
+        columns["label"], strict=True,
+    ):  # fmt: skip
+        drawn = [shapely.Polygon(r) for r in patch.get_path().to_polygons(closed_only=False)]
+        assert sum(one.area * (1 if one.exterior.is_ccw else -1) for one in drawn) == pytest.approx(
+            shape.area
+        )
+        assert to_hex(patch.get_facecolor()) == to_hex(key.get_facecolor()) == color.lower()
+        shares.append(f"{label}, {100 * shape.area / tin.triangle_areas.sum():.1f} %")
+    assert [text.get_text() for text in axes.get_legend().get_texts()] == shares

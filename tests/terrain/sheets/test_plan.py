@@ -14,6 +14,7 @@ from PIL import Image
 from support.printed import read_pdf, read_svg
 
 import tinsmith as ts
+from tinsmith.terrain.sheets.contents import find_lines
 
 SQUARE = [[500000, 4e6, 5], [500040, 4e6, 6], [500040, 4e6 + 30, 7], [500000, 4e6 + 30, 9]]
 
@@ -85,6 +86,16 @@ def test_lines_have_their_kinds(tmp_path):
     assert {"boundary-lines", "hole-lines", "water-lines", "water"} <= set(page.paths)
     (water,) = page.paths["water"]
     assert np.ptp(water, axis=0) == pytest.approx(4.0 * 1000 / ts.plan(tin).scale, rel=1e-5)
+
+
+def test_constrained_edges_of_a_foreign_mesh_are_lines_but_for_its_rim():
+    tin = ts.TIN.from_triangles(
+        SQUARE, [[0, 1, 2], [0, 2, 3]], constrained=[[False, True, True], [True, False, False]]
+    )
+    assert len(tin.lines) == 0
+    found = find_lines(tin)
+    assert {frozenset(pair) for pair in found.pairs.tolist()} == {frozenset((0, 2))}
+    assert len(found.kinds) == 1
 
 
 def water_area(tin, folder):

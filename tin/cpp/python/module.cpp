@@ -7,6 +7,7 @@
 #include "bind_mesh.hpp"
 #include "bind_points.hpp"
 #include "bind_refinement.hpp"
+#include "bind_simplification.hpp"
 #include "bind_triangulation.hpp"
 
 NB_MODULE(_core, m) {
@@ -18,4 +19,5 @@ NB_MODULE(_core, m) {
   tinsmith::python::bind_constraints(m);
   tinsmith::python::bind_mesh(m);
   tinsmith::python::bind_refinement(m);
+  tinsmith::python::bind_simplification(m);
 }

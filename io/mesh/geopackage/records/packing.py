@@ -14,7 +14,7 @@ from .....tin.building.inputs import BuildInputs
 from .....tin.constraints.breaklines import Lines
 from .....tin.constraints.constraint_set import LineSet
 from .....tin.constraints.constraint_table import ConstraintTable
-from .....tin.report import Crossings, Edit, Overruled, Report, Unmended
+from .....tin.report import Crossings, Edit, Overruled, Report, Simplification, Unmended
 from .columns import pack_columns
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ CLASSES: dict[str, Any] = {
     kind.__name__: kind
     for kind in (
         *(BuildInputs, ConstraintTable, Crossings, Edit, LineOptions, Lines, LineSet),
-        *(Overruled, Report, Unmended),
+        *(Overruled, Report, Simplification, Unmended),
     )
 }
 """The only classes that are made of trees."""

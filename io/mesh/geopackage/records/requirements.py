@@ -14,7 +14,16 @@ from .....tin.constraints.breaklines import Lines
 from .....tin.constraints.constraint_set import LineSet
 from .....tin.constraints.constraint_table import ConstraintTable
 from .....tin.editing.operations import OPERATIONS
-from .....tin.report import LEFT_OUT, UNMENDED_WHY, Crossings, Edit, Overruled, Report, Unmended
+from .....tin.report import (
+    LEFT_OUT,
+    UNMENDED_WHY,
+    Crossings,
+    Edit,
+    Overruled,
+    Report,
+    Simplification,
+    Unmended,
+)
 
 __all__ = [
     "require",
@@ -186,6 +195,7 @@ def require_report(report: Any, n_rows: int, n_vertices: int, n_triangles: int) 
     _require_texts(report.notes, "notes")
     require_edits(report.edits)
     _require_unmended(report.unmended)
+    _require_simplification(report.simplification)
 
 
 def _require_merges(report: Report, n_vertices: int) -> None:
@@ -219,3 +229,17 @@ def _require_unmended(unmended: Any) -> None:
     require_numbers(unmended.why, np.int8, 0, len(UNMENDED_WHY), "triangles that are not mended")
     _require_floats(unmended.angles, unmended.triangles.shape, "triangles that are not mended")
     require(len(unmended.why) == len(unmended.triangles), "triangles that are not mended")
+
+
+def _require_simplification(found: Any) -> None:
+    if found is None:
+        return
+    require(isinstance(found, Simplification), "what was simplified")
+    counts = (found.points, found.vertices, found.required, found.needless)
+    require({type(count) for count in counts} == {int}, "what was simplified")
+    errors = {
+        found.largest_error,
+        found.rms_error,
+        0.0 if found.tolerance is None else found.tolerance,
+    }
+    require({type(one) for one in errors} == {float}, "what was simplified")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..options import writing_options
-from ..parameters import input_files, output_files, report_option
+from ..parameters import Command, input_files, output_files, report_option
 from ..paths import describe_inputs, name_files
 from ..request import surface_options
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 __all__ = ["build"]
 
 
-@click.command(short_help="Build a TIN from elevation points.")
+@click.command(cls=Command)
 @input_files("points")
 @output_files
 @report_option(
@@ -81,7 +81,7 @@ def build(
 
 def _find_blunders(tin: TIN, request: Request, *, drop: bool) -> Suspects:
     """Look for points that look like blunders, and leave them out where that is asked for."""
-    from ...terrain.blunders import blunders, drop_blunders, screen
+    from ...terrain.inspection import blunders, drop_blunders, screen
     from ..output.blunder_summaries import Suspects
 
     with request.step("Checking points"):

@@ -8,7 +8,7 @@ import click
 
 from ..._sentences import counted
 from ..options import vector_options
-from ..parameters import input_file, number_option, output_files, parse_numbers
+from ..parameters import Command, input_file, number_option, output_files, parse_numbers
 from ..paths import make_title
 from ..request import surface_options
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["contours"]
 
 
-@click.command(short_help="Draw contour lines, bands or labels of a TIN.")
+@click.command(cls=Command)
 @input_file("file")
 @output_files
 @number_option("--interval", "HEIGHT", "Between levels, in the unit of elevations.")

@@ -9,7 +9,7 @@ import click
 from ..._sentences import counted
 from ..options import console_options, reading_options, writing_options
 from ..output.console import format_json
-from ..parameters import input_file, output_files
+from ..parameters import Command, input_file, output_files
 from ..paths import name_file
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ _KINDS = ("TIN", "Survey", "Raster")
 """What can be written."""
 
 
-@click.command(short_help="Write points or a TIN in another format.")
+@click.command(cls=Command)
 @input_file("file")
 @output_files
 @reading_options

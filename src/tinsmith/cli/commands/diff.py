@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..parameters import output_files
+from ..parameters import Command, output_files
 from ..paths import INPUT, make_title
 from ..request import surface_options
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["diff"]
 
 
-@click.command(short_help="Subtract one surface from another: TIN, zones, statistics, map.")
+@click.command(cls=Command)
 @click.argument("file", metavar="FILE", type=INPUT)
 @click.argument("other", metavar="OTHER", type=INPUT)
 @output_files

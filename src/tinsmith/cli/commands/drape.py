@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from ...policies import OutsidePolicy
-from ..parameters import choice_option, input_file, output_files
+from ..parameters import Command, choice_option, input_file, output_files
 from ..paths import LINES, Named
 from ..request import surface_options
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 __all__ = ["drape"]
 
 
-@click.command(short_help="Lay points, lines or polygons on a TIN.")
+@click.command(cls=Command)
 @input_file("file")
 @click.argument("features", type=LINES)
 @output_files

@@ -10,7 +10,7 @@ import click
 
 from ..._sentences import counted
 from ..options import writing_options
-from ..parameters import input_file, output_files, report_option
+from ..parameters import Command, input_file, output_files, report_option
 from ..paths import INPUT, STANDARD, Named, name_file
 from ..request import surface_options
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["edit"]
 
 
-@click.command(short_help="Change a TIN by a script of edits.")
+@click.command(cls=Command)
 @input_file("file")
 @click.argument("script", type=INPUT)
 @output_files

@@ -9,6 +9,7 @@ import click
 
 from ..options import console_options
 from ..output.console import format_json
+from ..parameters import Command
 
 if TYPE_CHECKING:
     from ...io import Format
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 __all__ = ["formats"]
 
 
-@click.command(short_help="List the formats that can be read and written.")
+@click.command(cls=Command)
 @console_options
 def formats(console: Console) -> None:
     """List the formats: what each reads and writes, what it needs, and whether that is there.

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..parameters import input_file, number_option, output_files
+from ..parameters import Command, input_file, number_option, output_files
 from ..request import surface_options
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 __all__ = ["hillshade"]
 
 
-@click.command(short_help="Shade a TIN by the light of a low sun, as a raster.")
+@click.command(cls=Command)
 @input_file("file")
 @output_files
 @number_option("--spacing", "LENGTH", "Side of a cell; default a thousandth of it.")

@@ -8,7 +8,7 @@ import click
 
 from ..options import coding_options, console_options, reading_options
 from ..output.failures import Failure
-from ..parameters import input_files
+from ..parameters import Command, input_files
 from ..paths import OUTPUT, describe_inputs, make_title, name_file, name_files
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["info"]
 
 
-@click.command(short_help="Describe a file of points or a TIN.")
+@click.command(cls=Command)
 @input_files("files")
 @click.option(
     "--plot",

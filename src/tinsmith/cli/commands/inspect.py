@@ -24,7 +24,7 @@ __all__ = ["inspect"]
 _SHOWN = 12
 
 
-@click.command(short_help="Check points for blunders.")
+@click.command()
 @input_files("points")
 @output_option("Table (.csv, .json) or map (.png) to write.")
 @click.option("--title", metavar="TEXT", help="Of the map; default the name of the file.")

@@ -9,7 +9,7 @@ import click
 from ..._sentences import counted
 from ...policies import Extrapolation, InterpolationMethod
 from ..output.failures import Failure
-from ..parameters import choice_option, crs_option, input_file, output_files
+from ..parameters import Command, choice_option, crs_option, input_file, output_files
 from ..paths import LINES, Named
 from ..request import surface_options
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["interpolate"]
 
 
-@click.command(short_help="Find the elevations of a surface at the places of a CSV file.")
+@click.command(cls=Command)
 @input_file("file")
 @click.option(
     "--at",

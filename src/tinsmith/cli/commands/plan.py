@@ -17,7 +17,7 @@ from ...policies import (
 )
 from ..options import console_options, reading_options, triangulating_options
 from ..output.failures import Failure, note_written
-from ..parameters import choice_option, input_file, number_option, output_option
+from ..parameters import Command, choice_option, input_file, number_option, output_option
 from ..paths import LINES, Named, make_title, require_separate
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 __all__ = ["plan"]
 
 
-@click.command(short_help="Draw a plan on paper, true to scale: PDF, SVG, PNG.")
+@click.command(cls=Command)
 @input_file("file")
 @output_option("Plan to write (.pdf, .svg, .png).", required=True)
 @click.option(

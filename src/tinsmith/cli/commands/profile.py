@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..output.failures import Failure
-from ..parameters import number_option, output_files
+from ..parameters import Command, number_option, output_files
 from ..paths import INPUT, LINES, Named, make_title
 from ..request import surface_options
 
@@ -41,7 +41,7 @@ class _Line:
             raise click.UsageError("A line is needed: --line FILE, or --from X Y and --to X Y.")
 
 
-@click.command(short_help="Cut surfaces along a line: tables, cross sections, a picture.")
+@click.command(cls=Command)
 @click.argument("files", nargs=-1, required=True, type=INPUT)
 @output_files
 @click.option("--line", "line_file", metavar="FILE", type=LINES, help="Vector file of the lines.")

@@ -8,7 +8,7 @@ import click
 
 from ...policies import InterpolationMethod, RasterSample, RasterValue
 from ..options import format_options
-from ..parameters import choice_option, input_file, number_option, output_files
+from ..parameters import Command, choice_option, input_file, number_option, output_files
 from ..paths import LINES, Named
 from ..request import surface_options
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["raster"]
 
 
-@click.command(short_help="Turn a surface into a raster: elevation, slope, aspect, hillshade.")
+@click.command(cls=Command)
 @input_file("file")
 @output_files
 @number_option(

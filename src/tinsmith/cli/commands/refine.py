@@ -10,7 +10,7 @@ from ..._sentences import counted
 from ..flags import name_flags
 from ..options import writing_options
 from ..output.failures import Failure, refuse_option
-from ..parameters import input_file, number_option, output_files
+from ..parameters import Command, input_file, number_option, output_files
 from ..request import surface_options
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["refine"]
 
 
-@click.command(short_help="Make a finite element mesh of a TIN.")
+@click.command(cls=Command)
 @input_file("file")
 @output_files
 @number_option("--min-angle", "DEGREES", "Least angle of a triangle, up to 33.", default=25.0)

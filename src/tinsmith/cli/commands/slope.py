@@ -8,7 +8,7 @@ import click
 
 from ...policies import SlopeUnit
 from ..options import make_reading_options
-from ..parameters import choice_option, input_file, output_files, parse_numbers
+from ..parameters import Command, choice_option, input_file, output_files, parse_numbers
 from ..request import surface_options
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 __all__ = ["slope"]
 
 
-@click.command(short_help="Divide a TIN into classes of slope or aspect.")
+@click.command(cls=Command)
 @input_file("file")
 @output_files
 @choice_option(

@@ -12,6 +12,7 @@ from ...policies import Tint
 from ..options import console_options, reading_options, triangulating_options
 from ..output.failures import note_written, tell_warning
 from ..parameters import (
+    Command,
     choice_option,
     input_files,
     number_option,
@@ -49,7 +50,7 @@ def _parse_size(
     return int(found[1]), int(found[2])
 
 
-@click.command(short_help="Show a TIN in 3D: in a window, as a page, as a picture.")
+@click.command(cls=Command)
 @input_files("files")
 @picture_option("Picture to write (.png, .jpg, .tif) instead of opening a window.")
 @number_option("--exaggeration", "FACTOR", "Vertical exaggeration; chosen if absent.")

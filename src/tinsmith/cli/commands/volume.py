@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..parameters import number_option, output_option
+from ..parameters import Command, number_option, output_option
 from ..paths import INPUT, LINES, Named, make_title
 from ..request import surface_options
 
@@ -27,7 +27,7 @@ _CUBIC_YARD = 27.0
 _FEET = ("ft³", "US ft³")
 
 
-@click.command(short_help="Measure cut and fill, or how much a pond holds.")
+@click.command(cls=Command)
 @click.argument("files", metavar="GROUND [DESIGN]", nargs=-1, required=True, type=INPUT)
 @output_option(
     "Table (.csv, .json), parts that are cut and filled (.gpkg, .geojson, .shp, .fgb) or map "

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..flags import name_flags
+from .events import send_event
 from .failures import Failure, note_answer
 from .progress import Steps
 from .streams import escape_unprintable, silence, tell
@@ -39,14 +40,17 @@ class Console:
         Leave out summary and progress; errors and results are still written.
     as_json : bool
         Write the result as JSON on stdout instead of for people.
+    events : bool
+        Write summary and progress as events, for programs.
     """
 
     quiet: bool = False
     as_json: bool = False
+    events: bool = False
 
     def steps(self) -> Steps:
         """Return the context in which long work shows its progress."""
-        return Steps(quiet=self.quiet)
+        return Steps(quiet=self.quiet, events=self.events)
 
     @contextmanager
     def step(self, text: str) -> Iterator[None]:
@@ -56,8 +60,13 @@ class Console:
 
     def summarise(self, rows: Iterable[Row]) -> None:
         """Write a summary to stderr."""
-        if not self.quiet:
+        if self.quiet:
+            return
+        if not self.events:
             tell(_format_rows(rows))
+            return
+        for label, text in rows:
+            send_event("summary", label=label, text=name_flags(text))
 
     def answer(self, rows: Iterable[Row], record: Mapping[str, Any]) -> None:
         """Write the result to stdout: rows for people, or a record as JSON."""

@@ -18,6 +18,7 @@ from typing import IO, TYPE_CHECKING, Any
 import click
 
 from ..flags import find_given_flag, name_flags
+from .events import has_flag, send_event, wants_events
 from .streams import Terminated, escape_unprintable, silence, tell
 
 if TYPE_CHECKING:
@@ -88,11 +89,8 @@ def note_answer() -> None:
 
 def show_failure(error: click.ClickException, arguments: Sequence[str]) -> int:
     """Tell a failure on stderr, and on stdout if JSON is wanted there; return the exit code."""
-    try:
-        error.show()
-    except OSError:
-        silence(sys.stderr)
-    if _wants_json(arguments) and not getattr(error, "is_answered", False):
+    _tell_failure(error, arguments)
+    if has_flag("--json", arguments) and not getattr(error, "is_answered", False):
         record = {"error": error.format_message(), "exit_code": error.exit_code}
         try:
             click.echo(json.dumps(record, indent=2))
@@ -103,10 +101,14 @@ def show_failure(error: click.ClickException, arguments: Sequence[str]) -> int:
     return error.exit_code
 
 
-def _wants_json(arguments: Sequence[str]) -> bool:
-    """Whether ``--json`` is among the options, also if these could not be understood."""
-    options = arguments[: arguments.index("--")] if "--" in arguments else arguments
-    return "--json" in options
+def _tell_failure(error: click.ClickException, arguments: Sequence[str]) -> None:
+    if has_flag("--events", arguments):
+        send_event("error", text=error.format_message(), exit_code=error.exit_code)
+        return
+    try:
+        error.show()
+    except OSError:
+        silence(sys.stderr)
 
 
 @contextmanager
@@ -155,8 +157,11 @@ def _make_interruption(ctx: click.Context, number: int) -> Interruption:
 
 
 def _make_failure(error: Exception, owner: str) -> click.ClickException:
+    from ..._optional import describe_missing
     from ...errors import OptionError, TinsmithError
 
+    if isinstance(error, ImportError):
+        error = describe_missing(error) or error
     if isinstance(error, OptionError):
         return refuse_option(error)
     if isinstance(error, TinsmithError):
@@ -196,5 +201,8 @@ def _show_warning(message: Warning | str, *_: object, **__: object) -> None:
 
 def tell_warning(text: str) -> None:
     """Write a warning to stderr."""
+    if wants_events():
+        send_event("warning", text=text)
+        return
     label = click.style("Warning: ", fg="yellow", bold=True)
     tell(f"{label}{escape_unprintable(text)}")

@@ -7,6 +7,8 @@ from contextlib import contextmanager
 from threading import Timer
 from typing import TYPE_CHECKING
 
+from .events import send_event
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from types import TracebackType
@@ -24,11 +26,25 @@ def _ignore(fraction: float) -> None:
     """Take no notice."""
 
 
-class Steps:
-    """A context in which steps follow each other; what they showed vanishes with it."""
+_FINENESS = 0.01
+"""Of the work of a step: progress of less is no event."""
 
-    def __init__(self, *, quiet: bool = False) -> None:
-        self._bar = None if quiet or not _is_terminal() else _make_progress_bar()
+
+class Steps:
+    """A context in which steps follow each other; what they showed vanishes with it.
+
+    Parameters
+    ----------
+    quiet : bool
+        Show nothing.
+    events : bool
+        Send events instead of drawing.
+    """
+
+    def __init__(self, *, quiet: bool = False, events: bool = False) -> None:
+        self._sends = events and not quiet
+        is_shown = _is_terminal() and not (quiet or events)
+        self._bar = _make_progress_bar() if is_shown else None
         self._is_shown = False
         self._timer = Timer(PATIENCE, self._show)
         self._timer.daemon = True
@@ -60,13 +76,27 @@ class Steps:
         """Show a step while it lasts; yields a function that takes the fraction done."""
         bar = self._bar
         if bar is None:
-            yield _ignore
+            yield _send_step(description) if self._sends else _ignore
             return
         task = bar.add_task(description, total=None)
         try:
             yield lambda fraction: bar.update(task, total=1.0, completed=fraction)
         finally:
             bar.remove_task(task)
+
+
+def _send_step(description: str) -> Callable[[float], None]:
+    """Send that a step begins; return the function that sends how far it is."""
+    sent = 0.0
+    send_event("step", text=description, fraction=None)
+
+    def send(fraction: float) -> None:
+        nonlocal sent
+        if fraction >= sent + _FINENESS or fraction >= 1.0 > sent:
+            sent = fraction
+            send_event("step", text=description, fraction=round(min(fraction, 1.0), 4))
+
+    return send
 
 
 def _is_terminal() -> bool:

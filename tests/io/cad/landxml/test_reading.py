@@ -148,6 +148,17 @@ def test_points_of_no_visible_face_are_left_out_and_told(write):
     assert "2 points of no visible triangle left out" in told
 
 
+def test_elevations_that_stand_for_no_data_are_told(write):
+    corners = [(float(x), float(y), 100.0 + x + y) for x in range(5) for y in range(5)]
+    corners[7] = (*corners[7][:2], -9999.0)
+    tin = ts.triangulate(corners)
+    faces = "".join(f"<F>{a} {b} {c}</F>" for a, b, c in (tin.triangles + 1).tolist())
+    read = ts.read(write(document(surface(points_of(tin.points.tolist()), faces))))
+    assert np.count_nonzero(read.points[:, 2] == -9999.0) == 1
+    (note,) = [note for note in read.report.notes if "-9999" in note]
+    assert "no data" in note
+
+
 def test_corners_given_once_for_each_face_become_one(write):
     rows = [CORNERS[k] for k in (0, 1, 2, 0, 2, 3)]
     tin = ts.read(write(document(surface(points_of(rows), "<F>1 2 3</F><F>4 5 6</F>"))))

@@ -8,8 +8,8 @@ from support.leave_one_out import interpolate_without, rounding_of
 
 import tinsmith as ts
 from tinsmith.terrain import _kernel
-from tinsmith.terrain.blunders.residuals import Residuals
-from tinsmith.terrain.blunders.scales import NORMAL, find_rounding, measure_scales
+from tinsmith.terrain.inspection.residuals import Residuals
+from tinsmith.terrain.inspection.scales import NORMAL, find_rounding, measure_scales
 
 
 def scattered(rng, count):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...errors import LinesError, PointsError
-from .inspection import DROPPED
+from .findings import DROPPED
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import tinsmith as ts
-from tinsmith.terrain.blunders import drop_blunders, list_wrong_rows, screen
-from tinsmith.terrain.blunders.slips import FACTORS, name_factor
+from tinsmith.terrain.inspection import drop_blunders, list_wrong_rows, screen
+from tinsmith.terrain.inspection.slips import FACTORS, name_factor
 
 SAMPLES = Path(__file__).parents[3] / "sample_data"
 COUNT = 900

@@ -1,0 +1,78 @@
+"""A surface as a raster."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from qgis.core import QgsProcessingParameterRasterDestination, QgsProcessingParameterRasterLayer
+
+from ..inputs import Surface, find_raster
+from ..options import choice, describe, number
+from ..results import style_on_loading
+from ..styles import style_hillshade, style_raster
+from .base import CommandAlgorithm, Run
+
+
+class RasterAlgorithm(CommandAlgorithm):
+    """Turn a TIN into a raster."""
+
+    verb = "raster"
+    title = "Raster of a TIN"
+    summary = "Turns a TIN into a raster of elevation, slope, aspect or hillshade."
+    explanation = (
+        "Give the side of a cell, or a raster whose cells are taken. Cells outside the surface "
+        "have no data. The raster may be larger than memory."
+    )
+    surfaces = (Surface(),)
+    options = (
+        number("SPACING", "Side of a cell", "--spacing", "In units of the CRS.", least=0.0),
+        choice(
+            "VALUE",
+            "What the cells hold",
+            "--value",
+            "Slope and aspect in degrees, hillshade from 1 to 255.",
+            ("elevation", "slope", "aspect", "hillshade"),
+        ),
+        choice(
+            "METHOD",
+            "Between the vertices",
+            "--method",
+            "linear is the TIN itself; laplace, natural and c1 are smooth.",
+            ("linear", "nearest", "laplace", "natural", "c1"),
+        ),
+        choice(
+            "AT",
+            "Value of a cell",
+            "--at",
+            "That at its centre, or the mean over it.",
+            ("center", "mean"),
+            advanced=True,
+        ),
+        number("AZIMUTH", "Azimuth of the light", "--azimuth", "Degrees.", 315.0, advanced=True),
+        number("ALTITUDE", "Altitude of the light", "--altitude", "Degrees.", 45.0, advanced=True),
+    )
+
+    def add_outputs(self) -> None:
+        """Add the raster whose cells are taken, and the one that is made."""
+        like = QgsProcessingParameterRasterLayer("LIKE", "or a raster with the cells", None, True)
+        self.addParameter(describe(like, "Its cells are taken.", "--like"))
+        made = QgsProcessingParameterRasterDestination("OUTPUT", "Raster")
+        self.addParameter(describe(made, "GeoTIFF, or ASC."))
+
+    def look(self, parameters: dict[str, Any], context: Any) -> None:
+        """Find the surface, and the raster whose cells are taken."""
+        super().look(parameters, context)
+        self._like = ""
+        if parameters.get("LIKE"):
+            self._like = find_raster(self, parameters, "LIKE", context).path
+
+    def make(self, run: Run) -> dict[str, Any]:
+        """Rasterize."""
+        like = [f"--like={self._like}"] if self._like else []
+        paths, named = run.list_outputs("OUTPUT")
+        run.run([*self.list_inputs(run), *like, *named])
+        is_light = self.parameterAsEnumString(run.parameters, "VALUE", run.context) == "hillshade"
+        style_on_loading(
+            paths["OUTPUT"], style_hillshade if is_light else style_raster, run.context
+        )
+        return dict(paths)

@@ -1,0 +1,56 @@
+"""Classes of slope and aspect."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from qgis.core import QgsProcessing, QgsProcessingParameterVectorDestination
+
+from ..inputs import Surface
+from ..options import choice, describe, switch, text
+from ..results import style_on_loading
+from ..styles import style_classes
+from .base import TABLE_FILES, CommandAlgorithm, Run
+
+
+class SlopeAlgorithm(CommandAlgorithm):
+    """Divide a TIN into classes of slope or aspect."""
+
+    verb = "slope"
+    title = "Slope classes"
+    summary = "Divides a TIN into classes of slope, or of aspect, as polygons."
+    explanation = "The areas of the classes are in the layer, and in a table if you want one."
+    surfaces = (Surface(),)
+    options = (
+        choice(
+            "UNIT",
+            "Unit of slopes",
+            "--unit",
+            "An angle, or the rise over a run of 100 or of 1.",
+            ("degrees", "percent", "ratio"),
+        ),
+        text(
+            "BREAKS",
+            "Limits between the classes",
+            "--breaks",
+            "With commas between, in that unit, such as 5,15,30; usual ones if empty.",
+        ),
+        switch("ASPECT", "Aspect instead", "--aspect", "The direction in which it falls."),
+    )
+
+    def add_outputs(self) -> None:
+        """Add the polygons and the table."""
+        made = QgsProcessingParameterVectorDestination(
+            "OUTPUT", "Slope classes", QgsProcessing.TypeVectorPolygon
+        )
+        self.addParameter(describe(made, "GeoPackage, GeoJSON, FlatGeobuf or Shapefile."))
+        self.add_file_output(
+            "TABLE", "Table of areas", TABLE_FILES, "A row a class.", optional=True
+        )
+
+    def make(self, run: Run) -> dict[str, Any]:
+        """Classify."""
+        paths, named = run.list_outputs("OUTPUT", "TABLE")
+        run.run([*self.list_inputs(run), *named])
+        style_on_loading(paths["OUTPUT"], style_classes, run.context)
+        return dict(paths)

@@ -1,0 +1,96 @@
+"""Volumes: cut and fill, and what a pond holds."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from qgis.core import (
+    QgsProcessing,
+    QgsProcessingOutputNumber,
+    QgsProcessingParameterVectorDestination,
+)
+
+from ..inputs import POLYGONS, Lines, Surface
+from ..options import describe, number
+from ..results import style_on_loading
+from ..styles import style_earthwork
+from .base import PICTURES, TABLE_FILES, CommandAlgorithm, Run
+
+_MEASURED = {"CUT": "cut", "FILL": "fill", "NET": "net", "AREA": "area"}
+_GROUND = Surface(words="Ground")
+
+
+class VolumeAlgorithm(CommandAlgorithm):
+    """Measure cut and fill."""
+
+    verb = "volume"
+    title = "Cut and fill"
+    summary = "Measures cut and fill from the ground to a design, or to a level."
+    explanation = (
+        "Both triangulations are overlaid, exactly. Fill is where the design, or the level, is "
+        "above the ground, cut where it is below; net is fill less cut. With regions there is a "
+        "row for each in the table."
+    )
+    surfaces = (_GROUND, Surface("DESIGN", "Design", False))
+    lines = (Lines("REGIONS", "Regions", "--regions", "Polygons to measure in.", kind=POLYGONS),)
+    options = (number("BASE", "or a level", "--base", "Elevation in place of a design."),)
+
+    def add_outputs(self) -> None:
+        """Add the table, the zones, a map, and sums for models."""
+        self.add_file_output("OUTPUT", "Volumes", TABLE_FILES, "A row a region.")
+        self.add_loading("Load the table")
+        made = QgsProcessingParameterVectorDestination(
+            "ZONES", "Zones of cut and fill", QgsProcessing.TypeVectorPolygon, None, True, True
+        )
+        self.addParameter(describe(made, "Polygons of what is cut and what is filled."))
+        self.add_file_output("PICTURE", "Map", PICTURES, "Cut and fill drawn.", optional=True)
+        for name, word in _MEASURED.items():
+            self.addOutput(QgsProcessingOutputNumber(name, word.capitalize()))
+
+    def make(self, run: Run) -> dict[str, Any]:
+        """Measure."""
+        paths, named = run.list_outputs("OUTPUT", "ZONES", "PICTURE")
+        arguments = ["volume", *self._list_surfaces(run), *run.list_lines(self.lines)]
+        arguments += [*run.list_options(self.options), *run.list_extra(), *named]
+        rows = run.run(arguments)["rows"]
+        self.load_later(run, paths["OUTPUT"], "Volumes")
+        if "ZONES" in paths:
+            style_on_loading(paths["ZONES"], style_earthwork, run.context)
+        sums = {name: sum(row[word] for row in rows) for name, word in _MEASURED.items()}
+        return {**paths, **sums}
+
+    def _list_surfaces(self, run: Run) -> list[str]:
+        ground, design = self.surfaces
+        if self.found[design.name] is None:
+            return run.list_surface(ground)
+        return [*run.list_tin(ground), *run.list_tin(design)]
+
+
+class StorageAlgorithm(CommandAlgorithm):
+    """Tabulate what a pond holds at each level."""
+
+    verb = "volume"
+    title = "Stage-storage table"
+    summary = "Tabulates area and volume of the water that stands on a TIN at each level."
+    explanation = "Rows whose water reaches the boundary are marked: there it would run off."
+    surfaces = (_GROUND,)
+    lines = (Lines("REGIONS", "Region", "--regions", "Where water stands.", kind=POLYGONS),)
+    options = (
+        number("LEVEL", "Level", "--level", "Elevation of one row."),
+        number("INTERVAL", "or a row at multiples of", "--interval", "Of this height.", least=0.0),
+    )
+
+    def name(self) -> str:
+        return "stagestorage"
+
+    def add_outputs(self) -> None:
+        """Add the table."""
+        self.add_file_output("OUTPUT", "Stages", TABLE_FILES, "A row a level.")
+        self.add_loading("Load the table")
+
+    def make(self, run: Run) -> dict[str, Any]:
+        """Tabulate."""
+        paths, named = run.list_outputs("OUTPUT")
+        run.run([*self.list_inputs(run), "--stage-storage", *named])
+        self.load_later(run, paths["OUTPUT"], "Stages")
+        return dict(paths)

@@ -1,0 +1,91 @@
+"""Results: layers are loaded with a style, also those that Processing does not load itself."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from qgis.core import (
+    QgsMeshLayer,
+    QgsProcessingContext,
+    QgsProcessingLayerPostProcessorInterface,
+    QgsVectorLayer,
+)
+
+from .styles import style_mesh
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+_MESHES = (".ply", ".nc", ".2dm")
+_TABLES = (".csv", ".tsv")
+_VECTORS = (".gpkg", ".geojson", ".fgb", ".shp", ".dxf", *_TABLES)
+
+_EDGES_ALONE = (
+    "QGIS colors the breaklines alone of a PLY mesh that has any: write .nc or .2dm to see its "
+    "faces colored."
+)
+
+
+class Styler(QgsProcessingLayerPostProcessorInterface):
+    """Styles a layer once it is loaded."""
+
+    kept: list[Styler] = []  # noqa: RUF012 - QGIS holds them without owning them
+    """Those that QGIS may still call."""
+
+    def __init__(self, style: Callable[[Any], None]) -> None:
+        super().__init__()
+        self._style = style
+        Styler.kept.append(self)
+
+    def postProcessLayer(self, layer: Any, context: Any, feedback: Any) -> None:
+        """Style the layer."""
+        self._style(layer)
+        layer.triggerRepaint()
+        if self in Styler.kept:
+            Styler.kept.remove(self)
+
+
+def style_on_loading(path: str, style: Callable[[Any], None], context: Any) -> None:
+    """Have a layer styled, if Processing is to load it."""
+    if context.willLoadLayerOnCompletion(path):
+        context.layerToLoadOnCompletionDetails(path).setPostProcessor(Styler(style))
+
+
+def load_file(path: str, name: str, output: str, context: Any, feedback: Any) -> None:
+    """Have a file loaded that is no output layer of Processing: a mesh, a table, any other.
+
+    Nothing is loaded where no project is open, or if QGIS has no layer for such a file.
+    """
+    project = context.project()
+    layer = None if project is None else open_layer(path, name)
+    if layer is None:
+        return
+    context.temporaryLayerStore().addMapLayer(layer)
+    details = QgsProcessingContext.LayerDetails(name, project, output)
+    if isinstance(layer, QgsMeshLayer):
+        if layer.dataProvider().edgeCount() > 0:
+            feedback.pushWarning(_EDGES_ALONE)
+        details.setPostProcessor(Styler(style_mesh))
+    context.addLayerToLoadOnCompletion(layer.id(), details)
+
+
+def open_layer(path: str, name: str) -> Any:
+    """Return a file as a layer, or None if QGIS has none for it."""
+    suffix = Path(path).suffix.lower()
+    layer = None
+    if suffix in _MESHES:
+        layer = QgsMeshLayer(path, name, "mdal")
+    elif suffix in _VECTORS:
+        layer = QgsVectorLayer(_choose_part(path, suffix), name, "ogr")
+    return layer if layer is not None and layer.isValid() else None
+
+
+def _choose_part(path: str, suffix: str) -> str:
+    """Return what to open of a file: of a TIN in a GeoPackage its triangles."""
+    if suffix == ".gpkg":
+        whole = QgsVectorLayer(path, "parts", "ogr")  # kept while its provider is asked
+        parts = whole.dataProvider().subLayers() if whole.isValid() else []
+        if any(part.split("!!::!!")[1] == "triangles" for part in parts):
+            return f"{path}|layername=triangles"
+    return path

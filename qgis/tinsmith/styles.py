@@ -1,0 +1,186 @@
+"""Styles of results: contours with labels, classes in their colours, ramps of elevations."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from qgis.core import (
+    NULL,
+    QgsCategorizedSymbolRenderer,
+    QgsColorRampShader,
+    QgsFillSymbol,
+    QgsGradientColorRamp,
+    QgsGradientStop,
+    QgsLineSymbol,
+    QgsMeshDatasetIndex,
+    QgsPalLayerSettings,
+    QgsProperty,
+    QgsRasterBandStats,
+    QgsRasterShader,
+    QgsRendererCategory,
+    QgsSingleBandGrayRenderer,
+    QgsSingleBandPseudoColorRenderer,
+    QgsTextBufferSettings,
+    QgsTextFormat,
+    QgsUnitTypes,
+    QgsVectorLayerSimpleLabeling,
+)
+from qgis.PyQt.QtGui import QColor
+
+_BROWN = "#8c5a2b"
+_TINTS = (
+    (0.0, "#2f6f5e"),
+    (0.25, "#8fb573"),
+    (0.5, "#e6d79a"),
+    (0.75, "#b98a56"),
+    (1.0, "#f4f1ec"),
+)
+"""Hypsometric tints from low to high."""
+_EARTHWORK = {"cut": "#c4533f", "fill": "#3b77b0", "unchanged": "#dddddd"}
+
+
+def make_elevation_ramp() -> Any:
+    """Return the ramp of elevations."""
+    stops = [QgsGradientStop(at, QColor(color)) for at, color in _TINTS[1:-1]]
+    return QgsGradientColorRamp(QColor(_TINTS[0][1]), QColor(_TINTS[-1][1]), False, stops)
+
+
+# ---------------------------------------------------------------- meshes and rasters
+
+
+def style_mesh(layer: Any) -> None:
+    """Color a mesh by elevation, with its edges."""
+    index = QgsMeshDatasetIndex(0, 0)
+    group = layer.datasetGroupMetadata(index)
+    settings = layer.rendererSettings()
+    scalars = settings.scalarSettings(0)
+    low, high = group.minimum(), group.maximum()
+    scalars.setClassificationMinimumMaximum(low, high)
+    scalars.setColorRampShader(_make_shader(low, high, make_elevation_ramp()))
+    settings.setScalarSettings(0, scalars)
+    settings.setActiveScalarDatasetGroup(0)
+    edges = settings.nativeMeshSettings()
+    edges.setEnabled(True)
+    edges.setColor(QColor(60, 60, 60, 90))
+    edges.setLineWidth(0.1)
+    settings.setNativeMeshSettings(edges)
+    layer.setRendererSettings(settings)
+
+
+def _make_shader(low: float, high: float, ramp: Any) -> Any:
+    shader = QgsColorRampShader(low, high, ramp, QgsColorRampShader.Interpolated)
+    shader.classifyColorRamp(6, -1)
+    return shader
+
+
+def style_raster(layer: Any) -> None:
+    """Color a raster by the ramp of elevations."""
+    provider = layer.dataProvider()
+    found = provider.bandStatistics(1, QgsRasterBandStats.Min | QgsRasterBandStats.Max)
+    shader = QgsRasterShader(found.minimumValue, found.maximumValue)
+    ramp = _make_shader(found.minimumValue, found.maximumValue, make_elevation_ramp())
+    shader.setRasterShaderFunction(ramp)
+    renderer = QgsSingleBandPseudoColorRenderer(provider, 1, shader)
+    renderer.setClassificationMin(found.minimumValue)
+    renderer.setClassificationMax(found.maximumValue)
+    layer.setRenderer(renderer)
+
+
+def style_hillshade(layer: Any) -> None:
+    """Show a hillshade in greys."""
+    layer.setRenderer(QgsSingleBandGrayRenderer(layer.dataProvider(), 1))
+
+
+# ---------------------------------------------------------------- vectors
+
+
+def style_contours(layer: Any) -> None:
+    """Draw index contours thicker, with their elevations along the lines."""
+    widths = ((True, "0.5", "index contours"), (False, "0.2", "contours"))
+    categories = [
+        QgsRendererCategory(
+            is_index, QgsLineSymbol.createSimple({"color": _BROWN, "width": width}), label
+        )
+        for is_index, width, label in widths
+    ]
+    layer.setRenderer(QgsCategorizedSymbolRenderer("is_index", categories))
+    layer.setLabeling(QgsVectorLayerSimpleLabeling(_make_contour_labels(layer)))
+    layer.setLabelsEnabled(True)
+
+
+def _make_contour_labels(layer: Any) -> Any:
+    """Return labels along the lines: of index contours, where there are any."""
+    labels = QgsPalLayerSettings()
+    has_index = any(one["is_index"] for one in layer.getFeatures())
+    shown = 'CASE WHEN "is_index" THEN to_string("elevation") END'
+    labels.fieldName = shown if has_index else 'to_string("elevation")'
+    labels.isExpression = True
+    labels.placement = QgsPalLayerSettings.Line
+    labels.placementFlags = QgsPalLayerSettings.OnLine
+    labels.repeatDistance = 80
+    labels.setFormat(_make_text_format())
+    return labels
+
+
+def _make_text_format() -> Any:
+    text = QgsTextFormat()
+    text.setSize(7)
+    text.setSizeUnit(QgsUnitTypes.RenderPoints)
+    text.setColor(QColor(_BROWN))
+    halo = QgsTextBufferSettings()
+    halo.setEnabled(True)
+    halo.setSize(0.7)
+    halo.setColor(QColor("white"))
+    text.setBuffer(halo)
+    return text
+
+
+def style_labels(layer: Any) -> None:
+    """Write the labels that the command has placed, at their rotation."""
+    labels = QgsPalLayerSettings()
+    labels.fieldName = "text"
+    labels.placement = QgsPalLayerSettings.OverPoint
+    labels.displayAll = True
+    turned = QgsPalLayerSettings.LabelRotation
+    labels.dataDefinedProperties().setProperty(turned, QgsProperty.fromExpression('-"rotation"'))
+    labels.setFormat(_make_text_format())
+    layer.setLabeling(QgsVectorLayerSimpleLabeling(labels))
+    layer.setLabelsEnabled(True)
+    layer.renderer().symbol().setSize(0)
+
+
+def style_bands(layer: Any) -> None:
+    """Color the bands between contours by the ramp of elevations."""
+    rows = {(one["from"], one["to"]) for one in layer.getFeatures()}
+    rows_upwards = sorted(rows, key=lambda row: (row[0] != NULL, row[0] if row[0] != NULL else 0))
+    ramp = make_elevation_ramp()
+    categories = [
+        _categorise(row[0], _name_band(*row), ramp.color(k / max(len(rows) - 1, 1)).name())
+        for k, row in enumerate(rows_upwards)
+    ]
+    layer.setRenderer(QgsCategorizedSymbolRenderer("from", categories))
+
+
+def _name_band(low: Any, high: Any) -> str:
+    """Return the limits of a band; the lowest and the highest have one each."""
+    if low == NULL or high == NULL:
+        return f"below {high:g}" if low == NULL else f"above {low:g}"
+    return f"{low:g} to {high:g}"
+
+
+def style_classes(layer: Any) -> None:
+    """Color classes as the command's own legend does."""
+    rows = {one["class"]: (one["label"], one["color"]) for one in layer.getFeatures()}
+    categories = [_categorise(key, label, color) for key, (label, color) in sorted(rows.items())]
+    layer.setRenderer(QgsCategorizedSymbolRenderer("class", categories))
+
+
+def style_earthwork(layer: Any) -> None:
+    """Color what is cut and what is filled."""
+    categories = [_categorise(kind, kind, color) for kind, color in _EARTHWORK.items()]
+    layer.setRenderer(QgsCategorizedSymbolRenderer("kind", categories))
+
+
+def _categorise(value: Any, label: str, color: str) -> Any:
+    symbol = QgsFillSymbol.createSimple({"color": color, "outline_style": "no"})
+    return QgsRendererCategory(value, symbol, label)

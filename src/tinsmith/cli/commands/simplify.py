@@ -1,0 +1,125 @@
+"""``tinsmith simplify``: a TIN of few points that stays within a tolerance of all."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ..._sentences import counted
+from ..options import writing_options
+from ..output.failures import Failure, refuse_option
+from ..parameters import input_file, number_option, output_files
+from ..paths import INPUT, Named
+from ..request import surface_options
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from ...tin import TIN
+    from ..output.console import Row
+    from ..request import Request
+
+__all__ = ["simplify"]
+
+
+@click.command()
+@input_file("file")
+@output_files
+@number_option(
+    "--tolerance",
+    "HEIGHT",
+    "Farthest that a point may be above or below the new surface, in the unit of elevations.",
+)
+@number_option("--points", "N", "In its place: leave so many points.", type=int)
+@click.option(
+    "--keep",
+    metavar="FILE",
+    type=INPUT,
+    help="Points that stay, such as benchmarks: each must be one of the surface.",
+)
+@surface_options(writing_options)
+def simplify(
+    file: Path,
+    tolerance: float | None,
+    points: int | None,
+    keep: Path | None,
+    request: Request,
+) -> None:
+    """Leave out points of the TIN in FILE, or of that of the points in it, that it can do without.
+
+    None of the points is farther than --tolerance from the new surface in elevation. Boundary,
+    holes, breaklines and water stay; voids of a raster stay voids.
+
+    \b
+    Example:
+      tinsmith simplify sample_data/jacksboro.tif --tolerance 2 -o hills.ply
+    """  # noqa: D301 - click reads the control character
+    from ...errors import OptionError
+    from ...terrain import simplify as simplify_surface
+    from ..output.line_summaries import mesh_counts
+
+    if (tolerance is None) == (points is None):
+        given = "give one of them" if points is None else "not both"
+        raise click.UsageError(f"The options are --tolerance or --points: {given}.")
+    more = [] if keep is None else [Named(keep, "--keep")]
+    planned = request.plan(request.list_inputs(file, more=more), "TIN")
+    tin = request.read_tin(file)
+    kept = () if keep is None else _find_kept(tin, keep, request)
+    with request.step(f"Simplifying {counted(len(tin.points), 'point')}"):
+        try:
+            simple = simplify_surface(
+                tin, tolerance=tolerance, points=points, keep=kept, threads=request.how.threads
+            )
+        except OptionError as error:
+            raise refuse_option(error) from error
+    planned.write("TIN", simple)
+    rows = [
+        ("Read", mesh_counts(tin)),
+        ("Left", mesh_counts(simple)),
+        *_summarise_errors(simple),
+    ]
+    request.finish(planned, rows, lambda: _describe_simplification(file, simple))
+
+
+def _find_kept(tin: TIN, path: Path, request: Request) -> NDArray[Any]:
+    """Return the vertices at the points of a file."""
+    import numpy as np
+
+    from ..files import read_input
+
+    places = read_input(path, request.reading, request.console).points[:, :2]
+    vertex_at = {place: row for row, place in enumerate(map(tuple, tin.points[:, :2].tolist()))}
+    found = [vertex_at.get(place, -1) for place in map(tuple, places.tolist())]
+    missing = [row for row, vertex in enumerate(found) if vertex < 0]
+    if missing:
+        x, y = places[missing[0]].tolist()
+        raise Failure(
+            f"'{path}': {counted(len(missing), 'point')} of {len(found):,} to be kept "
+            f"{'is none' if len(missing) == 1 else 'are none'} of the surface; the first is at "
+            f"{x:.12g}, {y:.12g}."
+        )
+    return np.array(found, np.int64)
+
+
+def _summarise_errors(simple: TIN) -> list[Row]:
+    found = simple.report.simplification
+    if found is None:
+        return []
+    return [
+        ("Errors", f"largest {found.largest_error:.4g}, RMS {found.rms_error:.4g}, at all points"),
+        ("Kept", f"{counted(found.required, 'point')} of lines, boundary and those to be kept"),
+    ]
+
+
+def _describe_simplification(file: Path, simple: TIN) -> dict[str, Any]:
+    from ..output.summaries import describe_tin
+
+    found = simple.report.simplification
+    return {
+        "input": str(file),
+        "tin": describe_tin(simple),
+        "simplification": None if found is None else found.to_dict(),
+    }

@@ -1,0 +1,154 @@
+"""Triangles for matplotlib: its Triangulation, and a TIN drawn in plan on anybody's axes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ... import _optional
+from ...errors import OptionError
+from ...tin.validation.options import require_tin
+from ..linework import EDGE_KINDS, find_line_edges
+from ..slope import slope
+from ..units import find_ground
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...tin import TIN
+    from ..units import Ground
+
+__all__ = ["plot_tin", "to_matplotlib"]
+
+_MOST_WITH_EDGES = 5_000
+"""Triangles; the edges of more hide the colours."""
+
+_COLORS = {
+    "soft": "#404448", "hard": "#222226", "hole": "#963a22", "boundary": "#963a22",
+    "water": "#185c98",
+}  # fmt: skip
+
+
+def to_matplotlib(tin: TIN) -> Any:
+    """Return the triangles as matplotlib has them, for ``tripcolor``, ``tricontourf``, ``triplot``.
+
+    Parameters
+    ----------
+    tin : TIN
+
+    Returns
+    -------
+    matplotlib.tri.Triangulation
+        Eastings and northings in CRS units, nothing subtracted; triangles in the TIN's order.
+        Elevations are ``tin.points[:, 2]``.
+
+    Raises
+    ------
+    MissingExtraError
+        If matplotlib is not installed.
+    PointsError
+        If ``tin`` is none.
+
+    Notes
+    -----
+    Matplotlib computes contours and colours of the triangles in double precision, which holds for
+    map coordinates. For elevations at places ask :meth:`TIN.interpolate`, which is exact.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8]])
+    >>> ts.to_matplotlib(tin).triangles.shape
+    (2, 3)
+    """
+    tri = _optional.load("matplotlib.tri", "Handing triangles over to matplotlib")
+    require_tin(tin)
+    x, y, _ = tin.points.T
+    return tri.Triangulation(x.copy(), y.copy(), tin.triangles.copy())
+
+
+def plot_tin(
+    tin: TIN,
+    ax: Any,
+    *,
+    values: Any,
+    edges: bool | None,
+    lines: bool,
+    colorbar: bool,
+    **options: Any,
+) -> Any:
+    """Draw a TIN in plan, as :meth:`TIN.plot` describes it."""
+    triangles = to_matplotlib(tin)
+    numbers, name = _find_values(tin, values)
+    is_new = ax is None
+    if is_new:
+        ax = _optional.load("matplotlib.pyplot", "Drawing a TIN").subplots(layout="constrained")[1]
+    ground = find_ground(tin)
+    if numbers is not None:
+        is_flat = len(numbers) != len(tin.points) or name == "slope"
+        how = {"facecolors": numbers} if is_flat else {"shading": "gouraud"}
+        given = (triangles,) if is_flat else (triangles, numbers)
+        mapped = ax.tripcolor(*given, **(how | options))
+        if is_new and colorbar:
+            ax.figure.colorbar(mapped, ax=ax, shrink=0.7, label=_caption(name, ground))
+    if edges if edges is not None else len(tin) <= _MOST_WITH_EDGES:
+        ax.triplot(triangles, color="0.25", linewidth=0.3)
+    if lines:
+        _draw_lines(ax, tin)
+    _set_axes(ax, tin, ground)
+    return ax
+
+
+def _find_values(tin: TIN, values: Any) -> tuple[NDArray[np.float64] | None, str]:
+    """Return a number for each vertex or triangle, and what it is called."""
+    if values is None:
+        return None, ""
+    if isinstance(values, str):
+        if values == "elevation":
+            return tin.points[:, 2], values
+        if values == "slope":
+            return slope(tin), values
+        raise OptionError("values", values, ["elevation", "slope"])
+    try:
+        numbers = np.asarray(values, np.float64)
+    except (TypeError, ValueError):
+        numbers = np.empty((0, 0))
+    if numbers.shape not in ((len(tin.points),), (len(tin),)):
+        raise OptionError(
+            "values",
+            values,
+            f"elevation, slope, {len(tin.points):,} numbers (one a vertex) or {len(tin):,} (one a "
+            "triangle)",
+        )
+    return numbers, ""
+
+
+def _caption(name: str, ground: Ground) -> str:
+    unit = {"elevation": ground.elevation_caption, "slope": "degrees"}.get(name, "")
+    return f"{name}, {unit}" if unit else name
+
+
+def _draw_lines(ax: Any, tin: TIN) -> None:
+    collection = _optional.load("matplotlib.collections", "Drawing a TIN").LineCollection
+    found = find_line_edges(tin)
+    for rank, kind in enumerate(EDGE_KINDS):
+        pairs = found.pairs[found.kinds == rank]
+        if len(pairs):
+            style = "--" if kind == "soft" else "-"
+            ends = tin.points[pairs][..., :2]
+            ax.add_collection(
+                collection(ends, colors=_COLORS[kind], linewidths=1.2, linestyles=style)
+            )
+
+
+def _set_axes(ax: Any, tin: TIN, ground: Ground) -> None:
+    """Draw true to scale, with whole coordinates along the sides."""
+    east, north, _ = ground.scale
+    ax.set_aspect(north / east)
+    ax.autoscale_view()
+    ax.ticklabel_format(style="plain", useOffset=False)
+    ax.locator_params(nbins=5)
+    symbol = "" if tin.crs is None else tin.crs.horizontal_unit.symbol
+    for label, set_label in (("easting", ax.set_xlabel), ("northing", ax.set_ylabel)):
+        set_label(f"{label}, {symbol}" if symbol else label)

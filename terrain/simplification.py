@@ -1,0 +1,93 @@
+"""Simplify: few of the points of a surface, with all others within a tolerance of it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ..tin.meshing.simplification import Goal, simplify_tin
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from ..tin import TIN
+
+__all__ = ["simplify"]
+
+
+def simplify(
+    surface: TIN,
+    *,
+    tolerance: float | None = None,
+    points: int | None = None,
+    keep: ArrayLike = (),
+    threads: int | None = None,
+) -> TIN:
+    """Leave out the points of a surface that the others tell well enough.
+
+    Greedy insertion [1]_: from the corners of the boundary, the lines and the points to be kept,
+    the point farthest from the surface so far is inserted, until none is beyond the tolerance. Then
+    those are removed that later ones made needless, the least missed first [2]_, until each is
+    needed. What is left is triangulated anew and measured at every point that was given; where
+    rounding has left one beyond the tolerance, it is inserted too.
+
+    Parameters
+    ----------
+    surface : TIN
+        With its lines, boundary and holes. One that is not Delaunay is made so.
+    tolerance : float, optional
+        No vertex of ``surface`` will be farther than this from the result in elevation, in the
+        unit of elevations. Differences in the last digits of elevations, of 1e-14 of the largest,
+        count as none.
+    points : int, optional
+        In its place: the number of vertices that the result has.
+    keep : (k,) array of int, optional
+        Further vertices of ``surface`` that stay.
+    threads : int, optional
+        For triangulating what is left. The result is the same for any number.
+
+    Returns
+    -------
+    TIN
+        The constrained Delaunay triangulation of the vertices that are left, in their old order.
+        Lines keep all their vertices; of the boundary those are left out that lie straight between
+        others, so it stays where it is. ``vertex_of`` is -1 for rows that were left out, and
+        ``report.simplification`` tells the largest error and the RMS error at all points.
+
+    Raises
+    ------
+    OptionError
+        If not one of ``tolerance`` and ``points`` is given, or more or fewer points are asked for
+        than can be.
+    PointsError
+        If a vertex to be kept is none, or the TIN overlaps itself.
+
+    Notes
+    -----
+    With a tolerance none of the vertices inside can be removed alone: without it, a point would be
+    beyond the tolerance. This is not the least number that there is, which is hard to find
+    (NP-hard [3]_). With ``points`` none are removed after the insertion. The result is a function
+    of the surface, not of the order of its vertices. Time grows with n log(m) for n points of which
+    m are left, a second for a million; memory is 40 bytes a point.
+
+    References
+    ----------
+    .. [1] M. Garland, P. S. Heckbert, Fast polygonal approximation of terrains and height fields,
+       Carnegie Mellon University, CMU-CS-95-181 (1995).
+    .. [2] W. J. Schroeder, J. A. Zarge, W. E. Lorensen, Decimation of triangle meshes, SIGGRAPH
+       (1992), doi:10.1145/133994.134010.
+    .. [3] P. K. Agarwal, S. Suri, Surface approximation and geometric partitions, SIAM Journal on
+       Computing 27 (1998), doi:10.1137/S0097539794269801.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import tinsmith as ts
+    >>> x, y = np.meshgrid(np.arange(50.0), np.arange(50.0))
+    >>> tin = ts.triangulate(np.column_stack([x.ravel(), y.ravel(), np.hypot(x, y).ravel()]))
+    >>> simple = ts.simplify(tin, tolerance=0.5)
+    >>> len(simple.points) < 100, simple.report.simplification.largest_error <= 0.5
+    (True, True)
+    >>> ts.simplify(tin, points=60)
+    <TIN: 60 vertices, ...>
+    """
+    return simplify_tin(surface, Goal.of(tolerance, points), keep, threads)

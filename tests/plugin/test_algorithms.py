@@ -1,0 +1,392 @@
+"""Every algorithm of the plugin in QGIS: results are those of the package itself."""
+
+from __future__ import annotations
+
+import csv
+import json
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click import Choice
+from support.qgis_plugin import drive
+
+import tinsmith as ts
+from tinsmith.cli import main
+
+ROOT = Path(__file__).parents[2]
+UTM = "EPSG:32616"
+SURVEY = ROOT / "sample_data" / "site_survey.csv"
+DEM = ROOT / "sample_data" / "jacksboro.tif"
+KERB = [[752700.0, 4024240.0, 322.0], [752740.0, 4024250.0, 323.5]]
+RING = [[752660, 4024210], [752860, 4024210], [752860, 4024310], [752660, 4024310]]
+UP = np.array([0.0, 0.0, 1.0])
+CUT = [[752690.0, 4024225.0], [752850.0, 4024330.0]]
+
+UNSOUND = "v 0 0 0\nv 1 0 0\nv 1.4 1.4 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n"
+"""Two triangles with the longer diagonal between them."""
+
+
+@pytest.fixture
+def survey():
+    return ts.read(SURVEY, crs=UTM)
+
+
+def write_wkt(kind, rows):
+    vertices = ", ".join(" ".join(map(repr, map(float, row))) for row in rows)
+    return f"{kind}({'(' * (kind == 'Polygon')}{vertices}{')' * (kind == 'Polygon')})"
+
+
+def make_layer(kind, rows, *, columns=(), crs=UTM, **more):
+    """Return a layer in memory: each row has its geometry and its attributes."""
+    return {"kind": kind, "crs": crs, "columns": list(columns), "features": rows, **more}
+
+
+def make_inputs(folder, survey):
+    """Write a survey and its TIN; return the layers of a project."""
+    ts.write(survey, folder / "points.gpkg")
+    tin = ts.triangulate(survey)
+    ts.write(tin, folder / "ground.ply")
+    ts.write(tin, folder / "ground.2dm")
+    flat = [
+        [write_wkt("Point", [row[:2]]), [row[2] + 1.0, k]] for k, row in enumerate(survey.points)
+    ]
+    closed = [*RING, RING[0]]
+    return tin, {
+        "points": {"kind": "vector", "path": str(folder / "points.gpkg")},
+        "ground": {"kind": "mesh", "path": str(folder / "ground.ply")},
+        "no crs": {"kind": "mesh", "path": str(folder / "ground.2dm"), "crs": UTM},
+        "dem": {"kind": "raster", "path": str(DEM)},
+        "flat": make_layer(
+            "Point", flat, columns=["high:double", "fid:integer"], selected=list(range(1, 301))
+        ),
+        "kerb": make_layer(
+            "LineStringZ", [[write_wkt("LineString Z", KERB), ["k1"]]], columns=["name:string"]
+        ),
+        "site": make_layer("Polygon", [[write_wkt("Polygon", closed), []]]),
+        "cut": make_layer("LineString", [[write_wkt("LineString", CUT), []]]),
+    }
+
+
+def require_done(told):
+    for name, one in told.items():
+        if name != "provider":
+            assert one["error"] is None, (name, one["error"], one["log"])
+            assert "not correctly generated" not in str(one["log"]), (name, one["log"])
+
+
+def assert_same_tin(found, wanted):
+    np.testing.assert_array_equal(found.points, wanted.points)
+    np.testing.assert_array_equal(found.triangles, wanted.triangles)
+    assert str(found.crs) == str(wanted.crs)
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(900)
+def test_tins_are_those_of_the_package(tmp_path, survey):
+    tin, layers = make_inputs(tmp_path, survey)
+    jobs = {
+        "lines": job("build", POINTS="points", BREAKLINES="kerb", BOUNDARY="site", MAX_EDGE=50,
+                     REPORT=tmp_path / "r.json", OUTPUT=tmp_path / "lines.ply"),
+        "field": job("build", POINTS={"selected": "flat"}, POINTS_Z_FIELD="high",
+                     DUPLICATES="first", OUTPUT=tmp_path / "field.nc"),
+        "dem": job("build", DEM="dem", STRIDE=16, OUTPUT=tmp_path / "dem.2dm"),
+        "file": job("build", FILE=SURVEY, CRS=UTM, EXTRA="--codes", OUTPUT=tmp_path / "file.gpkg"),
+        "refine": job("refine", INPUT="ground", MAX_AREA=400, OUTPUT=tmp_path / "fine.ply"),
+        "simplify": job("simplify", INPUT="ground", TOLERANCE=0.5, OUTPUT=tmp_path / "few.ply"),
+        "check": job("check", INPUT="no crs", OUTPUT=tmp_path / "found.json"),
+        "unsound": job("check", INPUT_FILE=tmp_path / "twice.obj"),
+        "convert": job("convert", INPUT="no crs", OUTPUT=tmp_path / "again.gpkg"),
+    }  # fmt: skip
+    (tmp_path / "twice.obj").write_text(UNSOUND)
+    told = drive(tmp_path, layers, jobs)
+    require_done(told)
+    check_lines(told["lines"], survey, tmp_path)
+    selected = ts.Survey(points=survey.points[:300] + UP, crs=UTM)
+    assert_same_tin(ts.read(tmp_path / "field.nc"), ts.triangulate(selected, duplicates="first"))
+    assert_same_tin(ts.read(tmp_path / "dem.2dm", crs=UTM), ts.triangulate(ts.read(DEM, stride=16)))
+    coded = ts.triangulate(ts.lines_from_codes(survey))
+    assert_same_tin(ts.read(tmp_path / "file.gpkg"), coded)
+    assert told["file"]["layers"]["TIN"]["count"] == len(coded.triangles)
+    mesh = told["field"]["layers"]["TIN"]
+    assert (mesh["crs"], mesh["type"]) == (UTM, "QgsMeshLayer")
+    assert_same_tin(ts.read(tmp_path / "fine.ply"), ts.refine(tin, max_area=400))
+    assert_same_tin(ts.read(tmp_path / "few.ply"), ts.simplify(tin, tolerance=0.5))
+    assert_same_tin(ts.read(tmp_path / "again.gpkg"), tin)
+    assert told["check"]["outputs"] == {
+        "SOUND": True, "PROBLEMS": 0, "OUTPUT": str(tmp_path / "found.json")
+    }  # fmt: skip
+    assert json.loads((tmp_path / "found.json").read_text())["ok"] is True
+    assert told["unsound"]["outputs"]["SOUND"] is False
+    problems = [text for kind, text in told["unsound"]["log"] if kind == "error"]
+    assert len(problems) == told["unsound"]["outputs"]["PROBLEMS"] > 0
+    for one in told.values():
+        assert "log" not in one or "tinsmith" in one["log"][0][1]
+
+
+def check_lines(answer, survey, folder):
+    """Check a TIN with lines, its layer and style, its report and what was said."""
+    made = ts.read(folder / "lines.ply")
+    wanted = ts.triangulate(
+        survey, breaklines=[ts.Breakline(KERB, name="k1")], boundary=[RING], max_edge=50
+    )
+    assert_same_tin(made, wanted)
+    assert str(made.lines) == str(wanted.lines)
+    layer = answer["layers"]["TIN"]
+    assert (layer["crs"], layer["faces"]) == (UTM, len(wanted.triangles))
+    low, high = wanted.points[:, 2].min(), wanted.points[:, 2].max()
+    assert layer["range"] == pytest.approx([low, high], abs=1e-9)
+    assert layer["edges"]
+    assert layer["ramp"] >= 5
+    assert json.loads((folder / "r.json").read_text())["rows"] == len(survey)
+    assert any(kind == "warning" and ".nc or .2dm" in text for kind, text in answer["log"])
+    assert answer["outputs"]["TRIANGLES"] == len(wanted.triangles)
+    said = [text for kind, text in answer["log"] if kind == "info"]
+    assert any(text.startswith("Points") and "from points" in text for text in said)
+    assert not any("/tinsmith-" in text for text in said)
+    assert max(answer["fractions"]) == 100
+
+
+def job(name, *, load=True, **parameters):
+    """Return an algorithm with its parameters."""
+    plain = {key: str(one) if isinstance(one, Path) else one for key, one in parameters.items()}
+    return {"algorithm": f"tinsmith:{name}", "parameters": plain, "load": load}
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(900)
+def test_products_are_those_of_the_package(tmp_path, survey):
+    tin, layers = make_inputs(tmp_path, survey)
+    jobs = {
+        "lines": job("contours", INPUT="ground", INTERVAL=1, OUTPUT=tmp_path / "lines.gpkg"),
+        "bands": job("contours", INPUT="no crs", LEVELS="320,325", PRODUCT="bands",
+                     OUTPUT=tmp_path / "bands.fgb"),
+        "labels": job("contours", INPUT="points", INTERVAL=2, PRODUCT="labels",
+                      OUTPUT=tmp_path / "labels.gpkg"),
+        "slope": job("slope", INPUT="ground", UNIT="percent", BREAKS="5,15",
+                     TABLE=tmp_path / "s.csv", OUTPUT=tmp_path / "slope.gpkg"),
+        "profile": job("profile", INPUT="ground", SECOND="flat", SECOND_Z_FIELD="high", LINE="cut",
+                       INTERVAL=10, OUTPUT=tmp_path / "profile.csv"),
+        "sections": job("profile", INPUT_FILE=tmp_path / "ground.ply", LINE="cut",
+                        SECTION_INTERVAL=50, SECTION_WIDTH=20, OUTPUT=tmp_path / "cross.csv",
+                        SECTIONS=tmp_path / "cross.gpkg"),
+        "volume": job("volume", INPUT="ground", BASE=325, REGIONS="site",
+                      OUTPUT=tmp_path / "volume.csv", ZONES=tmp_path / "zones.gpkg"),
+        "stages": job("stagestorage", INPUT="ground", INTERVAL=5, OUTPUT=tmp_path / "stages.csv"),
+        "raster": job("raster", INPUT="ground", SPACING=2, OUTPUT=tmp_path / "raster.tif"),
+        "light": job("raster", INPUT="ground", LIKE="dem", VALUE="hillshade",
+                     OUTPUT=tmp_path / "light.tif"),
+    }  # fmt: skip
+    told = drive(tmp_path, layers, jobs)
+    require_done(told)
+    check_contours(told, tin, tmp_path)
+    check_slope(told["slope"], tin, tmp_path)
+    check_sections(told, tin, survey, tmp_path)
+    check_volumes(told, tin, tmp_path)
+    check_rasters(told, tin, tmp_path)
+
+
+def check_contours(told, tin, folder):
+    wanted = ts.contours(tin, interval=1)
+    layer = told["lines"]["layers"]["Contours"]
+    assert (layer["count"], layer["crs"], layer["labels"]) == (len(wanted), UTM, True)
+    assert layer["widths"][0] > layer["widths"][1]
+    assert (layer["field"], layer["unclassified"]) == ("is_index", 0)
+    again = ts.write(wanted, folder / "wanted.gpkg")
+    assert read_layer(folder / "lines.gpkg") == read_layer(again)
+    bands = ts.contour_bands(tin, levels=[320, 325])
+    layer = told["bands"]["layers"]["Contours"]
+    assert (layer["count"], layer["unclassified"]) == (len(bands), 0)
+    labels = ts.contour_labels(ts.contours(tin, interval=2))
+    layer = told["labels"]["layers"]["Contours"]
+    assert (layer["count"], layer["labels"]) == (len(labels), True)
+
+
+def read_layer(path):
+    import pyogrio
+
+    columns, _, shapes, values = pyogrio.raw.read(path)
+    return list(columns["fields"]), list(shapes), [one.tolist() for one in values]
+
+
+def check_slope(answer, tin, folder):
+    wanted = ts.slope_classes(tin, breaks=[5, 15], unit="percent")
+    layer = answer["layers"]["Slope classes"]
+    assert layer["count"] == len(wanted)
+    assert layer["legend"] == wanted.columns["label"].tolist()
+    assert layer["colors"] == [one.lower() for one in wanted.columns["color"].tolist()]
+    assert layer["unclassified"] == 0
+    with (folder / "s.csv").open() as file:
+        assert len(list(csv.DictReader(file))) == len(wanted)
+
+
+def read_numbers(path, name):
+    with path.open() as file:
+        rows = list(csv.DictReader(file))
+    (column,) = [key for key in rows[0] if key.split(" (")[0] == name]
+    return np.array([float(row[column]) for row in rows])
+
+
+def check_sections(told, tin, survey, folder):
+    raised = ts.triangulate(ts.Survey(points=survey.points + UP, crs=UTM))
+    wanted = ts.profile({"ground": tin, "flat": raised}, CUT, interval=10)
+    np.testing.assert_array_equal(
+        read_numbers(folder / "profile.csv", "station"), wanted["station"]
+    )
+    for name in ("elevation_ground", "elevation_flat", "difference_flat"):
+        found = read_numbers(folder / "profile.csv", name)
+        np.testing.assert_array_equal(found, wanted[name])
+    assert told["profile"]["layers"]["Profile"]["count"] == len(wanted)
+    lines = ts.section_lines(tin, CUT, interval=50, width=20)
+    assert told["sections"]["layers"]["Cross sections as lines"]["count"] == len(lines)
+
+
+def check_volumes(told, tin, folder):
+    closed = np.array([*RING, RING[0]], float)
+    region = ts.Features.of_polygons(closed, np.array([0, 5]), np.array([0, 1]), crs=UTM)
+    wanted = ts.volume(tin, base=325, regions=region)
+    for name in ("cut", "fill", "net", "area"):
+        assert told["volume"]["outputs"][name.upper()] == wanted[name].sum()
+        np.testing.assert_array_equal(read_numbers(folder / "volume.csv", name), wanted[name])
+    zones = told["volume"]["layers"]["Zones of cut and fill"]
+    assert (zones["field"], zones["unclassified"], zones["crs"]) == ("kind", 0, UTM)
+    stages = ts.stage_storage(tin, interval=5)
+    np.testing.assert_array_equal(read_numbers(folder / "stages.csv", "volume"), stages["volume"])
+
+
+def check_rasters(told, tin, folder):
+    made = ts.rasterize(tin, spacing=2)
+    ts.write(made, folder / "wanted.tif")
+    assert (folder / "raster.tif").read_bytes() == (folder / "wanted.tif").read_bytes()
+    layer = told["raster"]["layers"]["Raster"]
+    assert (layer["renderer"], layer["crs"]) == ("singlebandpseudocolor", UTM)
+    assert told["light"]["layers"]["Raster"]["renderer"] == "singlebandgray"
+
+
+# ------------------------------------------------------------------- what is refused
+
+
+def make_program(path, text):
+    path.write_text(f"#!/usr/bin/env python3\n{text}")
+    path.chmod(0o755)
+    return str(path)
+
+
+STUBBORN = """
+import os, pathlib, signal, sys, time
+if sys.argv[1:] == ["--version"]:
+    print("tinsmith 9.9.9")
+    sys.exit()
+signal.signal(signal.SIGTERM, signal.SIG_IGN)
+pathlib.Path(__file__).with_suffix(".pid").write_text(str(os.getpid()))
+print('{"event": "warning", "text": "about to hang"}', file=sys.stderr, flush=True)
+print("no event", file=sys.stderr, flush=True)
+time.sleep(300)
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(900)
+def test_what_cannot_be_is_refused_with_one_sentence(tmp_path, survey):
+    _, layers = make_inputs(tmp_path, survey)
+    layers["other crs"] = layers["ground"] | {"crs": "EPSG:26916"}
+    layers["degrees"] = make_layer(
+        "PointZ", [["Point Z(-84 36 1)", []], ["Point Z(-84 37 1)", []]], crs="EPSG:4326"
+    )
+    layers["none selected"] = layers["flat"] | {"selected": []}
+    out = tmp_path / "out.ply"
+    out.write_bytes(b"old")
+    jobs = {
+        "a layer of points, a DEM, or a file": job("build", OUTPUT=out),
+        "POINTS and DEM given": job("build", POINTS="points", DEM="dem", OUTPUT=out),
+        "'flat' has no Z in its geometry": job("build", POINTS="flat", OUTPUT=out),
+        "has no field 'low'": job("build", POINTS="flat", POINTS_Z_FIELD="low", OUTPUT=out),
+        "has no selected features": job("build", POINTS={"selected": "none selected"},
+                                        POINTS_Z_FIELD="high", OUTPUT=out),
+        "in degrees": job("build", POINTS="degrees", OUTPUT=out),
+        "its file says EPSG:32616": job("contours", INPUT="other crs", INTERVAL=1,
+                                        OUTPUT=tmp_path / "c.gpkg"),
+        "Either --interval or --levels is needed": job("contours", INPUT="ground",
+                                                       OUTPUT=tmp_path / "c.gpkg"),
+        "choose a layer or a file": job("slope", OUTPUT=tmp_path / "s.gpkg"),
+        "choose one of them": job("slope", INPUT="ground", INPUT_FILE=tmp_path / "ground.ply",
+                                  OUTPUT=tmp_path / "s.gpkg"),
+        "Incorrect parameter value for INPUT": job("slope", INPUT="nowhere",
+                                                   OUTPUT=tmp_path / "s.gpkg"),
+        "No closing quotation": job("check", INPUT="ground", EXTRA="--level '3"),
+        "is not there or cannot be run": job("check", INPUT="ground")
+        | {"command": str(tmp_path / "points.gpkg")},
+        "is no tinsmith": job("check", INPUT="ground") | {"command": shutil.which("true")},
+        "There is no command tinsmith": job("check", INPUT="ground")
+        | {"environment": {"PATH": str(tmp_path)}},
+    }  # fmt: skip
+    told = drive(tmp_path, layers, jobs)
+    for words, one in told.items():
+        if words != "provider":
+            assert words in (one["error"] or ""), (words, one)
+            assert "Traceback" not in one["error"]
+    assert out.read_bytes() == b"old"
+    assert not (tmp_path / "c.gpkg").exists()
+    compare_options(told["provider"]["algorithms"])
+
+
+def compare_options(algorithms):
+    """Compare the parameters with the command's own options: flags, choices, defaults."""
+    compared = 0
+    for name, one in algorithms.items():
+        assert "<p>" in one["help"]
+        assert not one["icon"][0], name
+        for parameter in one["parameters"]:
+            assert parameter["help"] or parameter["type"] == "vectorDestination", parameter
+            if "In messages: --" not in parameter["help"] or not one["verb"]:
+                continue
+            flag = parameter["help"].rsplit("In messages: ", 1)[1].rstrip(".")
+            compare_option(find_option(one["verb"], flag), parameter, name)
+            compared += 1
+    assert compared > 40
+    assert len(algorithms) >= 11
+
+
+def find_option(verb, flag):
+    command = main.get_command(None, verb)
+    (found,) = [one for one in command.params if flag in one.opts]
+    return found
+
+
+def compare_option(option, parameter, name):
+    known = option.default if isinstance(option.default, (int, float, str)) else None
+    if parameter["type"] == "enum":
+        if isinstance(option.type, Choice):
+            assert sorted(option.type.choices) == sorted(parameter["choices"]), (name, parameter)
+        if known is not None:
+            assert str(known) == parameter["default"], (name, parameter)
+    elif parameter["type"] == "number" and parameter["name"] != "STRIDE":
+        assert parameter["default"] == known, (name, parameter)
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(900)
+def test_cancelling_ends_the_command_and_leaves_nothing(tmp_path, survey):
+    _, layers = make_inputs(tmp_path, survey)
+    folder = tmp_path / "out"
+    folder.mkdir()
+    (folder / "old.ply").write_bytes(b"old")
+    stubborn = make_program(tmp_path / "stubborn", STUBBORN)
+    jobs = {
+        "new": job("build", DEM="dem", OUTPUT=folder / "new.ply") | {"cancel_at": "Reading"},
+        "old": job("build", DEM="dem", OUTPUT=folder / "old.ply") | {"cancel_at": "Writing"},
+        "stubborn": job("check", INPUT="ground")
+        | {"command": stubborn, "cancel_at": "about to hang", "grace": 0.3},
+    }
+    told = drive(tmp_path, layers, jobs)
+    for name in jobs:
+        assert told[name]["error"].startswith("Cancelled"), told[name]
+        assert told[name]["layers"] == {}
+    assert [path.name for path in folder.iterdir()] == ["old.ply"]
+    assert (folder / "old.ply").read_bytes() == b"old"
+    said = told["stubborn"]["log"]
+    assert ["warning", "about to hang"] in said
+    assert said[0][1].startswith("tinsmith 9.9.9")
+    number = (tmp_path / "stubborn.pid").read_text()
+    assert not Path(f"/proc/{number}").exists()

@@ -1,0 +1,105 @@
+"""The plugin as a package: what the zip holds, its metadata, its types."""
+
+from __future__ import annotations
+
+import configparser
+import importlib.util
+import re
+import sys
+import tomllib
+import xml.etree.ElementTree as ET
+import zipfile
+from pathlib import Path
+
+from support import processes
+from support.qgis_plugin import PLUGIN, ROOT
+
+PACKAGE = PLUGIN / "tinsmith"
+
+
+def load_packer():
+    spec = importlib.util.spec_from_file_location("make_plugin", PLUGIN / "make_plugin.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def read_metadata():
+    metadata = configparser.ConfigParser(interpolation=None)
+    metadata.read_string((PACKAGE / "metadata.txt").read_text("utf-8"))
+    return metadata["general"]
+
+
+def test_the_zip_holds_the_plugin_and_nothing_else(tmp_path):
+    path = load_packer().pack(tmp_path / "deep" / "a.zip")
+    tracked = processes.run("git", "ls-files", "qgis/tinsmith", cwd=ROOT).stdout.split()
+    untracked = processes.run(
+        *("git", "ls-files", "--others", "--exclude-standard", "qgis/tinsmith"), cwd=ROOT
+    )
+    wanted = [name.removeprefix("qgis/") for name in tracked + untracked.stdout.split()]
+    wanted = [name for name in wanted if (PLUGIN / name).exists()]
+    with zipfile.ZipFile(path) as packed:
+        names = packed.namelist()
+        assert packed.testzip() is None
+        assert names == sorted([*wanted, "tinsmith/LICENSE"])
+        for name in names:
+            source = ROOT / "LICENSE" if name.endswith("LICENSE") else PLUGIN / name
+            assert packed.read(name) == source.read_bytes()
+    assert not [name for name in names if "__pycache__" in name or "/." in name]
+    assert path.stat().st_size < 1_000_000
+
+
+def test_the_same_files_give_the_same_bytes(tmp_path):
+    packer = load_packer()
+    first = packer.pack(tmp_path / "a.zip").read_bytes()
+    (PACKAGE / "metadata.txt").touch()
+    assert packer.pack(tmp_path / "b.zip").read_bytes() == first
+    result = processes.run(sys.executable, str(PLUGIN / "make_plugin.py"), str(tmp_path / "c.zip"))
+    assert result.stdout.strip() == str(tmp_path / "c.zip")
+    assert (tmp_path / "c.zip").read_bytes() == first
+
+
+def test_the_metadata_keep_the_rules_of_the_plugin_repository():
+    told = read_metadata()
+    needed = "name qgisMinimumVersion description about version author email repository tracker"
+    for key in needed.split():
+        assert told[key].strip(), key
+    assert told["hasProcessingProvider"] == "yes"
+    assert "plugin" not in told["name"].lower()
+    assert re.fullmatch(r"3\.\d+", told["qgisMinimumVersion"])
+    assert (PACKAGE / told["icon"]).exists()
+    for key in ("repository", "tracker", "homepage"):
+        assert told[key].startswith("https://")
+    assert "@" in told["email"]
+    with (ROOT / "pyproject.toml").open("rb") as file:
+        assert told["version"] == tomllib.load(file)["project"]["version"]
+
+
+def test_icons_are_drawings_and_all_are_used():
+    names = set()
+    for path in (PACKAGE / "icons").glob("*.svg"):
+        root = ET.fromstring(path.read_text())
+        assert (root.get("width"), root.get("viewBox")) == ("24", "0 0 24 24")
+        assert len(root) > 0
+        names.add(path.stem)
+    named = re.findall(r'(?:verb = |return )"([a-z]+)"', read_algorithms())
+    assert names == {*named, "tinsmith"}
+
+
+def read_algorithms():
+    return "\n".join(path.read_text() for path in (PACKAGE / "algorithms").glob("*.py"))
+
+
+def test_nothing_of_tinsmith_is_imported_inside_qgis():
+    """Its libraries and those of QGIS do not live in one process."""
+    modules = [path.read_text() for path in PACKAGE.rglob("*.py")]
+    assert len(modules) > 15
+    forbidden = r"^\s*(?:from|import) +(?:tinsmith|shapely|numpy|pandas|pyproj|rasterio|pyogrio)\b"
+    assert not [text for text in modules if re.search(forbidden, text, re.MULTILINE)]
+
+
+def test_types_of_the_plugin():
+    options = ("--config-file", str(ROOT / "pyproject.toml"), "--allow-subclassing-any")
+    mypy = str(Path(sys.executable).parent / "mypy")
+    result = processes.run(mypy, *options, cwd=PLUGIN)
+    assert result.returncode == 0, result.stdout + result.stderr

@@ -1,0 +1,379 @@
+// A mesh of some of the points of a surface, which knows how far the others are from it.
+//
+// Each point that is no vertex is a candidate of the triangle that holds it. Where the mesh
+// changes, the candidates of the triangles that changed are dealt out anew, and no others are
+// looked at (Garland and Heckbert, "Fast polygonal approximation of terrains and height fields",
+// 1995; the lists are those of Heller, "Triangulation algorithms for adaptive terrain modeling",
+// 1990). A candidate on an edge belongs to the triangle on the left of the edge as it runs from its
+// lexicographically first end, so that nothing depends on the order in which points came.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+#include "../base/ids.hpp"
+#include "../index/hilbert_order.hpp"
+#include "../mesh/mesh_editor.hpp"
+#include "elevation_plane.hpp"
+
+namespace tinsmith {
+
+using CandidateId = std::int32_t;
+constexpr CandidateId kNoCandidate = -1;
+
+struct Candidate {
+  SurfacePoint point;
+  CandidateId next;  // of the same triangle
+  std::int32_t row;  // of the caller's points
+};
+
+// The candidates of a triangle, and the one farthest from it in elevation.
+struct CandidateList {
+  CandidateId first = kNoCandidate, worst = kNoCandidate;
+  double error = 0.0;
+};
+
+class CandidateMesh {
+ public:
+  // Rows of easting, northing and elevation; those of the mesh's vertices.
+  CandidateMesh(MeshEditor& editor, const double* points, std::int32_t count,
+                const std::int32_t* vertex_rows)
+      : editor_(editor) {
+    const auto vertices = static_cast<std::size_t>(editor.slots());
+    row_of_.assign(vertex_rows, vertex_rows + vertices);
+    std::vector<bool> is_vertex(static_cast<std::size_t>(count), false);
+    for (const std::int32_t row : row_of_) {
+      is_vertex[static_cast<std::size_t>(row)] = true;
+      elevation_.push_back(points[3 * static_cast<std::size_t>(row) + 2]);
+    }
+    gather(points, is_vertex);
+    editor_.watch();
+    lists_.resize(editor.mesh().triangle_slots());
+  }
+
+  const MeshEditor& editor() const { return editor_; }
+  const Mesh& mesh() const { return editor_.mesh(); }
+  const CandidateList& list(Triangle t) const { return lists_[number(t)]; }
+  const Candidate& candidate(CandidateId c) const {
+    return candidates_[static_cast<std::size_t>(c)];
+  }
+  std::int32_t row(Vertex v) const { return row_of_[static_cast<std::size_t>(number(v))]; }
+  SurfacePoint surface_point(Vertex v) const {
+    return {editor_.point(v), elevation_[static_cast<std::size_t>(number(v))]};
+  }
+
+  // Deal all candidates out; the triangle that holds each row of points, or has it on its edge.
+  // False if `keep_going` was.
+  template <typename KeepGoing>
+  bool place_all(const std::int32_t* triangle_of_row, KeepGoing&& keep_going) {
+    for (std::size_t c = 0; c < candidates_.size(); ++c) {
+      if (c % kStepsBetween == 0 && !keep_going()) return false;
+      const Triangle t = triangle_numbered(triangle_of_row[candidates_[c].row]);
+      const MeshLocation at = location(candidates_[c].point.at, t);
+      const bool is_on_edge = at.where == MeshLocation::Where::kOnEdge;
+      push(is_on_edge ? owner_of(at.edge) : t, static_cast<CandidateId>(c));
+    }
+    for (const Triangle t : mesh().triangles()) measure(t);
+    return true;
+  }
+
+  // Make a candidate a vertex; `visit` is called for every triangle that is new.
+  template <typename Visit>
+  Vertex insert(Triangle t, CandidateId c, Visit&& visit) {
+    const Candidate& chosen = candidate(c);
+    elevation_.push_back(chosen.point.z);
+    row_of_.push_back(chosen.row);
+    const Vertex v =
+        editor_.insert_at(location(chosen.point.at, t), chosen.point.at, editor_.add_slot());
+    lists_.resize(mesh().triangle_slots());
+    deal_out(v, c);
+    for (const Triangle made : star_) visit(made);
+    return v;
+  }
+
+  // The largest error that a candidate or the vertex itself would have without the vertex, which
+  // has no fixed edge; infinity as soon as one is above the limit. Nothing is changed.
+  double error_without(Vertex v, double limit) {
+    const SurfacePoint kept = surface_point(v);
+    save_star(v);
+    editor_.remove(v);
+    const double error = error_in_gap(kept, limit);
+    editor_.insert_at(location(kept.at, holder_in_gap(kept.at)), kept.at, v);
+    restore_star(v);
+    return error;
+  }
+
+  // Make a vertex without fixed edges a candidate again.
+  void remove(Vertex v) {
+    const SurfacePoint kept = surface_point(v);
+    save_star(v);
+    editor_.remove(v);
+    find_gap();
+    for (const Triangle t : touched_) lists_[number(t)] = {};
+    for (const Spared& spared : spared_) {
+      for (CandidateId c = spared.list.first; c != kNoCandidate;) {
+        const CandidateId next = candidate(c).next;
+        push(holder_in_gap(candidate(c).point.at), c);
+        c = next;
+      }
+    }
+    const auto again = static_cast<CandidateId>(candidates_.size());
+    candidates_.push_back({kept, kNoCandidate, row(v)});
+    push(holder_in_gap(kept.at), again);
+    for (const Triangle t : gap_) measure(t);
+  }
+
+ private:
+  static constexpr std::size_t kStepsBetween = 1u << 14;
+
+  struct Spoke {
+    Point end;
+    Triangle triangle;  // on its left
+  };
+  struct Spared {
+    Vertex from, to;  // the edge opposite the vertex in the middle
+    CandidateList list;
+  };
+
+  void gather(const double* points, const std::vector<bool>& is_vertex) {
+    std::vector<Point> places;
+    std::vector<std::int32_t> rows;
+    for (std::size_t row = 0; row < is_vertex.size(); ++row) {
+      if (is_vertex[row]) continue;
+      places.push_back({points[3 * row], points[3 * row + 1]});
+      rows.push_back(static_cast<std::int32_t>(row));
+    }
+    const auto count = static_cast<std::int32_t>(places.size());
+    candidates_.reserve(places.size());
+    if (count == 0) return;
+    const HilbertOrder order(places.data(), count);
+    for (std::int32_t i = 0; i < count; ++i) {
+      const auto item = static_cast<std::size_t>(order[i]);
+      const std::int32_t row = rows[item];
+      const double z = points[3 * static_cast<std::size_t>(row) + 2];
+      candidates_.push_back({{places[item], z}, kNoCandidate, row});
+    }
+  }
+
+  // ----------------------------------------------------------------- lists
+
+  void push(Triangle t, CandidateId c) {
+    CandidateList& list = lists_[number(t)];
+    candidates_[static_cast<std::size_t>(c)].next = list.first;
+    list.first = c;
+  }
+
+  ElevationPlane plane(Triangle t) const {
+    const Vertex* const corner = mesh()[t].corner;
+    return {surface_point(corner[0]), surface_point(corner[1]), surface_point(corner[2])};
+  }
+
+  // Whether a candidate of this error comes before the worst one of a list.
+  bool is_worse(double error, CandidateId c, const CandidateList& list) const {
+    if (error != list.error || list.worst == kNoCandidate) {
+      return error > list.error || list.worst == kNoCandidate;
+    }
+    return lexicographically_before(candidate(c).point.at, candidate(list.worst).point.at);
+  }
+  void note(CandidateList& list, CandidateId c, double error) const {
+    if (!is_worse(error, c, list)) return;
+    list.worst = c;
+    list.error = error;
+  }
+
+  void measure(Triangle t) {
+    if (mesh().is_free(t) || mesh().is_ghost(t)) return;
+    CandidateList& list = lists_[number(t)];
+    if (list.first == kNoCandidate) return;
+    const ElevationPlane over = plane(t);
+    list.worst = kNoCandidate;
+    for (CandidateId c = list.first; c != kNoCandidate; c = candidate(c).next) {
+      note(list, c, over.error(candidate(c).point.at, candidate(c).point.z));
+    }
+  }
+
+  // ------------------------------------------------------------- location
+
+  // The triangle that the points on an edge belong to.
+  Triangle owner_of(HalfEdge e) const {
+    const Vertex from = mesh().from(e), to = mesh().to(e);
+    const bool is_forward = lexicographically_before(editor_.point(from), editor_.point(to));
+    const HalfEdge owner = is_forward ? e : mesh().twin(e);
+    return triangle_of(mesh().apex(owner) == kGhost ? mesh().twin(owner) : owner);
+  }
+
+  // Where a candidate of a triangle is in it.
+  MeshLocation location(Point p, Triangle t) const {
+    for (const HalfEdge e : half_edges(t)) {
+      const Point from = editor_.point(mesh().from(e)), to = editor_.point(mesh().to(e));
+      if (orientation(from, to, p) == 0) return {MeshLocation::Where::kOnEdge, e};
+    }
+    return {MeshLocation::Where::kInside, half_edge(t, 0)};
+  }
+
+  // ------------------------------------------------------------ insertion
+
+  // Deal the candidates around a new vertex out to its triangles, but for the one that it was.
+  void deal_out(Vertex v, CandidateId gone) {
+    gather_star(v);
+    moved_.clear();
+    for (const Triangle t : star_) {
+      for (CandidateId c = lists_[number(t)].first; c != kNoCandidate; c = candidate(c).next) {
+        if (c != gone) moved_.push_back(c);
+      }
+      lists_[number(t)] = {};
+    }
+    planes_.clear();
+    for (const Triangle t : star_) planes_.push_back(plane(t));
+    const Point middle = editor_.point(v);
+    std::size_t at = 0;
+    for (const CandidateId c : moved_) {
+      const SurfacePoint& p = candidate(c).point;
+      at = sector(middle, p.at, at);
+      push(star_[at], c);
+      note(lists_[number(star_[at])], c, planes_[at].error(p.at, p.z));
+    }
+  }
+
+  // The triangles at a vertex counter-clockwise, and the ends of its edges: one more at the hull.
+  void gather_star(Vertex v) {
+    star_.clear();
+    spokes_.clear();
+    HalfEdge first = mesh().leaving(v);
+    is_open_ = false;
+    for (const HalfEdge e : mesh().around(v)) {
+      if (!mesh().is_ghost(triangle_of(mesh().twin(e))) || mesh().is_ghost(triangle_of(e)))
+        continue;
+      first = e;
+      is_open_ = true;
+    }
+    HalfEdge e = first;
+    do {
+      star_.push_back(triangle_of(e));
+      spokes_.push_back(editor_.point(mesh().to(e)));
+      e = mesh().next_leaving(e);
+    } while (e != first && !mesh().is_ghost(triangle_of(e)));
+    spokes_.push_back(editor_.point(mesh().to(e)));
+  }
+
+  // The place in the star of a point that is in it; the search begins at a place nearby.
+  std::size_t sector(Point middle, Point p, std::size_t at) const {
+    const std::size_t count = star_.size();
+    if (orientation(middle, spokes_[at], p) < 0) {
+      do {
+        if (at == 0 && is_open_) return 0;
+        at = (at == 0 ? count : at) - 1;
+      } while (orientation(middle, spokes_[at], p) < 0);
+      return is_on_spoke(middle, p, at) ? owner_at(middle, at) : at;
+    }
+    while (true) {
+      const int side = orientation(middle, spokes_[at + 1], p);
+      if (side < 0) return is_on_spoke(middle, p, at) ? owner_at(middle, at) : at;
+      if (at + 1 == count && is_open_) return at;
+      at = at + 1 == count ? 0 : at + 1;
+    }
+  }
+
+  // Of a point that is not right of a spoke, and right of the next one.
+  bool is_on_spoke(Point middle, Point p, std::size_t at) const {
+    return orientation(middle, spokes_[at], p) == 0;
+  }
+  std::size_t owner_at(Point middle, std::size_t spoke) const {
+    if (lexicographically_before(middle, spokes_[spoke])) return spoke;
+    if (spoke > 0) return spoke - 1;
+    return is_open_ ? 0 : star_.size() - 1;
+  }
+
+  // -------------------------------------------------------------- removal
+
+  void save_star(Vertex v) {
+    spared_.clear();
+    for (const HalfEdge e : mesh().around(v)) {
+      const HalfEdge opposite = Mesh::after(e);
+      spared_.push_back({mesh().from(opposite), mesh().to(opposite), list(triangle_of(e))});
+    }
+    editor_.take_touched(touched_);
+  }
+
+  // After the vertex was put back, its triangles hold what they held.
+  void restore_star(Vertex v) {
+    for (const HalfEdge e : mesh().around(v)) {
+      const Vertex from = mesh().from(Mesh::after(e));
+      for (const Spared& spared : spared_) {
+        if (spared.from == from) lists_[number(triangle_of(e))] = spared.list;
+      }
+    }
+    editor_.take_touched(touched_);
+  }
+
+  // The triangles in the place of the star of a vertex that was removed.
+  void find_gap() {
+    editor_.take_touched(touched_);
+    std::sort(touched_.begin(), touched_.end());
+    touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
+    gap_.clear();
+    for (const Triangle t : touched_) {
+      if (!mesh().is_free(t) && !mesh().is_ghost(t)) gap_.push_back(t);
+    }
+    planes_.clear();
+    for (const Triangle t : gap_) planes_.push_back(plane(t));
+  }
+
+  double error_in_gap(const SurfacePoint& gone, double limit) {
+    find_gap();
+    double worst = error_of(gone);
+    for (const Spared& spared : spared_) {
+      for (CandidateId c = spared.list.first; c != kNoCandidate && worst <= limit;) {
+        worst = std::max(worst, error_of(candidate(c).point));
+        c = candidate(c).next;
+      }
+    }
+    return worst <= limit ? worst : std::numeric_limits<double>::infinity();
+  }
+  double error_of(const SurfacePoint& p) {
+    holder_in_gap(p.at);
+    return planes_[last_].error(p.at, p.z);
+  }
+
+  Triangle holder_in_gap(Point p) {
+    for (std::size_t i = 0; i < gap_.size(); ++i) {
+      const std::size_t k = (last_ + i) % gap_.size();
+      if (holds(gap_[k], p)) {
+        last_ = k;
+        return gap_[k];
+      }
+    }
+    throw std::logic_error("no triangle holds a point of those that went");
+  }
+
+  // Whether a point belongs to a triangle.
+  bool holds(Triangle t, Point p) const {
+    for (const HalfEdge e : half_edges(t)) {
+      const Point from = editor_.point(mesh().from(e)), to = editor_.point(mesh().to(e));
+      const int side = orientation(from, to, p);
+      if (side < 0 || (side == 0 && owner_of(e) != t)) return false;
+    }
+    return true;
+  }
+
+  MeshEditor& editor_;
+  std::vector<double> elevation_;     // by slot
+  std::vector<std::int32_t> row_of_;  // likewise
+  std::vector<Candidate> candidates_;
+  std::vector<CandidateList> lists_;  // by triangle
+
+  // Of the change at hand.
+  std::vector<Triangle> star_, touched_, gap_;
+  std::vector<Point> spokes_;  // spoke i is on the right of triangle i, i + 1 on its left
+  bool is_open_ = false;       // whether the star is at the hull
+  std::vector<CandidateId> moved_;
+  std::vector<ElevationPlane> planes_;
+  std::vector<Spared> spared_;
+  std::size_t last_ = 0;
+};
+
+}  // namespace tinsmith

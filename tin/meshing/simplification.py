@@ -1,0 +1,311 @@
+"""Simplify: the TIN of few of a TIN's vertices, with the others within a tolerance of it.
+
+Which vertices are left is decided by the core; here those are found that must be, and the TIN of
+what is left is built and measured against every vertex.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ...errors import LinesError, OptionError, PointsError
+from .. import _kernel, topology
+from ..constraints.clipping import Surface
+from ..constraints.pslg import build_mesh_of_growth, find_lines_in
+from ..report import Simplification
+from ..surface import TIN
+from ..validation.options import is_finite_number, is_whole_number, require_tin
+from ..validation.threads import thread_count
+from ..validation.vertices import as_vertex_array
+from .surface_pslg import gather_pslg, list_rings
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from ..constraints.breaklines import Lines
+
+__all__ = ["Errors", "Goal", "find_rounding", "insert_until_near", "simplify_tin"]
+
+_ROUNDING_BITS = 46
+"""Elevations that differ in digits beyond these count as equal: 1e-11 m at 1000 m."""
+
+
+class Goal(NamedTuple):
+    """What is asked for: a tolerance, in the unit of elevations, or a number of vertices."""
+
+    tolerance: float | None
+    points: int | None
+
+    @classmethod
+    def of(cls, tolerance: Any, points: Any) -> Goal:
+        """Return what is asked for.
+
+        Raises
+        ------
+        OptionError
+            If it is not one of the two, or none that can be.
+        """
+        if (tolerance is None) == (points is None):
+            given = "both" if points is not None else "neither"
+            allowed = "given, or points; the one or the other, not both"
+            raise OptionError("tolerance", f"({given})" if points is None else tolerance, allowed)
+        if points is not None:
+            if not is_whole_number(points) or points < 3:
+                raise OptionError("points", points, "a whole number from 3 on")
+            return cls(None, int(points))
+        if not (is_finite_number(tolerance) and tolerance >= 0):
+            raise OptionError("tolerance", tolerance, "an elevation >= 0 in the unit of elevations")
+        return cls(float(tolerance), None)
+
+    def require_count(self, n_required: int, n_points: int) -> None:
+        """Refuse a number of vertices that cannot be.
+
+        Raises
+        ------
+        OptionError
+        """
+        if self.points is not None and not n_required <= self.points <= n_points:
+            raise OptionError(
+                "points",
+                self.points,
+                f"from {n_required:,}, for so many lie on lines, at corners of the boundary or are "
+                f"to be kept, to {n_points:,}, for there are no more",
+            )
+
+    def limits(self, rounding: float) -> tuple[float, int]:
+        """Return tolerance and most vertices as the core takes them."""
+        if self.points is not None:
+            return -1.0, self.points
+        return max((self.tolerance or 0.0) - rounding, 0.0), _kernel.MOST_POINTS
+
+
+class Errors(NamedTuple):
+    """How far points are from a surface, in elevation.
+
+    Attributes
+    ----------
+    far : (k,) int array
+        Rows of the points beyond the tolerance.
+    largest, rms : float
+    """
+
+    far: NDArray[np.int64]
+    largest: float
+    rms: float
+
+
+def find_rounding(z: NDArray[np.float64]) -> float:
+    """Return by how much elevations may differ because of their rounding."""
+    return float(np.abs(z).max()) * 2.0**-_ROUNDING_BITS
+
+
+def simplify_tin(tin: TIN, goal: Goal, keep: ArrayLike, threads: int | None) -> TIN:
+    """Return the TIN of few vertices; :func:`tinsmith.simplify` tells what is promised."""
+    require_tin(tin)
+    is_required = _find_required(tin, keep)
+    goal.require_count(int(is_required.sum()), len(tin.points))
+    skeleton = _Part(tin, np.flatnonzero(is_required), thread_count(threads, len(tin.points)))
+    rows, needless = _find_rows(tin, skeleton, goal)
+    part, errors = insert_until_near(
+        goal,
+        find_rounding(tin.points[:, 2]),
+        rows,
+        build=lambda rows: _Part(tin, rows, skeleton.threads),
+        measure=lambda part, limit: part.measure(limit),
+    )
+    found = Simplification(
+        points=len(tin.points),
+        vertices=len(part.rows),
+        required=int(is_required.sum()),
+        needless=needless,
+        tolerance=goal.tolerance,
+        largest_error=errors.largest,
+        rms_error=errors.rms,
+    )
+    simple: TIN = part.make_tin(found)
+    return simple
+
+
+def insert_until_near(
+    goal: Goal,
+    rounding: float,
+    rows: NDArray[np.int64],
+    *,
+    build: Callable[[NDArray[np.int64]], Any],
+    measure: Callable[[Any, float], Errors],
+) -> tuple[Any, Errors]:
+    """Build the surface of some rows; add those that are beyond the tolerance, until none is.
+
+    The core has left none but where it rounds otherwise than the surface that is built.
+    """
+    limit = np.inf if goal.tolerance is None else max(goal.tolerance, rounding)
+    while True:
+        built = build(rows)
+        errors = measure(built, limit)
+        if len(errors.far) == 0:
+            return built, errors
+        rows = np.union1d(rows, errors.far)
+
+
+# ------------------------------------------------------------------ what must be left
+
+
+def _find_required(tin: TIN, keep: ArrayLike) -> NDArray[np.bool_]:
+    """Tell which vertices stay: those of lines, corners of the boundary, and those given."""
+    is_required = np.zeros(len(tin.points), np.bool_)
+    is_required[as_vertex_array(keep, len(tin.points)).ravel()] = True
+    is_required[tin.lines.vertices] = True
+    is_inner = tin.constrained & (tin.neighbors > topology.NO_NEIGHBOR)
+    is_required[topology.edges_at(tin.triangles, is_inner)] = True
+    visits = np.zeros(len(tin.points), np.int64)
+    for ring in tin.rings:
+        np.add.at(visits, ring, 1)
+        is_required[ring[~_are_straight(tin.points[ring])]] = True
+    is_required[visits > 1] = True
+    return is_required
+
+
+def _are_straight(ring: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Tell which corners of a ring lie on the line between the two beside them."""
+    xy = np.ascontiguousarray(ring[:, :2])
+    before, after = np.roll(xy, 1, axis=0), np.roll(xy, -1, axis=0)
+    return np.asarray(_kernel.orientation(before, xy, after) == 0)
+
+
+def _find_rows(tin: TIN, skeleton: _Part, goal: Goal) -> tuple[NDArray[np.int64], int]:
+    """Return the vertices that the core leaves, and how many it removed again."""
+    surface = skeleton.surface
+    is_used = np.zeros(len(tin.points), np.bool_)
+    is_used[tin.triangles] = True
+    is_used[skeleton.rows] = True
+    used = np.flatnonzero(is_used)
+    tolerance, most = goal.limits(find_rounding(tin.points[:, 2]))
+    points = np.ascontiguousarray(tin.points[used])
+    locator = _kernel.Locator(surface.points, surface.triangles, surface.neighbors)
+    rows, needless = _kernel.simplify(
+        points,
+        np.searchsorted(used, skeleton.rows).astype(np.int32),
+        locator.locate(np.ascontiguousarray(points[:, :2])),
+        surface.points,
+        surface.triangles,
+        surface.neighbors,
+        surface.constrained | (surface.neighbors == topology.NO_NEIGHBOR),
+        tolerance,
+        most,
+        goal.points is None,
+    )
+    return used[rows], needless
+
+
+# ------------------------------------------------------------------------- the result
+
+
+class _Part:
+    """The surface of a TIN built of some of its vertices, with its lines and its boundary."""
+
+    def __init__(self, tin: TIN, rows: NDArray[np.int64], threads: int) -> None:
+        self.tin, self.rows, self.threads = tin, rows, threads
+        self._number_of = np.full(len(tin.points) + 1, -1, np.int32)  # and of no vertex
+        self._number_of[rows] = np.arange(len(rows), dtype=np.int32)
+        points = np.ascontiguousarray(tin.points[rows])
+        rings = [self._follow_ring(ring) for ring in list_rings(tin)]
+        self._pslg = gather_pslg(tin, points, self._follow, rings, names_boundary=False)
+        self.surface, self._order = self._build(points)
+
+    def _follow(self, chain: list[int]) -> list[int]:
+        numbers = self._number_of[chain]
+        followed: list[int] = numbers[numbers >= 0].tolist()
+        return followed
+
+    def _follow_ring(self, ring: list[int]) -> list[int]:
+        followed = self._follow(ring[:-1])
+        return [*followed, followed[0]]
+
+    def _build(self, points: NDArray[np.float64]) -> tuple[Surface, NDArray[np.int32]]:
+        growth = _kernel.grow(points, threads=self.threads)
+        mesh = build_mesh_of_growth(points, growth)
+        passed, blocked = mesh.force(self._pslg.polylines.segments())
+        if growth.kept_row is not None or len(passed) or len(blocked):
+            raise _describe_overlap()
+        try:
+            hull = Surface(points, *mesh.arrays(self.threads))
+            surface, order = self._pslg.surface(hull)
+        except LinesError:
+            raise _describe_overlap() from None
+        if len(surface.points) != len(points):
+            raise _describe_overlap()
+        return surface, order
+
+    def measure(self, limit: float) -> Errors:
+        """Measure all vertices of the TIN that its triangles use."""
+        tin = self.tin
+        is_used = np.zeros(len(tin.points), np.bool_)
+        is_used[tin.triangles] = True
+        used = np.flatnonzero(is_used)
+        error = np.abs(self._make().interpolate(tin.points[used, :2]) - tin.points[used, 2])
+        is_far = ~(error <= limit)
+        near = error[~is_far] if is_far.any() else error
+        return Errors(used[is_far], float(near.max()), float(np.sqrt(np.mean(near**2))))
+
+    def _make(self) -> TIN:
+        return TIN.from_triangles(self.surface.points, self.surface.triangles)
+
+    def make_tin(self, found: Simplification) -> TIN:
+        """Return the TIN with its lines, and with an account of all rows."""
+        tin, surface = self.tin, self.surface
+        vertex_of = self._number_of[tin.vertex_of]
+        return TIN(
+            **surface._replace(constrained=self._find_constrained())._asdict(),
+            vertex_of=vertex_of,
+            report=self._report(found, vertex_of),
+            lines=self._find_lines(),
+            crs=tin.crs,
+            elevation_unit=tin.elevation_unit,
+            row_attributes=tin.row_attributes,
+        )
+
+    def _find_lines(self) -> Lines:
+        pslg = self._pslg
+        return find_lines_in(
+            pslg.polylines, pslg.constraints, self._order, self.surface, is_whole=False
+        )
+
+    def _find_constrained(self) -> NDArray[np.bool_]:
+        """Return the flags of edges; those of the boundary as they were."""
+        tin, surface = self.tin, self.surface
+        is_flagged = np.zeros(len(tin.points), np.bool_)
+        is_outer = tin.neighbors == topology.NO_NEIGHBOR
+        is_flagged[topology.edges_at(tin.triangles, is_outer & tin.constrained)] = True
+        edge = np.nonzero(surface.neighbors == topology.NO_NEIGHBOR)
+        start, end = topology.ends(surface.triangles, *edge)
+        constrained = surface.constrained.copy()
+        constrained[edge] = is_flagged[self.rows[start]] & is_flagged[self.rows[end]]
+        return constrained
+
+    def _report(self, found: Simplification, vertex_of: NDArray[np.int32]) -> Any:
+        report = self.tin.report
+        surface = self.surface
+        counts = (len(surface.points), len(surface.triangles))
+        moved = report.after_edits(vertex_of, *counts, report.edits)
+        known = report.renumber(self._number_of, len(vertex_of), *counts)
+        return replace(
+            moved,
+            left_out_rows=report.left_out_rows,
+            left_out_why=report.left_out_why,
+            crossings=known.crossings,
+            overruled=known.overruled,
+            notes=(*report.notes, found.sentence()),
+            simplification=found,
+        ).with_removed(vertex_of, "simplified away")
+
+
+def _describe_overlap() -> PointsError:
+    return PointsError(
+        "The TIN cannot be simplified: parts of its boundary or of its lines overlap, or lie "
+        "nearer to each other than coordinates are rounded."
+    )

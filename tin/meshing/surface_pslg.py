@@ -1,0 +1,100 @@
+"""The planar straight-line graph of a TIN, for building its surface of other vertices."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .. import topology
+from ..constraints.clipping import BOUNDARY
+from ..constraints.constraint_table import ConstraintTable
+from ..constraints.polylines import Polylines
+from ..constraints.pslg import Clip, Pslg
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from ...policies import LineKind
+    from ..surface import TIN
+
+__all__ = ["gather_pslg", "list_rings"]
+
+
+def list_rings(tin: TIN) -> list[list[int]]:
+    """Return the rings of the boundary, each from a vertex back to it."""
+    return [[*ring.tolist(), int(ring[0])] for ring in tin.rings]
+
+
+def gather_pslg(
+    tin: TIN,
+    points: NDArray[np.float64],
+    follow: Callable[[list[int]], list[int]],
+    rings: list[list[int]],
+    *,
+    names_boundary: bool,
+) -> Pslg:
+    """Return vertices, and the segments of a TIN's lines, of edges of no line, of its boundary.
+
+    Parameters
+    ----------
+    tin : TIN
+    points : (v, 3) float64 array
+        The vertices.
+    follow : callable
+        Takes a chain of vertices of the TIN, and returns it as one of ``points``.
+    rings : list of list of int
+        The rings of the boundary in the order of :func:`list_rings`, as chains of ``points``.
+    names_boundary : bool
+        Whether the boundary becomes a line if none is.
+
+    Returns
+    -------
+    Pslg
+        Its boundary is there (``Clip.has_own_boundary``).
+    """
+    lines = [chain.tolist() for chain in tin.lines.chains()]
+    nameless = _find_edges_without_line(tin)
+    named = rings if names_boundary and "boundary" not in tin.lines.kinds else []
+    chains = [follow(chain) for chain in lines + nameless] + named + rings
+    return Pslg(
+        points=points,
+        polylines=Polylines.of_chains(chains),
+        constraints=_gather_constraints(tin, len(nameless), len(named), len(rings)),
+        groups=np.full(len(chains), BOUNDARY),
+        clip=Clip(has_own_boundary=True),
+        vertex_of=tin.vertex_of,
+    )
+
+
+def _gather_constraints(tin: TIN, n_nameless: int, n_named: int, n_rings: int) -> ConstraintTable:
+    """Return what lines are: the TIN's own, edges of no line, rings as lines and as boundary."""
+    lines = tin.lines
+    n_breaklines = sum(kind in ("hard", "soft") for kind in lines.kinds)
+    nameless = n_breaklines + np.arange(n_nameless)
+    return ConstraintTable.join(
+        [
+            ConstraintTable(
+                lines.kinds, lines.sources.astype(np.int32), np.zeros(len(lines)), lines.names
+            ),
+            _make_nameless("soft", nameless),
+            _make_nameless("boundary", np.arange(n_named)),
+            _make_nameless("boundary", np.full(n_rings, -1)),
+        ]
+    )
+
+
+def _make_nameless(kind: LineKind, sources: NDArray[np.int64]) -> ConstraintTable:
+    return ConstraintTable.of_kind(kind, sources.astype(np.int32), np.zeros(len(sources)))
+
+
+def _find_edges_without_line(tin: TIN) -> list[list[int]]:
+    """Return the constrained edges inside the surface that are no segment of a line."""
+    is_inner = tin.constrained & (tin.neighbors > topology.NO_NEIGHBOR)
+    edges = np.unique(np.sort(topology.edges_at(tin.triangles, is_inner), axis=1), axis=0)
+    n = len(tin.points)
+    is_segment = np.isin(topology.edge_keys(edges, n), topology.edge_keys(tin.lines.segments(), n))
+    found: list[list[int]] = edges[~is_segment].tolist()
+    return found
