@@ -3,9 +3,9 @@
 
 #include "bind_earthwork.hpp"
 #include "bind_gridding.hpp"
+#include "bind_inspection.hpp"
 #include "bind_isolines.hpp"
 #include "bind_relief.hpp"
-#include "bind_residuals.hpp"
 
 NB_MODULE(_core, m) {
   m.doc() = "Compiled core of tinsmith.terrain: what is derived from a TIN.";
@@ -13,5 +13,5 @@ NB_MODULE(_core, m) {
   tinsmith::python::bind_gridding(m);
   tinsmith::python::bind_earthwork(m);
   tinsmith::python::bind_relief(m);
-  tinsmith::python::bind_residuals(m);
+  tinsmith::python::bind_inspection(m);
 }

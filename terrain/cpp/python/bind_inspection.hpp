@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "../../../tin/cpp/python/conversion.hpp"
-#include "../residuals/leave_one_out.hpp"
+#include "../inspection/leave_one_out.hpp"
 
 namespace tinsmith::python {
 
@@ -69,7 +69,7 @@ inline Xyz measure_neighbors(const GivenXyz& points, const GivenTriples& triangl
   return hand_over<Xyz>(std::move(found), {points.shape(0), 3});
 }
 
-inline void bind_residuals(nb::module_& m) {
+inline void bind_inspection(nb::module_& m) {
   m.def("leave_one_out", &leave_one_out, "points"_a.noconvert(), "triangles"_a.noconvert(),
         "neighbors"_a.noconvert(), "vertices"_a.noconvert(), "threads"_a = 1,
         "The elevation at some vertices without each, and the mean square to what gives it.");
