@@ -50,6 +50,11 @@ bench: $(READY) ## Time kernel, lines, edits, queries, readers, writers beside t
 	$(BIN)/python -m pip install --quiet --group bench
 	$(BIN)/python -m benchmarks
 
+.PHONY: docs
+docs: $(READY) ## Build the site of the documentation into build/site; a warning is an error
+	$(BIN)/sphinx-build -q -E -W --keep-going -c docs -d build/doctrees . build/site
+	@echo "build/site/index.html"
+
 .PHONY: gallery
 gallery: $(READY) ## Draw the pictures of docs/gallery.md anew
 	@set -e; for script in docs/gallery/*.py; do $(BIN)/python $$script; done

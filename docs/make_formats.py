@@ -49,7 +49,7 @@ counts.
 
 Another package adds formats through the entry-point group `tinsmith.formats`, each entry naming a
 `tinsmith.Format`, and commands through `tinsmith.commands`, each naming a `click.Command`.
-[`docs/examples/tinsmith-ifc`](examples/tinsmith-ifc) is one to copy: it writes IFC 4.
+[`docs/examples/tinsmith-ifc`](examples/tinsmith-ifc/README.md) is one to copy: it writes IFC 4.
 
 ```toml
 [project.entry-points."tinsmith.formats"]

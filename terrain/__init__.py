@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from .charts.triangles import to_matplotlib
     from .earthwork import Difference, difference, stage_storage, volume
     from .gridding import height_above, rasterize
+    from .hydrology import depressions, flow_path, pits, ponds, ridges_and_valleys
     from .inspection import blunders
     from .isolines import ContourCheck, check_contours, contour_bands, contour_labels, contours
     from .lift import lift
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from .results import Features, Raster, Table
     from .sections import cross_sections, drape, profile, section_lines
     from .sheets import Plan, plan
+    from .sight import line_of_sight, viewshed, visible_vertices
     from .simplification import simplify
     from .slope import aspect, slope
 else:  # a type checker takes every name for one that such a __getattr__ has
@@ -44,6 +46,7 @@ else:  # a type checker takes every name for one that such a __getattr__ has
             ".earthwork": ("Difference", "difference", "stage_storage", "volume"),
             ".gridding": ("height_above", "rasterize"),
             ".inspection": ("blunders",),
+            ".ground_filter": ("GroundPoints", "ground", "GroundPoints", "ground"),
             ".isolines": (
                 "ContourCheck",
                 "check_contours",
@@ -66,6 +69,18 @@ else:  # a type checker takes every name for one that such a __getattr__ has
             ".simplification": ("simplify",),
             ".slope": ("aspect", "slope"),
             ".charts.triangles": ("to_matplotlib",),
+            ".hydrology": (
+                "depressions",
+                "flow_path",
+                "pits",
+                "ponds",
+                "ridges_and_valleys",
+            ),
+            ".sight": (
+                "line_of_sight",
+                "viewshed",
+                "visible_vertices",
+            ),
         },
     )
 
@@ -73,6 +88,7 @@ __all__ = [
     "ContourCheck",
     "Difference",
     "Features",
+    "GroundPoints",
     "OptionError",
     "Plan",
     "Preview",
@@ -91,19 +107,26 @@ __all__ = [
     "contours",
     "cross_sections",
     "curvature",
+    "depressions",
     "difference",
     "drape",
     "earthwork_map",
+    "flow_path",
+    "ground",
     "height_above",
     "hillshade",
     "histogram",
     "lift",
+    "line_of_sight",
+    "pits",
     "plan",
+    "ponds",
     "preview",
     "profile",
     "profile_picture",
     "rasterize",
     "relief_map",
+    "ridges_and_valleys",
     "section_lines",
     "section_picture",
     "simplify",
@@ -112,5 +135,7 @@ __all__ = [
     "slope_statistics",
     "stage_storage",
     "to_matplotlib",
+    "viewshed",
+    "visible_vertices",
     "volume",
 ]

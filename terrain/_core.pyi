@@ -153,3 +153,11 @@ def shade_planes(
     darkest: int,
     brightest: int,
 ) -> Bytes: ...
+def densify(
+    seeds: Doubles,
+    points: Doubles,
+    is_candidate: Flags,
+    sine: float,
+    distance: float,
+    full_edge: float,
+) -> tuple[Doubles, Doubles]: ...

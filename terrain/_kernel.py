@@ -18,6 +18,7 @@ __all__ = [
     "TILE_SIDE",
     "GriddedSurface",
     "OverlayMesh",
+    "densify",
     "fill_bands",
     "fit_quadratics",
     "leave_one_out",
@@ -47,6 +48,7 @@ fit_quadratics = _core.fit_quadratics
 leave_one_out = _core.leave_one_out
 list_neighbors = _core.list_neighbors
 measure_neighbors = _core.measure_neighbors
+densify = _core.densify
 
 trace_contours = _core.trace_contours
 smooth_contours = _core.smooth_contours

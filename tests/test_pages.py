@@ -1,29 +1,37 @@
-"""The commands that the pages of docs/ show run, in a folder with the files they speak of."""
+"""The commands that the pages of docs/ show run, in a folder with the files they speak of.
 
+Where a page shows what a command says, that is compared; ``RENEW=1`` writes it anew.
+"""
+
+import contextlib
+import os
 import re
 import shlex
 import shutil
+import tomllib
 from pathlib import Path
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from support.blocks import ROOT, list_pages, list_sessions, name_page, read_blocks, remove_code
+from support.blocks import list_commands as list_lines
 from support.lidar_files import make_cloud, write_copc
+from support.orthos import write_grey
 
 import tinsmith as ts
 from tinsmith.cli import main
 
-ROOT = Path(__file__).parents[1]
-BLOCK = re.compile(r"```(?:ba)?sh\n(.*?)```", re.DOTALL)
-PAGES = [page for page in sorted((ROOT / "docs").glob("*.md")) if BLOCK.search(page.read_text())]
+PLUG_IN = ROOT / "docs/examples/tinsmith-ifc/README.md"  # run by its own test, once installed
+README = ROOT / "README.md"  # run by test_repository, as a user runs it
+PAGES = [page for page in list_pages() if page not in (PLUG_IN, README)]
 CRS = "EPSG:32616"
 MIDDLE = np.array([752_760.0, 4_024_270.0])
 SQUARE = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]])
 
 
 def list_commands(page):
-    text = "\n".join(BLOCK.findall(page.read_text())).replace("\\\n", " ")
-    return [line for line in text.splitlines() if line.startswith("tinsmith ")]
+    return [line for line in list_lines(page) if line.startswith("tinsmith ")]
 
 
 def make_rings(*rings):
@@ -49,11 +57,30 @@ def make_lidar(folder):
     write_copc(folder / "cloud.copc.laz", make_cloud(400))
 
 
-@pytest.fixture
-def folder(tmp_path, monkeypatch):
-    """Return a folder with the files that the pages speak of."""
-    (tmp_path / "sample_data").symlink_to(ROOT / "sample_data")
-    monkeypatch.chdir(tmp_path)
+def write_others(ground):
+    """Write a road with its axis, places, a raster, an ortho, a field file without a header."""
+    _, _, rows = (ROOT / "sample_data/site_survey.csv").read_text().partition("\n")
+    Path("field.csv").write_text(rows)
+    shutil.copy(ROOT / "sample_data/codes/junction.csv", "road.csv")
+    east, north = ts.read("road.csv", crs=CRS).points[:, :2].mean(axis=0)
+    ends = np.array([[east - 60, north], [east + 60, north]])
+    ts.write(ts.Features.of_lines(ends, [0, 2], crs=CRS, name="axis"), "centreline.gpkg")
+    Path("places.csv").write_text("x,y\n752700,4024250\n752800,4024300\n")
+    ts.write(ts.rasterize(ground, spacing=2.0), "other.tif")
+    write_grey(ground, "ortho.tif")
+
+
+@pytest.fixture(scope="module")
+def files(tmp_path_factory):
+    """Return a folder with the files that the pages speak of, made once."""
+    folder = tmp_path_factory.mktemp("files")
+    with contextlib.chdir(folder):
+        write_files()
+    return folder
+
+
+def write_files():
+    Path("sample_data").symlink_to(ROOT / "sample_data")
     survey = ts.read("sample_data/site_survey.csv", crs=CRS)
     ground = ts.triangulate(survey)
     pad = ts.read("sample_data/design_pad.csv", crs=CRS)
@@ -69,19 +96,97 @@ def folder(tmp_path, monkeypatch):
     ts.write(make_rings((-40, -30, 3)), "shafts.gpkg")
     ts.write(make_rings((40, 30, 4)), "cars.shp")
     ts.write(make_rings((-40, 30, 5)), "ponds.gpkg")
-    make_lidar(tmp_path)
+    write_others(ground)
+    make_lidar(Path())
     shutil.copytree(ROOT / "tests" / "data" / "meshes" / "esri_tin_holes", "old_tin")
+
+
+@pytest.fixture
+def folder(files, tmp_path, monkeypatch):
+    """Return a folder with a copy of the files, the one in which commands run."""
+    shutil.copytree(files, tmp_path, symlinks=True, dirs_exist_ok=True)
+    monkeypatch.chdir(tmp_path)
     return tmp_path
 
 
-@pytest.mark.filterwarnings("ignore::tinsmith.errors.LossWarning")  # told, as they should be
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+# ------------------------------------------------------------------------------ commands run
+
+LOSSES = pytest.mark.filterwarnings(
+    "ignore::tinsmith.errors.LossWarning"
+)  # told, as they should be
+
+
+def run_line(command):
+    """Run a line in this process; return its exit code and what it says."""
+    done = CliRunner().invoke(main, shlex.split(command)[1:])
+    return done.exit_code, done.output
+
+
+@LOSSES
+@pytest.mark.parametrize("page", [*filter(list_commands, PAGES)], ids=name_page)
 def test_commands_of_the_pages_run(page, folder, can_draw):
-    commands = list_commands(page)
-    assert commands
-    for command in commands:
-        words = shlex.split(command)[1:]
-        done = CliRunner().invoke(main, words)
-        assert done.exit_code == 0, f"{command}\n{done.output}"
+    for command in list_commands(page):
+        code, said = run_line(command)
+        assert code == 0, f"{command}\n{said}"
+        words = shlex.split(command)
         outputs = [words[k + 1] for k, word in enumerate(words) if word == "-o"]
         assert all((folder / name).exists() for name in outputs), command
+
+
+@LOSSES
+@pytest.mark.parametrize("page", [*filter(list_sessions, PAGES)], ids=name_page)
+def test_what_commands_say_is_what_the_pages_show(page, folder, can_draw):
+    text = page.read_text()
+    for command, shown in list_sessions(page):
+        code, said = run_line(command)
+        assert (code != 0) == said.startswith("Error"), said
+        if os.environ.get("RENEW"):
+            text = text.replace(f"$ {command}\n{shown}", f"$ {command}\n{said}")
+        else:
+            assert level_figures(said) == level_figures(shown), command
+    page.write_text(text)
+
+
+def level_figures(said):
+    """Return what a command says without what differs from run to run: seconds and bytes."""
+    said = re.sub(r"(?m)^(Time +)[\d.]+ m?s$", r"\1a moment", said)
+    return re.sub(r"\(\d[\d.,]* [kM]?(B|bytes)\)", "(size)", said).strip()
+
+
+# --------------------------------------------------------------------------- all is looked at
+
+LANGUAGES = {"python", "pycon", "sh", "bash", "console", "toml", "json", "cpp", "text"}
+RUN_ELSEWHERE = ("tinsmith", "qgis_process")
+
+
+@pytest.mark.parametrize("page", list_pages(), ids=name_page)
+def test_blocks_name_their_language(page):
+    """A block without one would be run by no test."""
+    found = {block.line: block.language for block in read_blocks(page)}
+    odd = {
+        line: language
+        for line, language in found.items()
+        if language not in LANGUAGES and not language.startswith("{")
+    }
+    assert odd == {}, f"the language must be one of {sorted(LANGUAGES)}"
+    rest = remove_code(page.read_text())
+    indented = re.findall(r"^    (?:tinsmith|import|ts\.|make|python|\$) .*", rest, re.MULTILINE)
+    assert indented == [], "fence it, with its language"
+
+
+@pytest.mark.parametrize("page", [*filter(list_lines, list_pages())], ids=name_page)
+def test_other_commands_of_the_pages_are_there(page):
+    """What a test does not run: goals of make, scripts, modules, extras of the package."""
+    goals = set(re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(), re.MULTILINE))
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    for line in list_lines(page):
+        words = shlex.split(line, comments=True)
+        if words[0] == "make":
+            assert {word for word in words[1:] if "=" not in word} <= goals, line
+        elif "pip" in words:
+            extras = ",".join(re.findall(r"\[([\w,]+)\]", line)).split(",")
+            assert set(extras) - {""} <= set(project["optional-dependencies"]), line
+        elif words[0] == "python":
+            assert words[1] == "-m" or (ROOT / words[1]).exists(), line
+        else:
+            assert words[0] in RUN_ELSEWHERE, f"no test knows what to make of: {line}"

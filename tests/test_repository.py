@@ -13,6 +13,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from support import processes
+from support.blocks import list_pages, name_page, read_blocks
+from support.orthos import write_grey
 
 import tinsmith
 import tinsmith as ts
@@ -248,17 +250,7 @@ def test_readme_python_runs(tmp_path, monkeypatch, can_draw):
     assert (tmp_path / "surface.html").exists()
 
 
-PAGES = [path for path in (ROOT / "docs").glob("*.md") if "```python" in path.read_text()]
-
-
-def write_ortho(tin, path):
-    """Write a picture of one grey over the bounds of a TIN."""
-    rasterio = pytest.importorskip("rasterio")
-    low, high = tin.bounds.xmin, tin.bounds.ymax
-    options = {"crs": str(tin.crs), "count": 3, "width": 9, "height": 9, "dtype": "uint8"}
-    options["transform"] = rasterio.Affine(50, 0, low, 0, -50, high)
-    with rasterio.open(path, "w", driver="GTiff", photometric="RGB", **options) as file:
-        file.write(np.full((3, 9, 9), 128, np.uint8))
+PAGES = [page for page in list_pages() if page.name != "README.md" and read_blocks(page, "python")]
 
 
 @pytest.fixture
@@ -273,7 +265,7 @@ def names_of_pages(tmp_path, monkeypatch):
     corners = np.array([[-9, -9], [9, -9], [9, 9], [-9, 9]])
     line = middle + np.array([[-40, -20], [40, 20]])
     ts.write(ts.rasterize(ground, spacing=2.0), "other.tif")
-    write_ortho(ground, Path("ortho.tif"))
+    write_grey(ground, Path("ortho.tif"))
     lines = {"line": line, "centreline": line, "roads": ts.contours(ground, interval=2.0)}
     rings = {"ring": middle + corners, "polygon": middle + corners + np.array([25, 0])}
     edge = dict(zip("ab", ground.edges[0].tolist(), strict=True))
@@ -282,11 +274,23 @@ def names_of_pages(tmp_path, monkeypatch):
     return {"ts": ts, "np": np, "survey": survey} | surfaces | lines | rings | edge | points
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+@pytest.mark.parametrize("page", PAGES, ids=name_page)
 def test_python_of_the_pages_runs(page, names_of_pages):
     """Run the blocks of a page, one after the other."""
-    blocks = re.findall(r"```python\n(.*?)```", page.read_text(), re.DOTALL)
-    exec("\n".join(blocks), names_of_pages)
+    exec("\n".join(block.text for block in read_blocks(page, "python")), names_of_pages)
+
+
+SESSIONS = [page for page in list_pages() if read_blocks(page, "pycon")]
+
+
+@pytest.mark.parametrize("page", SESSIONS, ids=name_page)
+def test_sessions_of_the_pages_say_what_they_show(page, names_of_pages):
+    """Run the examples of a page as one session."""
+    text = "\n".join(block.text for block in read_blocks(page, "pycon"))
+    session = doctest.DocTestParser().get_doctest(text, names_of_pages, page.stem, str(page), 0)
+    said = []
+    doctest.DocTestRunner(optionflags=doctest.ELLIPSIS).run(session, out=said.append)
+    assert said == []
 
 
 def test_readme_commands_run(tmp_path, can_draw):

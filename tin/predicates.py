@@ -31,6 +31,7 @@ __all__ = [
     "Columns",
     "blocks",
     "columns",
+    "falls_across",
     "in_circle",
     "is_last",
     "orientation",
@@ -46,6 +47,9 @@ _BLOCK = 1 << 14  # rows at a time: temporary arrays stay in the processor's cac
 _UNIT_ROUNDOFF = 2.0**-53
 ORIENTATION_BOUND = (3 + 16 * _UNIT_ROUNDOFF) * _UNIT_ROUNDOFF
 """Of the error of a turn in doubles, relative to the sizes of its two products."""
+
+_FALL_BOUND = 8 * _UNIT_ROUNDOFF
+"""Of the error of a fall in doubles, relative to its products: three factors rounded, and sums."""
 
 _IN_CIRCLE_BOUND = (10 + 96 * _UNIT_ROUNDOFF) * _UNIT_ROUNDOFF
 
@@ -120,6 +124,47 @@ def in_circle(
         terms = ((ax, dx), (ay, dy), (bx, dx), (by, dy), (cx, dx), (cy, dy))
         signs[block] = _decide(value, _IN_CIRCLE_BOUND * permanent, terms, _decide_in_circle)
     return signs
+
+
+def falls_across(
+    points: NDArray[np.float64], a: NDArray[Any], b: NDArray[Any], c: NDArray[Any]
+) -> tuple[NDArray[np.int8], NDArray[np.float64], NDArray[np.float64]]:
+    """Tell whether the plane through ``a``, ``b``, ``c`` falls across the edge from ``a`` to ``b``.
+
+    Parameters
+    ----------
+    points : (n, 3) float64 array
+        Elevations, too, of a magnitude in ``EXACT_RANGE``, or 0.
+    a, b, c : (k,) int arrays
+        Vertex numbers, counter-clockwise.
+
+    Returns
+    -------
+    signs : (k,) int8 array
+        +1 if its steepest descent leaves the triangle across the edge, -1 if it enters there, 0 if
+        it runs along the edge, or the plane is level. Exact.
+    values : (k,) float64 array
+        Descent times the length of the edge, times twice the area, rounded.
+    bounds : (k,) float64 array
+        Of the error of each value.
+    """
+    signs = np.empty(len(a), np.int8)
+    values, bounds = np.empty(len(a)), np.empty(len(a))
+    x, y, z = (np.ascontiguousarray(axis) for axis in points.T)
+    for block in blocks(len(a)):
+        (ax, bx, cx), (ay, by, cy), (az, bz, cz) = (
+            [axis.take(corner[block]) for corner in (a, b, c)] for axis in (x, y, z)
+        )
+        ux, uy, uz, vx, vy, vz = bx - ax, by - ay, bz - az, cx - ax, cy - ay, cz - az
+        square = ux * ux + uy * uy
+        value = vz * square - uz * (ux * vx + uy * vy)
+        bound = np.abs(vz) * square + np.abs(uz) * (np.abs(ux * vx) + np.abs(uy * vy))
+        bound *= _FALL_BOUND
+        terms = ((bx, ax), (by, ay), (bz, az), (cx, ax), (cy, ay), (cz, az))
+        # Where all products are 0, so is the value: within the range none underflows.
+        signs[block] = _decide(value, np.where(bound == 0.0, -1.0, bound), terms, _decide_fall)
+        values[block], bounds[block] = value, bound
+    return signs, values, bounds
 
 
 def is_last(xy: Columns, p: NDArray[Any], q: NDArray[Any]) -> NDArray[np.bool_]:
@@ -253,6 +298,12 @@ def _decide_in_circle(numbers: NDArray[np.int64]) -> NDArray[np.int8]:
     b_term = _multiply(_lift(bdx, bdy), _multiply_crosswise(cdx, cdy, adx, ady))
     c_term = _multiply(_lift(cdx, cdy), _multiply_crosswise(adx, ady, bdx, bdy))
     return _find_sign(a_term + b_term + c_term)
+
+
+def _decide_fall(numbers: NDArray[np.int64]) -> NDArray[np.int8]:
+    ux, uy, uz, vx, vy, vz = numbers
+    along = _carry(_multiply(ux, vx) + _multiply(uy, vy))
+    return _find_sign(_multiply(vz, _carry(_lift(ux, uy))) - _multiply(uz, along))
 
 
 def _lift(x: NDArray[np.int64], y: NDArray[np.int64]) -> NDArray[np.int64]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from .._methods import make_card
 from .._sentences import counted
 from .types import Frozen
 
@@ -626,3 +627,6 @@ class Report(Frozen):
             f"{counted(self.n_vertices, 'vertex', 'vertices')}, "
             f"{counted(self.n_triangles, 'triangle')}, {counted(merged, 'row')} merged away>"
         )
+
+    def _repr_html_(self) -> str:
+        return make_card(self)

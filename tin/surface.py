@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Never, Self, overload
 
 import numpy as np
 
-from .._methods import call_method
+from .._methods import call_method, make_card
 from .._sentences import counted
 from ..crs import CRS, Unit, require_one_unit, scale_elevations, shorten_crs
 from ..errors import choice
@@ -837,9 +837,8 @@ class TIN(Editable):
             f"z {z.min():g} to {z.max():g}, crs {shorten_crs(self.crs)}>"
         )
 
-    def _repr_html_(self) -> str | None:
-        card: str | None = call_method("TIN._repr_html_", self)
-        return card
+    def _repr_html_(self) -> str:
+        return make_card(self)
 
     # ---------------------------------------------------------------- as a value
 

@@ -12,7 +12,7 @@ from functools import cache
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from ..._sentences import shown, suggest
+from ..._sentences import shown
 from ...errors import FormatError, choice
 from .format import Format
 from .plug_in_formats import load_plug_in_formats
@@ -99,10 +99,7 @@ def find_format(name: str, action: str | None = None) -> Format:
     found = able or called
     if not found:
         names = tuple(one.name for one in known_formats())
-        raise FormatError(
-            f"Unknown format {shown(name)}: one of {', '.join(names)}.{suggest(wanted, names)}",
-            known=names,
-        )
+        raise FormatError(f"Unknown format {shown(name)}: one of {', '.join(names)}.", known=names)
     named = [one for one in found if one.name == wanted and not one.is_built_in]
     return choose_clear(named or found, f"The suffix '{suffix}'")
 

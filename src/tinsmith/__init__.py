@@ -65,6 +65,8 @@ if TYPE_CHECKING:
     )
     from .terrain.earthwork import Difference, difference, stage_storage, volume
     from .terrain.gridding import height_above, rasterize
+    from .terrain.ground_filter import GroundPoints, ground
+    from .terrain.hydrology import depressions, flow_path, pits, ponds, ridges_and_valleys
     from .terrain.inspection import blunders
     from .terrain.isolines import (
         ContourCheck,
@@ -85,6 +87,7 @@ if TYPE_CHECKING:
     from .terrain.results import Features, Raster, Table
     from .terrain.sections import cross_sections, drape, profile, section_lines
     from .terrain.sheets import Plan, plan
+    from .terrain.sight import line_of_sight, viewshed, visible_vertices
     from .terrain.simplification import simplify
     from .terrain.slope import aspect, slope
     from .tin import (
@@ -118,6 +121,11 @@ else:  # a type checker takes every name for one that such a __getattr__ has
     register_methods(
         {
             "TIN._repr_html_": "tinsmith.terrain.preview.card:make_card",
+            "Survey._repr_html_": "tinsmith.terrain.cards.survey:make_survey_card",
+            "Report._repr_html_": "tinsmith.terrain.cards.survey:make_report_card",
+            "Features._repr_html_": "tinsmith.terrain.cards.results:make_features_card",
+            "Raster._repr_html_": "tinsmith.terrain.cards.results:make_raster_card",
+            "Table._repr_html_": "tinsmith.terrain.cards.results:make_table_card",
             "TIN.plot": "tinsmith.terrain.charts.triangles:plot_tin",
             "TIN.to_crs": "tinsmith.io.reprojection.surfaces:reproject",
             "TIN.to_geodataframe": "tinsmith.io.vector.libraries:build_frame",
@@ -203,6 +211,14 @@ else:  # a type checker takes every name for one that such a __getattr__ has
             ),
             ".io.raster.cells": ("rasterize",),  # which reads the file of `like`, too
             ".terrain.gridding": ("height_above",),
+            ".terrain.hydrology": (
+                "depressions",
+                "flow_path",
+                "pits",
+                "ponds",
+                "ridges_and_valleys",
+            ),
+            ".terrain.ground_filter": ("GroundPoints", "ground"),
             ".terrain.relief": (
                 "aspect_classes",
                 "curvature",
@@ -235,6 +251,11 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "refine",
                 "triangulate",
             ),
+            ".terrain.sight": (
+                "line_of_sight",
+                "viewshed",
+                "visible_vertices",
+            ),
             ".tin.voronoi": ("voronoi",),
         },
     )
@@ -256,6 +277,7 @@ __all__ = [
     "Format",
     "FormatError",
     "Grid",
+    "GroundPoints",
     "Lines",
     "LinesError",
     "LossWarning",
@@ -294,12 +316,15 @@ __all__ = [
     "contours",
     "cross_sections",
     "curvature",
+    "depressions",
     "difference",
     "drape",
     "earthwork_map",
     "find_format",
+    "flow_path",
     "from_mesh",
     "from_raster",
+    "ground",
     "height_above",
     "hillshade",
     "histogram",
@@ -307,9 +332,12 @@ __all__ = [
     "known_formats",
     "length_unit",
     "lift",
+    "line_of_sight",
     "lines_from_codes",
     "paper",
+    "pits",
     "plan",
+    "ponds",
     "preview",
     "profile",
     "profile_picture",
@@ -325,6 +353,7 @@ __all__ = [
     "refine",
     "relief_map",
     "reproject",
+    "ridges_and_valleys",
     "section_lines",
     "section_picture",
     "simplify",
@@ -343,6 +372,8 @@ __all__ = [
     "to_ugrid",
     "transform_points",
     "triangulate",
+    "viewshed",
+    "visible_vertices",
     "volume",
     "voronoi",
     "with_lines",

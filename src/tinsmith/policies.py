@@ -21,7 +21,9 @@ __all__ = [
     "EmptyCircleRule",
     "Extrapolation",
     "FeatureKind",
+    "FlowProduct",
     "GridStyle",
+    "GroundReturns",
     "InterpolationMethod",
     "LineKind",
     "LineReading",
@@ -48,6 +50,9 @@ CrossingPolicy: TypeAlias = Literal["split", "error"]
 
 TrimPolicy: TypeAlias = Literal["perimeter", "everywhere"]
 """Where triangles with too long an edge are dropped: from the outside inwards, or everywhere."""
+
+GroundReturns: TypeAlias = Literal["last", "all"]
+"""Which returns of a pulse may be ground."""
 
 BreaklineKind: TypeAlias = Literal["hard", "soft"]
 """Whether a line of edges is a break of the slope."""
@@ -99,6 +104,9 @@ EmptyCircleRule: TypeAlias = Literal["angle", "open"]
 
 DistanceRule: TypeAlias = Literal["circle", "ties"]
 """Among which points the paper's distance decides."""
+
+FlowProduct: TypeAlias = Literal["paths", "pits", "depressions", "ponds", "ridges"]
+"""What is found where water runs on a surface."""
 
 InterpolationMethod: TypeAlias = Literal["linear", "nearest", "laplace", "natural", "c1"]
 """What lies between the vertices of a TIN."""

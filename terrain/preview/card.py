@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import base64
 import math
-import struct
-import zlib
-from html import escape
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..._sentences import counted
+from ..cards.frame import SIZE, describe_bounds, name_crs, name_units, write_card
 from ..units import find_ground
 from .scene import NORTHWEST, choose_exaggeration, measure_relief
 from .tints import interpolate_tints
@@ -24,21 +21,14 @@ if TYPE_CHECKING:
     from ...tin import TIN
     from ..units import Ground
 
-__all__ = ["draw_map", "encode_png", "make_card"]
-
-_SIZE = (320, 240)
-"""Greatest width and height of the map, pixels."""
+__all__ = ["draw_map", "make_card"]
 
 _TINTS = 256
 _AMBIENT, _BRIGHTEST = 0.42, 1.35
 """Share of the light that falls everywhere, and the most of the rest, as in a page's still."""
 
-_COMPRESSION = 3
-_MOST_WRITTEN = 1e12
 _STEEPEST = 1e6
 """Rise over run, beyond which light is the same."""
-
-_BORDER = "1px solid rgba(128, 128, 128, 0.4)"
 
 
 def make_card(tin: TIN) -> str:
@@ -54,18 +44,8 @@ def make_card(tin: TIN) -> str:
         Of one element, with the map as a PNG within; nothing is asked for. Colours of words are
         those of the notebook's theme.
     """
-    picture = base64.b64encode(encode_png(draw_map(tin))).decode("ascii")
-    rows = "".join(
-        f'<tr style="background: none"><td style="text-align: left; opacity: 0.7">{escape(name)}'
-        f'</td><td style="text-align: left">{escape(value)}</td></tr>'
-        for name, value in _describe(tin)
-    )
-    return (
-        f'<div style="display: inline-flex; gap: 16px; align-items: center; flex-wrap: wrap; '
-        f'border: {_BORDER}; border-radius: 6px; padding: 10px 14px">'
-        f'<img alt="Map of the surface, north up" src="data:image/png;base64,{picture}">'
-        f'<div><strong>TIN</strong><table style="margin: 4px 0 0 0">{rows}</table></div></div>'
-    )
+    picture = draw_map(tin)
+    return write_card("TIN", _describe(tin), picture=picture, alt="Map of the surface, north up")
 
 
 def _describe(tin: TIN) -> Iterator[tuple[str, str]]:
@@ -74,24 +54,12 @@ def _describe(tin: TIN) -> Iterator[tuple[str, str]]:
     yield "Surface", f"{counts}, {counted(len(tin.triangles), 'triangle')}"
     if len(tin.lines.kinds):
         yield "Lines", counted(len(tin.lines.kinds), "line")
-    yield "CRS", "not known" if tin.crs is None else tin.crs.caption
-    units = [tin.crs.horizontal_unit if tin.crs is not None else None, tin.elevation_unit]
-    across, up = ("not known" if unit is None else unit.name for unit in units)
-    yield "Units", across if across == up else f"{across}, elevations {up}"
-    low, high = tin.points.min(axis=0).tolist(), tin.points.max(axis=0).tolist()
-    for name, start, stop in zip(("Easting", "Northing", "Elevation"), low, high, strict=True):
-        yield name, f"{_write(start, stop - start)} to {_write(stop, stop - start)}"
+    yield "CRS", name_crs(tin.crs)
+    yield "Units", name_units(tin.crs, tin.elevation_unit)
+    yield from describe_bounds(tin.points)
 
 
-def _write(value: float, span: float) -> str:
-    """Write a coordinate with the decimals that tell a thousandth of a span."""
-    if abs(value) >= _MOST_WRITTEN:
-        return f"{value:g}"
-    decimals = 3 if span <= 0 else min(max(2 - math.floor(math.log10(span)), 0), 9)
-    return f"{value:,.{decimals}f}"
-
-
-def draw_map(tin: TIN, *, size: tuple[int, int] = _SIZE) -> NDArray[np.uint8]:
+def draw_map(tin: TIN, *, size: tuple[int, int] = SIZE) -> NDArray[np.uint8]:
     """Draw a surface from above, north up, with hypsometric tints and hillshade.
 
     Parameters
@@ -159,27 +127,3 @@ def _shade(heights: NDArray[np.float64], pixel: float) -> NDArray[np.float64]:
 
 def _limit(slopes: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.clip(np.nan_to_num(slopes), -_STEEPEST, _STEEPEST)
-
-
-def encode_png(picture: NDArray[np.uint8]) -> bytes:
-    """Return a PNG of an (height, width, 4) picture: each byte as its step from the pixel before.
-
-    Parameters
-    ----------
-    picture : (height, width, 4) uint8 array
-        Red, green, blue and opacity.
-    """
-    height, width, _ = picture.shape
-    steps = picture.copy()
-    steps[:, 1:] -= picture[:, :-1]
-    rows = np.full((height, 1 + 4 * width), 1, np.uint8)  # filter 1 of the standard, "Sub"
-    rows[:, 1:] = steps.reshape(height, -1)
-    header = struct.pack(">IIBBBBB", width, height, 8, 6, 0, 0, 0)
-    data = zlib.compress(rows.tobytes(), _COMPRESSION)
-    chunks = ((b"IHDR", header), (b"IDAT", data), (b"IEND", b""))
-    return b"\x89PNG\r\n\x1a\n" + b"".join(_make_chunk(*chunk) for chunk in chunks)
-
-
-def _make_chunk(kind: bytes, data: bytes) -> bytes:
-    check = struct.pack(">I", zlib.crc32(kind + data))
-    return struct.pack(">I", len(data)) + kind + data + check

@@ -7,6 +7,7 @@ import subprocess
 import sys
 from functools import cache
 
+from ... import _optional
 from ...errors import RenderError
 
 __all__ = ["require_on_screen", "require_opengl", "require_window"]
@@ -36,9 +37,12 @@ def require_opengl() -> None:
 
     Raises
     ------
+    MissingExtraError
+        If PyVista, which brings VTK, is not installed.
     RenderError
-        If not; the sentence says what to install.
+        If this machine cannot; the sentence says what to install.
     """
+    _optional.require("pyvista", "A preview")
     if not _find_window_class():
         raise RenderError(
             "This machine cannot draw: OpenGL is missing or does not work. "

@@ -10,7 +10,7 @@ import numpy as np
 from ...errors import OptionError, choice
 from ...policies import SlopeUnit
 from ..georeference import describe_unknown, find_plane_units
-from ..results import Features, Table
+from ..results import Features
 from ..slope import aspect, measure_plane_areas, slope
 from .colors import compass_colors, ramp_colors
 from .dissolving import dissolve
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from ...tin import TIN
 
-__all__ = ["aspect_classes", "slope_classes", "tabulate_classes"]
+__all__ = ["aspect_classes", "slope_classes"]
 
 _DEGREE_BREAKS = (2.0, 5.0, 10.0, 15.0, 25.0, 35.0, 45.0)
 _PERCENT_BREAKS = (2.0, 5.0, 10.0, 15.0, 30.0, 60.0)
@@ -141,13 +141,6 @@ def aspect_classes(tin: TIN) -> Features:
         compass_colors(),
     )
     return _as_features(tin, classes, legend, "°", "aspect_classes")
-
-
-def tabulate_classes(classes: Features) -> Table:
-    """Return the columns of classes as a table, without their polygons."""
-    return Table(
-        dict(classes.columns), units=dict(classes.units), name=classes.name, notes=classes.notes
-    )
 
 
 def _as_breaks(breaks: Any, unit: str) -> NDArray[np.float64]:

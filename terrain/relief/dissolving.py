@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
@@ -11,9 +11,24 @@ from ...tin.topology import NO_NEIGHBOR, boundary_walks, gather
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from ...tin import TIN
 
-__all__ = ["Dissolved", "dissolve"]
+__all__ = ["Dissolved", "Mesh", "dissolve", "number_components"]
+
+
+class Mesh(Protocol):
+    """Triangles that share their vertices: a TIN, or what has these of its arrays."""
+
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """Vertices, (n, 2) or (n, 3)."""
+
+    @property
+    def triangles(self) -> NDArray[np.int32]:
+        """Of vertices, counter-clockwise."""
+
+    @property
+    def neighbors(self) -> NDArray[np.int32]:
+        """Across each edge, -1 outside."""
 
 
 class Dissolved(NamedTuple):
@@ -36,12 +51,12 @@ class Dissolved(NamedTuple):
     classes: NDArray[np.int64]
 
 
-def dissolve(tin: TIN, classes: NDArray[np.int64]) -> Dissolved:
+def dissolve(tin: Mesh, classes: NDArray[np.int64]) -> Dissolved:
     """Join the triangles of each class to polygons.
 
     Parameters
     ----------
-    tin : TIN
+    tin : TIN or Mesh
     classes : (m,) int array
         Class of each triangle; below 0 it is left out.
 
@@ -66,7 +81,7 @@ def dissolve(tin: TIN, classes: NDArray[np.int64]) -> Dissolved:
         nothing = np.zeros(1, np.int64)
         return Dissolved(nothing[:0], nothing, nothing, nothing, nothing[:0])
     neighbors = _part_classes(tin.neighbors, classes)
-    parts = _number_components(neighbors)
+    parts = number_components(neighbors)
     rings = _trace_rings(tin.triangles, neighbors, parts, classes)
     return _as_levels(rings, _sort_exteriors_first(rings, classes, tin.points), classes)
 
@@ -85,7 +100,7 @@ def _part_classes(neighbors: NDArray[np.int32], classes: NDArray[np.int64]) -> N
     return np.where(is_same, neighbors, np.int32(NO_NEIGHBOR))
 
 
-def _number_components(neighbors: NDArray[np.int32]) -> NDArray[np.int64]:
+def number_components(neighbors: NDArray[np.int32]) -> NDArray[np.int64]:
     """Return the smallest triangle that each is connected to.
 
     Roots hook onto the smallest root beside them, then every path is halved until it is one step

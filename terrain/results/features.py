@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
 
+from ..._methods import make_card
 from ..._sentences import counted
 from ...crs import CRS, Unit, require_one_unit, shorten_crs
 from ...errors import OptionError
@@ -259,6 +260,9 @@ class Features(Frozen):
         names = f", columns {', '.join(self.columns)}" if self.columns else ""
         title = f" {self.name}" if self.name else ""
         return f"<Features{title}: {self._count()}{names}, crs {shorten_crs(self.crs)}>"
+
+    def _repr_html_(self) -> str:
+        return make_card(self)
 
     def _count(self) -> str:
         noun = self.kind[:-1]

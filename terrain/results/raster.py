@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._methods import make_card
 from ..._sentences import counted
 from ...crs import CRS, shorten_crs
 from ...errors import OptionError
@@ -128,6 +129,9 @@ class Raster(Frozen):
             f"spacing {self.grid.spacing:g}, bands {', '.join(self.bands)}, "
             f"crs {shorten_crs(self.crs)}>"
         )
+
+    def _repr_html_(self) -> str:
+        return make_card(self)
 
 
 def _as_band(name: str, values: Any, shape: tuple[int, ...]) -> Any:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from ... import _optional
+from ..._methods import make_card
 from ..._sentences import counted
 from ...errors import OptionError
 from ...tin.types import Frozen
@@ -18,8 +19,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from .columns import Units
+    from .parts import FeatureParts
 
-__all__ = ["Table"]
+__all__ = ["Table", "tabulate_columns"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -102,3 +104,13 @@ class Table(Frozen):
     def __repr__(self) -> str:
         title = f" {self.name}" if self.name else ""
         return f"<Table{title}: {counted(len(self), 'row')}, columns {', '.join(self.columns)}>"
+
+    def _repr_html_(self) -> str:
+        return make_card(self)
+
+
+def tabulate_columns(features: FeatureParts) -> Table:
+    """Return the columns of features as a table, without their geometries."""
+    return Table(
+        dict(features.columns), units=dict(features.units), name=features.name, notes=features.notes
+    )

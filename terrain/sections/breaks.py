@@ -39,6 +39,9 @@ class Breaks(NamedTuple):
         Place in ``CROSSED``.
     triangles : (n,) int32 array
         Through which, or along an edge of which, the segment goes on; -1 where there is no surface.
+    vertices, edges : (n,) int32 arrays
+        What lies there: a vertex of the TIN, or an edge as three times its triangle plus the corner
+        opposite; -1 for none.
     """
 
     segments: NDArray[np.int64]
@@ -47,6 +50,8 @@ class Breaks(NamedTuple):
     elevations: NDArray[np.float64]
     crossed: NDArray[np.int8]
     triangles: NDArray[np.int32]
+    vertices: NDArray[np.int32]
+    edges: NDArray[np.int32]
 
     def scale_elevations(self, factor: float) -> Breaks:
         """Return the breaks with elevations times a factor."""
@@ -124,4 +129,4 @@ def trace_breaks(tin: TIN, segments: Segments) -> Breaks:
     crossed[is_edge] = _EDGE
     crossed[is_edge & surface.constrained.ravel()[edges]] = _BREAKLINE
     crossed[is_edge & (surface.neighbors.ravel()[edges] == NO_NEIGHBOR)] = _BOUNDARY
-    return Breaks(find_owners(offsets), ratios, xy, elevations, crossed, triangles)
+    return Breaks(find_owners(offsets), ratios, xy, elevations, crossed, triangles, vertices, edges)

@@ -1,4 +1,4 @@
-"""Campaign: points and lines in the guise of other libraries, against the TIN of plain arrays."""
+"""Campaign: points and lines as other libraries have them, against the TIN of plain arrays."""
 
 from __future__ import annotations
 
@@ -67,7 +67,18 @@ def examine(case: Case) -> str:
     carries |= bool(shapes) and case["line guise"] in ("series", "frame", "features")
     assert found.crs == (crs if carries else None), found.crs
     assert find_differences(_strip(wanted), _strip(found)) == []
+    _require_way_back(found)
     return f"built, {role}"
+
+
+def _require_way_back(tin: ts.TIN) -> None:
+    """A mesh of another library comes back with the same bits, whatever was subtracted."""
+    for make in (ts.to_meshio, ts.to_trimesh):
+        back = ts.from_mesh(make(tin))
+        for name in ("points", "triangles"):
+            same = getattr(back, name).tobytes() == getattr(tin, name).tobytes()
+            assert same, f"{name} differ after {make.__name__}"
+        assert back.crs == tin.crs
 
 
 def _strip(tin: ts.TIN) -> ts.TIN:

@@ -63,3 +63,12 @@ def list_places(step=30.0, margin=10.0):
     places = np.array([(x, y) for x in along for y in along])
     colors = [QUARTERS[(int(y > SIDE / 2), int(x > SIDE / 2))] for x, y in places]
     return np.column_stack([WEST + places[:, 0], NORTH - places[:, 1]]), np.array(colors)
+
+
+def write_grey(tin, path):
+    """Write a picture of one grey over the bounds of a TIN."""
+    import rasterio
+
+    transform = rasterio.Affine(50, 0, tin.bounds.xmin, 0, -50, tin.bounds.ymax)
+    grey = np.full((3, 9, 9), 128, np.uint8)
+    write_raster(path, grey, crs=str(tin.crs), transform=transform, photometric="RGB")

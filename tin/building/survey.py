@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._methods import make_card
 from ..._sentences import counted
 from ...crs import CRS, Unit, require_one_unit, shorten_crs
 from ...errors import OptionError
@@ -149,6 +150,9 @@ class Survey:
         return (
             f"<Survey: {counted(len(self), 'point')}{origin}{names}, crs {shorten_crs(self.crs)}>"
         )
+
+    def _repr_html_(self) -> str:
+        return make_card(self)
 
 
 def _as_lines(name: str, lines: Any) -> Sequence[Any]:

@@ -14,6 +14,7 @@ SECTIONS = {
         "compare": "Compare the paper's algorithms with the exact kernel.",
         "refine": "Make a finite element mesh of a TIN.",
         "simplify": "Leave out points that a TIN within a tolerance can do without.",
+        "ground": "Tell the ground from buildings, plants and noise.",
         "edit": "Change a TIN by a script of edits.",
         "convert": "Write points or a TIN in another format.",
         "formats": "List the formats that can be read and written.",
@@ -28,6 +29,8 @@ SECTIONS = {
         "drape": "Lay points, lines or polygons on a TIN.",
         "interpolate": "Find the elevations of a surface at the places of a CSV file.",
         "raster": "Turn a surface into a raster: elevation, slope, aspect, hillshade.",
+        "flow": "Find flow paths, pits, depressions, ponds, ridges and valleys.",
+        "sight": "Find what is seen from where: lines of sight, viewsheds.",
         "plan": "Draw a plan on paper, true to scale: PDF, SVG, PNG.",
     },
     "Shell": {

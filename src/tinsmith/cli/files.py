@@ -11,7 +11,7 @@ from typing import IO, TYPE_CHECKING, Any
 
 import click
 
-from .._sentences import counted
+from .._sentences import counted, suggest
 from .output.console import emit_file
 from .output.failures import Failure, note_written
 from .parameters import refuse_value
@@ -50,7 +50,7 @@ __all__ = [
 _TEXT_FORMATS = ("delimited", "geojson", "obj", "off", "2dm", "cityjson", "csv", "json")
 """Formats that a terminal can show."""
 
-_WISHES = ("most_cells",)
+_WISHES = ("most_cells", "attributes")
 """Options of commands, not of users, which count where the format has them."""
 
 
@@ -375,7 +375,7 @@ def _require_format(flag: str, name: str | None) -> None:
         if name is not None:
             find_format(name)
     except FormatError as error:
-        raise refuse_value(flag, error) from error
+        raise refuse_value(flag, error, suggest(name or "", error.known)) from error
 
 
 def _choose_output_formats(path: Path, name: str | None, kinds: Sequence[str]) -> dict[str, Format]:

@@ -125,8 +125,14 @@ class _Commands(click.Group):
         return super().resolve_command(ctx, args)
 
 
-def _tell_version(ctx: click.Context) -> None:
+def _tell_version(
+    ctx: click.Context,
+    param: click.Parameter,  # noqa: ARG001 - click's signature
+    value: bool,
+) -> None:
     """Say which version runs, and for which Python and machine its core was compiled."""
+    if not value or ctx.resilient_parsing:
+        return
     core = find_spec("tinsmith.tin._core")
     name = "" if core is None or core.origin is None else Path(core.origin).name
     build = name.removeprefix("_core.").rpartition(".")[0] or "missing"
@@ -144,7 +150,7 @@ def _tell_version(ctx: click.Context) -> None:
     is_flag=True,
     is_eager=True,
     expose_value=False,
-    callback=lambda ctx, _, is_asked: is_asked and _tell_version(ctx),
+    callback=_tell_version,
     help="Show the version, that of the compiled core and Python's, and exit.",
 )
 def main() -> None:

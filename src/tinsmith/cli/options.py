@@ -76,6 +76,7 @@ class Reading:
     returns: str | None = None
     resolution: float | None = None
     every: int | None = None
+    attributes: str | None = None
     layer: str | None = None
     z_field: str | None = None
     lines_as: str | None = None

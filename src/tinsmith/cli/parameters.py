@@ -172,10 +172,10 @@ def _require_crs(
     return value
 
 
-def refuse_value(flag: str, error: Exception) -> click.UsageError:
-    """Return wrong usage, with the library's sentence on the value of an option."""
+def refuse_value(flag: str, error: Exception, more: str = "") -> click.UsageError:
+    """Return wrong usage, with the library's sentence on the value of an option, and more."""
     sentence = str(error)
-    return click.UsageError(f"Invalid {flag}: {sentence[:1].lower()}{sentence[1:]}")
+    return click.UsageError(f"Invalid {flag}: {sentence[:1].lower()}{sentence[1:]}{more}")
 
 
 def input_file(name: str) -> Decorator:

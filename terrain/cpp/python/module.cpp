@@ -4,6 +4,7 @@
 #include "bind_earthwork.hpp"
 #include "bind_gridding.hpp"
 #include "bind_inspection.hpp"
+#include "bind_ground.hpp"
 #include "bind_isolines.hpp"
 #include "bind_relief.hpp"
 
@@ -14,4 +15,5 @@ NB_MODULE(_core, m) {
   tinsmith::python::bind_earthwork(m);
   tinsmith::python::bind_relief(m);
   tinsmith::python::bind_inspection(m);
+  tinsmith::python::bind_ground(m);
 }

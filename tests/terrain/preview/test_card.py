@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-import base64
 import io
 import re
 import subprocess
 import sys
-from html.parser import HTMLParser
 
 import numpy as np
 import pytest
 from PIL import Image
+from support.cards import picture_of, read
 from support.pages import open_page
 
 import tinsmith as ts
-from tinsmith.terrain.preview.card import draw_map, encode_png
+from tinsmith.terrain.cards.frame import encode_png
+from tinsmith.terrain.preview.card import draw_map
 from tinsmith.terrain.preview.tints import compute_lightness
 
 CORNER = np.array([742_000.0, 4_030_000.0])
@@ -28,37 +28,6 @@ def hills(count=3000, *, width=1000.0, height=600.0, crs="EPSG:32616", z_unit=No
     z = 300 + 20 * np.sin(xy[:, 0] / 150) + 10 * np.cos(xy[:, 1] / 90)
     points = np.column_stack([xy + CORNER, z])
     return ts.triangulate(points, crs=crs, z_unit=z_unit)
-
-
-class Reader(HTMLParser):
-    """The words and the elements of a page; an element that is not closed fails."""
-
-    def __init__(self):
-        super().__init__()
-        self.words, self.tags, self.open = [], [], []
-
-    def handle_starttag(self, tag, attrs):
-        self.tags.append((tag, dict(attrs)))
-        if tag not in {"img", "br"}:
-            self.open.append(tag)
-
-    def handle_endtag(self, tag):
-        assert self.open.pop() == tag
-
-    def handle_data(self, data):
-        self.words.append(data)
-
-
-def read(card):
-    reader = Reader()
-    reader.feed(card)
-    assert reader.open == []
-    return reader
-
-
-def picture_of(card):
-    data = re.search(r'src="data:image/png;base64,([^"]+)"', card)[1]
-    return np.asarray(Image.open(io.BytesIO(base64.b64decode(data))))
 
 
 # ------------------------------------------------------------------ figures
@@ -185,7 +154,7 @@ def test_a_card_is_the_same_each_time_and_small():
     tin = hills(20_000)
     card = tin._repr_html_()
     assert card == hills(20_000)._repr_html_()
-    assert len(card) < 300_000
+    assert len(card) < 200_000
 
 
 def test_a_card_needs_neither_pyvista_nor_matplotlib_nor_pillow():

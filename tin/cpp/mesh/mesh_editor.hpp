@@ -56,6 +56,11 @@ class MeshEditor {
     return points_.add({});
   }
 
+  // Where p lies; the walk there begins at an edge that may be near.
+  MeshLocation locate(Point p, HalfEdge near) {
+    return PointSearch(mesh_, points_, count_, state_).locate(p, near, kGhost);
+  }
+
   // The vertex at p, which is `slot` if there was none; a fixed edge through p is split.
   Vertex insert(Point p, Vertex slot) {
     return insert_at(PointSearch(mesh_, points_, count_, state_).locate(p, last_, landmark_near(p)),

@@ -9,7 +9,7 @@ import click
 from ..._sentences import counted
 from ..options import writing_options
 from ..output.failures import Failure, refuse_option
-from ..parameters import input_file, number_option, output_files
+from ..parameters import Command, input_file, number_option, output_files
 from ..paths import INPUT, Named
 from ..request import surface_options
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["simplify"]
 
 
-@click.command()
+@click.command(cls=Command)
 @input_file("file")
 @output_files
 @number_option(

@@ -58,7 +58,7 @@ def slope(
       tinsmith slope sample_data/jacksboro.tif --unit percent --breaks 5,15,30 -o slope.geojson
     """  # noqa: D301 - click reads the control character
     from ...terrain import aspect_classes, slope_classes, slope_statistics
-    from ...terrain.relief.classes import tabulate_classes
+    from ...terrain.results.table import tabulate_columns
 
     if aspect and breaks is not None:
         raise click.UsageError("--breaks is for slopes: aspects have the eight directions.")
@@ -68,7 +68,7 @@ def slope(
         made = aspect_classes(tin) if aspect else slope_classes(tin, breaks=breaks, unit=slope_unit)
         statistics = slope_statistics(tin, unit=slope_unit)
     planned.write("Features", made)
-    planned.write("Table", tabulate_classes(made))
+    planned.write("Table", tabulate_columns(made))
     rows = _summarise_classes(tin, made, statistics)
     request.finish(planned, rows, lambda: _describe_classes(file, made, statistics))
 

@@ -10,6 +10,9 @@ from ..._sentences import counted
 from ...tin.report import LEFT_OUT
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
+    from ...terrain import Features
     from ...tin import TIN, Report, Survey
     from .console import Row
 
@@ -18,6 +21,7 @@ __all__ = [
     "count_given_lines",
     "count_lines",
     "describe_counts",
+    "describe_features",
     "describe_given_lines",
     "find_elevation_symbol",
     "mesh_counts",
@@ -129,3 +133,18 @@ def _describe_overruled(report: Report, survey: Survey) -> str:
     most = float(np.abs(overruled.heights - overruled.taken).max())
     number, up = len(overruled.vertices), find_elevation_symbol(survey)
     return f"{number:,} overruled by lines of more weight, the most by {most:.3f}{up}"
+
+
+def describe_features(file: Path, found: Features, **more: Any) -> dict[str, Any]:
+    """Return what ``--json`` tells of features: a record for each, without its geometry."""
+    from ...terrain.results.columns import unit_text
+
+    names = list(found.columns)
+    rows = zip(*(column.tolist() for column in found.columns.values()), strict=True)
+    return {
+        "input": str(file),
+        **more,
+        "found": [dict(zip(names, row, strict=True)) for row in rows],
+        "units": {name: unit_text(found.units, name) for name in found.units},
+        "notes": list(found.notes),
+    }

@@ -1,0 +1,149 @@
+"""``tinsmith flow``: where water runs on a TIN, and where it stands."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ...policies import FlowProduct
+from ..output.failures import Failure
+from ..parameters import Command, choice_option, input_file, number_option, output_files
+from ..paths import LINES, Named
+from ..request import surface_options
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from ...terrain import Features
+    from ...tin import TIN
+    from ..output.console import Row
+    from ..request import Request
+
+__all__ = ["flow"]
+
+_SHOWN = 8
+_FLAGS = {
+    "begins": ("--from", ("paths",)),
+    "points": ("--points", ("paths",)),
+    "level": ("--level", ("ponds",)),
+    "min_depth": ("--min-depth", ("depressions",)),
+    "nested": ("--nested", ("depressions",)),
+    "min_angle": ("--min-angle", ("ridges",)),
+}
+
+
+@click.command(cls=Command)
+@input_file("file")
+@output_files
+@choice_option("--find", FlowProduct, "What to find.", default="depressions")
+@click.option(
+    "--from",
+    "begins",
+    metavar="X Y",
+    nargs=2,
+    type=float,
+    multiple=True,
+    help="Where a drop falls, for paths. May be given several times.",
+)
+@click.option("--points", metavar="FILE", type=LINES, help="Vector file of such places.")
+@number_option("--level", "ELEVATION", "Of the water, for ponds.")
+@number_option("--min-depth", "HEIGHT", "Leave out depressions that are not as deep.")
+@click.option("--nested", is_flag=True, help="Also depressions that are part of larger ones.")
+@number_option("--min-angle", "DEGREES", "Leave out ridges and valleys that bend less.")
+@surface_options()
+def flow(file: Path, find: FlowProduct, request: Request, **asked: Any) -> None:
+    """Find where water runs on the TIN in FILE, or on that of the points in it.
+
+    Paths of drops, pits, depressions with the water they hold, ponds at a level, or edges that are
+    ridges and valleys. Water leaves the surface freely at its boundary. Vector files get the
+    features, tables (.csv, .json) their columns.
+
+    \b
+    Example:
+      tinsmith flow sample_data/jacksboro.tif --min-depth 1 -o depressions.gpkg
+      tinsmith flow site.ply --find paths --from 752700 4024300 -o path.geojson
+    """  # noqa: D301 - click reads the control character
+    from ...terrain.results.table import tabulate_columns
+    from ..output.line_summaries import describe_features
+
+    _require_fitting(find, asked)
+    more = [] if asked["points"] is None else [_name_points(asked["points"])]
+    planned = request.plan_products(request.list_inputs(file, more=more), "Features", "Table")
+    tin = request.read_tin(file)
+    with request.step("Finding"):
+        found = _find(tin, find, asked)
+    planned.write("Features", found)
+    planned.write("Table", tabulate_columns(found))
+    request.finish(
+        planned, _summarise(tin, found), lambda: describe_features(file, found, find=find)
+    )
+
+
+def _require_fitting(find: str, asked: dict[str, Any]) -> None:
+    for name, (flag, products) in _FLAGS.items():
+        if asked[name] not in (None, False, ()) and find not in products:
+            raise click.UsageError(f"{flag} is for --find {products[0]}, not {find}.")
+    if find == "paths" and bool(asked["begins"]) == (asked["points"] is not None):
+        raise click.UsageError("Where drops fall is needed: --from X Y, or --points FILE.")
+    if find == "ponds" and asked["level"] is None:
+        raise click.UsageError("A level is needed for ponds: --level ELEVATION.")
+
+
+def _name_points(path: Path) -> Named:
+    from ...io.vector.survey_lines import split_layer
+
+    return Named(split_layer(path)[0], "the file of --points")
+
+
+def _find(tin: TIN, find: str, asked: dict[str, Any]) -> Features:
+    from ... import terrain
+
+    if find == "paths":
+        return terrain.flow_path(tin, _list_places(tin, asked))
+    if find == "pits":
+        return terrain.pits(tin)
+    if find == "ponds":
+        return terrain.ponds(tin, asked["level"])
+    if find == "ridges":
+        return terrain.ridges_and_valleys(tin, min_angle=asked["min_angle"] or 0.0)
+    return terrain.depressions(tin, nested=asked["nested"], min_depth=asked["min_depth"] or 0.0)
+
+
+def _list_places(tin: TIN, asked: dict[str, Any]) -> Any:
+    """Return the places given, or those of a file, reprojected to the CRS of the TIN."""
+    from ...io.vector.geometries import read_geometries
+    from ...io.vector.survey_lines import split_layer
+
+    if asked["points"] is None:
+        return [list(place) for place in asked["begins"]]
+    path, layer = split_layer(asked["points"])
+    found = read_geometries(path, crs=tin.crs, layer=layer)
+    if found.kind != "points":
+        raise Failure(f"'{path}' has {found.kind}: points are needed.")
+    return found
+
+
+# ---------------------------------------------------------------- for people
+
+
+def _summarise(tin: TIN, found: Features) -> list[Row]:
+    from ..output.line_summaries import describe_counts
+
+    rows: list[Row] = [("TIN", describe_counts(tin)), ("Found", f"{found.name}: {len(found):,}")]
+    for row in range(min(len(found), _SHOWN) if "kind" not in found.columns else 0):
+        rows.append(("" if row else "First", _describe_row(found, row)))
+    return [*rows, *(("Note", note) for note in found.notes)]
+
+
+def _describe_row(found: Features, row: int) -> str:
+    from ...terrain.results.columns import unit_text
+
+    parts = []
+    for name in ("end", "length", "drop", "pit_level", "spill_level", "depth", "area", "volume"):
+        if name in found.columns:
+            value = found.columns[name][row]
+            text = value if isinstance(value, str) else f"{value:,.2f}"
+            unit = unit_text(found.units, name) or ""
+            parts.append(f"{name.replace('_', ' ')} {text} {unit}".strip())
+    return ", ".join(parts)

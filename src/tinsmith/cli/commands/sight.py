@@ -1,0 +1,104 @@
+"""``tinsmith sight``: what is seen from a place on a TIN."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ..parameters import Command, input_file, number_option, output_files
+from ..request import surface_options
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from ...terrain import Features
+    from ...tin import TIN
+    from ..output.console import Row
+    from ..request import Request
+
+__all__ = ["sight"]
+
+_SHOWN = 12
+
+
+@click.command(cls=Command)
+@input_file("file")
+@output_files
+@click.option("--from", "eye", metavar="X Y", nargs=2, type=float, required=True, help="The eye.")
+@click.option(
+    "--to",
+    "targets",
+    metavar="X Y",
+    nargs=2,
+    type=float,
+    multiple=True,
+    help="A target, for a line of sight; without one the viewshed. May be given several times.",
+)
+@number_option("--eye-height", "HEIGHT", "Of the eye above the ground.", default=0.0)
+@number_option("--target-height", "HEIGHT", "Of targets above the ground.", default=0.0)
+@number_option("--radius", "LENGTH", "Of the viewshed; any distance if absent.")
+@click.option("--curvature", is_flag=True, help="Mind that the earth is a sphere.")
+@number_option("--refraction", "COEFFICIENT", "With --curvature; 0.13 if absent.")
+@surface_options()
+def sight(file: Path, eye: tuple[float, float], request: Request, **asked: Any) -> None:
+    """Find what is seen from a place on the TIN in FILE, or on that of the points in it.
+
+    Without --to the viewshed: triangles whose corners are all seen, some of them, or none. Vector
+    files get the features, tables (.csv, .json) their columns. Ground that only touches a line of
+    sight does not block it.
+
+    \b
+    Example:
+      tinsmith sight site.ply --from 752700 4024300 --eye-height 1.7 -o viewshed.gpkg
+      tinsmith sight site.ply --from 752700 4024300 --to 752800 4024300 -o line.csv
+    """  # noqa: D301 - click reads the control character
+    from ... import terrain
+    from ...terrain.results.table import tabulate_columns
+    from ..output.line_summaries import describe_features
+
+    if asked["targets"] and asked["radius"] is not None:
+        raise click.UsageError("--radius is for a viewshed, without --to.")
+    planned = request.plan_products(request.list_inputs(file), "Features", "Table")
+    tin = request.read_tin(file)
+    targets, radius = asked.pop("targets"), asked.pop("radius")
+    with request.step("Looking"):
+        if targets:
+            found = terrain.line_of_sight(tin, list(eye), [list(one) for one in targets], **asked)
+        else:
+            found = terrain.viewshed(tin, list(eye), radius=radius, **asked)
+    planned.write("Features", found)
+    planned.write("Table", tabulate_columns(found))
+    request.finish(planned, _summarise(tin, found), lambda: describe_features(file, found))
+
+
+def _summarise(tin: TIN, found: Features) -> list[Row]:
+    from ..output.line_summaries import describe_counts
+
+    rows: list[Row] = [("TIN", describe_counts(tin))]
+    tell = _tell_line if "visible" in found.columns else _tell_class
+    for row in range(min(len(found), _SHOWN)):
+        rows.append(tell(found, row))
+    return [*rows, *(("Note", note) for note in found.notes)]
+
+
+def _tell_line(found: Features, row: int) -> Row:
+    from ...terrain.results.columns import unit_text
+
+    columns, unit = found.columns, unit_text(found.units, "distance") or ""
+    text = f"visible at {columns['distance'][row]:,.2f} {unit}".rstrip()
+    if not columns["visible"][row]:
+        text = (
+            f"blocked after {columns['block_distance'][row]:,.2f} of "
+            f"{columns['distance'][row]:,.2f} {unit}, at {columns['block_x'][row]:.2f} "
+            f"{columns['block_y'][row]:.2f}"
+        )
+    return f"Target {row}", text
+
+
+def _tell_class(found: Features, row: int) -> Row:
+    from ...terrain.results.columns import unit_text
+
+    columns, unit = found.columns, unit_text(found.units, "area") or ""
+    name = str(columns["class"][row]).capitalize()
+    return name, f"{columns['area'][row]:,.1f} {unit}, {columns['share'][row]:.1f} %"

@@ -1,0 +1,1 @@
+"""Cards: what a notebook shows of surveys, reports and results."""

@@ -1,0 +1,84 @@
+"""Square cells over points, and the lowest point in each."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..._sentences import counted
+from ...errors import PointsError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["Cells", "lay_cells"]
+
+_CELLS_PER_POINT = 100
+_FEWEST = 4_000_000
+"""Cells that there may be whatever the number of points: their memory is some 40 MB."""
+
+
+@dataclass(frozen=True, eq=False)
+class Cells:
+    """Points in the order of their cells; in a cell from the lowest up, then by coordinates.
+
+    Attributes
+    ----------
+    shape : tuple of int
+        Columns from west to east, and rows from south to north.
+    number : (n,) int64 array
+        Number of each point's cell, in the order of the points: ``column * rows + row``.
+    order : (n,) int64 array
+        Rows of the points by cell and elevation; the same points have the same order however they
+        are given.
+    """
+
+    shape: tuple[int, int]
+    number: NDArray[np.int64]
+    order: NDArray[np.int64]
+
+    def find_lowest(self, is_taken: NDArray[np.bool_]) -> NDArray[np.int64]:
+        """Return the rows of the lowest of the points taken in each cell that has one."""
+        rows = self.order[is_taken[self.order]]
+        numbers = self.number[rows]
+        is_first = np.ones(len(rows), bool)
+        is_first[1:] = numbers[1:] != numbers[:-1]
+        return rows[is_first]
+
+    def spread(
+        self, rows: NDArray[np.int64], elevations: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Return a grid of the elevations of one point a cell, infinity where there is none."""
+        grid = np.full(self.shape, np.inf)
+        grid.reshape(-1)[self.number[rows]] = elevations[rows]
+        return grid
+
+    def values_at(self, grid: NDArray[np.float64], rows: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Return the values of a grid in the cells of some points."""
+        return grid.reshape(-1)[self.number[rows]]
+
+
+def lay_cells(points: NDArray[np.float64], side: float) -> Cells:
+    """Lay square cells over points whose least easting and northing are 0.
+
+    Raises
+    ------
+    PointsError
+        If there would be far more cells than points.
+    """
+    counts = np.floor(points[:, :2].max(axis=0) / side) + 1
+    most = max(_FEWEST, _CELLS_PER_POINT * len(points))
+    if counts.prod() > most:
+        width, height = points[:, :2].max(axis=0)
+        raise PointsError(
+            f"{counted(len(points), 'point')} on {width:.6g} by {height:.6g} m make "
+            f"{counts.prod():,.0f} cells of {side:g} m, and {most:,} are the most for so many: "
+            "leave points far from the others out, or give larger cells."
+        )
+    columns, rows = counts.astype(np.int64).tolist()
+    place = np.floor(points[:, :2] / side).astype(np.int64)
+    number = place[:, 0] * rows + place[:, 1]
+    x, y, z = points.T
+    return Cells((columns, rows), number, np.lexsort((y, x, z, number)))

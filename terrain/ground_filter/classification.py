@@ -1,0 +1,313 @@
+"""Which points are ground: seeds, a TIN densified from them, and what lies on it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..._sentences import counted
+from ...crs import assume_elevation_unit
+from ...errors import CrsError, PointsError
+from ...tin import TIN, Survey, triangulate
+from ...tin.validation.points import as_points
+from .. import _kernel
+from ..georeference import describe_unknown
+from .cells import lay_cells
+from .parameters import Parameters
+from .returns import are_noise, may_be_ground
+from .seeds import find_low_noise, find_seeds
+from .surroundings import surround
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from ...policies import GroundReturns
+
+__all__ = ["GroundPoints", "ground"]
+
+UNCLASSIFIED, GROUND, LOW_NOISE = 1, 2, 7
+"""Classes of the ASPRS LAS specification 1.4."""
+
+_SMALLEST = 2.0**-100
+"""Coordinates nearer to the least than this, which nobody measures, count as equal to it."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class GroundPoints:
+    """Points with their classes: what :func:`tinsmith.ground` found.
+
+    Attributes
+    ----------
+    given : Survey
+        The points, as they were given.
+    classification : (n,) uint8 array
+        Classes of the ASPRS: 2 ground, 1 others, 7 low noise; points given as noise (7 and 18)
+        keep their class.
+    heights : (n,) float64 array
+        Of the points above the surface of the ground, vertically, in the unit of elevations.
+    parameters : mapping
+        Those of the function, in metres and degrees.
+    notes : tuple of str
+        What was assumed, converted or left aside.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> x, y = (axis.ravel() for axis in np.meshgrid(np.arange(30.0), np.arange(30.0)))
+    >>> z = np.where((abs(x - 15) < 5) & (abs(y - 15) < 5), 6.0, 0.0)  # a house on a plane
+    >>> found = ground(np.column_stack([x, y, z]))
+    >>> found.counts
+    {'ground': 819, 'others': 81, 'low noise': 0}
+    >>> len(found.survey), float(found.tin.points[:, 2].max())
+    (819, 0.0)
+    """
+
+    given: Survey
+    classification: NDArray[np.uint8]
+    heights: NDArray[np.float64]
+    parameters: Mapping[str, Any]
+    notes: tuple[str, ...]
+
+    @property
+    def is_ground(self) -> NDArray[np.bool_]:
+        """Whether each point is ground."""
+        return np.equal(self.classification, GROUND)
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """How many points there are of each class."""
+        n_ground = int(np.count_nonzero(self.is_ground))
+        n_noise = int(np.count_nonzero(self.classification == LOW_NOISE))
+        n_others = len(self.classification) - n_ground - n_noise
+        return {"ground": n_ground, "others": n_others, "low noise": n_noise}
+
+    @property
+    def classified(self) -> Survey:
+        """All points, with the attribute "classification"."""
+        attributes = {**self.given.attributes, "classification": self.classification}
+        return replace(self.given, attributes=attributes, notes=self._all_notes)
+
+    @cached_property
+    def survey(self) -> Survey:
+        """The points of the ground alone, with their attributes and all lines."""
+        rows = np.flatnonzero(self.is_ground)
+        whole = self.classified
+        left_out = {"points that are not ground": len(whole) - len(rows)}
+        return replace(
+            whole,
+            points=whole.points[rows],
+            attributes={name: values[rows] for name, values in whole.attributes.items()},
+            skipped={**whole.skipped, **{what: n for what, n in left_out.items() if n}},
+            findings=(),
+        )
+
+    @cached_property
+    def tin(self) -> TIN:
+        """The TIN of the ground; :func:`tinsmith.triangulate` of the survey has options."""
+        return triangulate(self.survey)
+
+    @property
+    def _all_notes(self) -> tuple[str, ...]:
+        return tuple(dict.fromkeys([*self.given.notes, *self.notes]))
+
+    def __repr__(self) -> str:
+        counts = ", ".join(f"{n:,} {what}" for what, n in self.counts.items())
+        return f"<GroundPoints: {counts}>"
+
+
+def ground(
+    points: Survey | ArrayLike,
+    *,
+    building: float = 40.0,
+    cell: float = 1.0,
+    terrain_slope: float = 0.15,
+    iteration_angle: float = 20.0,
+    iteration_distance: float = 1.4,
+    edge_length: float = 5.0,
+    tolerance: float = 0.3,
+    horizontal_tolerance: float = 1.0,
+    noise_depth: float = 1.0,
+    returns: GroundReturns = "last",
+) -> GroundPoints:
+    """Tell the points on the ground from those on buildings, plants and cars, and low noise.
+
+    Parameters
+    ----------
+    points : Survey or (n, 3) array
+        Lidar or photogrammetric points; an array is in metres. Of a survey the attributes
+        ``return_number``, ``number_of_returns`` and ``classification`` are looked at.
+    building : float
+        Width of the largest building, metres. Wider ones stay in the ground.
+    cell : float
+        Side of the cells whose lowest points may be seeds, metres.
+    terrain_slope : float
+        Rise per length below which the lowest points are seeds without a doubt; steeper ground is
+        found from the seeds around it.
+    iteration_angle : float
+        Largest angle at the nearest corner of its triangle under which a point is added, degrees.
+    iteration_distance : float
+        Largest distance of a point that is added from the plane of its triangle, metres.
+    edge_length : float
+        In triangles with shorter edges the angle is smaller in proportion, metres.
+    tolerance, horizontal_tolerance : float
+        At last all points are ground that lie no higher above the surface than the first, and the
+        second times the surface's slope; metres.
+    noise_depth : float
+        Points deeper than that below all around them are low noise, metres.
+    returns : {"last", "all"}
+        Which returns of a pulse may be ground, where the attributes tell.
+
+    Returns
+    -------
+    GroundPoints
+        Classes of all points; ``survey`` and ``tin`` are those of the ground.
+
+    Raises
+    ------
+    OptionError
+        If a parameter has a value that it cannot have.
+    PointsError
+        If there are no points that may be ground, they are not finite, or lie too far apart for
+        the cells.
+    CrsError
+        If the CRS of the survey measures in degrees.
+
+    Notes
+    -----
+    1. Points below all around them are low noise.
+    2. Seeds are the lowest points of cells that openings by growing windows leave in place.
+    3. The TIN of the seeds is densified: of each triangle the point nearest to its plane becomes a
+       vertex, if it is near enough and seen under a small angle, until none is left.
+    4. Points on that surface, within the tolerances, are ground.
+
+    Lengths are converted from the units of the survey's CRS. The result depends on the set of
+    points alone, not on their order. Bridges and cliffs, low walls and dense low plants cannot be
+    told for certain: see docs/ground.md.
+
+    References
+    ----------
+    P. Axelsson, "DEM generation from laser scanner data using adaptive TIN models", International
+    Archives of Photogrammetry and Remote Sensing 33 B4 (2000). X. Zhao et al., "Improved
+    progressive TIN densification filtering algorithm for airborne LiDAR data in forested areas",
+    ISPRS Journal 117 (2016), doi:10.1016/j.isprsjprs.2016.03.016. T. Pingel, K. Clarke and
+    W. McBride (2013), doi:10.1016/j.isprsjprs.2012.12.002.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> x, y = (axis.ravel() for axis in np.meshgrid(np.arange(30.0), np.arange(30.0)))
+    >>> z = np.where((abs(x - 15) < 5) & (abs(y - 15) < 5), 6.0, 0.0)  # a house on a plane
+    >>> ground(np.column_stack([x, y, z]))
+    <GroundPoints: 819 ground, 81 others, 0 low noise>
+    """
+    parameters = Parameters(
+        building=building,
+        cell=cell,
+        terrain_slope=terrain_slope,
+        iteration_angle=iteration_angle,
+        iteration_distance=iteration_distance,
+        edge_length=edge_length,
+        tolerance=tolerance,
+        horizontal_tolerance=horizontal_tolerance,
+        noise_depth=noise_depth,
+        returns=returns,
+    )
+    survey = points if isinstance(points, Survey) else Survey(points=as_points(points))
+    across, up, unit_notes = _find_units(survey)
+    metric = _make_metric(as_points(survey.points), across, up)
+    may_be, return_notes = may_be_ground(survey, parameters.returns)
+    classes, heights = _classify(metric, may_be, are_noise(survey), parameters)
+    _keep_noise(classes, survey)
+    return GroundPoints(
+        given=survey,
+        classification=classes,
+        heights=heights / up,
+        parameters=parameters.to_dict(),
+        notes=(*unit_notes, *return_notes),
+    )
+
+
+def _find_units(survey: Survey) -> tuple[float, float, tuple[str, ...]]:
+    """Return metres of the unit of eastings and of that of elevations, and what was assumed."""
+    crs = survey.crs
+    if crs is None:
+        note = "The CRS is not known: coordinates are taken to be in metres, as the parameters are."
+        across, up = 1.0, 1.0 if survey.elevation_unit is None else survey.elevation_unit.metres
+        return across, up or 1.0, (note,)
+    if crs.is_geographic:
+        raise CrsError(
+            f"The points are in {crs.label}, which measures in degrees, and the ground is found by "
+            "lengths: bring them into a projected CRS first.",
+            crs=crs,
+        )
+    unit = crs.horizontal_unit
+    metres = None if unit is None else unit.metres
+    if unit is None or metres is None:
+        raise CrsError(
+            f"The unit of {crs.label} is not known, and the ground is found by lengths in metres: "
+            "declare a CRS whose unit is.",
+            crs=crs,
+        )
+    vertical = assume_elevation_unit(crs, survey.elevation_unit)
+    notes = describe_unknown(crs, survey.elevation_unit)
+    up = metres if vertical is None or vertical.metres is None else vertical.metres
+    if metres != 1.0:
+        notes = (*notes, f"The parameters are in metres: converted to the {unit.name}.")
+    return metres, up, notes
+
+
+def _make_metric(points: NDArray[np.float64], across: float, up: float) -> NDArray[np.float64]:
+    """Return fresh points in metres from the least easting, northing and elevation."""
+    if len(points) == 0:
+        raise PointsError("There are no points: the ground is found among some.")
+    metric: NDArray[np.float64] = points - points.min(axis=0)
+    metric *= (across, across, up)
+    metric[metric < _SMALLEST] = 0.0
+    return metric
+
+
+def _classify(
+    points: NDArray[np.float64],
+    may_be_ground: NDArray[np.bool_],
+    is_noise: NDArray[np.bool_],
+    parameters: Parameters,
+) -> tuple[NDArray[np.uint8], NDArray[np.float64]]:
+    """Return the class of each point in metres, and its height above the ground."""
+    is_taken = may_be_ground & ~is_noise
+    if not is_taken.any():
+        raise PointsError(
+            f"None of {counted(len(points), 'point')} may be ground: all are marked as noise or "
+            "are not the last of their pulse."
+        )
+    cells = lay_cells(points, parameters.cell)
+    is_low = find_low_noise(points, cells, is_taken, parameters)
+    is_taken &= ~is_low
+    seeds = points[find_seeds(points, cells, is_taken, parameters)]
+    order = cells.order
+    heights, slopes = np.empty(len(points)), np.empty(len(points))
+    heights[order], slopes[order] = _kernel.densify(
+        np.concatenate([seeds, surround(points, seeds, parameters.cell)]),
+        points[order],
+        is_taken[order],
+        float(np.sin(np.radians(parameters.iteration_angle))),
+        parameters.iteration_distance,
+        parameters.edge_length,
+    )
+    sideways = parameters.horizontal_tolerance * slopes
+    is_low |= is_taken & (heights < -(parameters.noise_depth + sideways))
+    is_ground = is_taken & ~is_low & (heights <= parameters.tolerance + sideways)
+    classes = np.full(len(points), UNCLASSIFIED, np.uint8)
+    classes[is_ground], classes[is_low] = GROUND, LOW_NOISE
+    return classes, heights
+
+
+def _keep_noise(classes: NDArray[np.uint8], survey: Survey) -> None:
+    """Leave points that were given as noise in their class."""
+    is_noise = are_noise(survey)
+    if is_noise.any():
+        classes[is_noise] = survey.attributes["classification"][is_noise]

@@ -1,0 +1,92 @@
+"""Seeds of the ground: low noise left out, then the lowest points that no opening lifts away.
+
+References
+----------
+K. Zhang et al., "A progressive morphological filter for removing nonground measurements from
+airborne LIDAR data", IEEE Transactions on Geoscience and Remote Sensing 41 (2003). T. Pingel,
+K. Clarke and W. McBride, "An improved simple morphological filter for the terrain classification
+of airborne LIDAR data", ISPRS Journal 77 (2013). X. Zhao et al., "Improved progressive TIN
+densification filtering algorithm for airborne LiDAR data in forested areas", ISPRS Journal 117
+(2016): seeds by opening in place of the lowest point of a large cell.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .morphology import least_around, list_windows, open_grid, split_columns
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .cells import Cells
+    from .parameters import Parameters
+
+__all__ = ["find_low_noise", "find_seeds"]
+
+_CORE, _REACH = 2, 7
+"""A group of low points is no wider than this to each side, and compared with points up to there;
+in cells."""
+
+_ROUNDS = 5
+"""How often low points are looked for again, when others that hid them have gone."""
+
+
+def find_low_noise(
+    points: NDArray[np.float64],
+    cells: Cells,
+    is_taken: NDArray[np.bool_],
+    parameters: Parameters,
+) -> NDArray[np.bool_]:
+    """Find points that lie deeper than all around them, alone or in a small group."""
+    is_noise = np.zeros(len(points), bool)
+    z = np.ascontiguousarray(points[:, 2])
+    for _ in range(_ROUNDS):
+        grid = cells.spread(cells.find_lowest(is_taken & ~is_noise), z)
+        around = np.empty_like(grid)
+        for wide, inner, own in split_columns(grid.shape, _REACH):
+            around[own] = least_around(grid[wide], _CORE, _REACH)[inner]
+        least = around.reshape(-1)[cells.number]
+        is_low = (z < least - parameters.noise_depth) & np.isfinite(least) & ~is_noise
+        if not is_low.any():
+            break
+        is_noise |= is_low
+    return is_noise
+
+
+def find_seeds(
+    points: NDArray[np.float64],
+    cells: Cells,
+    is_taken: NDArray[np.bool_],
+    parameters: Parameters,
+) -> NDArray[np.int64]:
+    """Return rows of the lowest points of cells that are part of no object.
+
+    Openings by growing windows take off whatever is narrower: what one of them lifts by more than
+    the terrain can rise within the window, by its slope, is an object.
+    """
+    rows = cells.find_lowest(is_taken)
+    grid = cells.spread(rows, points[:, 2])
+    half = max(1, int(np.ceil(parameters.building / (2 * parameters.cell))))
+    is_object = _find_objects(grid, list_windows(half), parameters)
+    return rows[~is_object.reshape(-1)[cells.number[rows]]]
+
+
+def _find_objects(
+    grid: NDArray[np.float64], windows: list[int], parameters: Parameters
+) -> NDArray[np.bool_]:
+    is_empty = np.isinf(grid)
+    is_object = np.zeros(grid.shape, bool)
+    rounding = np.finfo(float).eps * np.abs(grid[~is_empty]).max(initial=0.0)
+    for window in windows:
+        opened = np.empty_like(grid)
+        for wide, inner, own in split_columns(grid.shape, 2 * window):
+            opened[own] = open_grid(grid[wide], window)[inner]
+        opened[is_empty] = np.inf
+        rise = parameters.terrain_slope * window * parameters.cell + rounding
+        with np.errstate(invalid="ignore"):  # cells that are empty, which compare as false
+            is_object |= grid - opened > rise
+        grid = opened
+    return is_object

@@ -1,0 +1,124 @@
+"""Points put around all others, so that each of them lies within a triangle of seeds."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Doubles = NDArray[np.float64]
+
+__all__ = ["surround"]
+
+_STEP = 5.0
+"""Between neighbouring points, metres."""
+
+_DEPTH = 15.0
+"""How far seeds may lie behind the first one of their stretch to say how steep it is there."""
+
+_FEWEST = 6
+_FLATTEST = 1e-3
+"""Share of the largest spread of seeds that the least must have for a plane through them."""
+
+
+class _Side(NamedTuple):
+    """A side of the rectangle, seen from within: places along it, and how far it is away."""
+
+    axis: int
+    edge: float
+    places: Doubles
+
+
+def surround(points: Doubles, seeds: Doubles, margin: float) -> Doubles:
+    """Return points around all others, on planes through the seeds that are nearest to them.
+
+    Parameters
+    ----------
+    points, seeds : (n, 3) float64 arrays
+        In metres.
+    margin : float
+        Between the outermost points and those that are made.
+    """
+    low, high = points[:, :2].min(axis=0) - margin, points[:, :2].max(axis=0) + margin
+    sides = []
+    for axis in (0, 1):
+        along = 1 - axis
+        count = max(2, int(np.ceil((high - low)[along] / _STEP)) + 1)
+        places = np.linspace(low[along], high[along], count)
+        sides += [_Side(axis, float(edge[axis]), places) for edge in (low, high)]
+    ring = np.concatenate([_raise_side(side, seeds) for side in sides])
+    _, first = np.unique(ring[:, :2], axis=0, return_index=True)
+    return ring[first]
+
+
+def _raise_side(side: _Side, seeds: Doubles) -> Doubles:
+    """Return the points of a side with their elevations."""
+    count, along = len(side.places), 1 - side.axis
+    step = side.places[1] - side.places[0]
+    stretch = np.rint((seeds[:, along] - side.places[0]) / step).astype(np.int64)
+    away = np.abs(seeds[:, side.axis] - side.edge)
+    nearest = _find_nearest(stretch, away, seeds, count)
+    elevations = seeds[nearest, 2]
+    rise, is_sound = _extrapolate(side, seeds, stretch, away, nearest)
+    made = np.empty((count, 3))
+    made[:, side.axis], made[:, along] = side.edge, side.places
+    made[:, 2] = np.where(is_sound, rise, elevations)
+    return made
+
+
+def _find_nearest(
+    stretch: NDArray[np.int64], away: Doubles, seeds: Doubles, count: int
+) -> NDArray[np.int64]:
+    """Return the seed nearest to the side in each stretch of it, or in the nearest that has one."""
+    order = np.lexsort((seeds[:, 1], seeds[:, 0], seeds[:, 2], away, stretch))
+    there, first = np.unique(stretch[order], return_index=True)
+    wanted = np.arange(count)
+    after = np.clip(np.searchsorted(there, wanted), 0, len(there) - 1)
+    before = np.maximum(after - 1, 0)
+    is_before = np.abs(there[before] - wanted) < np.abs(there[after] - wanted)
+    return order[first[np.where(is_before, before, after)]]
+
+
+def _extrapolate(
+    side: _Side,
+    seeds: Doubles,
+    stretch: NDArray[np.int64],
+    away: Doubles,
+    nearest: NDArray[np.int64],
+) -> tuple[Doubles, NDArray[np.bool_]]:
+    """Return elevations of the planes of least squares at the points of a side, and which have one.
+
+    Each plane is that of the seeds of three stretches behind the nearest seed.
+    """
+    limit = away[nearest] + _DEPTH
+    order = np.lexsort((seeds[:, 1], seeds[:, 0], seeds[:, 2]))  # sums do not depend on the input
+    sums = np.zeros((len(side.places), 3, 4))
+    for shift in (-1, 0, 1):
+        own = stretch[order] + shift
+        is_near = (own >= 0) & (own < len(limit))
+        is_near[is_near] = away[order[is_near]] <= limit[own[is_near]]
+        rows, own = order[is_near], own[is_near]
+        lateral = (seeds[rows, 1 - side.axis] - side.places[own]) / _DEPTH
+        height = seeds[rows, 2] - seeds[nearest[own], 2]
+        sums += _sum_products(own, [np.ones(len(rows)), lateral, away[rows] / _DEPTH, height], sums)
+    heights, is_sound = _solve_planes(sums[:, :, :3], sums[:, :, 3])
+    return seeds[nearest, 2] + heights, is_sound
+
+
+def _sum_products(own: NDArray[np.int64], terms: list[Doubles], like: Doubles) -> Doubles:
+    """Return the sums of the products of terms for each point of a side."""
+    sums = np.empty_like(like)
+    for i, j in np.ndindex(like.shape[1:]):
+        sums[:, i, j] = np.bincount(own, terms[i] * terms[j], len(like))
+    return sums
+
+
+def _solve_planes(matrix: Doubles, right: Doubles) -> tuple[Doubles, NDArray[np.bool_]]:
+    """Return the planes' heights at the points of a side, and which are told by enough seeds."""
+    spread = np.linalg.eigvalsh(matrix)
+    is_sound = (matrix[:, 0, 0] >= _FEWEST) & (spread[:, 0] > _FLATTEST * spread[:, 2])
+    matrix[~is_sound] = np.eye(3)
+    return np.linalg.solve(matrix, right[:, :, None])[:, 0, 0], is_sound

@@ -1,0 +1,140 @@
+"""Falls: across which of its edges each triangle drains, and what meets at an edge; exact."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ...tin.predicates import falls_across
+from ...tin.topology import NO_NEIGHBOR, HalfEdges, sort_half_edges
+from ...tin.validation.points import require_exact_range
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...tin import TIN
+
+__all__ = ["FINEST", "Falls", "find_falls", "measure_fall", "round_share"]
+
+FINEST = 2.0**-53
+"""Shares of an edge are multiples of this, so that they are exact from either end."""
+
+
+_POOR = 1e-10
+"""Relative error beyond which a value is computed anew in fractions."""
+
+
+class Falls(NamedTuple):
+    r"""How the triangles of a surface fall; edge k of a triangle lies opposite corner k.
+
+    Attributes
+    ----------
+    points, triangles, neighbors : arrays
+        As of a TIN.
+    signs : (m, 3) int8 array
+        +1 where water leaves the triangle across the edge, -1 where it enters, 0 where it runs
+        along the edge; all 0 if the triangle is level.
+    values : (m, 3) float64 array
+        How much leaves, in proportion; the three of a triangle add up to 0::
+
+                    corner k
+                    /      \\          the fall line through corner k meets edge k at the share
+                   /    |   \\         -values[k + 2] / values[k] of the way from a to b
+                  a ----|---- b
+                     edge k
+    half_edges : HalfEdges
+        By start.
+    """
+
+    points: NDArray[np.float64]
+    triangles: NDArray[np.int32]
+    neighbors: NDArray[np.int32]
+    signs: NDArray[np.int8]
+    values: NDArray[np.float64]
+    half_edges: HalfEdges
+
+    @property
+    def is_level(self) -> NDArray[np.bool_]:
+        """Whether each triangle is level."""
+        return np.logical_not(self.signs.any(axis=1))
+
+    def ends(self, triangle: Any, edge: Any) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Return start and end vertex of edges."""
+        return (
+            self.triangles[triangle, (edge + 1) % 3].astype(np.int64),
+            self.triangles[triangle, (edge + 2) % 3].astype(np.int64),
+        )
+
+    def cross(self, triangle: Any, edge: Any) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Return the triangle across each edge, and which of its edges it is; -1 outside."""
+        _, end = self.ends(triangle, edge)
+        other = self.neighbors[triangle, edge].astype(np.int64)
+        corner = np.argmax(self.triangles[other] == end[:, None], axis=1)
+        return other, (corner + 2) % 3
+
+    def sign_beyond(self, triangle: Any, edge: Any) -> NDArray[np.int8]:
+        """Return the sign of the other triangle at each edge; 0 outside."""
+        other, its_edge = self.cross(triangle, edge)
+        return np.where(other == NO_NEIGHBOR, np.int8(0), self.signs[other, its_edge])
+
+    def shares(self, triangle: Any, edge: Any) -> NDArray[np.float64]:
+        """Return where the fall line through the corner opposite meets each edge, from 0 to 1."""
+        part = -self.values[triangle, (edge + 2) % 3]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            found = np.clip(part / self.values[triangle, edge], 0.0, 1.0)
+        shares: NDArray[np.float64] = round_share(found)
+        return shares
+
+
+def round_share(share: Any) -> Any:
+    """Return shares of edges, from 0 to 1, as multiples of ``FINEST``."""
+    return 1.0 - (1.0 - share)
+
+
+def find_falls(tin: TIN) -> Falls:
+    """Find how the triangles of a TIN fall.
+
+    Parameters
+    ----------
+    tin : TIN
+
+    Returns
+    -------
+    Falls
+        Signs are exact; values are good to ten digits at least.
+
+    Raises
+    ------
+    PointsError
+        If elevations are of a magnitude at which signs are not exact.
+    """
+    surface = tin.triangulation
+    require_exact_range(surface.points[:, 2:], "Elevations")
+    corners = np.repeat(np.arange(3), len(surface.triangles))
+    a, b, c = (surface.triangles.T[(corners + k) % 3, _tile(surface.triangles)] for k in (1, 2, 0))
+    signs, values, bounds = falls_across(surface.points, a, b, c)
+    for row in np.flatnonzero((bounds > _POOR * np.abs(values)) & (signs != 0)).tolist():
+        values[row] = measure_fall(surface.points, a[row], b[row], c[row])
+    values[signs == 0] = 0.0
+    return Falls(
+        surface.points,
+        surface.triangles,
+        surface.neighbors,
+        np.ascontiguousarray(signs.reshape(3, -1).T),
+        np.ascontiguousarray(values.reshape(3, -1).T),
+        sort_half_edges(surface.triangles, len(surface.points)),
+    )
+
+
+def _tile(triangles: NDArray[np.int32]) -> NDArray[np.int64]:
+    return np.tile(np.arange(len(triangles)), 3)
+
+
+def measure_fall(points: NDArray[np.float64], a: int, b: int, c: int) -> Fraction:
+    """Return the value of :func:`falls_across` without any rounding."""
+    p, q, r = ([Fraction(value) for value in points[vertex].tolist()] for vertex in (a, b, c))
+    ux, uy, uz = (end - start for start, end in zip(p, q, strict=True))
+    vx, vy, vz = (end - start for start, end in zip(p, r, strict=True))
+    return vz * (ux * ux + uy * uy) - uz * (ux * vx + uy * vy)

@@ -1,0 +1,263 @@
+"""The hierarchy of depressions: how hollows fill, join and spill as water rises."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from .vertices import NOWHERE, find_boundary_vertices
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...tin import TIN
+
+__all__ = ["Hierarchy", "build_hierarchy"]
+
+
+class Hierarchy(NamedTuple):
+    """Depressions, those that join before the one that they make.
+
+    Attributes
+    ----------
+    pits : (d,) int64 array
+        Lowest vertex of each.
+    spill_vertices : (d,) int64 array
+        Where each is full: it joins another one, or runs over.
+    parents : (d,) int64 array
+        The depression that it becomes a part of, ``NOWHERE`` for the outermost ones.
+    into : (d,) int64 array
+        A pit that water running over comes to, if it does not leave the surface: a vertex.
+    basins : (n,) int64 array
+        For each vertex the smallest depression that its water is in once it is full, ``NOWHERE`` if
+        it leaves the surface; it need not be under water then.
+    """
+
+    pits: NDArray[np.int64]
+    spill_vertices: NDArray[np.int64]
+    parents: NDArray[np.int64]
+    into: NDArray[np.int64]
+    basins: NDArray[np.int64]
+
+    def find_roots(self) -> NDArray[np.int64]:
+        """Return the outermost depression of each."""
+        roots = np.where(self.parents == NOWHERE, np.arange(len(self.parents)), self.parents)
+        while True:
+            further = roots[roots]
+            if np.array_equal(further, roots):
+                return roots
+            roots = further
+
+    def find_depths(self) -> NDArray[np.int64]:
+        """Return how many depressions each is a part of."""
+        depths = np.zeros(len(self.parents), np.int64)
+        for one in range(len(depths) - 1, -1, -1):  # parents stand behind their parts
+            if self.parents[one] != NOWHERE:
+                depths[one] = depths[self.parents[one]] + 1
+        return depths
+
+
+def build_hierarchy(tin: TIN) -> Hierarchy:
+    """Find the depressions of a surface from which water runs off freely at the boundary.
+
+    Parameters
+    ----------
+    tin : TIN
+
+    Returns
+    -------
+    Hierarchy
+
+    Notes
+    -----
+    As the water of a piecewise linear surface rises, its parts join at vertices, along edges: so
+    the edges alone tell all [1]_. As the depression hierarchy of rasters [2]_ does:
+
+    1. Vertices are ordered by elevation, then easting, then northing. Each belongs to the basin of
+       its lowest neighbour; what has no lower one is a pit.
+    2. Edges between basins, by the elevation at which they are passed, join them (Kruskal); at a
+       vertex on the boundary its basin joins the outside.
+    3. Two depressions that join end there, as parts of a new one. What has no depth is no
+       depression: it goes on as part of the other. Several that join at one elevation are parts of
+       one.
+
+    Linear but for sorting, and a loop over the pits.
+
+    References
+    ----------
+    .. [1] H. Carr, J. Snoeyink, U. Axen, Computing contour trees in all dimensions, Computational
+       Geometry 24 (2003), doi:10.1016/S0925-7721(02)00093-7.
+    .. [2] R. Barnes, K. L. Callaghan, A. D. Wickert, Computing water flow through complex
+       landscapes, Earth Surface Dynamics 8 (2020), doi:10.5194/esurf-8-431-2020.
+    """
+    rank = _rank_vertices(tin.points)
+    edges = tin.edges.astype(np.int64)
+    basin = _find_basins(rank, edges)
+    pits, number = np.unique(basin, return_inverse=True)
+    joining = _Joining(tin.points[:, 2], pits)
+    joining.join(_list_passes(tin, rank, edges, number))
+    stands = _leave_out_shallow(joining, tin.points[:, 2])
+    kept = np.flatnonzero(stands == np.arange(len(stands)))
+    places = np.append(np.full(len(stands), NOWHERE), NOWHERE)
+    places[kept] = np.arange(len(kept))
+    return Hierarchy(
+        np.array(joining.pits, np.int64)[kept],
+        np.array(joining.spills, np.int64)[kept],
+        places[np.array(joining.parents, np.int64)[kept]],
+        np.array(joining.into, np.int64)[kept],
+        places[stands[number]],
+    )
+
+
+def _rank_vertices(points: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Return the place of each vertex in the order of elevations, no two the same."""
+    rank = np.empty(len(points), np.int64)
+    rank[np.lexsort((points[:, 1], points[:, 0], points[:, 2]))] = np.arange(len(points))
+    return rank
+
+
+def _find_basins(rank: NDArray[np.int64], edges: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the pit of each vertex, by way of the lowest neighbours."""
+    lowest = rank.copy()
+    for near, far in (edges.T, edges.T[::-1]):
+        np.minimum.at(lowest, near, rank[far])
+    order = np.empty(len(rank), np.int64)
+    order[rank] = np.arange(len(rank))
+    pit = order[lowest]
+    while True:
+        further = pit[pit]
+        if np.array_equal(further, pit):
+            return pit
+        pit = further
+
+
+class _Passes(NamedTuple):
+    """Where basins meet, the lowest such vertex first; basin ``NOWHERE`` is the outside."""
+
+    vertices: NDArray[np.int64]
+    one: NDArray[np.int64]
+    other: NDArray[np.int64]
+
+
+def _list_passes(
+    tin: TIN, rank: NDArray[np.int64], edges: NDArray[np.int64], number: NDArray[np.int64]
+) -> _Passes:
+    """Return the lowest pass between any two basins, in the order in which water comes to them."""
+    rim = np.flatnonzero(find_boundary_vertices(tin.triangles, tin.neighbors, len(tin.points)))
+    edges = edges[number[edges[:, 0]] != number[edges[:, 1]]]
+    vertices = np.append(np.where(_is_higher(rank, edges), edges[:, 0], edges[:, 1]), rim)
+    pairs = np.sort(number[edges], axis=1)
+    one = np.append(pairs[:, 0], np.full(len(rim), NOWHERE))
+    other = np.append(pairs[:, 1], number[rim])
+    order = np.lexsort((rank[vertices], other, one))
+    one, other, vertices = one[order], other[order], vertices[order]
+    first = np.append(True, (np.diff(one) != 0) | (np.diff(other) != 0))[: len(order)]
+    one, other, vertices = one[first], other[first], vertices[first]
+    order = np.lexsort((other, one, rank[vertices]))
+    return _Passes(vertices[order], one[order], other[order])
+
+
+def _is_higher(rank: NDArray[np.int64], edges: NDArray[np.int64]) -> NDArray[np.bool_]:
+    is_higher: NDArray[np.bool_] = rank[edges[:, 0]] > rank[edges[:, 1]]
+    return is_higher
+
+
+class _Joining:
+    """Joins basins two by two; the last one stands for the outside, which ``NOWHERE`` names.
+
+    Nodes are depressions, with and without depth, those that join before what they make.
+    """
+
+    def __init__(self, elevations: NDArray[np.float64], pits: NDArray[np.int64]) -> None:
+        self._z = elevations
+        self._joined = list(range(len(pits) + 1))
+        self._node = [*range(len(pits)), NOWHERE]  # of each set of basins
+        self.pits: list[int] = pits.tolist()
+        self.starts: list[int] = pits.tolist()  # the vertex at which each begins
+        self.spills = [NOWHERE] * len(pits)
+        self.parents = [NOWHERE] * len(pits)
+        self.into = [NOWHERE] * len(pits)
+
+    def join(self, passes: _Passes) -> None:
+        """Join basins pass after pass."""
+        outside = len(self._joined) - 1
+        for vertex, one, other in zip(*(array.tolist() for array in passes), strict=True):
+            first, second = self._find(one), self._find(other)
+            if first == second:
+                continue
+            if self._find(outside) == first:
+                self._drain(vertex, second, one)
+            elif self._find(outside) == second:
+                self._drain(vertex, first, other)
+                first, second = second, first
+            else:
+                self._merge(vertex, first, second)
+            self._joined[second] = first
+
+    def _find(self, basin: int) -> int:
+        joined = self._joined
+        while joined[basin] != basin:
+            joined[basin] = joined[joined[basin]]
+            basin = joined[basin]
+        return basin
+
+    def _drain(self, vertex: int, basins: int, beyond: int) -> None:
+        """Let a set of basins run over into a basin that does so already, or to the outside."""
+        node = self._node[basins]
+        self.spills[node] = vertex
+        self.into[node] = NOWHERE if beyond == NOWHERE else self.pits[beyond]
+
+    def _merge(self, vertex: int, first: int, second: int) -> None:
+        parts = [self._node[first], self._node[second]]
+        made = len(self.pits)
+        for part in parts:
+            self.spills[part], self.parents[part] = vertex, made
+        lowest = min(parts, key=lambda part: (self._z[self.pits[part]], part))
+        self.pits.append(self.pits[lowest])
+        self.starts.append(vertex)
+        for column in (self.spills, self.parents, self.into):
+            column.append(NOWHERE)
+        self._node[first] = made
+
+
+def _leave_out_shallow(found: _Joining, z: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Leave out nodes without depth, and those that are the only part of another one.
+
+    Returns
+    -------
+    (nodes,) int64 array
+        The node that stands for each, ``NOWHERE`` for none; parents are those that are left.
+    """
+    parents, into = found.parents, found.into
+    count = len(parents)
+    deep = [
+        spill != NOWHERE and z[spill] > z[start]
+        for spill, start in zip(found.spills, found.starts, strict=True)
+    ]
+    # From the outermost inwards; what has no depth hands on where it runs over into.
+    stands = [NOWHERE] * count
+    for node in range(count - 1, -1, -1):
+        parent = parents[node]
+        if parent != NOWHERE:
+            if not deep[parent] and stands[parent] == NOWHERE:
+                into[node] = into[parent]
+            parents[node] = stands[parent]
+        stands[node] = node if deep[node] else parents[node]
+    return _join_single_parts(parents, deep)
+
+
+def _join_single_parts(parents: list[int], deep: list[bool]) -> NDArray[np.int64]:
+    """Let a node stand for its part if it has one only, the others being without depth."""
+    parts = [0] * len(deep)
+    for node, parent in enumerate(parents):
+        if deep[node] and parent != NOWHERE:
+            parts[parent] += 1
+    stands = np.arange(len(deep))
+    for node in range(len(deep) - 1, -1, -1):
+        parent = parents[node]
+        is_single = parent != NOWHERE and parts[parent] == 1
+        parents[node] = NOWHERE if parent == NOWHERE else int(stands[parent])
+        if is_single or not deep[node]:
+            stands[node] = parents[node]
+    return stands

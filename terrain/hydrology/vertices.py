@@ -1,0 +1,215 @@
+"""Vertices: which way water leaves each of them, along an edge or down a triangle."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ...tin.topology import NO_NEIGHBOR, edges_at, find_triangles, gather
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .falls import Falls
+
+__all__ = ["NOWHERE", "Exits", "find_boundary_vertices", "find_exits"]
+
+NOWHERE = -1
+_CLOSE = 1e-9
+"""Slopes that differ by less, relative to the steepest, are compared in fractions."""
+_ROUNDING = 4 * 2.0**-53
+"""Relative error of a product of two differences."""
+
+
+class Exits(NamedTuple):
+    """Steepest descent from vertices: to another one along an edge, or down a triangle.
+
+    Attributes
+    ----------
+    vertices : (k,) int64 array
+        At the other end of the edge, else ``NOWHERE``.
+    triangles : (k,) int64 array
+        Through which the fall line runs, else ``NOWHERE``.
+    slopes : (k,) float64 array
+        Fall over run, elevations as they are; 0 where there is no descent.
+    leaves : (k,) bool array
+        Whether water leaves the surface there.
+    """
+
+    vertices: NDArray[np.int64]
+    triangles: NDArray[np.int64]
+    slopes: NDArray[np.float64]
+    leaves: NDArray[np.bool_]
+
+
+class _Candidates(NamedTuple):
+    """Ways down from vertices, those of each together."""
+
+    owners: NDArray[np.int64]
+    vertices: NDArray[np.int64]
+    triangles: NDArray[np.int64]
+    slopes: NDArray[np.float64]
+
+
+def find_boundary_vertices(
+    triangles: NDArray[np.int32], neighbors: NDArray[np.int32], count: int
+) -> NDArray[np.bool_]:
+    """Tell which of so many vertices lie on the boundary of the surface, or of a hole in it."""
+    is_boundary = np.zeros(count, np.bool_)
+    is_boundary[edges_at(triangles, neighbors == NO_NEIGHBOR)] = True
+    return is_boundary
+
+
+def find_exits(falls: Falls, vertices: NDArray[np.int64], is_boundary: NDArray[np.bool_]) -> Exits:
+    """Find the steepest descent from vertices.
+
+    Parameters
+    ----------
+    falls : Falls
+    vertices : (k,) int64 array
+    is_boundary : (n,) bool array
+        Of all vertices.
+
+    Returns
+    -------
+    Exits
+
+    Notes
+    -----
+    Candidates are the edges that descend, and the triangles whose fall line through the vertex lies
+    inside them. Slopes are compared exactly where doubles cannot tell; of equal ones the direction
+    with the smallest azimuth is taken. At the boundary water leaves where nothing descends, and
+    where the steepest way is an edge of the boundary across which its triangle drains.
+    """
+    found = _list_candidates(falls, vertices)
+    chosen = _choose_steepest(falls, vertices, found)
+    to_vertex, to_triangle = (np.full(len(vertices), NOWHERE) for _ in range(2))
+    slopes = np.zeros(len(vertices))
+    owners = found.owners[chosen]
+    to_vertex[owners] = found.vertices[chosen]
+    to_triangle[owners] = found.triangles[chosen]
+    slopes[owners] = found.slopes[chosen]
+    drains = _drains_outwards(falls, vertices, to_vertex)
+    leaves = is_boundary[vertices] & ((slopes == 0.0) | drains)
+    to_vertex[leaves] = NOWHERE
+    return Exits(to_vertex, to_triangle, slopes, leaves)
+
+
+def _list_candidates(falls: Falls, vertices: NDArray[np.int64]) -> _Candidates:
+    slots, owners = gather(falls.half_edges.offsets, vertices)
+    triangles = falls.half_edges.triangles[slots].astype(np.int64)
+    corners = np.argmax(falls.triangles[triangles] == vertices[owners][:, None], axis=1)
+    groups = []
+    for turn in (1, 2):
+        ends = falls.triangles[triangles, (corners + turn) % 3].astype(np.int64)
+        groups.append(_measure_edges(falls, vertices, owners, ends))
+    signs = [falls.signs[triangles, (corners + turn) % 3] for turn in range(3)]
+    inside = (signs[0] > 0) & (signs[1] < 0) & (signs[2] < 0)
+    groups.append(_measure_triangles(falls, owners[inside], triangles[inside]))
+    merged = _Candidates._make(np.concatenate(arrays) for arrays in zip(*groups, strict=True))
+    order = np.argsort(merged.owners, kind="stable")
+    return _Candidates._make(array[order] for array in merged)
+
+
+def _measure_edges(
+    falls: Falls,
+    vertices: NDArray[np.int64],
+    owners: NDArray[np.int64],
+    ends: NDArray[np.int64],
+) -> _Candidates:
+    z = falls.points[:, 2]
+    down = z[ends] < z[vertices[owners]]
+    owners, ends = owners[down], ends[down]
+    step = falls.points[ends] - falls.points[vertices[owners]]
+    slopes = -step[:, 2] / np.hypot(step[:, 0], step[:, 1])
+    # Of a fall that underflows there is still a descent.
+    return _Candidates(owners, ends, np.full(len(ends), NOWHERE), np.maximum(slopes, 5e-324))
+
+
+def _measure_triangles(
+    falls: Falls, owners: NDArray[np.int64], triangles: NDArray[np.int64]
+) -> _Candidates:
+    a, b, c = (falls.points[falls.triangles[triangles, k]] for k in range(3))
+    (east, north, area), poor = _cross(b - a, c - a)
+    slopes = np.hypot(east, north) / area
+    for row in np.flatnonzero(poor).tolist():
+        x, y, whole = _cross_exactly(falls, int(triangles[row]))
+        slopes[row] = math.hypot(float(x / whole), float(y / whole))
+    return _Candidates(owners, np.full(len(owners), NOWHERE), triangles, slopes)
+
+
+def _cross(u: NDArray[np.float64], v: NDArray[np.float64]) -> tuple[Any, NDArray[np.bool_]]:
+    """Return the components of cross products, and where rounding spoils one."""
+    normals, poor = [], np.zeros(len(u), np.bool_)
+    for i, j in ((1, 2), (2, 0), (0, 1)):
+        left, right = u[:, i] * v[:, j], u[:, j] * v[:, i]
+        normals.append(left - right)
+        poor |= np.abs(left - right) * _CLOSE < (np.abs(left) + np.abs(right)) * _ROUNDING
+    level = [one == 0.0 for one in normals[:2]]
+    return normals, poor & ~(level[0] & level[1])
+
+
+def _cross_exactly(falls: Falls, triangle: int) -> tuple[Fraction, Fraction, Fraction]:
+    corners = falls.points[falls.triangles[triangle]].tolist()
+    a, b, c = ([Fraction(value) for value in corner] for corner in corners)
+    u, v = ([end - start for start, end in zip(a, other, strict=True)] for other in (b, c))
+    east, north, area = (u[i] * v[j] - u[j] * v[i] for i, j in ((1, 2), (2, 0), (0, 1)))
+    return east, north, area
+
+
+def _choose_steepest(
+    falls: Falls, vertices: NDArray[np.int64], found: _Candidates
+) -> NDArray[np.int64]:
+    """Return the number of the steepest candidate of each vertex that has one."""
+    if len(found.owners) == 0:
+        return np.zeros(0, np.int64)
+    firsts = np.flatnonzero(np.append(True, np.diff(found.owners) != 0))
+    group = np.cumsum(np.append(False, np.diff(found.owners) != 0))
+    best = np.maximum.reduceat(found.slopes, firsts)[group]
+    close = np.flatnonzero(found.slopes >= best - _CLOSE * best)
+    is_first = np.append(True, np.diff(group[close]) != 0)
+    chosen: NDArray[np.int64] = close[is_first]
+    same = (found.vertices[close] == found.vertices[chosen][group[close]]) & (
+        found.triangles[close] == found.triangles[chosen][group[close]]
+    )
+    for number in np.unique(group[close[~same]]).tolist():
+        rivals = close[slice(*np.searchsorted(group[close], [number, number + 1]))]
+        origin = int(vertices[found.owners[rivals[0]]])
+        keys = [_measure_exactly(falls, origin, found, int(one)) for one in rivals]
+        chosen[number] = rivals[min(range(len(rivals)), key=keys.__getitem__)]
+    return chosen
+
+
+def _measure_exactly(
+    falls: Falls, origin: int, found: _Candidates, number: int
+) -> tuple[Fraction, float]:
+    """Return minus the squared slope, exactly, and the azimuth."""
+    if found.vertices[number] != NOWHERE:
+        ends = [origin, int(found.vertices[number])]
+        p, q = ([Fraction(value) for value in falls.points[end].tolist()] for end in ends)
+        east, north, fall = (end - start for start, end in zip(p, q, strict=True))
+        square = fall * fall / (east * east + north * north)
+    else:
+        east, north, area = _cross_exactly(falls, int(found.triangles[number]))
+        square = (east * east + north * north) / area**2
+    largest = max(abs(east), abs(north))
+    return -square, math.atan2(east / largest, north / largest) % math.tau
+
+
+def _drains_outwards(
+    falls: Falls, vertices: NDArray[np.int64], ends: NDArray[np.int64]
+) -> NDArray[np.bool_]:
+    """Tell which edges are of the boundary, with their triangle draining across them."""
+    drains = np.zeros(len(vertices), np.bool_)
+    chosen = np.flatnonzero(ends != NOWHERE)
+    for start, end in ((vertices, ends), (ends, vertices)):
+        left = find_triangles(falls.half_edges, start[chosen], end[chosen])
+        right = find_triangles(falls.half_edges, end[chosen], start[chosen])
+        rows = np.flatnonzero((left != NO_NEIGHBOR) & (right == NO_NEIGHBOR))
+        at = falls.triangles[left[rows]] == start[chosen[rows]][:, None]
+        edge = (np.argmax(at, axis=1) + 2) % 3
+        drains[chosen[rows]] = falls.signs[left[rows], edge] > 0
+    return drains

@@ -1,0 +1,182 @@
+"""Water: what of a surface lies under levels, as polygons, with areas and volumes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ...tin import topology
+from .. import _kernel
+from ..earthwork.cells import fan_out
+from ..earthwork.reference import require_finite
+from ..isolines.mending import PolygonParts, mend_polygons
+from ..relief.dissolving import dissolve
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["Patches", "Polygons", "Waters", "cut_below", "gather_polygons", "measure_waters"]
+
+
+class Patches(NamedTuple):
+    """Triangles that share their vertices, each part of a region.
+
+    Has what :func:`tinsmith.terrain.relief.dissolving.dissolve` asks of a TIN.
+
+    Attributes
+    ----------
+    points : (n, 2) or (n, 3) float64 array
+    triangles, neighbors : (m, 3) int32 arrays
+    regions : (m,) int64 array
+    """
+
+    points: NDArray[np.float64]
+    triangles: NDArray[np.int32]
+    neighbors: NDArray[np.int32]
+    regions: NDArray[np.int64]
+
+
+class Polygons(NamedTuple):
+    """Polygons as :meth:`Features.of_polygons` takes them, and the region of each feature."""
+
+    points: NDArray[np.float64]
+    ring_offsets: NDArray[np.int64]
+    polygon_offsets: NDArray[np.int64]
+    feature_offsets: NDArray[np.int64]
+    regions: NDArray[np.int64]
+    notes: tuple[str, ...]
+
+
+class Waters(NamedTuple):
+    """Waters that stand in triangles, each with a level of its own.
+
+    Attributes
+    ----------
+    triangles : (k,) int64 array
+        Of the surface, with a corner under water.
+    numbers : (k,) int64 array
+        The water in each.
+    levels : (w,) float64 array
+    """
+
+    triangles: NDArray[np.int64]
+    numbers: NDArray[np.int64]
+    levels: NDArray[np.float64]
+
+
+def measure_waters(
+    points: NDArray[np.float64], triangles: NDArray[np.int32], waters: Waters, up: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Measure areas and volumes of waters, exact but for rounding.
+
+    Parameters
+    ----------
+    points, triangles : arrays
+        Of the surface.
+    waters : Waters
+    up : float
+        Factor from elevations to the unit of eastings.
+
+    Returns
+    -------
+    areas, volumes : (w,) float64 arrays
+    """
+    corners = triangles[waters.triangles]
+    depths = waters.levels[waters.numbers][:, None] - points[corners, 2]
+    # Each triangle with vertices of its own, for at one vertex several levels may meet.
+    apart = np.ascontiguousarray(points[corners].reshape(-1, 3))
+    rows = np.arange(3 * len(corners), dtype=np.int32).reshape(-1, 3)
+    groups = waters.numbers.astype(np.int32)
+    sums = _kernel.sum_heights(apart, rows, depths.ravel(), groups, len(waters.levels), up)
+    require_finite(sums)
+    column = _kernel.SUMS.index
+    return sums[:, column("fill_area")], sums[:, column("fill")] * up
+
+
+def cut_below(points: NDArray[np.float64], triangles: NDArray[np.int32], waters: Waters) -> Patches:
+    r"""Cut off what of triangles lies above the water in them.
+
+    A corner at the level is dry. A place where the level crosses an edge is made once for both
+    triangles of the edge, and is the vertex itself if that lies at the level::
+
+             dry            corner k is under water: with the crossings of both edges
+            /   \           it makes a triangle; two such corners make two
+        ---x-----x---
+          k ----- wet
+    """
+    # Each water with vertices of its own: waters may lie in each other.
+    keys = waters.numbers[:, None] * len(points) + triangles[waters.triangles]
+    own, corners = np.unique(keys, return_inverse=True)
+    corners, points = corners.reshape(-1, 3), points[own % len(points)]
+    levels = waters.levels[waters.numbers]
+    depths = levels[:, None] - points[corners, 2]
+    wet = depths > 0.0
+    shore = _cross_edges(points, corners, levels, wet)
+    cells: list[list[NDArray[np.int64]]] = []
+    for k in range(3):
+        cells += [
+            [np.where(wet[:, k], corners[:, k], -1)],
+            [np.where(wet[:, k] != wet[:, (k + 1) % 3], shore.vertices[:, (k + 2) % 3], -1)],
+        ]
+    slots = np.concatenate(cells).T
+    used = slots >= 0
+    offsets = topology.find_offsets(used.sum(axis=1))
+    made, cell = fan_out(offsets, slots[used].astype(np.int32))
+    sound = (made != np.roll(made, 1, axis=1)).all(axis=1)
+    triangles, cell = np.ascontiguousarray(made[sound]), cell[sound]
+    neighbors = topology.neighbors_of(triangles, len(shore.points))
+    return Patches(shore.points, triangles, neighbors, waters.numbers[cell])
+
+
+class _Shore(NamedTuple):
+    """Where levels cross the edges opposite corners: vertices, -1 where they do not."""
+
+    points: NDArray[np.float64]
+    vertices: NDArray[np.int64]
+
+
+def _cross_edges(
+    points: NDArray[np.float64],
+    corners: NDArray[np.int64],
+    levels: NDArray[np.float64],
+    wet: NDArray[np.bool_],
+) -> _Shore:
+    vertices = np.full(corners.shape, -1)
+    rows, k = np.nonzero(np.roll(wet, -1, axis=1) != np.roll(wet, -2, axis=1))
+    start, end = corners[rows, (k + 1) % 3], corners[rows, (k + 2) % 3]
+    is_up = wet[rows, (k + 1) % 3]
+    low, high = np.where(is_up, start, end), np.where(is_up, end, start)
+    keys = low * len(points) + high
+    _, first, number = np.unique(keys, return_index=True, return_inverse=True)
+    low, high, level = low[first], high[first], levels[rows[first]]
+    z = points[:, 2]
+    at_vertex = z[high] == level
+    share = ((level - z[low]) / (z[high] - z[low]))[:, None]
+    places = points[low, :2] + share * (points[high, :2] - points[low, :2])
+    found = np.where(at_vertex, high, len(points) + np.arange(len(high)))
+    vertices[rows, k] = found[number]
+    return _Shore(np.concatenate([points[:, :2], places]), vertices)
+
+
+def gather_polygons(patches: Patches) -> Polygons:
+    """Join the triangles of each region to polygons that are valid."""
+    found = dissolve(patches, patches.regions)
+    counts = np.diff(found.feature_offsets)
+    parts, notes = mend_polygons(
+        PolygonParts(
+            np.ascontiguousarray(patches.points[found.vertices, :2]),
+            found.ring_offsets,
+            found.polygon_offsets,
+            np.repeat(found.classes, counts).astype(np.int32),
+        )
+    )
+    regions, first = np.unique(parts.band, return_index=True)
+    return Polygons(
+        parts.points,
+        parts.ring_offsets,
+        parts.polygon_offsets,
+        np.append(first, len(parts.band)).astype(np.int64),
+        regions.astype(np.int64),
+        notes,
+    )

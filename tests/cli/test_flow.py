@@ -1,0 +1,66 @@
+"""``tinsmith flow``: what it finds, and what it refuses."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import tinsmith as ts
+from tinsmith.cli import main
+
+
+def run(*args):
+    return CliRunner().invoke(main, [str(arg) for arg in args], standalone_mode=True)
+
+
+@pytest.fixture
+def site(tmp_path):
+    corners = [[0, 0, 3], [6, 0, 3], [6, 6, 3], [0, 6, 3]]
+    bowl = [*corners, [3, 0, 2], [3, 3, 0], [6, 3, 3], [3, 6, 3], [0, 3, 3]]
+    path = tmp_path / "site.ply"
+    ts.write(ts.triangulate(np.array(bowl, float), crs="EPSG:32616", z_unit="m"), path)
+    return path
+
+
+def test_what_is_found_is_what_the_library_finds(site, tmp_path):
+    tin = ts.read(site)
+    cases = {
+        "depressions": ([], ts.depressions(tin)),
+        "pits": ([], ts.pits(tin)),
+        "ponds": (["--level", "1.5"], ts.ponds(tin, 1.5)),
+        "ridges": (["--min-angle", "10"], ts.ridges_and_valleys(tin, min_angle=10)),
+        "paths": (["--from", "1", "2", "--from", "5", "5"], ts.flow_path(tin, [[1, 2], [5, 5]])),
+    }
+    for find, (options, wanted) in cases.items():
+        out = tmp_path / f"{find}.json"
+        done = run("flow", site, "--find", find, *options, "-o", out, "--json")
+        assert done.exit_code == 0, done.stderr
+        told = json.loads(done.stdout)
+        for name, column in wanted.columns.items():
+            assert [row[name] for row in told["found"]] == column.tolist()
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        (["--find", "paths"], "Where drops fall is needed"),
+        (["--find", "ponds"], "A level is needed"),
+        (["--level", "3"], "--level is for --find ponds, not depressions"),
+        (["--find", "pits", "--nested"], "--nested is for --find depressions, not pits"),
+        (["--min-depth", "-1"], "min"),
+    ],
+)
+def test_wrong_usage_exits_2(site, tmp_path, options, sentence):
+    done = run("flow", site, *options, "-o", tmp_path / "a.geojson")
+    assert done.exit_code == 2
+    assert sentence in done.stderr
+    assert not (tmp_path / "a.geojson").exists()
+
+
+def test_a_place_outside_exits_1(site, tmp_path):
+    done = run("flow", site, "--find", "paths", "--from", "99", "9", "-o", tmp_path / "a.geojson")
+    assert done.exit_code == 1
+    assert "outside the surface" in done.stderr

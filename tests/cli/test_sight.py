@@ -1,0 +1,45 @@
+"""``tinsmith sight``: lines and viewsheds as the library has them."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import tinsmith as ts
+from tinsmith.cli import main
+
+RIDGE = [[0, 0, 0], [0, 4, 0], [4, 0, 2], [4, 4, 2], [8, 0, 0], [8, 4, 0]]
+
+
+@pytest.fixture
+def site(tmp_path):
+    path = tmp_path / "site.ply"
+    ts.write(ts.triangulate(np.array(RIDGE, float), crs="EPSG:32616", z_unit="m"), path)
+    return path
+
+
+def run(*args):
+    return CliRunner().invoke(main, [str(arg) for arg in args], standalone_mode=True)
+
+
+def test_lines_and_the_viewshed_are_written(site, tmp_path):
+    start = ("sight", site, "--from", "1", "2", "--eye-height", "0.5", "--json", "-o")
+    done = run(*start, tmp_path / "a.csv", "--to", "3", "2", "--to", "7", "2")
+    assert done.exit_code == 0, done.output
+    assert [row["visible"] for row in json.loads(done.stdout)["found"]] == [True, False]
+    done = run(*start, tmp_path / "a.geojson")
+    assert done.exit_code == 0, done.output
+    assert [row["class"] for row in json.loads(done.stdout)["found"]] == ["visible", "hidden"]
+    assert (tmp_path / "a.csv").exists()
+    assert (tmp_path / "a.geojson").exists()
+
+
+def test_wrong_usage_exits_2_and_places_outside_1(site, tmp_path):
+    out = ("-o", tmp_path / "a.csv")
+    assert run("sight", site, *out).exit_code == 2
+    assert run("sight", site, "--from", 1, 2, "--to", 7, 2, "--radius", 3, *out).exit_code == 2
+    assert run("sight", site, "--from", 1, 2, "--refraction", 0.2, *out).exit_code == 2
+    assert run("sight", site, "--from", 99, 2, *out).exit_code == 1

@@ -1,0 +1,41 @@
+"""Lines of sight over hard surfaces, against every edge in fractions."""
+
+from __future__ import annotations
+
+import numpy as np
+from support.sight_oracle import find_first_block
+
+import tinsmith as ts
+
+from .campaign import Campaign, Case
+from .hydrology import generate as generate_surface
+
+
+def generate(rng: np.random.Generator) -> Case:
+    """A surface as of the campaign of hydrology, and heights that make lines touch."""
+    case = generate_surface(rng)
+    case["heights"] = rng.choice([0.0, 0.5, 1.0, 2.7], 2).tolist()
+    return case
+
+
+def examine(case: Case) -> str:
+    """Look from the first place that has ground to the others, and to all vertices."""
+    try:
+        tin = ts.triangulate(case["points"], max_edge=case["max_edge"], crs="EPSG:32616")
+    except ts.TinsmithError:
+        return "refused: points"
+    low, high = tin.points[:, :2].min(axis=0), tin.points[:, :2].max(axis=0)
+    places = low + np.array(case["starts"]) * (high - low)
+    places = np.vstack([places[tin.locate(places) >= 0], tin.points[np.unique(tin.triangles), :2]])
+    eye, targets = places[0], places[1:][(places[1:] != places[0]).any(axis=1)]
+    above, target_above = case["heights"]
+    found = ts.line_of_sight(tin, eye, targets, eye_height=above, target_height=target_above)
+    for row, (start, end) in enumerate(found.coordinates.reshape(-1, 2, 3)):
+        block = find_first_block(tin.points, tin.edges, start, end)
+        assert found.columns["visible"][row] == (block is None), f"{start} to {end}"
+    areas = ts.viewshed(tin, eye, eye_height=above).columns["area"]
+    assert np.isclose(areas.sum(), tin.area), "the classes do not tile the surface"
+    return "sight"
+
+
+CAMPAIGNS = (Campaign("sight", "lines of sight and viewsheds", generate, examine),)

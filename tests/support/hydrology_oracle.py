@@ -1,0 +1,112 @@
+"""Hydrology the plain way: fractions along paths, priority flood by a heap."""
+
+from __future__ import annotations
+
+import heapq
+from fractions import Fraction
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+
+def as_fractions(point: Any) -> tuple[Fraction, ...]:
+    return tuple(Fraction(value) for value in np.asarray(point).tolist())
+
+
+def find_gradient(corners: Any) -> tuple[Fraction, Fraction]:
+    """Return the rise of a triangle for a unit of easting and of northing."""
+    a, b, c = (as_fractions(corner) for corner in corners)
+    u, v = ([end - start for start, end in zip(a, other, strict=True)] for other in (b, c))
+    area = u[0] * v[1] - u[1] * v[0]
+    return (u[2] * v[1] - u[1] * v[2]) / area, (u[0] * v[2] - u[2] * v[0]) / area
+
+
+def flood(points: np.ndarray, edges: np.ndarray, boundary: set[int]) -> np.ndarray:
+    """Return the level to which each vertex fills (priority flood; Barnes, Lehman, Mulla 2014)."""
+    around: dict[int, list[int]] = {}
+    for a, b in edges.tolist():
+        around.setdefault(a, []).append(b)
+        around.setdefault(b, []).append(a)
+    level = np.full(len(points), np.inf)
+    heap = [(float(points[v, 2]), v) for v in boundary]
+    for z, v in heap:
+        level[v] = z
+    heapq.heapify(heap)
+    while heap:
+        z, v = heapq.heappop(heap)
+        for w in around[v]:
+            if np.isinf(level[w]):
+                level[w] = max(z, float(points[w, 2]))
+                heapq.heappush(heap, (float(level[w]), w))
+    return level
+
+
+def flood_raster(z: np.ndarray) -> np.ndarray:
+    """Return the filled raster, which drains over its edge; cells touch at corners, too."""
+    rows, columns = z.shape
+    level = np.full(z.shape, np.inf)
+    heap = []
+    for r in range(rows):
+        for c in range(columns):
+            if r in (0, rows - 1) or c in (0, columns - 1):
+                level[r, c] = z[r, c]
+                heap.append((float(z[r, c]), r, c))
+    heapq.heapify(heap)
+    while heap:
+        here, r, c = heapq.heappop(heap)
+        for dr in (-1, 0, 1):
+            for dc in (-1, 0, 1):
+                i, j = r + dr, c + dc
+                if 0 <= i < rows and 0 <= j < columns and np.isinf(level[i, j]):
+                    level[i, j] = max(here, z[i, j])
+                    heapq.heappush(heap, (float(level[i, j]), i, j))
+    return level
+
+
+def require_descent(tin: Any, line: np.ndarray, slack: float) -> None:
+    """Refuse a path that rises, or does not run along gradients or edges.
+
+    Parameters
+    ----------
+    tin : TIN
+    line : (n, 3) array
+    slack : float
+        What rounding may move a place by.
+    """
+    assert (np.diff(line[:, 2]) <= 0).all(), "a path rises"
+    vertices = {tuple(point[:2]): number for number, point in enumerate(tin.points.tolist())}
+    for start, end in pairwise(line):
+        a, b = vertices.get(tuple(start[:2])), vertices.get(tuple(end[:2]))
+        if a is not None and b is not None and tin.is_edge(a, b):
+            continue
+        step = end[:2] - start[:2]
+        middle = (start[:2] + end[:2]) / 2
+        triangle = int(tin.locate([middle])[0])
+        candidates = [triangle, *tin.neighbors[triangle].tolist()]
+        assert any(
+            fits(tin.points[tin.triangles[t]], step, slack) for t in candidates if t >= 0
+        ) or lies_on_edge(tin, triangle, start, end, slack), f"{start} to {end}: not steepest"
+
+
+def fits(corners: np.ndarray, step: np.ndarray, slack: float) -> bool:
+    """Whether a step follows the gradient of a triangle downwards."""
+    gradient = np.array([float(value) for value in find_gradient(corners)])
+    steepness = np.hypot(*gradient)
+    if steepness == 0.0:
+        return False
+    down = -gradient / steepness
+    across = step[0] * down[1] - step[1] * down[0]
+    return bool(abs(across) <= slack and step @ down >= -slack)
+
+
+def lies_on_edge(tin: Any, triangle: int, start: np.ndarray, end: np.ndarray, slack: float) -> bool:
+    """Whether a step runs along an edge of a triangle, which is then a channel."""
+    corners = tin.points[tin.triangles[triangle]]
+    for k in range(3):
+        p, q = corners[(k + 1) % 3, :2], corners[(k + 2) % 3, :2]
+        along = (q - p) / np.hypot(*(q - p))
+        off = [abs((x[0] - p[0]) * along[1] - (x[1] - p[1]) * along[0]) for x in (start, end)]
+        if max(off) <= slack:
+            return True
+    return False

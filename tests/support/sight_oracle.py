@@ -1,0 +1,36 @@
+"""Lines of sight the plain way: each against every edge and vertex, in fractions."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+
+def turn(a: Any, b: Any, c: Any) -> Fraction:
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+
+
+def find_first_block(points: np.ndarray, edges: np.ndarray, eye: Any, target: Any) -> Any:
+    """Return the least share of the way at which an edge or a vertex is above the ray, or None."""
+    e, t = ([Fraction(float(value)) for value in end] for end in (eye, target))
+    exact = [[Fraction(value) for value in point] for point in points.tolist()]
+    sides = [turn(e, t, point) for point in exact]
+    found = []
+    for vertex in np.unique(edges).tolist():
+        if sides[vertex] == 0:
+            found.append(measure(e, t, exact[vertex]))
+    for a, b in edges.tolist():
+        if sides[a] * sides[b] < 0:
+            share = sides[a] / (sides[a] - sides[b])
+            place = [p + share * (q - p) for p, q in zip(exact[a], exact[b], strict=True)]
+            found.append(measure(e, t, place))
+    return min((share for share, above in found if 0 < share < 1 and above > 0), default=None)
+
+
+def measure(e: Any, t: Any, place: Any) -> tuple[Fraction, Fraction]:
+    """Return the share of the way at which a place lies, and its height above the ray."""
+    axis = 0 if e[0] != t[0] else 1
+    share = (place[axis] - e[axis]) / (t[axis] - e[axis])
+    return share, place[2] - (e[2] + share * (t[2] - e[2]))

@@ -1,0 +1,78 @@
+"""Openings and least values around cells, against loops over every cell."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tinsmith.terrain.ground_filter import morphology
+from tinsmith.terrain.ground_filter.morphology import (
+    least_around,
+    list_windows,
+    open_grid,
+    split_columns,
+)
+
+
+def make_octagon(window):
+    """Return offsets of the cells of the octagon, as the sum of four lines."""
+    oblique = int(window * (1 - np.sqrt(0.5)))
+    straight, short = (range(-n, n + 1) for n in (window - 2 * oblique, oblique))
+    return {
+        (a + c + d, b + c - d) for a in straight for b in straight for c in short for d in short
+    }
+
+
+def choose_within(grid, offsets, choose, outside):
+    result = np.full(grid.shape, outside)
+    for i, j in np.ndindex(*grid.shape):
+        near = [(i + di, j + dj) for di, dj in offsets]
+        held = [grid[a, b] for a, b in near if 0 <= a < grid.shape[0] and 0 <= b < grid.shape[1]]
+        result[i, j] = choose([outside, *held])
+    return result
+
+
+@pytest.fixture
+def grid():
+    rng = np.random.default_rng(2)
+    values = rng.integers(0, 50, (17, 13)).astype(float)
+    values[rng.uniform(size=values.shape) < 0.3] = np.inf
+    return values
+
+
+@pytest.mark.parametrize("window", [1, 2, 3, 4, 7])
+def test_opening(grid, window):
+    octagon = make_octagon(window)
+    eroded = choose_within(grid, octagon, min, np.inf)
+    eroded[np.isinf(eroded)] = -np.inf
+    assert (open_grid(grid, window) == choose_within(eroded, octagon, max, -np.inf)).all()
+
+
+def test_an_opening_lifts_nothing_and_is_done_once(grid):
+    opened = open_grid(np.where(np.isinf(grid), 7.0, grid), 3)
+    assert (opened <= np.where(np.isinf(grid), 7.0, grid)).all()
+    assert (open_grid(opened, 3) == opened).all()
+
+
+@pytest.mark.parametrize(("core", "reach"), [(2, 7), (1, 4), (0, 1), (0, 3), (3, 10)])
+def test_least_around(grid, core, reach):
+    away = range(-reach, reach + 1)
+    ring = {(i, j) for i in away for j in away if max(abs(i), abs(j)) > core}
+    assert (least_around(grid, core, reach) == choose_within(grid, ring, min, np.inf)).all()
+
+
+@pytest.mark.parametrize("halo", [1, 4, 40])
+def test_blocks_make_the_same_grid(grid, halo, monkeypatch):
+    monkeypatch.setattr(morphology, "_BLOCK", 13 * 3)
+    made = np.full(grid.shape, np.nan)
+    for wide, inner, own in split_columns(grid.shape, halo):
+        made[own] = grid[wide][inner]
+    assert (made == grid).all()
+
+
+def test_windows_grow_to_the_largest():
+    for largest in range(1, 60):
+        windows = list_windows(largest)
+        assert windows[0] == 1
+        assert windows[-1] == largest
+        assert sorted(set(windows)) == windows
