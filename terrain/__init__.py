@@ -14,7 +14,9 @@ if TYPE_CHECKING:
     from .charts.sections import section_picture
     from .charts.triangles import to_matplotlib
     from .earthwork import Difference, difference, stage_storage, volume
+    from .flats import flats, mend_flats
     from .gridding import height_above, rasterize
+    from .ground_filter import GroundPoints, ground
     from .hydrology import depressions, flow_path, pits, ponds, ridges_and_valleys
     from .inspection import blunders
     from .isolines import ContourCheck, check_contours, contour_bands, contour_labels, contours
@@ -44,9 +46,10 @@ else:  # a type checker takes every name for one that such a __getattr__ has
             ".charts.relief": ("relief_map",),
             ".charts.sections": ("section_picture",),
             ".earthwork": ("Difference", "difference", "stage_storage", "volume"),
+            ".flats": ("flats", "mend_flats"),
             ".gridding": ("height_above", "rasterize"),
             ".inspection": ("blunders",),
-            ".ground_filter": ("GroundPoints", "ground", "GroundPoints", "ground"),
+            ".ground_filter": ("GroundPoints", "ground"),
             ".isolines": (
                 "ContourCheck",
                 "check_contours",
@@ -111,6 +114,7 @@ __all__ = [
     "difference",
     "drape",
     "earthwork_map",
+    "flats",
     "flow_path",
     "ground",
     "height_above",
@@ -118,6 +122,7 @@ __all__ = [
     "histogram",
     "lift",
     "line_of_sight",
+    "mend_flats",
     "pits",
     "plan",
     "ponds",

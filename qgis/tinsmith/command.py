@@ -136,9 +136,9 @@ def _ask_version(path: str, changed: float) -> str:  # noqa: ARG001 - a changed 
     except (OSError, subprocess.TimeoutExpired) as error:
         raise QgsProcessingException(f"The command '{path}' does not run: {error}.") from error
     words = done.stdout.split()
-    if done.returncode != 0 or len(words) != 2 or words[0] != "tinsmith":
+    if done.returncode != 0 or len(words) < 2 or words[0] != "tinsmith":
         said = (done.stderr or done.stdout).strip().splitlines() or ["nothing"]
         raise QgsProcessingException(
             f"The command '{path}' is no tinsmith: asked for its version, it said: {said[-1]}"
         )
-    return " ".join(words)
+    return " ".join(words[:2])

@@ -64,6 +64,7 @@ if TYPE_CHECKING:
         to_matplotlib,
     )
     from .terrain.earthwork import Difference, difference, stage_storage, volume
+    from .terrain.flats import flats, mend_flats
     from .terrain.gridding import height_above, rasterize
     from .terrain.ground_filter import GroundPoints, ground
     from .terrain.hydrology import depressions, flow_path, pits, ponds, ridges_and_valleys
@@ -196,8 +197,10 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "contours",
                 "difference",
                 "earthwork_map",
+                "flats",
                 "histogram",
                 "lift",
+                "mend_flats",
                 "Preview",
                 "preview",
                 "profile_picture",
@@ -321,6 +324,7 @@ __all__ = [
     "drape",
     "earthwork_map",
     "find_format",
+    "flats",
     "flow_path",
     "from_mesh",
     "from_raster",
@@ -334,6 +338,7 @@ __all__ = [
     "lift",
     "line_of_sight",
     "lines_from_codes",
+    "mend_flats",
     "paper",
     "pits",
     "plan",

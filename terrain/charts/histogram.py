@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ... import _optional
+from ..._sentences import counted
 from ...tin import Quality
 from ...tin.validation.options import require_type
 from ..rounding import choose_ticks
@@ -91,7 +92,9 @@ def histogram(quality: Quality, *, title: str | None = None, unit: str = "") -> 
     )
     figure.suptitle(heading, fontsize=15, color=_INK, parse_math=False)
     where = "in space" if quality.space else "in the plane"
-    figure.supxlabel(f"{len(quality):,} triangles, measured {where}", fontsize=10, color=_INK)
+    figure.supxlabel(
+        f"{counted(len(quality), 'triangle')}, measured {where}", fontsize=10, color=_INK
+    )
     grid = figure.subplots(2, 2)
     for axes, panel in zip(grid.ravel(), _choose_panels(quality, symbol), strict=True):
         _draw_panel(axes, panel)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ..._sentences import counted
 from ...crs import CRS
 from ...errors import OptionError, PointsError
 from ...tin.types import Bounds, Grid
@@ -155,7 +156,7 @@ def _require_cells(grid: Grid, in_memory: bool) -> None:
     rows, columns = (int(side) for side in grid.shape)
     most = MOST_CELLS_IN_MEMORY if in_memory else MOST_CELLS
     if rows * columns > most or max(rows, columns) > _MOST_PER_SIDE:
-        size = f"{rows:,} rows by {columns:,} columns"
+        size = f"{counted(rows, 'row')} by {counted(columns, 'column')}"
         raise OptionError("number of cells", rows * columns, f"at most {most:,}, not {size}")
 
 

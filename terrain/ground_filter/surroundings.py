@@ -121,4 +121,5 @@ def _solve_planes(matrix: Doubles, right: Doubles) -> tuple[Doubles, NDArray[np.
     spread = np.linalg.eigvalsh(matrix)
     is_sound = (matrix[:, 0, 0] >= _FEWEST) & (spread[:, 0] > _FLATTEST * spread[:, 2])
     matrix[~is_sound] = np.eye(3)
-    return np.linalg.solve(matrix, right[:, :, None])[:, 0, 0], is_sound
+    heights = np.asarray(np.linalg.solve(matrix, right[:, :, None])[:, 0, 0], np.float64)
+    return heights, is_sound

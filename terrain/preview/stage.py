@@ -324,7 +324,10 @@ def _make_caption(
     corridor: Corridor | None,
     strips: Strips | None,
 ) -> Caption:
-    parts = [f"{len(tin.points):,} points, {len(tin.triangles):,} triangles", ground.crs_name]
+    parts = [
+        f"{len(tin.points):,} points, {counted(len(tin.triangles), 'triangle')}",
+        ground.crs_name,
+    ]
     if corridor is not None and strips is not None:
         parts.append(_describe_strips(strips, ground))
     ends = look.elevations or (shown.low, shown.high)

@@ -28,6 +28,8 @@ __all__ = ["viewshed", "visible_vertices"]
 
 _CLASSES = ("visible", "partly", "hidden")
 _COLORS = ("#7fbf7b", "#f6e8a6", "#b9aec4")
+_DOUBT = 1e-12
+"""Share of its terms below which a height above a plane may be rounding."""
 _BREAKS = 4_000_000
 """Crossings that are held at a time, about."""
 
@@ -196,8 +198,8 @@ def _faces_away(tin: TIN, eye: NDArray[np.float64]) -> NDArray[np.bool_]:
     normals = np.cross(b - a, c - a)
     sizes = np.abs(normals) * np.abs(eye - a)
     offsets = (normals * (eye - a)).sum(axis=1)
-    is_below: NDArray[np.bool_] = offsets < -1e-12 * sizes.sum(axis=1)
-    return is_below
+    away: NDArray[np.bool_] = offsets < -_DOUBT * sizes.sum(axis=1)
+    return away
 
 
 def _as_features(

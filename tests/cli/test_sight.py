@@ -41,5 +41,5 @@ def test_wrong_usage_exits_2_and_places_outside_1(site, tmp_path):
     out = ("-o", tmp_path / "a.csv")
     assert run("sight", site, *out).exit_code == 2
     assert run("sight", site, "--from", 1, 2, "--to", 7, 2, "--radius", 3, *out).exit_code == 2
-    assert run("sight", site, "--from", 1, 2, "--refraction", 0.2, *out).exit_code == 2
+    assert run("sight", site, "--from", 1, 2, "--sight-refraction", 0.2, *out).exit_code == 2
     assert run("sight", site, "--from", 99, 2, *out).exit_code == 1

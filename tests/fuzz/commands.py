@@ -82,7 +82,10 @@ _VALUES = {
 }
 _WITH_VALUES = ("-o", *_VALUES)
 _WRITING = ("-o", "--report", "--plot")
-_FLAGS = ("--json", "-q", "--codes", "--conforming", "--drape", "--projected", "--fill", "--nope")
+_FLAGS = (
+    *("--json", "-q", "--codes", "--conforming", "--drape", "--projected", "--fill", "--nope"),
+    "--events",
+)
 _COMMANDS = (
     *("build", "info", "check", "compare", "refine", "simplify", "edit", "convert", "formats"),
     "nope",
@@ -155,10 +158,21 @@ def _examine(words: list[str], result: Any, given: dict[str, bytes], folder: Pat
         assert is_free or (folder / name).read_bytes() == content, f"'{name}' was changed"
     hidden = [path.name for path in folder.rglob(".*")]
     assert not hidden, f"temporary files are left: {hidden}"
-    if result.exit_code == 1:
+    if "--events" in (words[: words.index("--")] if "--" in words else words):
+        _examine_events(result)
+    elif result.exit_code == 1:
         assert result.stderr.splitlines()[-1].startswith("Error: "), result.stderr
     if _wants_json(words, result):
         json.loads(result.stdout)
+
+
+def _examine_events(result: Any) -> None:
+    """Require an object on every line, and the error as the last of them."""
+    events = [json.loads(line) for line in result.stderr.splitlines()]
+    assert {one["event"] for one in events} <= {"step", "summary", "warning", "error"}
+    errors = [one["exit_code"] for one in events if one["event"] == "error"]
+    assert errors == [result.exit_code] * (result.exit_code > 0), events
+    assert not errors or events[-1]["event"] == "error"
 
 
 def _real(folder: Path, word: str) -> str:

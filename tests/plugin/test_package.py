@@ -11,8 +11,12 @@ import xml.etree.ElementTree as ET
 import zipfile
 from pathlib import Path
 
+from click.testing import CliRunner
 from support import processes
 from support.qgis_plugin import PLUGIN, ROOT
+
+import tinsmith
+from tinsmith.cli import main
 
 PACKAGE = PLUGIN / "tinsmith"
 
@@ -96,6 +100,11 @@ def test_nothing_of_tinsmith_is_imported_inside_qgis():
     assert len(modules) > 15
     forbidden = r"^\s*(?:from|import) +(?:tinsmith|shapely|numpy|pandas|pyproj|rasterio|pyogrio)\b"
     assert not [text for text in modules if re.search(forbidden, text, re.MULTILINE)]
+
+
+def test_the_command_begins_its_version_as_the_plugin_expects():
+    said = CliRunner().invoke(main, ["--version"]).stdout.split()
+    assert said[:2] == ["tinsmith", tinsmith.__version__]
 
 
 def test_types_of_the_plugin():

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ...._sentences import counted
 from ....errors import OptionError
 from ...linework import EDGE_KINDS, find_line_edges
 from ...units import find_ellipsoid
@@ -132,7 +133,7 @@ def describe_page(
     if labels is not None:
         described[-1]["labels"] = _describe_labels(labels, steps)
     last = list(surfaces.values())[-1]
-    counts = f"{len(last.points):,} points, {len(last.triangles):,} triangles"
+    counts = f"{len(last.points):,} points, {counted(len(last.triangles), 'triangle')}"
     return {
         "title": title,
         "subtitle": f"{counts} \N{MIDDLE DOT} {ground.crs_name}",

@@ -38,12 +38,19 @@ __all__ = ["build"]
     help="Leave out the points that look like blunders, but for doubtful ones; the report names "
     "each. 'tinsmith inspect' shows them first.",
 )
+@click.option(
+    "--from-contours",
+    is_flag=True,
+    help="POINTS are contour lines, which become breaklines: where they leave the surface flat, "
+    "points are added along ridges, valleys, peaks and pits, and marked.",
+)
 @surface_options(writing_options)
 def build(
     points: tuple[Path, ...],
     report: Path | None,
     drop_blunders: bool,
     request: Request,
+    from_contours: bool,
 ) -> None:
     """Build the exact Delaunay TIN of the elevation points in POINTS, and of lines.
 
@@ -56,7 +63,10 @@ def build(
     Example:
       tinsmith build sample_data/site_survey.csv --crs EPSG:32616 --codes -o site.geojson
       tinsmith build sample_data/jacksboro.tif --stride 4 -o hills.ply -o hills.stl
+      tinsmith build --from-contours contours.gpkg --z-field elevation -o hills.gpkg
     """  # noqa: D301 - click reads the control character
+    from ...terrain import mend_flats
+    from ..contour_input import as_contours, require_contours
     from ..files import add_lines, build_tin, read_inputs, write_text
     from ..output.blunder_summaries import describe_suspects, tell_suspects
     from ..output.console import format_json
@@ -64,17 +74,23 @@ def build(
 
     how, console = request.how, request.console
     planned = request.plan(request.list_inputs(*points), "TIN", report=report)
-    found = read_inputs(points, request.reading, console)
-    survey = add_lines(_require_survey(found, points[0]), how, console)
+    reading = as_contours(request.reading, points) if from_contours else request.reading
+    survey = _require_survey(read_inputs(points, reading, console), points[0])
+    if from_contours:
+        require_contours(survey, points[0])
+    survey = add_lines(survey, how, console)
     tin = build_tin(survey, how, console)
     suspects = _find_blunders(tin, request, drop=drop_blunders)
+    if from_contours:
+        with request.step("Mending flat triangles"):
+            tin = mend_flats(tin)
     gaps = _find_gaps(tin, request)
     planned.write("TIN", tin)
     account = describe_report(tin.report, survey, gaps) | describe_suspects(suspects)
     if report is not None:
         write_text(report, format_json(account) + "\n")
     told = [*tell_suspects(suspects), *(("Gaps", gap) for gap in gaps)]
-    rows = _summarise_build(points, survey, tin, told)
+    rows = _summarise_build(points, survey, tin, told, is_mended=from_contours)
     describe = partial(_describe_build, points, survey, tin, account, planned, request.started)
     request.finish(planned, rows, describe)
 
@@ -113,7 +129,7 @@ def _require_survey(found: Survey | TIN, path: Path) -> Survey:
 
 
 def _summarise_build(
-    points: Sequence[Path], survey: Survey, tin: TIN, told: list[Row]
+    points: Sequence[Path], survey: Survey, tin: TIN, told: list[Row], *, is_mended: bool
 ) -> list[Row]:
     from ..output.line_summaries import describe_counts, summarise_lines
     from ..output.summaries import (
@@ -130,9 +146,20 @@ def _summarise_build(
         *summarise_lines(survey, tin),
         ("TIN", describe_counts(tin)),
         *told,
+        *_summarise_flats(tin, is_mended=is_mended),
         *summarise_extent(tin),
         summarise_crs(tin.crs),
     ]
+
+
+def _summarise_flats(tin: TIN, *, is_mended: bool) -> list[Row]:
+    """Tell what was mended, or else of flat triangles if the points look like contours."""
+    from ...terrain.flats.finding import describe_flats
+
+    if is_mended:
+        return [("Contours", tin.report.notes[-1])]
+    advice = "'tinsmith build --from-contours' takes contour lines and mends them."
+    return [("Flats", f"{sentence}: {advice}") for sentence in describe_flats(tin)]
 
 
 def _describe_build(

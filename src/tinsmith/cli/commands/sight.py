@@ -39,7 +39,7 @@ _SHOWN = 12
 @number_option("--target-height", "HEIGHT", "Of targets above the ground.", default=0.0)
 @number_option("--radius", "LENGTH", "Of the viewshed; any distance if absent.")
 @click.option("--curvature", is_flag=True, help="Mind that the earth is a sphere.")
-@number_option("--refraction", "COEFFICIENT", "With --curvature; 0.13 if absent.")
+@number_option("--sight-refraction", "COEFFICIENT", "With --curvature; 0.13 if absent.")
 @surface_options()
 def sight(file: Path, eye: tuple[float, float], request: Request, **asked: Any) -> None:
     """Find what is seen from a place on the TIN in FILE, or on that of the points in it.
@@ -62,6 +62,7 @@ def sight(file: Path, eye: tuple[float, float], request: Request, **asked: Any) 
     planned = request.plan_products(request.list_inputs(file), "Features", "Table")
     tin = request.read_tin(file)
     targets, radius = asked.pop("targets"), asked.pop("radius")
+    asked["refraction"] = asked.pop("sight_refraction")
     with request.step("Looking"):
         if targets:
             found = terrain.line_of_sight(tin, list(eye), [list(one) for one in targets], **asked)

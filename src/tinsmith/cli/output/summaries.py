@@ -89,7 +89,7 @@ def describe_tin(tin: TIN) -> dict[str, Any]:
 def describe_raster_size(raster: Raster) -> str:
     """Return rows, columns and spacing for a summary."""
     rows, columns = raster.shape
-    return f"{rows:,} rows by {columns:,} columns of {raster.grid.spacing:g}"
+    return f"{counted(rows, 'row')} by {counted(columns, 'column')} of {raster.grid.spacing:g}"
 
 
 def measure_quality(tin: TIN) -> Quality | None:
