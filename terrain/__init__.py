@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from ..errors import OptionError, RenderError
+    from .charts.blunders import blunder_map
     from .charts.comparison import comparison_picture
     from .charts.earthwork import earthwork_map
     from .charts.histogram import histogram
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from .gridding import height_above, rasterize
     from .ground_filter import GroundPoints, ground
     from .hydrology import depressions, flow_path, pits, ponds, ridges_and_valleys
+    from .inspection import blunders
     from .isolines import ContourCheck, check_contours, contour_bands, contour_labels, contours
     from .lift import lift
     from .preview import Preview, preview
@@ -35,6 +37,7 @@ else:  # a type checker takes every name for one that such a __getattr__ has
         __name__,
         {
             "..errors": ("OptionError", "RenderError"),
+            ".charts.blunders": ("blunder_map",),
             ".charts.comparison": ("comparison_picture",),
             ".charts.earthwork": ("earthwork_map",),
             ".charts.histogram": ("histogram",),
@@ -45,6 +48,7 @@ else:  # a type checker takes every name for one that such a __getattr__ has
             ".earthwork": ("Difference", "difference", "stage_storage", "volume"),
             ".flats": ("flats", "mend_flats"),
             ".gridding": ("height_above", "rasterize"),
+            ".inspection": ("blunders",),
             ".ground_filter": ("GroundPoints", "ground"),
             ".isolines": (
                 "ContourCheck",
@@ -96,6 +100,8 @@ __all__ = [
     "Table",
     "aspect",
     "aspect_classes",
+    "blunder_map",
+    "blunders",
     "check_contours",
     "comparison_picture",
     "contour_bands",

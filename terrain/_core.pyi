@@ -131,6 +131,20 @@ def fit_quadratics(
     up: float,
     threads: int = ...,
 ) -> Doubles: ...
+def leave_one_out(
+    points: Doubles,
+    triangles: Ints,
+    neighbors: Ints,
+    vertices: Ints,
+    threads: int = ...,
+) -> Doubles: ...
+def list_neighbors(
+    points: Doubles,
+    triangles: Ints,
+    neighbors: Ints,
+    vertices: Ints,
+) -> tuple[Longs, Ints]: ...
+def measure_neighbors(points: Doubles, triangles: Ints) -> Doubles: ...
 def shade_planes(
     normals: Doubles,
     east: float,

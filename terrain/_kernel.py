@@ -21,6 +21,9 @@ __all__ = [
     "densify",
     "fill_bands",
     "fit_quadratics",
+    "leave_one_out",
+    "list_neighbors",
+    "measure_neighbors",
     "overlay",
     "shade_planes",
     "smooth_contours",
@@ -42,6 +45,9 @@ vertex_normals = _core.vertex_normals
 shade_planes = _core.shade_planes
 fit_quadratics = _core.fit_quadratics
 
+leave_one_out = _core.leave_one_out
+list_neighbors = _core.list_neighbors
+measure_neighbors = _core.measure_neighbors
 densify = _core.densify
 
 trace_contours = _core.trace_contours

@@ -131,8 +131,10 @@ def _compute_gradients(tin: TIN, chosen: Any) -> NDArray[np.float64]:
     """Return the gradients of some triangles, in whatever units there are."""
     a, b, c = (tin.points[tin.triangles[chosen, k]] for k in range(3))
     east, north, up = np.cross(b - a, c - a).T
-    gradients: NDArray[np.float64] = np.hypot(east, north) / up
-    return gradients
+    with np.errstate(divide="ignore", invalid="ignore"):
+        gradients = np.hypot(east, north) / up
+    steep: NDArray[np.float64] = np.nan_to_num(gradients, nan=0.0)  # infinite is the largest
+    return steep
 
 
 def _count_triangles(count: int) -> str:

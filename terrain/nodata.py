@@ -14,7 +14,13 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["SuspectElevation", "describe_suspects", "find_suspect_elevations", "parse_nodata"]
+__all__ = [
+    "SuspectElevation",
+    "describe_suspects",
+    "find_suspect_elevations",
+    "is_customary",
+    "parse_nodata",
+]
 
 _CUSTOMARY = (
     *(-9999.0, -99999.0, -999999.0, -999.0, -9999.9, -999.9, -99.0, -99.9, -32768.0, -32767.0),
@@ -93,6 +99,17 @@ def find_suspect_elevations(z: NDArray[np.float64]) -> list[SuspectElevation]:
         rest = rest[rest != suspect.value]
     # What lies beyond the last of them is the range of the true ones.
     return [replace(one, lowest=float(rest.min()), highest=float(rest.max())) for one in found]
+
+
+def is_customary(value: float) -> bool:
+    """Tell whether programs write an elevation where they have none, such as -9999 and 0.
+
+    Examples
+    --------
+    >>> is_customary(-9999.0), is_customary(318.2)
+    (True, False)
+    """
+    return value in _CUSTOMARY
 
 
 def _find_extremes(z: NDArray[np.float64]) -> tuple[float, float]:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from ..reprojection.area_of_use import AreaOfUse
+    from ...terrain.area_of_use import AreaOfUse
 
 __all__ = [
     "Column",

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ...crs import CRS
-    from ..reprojection.area_of_use import AreaOfUse
+    from ...terrain.area_of_use import AreaOfUse
     from .columns import Columns
     from .table import Fault
 

@@ -12,9 +12,9 @@ from ..._atomic import replacing
 from ..._sentences import counted
 from ...crs import CRS, Unit
 from ...errors import OptionError, ReadError, WriteError
+from ...terrain.area_of_use import AreaOfUse
 from ...terrain.nodata import parse_nodata
 from ...tin import TIN, Survey
-from ..reprojection.area_of_use import AreaOfUse
 from ..reprojection.placement import place, settle_unit
 from ..reprojection.transformation import is_geographic
 from .columns import find_unit_word

@@ -53,6 +53,7 @@ if TYPE_CHECKING:
         write,
     )
     from .terrain import (
+        blunder_map,
         comparison_picture,
         contour_map,
         earthwork_map,
@@ -67,6 +68,7 @@ if TYPE_CHECKING:
     from .terrain.gridding import height_above, rasterize
     from .terrain.ground_filter import GroundPoints, ground
     from .terrain.hydrology import depressions, flow_path, pits, ponds, ridges_and_valleys
+    from .terrain.inspection import blunders
     from .terrain.isolines import (
         ContourCheck,
         check_contours,
@@ -185,6 +187,8 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "ContourCheck",
                 "Difference",
                 "aspect",
+                "blunder_map",
+                "blunders",
                 "check_contours",
                 "comparison_picture",
                 "contour_bands",
@@ -303,6 +307,8 @@ __all__ = [
     "__version__",
     "aspect",
     "aspect_classes",
+    "blunder_map",
+    "blunders",
     "check",
     "check_contours",
     "compare",

@@ -9,6 +9,7 @@ SECTIONS = {
         "build": "Build a TIN from elevation points.",
         "info": "Describe a file of points or a TIN.",
         "check": "Check that a TIN is sound and Delaunay.",
+        "inspect": "Check points for blunders.",
         "view": "Show a TIN in 3D: in a window, as a page, as a picture.",
         "compare": "Compare the paper's algorithms with the exact kernel.",
         "refine": "Make a finite element mesh of a TIN.",

@@ -3,6 +3,7 @@
 
 #include "bind_earthwork.hpp"
 #include "bind_gridding.hpp"
+#include "bind_inspection.hpp"
 #include "bind_ground.hpp"
 #include "bind_isolines.hpp"
 #include "bind_relief.hpp"
@@ -13,5 +14,6 @@ NB_MODULE(_core, m) {
   tinsmith::python::bind_gridding(m);
   tinsmith::python::bind_earthwork(m);
   tinsmith::python::bind_relief(m);
+  tinsmith::python::bind_inspection(m);
   tinsmith::python::bind_ground(m);
 }

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ...tin import TIN, Survey
+    from ..output.blunder_summaries import Suspects
     from ..output.console import Row
     from ..products import Products
     from ..request import Request
@@ -32,6 +33,12 @@ __all__ = ["build"]
     "JSON file that accounts for every row merged or left out, and every crossing of lines."
 )
 @click.option(
+    "--drop-blunders",
+    is_flag=True,
+    help="Leave out the points that look like blunders, but for doubtful ones; the report names "
+    "each. 'tinsmith inspect' shows them first.",
+)
+@click.option(
     "--from-contours",
     is_flag=True,
     help="POINTS are contour lines, which become breaklines: where they leave the surface flat, "
@@ -41,6 +48,7 @@ __all__ = ["build"]
 def build(
     points: tuple[Path, ...],
     report: Path | None,
+    drop_blunders: bool,
     request: Request,
     from_contours: bool,
 ) -> None:
@@ -60,6 +68,7 @@ def build(
     from ...terrain import mend_flats
     from ..contour_input import as_contours, require_contours
     from ..files import add_lines, build_tin, read_inputs, write_text
+    from ..output.blunder_summaries import describe_suspects, tell_suspects
     from ..output.console import format_json
     from ..output.summaries import describe_report
 
@@ -71,16 +80,31 @@ def build(
         require_contours(survey, points[0])
     survey = add_lines(survey, how, console)
     tin = build_tin(survey, how, console)
+    suspects = _find_blunders(tin, request, drop=drop_blunders)
     if from_contours:
         with request.step("Mending flat triangles"):
             tin = mend_flats(tin)
     gaps = _find_gaps(tin, request)
     planned.write("TIN", tin)
+    account = describe_report(tin.report, survey, gaps) | describe_suspects(suspects)
     if report is not None:
-        write_text(report, format_json(describe_report(tin.report, survey, gaps)) + "\n")
-    rows = _summarise_build(points, survey, tin, gaps, is_mended=from_contours)
-    describe = partial(_describe_build, points, survey, tin, gaps, planned, request.started)
+        write_text(report, format_json(account) + "\n")
+    told = [*tell_suspects(suspects), *(("Gaps", gap) for gap in gaps)]
+    rows = _summarise_build(points, survey, tin, told, is_mended=from_contours)
+    describe = partial(_describe_build, points, survey, tin, account, planned, request.started)
     request.finish(planned, rows, describe)
+
+
+def _find_blunders(tin: TIN, request: Request, *, drop: bool) -> Suspects:
+    """Look for points that look like blunders, and leave them out where that is asked for."""
+    from ...terrain.inspection import blunders, drop_blunders, screen
+    from ..output.blunder_summaries import Suspects
+
+    with request.step("Checking points"):
+        if not drop:
+            return Suspects(screen(tin), None)
+        table = blunders(tin)
+        return Suspects(table, drop_blunders(tin, table))
 
 
 def _find_gaps(tin: TIN, request: Request) -> list[str]:
@@ -105,7 +129,7 @@ def _require_survey(found: Survey | TIN, path: Path) -> Survey:
 
 
 def _summarise_build(
-    points: Sequence[Path], survey: Survey, tin: TIN, gaps: list[str], *, is_mended: bool
+    points: Sequence[Path], survey: Survey, tin: TIN, told: list[Row], *, is_mended: bool
 ) -> list[Row]:
     from ..output.line_summaries import describe_counts, summarise_lines
     from ..output.summaries import (
@@ -121,8 +145,8 @@ def _summarise_build(
         *summarise_merges(tin.report, survey),
         *summarise_lines(survey, tin),
         ("TIN", describe_counts(tin)),
+        *told,
         *_summarise_flats(tin, is_mended=is_mended),
-        *(("Gaps", gap) for gap in gaps),
         *summarise_extent(tin),
         summarise_crs(tin.crs),
     ]
@@ -142,19 +166,19 @@ def _describe_build(
     points: Sequence[Path],
     survey: Survey,
     tin: TIN,
-    gaps: list[str],
+    account: dict[str, Any],
     planned: Products,
     started: float,
 ) -> dict[str, Any]:
     from ..output.line_summaries import count_lines
-    from ..output.summaries import describe_report, describe_survey, describe_tin
+    from ..output.summaries import describe_survey, describe_tin
 
     return {
         "input": describe_inputs(points),
         "survey": describe_survey(survey),
         "tin": describe_tin(tin),
         "counts": count_lines(tin.report),
-        "report": describe_report(tin.report, survey, gaps),
+        "report": account,
         "outputs": [
             {
                 "path": str(one.path),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...crs import CRS
+from ..crs import CRS
 
 if TYPE_CHECKING:
     import pyproj

@@ -1,0 +1,81 @@
+"""``tinsmith inspect``: points that look like blunders."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ..parameters import input_files, output_option
+from ..paths import describe_inputs, make_title, name_files
+from ..request import surface_options
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from ...terrain import Table
+    from ...tin import TIN
+    from ..output.console import Row
+    from ..request import Request
+
+__all__ = ["inspect"]
+
+_SHOWN = 12
+
+
+@click.command()
+@input_files("points")
+@output_option("Table (.csv, .json) or map (.png) to write.")
+@click.option("--title", metavar="TEXT", help="Of the map; default the name of the file.")
+@surface_options()
+def inspect(points: tuple[Path, ...], title: str | None, request: Request) -> None:
+    """Check the points in POINTS: name those that look like blunders, and why.
+
+    Each is compared with the surface that the others make without it. Told are spikes and pits,
+    elevations that stand for none, factors of ten and of feet, swapped axes, points far from all
+    others, point numbers and places that occur twice, and lines that cross at different heights.
+    Nothing is changed; 'tinsmith build --drop-blunders' leaves them out.
+
+    \b
+    Example:
+      tinsmith inspect sample_data/site_survey.csv --crs EPSG:32616
+      tinsmith inspect sample_data/site_survey.csv --codes -o suspects.csv -o suspects.png
+    """  # noqa: D301 - click reads the control character
+    from ...terrain import blunder_map, blunders
+    from ..files import read_tin_of_files
+
+    planned = request.plan_products(request.list_inputs(*points), "Table", "picture")
+    tin = read_tin_of_files(points, request.reading, request.how, request.console)[0]
+    with request.step("Checking points"):
+        table = blunders(tin)
+    planned.write("Table", table)
+    title = title or f"{make_title(points[0])}: points that look like blunders"
+    planned.draw(lambda: blunder_map(tin, table, title=title))
+    rows = _summarise_blunders(points, tin, table)
+    request.finish(planned, rows, lambda: _describe_inspection(points, table))
+
+
+def _summarise_blunders(points: Sequence[Path], tin: TIN, table: Table) -> list[Row]:
+    from ..output.blunder_summaries import count_reasons, list_findings
+    from ..output.line_summaries import describe_counts
+
+    return [
+        ("Points", f"{len(tin.vertex_of):,} from {name_files(points)}"),
+        ("TIN", describe_counts(tin)),
+        ("Findings", count_reasons(table)),
+        *list_findings(table, _SHOWN),
+        *(("Note", note) for note in table.notes),
+    ]
+
+
+def _describe_inspection(points: Sequence[Path], table: Table) -> dict[str, Any]:
+    from ...terrain.results.columns import unit_text
+    from ..output.blunder_summaries import list_records
+
+    return {
+        "input": describe_inputs(points),
+        "blunders": list_records(table),
+        "units": {name: unit_text(table.units, name) for name in table.units},
+        "notes": list(table.notes),
+    }

@@ -1,0 +1,101 @@
+"""Points that look like blunders, for people and as JSON."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ..._sentences import counted
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...terrain import Table
+    from .console import Row
+
+__all__ = [
+    "Suspects",
+    "count_reasons",
+    "describe_suspects",
+    "list_findings",
+    "list_records",
+    "tell_suspects",
+]
+
+_SHOWN = 5
+
+
+def count_reasons(table: Table) -> str:
+    """Say how many findings of each reason there are."""
+    if len(table) == 0:
+        return "none"
+    reasons, counts = np.unique(table["reason"].astype(str), return_counts=True)
+    parts = [f"{count:,} {name}" for name, count in zip(reasons, counts.tolist(), strict=True)]
+    return f"{len(table):,}: {', '.join(parts)}"
+
+
+def list_findings(table: Table, most: int) -> list[Row]:
+    """Return a line for each of the most certain findings."""
+    rows = [
+        (
+            table["certainty"][i].capitalize(),
+            f"{_name_point(table, i)} at {table['x'][i]:.3f} {table['y'][i]:.3f}, elevation "
+            f"{table['z'][i]:.6g}: {table['reason'][i]}. {table['explanation'][i]}",
+        )
+        for i in range(min(len(table), most))
+    ]
+    return [*rows, ("", f"... {len(table) - most:,} more")] if len(table) > most else rows
+
+
+def _name_point(table: Table, i: int) -> str:
+    row, number = int(table["row"][i]), table["number"][i]
+    if row < 0:
+        return "Lines"
+    return f"Row {row}" + (f" (point {number})" if number else "")
+
+
+def list_records(table: Table) -> list[dict[str, Any]]:
+    """Return the rows of a table as mappings; NaN, which JSON has not, as None."""
+    columns = {name: values.tolist() for name, values in table.columns.items()}
+    return [
+        {name: None if value != value else value for name, value in zip(columns, row, strict=True)}
+        for row in zip(*columns.values(), strict=True)
+    ]
+
+
+class Suspects(NamedTuple):
+    """What a build found.
+
+    Attributes
+    ----------
+    table : Table
+        Of :func:`tinsmith.blunders`.
+    dropped : (k,) int64 array or None
+        Rows that were left out; None if that was not asked for.
+    """
+
+    table: Table
+    dropped: NDArray[np.int64] | None
+
+
+def tell_suspects(found: Suspects) -> list[Row]:
+    """Return the line of a build on points that look like blunders, but for doubtful ones."""
+    from ...terrain.inspection import list_wrong_rows
+
+    rows = list_wrong_rows(found.table).tolist()
+    if not rows:
+        return []
+    names = ", ".join(map(str, rows[:_SHOWN])) + (", ..." if len(rows) > _SHOWN else "")
+    looks = "looks like a blunder" if len(rows) == 1 else "look like blunders"
+    told = f"{counted(len(rows), 'point')} {looks}: row{'s' * (len(rows) > 1)} {names}"
+    if found.dropped is None:
+        return [("Blunders", f"{told}; 'tinsmith inspect' tells more")]
+    return [("Blunders", f"{told}; {len(found.dropped):,} left out")]
+
+
+def describe_suspects(found: Suspects) -> dict[str, Any]:
+    """Return the part of a build's report on points that look like blunders."""
+    dropped = set() if found.dropped is None else set(found.dropped.tolist())
+    records = list_records(found.table)
+    return {"blunders": [one | {"dropped": one["row"] in dropped} for one in records]}

@@ -1,0 +1,63 @@
+"""Leave points out that look like blunders."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...errors import LinesError, PointsError
+from .findings import DROPPED
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...tin import TIN
+    from ..results import Table
+
+__all__ = ["drop_blunders", "list_wrong_rows"]
+
+
+def list_wrong_rows(table: Table) -> NDArray[np.int64]:
+    """Return the rows that are wrong by themselves, but for those of low certainty, ascending."""
+    is_wrong = np.isin(table["reason"].astype(str), DROPPED)
+    is_wrong &= table["certainty"].astype(str) != "low"
+    rows: NDArray[np.int64] = np.unique(table["row"][is_wrong])
+    return rows
+
+
+def drop_blunders(tin: TIN, table: Table) -> NDArray[np.int64]:
+    """Remove the points from a TIN, in place, that look like blunders.
+
+    Those of low certainty stay, and those that only say that another row has the same number or
+    place; a vertex that stands for other rows, too; and one without which a line would vanish.
+
+    Parameters
+    ----------
+    tin : TIN
+    table : Table
+        Of :func:`tinsmith.blunders`.
+
+    Returns
+    -------
+    (k,) int64 array
+        The rows that were left out, ascending.
+    """
+    rows = list_wrong_rows(table)
+    vertex_of = tin.vertex_of
+    vertices = np.unique(vertex_of[rows])
+    shared = np.setdiff1d(np.flatnonzero(np.isin(vertex_of, vertices)), rows)
+    vertices = np.setdiff1d(vertices, vertex_of[shared])
+    if not _remove(tin, vertices):
+        for vertex in vertices[::-1]:  # those behind a removed one move up
+            _remove(tin, vertex[None])
+    gone: NDArray[np.int64] = rows[tin.vertex_of[rows] < 0]
+    return gone
+
+
+def _remove(tin: TIN, vertices: NDArray[np.int32]) -> bool:
+    try:
+        tin.remove(vertices)
+    except (PointsError, LinesError):
+        return False
+    return True

@@ -1,0 +1,318 @@
+"""Points that are too high or too low for the points around them."""
+
+from __future__ import annotations
+
+from copy import copy
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ...errors import LinesError, PointsError
+from ...tin.topology import find_owners
+from .. import _kernel
+from .residuals import Residuals, fit_plane
+from .scales import find_rounding, measure_scales
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...tin import TIN
+
+__all__ = ["STRICT", "Heights", "Judgement", "find_heights", "find_peaks_and_pits"]
+
+STRICT = 10.0
+"""A residual is suspicious beyond so many times the scale around it."""
+_CARE = 2.0
+"""So many times more on lines and at the boundary, where less is known."""
+_APART = 2.5
+"""And if it is so many times as large as those of its neighbours once it is corrected."""
+_MOST_REMOVED = 20_000
+"""More are measured against corrected elevations, and not against a surface without them."""
+
+
+class Heights(NamedTuple):
+    """Vertices that are too high or too low.
+
+    Attributes
+    ----------
+    vertices : (k,) int32 array
+    residuals : (k,) float64 array
+        Elevation above the surface without any of them.
+    scales : (k,) float64 array
+        How large residuals are around each.
+    limits : (k,) float64 array
+        Beyond which a residual is suspicious: more on a line and on the boundary.
+    """
+
+    vertices: NDArray[np.int32]
+    residuals: NDArray[np.float64]
+    scales: NDArray[np.float64]
+    limits: NDArray[np.float64]
+
+
+class Judgement(NamedTuple):
+    """What was found, and how large residuals are in the middle.
+
+    Attributes
+    ----------
+    found : Heights
+    scale : float
+        Median of the scales of all vertices.
+    """
+
+    found: Heights
+    scale: float
+
+
+def find_heights(
+    tin: TIN, judged: NDArray[np.int32], wrong: NDArray[np.int32], *, sample: int | None = None
+) -> Judgement:
+    """Find vertices that are too high or too low for those around them.
+
+    1. Residuals of all vertices are measured against the surface without each, and their scales.
+    2. Of those beyond their limit the ones that stand out most among their neighbours are
+       corrected first: the elevation of the others' surface takes the place of their own.
+    3. The residuals within two edges of them are measured anew. Where more than one is still of the
+       same size, or more than one neighbour as far on the same side of the plane through all of
+       them, the ground is like this, a step or a rough place: the correction is undone. Else it
+       was a blunder.
+    4. So on with those that stand out then, until none does.
+
+    Parameters
+    ----------
+    tin : TIN
+    judged : (k,) int32 array
+        Vertices to judge.
+    wrong : (m,) int32 array
+        Those that are known to be wrong, whose elevations count for nothing.
+    sample : int, optional
+        Measure scales from so many of the vertices, and residuals against corrected elevations;
+        default scales from all of them, and residuals against the surface without those found.
+
+    Returns
+    -------
+    Judgement
+
+    References
+    ----------
+    Rousseeuw, P. J. and Hubert, M. (2011). Robust statistics for outlier detection. WIREs Data
+    Mining and Knowledge Discovery 1(1), 73-79. https://doi.org/10.1002/widm.2
+    """
+    search = _Search.start(tin, judged, wrong, sample)
+    while search.correct_most_striking():
+        pass
+    found = _measure_without(tin, search, is_exact=sample is None)
+    return Judgement(found, float(np.nanmedian(search.scales)))
+
+
+@dataclass(slots=True, eq=False)
+class _Search:
+    """What is known of the vertices so far; arrays of one value a vertex."""
+
+    known: Residuals
+    residuals: NDArray[np.float64]  # NaN for those that are not, or no longer, judged
+    scales: NDArray[np.float64]
+    limits: NDArray[np.float64]
+    found: list[NDArray[np.int32]]
+
+    @classmethod
+    def start(
+        cls, tin: TIN, judged: NDArray[np.int32], wrong: NDArray[np.int32], sample: int | None
+    ) -> _Search:
+        known = Residuals.of(tin.triangulation)
+        known.xyz[wrong, 2] -= np.nan_to_num(known.measure(wrong))
+        count = len(known.xyz)
+        chosen = judged
+        if sample is not None and count > sample:
+            spread = np.arange(0, count, count // sample, dtype=np.int32)
+            chosen = np.union1d(judged, spread).astype(np.int32)
+        residuals, moments, scales = (np.full(count, np.nan) for _ in range(3))
+        residuals[chosen], moments[chosen] = known.measure_with_moments(chosen)
+        least = find_rounding(tin.points[:, 2])
+        for group in (chosen[~known.on_line[chosen]], chosen[known.on_line[chosen]]):
+            scales[group] = measure_scales(
+                known.xyz[group, :2], residuals[group], moments[group], least
+            )
+        limits = STRICT * scales
+        limits[_find_care(known, chosen)] *= _CARE
+        is_judged = np.zeros(count, np.bool_)
+        is_judged[judged] = True
+        is_judged[wrong] = False
+        residuals[~is_judged] = np.nan
+        return cls(known, residuals, scales, limits, [])
+
+    def correct_most_striking(self) -> bool:
+        """Correct those that stand out most among their neighbours; False if none stands out."""
+        with np.errstate(invalid="ignore"):
+            striking = np.flatnonzero(np.abs(self.residuals) > self.limits).astype(np.int32)
+        if len(striking) == 0:
+            return False
+        around = _Reach.of(self.known, striking, *self.known.list_neighbors(striking))
+        rank = np.zeros(len(self.residuals))
+        rank[striking] = 1 + _rank(np.abs(self.residuals[striking]))
+        is_first = np.ones(len(striking), np.bool_)
+        outdone = rank[around.vertices] > rank[striking][around.owners]
+        is_first[around.owners[outdone]] = False
+        self._correct(striking[is_first])
+        return True
+
+    def _correct(self, chosen: NDArray[np.int32]) -> None:
+        """Correct vertices further than two edges apart, and undo it where that is no help."""
+        known = self.known
+        own = known.xyz[chosen, 2].copy()
+        residuals = self.residuals[chosen]
+        known.xyz[chosen, 2] -= residuals
+        offsets, near = known.list_neighbors(chosen)
+        reach = _Reach.of(known, chosen, offsets, near)
+        is_wrong = np.abs(residuals) > _APART * reach.measure_most(known)
+        beyond = self._measure_beyond(offsets, near, chosen, own)
+        is_wrong &= np.abs(residuals) > _APART * _find_second(offsets, beyond)
+        known.xyz[chosen[~is_wrong], 2] = own[~is_wrong]
+        self.residuals[chosen] = np.nan
+        self.found.append(chosen[is_wrong])
+        again = np.unique(reach.vertices)
+        again = again[~np.isnan(self.residuals[again])]
+        self.residuals[again] = known.measure(again)
+
+    def _measure_beyond(
+        self,
+        offsets: NDArray[np.int64],
+        near: NDArray[np.int32],
+        chosen: NDArray[np.int32],
+        own: NDArray[np.float64],
+    ) -> NDArray[np.float64]:
+        """Return how far neighbours lie off the plane through them, on the side of the vertex."""
+        beyond = np.zeros(len(near))
+        for i, vertex in enumerate(chosen.tolist()):
+            part = slice(offsets[i], offsets[i + 1])
+            ring, place = self.known.xyz[near[part]], self.known.xyz[vertex]
+            expected, left = fit_plane(ring, place)
+            beyond[part] = left if own[i] > expected else -left
+        return beyond
+
+
+class _Reach(NamedTuple):
+    """The vertices within two edges of each of some others, as pairs.
+
+    Attributes
+    ----------
+    size : int
+        Of those others.
+    owners : (k,) int64 array
+        Their places, ascending.
+    vertices : (k,) int32 array
+    """
+
+    size: int
+    owners: NDArray[np.int64]
+    vertices: NDArray[np.int32]
+
+    @classmethod
+    def of(
+        cls,
+        known: Residuals,
+        chosen: NDArray[np.int32],
+        offsets: NDArray[np.int64],
+        near: NDArray[np.int32],
+    ) -> _Reach:
+        """Gather them from the neighbours of those chosen."""
+        wide, around = known.list_neighbors(near)
+        owner = find_owners(offsets)
+        owner = np.concatenate([owner, owner[find_owners(wide)]])
+        reach = np.concatenate([near, around])
+        owner, reach = np.divmod(np.unique(owner * len(known.xyz) + reach), len(known.xyz))
+        elsewhere = reach != chosen[owner]
+        return cls(len(chosen), owner[elsewhere], reach[elsewhere].astype(np.int32))
+
+    def measure_most(self, known: Residuals) -> NDArray[np.float64]:
+        """Return the largest residual around each, when the one that has it is corrected, too.
+
+        So a second blunder beside the first hides neither.
+        """
+        left = self._measure(known)
+        helpers = self.vertices[_find_largest(self.size, self.owners, np.abs(left))]
+        helpers = np.unique(helpers)
+        own = known.xyz[helpers, 2].copy()
+        known.xyz[helpers, 2] -= np.nan_to_num(known.measure(helpers))
+        left = np.abs(self._measure(known))
+        left[np.isin(self.vertices, helpers)] = 0.0
+        known.xyz[helpers, 2] = own
+        most = np.zeros(self.size)
+        np.maximum.at(most, self.owners, left)
+        return most
+
+    def _measure(self, known: Residuals) -> NDArray[np.float64]:
+        unique, place = np.unique(self.vertices, return_inverse=True)
+        left: NDArray[np.float64] = np.nan_to_num(known.measure(unique))[place]
+        return left
+
+
+def _find_largest(
+    count: int, owners: NDArray[np.int64], values: NDArray[np.float64]
+) -> NDArray[np.int64]:
+    """Return where the largest value of each part stands, of the parts that have one."""
+    order = np.lexsort((values, owners))
+    last = np.cumsum(np.bincount(owners, minlength=count)) - 1
+    return order[np.unique(last[last >= 0])]
+
+
+def _rank(values: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Return the rank of each value, equal ones in their order."""
+    ranks = np.empty(len(values), np.int64)
+    ranks[np.argsort(values, kind="stable")] = np.arange(len(values))
+    return ranks
+
+
+def _find_care(known: Residuals, vertices: NDArray[np.int32]) -> NDArray[np.int32]:
+    """Return those of some vertices that are on lines or on the boundary."""
+    surface = known.surface
+    on_boundary = np.zeros(len(known.xyz), np.bool_)
+    triangle, corner = np.nonzero(surface.neighbors < 0)
+    for k in (1, 2):
+        on_boundary[surface.triangles[triangle, (corner + k) % 3]] = True
+    return vertices[known.on_line[vertices] | on_boundary[vertices]]
+
+
+def _find_second(offsets: NDArray[np.int64], values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the second largest value of each part of a ragged array, 0 if there is none."""
+    owner = find_owners(offsets)
+    order = np.lexsort((-values, owner))
+    second = np.append(values[order], 0.0)[np.minimum(offsets[:-1] + 1, len(values))]
+    return np.where(np.diff(offsets) > 1, second, 0.0)
+
+
+def _measure_without(tin: TIN, search: _Search, *, is_exact: bool) -> Heights:
+    """Return what was found, measured against the surface without any of it."""
+    known, limits = search.known, search.limits
+    none = np.empty(0, np.int32)
+    vertices = np.sort(np.concatenate([none, *search.found])).astype(np.int32)
+    residuals = known.surface.points[vertices, 2] - known.xyz[vertices, 2]
+    free = ~known.on_line[vertices]
+    if is_exact and 0 < free.sum() <= _MOST_REMOVED:
+        without = _interpolate_without(tin, vertices[free])
+        exact = tin.points[vertices[free], 2] - without
+        residuals[free] = np.where(np.isnan(exact), residuals[free], exact)
+    stays = np.abs(residuals) > limits[vertices]
+    vertices = vertices[stays]
+    return Heights(vertices, residuals[stays], search.scales[vertices], limits[vertices])
+
+
+def _interpolate_without(tin: TIN, vertices: NDArray[np.int32]) -> NDArray[np.float64]:
+    """Return the elevation at some vertices of the surface without them; NaN outside of it."""
+    rest = copy(tin)
+    try:
+        rest.remove(vertices)
+    except (PointsError, LinesError):  # what is left has no triangle, or a line goes through
+        return np.full(len(vertices), np.nan)
+    elevations: NDArray[np.float64] = rest.interpolate(tin.points[vertices, :2])
+    return elevations
+
+
+def find_peaks_and_pits(tin: TIN) -> NDArray[np.int32]:
+    """Return the vertices further beyond all their neighbours than these are apart."""
+    lowest, highest, _ = _kernel.measure_neighbors(tin.points, tin.triangles).T
+    z = tin.points[:, 2]
+    with np.errstate(invalid="ignore"):
+        beyond = np.maximum(z - highest, lowest - z) > highest - lowest
+    return np.flatnonzero(beyond).astype(np.int32)

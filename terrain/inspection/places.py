@@ -1,0 +1,120 @@
+"""Points in wrong places: beyond the CRS's area of use, or far from all others."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ..._sentences import counted
+from ..area_of_use import AreaOfUse
+from .slips import FACTORS
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...crs import CRS
+    from .suspects import Rows, Suspect
+
+__all__ = ["find_places"]
+
+_CENTRE = (5.0, 95.0)
+"""Percentiles between which the site is taken to lie, whatever single points do."""
+_WHOLE = 0.9
+_FAR, _VERY_FAR = 1.0, 5.0
+"""Beyond the site by so many of its diagonals a point is far, or very far, from all others."""
+_NEAR = 0.5
+"""Within so many of its diagonals a point lies among the others."""
+_SITE = 4
+"""So many points together are a site of their own."""
+_MOST_FAR = 2_000
+
+
+class _Box(NamedTuple):
+    """Where most of the points lie."""
+
+    low: NDArray[np.float64]
+    high: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, xy: NDArray[np.float64]) -> _Box:
+        low, high = np.percentile(xy, _CENTRE, axis=0)
+        pad = (high - low) * (1 / _WHOLE - 1) / 2
+        return cls(low - pad, high + pad)
+
+    @property
+    def diagonal(self) -> float:
+        return float(np.hypot(*(self.high - self.low)))
+
+    def measure_distances(self, xy: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return how far places are beyond the box, in diagonals of it."""
+        beyond = np.maximum(np.maximum(self.low - xy, xy - self.high), 0.0)
+        distances: NDArray[np.float64] = np.hypot(*beyond.T) / self.diagonal
+        return distances
+
+
+def find_places(rows: Rows, crs: CRS | None) -> tuple[list[Suspect], list[str]]:
+    """Find points outside the CRS's area of use, or far from all others; notes on them.
+
+    A far point that would lie among the others with its axes swapped, or with a coordinate
+    multiplied, is told as such.
+    """
+    notes: list[str] = []
+    found = _find_outside(rows, crs, notes)
+    box = _Box.of(rows.xyz[:, :2])
+    if not 0.0 < box.diagonal < np.inf:
+        return list(found.values()), notes
+    distances = box.measure_distances(rows.xyz[:, :2])
+    far = np.flatnonzero(distances > _FAR)
+    if len(far) > _MOST_FAR:
+        notes.append(f"{counted(len(far), 'point')} far from the others: taken for other sites.")
+        return list(found.values()), notes
+    for i in far.tolist():
+        told = _explain(rows, i, box)
+        if told is not None:
+            found[i] = rows.suspect(i, *told, "high")
+        elif i not in found and not _is_in_company(rows, i, far, box):
+            found[i] = _tell_isolated(rows, i, float(distances[i]))
+    return list(found.values()), notes
+
+
+def _find_outside(rows: Rows, crs: CRS | None, notes: list[str]) -> dict[int, Suspect]:
+    area = AreaOfUse.of(crs, crs)
+    if area is None or area.is_local(rows.xyz[:, :2]):
+        return {}
+    outside = area.find_outside(rows.xyz[:, :2])
+    if 2 * len(outside) > len(rows):
+        notes.append(
+            f"{counted(len(outside), 'point')} of {len(rows):,} outside the area of use of "
+            f"{area.label}: the CRS may be another one."
+        )
+        return {}
+    sentence = f"It lies outside the area of use of {area.label}."
+    return {i: rows.suspect(i, "outside", sentence, "high") for i in outside.tolist()}
+
+
+def _explain(rows: Rows, i: int, box: _Box) -> tuple[str, str] | None:
+    """Return reason and sentence if a slip of the pen has brought a point where it is."""
+    x, y = rows.xyz[i, :2].tolist()
+    if box.measure_distances(np.array([[y, x]]))[0] < _NEAR:
+        return "swapped", "With easting and northing exchanged it lies among the others."
+    for factor, words in FACTORS.items():
+        for name, place in (
+            ("easting is", (x / factor, y)),
+            ("northing is", (x, y / factor)),
+            ("coordinates are", (x / factor, y / factor)),
+        ):
+            if box.measure_distances(np.array([place]))[0] < _NEAR:
+                return "factor", f"Its {name} {words} what would lie among the others."
+    return None
+
+
+def _is_in_company(rows: Rows, i: int, far: NDArray[np.int64], box: _Box) -> bool:
+    """Whether some far points lie together, which are then a site of their own."""
+    apart = np.hypot(*(rows.xyz[far, :2] - rows.xyz[i, :2]).T)
+    return int((apart < box.diagonal).sum()) >= _SITE
+
+
+def _tell_isolated(rows: Rows, i: int, distance: float) -> Suspect:
+    sentence = f"It lies {distance:.3g} times the extent of the site away from it."
+    return rows.suspect(i, "isolated", sentence, "high" if distance > _VERY_FAR else "medium")

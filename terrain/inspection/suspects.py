@@ -1,0 +1,99 @@
+"""What is found wrong with rows of points, with its reason and how certain it is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...tin import TIN
+
+__all__ = ["CERTAINTIES", "REASONS", "Rows", "Suspect"]
+
+CERTAINTIES = ("high", "medium", "low")
+REASONS = (
+    "outside",
+    "swapped",
+    "factor",
+    "isolated",
+    "code",
+    "spike",
+    "pit",
+    "place",
+    "number",
+    "crossing",
+)
+"""Reasons, in the order in which one is named of a row that has several."""
+
+
+class Suspect(NamedTuple):
+    """One row that is suspicious, or a place without a row where lines cross.
+
+    Attributes
+    ----------
+    row : int
+        Of the points, counted from 0; -1 for none.
+    place : tuple of float
+        Easting, northing, elevation.
+    residual, scale : float
+        NaN where no height is told.
+    reason, explanation, certainty : str
+        One of ``REASONS``, a sentence, one of ``CERTAINTIES``.
+    """
+
+    row: int
+    place: tuple[float, ...]
+    reason: str
+    explanation: str
+    certainty: str
+    residual: float = np.nan
+    scale: float = np.nan
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Rows:
+    """The rows of points of a TIN that have a vertex, each with its own elevation.
+
+    Attributes
+    ----------
+    numbers : (k,) int64 array
+        The rows, ascending.
+    vertices : (k,) int32 array
+    xyz : (k, 3) float64 array
+    """
+
+    numbers: NDArray[np.int64]
+    vertices: NDArray[np.int32]
+    xyz: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, tin: TIN) -> Rows:
+        """Gather the rows of a TIN."""
+        vertex_of, report = tin.vertex_of, tin.report
+        numbers = np.flatnonzero(vertex_of >= 0)
+        xyz = tin.points[vertex_of[numbers]]
+        own = np.isin(report.merged_rows, numbers)
+        at = np.searchsorted(numbers, report.merged_rows[own])
+        xyz[at, 2] = report.merged_elevations[own]
+        return cls(numbers, vertex_of[numbers], xyz)
+
+    def choose(self, chosen: Any) -> Rows:
+        """Return some of the rows."""
+        return replace(
+            self,
+            numbers=self.numbers[chosen],
+            vertices=self.vertices[chosen],
+            xyz=self.xyz[chosen],
+        )
+
+    def suspect(self, i: int, reason: str, explanation: str, certainty: str) -> Suspect:
+        """Return the row at a place among these as suspicious."""
+        place = tuple(self.xyz[i].tolist())
+        return Suspect(int(self.numbers[i]), place, reason, explanation, certainty)
+
+    def __len__(self) -> int:
+        return len(self.numbers)
