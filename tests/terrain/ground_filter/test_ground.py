@@ -117,7 +117,7 @@ def test_two_low_points_of_one_depth_do_not_hide_each_other(direction, apart):
     points = make_scene(hill)
     first = np.array([20.3, 24.6])
     pair = np.array([first, first + apart * np.array(direction)])
-    low = np.column_stack([pair, hill(*pair.T) - 6.0])
+    low = np.column_stack([pair, hill(*pair.T) - 9.0])
     found = ts.ground(np.concatenate([points, low]))
     assert found.counts == {"ground": len(points), "others": 0, "low noise": 2}
 
