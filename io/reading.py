@@ -69,18 +69,6 @@ class _Asked(NamedTuple):
 
 @overload
 def read(
-    path: list[Any] | tuple[Any, ...],
-    *,
-    format: str | None = None,
-    crs: CrsLike | None = None,
-    z_unit: UnitLike | None = None,
-    remote: bool = False,
-    **options: Any,
-) -> Survey: ...
-
-
-@overload
-def read(
     path: str | os.PathLike[str],
     *,
     format: str | None = None,
@@ -89,6 +77,18 @@ def read(
     remote: bool = False,
     **options: Any,
 ) -> Any: ...
+
+
+@overload
+def read(
+    path: Sequence[str | os.PathLike[str]],
+    *,
+    format: str | None = None,
+    crs: CrsLike | None = None,
+    z_unit: UnitLike | None = None,
+    remote: bool = False,
+    **options: Any,
+) -> Survey: ...
 
 
 def read(
