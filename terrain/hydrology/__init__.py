@@ -1,6 +1,6 @@
 """Hydrology: where water runs on a surface, and where it stands."""
 
-from .catchments import catchments, flow_accumulation
+from .drainage import catchments, flow_accumulation
 from .edges import ridges_and_valleys
 from .paths import flow_path
 from .water_bodies import depressions, pits, ponds

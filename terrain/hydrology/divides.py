@@ -69,8 +69,8 @@ def cut_at_divides(
     rows = np.flatnonzero(inner & (labels[1:] != labels[:-1])) + 1
     cuts = _place_cuts(network, rows, labels)
     keys = _name_edges(falls.triangles, len(falls.points))
-    is_cut = np.isin(keys, np.array(list(cuts.edges), np.int64)).any(axis=1)
-    is_cut[cuts.triangles] = True
+    is_cut = np.any(np.isin(keys, np.array(list(cuts.edges), np.int64)), axis=1)
+    is_cut |= np.bincount(cuts.triangles, minlength=len(keys)) > 0
     cells, owners = _list_cells(network, cuts, np.flatnonzero(is_cut), whole)
     offsets = topology.find_offsets(np.array([len(one) for one in cells], np.int64))
     slots = np.array([vertex for one in cells for vertex in one], np.int32)
@@ -112,8 +112,8 @@ def _place_cuts(network: Network, rows: NDArray[np.int64], labels: NDArray[np.in
     edges: dict[int, list[int]] = {}
     for key, node in zip(keys[is_new].tolist(), nodes[first].tolist(), strict=True):
         edges.setdefault(key, []).append(node)
-    ends = nodes.reshape(2, -1)
-    return _Cuts(triangles, *ends, labels[rows - 1], labels[rows], places, edges)
+    lower, upper = nodes[: len(rows)], nodes[len(rows) :]
+    return _Cuts(triangles, lower, upper, labels[rows - 1], labels[rows], places, edges)
 
 
 def _list_cells(
@@ -130,7 +130,7 @@ def _list_cells(
             labels = [int(cuts.before[i]), *cuts.beyond[i:j].tolist()]
         pairs = zip(cuts.lower[i:j].tolist(), cuts.upper[i:j].tolist(), strict=True)
         for label, cell in zip(labels, _cut_ring(below, above, list(pairs)), strict=True):
-            if len(cell) > 2:  # noqa: PLR2004 - a cell, not a line
+            if len(cell) > 2:
                 cells.append(cell)
                 owners.append(label)
     return cells, owners

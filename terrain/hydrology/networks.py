@@ -142,7 +142,7 @@ def _break_circles(found: Network, left: Drops) -> None:
 def find_ends(nexts: NDArray[np.int64]) -> NDArray[np.int64]:
     """Return the node at which the water of each ends."""
     ends = nexts
-    for _ in range(int(len(nexts)).bit_length()):
+    for _ in range(len(nexts).bit_length()):
         ends = ends[ends]
     return ends
 

@@ -19,7 +19,17 @@ if TYPE_CHECKING:
     from .descent import Walker
     from .falls import Falls
 
-__all__ = ["Bases", "Strips", "cut_strips", "enter_strips", "find_bases", "follow", "leave_strips", "settle"]
+__all__ = [
+    "SAME",
+    "Bases",
+    "Strips",
+    "cut_strips",
+    "enter_strips",
+    "find_bases",
+    "follow",
+    "leave_strips",
+    "settle",
+]
 
 SAME = 1e-12
 """Fall lines whose shares of the base differ by no more are one."""
@@ -69,7 +79,7 @@ class Strips(NamedTuple):
 
 def find_bases(falls: Falls) -> Bases:
     """Return the base of each triangle; that of a level one means nothing."""
-    drains = (falls.signs > 0).sum(axis=1) < 2  # noqa: PLR2004 - water leaves across two edges
+    drains = (falls.signs > 0).sum(axis=1) < 2
     edges = np.where(drains, falls.signs.argmax(axis=1), falls.signs.argmin(axis=1))
     return Bases(edges, falls.shares(np.arange(len(edges)), edges), drains)
 
@@ -158,7 +168,7 @@ def _part(
 
 
 def _measure_parts(shares: NDArray[np.float64], splits: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return which part of a triangle lies before a share of its base: chords have one direction."""
+    """Return which part of a triangle lies before a share of its base."""
     with np.errstate(divide="ignore", invalid="ignore"):
         before, beyond = shares * shares / splits, 1.0 - (1.0 - shares) ** 2 / (1.0 - splits)
     parts: NDArray[np.float64] = np.where(shares < splits, before, beyond)
