@@ -17,7 +17,15 @@ if TYPE_CHECKING:
     from .flats import flats, mend_flats
     from .gridding import height_above, rasterize
     from .ground_filter import GroundPoints, ground
-    from .hydrology import depressions, flow_path, pits, ponds, ridges_and_valleys
+    from .hydrology import (
+        catchments,
+        depressions,
+        flow_accumulation,
+        flow_path,
+        pits,
+        ponds,
+        ridges_and_valleys,
+    )
     from .inspection import blunders
     from .isolines import ContourCheck, check_contours, contour_bands, contour_labels, contours
     from .lift import lift
@@ -73,7 +81,9 @@ else:  # a type checker takes every name for one that such a __getattr__ has
             ".slope": ("aspect", "slope"),
             ".charts.triangles": ("to_matplotlib",),
             ".hydrology": (
+                "catchments",
                 "depressions",
+                "flow_accumulation",
                 "flow_path",
                 "pits",
                 "ponds",
@@ -102,6 +112,7 @@ __all__ = [
     "aspect_classes",
     "blunder_map",
     "blunders",
+    "catchments",
     "check_contours",
     "comparison_picture",
     "contour_bands",
@@ -115,6 +126,7 @@ __all__ = [
     "drape",
     "earthwork_map",
     "flats",
+    "flow_accumulation",
     "flow_path",
     "ground",
     "height_above",

@@ -67,7 +67,15 @@ if TYPE_CHECKING:
     from .terrain.flats import flats, mend_flats
     from .terrain.gridding import height_above, rasterize
     from .terrain.ground_filter import GroundPoints, ground
-    from .terrain.hydrology import depressions, flow_path, pits, ponds, ridges_and_valleys
+    from .terrain.hydrology import (
+        catchments,
+        depressions,
+        flow_accumulation,
+        flow_path,
+        pits,
+        ponds,
+        ridges_and_valleys,
+    )
     from .terrain.inspection import blunders
     from .terrain.isolines import (
         ContourCheck,
@@ -215,7 +223,9 @@ else:  # a type checker takes every name for one that such a __getattr__ has
             ".io.raster.cells": ("rasterize",),  # which reads the file of `like`, too
             ".terrain.gridding": ("height_above",),
             ".terrain.hydrology": (
+                "catchments",
                 "depressions",
+                "flow_accumulation",
                 "flow_path",
                 "pits",
                 "ponds",
@@ -309,6 +319,7 @@ __all__ = [
     "aspect_classes",
     "blunder_map",
     "blunders",
+    "catchments",
     "check",
     "check_contours",
     "compare",
@@ -325,6 +336,7 @@ __all__ = [
     "earthwork_map",
     "find_format",
     "flats",
+    "flow_accumulation",
     "flow_path",
     "from_mesh",
     "from_raster",

@@ -29,7 +29,7 @@ SECTIONS = {
         "drape": "Lay points, lines or polygons on a TIN.",
         "interpolate": "Find the elevations of a surface at the places of a CSV file.",
         "raster": "Turn a surface into a raster: elevation, slope, aspect, hillshade.",
-        "flow": "Find flow paths, pits, depressions, ponds, ridges and valleys.",
+        "flow": "Find flow paths, catchments, pits, depressions, ponds and ridges.",
         "sight": "Find what is seen from where: lines of sight, viewsheds.",
         "plan": "Draw a plan on paper, true to scale: PDF, SVG, PNG.",
     },
