@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from .charts.triangles import to_matplotlib
     from .earthwork import Difference, difference, stage_storage, volume
     from .flats import flats, mend_flats
+    from .grading import grade, paste
     from .gridding import height_above, rasterize
     from .ground_filter import GroundPoints, ground
     from .hydrology import (
@@ -65,6 +66,7 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "contour_labels",
                 "contours",
             ),
+            ".grading": ("grade", "paste"),
             ".lift": ("lift",),
             ".preview": ("Preview", "preview"),
             ".relief": (
@@ -128,6 +130,7 @@ __all__ = [
     "flats",
     "flow_accumulation",
     "flow_path",
+    "grade",
     "ground",
     "height_above",
     "hillshade",
@@ -135,6 +138,7 @@ __all__ = [
     "lift",
     "line_of_sight",
     "mend_flats",
+    "paste",
     "pits",
     "plan",
     "ponds",

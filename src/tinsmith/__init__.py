@@ -65,6 +65,7 @@ if TYPE_CHECKING:
     )
     from .terrain.earthwork import Difference, difference, stage_storage, volume
     from .terrain.flats import flats, mend_flats
+    from .terrain.grading import grade, paste
     from .terrain.gridding import height_above, rasterize
     from .terrain.ground_filter import GroundPoints, ground
     from .terrain.hydrology import (
@@ -206,9 +207,11 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "difference",
                 "earthwork_map",
                 "flats",
+                "grade",
                 "histogram",
                 "lift",
                 "mend_flats",
+                "paste",
                 "Preview",
                 "preview",
                 "profile_picture",
@@ -340,6 +343,7 @@ __all__ = [
     "flow_path",
     "from_mesh",
     "from_raster",
+    "grade",
     "ground",
     "height_above",
     "hillshade",
@@ -352,6 +356,7 @@ __all__ = [
     "lines_from_codes",
     "mend_flats",
     "paper",
+    "paste",
     "pits",
     "plan",
     "ponds",

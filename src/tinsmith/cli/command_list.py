@@ -14,6 +14,7 @@ SECTIONS = {
         "compare": "Compare the paper's algorithms with the exact kernel.",
         "refine": "Make a finite element mesh of a TIN.",
         "simplify": "Leave out points that a TIN within a tolerance can do without.",
+        "grade": "Grade a pad into a TIN, with side slopes to where they meet it.",
         "ground": "Tell the ground from buildings, plants and noise.",
         "edit": "Change a TIN by a script of edits.",
         "convert": "Write points or a TIN in another format.",
