@@ -18,9 +18,9 @@ WORKED_ON = {
     "io.field_survey.instruments.gsi._Block", "io.field_survey.instruments.records.Book",
     "io.lidar.selection.Tally", "io.cad.landxml.content.Content", "io.cad.landxml.content.Line",
     "io.cad.landxml.content.Points", "io.cad.landxml.content.Surface",
-    "terrain.sheets.mapping.Drawn",
+    "terrain.sheets.mapping.Drawn", "terrain.inspection.heights._Search",
 }  # fmt: skip
-"""Filled in step by step while a file is read or a sheet is drawn."""
+"""Filled in step by step while a file is read, a sheet is drawn, or blunders are searched."""
 
 SHORT_LIVED = {"Operation", *(one.__name__ for one in OPERATIONS.values())}
 """Made for one edit and gone; a frozen one takes three times as long to make."""

@@ -29,7 +29,7 @@ _FEW_POINTS = 5_000
 """Up to which points are drawn larger."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Canvas:
     """A picture with a place on the map."""
 

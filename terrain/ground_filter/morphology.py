@@ -70,7 +70,7 @@ def open_grid(grid: Grid, window: int) -> Grid:
     return _filter(eroded, window, np.maximum, -np.inf)
 
 
-def least_around(grid: Grid, core: int, reach: int) -> Grid:
+def least_around(grid: Grid, core: int, reach: int, *, is_whole: bool = False) -> Grid:
     """Return the least value of the cells around each cell, infinity where there is none.
 
     Parameters
@@ -79,16 +79,23 @@ def least_around(grid: Grid, core: int, reach: int) -> Grid:
     core, reach : int
         Cells further than the first and no further than the second, in columns or rows. The width
         of that frame is odd, and larger than twice the first.
+    is_whole : bool
+        Return infinity, too, where one of the eight squares of the frame is empty.
     """
     half, away = (reach - core - 1) // 2, (reach + core + 1) // 2
     padded = np.pad(grid, away + half, constant_values=np.inf)
     squares = _reduce_square(padded, half, np.minimum)
     columns, rows = grid.shape
     least = np.full(grid.shape, np.inf)
+    is_empty = np.zeros(grid.shape, np.bool_)
     for i in (0, away, 2 * away):
         for j in (0, away, 2 * away):
             if (i, j) != (away, away):
-                np.minimum(least, squares[i : i + columns, j : j + rows], out=least)
+                square = squares[i : i + columns, j : j + rows]
+                np.minimum(least, square, out=least)
+                is_empty |= np.isinf(square)
+    if is_whole:
+        least[is_empty] = np.inf
     return least
 
 

@@ -26,9 +26,10 @@ if TYPE_CHECKING:
 
 __all__ = ["find_low_noise", "find_seeds"]
 
-_CORE, _REACH = 2, 7
-"""A group of low points is no wider than this to each side, and compared with points up to there;
-in cells."""
+_FRAMES = ((2, 7, False), (1, 4, True), (3, 10, True))
+"""A group of low points is no wider than the first to each side, and compared with points up to the
+second; in cells. What another group hides in a wide frame is found in a narrow one. At a border
+some of a frame is empty, and the lowest corner of a slope would be taken for a pit."""
 
 _ROUNDS = 5
 """How often low points are looked for again, when others that hid them have gone."""
@@ -45,15 +46,23 @@ def find_low_noise(
     z = np.ascontiguousarray(points[:, 2])
     for _ in range(_ROUNDS):
         grid = cells.spread(cells.find_lowest(is_taken & ~is_noise), z)
-        around = np.empty_like(grid)
-        for wide, inner, own in split_columns(grid.shape, _REACH):
-            around[own] = least_around(grid[wide], _CORE, _REACH)[inner]
-        least = around.reshape(-1)[cells.number]
-        is_low = (z < least - parameters.noise_depth) & np.isfinite(least) & ~is_noise
+        is_low = np.zeros(len(points), bool)
+        for frame in _FRAMES:
+            least = _find_least_around(grid, *frame).reshape(-1)[cells.number]
+            is_low |= (z < least - parameters.noise_depth) & np.isfinite(least) & ~is_noise
         if not is_low.any():
             break
         is_noise |= is_low
     return is_noise
+
+
+def _find_least_around(
+    grid: NDArray[np.float64], core: int, reach: int, is_whole: bool
+) -> NDArray[np.float64]:
+    around = np.empty_like(grid)
+    for wide, inner, own in split_columns(grid.shape, reach):
+        around[own] = least_around(grid[wide], core, reach, is_whole=is_whole)[inner]
+    return around
 
 
 def find_seeds(

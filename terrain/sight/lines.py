@@ -78,7 +78,7 @@ def line_of_sight(
     >>> ridge = [[0, 0, 0], [0, 4, 0], [4, 0, 2], [4, 4, 2], [8, 0, 0], [8, 4, 0]]
     >>> seen = ts.line_of_sight(ts.triangulate(ridge), [1, 2], [[3, 2], [7, 2]], eye_height=1)
     >>> seen.columns["visible"], seen.columns["block_x"]
-    (array([ True, False]), array([nan,  3.]))
+    (array([ True, False]), array([nan, 2.5]))
     """
     reference = find_reference(tin, "Lines of sight")
     fall = find_curvature(reference, curvature, refraction)

@@ -76,8 +76,7 @@ inline void bind_inspection(nb::module_& m) {
   m.def("list_neighbors", &list_neighbors, "points"_a.noconvert(), "triangles"_a.noconvert(),
         "neighbors"_a.noconvert(), "vertices"_a.noconvert(),
         "The vertices that edges join to some, counter-clockwise: offsets and vertices.");
-  m.def("measure_neighbors", &measure_neighbors, "points"_a.noconvert(),
-        "triangles"_a.noconvert(),
+  m.def("measure_neighbors", &measure_neighbors, "points"_a.noconvert(), "triangles"_a.noconvert(),
         "Lowest and highest neighbour of each vertex, and the squared distance to the nearest.");
 }
 

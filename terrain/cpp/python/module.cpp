@@ -3,8 +3,8 @@
 
 #include "bind_earthwork.hpp"
 #include "bind_gridding.hpp"
-#include "bind_inspection.hpp"
 #include "bind_ground.hpp"
+#include "bind_inspection.hpp"
 #include "bind_isolines.hpp"
 #include "bind_relief.hpp"
 

@@ -111,6 +111,17 @@ def test_low_noise_is_told_apart_and_does_no_harm():
     assert found.counts == {"ground": len(points), "others": 0, "low noise": 6}
 
 
+@pytest.mark.parametrize("apart", [1.0, 2.0, 5.0, 7.0, 9.0, 14.0])
+@pytest.mark.parametrize("direction", [(1.0, 0.0), (0.0, 1.0), (0.7, 0.7)])
+def test_two_low_points_of_one_depth_do_not_hide_each_other(direction, apart):
+    points = make_scene(hill)
+    first = np.array([20.3, 24.6])
+    pair = np.array([first, first + apart * np.array(direction)])
+    low = np.column_stack([pair, hill(*pair.T) - 9.0])
+    found = ts.ground(np.concatenate([points, low]))
+    assert found.counts == {"ground": len(points), "others": 0, "low noise": 2}
+
+
 def test_a_group_of_low_points_is_noise():
     points = make_scene(plane)
     low = np.array([[30.1, 30.1, 60], [30.7, 30.2, 61], [31.1, 30.9, 60.5]])

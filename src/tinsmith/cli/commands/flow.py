@@ -137,13 +137,13 @@ def _summarise(tin: TIN, found: Features) -> list[Row]:
 
 
 def _describe_row(found: Features, row: int) -> str:
-    from ...terrain.results.columns import unit_text
+    from ..output.line_summaries import name_unit
 
     parts = []
     for name in ("end", "length", "drop", "pit_level", "spill_level", "depth", "area", "volume"):
         if name in found.columns:
             value = found.columns[name][row]
             text = value if isinstance(value, str) else f"{value:,.2f}"
-            unit = unit_text(found.units, name) or ""
+            unit = name_unit(found.units, name)
             parts.append(f"{name.replace('_', ' ')} {text} {unit}".strip())
     return ", ".join(parts)

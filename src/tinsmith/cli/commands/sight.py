@@ -89,9 +89,9 @@ def _summarise(tin: TIN, found: Features) -> list[Row]:
 
 
 def _tell_line(found: Features, row: int) -> Row:
-    from ...terrain.results.columns import unit_text
+    from ..output.line_summaries import name_unit
 
-    columns, unit = found.columns, unit_text(found.units, "distance") or ""
+    columns, unit = found.columns, name_unit(found.units, "distance")
     text = f"visible at {columns['distance'][row]:,.2f} {unit}".rstrip()
     if not columns["visible"][row]:
         text = (
@@ -103,8 +103,8 @@ def _tell_line(found: Features, row: int) -> Row:
 
 
 def _tell_class(found: Features, row: int) -> Row:
-    from ...terrain.results.columns import unit_text
+    from ..output.line_summaries import name_unit
 
-    columns, unit = found.columns, unit_text(found.units, "area") or ""
+    columns, unit = found.columns, name_unit(found.units, "area")
     name = str(columns["class"][row]).capitalize()
     return name, f"{columns['area'][row]:,.1f} {unit}, {columns['share'][row]:.1f} %"

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ...terrain import Features
+    from ...terrain.results.columns import Units
     from ...tin import TIN, Report, Survey
     from .console import Row
 
@@ -25,6 +26,7 @@ __all__ = [
     "describe_given_lines",
     "find_elevation_symbol",
     "mesh_counts",
+    "name_unit",
     "summarise_lines",
 ]
 
@@ -46,6 +48,13 @@ def count_constrained_edges(tin: TIN) -> int:
 def find_elevation_symbol(found: Survey | TIN) -> str:
     """Return what stands behind an elevation, with the space before it; "" if not known."""
     return "" if found.elevation_unit is None else f" {found.elevation_unit.symbol}"
+
+
+def name_unit(units: Units, column: str) -> str:
+    """Return the symbol of a column's unit for a sentence; "" for none, and if it is not known."""
+    from ...terrain.results.columns import unit_text
+
+    return "" if units.get(column, "") is None else unit_text(units, column)
 
 
 def count_given_lines(survey: Survey) -> dict[str, int]:
