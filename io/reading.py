@@ -10,6 +10,7 @@ from typing import IO, TYPE_CHECKING, Any, NamedTuple, cast, overload
 
 from .._atomic import as_path
 from .._plug_ins import describe_failure, warn_of_plug_in
+from .._progress import Progress
 from .._sentences import printable
 from ..crs import CRS, Unit
 from ..errors import (
@@ -36,12 +37,14 @@ from .registry import (
     list_suffixes,
     require_options,
     signatures,
+    takes_progress,
 )
 
 if TYPE_CHECKING:
     import os
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
+    from .._progress import Tell
     from ..crs import CrsLike, UnitLike
 
 __all__ = [
@@ -59,12 +62,13 @@ _SHOWN = 5
 
 
 class _Asked(NamedTuple):
-    """What a caller says of a file: format, CRS and unit, options, and those that are wishes."""
+    """What a caller says of a file: format, CRS and unit, options, wishes, and whom to tell."""
 
     format: str | None
     declared: Mapping[str, Any]
     options: Mapping[str, Any]
     wishes: Mapping[str, Any]
+    progress: Tell | None = None
 
 
 @overload
@@ -98,6 +102,7 @@ def read(
     crs: CrsLike | None = None,
     z_unit: UnitLike | None = None,
     remote: bool = False,
+    progress: Callable[[float], None] | None = None,
     **options: Any,
 ) -> Any:
     """Read elevation points or a TIN; the reader is chosen by content and suffix.
@@ -121,6 +126,9 @@ def read(
     remote : bool
         Whether paths may be addresses of HTTP or HTTPS, which are copied to a temporary file.
         Nothing is fetched otherwise.
+    progress : callable, optional
+        Called with the fraction done, ascending to 1.0: lidar chunk by chunk, several files one by
+        one; of a single file of another format only that it is done. What it raises ends the call.
     **options
         Options of the reader, see :meth:`Format.options`.
 
@@ -156,7 +164,16 @@ def read(
     ...     ts.read(Path(folder, "surface.ply"))
     <TIN: 3 vertices, 1 triangle, z 5 to 8, crs EPSG:32616>
     """
-    return read_as_wished(path, {}, format=format, crs=crs, z_unit=z_unit, remote=remote, **options)
+    return read_as_wished(
+        path,
+        {},
+        format=format,
+        crs=crs,
+        z_unit=z_unit,
+        remote=remote,
+        progress=progress,
+        **options,
+    )
 
 
 def read_as_wished(
@@ -167,6 +184,7 @@ def read_as_wished(
     crs: CrsLike | None = None,
     z_unit: UnitLike | None = None,
     remote: bool = False,
+    progress: Callable[[float], None] | None = None,
     **options: Any,
 ) -> Survey | TIN:
     """Read a file as :func:`read`, with options that count for the formats which have them.
@@ -179,12 +197,16 @@ def read_as_wished(
     """
     if not isinstance(remote, bool):
         raise OptionError("remote", remote, "True or False")
-    asked = _Asked(format, _collect_declared(crs, z_unit), options, wishes)
+    done = Progress(progress)
+    declared = _collect_declared(crs, z_unit)
+    asked = _Asked(format, declared, options, wishes, done.stage(0.0, 1.0))
     places = path if isinstance(path, list | tuple) else [cast("str | os.PathLike[str]", path)]
     with ExitStack() as copies:
         if remote:
             places = [copies.enter_context(_localise(place)) for place in places]
-        return _read_several(_require_paths(places), asked)
+        found = _read_several(_require_paths(places), asked)
+    done.end()
+    return found
 
 
 @contextmanager
@@ -220,7 +242,12 @@ def _require_paths(paths: Sequence[Any]) -> list[Path]:
 
 def _read_several(paths: Sequence[Path], asked: _Asked) -> Survey | TIN:
     """Read files as one survey; a single one as what it is."""
-    found = [_read_path(path, asked) for path in paths]
+    done = Progress(asked.progress)
+    found = []
+    for number, path in enumerate(paths):
+        part = done.stage(number / len(paths), (number + 1) / len(paths))
+        found.append(_read_path(path, asked._replace(progress=part)))
+        done((number + 1) / len(paths))
     return found[0] if len(found) == 1 else join_files(found, paths)
 
 
@@ -371,6 +398,7 @@ def _read_file(
     declared: Mapping[str, Any],
     options: Mapping[str, Any],
     wishes: Mapping[str, Any],
+    progress: Tell | None = None,
 ) -> Survey | TIN:
     chosen = _choose_format(file, name)
     if chosen.read is None:
@@ -384,6 +412,8 @@ def _read_file(
     require_options(chosen, "read", reader, of_file)
     if wishes:
         of_file |= {name: wishes[name] for name in chosen.options("read") if name in wishes}
+    if progress is not None and takes_progress(reader):
+        of_file["progress"] = progress
     try:
         found = reader(file, crs=declared["crs"], **of_file)
     except CrsError as error:

@@ -1,4 +1,5 @@
 # Types of the compiled core; what it does is said in terrain/_kernel.py.
+from collections.abc import Callable
 from typing import TypeAlias
 
 import numpy as np
@@ -21,6 +22,7 @@ class GriddedSurface:
         spacing: float,
         values: Doubles | None,
         threads: int = ...,
+        progress: Callable[[float], None] | None = ...,
     ) -> Doubles: ...
     def means_of_cells(
         self,
@@ -31,6 +33,7 @@ class GriddedSurface:
         y_edges: Doubles,
         values: Doubles | None,
         threads: int = ...,
+        progress: Callable[[float], None] | None = ...,
     ) -> Doubles: ...
 
 def trace_contours(
@@ -80,6 +83,7 @@ def sum_between(
     other_triangles: Ints,
     up: float,
     threads: int = ...,
+    progress: Callable[[float], None] | None = ...,
 ) -> Doubles: ...
 def sum_heights(
     points: Doubles,

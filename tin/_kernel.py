@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from .._progress import Tell
+
 __all__ = [
     "EXACT_RANGE",
     "MOST_POINTS",
@@ -104,11 +106,13 @@ def grow(
     method: Method = Method.AUTOMATIC,
     threads: int = 1,
     path: str = VECTOR_PATHS[-1],
+    progress: Tell | None = None,
 ) -> Growth:
     r"""Grow the Delaunay triangulation of (n, 3) float64 points, n >= 1; z is not looked at.
 
     Every method, number of threads and vector path gives the same arrays. ``Method.AUTOMATIC``
-    grows, and inserts where points are so uneven that growing would be slow.
+    grows, and inserts where points are so uneven that growing would be slow. ``progress`` is told
+    the share of the vertices that growth has taken up.
 
     The search for a third point, most of the work::
 
@@ -125,7 +129,7 @@ def grow(
     PointsError
         If fewer than three places are distinct, or all are collinear.
     """
-    triangles, neighbors, kept_row, n_distinct = _core.grow(points, method, threads, path)
+    triangles, neighbors, kept_row, n_distinct = _core.grow(points, method, threads, path, progress)
     if len(triangles) == 0:
         raise PointsError(_explain_no_triangle(len(points), n_distinct))
     return Growth(triangles, neighbors, kept_row)

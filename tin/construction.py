@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
+from .._progress import Progress
 from .building.assembly import assemble
 from .building.inputs import gather_inputs
 from .building.survey import Survey
@@ -38,6 +39,7 @@ def triangulate(
     threads: int | None = None,
     crs: CrsLike | None = None,
     z_unit: UnitLike | None = None,
+    progress: Callable[[float], None] | None = None,
 ) -> TIN:
     """Build the Delaunay TIN of a set of elevation points, and of lines that must be its edges.
 
@@ -100,6 +102,9 @@ def triangulate(
     z_unit : Unit or str, optional
         Unit of all elevations ("m", "ft", "US survey foot"), lines included; default the survey's
         own, else that of the CRS's vertical axis, else not known.
+    progress : callable, optional
+        Called with the fraction done, ascending to 1.0, on the calling thread: finely while the
+        triangulation is grown, else between the stages. What it raises ends the call.
 
     Returns
     -------
@@ -138,6 +143,7 @@ def triangulate(
     >>> triangulate(square, breaklines=[[[0, 0, 5], [4, 4, 7]]]).lines
     <Lines: 1 hard, 0 soft, 0 boundary, 0 hole, 0 water; 2 vertices>
     """
+    done = Progress(progress)
     inputs = gather_inputs(
         points,
         breaklines=breaklines,
@@ -155,8 +161,8 @@ def triangulate(
         crs=crs,
         z_unit=z_unit,
     )
-    built = assemble(inputs)
-    return TIN(
+    built = assemble(inputs, done)
+    tin = TIN(
         **built.surface._asdict(),
         vertex_of=built.vertex_of,
         report=built.report,
@@ -166,3 +172,5 @@ def triangulate(
         row_attributes=points.attributes if isinstance(points, Survey) else None,
         inputs=inputs,
     )
+    done.end()
+    return tin

@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from ..._progress import Tell
     from ...crs import CrsLike, UnitLike
 
 __all__ = ["read"]
@@ -61,6 +62,7 @@ def read(
     every: int = 1,
     withheld: bool = False,
     attributes: str | Sequence[str] | None = None,
+    progress: Tell | None = None,
 ) -> Survey:
     """Read a lidar file, or a folder of tiles as one survey.
 
@@ -89,6 +91,8 @@ def read(
     attributes : str or sequence of str, optional
         Attributes of the points to keep, by laspy's names; "all". Default classification,
         intensity, return_number and number_of_returns; an empty sequence keeps none.
+    progress : callable, optional
+        Called with the fraction of the points that were read, after each chunk of them.
 
     Returns
     -------
@@ -124,7 +128,7 @@ def read(
     tiles = [_locate(header, target, declared) for header in headers]
     _require_one_crs(tiles, target, path)
     units = _require_comparable_units(tiles, target, path)
-    gathered = _Gathered.reserve(headers, path)
+    gathered = _Gathered.reserve(headers, path, progress)
     placed = [_read_tile(tile, selection, target, gathered, units[0]) for tile in tiles]
     gathered.require_points(path, selection)
     return Survey(
@@ -242,14 +246,15 @@ def _name_crs(crs: CRS | None) -> str:
 class _Gathered:
     """Points of one file after the other, in memory that is reserved once."""
 
-    def __init__(self, capacity: int) -> None:
+    def __init__(self, capacity: int, progress: Tell | None) -> None:
+        self._progress = progress
         self._points = np.empty((capacity, 3))  # the system gives memory to what is filled
         self._columns: dict[str, NDArray[Any]] = {}
         self.count = 0
         self.tally = Tally(np.zeros(N_CLASSES, np.int64))
 
     @classmethod
-    def reserve(cls, headers: list[Header], path: Path) -> _Gathered:
+    def reserve(cls, headers: list[Header], path: Path, progress: Tell | None = None) -> _Gathered:
         """Reserve room for all points, if there is memory for so many.
 
         Raises
@@ -266,7 +271,7 @@ class _Gathered:
                 "read here: read a part of it (window), or tile after tile.",
                 path=path,
             )
-        return cls(count)
+        return cls(count, progress)
 
     def append(self, arrays: dict[str, NDArray[Any]], header: Header) -> None:
         """Add a chunk: coordinates are scaled as laspy does, one rounding after the other."""
@@ -301,6 +306,11 @@ class _Gathered:
             or points.ctypes.data != self._points[start:].ctypes.data
         ):
             self._points[start : self.count] = points
+
+    def tell_progress(self) -> None:
+        """Tell the share of the points that were seen, taken or not."""
+        if self._progress is not None:
+            self._progress((self.count + self.tally.left_out) / len(self._points))
 
     @property
     def points(self) -> NDArray[np.float64]:
@@ -352,6 +362,7 @@ def _read_tile(
         for part in parts:
             gathered.tally.add(part.value, part.arrays["classes"])
             gathered.append(part.arrays, header)
+            gathered.tell_progress()
     own = gathered._points[start : gathered.count]
     odd = _describe_outside(own, header)
     placed = place(own, source=tile.reference.crs, target=target, path=header.path, unit=tile.unit)

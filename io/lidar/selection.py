@@ -130,6 +130,12 @@ class Tally:
             setattr(self, name, getattr(self, name) + count)
 
     @property
+    def left_out(self) -> int:
+        """How many points were seen and not taken."""
+        others = self.of_other_classes + self.of_other_returns
+        return self.withheld + others + self.outside + self.thinned
+
+    @property
     def skipped(self) -> dict[str, int]:
         """What was left out, for a survey."""
         found = {

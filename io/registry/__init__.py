@@ -1,6 +1,6 @@
 """Formats: what each is, which are known, and the content that shows them."""
 
-from .format import KINDS, SURFACES, Format, Loss, load_function, require_options
+from .format import KINDS, SURFACES, Format, Loss, load_function, require_options, takes_progress
 from .lookup import (
     choose_clear,
     choose_format,
@@ -31,4 +31,5 @@ __all__ = [
     "list_suffixes",
     "load_function",
     "require_options",
+    "takes_progress",
 ]

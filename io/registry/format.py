@@ -202,6 +202,11 @@ def _find_options(function: Callable[..., Any]) -> tuple[str, ...]:
     )
 
 
+def takes_progress(function: Callable[..., Any]) -> bool:
+    """Whether a reader or writer tells how far it is."""
+    return "progress" in inspect.signature(function).parameters
+
+
 def require_options(
     chosen: Format, action: str, function: Callable[..., Any], options: Mapping[str, object]
 ) -> None:

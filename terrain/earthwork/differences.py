@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._progress import Progress
 from ...errors import OptionError, PointsError
 from ...tin.validation.threads import thread_count
 from .. import _kernel
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from ..._progress import Tell
     from ...tin import TIN
 
     _Mesh = tuple[NDArray[np.float64], NDArray[np.int32]]
@@ -161,7 +163,9 @@ def _list_moments(sums: dict[str, float]) -> dict[str, float]:
     }
 
 
-def difference(tin: TIN, other: TIN) -> Difference:
+def difference(
+    tin: TIN, other: TIN, *, progress: Callable[[float], None] | None = None
+) -> Difference:
     """Subtract a surface from another one, exactly where both are.
 
     Parameters
@@ -170,6 +174,9 @@ def difference(tin: TIN, other: TIN) -> Difference:
         For example the ground as it is, or was.
     other : TIN
         The surface that it is subtracted from.
+    progress : callable, optional
+        Called with the fraction done, ascending to 1.0, between the stages, and more finely while
+        the statistics are summed up. What it raises ends the call.
 
     Returns
     -------
@@ -199,22 +206,27 @@ def difference(tin: TIN, other: TIN) -> Difference:
     >>> found.statistics["highest"], sorted(found.zones.columns["kind"])
     (array([1.]), ['cut', 'fill'])
     """
+    done = Progress(progress)
     reference, first, second = find_common_reference(tin, other, "Differences")
+    done(0.05)
     made = _overlay(first, second)
+    done(0.3)
     if len(made.triangles) == 0:
         raise PointsError(
             f"The surfaces do not overlap: one covers {_describe_extent(first)}, the other "
             f"{_describe_extent(second)}."
         )
     require_finite(made.vertices)
-    sums = _sum_differences(first, second)
+    sums = _sum_differences(first, second, done.stage(0.3, 0.5))
     if not sums["area"] > 0.0:
         raise PointsError("The surfaces overlap only in what is thinner than coordinates can tell.")
     triangles, cells = fan_out(made.offsets, made.corners)
     slack = _measure_rounding(first, second, made.vertices, triangles, made.triangles[cells])
     given = cut_at_zero(made.vertices, triangles)
+    done(0.6)
     made_sound = _make_sound(*given, _make_holder(tin, other))
     surface = _choose_surface(made_sound, reference, sums, slack)
+    done.end()
     return Difference(surface, reference.notes, reference, sums)
 
 
@@ -258,11 +270,19 @@ def _overlay(first: Surface, second: Surface) -> _kernel.OverlayMesh:
         ) from None
 
 
-def _sum_differences(first: Surface, second: Surface) -> dict[str, float]:
+def _sum_differences(first: Surface, second: Surface, progress: Tell | None) -> dict[str, float]:
     groups = np.zeros(len(first.triangles), np.int32)
     workers = thread_count(None, len(first.points) + len(second.points))
     sums = _kernel.sum_between(
-        first.points, first.triangles, groups, 1, second.points, second.triangles, 1.0, workers
+        first.points,
+        first.triangles,
+        groups,
+        1,
+        second.points,
+        second.triangles,
+        1.0,
+        workers,
+        progress,
     )
     require_finite(sums)
     return dict(zip(_kernel.SUMS, sums[0].tolist(), strict=True))

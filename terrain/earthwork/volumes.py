@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._progress import Progress
 from ...errors import OptionError
 from ...tin.validation.threads import thread_count
 from .. import _kernel
@@ -16,8 +17,11 @@ from .reference import Surface, find_common_reference, find_reference, require_f
 from .regions import as_regions
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import ArrayLike, NDArray
 
+    from ..._progress import Tell
     from ...tin import TIN
     from .reference import Reference
 
@@ -34,6 +38,7 @@ def volume(
     base: float | ArrayLike | None = None,
     regions: Any = None,
     threads: int | None = None,
+    progress: Callable[[float], None] | None = None,
 ) -> Table:
     """Measure cut and fill from a surface to another one, or to a level or plane.
 
@@ -55,6 +60,9 @@ def volume(
         rings inside is what an odd number of them holds.
     threads : int, optional
         Default every core, where it pays. The result is the same.
+    progress : callable, optional
+        Called with the fraction done, ascending to 1.0: finely while two TINs are overlaid, else
+        between the stages. What it raises ends the call.
 
     Returns
     -------
@@ -95,12 +103,25 @@ def volume(
     if (other is None) == (base is None):
         given = "neither" if other is None else "both"
         raise OptionError("base", given, allowed="a level, a plane, or another TIN, one of them")
+    done = Progress(progress)
     if other is None:
-        return _measure_to_plane(tin, base, regions)
+        table = _measure_to_plane(tin, base, regions)
+    else:
+        table = _measure_between(tin, other, regions, threads, done)
+    done.end()
+    return table
+
+
+def _measure_between(
+    tin: TIN, other: TIN, regions: Any, threads: int | None, done: Progress
+) -> Table:
     reference, surface, second = find_common_reference(tin, other, "Volumes")
     names, pieces, parts, notes = _cut_into_regions(surface, regions, tin)
     workers = thread_count(threads, len(tin.points) + len(other.points))
-    sums = _sum_between(pieces, len(names), second, reference.up, workers)
+    done(0.1)
+    overlaying = done.stage(0.1, 0.9)
+    sums = _sum_between(pieces, len(names), second, reference.up, workers, overlaying)
+    done(0.9)
     own = _measure_areas(pieces, len(names))
     if parts is None:
         others = _measure_areas(_take_whole(second), 1)
@@ -148,7 +169,12 @@ def _cut_into_regions(
 
 
 def _sum_between(
-    pieces: Pieces, count: int, other: Surface, up: float, threads: int
+    pieces: Pieces,
+    count: int,
+    other: Surface,
+    up: float,
+    threads: int,
+    progress: Tell | None = None,
 ) -> NDArray[np.float64]:
     return _kernel.sum_between(
         pieces.surface.points,
@@ -159,6 +185,7 @@ def _sum_between(
         other.triangles,
         up,
         threads,
+        progress,
     )
 
 

@@ -17,6 +17,7 @@ from .grids import as_parts, locate_edges
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from ..._progress import Progress, Tell
     from ...policies import InterpolationMethod
     from ...tin import TIN, Grid
 
@@ -24,6 +25,8 @@ __all__ = ["SurfaceBand"]
 
 _STRIP = 1 << 22
 """Cells whose centres are listed in one go, about: a bound on memory."""
+
+_ALL = (slice(None), slice(None))
 
 
 class SurfaceBand:
@@ -69,24 +72,36 @@ class SurfaceBand:
 
     def __getitem__(self, key: tuple[slice, slice]) -> NDArray[np.float64]:
         """Compute a block; slices have no step."""
-        rows, columns = as_parts(key, self.shape)
+        return self._compute(*as_parts(key, self.shape), None)
+
+    def compute(self, progress: Progress) -> NDArray[np.float64]:
+        """Compute all cells, and tell how far it is."""
+        return self._compute(*as_parts(_ALL, self.shape), progress.stage(0.1, 1.0))
+
+    def _compute(self, rows: slice, columns: slice, progress: Tell | None) -> NDArray[np.float64]:
         if rows.stop <= rows.start or columns.stop <= columns.start:
             return np.empty((max(0, rows.stop - rows.start), max(0, columns.stop - columns.start)))
         if self._method == "linear":
-            return self._scan(rows, columns)
+            return self._scan(rows, columns, progress)
         block = np.empty((rows.stop - rows.start, columns.stop - columns.start))
         for strip in _list_strips(rows, columns):
             block[strip.start - rows.start : strip.stop - rows.start] = self._ask(strip, columns)
+            if progress is not None:
+                progress((strip.stop - rows.start) / len(block))
         return block
 
-    def _scan(self, rows: slice, columns: slice) -> NDArray[np.float64]:
+    def _scan(self, rows: slice, columns: slice, progress: Tell | None) -> NDArray[np.float64]:
         if self._is_mean:
-            return self._scan_means(rows, columns)
+            return self._scan_means(rows, columns, progress)
         x, y = locate_centers(self._grid, rows, columns)
         threads = thread_count(self._threads, len(x) * len(y))
-        return self._drawn.values_at_centers(x, y, self._grid.spacing, self._values, threads)
+        return self._drawn.values_at_centers(
+            x, y, self._grid.spacing, self._values, threads, progress
+        )
 
-    def _scan_means(self, rows: slice, columns: slice) -> NDArray[np.float64]:
+    def _scan_means(
+        self, rows: slice, columns: slice, progress: Tell | None
+    ) -> NDArray[np.float64]:
         """Compute whole tiles of the raster, so that all blocks of it have the same bits."""
         tiles = [_widen(part, side) for part, side in zip((rows, columns), self.shape, strict=True)]
         x, y = locate_centers(self._grid, *tiles)
@@ -99,6 +114,7 @@ class SurfaceBand:
             y_edges,
             self._values,
             thread_count(self._threads, len(x) * len(y)),
+            progress,
         )
         down, across = (
             slice(part.start - tile.start, part.stop - tile.start)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from ..._progress import Progress
 from ...errors import OptionError, choice
 from ...policies import InterpolationMethod, RasterSample, RasterValue
 from ...tin.validation.options import as_flag, require_count, require_tin
@@ -16,6 +17,8 @@ from .grids import as_grid
 from .triangle_values import measure_triangles
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from ...crs import Unit
     from ...tin import TIN, Grid
 
@@ -37,6 +40,7 @@ def rasterize(
     altitude: float = 45.0,
     lazy: bool = False,
     threads: int | None = None,
+    progress: Callable[[float], None] | None = None,
 ) -> Raster:
     """Turn a surface into a raster.
 
@@ -67,6 +71,10 @@ def rasterize(
         than memory.
     threads : int, optional
         Default: every core, where it pays. The result is the same for any number.
+    progress : callable, optional
+        Called with the fraction done, ascending to 1.0: by tiles of cells, or for other methods
+        than the linear one by strips of some 4 million cells. What it raises ends the call. A lazy
+        raster is done at once.
 
     Returns
     -------
@@ -109,6 +117,7 @@ def rasterize(
     array([[5.]])
     """
     require_tin(tin)
+    done = Progress(progress)
     _require_options(method, value, at)
     require_count("threads", threads, or_none=True)
     is_lazy, light = as_flag("lazy", lazy), as_light(azimuth, altitude)
@@ -117,8 +126,8 @@ def rasterize(
     require_covered(tin, cells, is_mean=is_mean)
     values = measure_triangles(tin, value, light)
     band = SurfaceBand(tin, cells, values, method=method, is_mean=is_mean, threads=threads)
-    held: Any = band if is_lazy else band[:, :]
-    return Raster(
+    held: Any = band if is_lazy else band.compute(done)
+    raster = Raster(
         {value: held},
         cells,
         crs=tin.crs if tin.crs is None or value == "elevation" else tin.crs.horizontal,
@@ -126,6 +135,8 @@ def rasterize(
         name=value,
         notes=[*describe_unknown(tin.crs, tin.elevation_unit), *notes],
     )
+    done.end()
+    return raster
 
 
 def _require_options(method: str, value: str, at: str) -> None:

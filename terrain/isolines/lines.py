@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from ..._progress import Progress
 from ...tin.types import seal
 from ...tin.validation.options import require_tin
 from .. import _kernel
@@ -14,6 +15,8 @@ from .measures import measure_lengths
 from .smoothing import TracedLines, require_tolerance, smooth_lines
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import ArrayLike
 
     from ...tin import TIN
@@ -30,6 +33,7 @@ def contours(
     index: int | None = 5,
     smooth: float | None = None,
     simplify: float | None = None,
+    progress: Callable[[float], None] | None = None,
 ) -> Features:
     """Trace the contour lines of a TIN.
 
@@ -50,6 +54,9 @@ def contours(
         level, in the unit of elevations.
     simplify : float, optional
         Drop points, likewise; after smoothing, if both are given.
+    progress : callable, optional
+        Called with the fraction done, ascending to 1.0, between the stages: levels chosen, lines
+        traced, lines smoothed. What it raises ends the call.
 
     Returns
     -------
@@ -85,18 +92,24 @@ def contours(
     (array([1.5, 3. ]), array([4., 4.]))
     """
     require_tin(tin)
+    done = Progress(progress)
     options = LevelOptions(interval, levels, base, index)
     chosen = options.for_lines(tin)
     tolerances = [
         require_tolerance(name, value)
         for name, value in (("smooth", smooth), ("simplify", simplify))
     ]
+    done(0.05)
     lines = _trace(tin, chosen, options)
+    done(0.4 if any(tolerances) else 0.9)
     if any(tolerances) and len(lines.level):
         lines = smooth_lines(
             tin, lines, chosen.values, smooth=tolerances[0], simplify=tolerances[1]
         )
-    return _as_features(tin, lines, chosen)
+    done(0.9)
+    found = _as_features(tin, lines, chosen)
+    done.end()
+    return found
 
 
 def _trace(tin: TIN, chosen: Levels, options: LevelOptions) -> TracedLines:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ..._progress import Progress
 from ..._sentences import counted
 from .. import _kernel
 from ..constraints.breaklines import Lines
@@ -22,6 +23,7 @@ from .duplicates import merge_rows
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from ..._progress import Tell
     from .inputs import BuildInputs
 
 __all__ = ["Built", "assemble"]
@@ -51,21 +53,25 @@ class Built(NamedTuple):
     line_vertices: NDArray[np.int32]
 
 
-def assemble(inputs: BuildInputs) -> Built:
-    """Build all that a TIN holds."""
-    return _assemble_plain(inputs) if inputs.is_plain else _with_lines(inputs)
+def assemble(inputs: BuildInputs, progress: Progress | None = None) -> Built:
+    """Build all that a TIN holds, and tell how far it is."""
+    progress = progress or Progress(None)
+    return _assemble_plain(inputs, progress) if inputs.is_plain else _with_lines(inputs, progress)
 
 
 # ------------------------------------------------------------------ points alone
 
 
-def _assemble_plain(inputs: BuildInputs) -> Built:
+def _assemble_plain(inputs: BuildInputs, progress: Progress) -> Built:
     xyz, options = inputs.points, inputs.options
     require_three(len(xyz))  # edits may have removed the others
     kept_row = _kernel.snap(xyz, options.snap) if options.snap > 0 else None
     growth = _kernel.grow(
-        xyz if kept_row is None else _choose_kept(xyz, kept_row), threads=options.threads
+        xyz if kept_row is None else _choose_kept(xyz, kept_row),
+        threads=options.threads,
+        progress=progress.stage(0.1, 0.9),
     )
+    progress(0.9)
     merged = merge_rows(xyz, growth.kept_row if kept_row is None else kept_row, options.duplicates)
     fixed = np.zeros(growth.triangles.shape, np.bool_)
     return Built(
@@ -114,11 +120,13 @@ class _Ground(NamedTuple):
         )
 
 
-def _with_lines(inputs: BuildInputs) -> Built:
+def _with_lines(inputs: BuildInputs, progress: Progress) -> Built:
     is_erased = _find_erased(inputs)
     rows = np.flatnonzero(~is_erased)
-    ground = _drape_lines(rows, inputs)
-    made, pslg = _triangulate_with_lines(inputs, ground, rows)
+    ground = _drape_lines(rows, inputs, progress.stage(0.1, 0.4))
+    progress(0.4)
+    made, pslg = _triangulate_with_lines(inputs, ground, rows, progress.stage(0.4, 0.7))
+    progress(0.9)
     has_rings = bool(inputs.boundary or inputs.extent or inputs.holes or inputs.has_own_boundary)
     if not has_rings and pslg.loses_vertices_at_own_boundary(made.surface):
         ground = ground.drop_own_boundary()
@@ -138,10 +146,18 @@ def _with_lines(inputs: BuildInputs) -> Built:
 
 
 def _triangulate_with_lines(
-    inputs: BuildInputs, ground: _Ground, rows: NDArray[np.int64]
+    inputs: BuildInputs,
+    ground: _Ground,
+    rows: NDArray[np.int64],
+    progress: Tell | None = None,
 ) -> tuple[ConstrainedTriangulation, Pslg]:
     made = triangulate_constrained(
-        inputs.points, rows, ground.lines, inputs.options, conforming=inputs.conforming
+        inputs.points,
+        rows,
+        ground.lines,
+        inputs.options,
+        conforming=inputs.conforming,
+        progress=progress,
     )
     return made, _gather_pslg(inputs, ground, made, rows)
 
@@ -202,13 +218,15 @@ def _find_erased(inputs: BuildInputs) -> NDArray[np.bool_]:
     return is_erased
 
 
-def _drape_lines(rows: NDArray[np.int64], inputs: BuildInputs) -> _Ground:
+def _drape_lines(rows: NDArray[np.int64], inputs: BuildInputs, progress: Tell | None) -> _Ground:
     """Give all lines elevations: draped ones from the surface of everything else."""
     lines = inputs.lines
     is_draped = lines.is_draped
     if not is_draped.any():
         return _Ground(lines, False, [])
-    base = triangulate_constrained(inputs.points, rows, lines.choose(~is_draped), inputs.options)
+    base = triangulate_constrained(
+        inputs.points, rows, lines.choose(~is_draped), inputs.options, progress=progress
+    )
     laid = drape(base.surface, lines.choose(is_draped), threads=inputs.options.threads)
     notes = []
     if laid.n_cut:

@@ -26,6 +26,8 @@ from .duplicates import merge_rows
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from ..._progress import Tell
+
 __all__ = ["ConstrainedTriangulation", "CrossingPolicy", "LineOptions", "triangulate_constrained"]
 
 
@@ -86,8 +88,14 @@ def triangulate_constrained(
     options: LineOptions,
     *,
     conforming: bool = False,
+    progress: Tell | None = None,
 ) -> ConstrainedTriangulation:
     """Triangulate rows of points, and lines; all lines have elevations.
+
+    Parameters
+    ----------
+    progress : callable, optional
+        Is told the fraction done of the triangulation of the points.
 
     Raises
     ------
@@ -97,7 +105,7 @@ def triangulate_constrained(
         If lines cross that must not.
     """
     xyz = points[rows]
-    merged = _merge(xyz, rows, lines, options)
+    merged = _merge(xyz, rows, lines, options, progress)
     mesh, noded = (
         build_mesh_of_growth(merged.points, merged.growth),
         accept_noded(merged.polylines, lines.elevations),
@@ -160,7 +168,11 @@ def _node(merged: _Merged, lines: LineSet, options: LineOptions) -> Noded:
 
 
 def _merge(
-    xyz: NDArray[np.float64], rows_of: NDArray[np.int64], lines: LineSet, options: LineOptions
+    xyz: NDArray[np.float64],
+    rows_of: NDArray[np.int64],
+    lines: LineSet,
+    options: LineOptions,
+    progress: Tell | None,
 ) -> _Merged:
     """Make one vertex of all rows at one place; a line's elevation counts more than a point's."""
     n = len(xyz)
@@ -168,7 +180,8 @@ def _merge(
     rows = np.concatenate([xyz, np.column_stack([lines.xy, np.nan_to_num(lines.elevations)])])
     place = _kernel.snap(rows, options.snap) if options.snap > 0 else None
     own = np.arange(len(rows), dtype=np.int32)
-    growth = _kernel.grow(rows if place is None else rows[place == own], threads=options.threads)
+    kept = rows if place is None else rows[place == own]
+    growth = _kernel.grow(kept, threads=options.threads, progress=progress)
     place = growth.kept_row if place is None else place
     place = own if place is None else place
     is_kept = place == own

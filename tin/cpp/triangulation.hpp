@@ -45,12 +45,14 @@ struct Triangulation {
 
 class Triangulator {
  public:
-  // `keep_going` is asked now and then, on the calling thread, whether to go on.
-  Triangulator(const PointRows& rows, const Options& options, std::function<bool()> keep_going)
+  // `keep_going` is asked now and then, on the calling thread, whether to go on; the vertices that
+  // growth takes up are counted in `progress`.
+  Triangulator(const PointRows& rows, const Options& options, std::function<bool()> keep_going,
+               Progress* progress = nullptr)
       : rows_(rows),
         options_(options),
         team_(static_cast<int>(std::min<std::int64_t>(options.threads, rows.count)),
-              std::move(keep_going)) {}
+              std::move(keep_going), progress) {}
 
   // Delaunay triangulation of one or more rows. No triangles if all points are collinear.
   Triangulation run() {
@@ -107,6 +109,7 @@ class Triangulator {
     WorkStealing work(grid.count(), team_.size());
     std::vector<std::vector<Grown>> grown(team_.size());
     std::atomic<bool> is_too_costly{false};
+    team_.expect(grid.count());
     team_.run([&](int part) {
       for (int task = part; task != WorkStealing::kNone; task = work.steal()) {
         const Range own = work.range(task);
@@ -114,9 +117,14 @@ class Triangulator {
                                            : TriangleStore(expected_triangles(own)));
         Grown& made = grown[part].back();
         Growth<Near> growth(grid, hull, own, made.store);
-        const Outcome outcome = growth.run(
-            [&] { return !is_too_costly && team_.keeps_going(part); },
-            options_.method == Method::kAutomatic, [&] { return work.next_block(task); });
+        const Outcome outcome =
+            growth.run([&] { return !is_too_costly && team_.keeps_going(part); },
+                       options_.method == Method::kAutomatic,
+                       [&] {
+                         const Range block = work.next_block(task);
+                         team_.advance(block.size());
+                         return block;
+                       });
         if (outcome == Outcome::kTooCostly) is_too_costly = true;
         made.task = task;
         made.counts = growth.counts();

@@ -18,7 +18,7 @@ from .parameters import refuse_value
 from .paths import STANDARD, Named, name_file, require_separate
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from ..io import Format
     from ..terrain import Features, Raster, Table
@@ -90,9 +90,10 @@ def read_input(path: Path, reading: Reading, console: Console) -> Survey | TIN:
         options["unit"] = options.pop("length_unit")
     if reading.window is not None:
         options["window"] = Bounds(*reading.window)
-    with console.steps() as steps, steps.step(f"Reading {name_file(Path(path.name))}"):
+    text = f"Reading {name_file(Path(path.name))}"
+    with console.steps() as steps, steps.step(text) as progress:
         if target is None:
-            return _read_once(path, options)
+            return _read_once(path, options, progress)
         return reproject(_read_to_reproject(path, options, target), target)
 
 
@@ -106,7 +107,9 @@ def read_inputs(paths: Sequence[Path], reading: Reading, console: Console) -> Su
     return join_files(found, [Path(name_file(path)) for path in paths])
 
 
-def _read_once(path: Path, options: dict[str, Any]) -> Survey | TIN:
+def _read_once(
+    path: Path, options: dict[str, Any], progress: Callable[[float], None] | None = None
+) -> Survey | TIN:
     from ..io.reading import read_as_wished, read_stream
 
     asked = {name: value for name, value in options.items() if name not in _WISHES}
@@ -114,7 +117,7 @@ def _read_once(path: Path, options: dict[str, Any]) -> Survey | TIN:
     if path == STANDARD:
         asked.pop("remote", None)
         return read_stream(open_standard_input(), name_file(path), wishes, **asked)
-    return read_as_wished(path, wishes, **asked)
+    return read_as_wished(path, wishes, **asked, progress=progress)
 
 
 def _read_to_reproject(path: Path, options: dict[str, Any], target: str) -> Survey | TIN:
@@ -189,8 +192,9 @@ def build_tin(survey: Survey, how: Triangulating, console: Console) -> TIN:
     from ..tin import triangulate
 
     try:
-        with console.steps() as steps, steps.step(f"Triangulating {counted(len(survey), 'point')}"):
-            return triangulate(survey, **how.method)
+        text = f"Triangulating {counted(len(survey), 'point')}"
+        with console.steps() as steps, steps.step(text) as progress:
+            return triangulate(survey, **how.method, progress=progress)
     except PointsError as error:
         raise Failure(f"{error}{_name_rows(survey, error.rows)}") from error
 

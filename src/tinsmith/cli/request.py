@@ -77,7 +77,7 @@ class Request:
         """Return all files that are read: surfaces, lines, and others."""
         return [*list_inputs(*files, how=self.how), *more]
 
-    def step(self, text: str) -> AbstractContextManager[None]:
+    def step(self, text: str) -> AbstractContextManager[Callable[[float], None]]:
         """Return the context in which long work shows its progress."""
         return self.console.step(text)
 

@@ -32,6 +32,7 @@ class Pairs {
   void visit(Team& team, Visit&& visit) const {
     std::atomic<std::int64_t> next{0};
     const std::int64_t count = first_.surface().triangle_count;
+    team.expect(count);
     team.run([&](int part) {
       std::vector<Item> near;
       Pulse pulse(team, part);  // a single triangle may meet all of the others
@@ -44,6 +45,7 @@ class Pairs {
             if (pulse.goes_on()) visit(part, a, b);
           });
         }
+        team.advance(end - begin);
       }
     });
   }

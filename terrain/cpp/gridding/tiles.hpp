@@ -78,11 +78,13 @@ class Tiles {
   template <typename Draw>
   void share(Team& team, Draw&& draw) const {
     std::atomic<std::int32_t> next{0};
+    team.expect(count());
     team.run([&](int part) {
       while (team.keeps_going(part)) {
         const std::int32_t tile = next++;
         if (tile >= count()) return;
         draw(tile);
+        team.advance(1);
       }
     });
   }

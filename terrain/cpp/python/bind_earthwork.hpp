@@ -41,13 +41,14 @@ inline SumTable hand_over(const std::vector<earthwork::Sums>& sums) {
 inline SumTable sum_between(const GivenXyz& points, const GivenTriples& triangles,
                             const GivenNumbers& groups, std::int32_t group_count,
                             const GivenXyz& other_points, const GivenTriples& other_triangles,
-                            double up, int threads) {
+                            double up, int threads, const Listener::Tell& tell) {
   const Surface first = exact_surface_of(points, triangles);
   const Surface second = exact_surface_of(other_points, other_triangles);
   require_groups(groups, triangles.shape(0), group_count);
-  return hand_over(unlocked(threads, [&](Team& team) {
+  const auto sum = [&](Team& team) {
     return earthwork::sum_between(first, groups.data(), group_count, second, up, team);
-  }));
+  };
+  return hand_over(unlocked(threads, sum, tell));
 }
 
 inline SumTable sum_heights(const GivenXyz& points, const GivenTriples& triangles,
@@ -102,7 +103,7 @@ inline StageTable stage_sums(const GivenXyz& points, const GivenTriples& triangl
 inline void bind_earthwork(nb::module_& m) {
   m.def("sum_between", &sum_between, "points"_a.noconvert(), "triangles"_a.noconvert(),
         "groups"_a.noconvert(), "group_count"_a, "other_points"_a.noconvert(),
-        "other_triangles"_a.noconvert(), "up"_a, "threads"_a = 1,
+        "other_triangles"_a.noconvert(), "up"_a, "threads"_a = 1, "progress"_a = nb::none(),
         "Cut and fill from one surface to another, a row for each group of the first's triangles.");
   m.def("sum_heights", &sum_heights, "points"_a.noconvert(), "triangles"_a.noconvert(),
         "heights"_a.noconvert(), "groups"_a.noconvert(), "group_count"_a, "up"_a,

@@ -23,11 +23,11 @@ inline CellGrid grid_of(const GivenValues& x, const GivenValues& y, double spaci
 }
 
 template <typename Draw>
-Cells draw_cells(const CellGrid& grid, int threads, Draw&& draw) {
+Cells draw_cells(const CellGrid& grid, int threads, const Listener::Tell& tell, Draw&& draw) {
   const auto rows = static_cast<std::size_t>(grid.rows);
   const auto columns = static_cast<std::size_t>(grid.columns);
   auto cells = streamed_array<double>(rows * columns);
-  run_unlocked(threads, [&](Team& team) { draw(cells.get(), team); });
+  run_unlocked(threads, [&](Team& team) { draw(cells.get(), team); }, tell);
   return hand_over<Cells>(std::move(cells), {rows, columns});
 }
 
@@ -38,23 +38,25 @@ class GriddedSurface {
       : ordered_(order(surface_of(points, triangles))) {}
 
   Cells values_at_centers(const GivenValues& x, const GivenValues& y, double spacing,
-                          const std::optional<GivenValues>& values, int threads) const {
+                          const std::optional<GivenValues>& values, int threads,
+                          const Listener::Tell& tell) const {
     const CellGrid grid = grid_of(x, y, spacing);
     const double* each = values_of(values);
-    return draw_cells(grid, threads, [&](double* cells, Team& team) {
+    return draw_cells(grid, threads, tell, [&](double* cells, Team& team) {
       CenterScan::run(ordered_, grid, each, cells, team);
     });
   }
 
   Cells means_of_cells(const GivenValues& x, const GivenValues& y, double spacing,
                        const GivenValues& x_edges, const GivenValues& y_edges,
-                       const std::optional<GivenValues>& values, int threads) const {
+                       const std::optional<GivenValues>& values, int threads,
+                       const Listener::Tell& tell) const {
     const CellGrid grid = grid_of(x, y, spacing);
     if (x_edges.shape(0) != x.shape(0) + 1 || y_edges.shape(0) != y.shape(0) + 1) {
       throw std::invalid_argument("columns and rows have one edge more than centres");
     }
     const double* each = values_of(values);
-    return draw_cells(grid, threads, [&](double* cells, Team& team) {
+    return draw_cells(grid, threads, tell, [&](double* cells, Team& team) {
       MeanScan::run(ordered_, grid, x_edges.data(), y_edges.data(), each, cells, team);
     });
   }
@@ -83,10 +85,11 @@ inline void bind_gridding(nb::module_& m) {
            "triangles"_a.noconvert())
       .def("values_at_centers", &GriddedSurface::values_at_centers, "x"_a.noconvert(),
            "y"_a.noconvert(), "spacing"_a, "values"_a.none(), "threads"_a = 1,
+           "progress"_a = nb::none(),
            "Elevations, or values of triangles, at the centres of cells; NaN outside.")
       .def("means_of_cells", &GriddedSurface::means_of_cells, "x"_a.noconvert(), "y"_a.noconvert(),
            "spacing"_a, "x_edges"_a.noconvert(), "y_edges"_a.noconvert(), "values"_a.none(),
-           "threads"_a = 1,
+           "threads"_a = 1, "progress"_a = nb::none(),
            "Means over the parts of cells that the surface covers; NaN where it covers none.");
 }
 

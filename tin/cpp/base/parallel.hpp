@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "progress.hpp"
 #include "range.hpp"
 
 namespace tinsmith {
@@ -25,7 +26,9 @@ constexpr std::size_t kCacheLine = 64;
 class Team {
  public:
   // `ask` says whether to go on; it is only ever called on the thread that made the team.
-  Team(int size, std::function<bool()> ask) : size_(std::max(size, 1)), ask_(std::move(ask)) {}
+  // What is done is added to `progress`, if there is one.
+  Team(int size, std::function<bool()> ask, Progress* progress = nullptr)
+      : size_(std::max(size, 1)), ask_(std::move(ask)), progress_(progress) {}
 
   int size() const { return size_; }
 
@@ -35,6 +38,14 @@ class Team {
     return !is_stopped_;
   }
   bool is_stopped() const { return is_stopped_; }
+
+  // Of the work's steps, for who is told how far it is.
+  void expect(std::int64_t steps) {
+    if (progress_ != nullptr) progress_->expect(steps);
+  }
+  void advance(std::int64_t steps) {
+    if (progress_ != nullptr) progress_->advance(steps);
+  }
 
   // work(part) for every part at the same time; throws again what a part threw.
   template <typename Work>
@@ -101,6 +112,7 @@ class Team {
 
   int size_;
   std::function<bool()> ask_;
+  Progress* progress_;
   std::atomic<bool> is_stopped_{false};
   std::mutex mutex_;
   std::condition_variable ended_;

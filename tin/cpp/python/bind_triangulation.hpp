@@ -20,20 +20,23 @@
 namespace tinsmith::python {
 
 inline Triangulation triangulate(const GivenXyz& points, Method method, int threads,
-                                 const std::string& path) {
+                                 const std::string& path, const Listener::Tell& tell = {}) {
   const PointRows rows = rows_of(points);
   if (threads < 1) throw std::invalid_argument("at least one thread is needed");
   const Options options{method, threads, vector_path_named(path)};
   Triangulation made = [&] {
     nb::gil_scoped_release release;
-    return Triangulator(rows, options, no_signal).run();
+    Listener listener(tell);
+    const auto keep_going = [&] { return listener.keeps_going(); };
+    return Triangulator(rows, options, keep_going, listener.progress()).run();
   }();
   if (!made.is_complete) throw nb::python_error();
   return made;
 }
 
-inline auto grow(const GivenXyz& points, Method method, int threads, const std::string& path) {
-  Triangulation made = triangulate(points, method, threads, path);
+inline auto grow(const GivenXyz& points, Method method, int threads, const std::string& path,
+                 const Listener::Tell& tell) {
+  Triangulation made = triangulate(points, method, threads, path, tell);
   const auto size = static_cast<std::size_t>(made.triangle_count);
   std::optional<Numbers> kept_row;
   if (!made.kept_row.empty()) kept_row = hand_over(made.kept_row);
@@ -70,7 +73,7 @@ inline void bind_triangulation(nb::module_& m) {
       .value("INSERTION", Method::kInsertion);
   const auto fastest = vector_paths().back().name;
   m.def("grow", &grow, "points"_a.noconvert(), "method"_a = Method::kAutomatic, "threads"_a = 1,
-        "path"_a = fastest,
+        "path"_a = fastest, "progress"_a = nb::none(),
         "Triangles, neighbours, kept row of each row (or None) and the number of distinct points.");
   m.def("count_work", &count_work, "points"_a.noconvert(), "method"_a = Method::kAutomatic,
         "threads"_a = 1, "path"_a = fastest, "Triangulate and return how much the searches did.");

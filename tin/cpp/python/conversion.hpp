@@ -3,6 +3,7 @@
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/optional.h>
 
 #include <algorithm>
 #include <cmath>
@@ -148,14 +149,48 @@ inline bool no_signal() {
   return PyErr_CheckSignals() == 0;
 }
 
+// Asks Python whether to go on, and tells a function of the caller's, if any, the fraction done.
+class Listener {
+ public:
+  using Tell = std::optional<nb::callable>;
+
+  explicit Listener(const Tell& tell) : tell_(tell) {}
+
+  Progress* progress() { return tell_ ? &progress_ : nullptr; }
+
+  // On the caller's thread; false with an error of Python's if one was raised.
+  bool keeps_going() {
+    if (!no_signal()) return false;
+    const double fraction = progress_.fraction();
+    if (!tell_ || fraction < told_ + kFineness) return true;
+    told_ = fraction;
+    nb::gil_scoped_acquire gil;
+    try {
+      (*tell_)(fraction);
+      return true;
+    } catch (nb::python_error& error) {
+      error.restore();
+      return false;
+    }
+  }
+
+ private:
+  static constexpr double kFineness = 0.005;
+
+  const Tell& tell_;
+  Progress progress_;
+  double told_ = 0.0;
+};
+
 // work(team) without Python's lock; throws if it was stopped.
 template <typename Work>
-void run_unlocked(int threads, Work&& work) {
+void run_unlocked(int threads, Work&& work, const Listener::Tell& tell = {}) {
   if (threads < 1) throw std::invalid_argument("at least one thread is needed");
   bool is_stopped = false;
   {
     nb::gil_scoped_release release;
-    Team team(threads, no_signal);
+    Listener listener(tell);
+    Team team(threads, [&] { return listener.keeps_going(); }, listener.progress());
     work(team);
     is_stopped = team.is_stopped();
   }
@@ -164,9 +199,9 @@ void run_unlocked(int threads, Work&& work) {
 
 // What `search(team)` finds, likewise.
 template <typename Search>
-auto unlocked(int threads, Search&& search) {
+auto unlocked(int threads, Search&& search, const Listener::Tell& tell = {}) {
   std::optional<decltype(search(std::declval<Team&>()))> found;
-  run_unlocked(threads, [&](Team& team) { found.emplace(search(team)); });
+  run_unlocked(threads, [&](Team& team) { found.emplace(search(team)); }, tell);
   return std::move(*found);
 }
 

@@ -57,8 +57,8 @@ def diff(
     inputs = request.list_inputs(*files)
     planned = request.plan_products(inputs, "TIN", "Table", "Features", "picture")
     surfaces = request.read_tins(files)
-    with request.step("Overlaying"):
-        found = difference(*surfaces)
+    with request.step("Overlaying") as progress:
+        found = difference(*surfaces, progress=progress)
     _write(found, surfaces[0], planned, zero_line, title or _make_title(files))
     rows = _summarise_difference(found, surfaces)
     request.finish(planned, rows, lambda: _describe_difference(files, found))

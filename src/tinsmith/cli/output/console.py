@@ -19,7 +19,7 @@ from .progress import Steps
 from .streams import escape_unprintable, silence, tell
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping
     from pathlib import Path
 
 __all__ = ["Console", "Row", "emit_file", "format_json"]
@@ -53,10 +53,10 @@ class Console:
         return Steps(quiet=self.quiet, events=self.events)
 
     @contextmanager
-    def step(self, text: str) -> Iterator[None]:
-        """Show the progress of one piece of long work."""
-        with self.steps() as steps, steps.step(text):
-            yield
+    def step(self, text: str) -> Iterator[Callable[[float], None]]:
+        """Show one piece of long work; yields a function that takes the fraction done."""
+        with self.steps() as steps, steps.step(text) as progress:
+            yield progress
 
     def summarise(self, rows: Iterable[Row]) -> None:
         """Write a summary to stderr."""

@@ -1,0 +1,63 @@
+"""Progress: the fraction of a long call that is done, told to a function of the caller's."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TypeAlias
+
+from .errors import OptionError
+
+__all__ = ["Progress", "Tell"]
+
+Tell: TypeAlias = Callable[[float], None]
+"""Takes a fraction from 0 to 1."""
+
+
+class Progress:
+    """The fractions of a call's stages as one that ascends, and ends with 1.0.
+
+    Parameters
+    ----------
+    tell : callable or None
+        Called with each fraction that is larger than the last; None takes no notice. What it raises
+        is passed on.
+
+    Raises
+    ------
+    OptionError
+        If it is neither.
+
+    Examples
+    --------
+    >>> seen = []
+    >>> progress = Progress(seen.append)
+    >>> triangulating = progress.stage(0.2, 0.6)
+    >>> triangulating(0.5)
+    >>> progress(0.6)
+    >>> progress.end()
+    >>> seen
+    [0.4, 0.6, 1.0]
+    """
+
+    def __init__(self, tell: Tell | None) -> None:
+        if tell is not None and not callable(tell):
+            raise OptionError("progress", tell, "a function of the fraction done, or None")
+        self._tell = tell
+        self._told = 0.0
+
+    def __call__(self, fraction: float) -> None:
+        """Tell a fraction below 1, if it is larger than the last."""
+        if self._tell is not None and self._told < fraction < 1.0:
+            self._told = fraction
+            self._tell(fraction)
+
+    def end(self) -> None:
+        """Tell that all is done."""
+        if self._tell is not None:
+            self._tell(1.0)
+
+    def stage(self, start: float, end: float) -> Tell | None:
+        """Return the function that a stage tells its own fraction; None if nobody listens."""
+        if self._tell is None:
+            return None
+        return lambda fraction: self(start + (end - start) * fraction)
