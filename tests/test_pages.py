@@ -69,6 +69,9 @@ def write_others(ground):
     ts.write(ts.rasterize(ground, spacing=2.0), "other.tif")
     ts.write(ts.contours(ground, interval=1.0), "lines.gpkg")
     write_grey(ground, "ortho.tif")
+    corners = np.array([752_760.0, 4_024_302.0]) + [20, 12] * SQUARE
+    pad = ts.Features.of_polygons(corners, [0, 5], [0, 1], crs=CRS, name="pad")
+    ts.write(pad, "pad.geojson")
 
 
 @pytest.fixture(scope="module")

@@ -122,15 +122,9 @@ def number_option(
 ) -> Decorator:
     """Return an option for a number; a default is shown."""
     names = [flag] if name is None else [flag, name]
-    return click.option(
-        *names,
-        metavar=metavar,
-        type=type,
-        default=default,
-        show_default=default is not None,
-        help=help,
-        **more,
-    )
+    if default is not None:
+        more |= {"default": default, "show_default": True}
+    return click.option(*names, metavar=metavar, type=type, help=help, **more)
 
 
 def choice_option(
