@@ -38,7 +38,8 @@ def test_steps_and_summary_are_what_people_read(run):
     code, out, err = run("build", "in.csv", "-o", "a.ply", "--events")
     found = read_events(err)
     assert (code, out) == (0, "")
-    steps = [one["text"] for one in found if one["event"] == "step"]
+    begun = [one for one in found if one["event"] == "step" and one["fraction"] is None]
+    steps = [one["text"] for one in begun]
     assert steps[:2] == ["Reading in.csv", "Triangulating 4 points"]
     assert steps[-1] == "Writing a.ply"
     read = run("build", "in.csv", "-o", "a.ply")[2]
