@@ -6,7 +6,7 @@ from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
-from typing import IO, TYPE_CHECKING, Any, NamedTuple, cast
+from typing import IO, TYPE_CHECKING, Any, NamedTuple, cast, overload
 
 from .._atomic import as_path
 from .._plug_ins import describe_failure, warn_of_plug_in
@@ -71,6 +71,30 @@ class _Asked(NamedTuple):
     progress: Tell | None = None
 
 
+@overload
+def read(
+    path: str | os.PathLike[str],
+    *,
+    format: str | None = None,
+    crs: CrsLike | None = None,
+    z_unit: UnitLike | None = None,
+    remote: bool = False,
+    **options: Any,
+) -> Any: ...
+
+
+@overload
+def read(
+    path: Sequence[str | os.PathLike[str]],
+    *,
+    format: str | None = None,
+    crs: CrsLike | None = None,
+    z_unit: UnitLike | None = None,
+    remote: bool = False,
+    **options: Any,
+) -> Survey: ...
+
+
 def read(
     path: str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
     *,
@@ -111,7 +135,8 @@ def read(
     Returns
     -------
     Survey or TIN
-        A TIN from a mesh format. Type checkers take it for either, as the file decides.
+        A TIN from a mesh format; of several files always a Survey. Type checkers take what one file
+        holds for either, as the file decides.
 
     Raises
     ------

@@ -15,9 +15,18 @@ if TYPE_CHECKING:
     from .charts.triangles import to_matplotlib
     from .earthwork import Difference, difference, stage_storage, volume
     from .flats import flats, mend_flats
+    from .grading import grade, paste
     from .gridding import height_above, rasterize
     from .ground_filter import GroundPoints, ground
-    from .hydrology import depressions, flow_path, pits, ponds, ridges_and_valleys
+    from .hydrology import (
+        catchments,
+        depressions,
+        flow_accumulation,
+        flow_path,
+        pits,
+        ponds,
+        ridges_and_valleys,
+    )
     from .inspection import blunders
     from .isolines import ContourCheck, check_contours, contour_bands, contour_labels, contours
     from .lift import lift
@@ -57,6 +66,7 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "contour_labels",
                 "contours",
             ),
+            ".grading": ("grade", "paste"),
             ".lift": ("lift",),
             ".preview": ("Preview", "preview"),
             ".relief": (
@@ -73,7 +83,9 @@ else:  # a type checker takes every name for one that such a __getattr__ has
             ".slope": ("aspect", "slope"),
             ".charts.triangles": ("to_matplotlib",),
             ".hydrology": (
+                "catchments",
                 "depressions",
+                "flow_accumulation",
                 "flow_path",
                 "pits",
                 "ponds",
@@ -102,6 +114,7 @@ __all__ = [
     "aspect_classes",
     "blunder_map",
     "blunders",
+    "catchments",
     "check_contours",
     "comparison_picture",
     "contour_bands",
@@ -115,7 +128,9 @@ __all__ = [
     "drape",
     "earthwork_map",
     "flats",
+    "flow_accumulation",
     "flow_path",
+    "grade",
     "ground",
     "height_above",
     "hillshade",
@@ -123,6 +138,7 @@ __all__ = [
     "lift",
     "line_of_sight",
     "mend_flats",
+    "paste",
     "pits",
     "plan",
     "ponds",

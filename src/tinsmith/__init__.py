@@ -65,9 +65,18 @@ if TYPE_CHECKING:
     )
     from .terrain.earthwork import Difference, difference, stage_storage, volume
     from .terrain.flats import flats, mend_flats
+    from .terrain.grading import grade, paste
     from .terrain.gridding import height_above, rasterize
     from .terrain.ground_filter import GroundPoints, ground
-    from .terrain.hydrology import depressions, flow_path, pits, ponds, ridges_and_valleys
+    from .terrain.hydrology import (
+        catchments,
+        depressions,
+        flow_accumulation,
+        flow_path,
+        pits,
+        ponds,
+        ridges_and_valleys,
+    )
     from .terrain.inspection import blunders
     from .terrain.isolines import (
         ContourCheck,
@@ -198,9 +207,11 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "difference",
                 "earthwork_map",
                 "flats",
+                "grade",
                 "histogram",
                 "lift",
                 "mend_flats",
+                "paste",
                 "Preview",
                 "preview",
                 "profile_picture",
@@ -215,7 +226,9 @@ else:  # a type checker takes every name for one that such a __getattr__ has
             ".io.raster.cells": ("rasterize",),  # which reads the file of `like`, too
             ".terrain.gridding": ("height_above",),
             ".terrain.hydrology": (
+                "catchments",
                 "depressions",
+                "flow_accumulation",
                 "flow_path",
                 "pits",
                 "ponds",
@@ -309,6 +322,7 @@ __all__ = [
     "aspect_classes",
     "blunder_map",
     "blunders",
+    "catchments",
     "check",
     "check_contours",
     "compare",
@@ -325,9 +339,11 @@ __all__ = [
     "earthwork_map",
     "find_format",
     "flats",
+    "flow_accumulation",
     "flow_path",
     "from_mesh",
     "from_raster",
+    "grade",
     "ground",
     "height_above",
     "hillshade",
@@ -340,6 +356,7 @@ __all__ = [
     "lines_from_codes",
     "mend_flats",
     "paper",
+    "paste",
     "pits",
     "plan",
     "ponds",

@@ -105,7 +105,9 @@ EmptyCircleRule: TypeAlias = Literal["angle", "open"]
 DistanceRule: TypeAlias = Literal["circle", "ties"]
 """Among which points the paper's distance decides."""
 
-FlowProduct: TypeAlias = Literal["paths", "pits", "depressions", "ponds", "ridges"]
+FlowProduct: TypeAlias = Literal[
+    "paths", "pits", "depressions", "ponds", "ridges", "catchments", "accumulation"
+]
 """What is found where water runs on a surface."""
 
 InterpolationMethod: TypeAlias = Literal["linear", "nearest", "laplace", "natural", "c1"]

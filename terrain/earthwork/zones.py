@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from ...tin.triangulation import Triangulation
     from .reference import Reference
 
-__all__ = ["classify", "find_zones", "trace_zero_line"]
+__all__ = ["classify", "find_zones", "join_segments", "trace_zero_line"]
 
 NAMES = {-1: "cut", 0: "unchanged", 1: "fill"}
 
@@ -38,7 +38,7 @@ def trace_zero_line(mesh: Triangulation, reference: Reference) -> Features:
     across = np.where(mesh.neighbors >= 0, classes[mesh.neighbors], np.int8(127))
     triangle, corner = np.nonzero(across < classes[:, None])
     start, end = topology.ends(mesh.triangles, triangle.astype(np.int64), corner.astype(np.int64))
-    chains = _join(start, end)
+    chains = join_segments(start, end)
     offsets = np.cumsum([0, *map(len, chains)])
     vertices = np.concatenate([np.array(chain) for chain in chains]) if chains else np.zeros(0, int)
     return Features.of_lines(
@@ -58,7 +58,7 @@ def _measure_lengths(xy: NDArray[np.float64], offsets: NDArray[np.int64]) -> NDA
     return np.add.reduceat(steps, offsets[:-1]) if len(steps) else steps
 
 
-def _join(start: NDArray[np.int64], end: NDArray[np.int64]) -> list[list[int]]:
+def join_segments(start: NDArray[np.int64], end: NDArray[np.int64]) -> list[list[int]]:
     """Join directed segments to lines; where more than two meet, lines end."""
     leaving = np.unique(start, return_counts=True)
     arriving = np.unique(end, return_counts=True)

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
-__all__ = ["Dissolved", "Mesh", "dissolve", "number_components"]
+__all__ = ["Dissolved", "Mesh", "dissolve", "join_components", "number_components"]
 
 
 class Mesh(Protocol):
@@ -106,19 +106,26 @@ def number_components(neighbors: NDArray[np.int32]) -> NDArray[np.int64]:
     Roots hook onto the smallest root beside them, then every path is halved until it is one step
     long (Shiloach and Vishkin 1982, doi:10.1016/0196-6774(82)90008-6).
     """
-    root = np.arange(len(neighbors))
-    triangle, corner = np.nonzero(neighbors > root[:, None])  # each pair once
+    triangle, corner = np.nonzero(neighbors > np.arange(len(neighbors))[:, None])  # each pair once
     across = neighbors[triangle, corner].astype(np.int64)
-    while len(triangle):
-        near, far = root[triangle], root[across]
+    return join_components(len(neighbors), triangle, across)
+
+
+def join_components(
+    count: int, one: NDArray[np.int64], other: NDArray[np.int64]
+) -> NDArray[np.int64]:
+    """Return the smallest of so many numbers that each is connected to, by pairs of them."""
+    root = np.arange(count)
+    while len(one):
+        near, far = root[one], root[other]
         np.minimum.at(root, np.maximum(near, far), np.minimum(near, far))
         while True:
             shorter = root[root]
             if np.array_equal(shorter, root):
                 break
             root = shorter
-        apart = root[triangle] != root[across]
-        triangle, across = triangle[apart], across[apart]
+        apart = root[one] != root[other]
+        one, other = one[apart], other[apart]
     return root
 
 

@@ -32,6 +32,8 @@ def test_what_is_found_is_what_the_library_finds(site, tmp_path):
         "pits": ([], ts.pits(tin)),
         "ponds": (["--level", "1.5"], ts.ponds(tin, 1.5)),
         "ridges": (["--min-angle", "10"], ts.ridges_and_valleys(tin, min_angle=10)),
+        "accumulation": (["--min-area", "1"], ts.flow_accumulation(tin, min_area=1)),
+        "catchments": ([], ts.catchments(tin)),
         "paths": (["--from", "1", "2", "--from", "5", "5"], ts.flow_path(tin, [[1, 2], [5, 5]])),
     }
     for find, (options, wanted) in cases.items():
@@ -43,6 +45,16 @@ def test_what_is_found_is_what_the_library_finds(site, tmp_path):
             assert [row[name] for row in told["found"]] == column.tolist()
 
 
+def test_outlets_are_places_or_those_of_a_file(site, tmp_path):
+    ts.write(ts.Features.of_points([[1, 2]], crs="EPSG:32616"), tmp_path / "outlet.geojson")
+    wanted = ts.catchments(ts.read(site), [[1, 2]]).columns["area"].tolist()
+    for given in (["--from", "1", "2"], ["--points", tmp_path / "outlet.geojson"]):
+        out = tmp_path / f"catchments{given[0]}.json"
+        done = run("flow", site, "--find", "catchments", *given, "-o", out, "--json")
+        assert done.exit_code == 0, done.stderr
+        assert [row["area"] for row in json.loads(done.stdout)["found"]] == pytest.approx(wanted)
+
+
 @pytest.mark.parametrize(
     ("options", "sentence"),
     [
@@ -50,6 +62,7 @@ def test_what_is_found_is_what_the_library_finds(site, tmp_path):
         (["--find", "ponds"], "A level is needed"),
         (["--level", "3"], "--level is for --find ponds, not depressions"),
         (["--find", "pits", "--nested"], "--nested is for --find depressions, not pits"),
+        (["--min-area", "2"], "--min-area is for --find accumulation, not depressions"),
         (["--min-depth", "-1"], "min"),
     ],
 )

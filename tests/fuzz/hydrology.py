@@ -1,6 +1,7 @@
-"""Flow paths, depressions and ponds of hard surfaces.
+"""Flow paths, catchments, depressions and ponds of hard surfaces.
 
-The oracles: gradients in fractions, a priority flood on edges, stage-storage tables, shapely.
+The oracles: gradients in fractions, flow paths from inside of catchments, a priority flood on
+edges, stage-storage tables, shapely.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from typing import Any
 
 import numpy as np
 import shapely
-from support.hydrology_oracle import flood, require_descent
+from support.hydrology_oracle import flood, require_catchments, require_descent
 
 import tinsmith as ts
 
@@ -45,6 +46,8 @@ def examine(case: Case) -> str:
     require_paths(tin, case["starts"])
     require_depressions(tin)
     require_ponds(tin, case["level"])
+    require_catchments(tin, np.array(case["starts"]))
+    require_accumulation(tin)
     return "flow"
 
 
@@ -80,4 +83,14 @@ def require_ponds(tin: Any, level: float) -> None:
     assert bool(found.columns["is_contained"].all()) == bool(stage["is_contained"][0])
 
 
-CAMPAIGNS = (Campaign("hydrology", "flow paths, depressions and ponds", generate, examine),)
+def require_accumulation(tin: Any) -> None:
+    """What drains through the lower end of the largest channel is the catchment of that vertex."""
+    found = ts.flow_accumulation(tin)
+    if len(found) == 0:
+        return
+    vertex, area = int(found.columns["end"][0]), found.columns["end_area"][0]
+    upstream = ts.catchments(tin, tin.points[[vertex], :2]).columns["area"]
+    assert np.isclose(upstream, area, rtol=1e-9).all(), "what accumulates is not what drains"
+
+
+CAMPAIGNS = (Campaign("hydrology", "flow paths, catchments, ponds", generate, examine),)

@@ -8,6 +8,9 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
+import shapely
+
+import tinsmith as ts
 
 
 def as_fractions(point: Any) -> tuple[Fraction, ...]:
@@ -110,3 +113,38 @@ def lies_on_edge(tin: Any, triangle: int, start: np.ndarray, end: np.ndarray, sl
         if max(off) <= slack:
             return True
     return False
+
+
+def require_catchments(tin: Any, shares: np.ndarray) -> None:
+    """Refuse catchments that do not tile the surface, or that flow paths leave.
+
+    Parameters
+    ----------
+    tin : TIN
+    shares : (k, 2) array
+        Of the bounds: places from which paths start, if they are well inside a catchment.
+    """
+    found = ts.catchments(tin)
+    shapes, areas = found.to_shapely(), found.columns["area"]
+    assert shapely.is_valid(shapes).all(), "a catchment is not valid"
+    assert np.isclose(areas.sum(), tin.area, rtol=1e-9), "catchments do not make up the surface"
+    size = np.hypot(*np.ptp(tin.points[:, :2], axis=0))
+    assert np.allclose(shapely.area(shapes), areas, rtol=1e-6, atol=1e-9 * size * size), "areas"
+    low, high = tin.points[:, :2].min(axis=0), tin.points[:, :2].max(axis=0)
+    xy = low + shares * (high - low)
+    xy = xy[tin.locate(xy) >= 0]
+    if len(xy) == 0:
+        return
+    paths = ts.flow_path(tin, xy)
+    ends = paths.coordinates[paths.offsets[0][1:] - 1]
+    for start, how, end in zip(paths.columns["start"], paths.columns["end"], ends, strict=True):
+        place = shapely.Point(xy[start])
+        inside = np.flatnonzero(shapely.contains(shapes, place))
+        assert len(inside) <= 1, f"{xy[start]}: in several catchments"
+        if len(inside) == 0 or shapes[inside[0]].boundary.distance(place) < 1e-6 * size:
+            continue
+        pit, kind = (found.columns[name][inside[0]] for name in ("pit", "end"))
+        assert (kind == "boundary") == (how == "boundary"), f"{xy[start]}: {kind}, path: {how}"
+        assert pit < 0 or tin.points[pit, 2] == end[2], f"{xy[start]}: not to vertex {pit}"
+        alone = np.count_nonzero(tin.points[:, 2] == end[2]) == 1
+        assert pit < 0 or not alone or (tin.points[pit] == end).all(), f"{xy[start]}: not {pit}"

@@ -128,7 +128,7 @@ class Quality:
 
 
 def quality(tin: TIN, *, space: bool = False) -> Quality:
-    r"""Measure the shape of each triangle.
+    """Measure the shape of each triangle.
 
     Parameters
     ----------
@@ -149,10 +149,7 @@ def quality(tin: TIN, *, space: bool = False) -> Quality:
     Notes
     -----
     With edges a, b, c, the longest L, and area A: the inradius is 2 A / (a + b + c), the
-    circumradius a b c / (4 A), and the aspect ratio
-
-    .. math:: \frac{L (a + b + c)}{4 \sqrt 3 A},
-
+    circumradius a b c / (4 A), and the aspect ratio L (a + b + c) / (4 sqrt(3) A),
     as in Verdict [1]_ and VTK: 1 for an equilateral triangle, 1.39 for half a square. The ratio of
     circumradius to shortest edge is what mesh refinement bounds [2]_. Angles are taken by atan2
     from cross and dot products of edges, so that slivers and large coordinates lose nothing but

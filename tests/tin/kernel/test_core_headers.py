@@ -99,7 +99,7 @@ def test_no_two_headers_have_one_name():
 @needs_compiler
 def test_the_example_prints_what_its_page_says(tmp_path):
     page = (CORE / "README.md").read_text()
-    example, printed = re.findall(r"```(?:cpp)?\n(.+?)```", page, re.DOTALL)
+    example, printed = re.findall(r"```(?:cpp|text)\n(.+?)```", page, re.DOTALL)
     source, program = tmp_path / "example.cpp", tmp_path / "example"
     source.write_text(example)
     compile_with("-O1", source, "-o", program)

@@ -24,11 +24,12 @@ __all__ = ["flow"]
 
 _SHOWN = 8
 _FLAGS = {
-    "begins": ("--from", ("paths",)),
-    "points": ("--points", ("paths",)),
+    "begins": ("--from", ("paths", "catchments")),
+    "points": ("--points", ("paths", "catchments")),
     "level": ("--level", ("ponds",)),
     "min_depth": ("--min-depth", ("depressions",)),
     "nested": ("--nested", ("depressions",)),
+    "min_area": ("--min-area", ("accumulation",)),
     "min_angle": ("--min-angle", ("ridges",)),
 }
 
@@ -44,19 +45,21 @@ _FLAGS = {
     nargs=2,
     type=float,
     multiple=True,
-    help="Where a drop falls, for paths. May be given several times.",
+    help="Where a drop falls, for paths, or an outlet, for catchments. May be given several times.",
 )
 @click.option("--points", metavar="FILE", type=LINES, help="Vector file of such places.")
 @number_option("--level", "ELEVATION", "Of the water, for ponds.")
 @number_option("--min-depth", "HEIGHT", "Leave out depressions that are not as deep.")
 @click.option("--nested", is_flag=True, help="Also depressions that are part of larger ones.")
 @number_option("--min-angle", "DEGREES", "Leave out ridges and valleys that bend less.")
+@number_option("--min-area", "AREA", "Leave out channels through which less drains.")
 @surface_options()
 def flow(file: Path, find: FlowProduct, request: Request, **asked: Any) -> None:
     """Find where water runs on the TIN in FILE, or on that of the points in it.
 
-    Paths of drops, pits, depressions with the water they hold, ponds at a level, or edges that are
-    ridges and valleys. Water leaves the surface freely at its boundary. Vector files get the
+    Paths of drops, pits, depressions with the water they hold, ponds at a level, edges that are
+    ridges and valleys, catchments of pits or of outlets, or the area that drains through each
+    channel. Water leaves the surface freely at its boundary. Vector files get the
     features, tables (.csv, .json) their columns.
 
     \b
@@ -86,6 +89,8 @@ def _require_fitting(find: str, asked: dict[str, Any]) -> None:
             raise click.UsageError(f"{flag} is for --find {products[0]}, not {find}.")
     if find == "paths" and bool(asked["begins"]) == (asked["points"] is not None):
         raise click.UsageError("Where drops fall is needed: --from X Y, or --points FILE.")
+    if asked["begins"] and asked["points"] is not None:
+        raise click.UsageError("Outlets are given by --from X Y, or by --points FILE: not by both.")
     if find == "ponds" and asked["level"] is None:
         raise click.UsageError("A level is needed for ponds: --level ELEVATION.")
 
@@ -105,6 +110,11 @@ def _find(tin: TIN, find: str, asked: dict[str, Any]) -> Features:
         return terrain.pits(tin)
     if find == "ponds":
         return terrain.ponds(tin, asked["level"])
+    if find == "catchments":
+        given = asked["begins"] or asked["points"] is not None
+        return terrain.catchments(tin, _list_places(tin, asked) if given else None)
+    if find == "accumulation":
+        return terrain.flow_accumulation(tin, min_area=asked["min_area"] or 0.0)
     if find == "ridges":
         return terrain.ridges_and_valleys(tin, min_angle=asked["min_angle"] or 0.0)
     return terrain.depressions(tin, nested=asked["nested"], min_depth=asked["min_depth"] or 0.0)

@@ -1,0 +1,115 @@
+"""``tinsmith grade``: a pad with side slopes, put into the ground."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ..flags import name_flags
+from ..options import writing_options
+from ..output.failures import Failure, refuse_option
+from ..parameters import Command, input_file, number_option, output_files
+from ..paths import LINES, Named
+from ..request import surface_options
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from ...terrain import Table
+    from ...tin import TIN
+    from ..output.console import Row
+    from ..request import Request
+
+__all__ = ["grade"]
+
+
+@click.command(cls=Command)
+@input_file("file")
+@output_files
+@click.option(
+    "--pad", metavar="FILE", type=LINES, required=True, help="Vector file of one polygon: the pad."
+)
+@number_option(
+    "--elevation",
+    "ELEVATION",
+    "Of the pad, in the unit of the ground's; default that of its corners.",
+)
+@number_option(
+    "--cut-slope", "RATIO", "Slope of cuts, horizontal over vertical: 2 is 2:1.", required=True
+)
+@number_option("--fill-slope", "RATIO", "Slope of fills likewise.", required=True)
+@surface_options(writing_options)
+def grade(
+    file: Path,
+    pad: Path,
+    elevation: float | None,
+    cut_slope: float,
+    fill_slope: float,
+    request: Request,
+) -> None:
+    """Grade a level pad into the TIN in FILE, or that of the points in it.
+
+    Side slopes rise from the edge of the pad through cuts and fall over fills, to the daylight
+    line, where they meet the ground. Cut and fill are told.
+
+    \b
+    Example:
+      tinsmith grade sample_data/site_survey.csv --codes --crs EPSG:32616 --pad pad.geojson \\
+        --elevation 326 --cut-slope 2 --fill-slope 3 -o graded.gpkg
+    """  # noqa: D301 - click reads the control character
+    from ...errors import OptionError, TinsmithError
+    from ...terrain import grade as grade_tin
+    from ...terrain import volume
+
+    planned = request.plan(request.list_inputs(file, more=[_name_pad(pad)]), "TIN")
+    tin = request.read_tin(file)
+    ring = _read_pad(pad, tin, elevation)
+    with request.step("Grading"):
+        try:
+            graded = grade_tin(tin, ring, elevation, cut_slope=cut_slope, fill_slope=fill_slope)
+        except OptionError as error:
+            raise refuse_option(error) from error
+        except TinsmithError as error:
+            raise Failure(name_flags(str(error))) from error
+        table = volume(tin, graded)
+    planned.write("TIN", graded)
+    rows = _summarise_grading(tin, graded, table)
+    request.finish(planned, rows, lambda: _describe_grading(file, graded, table))
+
+
+def _name_pad(pad: Path) -> Named:
+    from ...io.vector.survey_lines import split_layer
+
+    return Named(split_layer(pad)[0], "--pad")
+
+
+def _read_pad(path: Path, tin: TIN, elevation: float | None) -> Any:
+    """Return the one ring of a file, in the CRS of the ground."""
+    from ...io import read_polygons
+    from ...io.vector.survey_lines import split_layer
+
+    file, layer = split_layer(path)
+    found = read_polygons(
+        file, crs=tin.crs, layer=layer, z_unit=tin.elevation_unit, drape=elevation is not None
+    )
+    if len(found) != 1 or len(found[0]) != 1:
+        rings = sum(map(len, found))
+        raise Failure(f"'{file}' holds {len(found)} polygons of {rings} rings: a pad is one ring.")
+    return found[0][0]
+
+
+def _summarise_grading(tin: TIN, graded: TIN, table: Table) -> list[Row]:
+    from ..output.line_summaries import mesh_counts
+
+    unit = table.units.get("cut") or "cubic units of the CRS"
+    volumes = [(name.capitalize(), f"{table[name][0]:,.1f} {unit}") for name in ("cut", "fill")]
+    notes = [("Note", note) for note in table.notes]
+    return [("Ground", mesh_counts(tin)), ("Graded", mesh_counts(graded)), *volumes, *notes]
+
+
+def _describe_grading(file: Path, graded: TIN, table: Table) -> dict[str, Any]:
+    from ..output.summaries import describe_tin
+
+    volumes = {name: float(table[name][0]) for name in ("cut", "fill", "cut_area", "fill_area")}
+    return {"input": str(file), "tin": describe_tin(graded), "volume": volumes}

@@ -1,0 +1,229 @@
+"""Paste a surface into another one, along the boundary of what is pasted."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...errors import PointsError
+from ...tin import Breakline, triangulate
+from ...tin.constraints.clipping import in_rings
+from ...tin.topology import edge_keys
+from ...tin.validation.options import require_tin
+from ..georeference import agree
+from .seams import Seam, find_sides, measure_tolerance
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+    from ...tin import TIN
+    from ..georeference import Agreement
+
+__all__ = ["find_area", "join_surfaces", "paste"]
+
+_SHARE = 1e-12
+"""Of an area: less of it may lie beyond another one by rounding."""
+_LEVEL = 1e-9
+"""Of an elevation: those that differ by less are the same."""
+_PRIORITY = 1000
+"""Of the seam: where lines cross it, its elevations count."""
+
+
+def paste(base: TIN, patch: TIN) -> TIN:
+    """Put a surface in the place of a part of another one.
+
+    Parameters
+    ----------
+    base : TIN
+    patch : TIN
+        Within the boundary of ``base``, with holes or in several parts: in its holes the base
+        stays.
+
+    Returns
+    -------
+    TIN
+        The surface of ``patch`` within its boundary, that of ``base`` elsewhere, in the CRS and
+        unit of both. Vertices of the base within the patch are left out; lines of both stay, those
+        of the base up to the seam, a hard breakline named "seam" that runs along the boundary of
+        the patch. ``report.notes`` tell by how much elevations differ along it.
+
+    Raises
+    ------
+    CrsError
+        If the CRSs differ, or are known of one only; if it cannot be told whether elevations are
+        in one unit.
+    PointsError
+        If the patch reaches beyond the base.
+
+    Notes
+    -----
+    Along the seam elevations are those of the patch, to which the triangles of the base that are
+    cut by it are joined. So the surface is that of the base but in these triangles, and there as
+    well if the patch meets the base. Edges that they are cut at are soft breaklines named "joint".
+    Attributes of points are not kept.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> ground = ts.triangulate([[0, 0, 5], [9, 0, 5], [9, 9, 5], [0, 9, 5], [4, 4, 8]])
+    >>> pond = ts.triangulate([[3, 3, 5], [6, 3, 5], [6, 6, 5], [3, 6, 5], [4, 5, 2]])
+    >>> pasted = ts.paste(ground, pond)
+    >>> pasted.interpolate([[4, 5], [4, 4], [8, 8]])
+    array([2. , 3.5, 5. ])
+    """
+    require_tin(base)
+    require_tin(patch)
+    found = agree((base, patch), ("the base", "the patch"))
+    return join_surfaces(base, patch, found)
+
+
+def join_surfaces(base: TIN, patch: TIN, agreed: Agreement, name: str = "seam") -> TIN:
+    """Paste a surface into another one, and name the seam."""
+    _require_within(base, patch)
+    ground, insert = (
+        one.triangulation.points * (1.0, 1.0, factor)
+        for one, factor in zip((base, patch), agreed.factors, strict=True)
+    )
+    seam = Seam(patch, insert, measure_tolerance(ground, insert))
+    cut = _Base(base, ground, seam)
+    lines = [*cut.list_lines(), *cut.list_joints()]
+    seam.insert_cuts()
+    lines += [Breakline(ring, name=name, priority=_PRIORITY) for ring in seam.rings]
+    lines += seam.list_lines()
+    made = triangulate(
+        np.concatenate([ground[cut.is_kept], insert]),
+        breaklines=lines,
+        duplicates="last",
+        crs=agreed.crs,
+        z_unit=agreed.elevation_unit,
+        **_list_rings(base, ground),
+    )
+    gap = _describe_gap(base, agreed, np.concatenate(seam.rings))
+    notes = (*made.report.notes, *agreed.notes, *gap)
+    return made.replace(report=replace(made.report, notes=notes))
+
+
+def _list_rings(base: TIN, points: NDArray[np.float64]) -> dict[str, Any]:
+    """Return boundary and holes of the base, where it does not reach its hull."""
+    import shapely
+
+    area = find_area(base)
+    if shapely.convex_hull(area).area - area.area <= _SHARE * area.area:
+        return {}
+    rings = [points[ring] for ring in base.boundary]
+    turns = [shapely.is_ccw(shapely.linearrings(ring[:, :2])) for ring in rings]
+    return {
+        "boundary": [ring for ring, turn in zip(rings, turns, strict=True) if turn],
+        "holes": [ring for ring, turn in zip(rings, turns, strict=True) if not turn],
+    }
+
+
+def find_area(tin: TIN) -> Any:
+    """Return what a surface covers as a geometry of shapely."""
+    import shapely
+
+    rings = [shapely.linearrings(tin.points[ring, :2]) for ring in tin.boundary]
+    return shapely.build_area(shapely.geometrycollections(rings))
+
+
+def _require_within(base: TIN, patch: TIN) -> None:
+    import shapely
+
+    inner = find_area(patch)
+    beyond = shapely.difference(inner, find_area(base))
+    if beyond.area > _SHARE**0.5 * inner.area:
+        place = shapely.point_on_surface(beyond)
+        raise PointsError(
+            f"The patch reaches beyond the base, at {place.x:.10g} {place.y:.10g}: it must lie "
+            "within it."
+        )
+
+
+def _describe_gap(base: TIN, agreed: Agreement, seam: NDArray[np.float64]) -> list[str]:
+    """Say how far the surfaces are apart along the seam, if they are."""
+    own = base.interpolate(seam[:, :2]) * agreed.factors[0]
+    gaps = np.nan_to_num(np.abs(own - seam[:, 2]))
+    worst = int(gaps.argmax())
+    if gaps[worst] <= _LEVEL * max(1.0, float(np.abs(seam[:, 2]).max())):
+        return []
+    unit = "" if agreed.elevation_unit is None else f" {agreed.elevation_unit.symbol}"
+    x, y = seam[worst, :2].tolist()
+    return [
+        "Along the seam the elevations of the patch differ from those of the base by up to "
+        f"{gaps[worst]:.4g}{unit}, at {x:.10g} {y:.10g}: the base was joined to the patch."
+    ]
+
+
+class _Base:
+    """What stays of the base: vertices, lines, and edges that the seam cuts."""
+
+    def __init__(self, base: TIN, points: NDArray[np.float64], seam: Seam) -> None:
+        self._tin, self._points, self._seam = base, points, seam
+        xy = np.ascontiguousarray(points[:, :2])
+        self.is_kept = in_rings(xy, [ring[:, :2] for ring in seam.rings]) < 0
+        self.is_kept[seam.find_near(xy)] = False
+        self._pieces = self._cut_edges()
+
+    def _cut_edges(self) -> dict[int, list[NDArray[np.float64]]]:
+        """Return what is left of the edges at the seam, by key."""
+        edges = self._tin.edges
+        ends = self._points[edges]
+        is_dropped = ~self.is_kept[edges]
+        crossing = self._seam.find_crossing(ends[:, :, :2])
+        at_seam = np.union1d(crossing, np.flatnonzero(is_dropped[:, 0] != is_dropped[:, 1]))
+        at_seam = at_seam[~is_dropped[at_seam].all(axis=1) | np.isin(at_seam, crossing)]
+        pieces = self._seam.cut(ends[at_seam], self.is_kept[edges[at_seam]])
+        keys = edge_keys(edges[at_seam], len(self._points)).tolist()
+        return dict(zip(keys, pieces, strict=True))
+
+    def _find_parts(self, a: int, b: int) -> list[NDArray[np.float64]]:
+        """Return the parts of an edge that stay, in the direction from a to b."""
+        key = int(edge_keys(np.array([[a, b]]), len(self._points))[0])
+        if key not in self._pieces:
+            return [self._points[[a, b]]] if self.is_kept[[a, b]].all() else []
+        start, way = self._points[a, :2], self._points[b, :2] - self._points[a, :2]
+        turned = [
+            part if (part[1, :2] - part[0, :2]) @ way > 0 else part[::-1]
+            for part in self._pieces[key]
+        ]
+        return sorted(turned, key=lambda part: float((part[0, :2] - start) @ way))
+
+    def list_lines(self) -> Iterator[Breakline]:
+        """Yield the lines of the base, clipped at the seam, but for its boundary."""
+        lines = self._tin.lines
+        for chain, kind, name in zip(lines.chains(), lines.kinds, lines.names, strict=True):
+            if kind in ("boundary", "hole"):
+                continue
+            shape: Any = "soft" if kind == "soft" else "hard"
+            for run in self._find_runs(chain.tolist()):
+                yield Breakline(np.array(run), kind=shape, name=name)
+
+    def _find_runs(self, chain: list[int]) -> list[list[NDArray[np.float64]]]:
+        """Return what stays of a chain, joined where one part begins at the end of another."""
+        runs: list[list[NDArray[np.float64]]] = []
+        for a, b in pairwise(chain):
+            for start, end in self._find_parts(a, b):
+                if runs and (runs[-1][-1][:2] == start[:2]).all():
+                    runs[-1].append(end)
+                else:
+                    runs.append([start, end])
+        return runs
+
+    def list_joints(self) -> Iterator[Breakline]:
+        """Yield the edges of the triangles that the seam cuts, and constrained ones in no line."""
+        n = len(self._points)
+        mesh = self._tin.triangulation
+        keys = find_sides(mesh.triangles, n)
+        touched = np.asarray(np.isin(keys, np.array(list(self._pieces), np.int64)).any(axis=1))
+        inside = self._tin.locate(np.concatenate(self._seam.rings)[:, :2])
+        touched[inside[inside >= 0]] = True
+        own = edge_keys(self._tin.lines.segments().reshape(-1, 2), n)
+        wanted = touched[:, None] | (mesh.constrained & (mesh.neighbors >= 0))
+        for key in np.setdiff1d(keys[wanted], own).tolist():
+            for part in self._find_parts(*divmod(key, n)):
+                yield Breakline(part, kind="soft", name="joint")

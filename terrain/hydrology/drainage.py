@@ -1,0 +1,262 @@
+"""Catchments: which part of a surface drains where, and how much of it through each channel."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...errors import OptionError, PointsError
+from ...tin.validation.options import is_finite_number
+from ..earthwork.reference import find_reference
+from ..results import Features
+from .descent import MOVING
+from .divides import cut_at_divides
+from .hierarchy import build_hierarchy
+from .networks import accumulate, build_network, find_ends
+from .paths import as_places
+from .starts import place_drops
+from .strips import settle
+from .vertices import NOWHERE
+from .water import gather_polygons
+from .water_bodies import BOUNDARY_NOTE
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...tin import TIN
+    from .networks import Network
+
+__all__ = ["catchments", "flow_accumulation"]
+
+
+def catchments(tin: TIN, outlets: Any = None) -> Features:
+    """Find which part of a surface drains into each pit, or through each outlet.
+
+    Parameters
+    ----------
+    tin : TIN
+    outlets : (k, 2) array or Features of points, optional
+        Places on the surface, CRS units; default the pits. Each is moved down to the first vertex
+        that a drop comes to there, as to the lower end of a channel.
+
+    Returns
+    -------
+    Features
+        Polygons, the largest first. Of pits, with the columns ``pit`` (a vertex, -1 for the
+        boundary), ``end`` ("pit", "flat" or "boundary", as of :func:`flow_path`) and ``area``;
+        these tile the surface. Of outlets, with the columns ``outlet`` (number of the point, from
+        0 on), ``vertex`` and ``area``; each place belongs to the first outlet its water comes to.
+
+    Raises
+    ------
+    CrsError
+        If coordinates are degrees, or the CRS of the outlets is another one.
+    PointsError
+        If an outlet lies outside the surface, its water comes to no vertex, two come to the same,
+        or fall lines cross too many triangles.
+
+    Notes
+    -----
+    1. Where water parts at a vertex, the fall line that comes down to it is followed upwards across
+       the triangles [1]_. These lines cut triangles into strips, all water of which goes one way.
+    2. From strip to strip, and along channels from vertex to vertex, water runs as a
+       :func:`flow_path` does.
+    3. Strips that end alike are joined.
+
+    Directions are decided exactly; where the lines cross edges is rounded. Nothing is filled: water
+    of a small pit stays in it. Level ground that water leaves somewhere, or that the boundary
+    touches, is a "flat" of its own, for no direction over it is known.
+
+    References
+    ----------
+    .. [1] S. Yu, M. van Kreveld, J. Snoeyink, Drainage queries in TINs: from local to global and
+       back again, Advances in GIS Research II (1996), 829-842.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> bowl = ts.triangulate([[0, 0, 3], [6, 0, 3], [6, 6, 3], [0, 6, 3], [3, 3, 0]])
+    >>> found = ts.catchments(bowl)
+    >>> found.columns["pit"], found.columns["area"]
+    (array([4]), array([36.]))
+    """
+    reference = find_reference(tin, "Catchments")
+    notes: tuple[str, ...] = ()
+    network = build_network(tin)
+    if outlets is None:
+        named = np.arange(network.first_end, len(network.nexts))
+    else:
+        named, notes = _place_outlets(tin, network, outlets)
+    network.nexts[named] = named
+    numbers = np.full(len(network.nexts), NOWHERE)
+    numbers[named] = np.arange(len(named))
+    labels, level = _label(network, numbers)
+    areas = _measure(network, labels, level, len(named))
+    kept = np.flatnonzero(areas > 0.0) if outlets is None else np.arange(len(named))
+    columns = _describe_pits(tin, network, named[kept]) if outlets is None else {}
+    columns = columns or {"outlet": kept, "vertex": named - network.first_vertex}
+    columns["area"] = areas[kept]
+    order = np.lexsort((kept, -areas[kept]))
+    places = np.full(len(named) + 1, NOWHERE)
+    places[kept[order]] = np.arange(len(kept))
+    drawn = gather_polygons(cut_at_divides(network, places[labels], places[level]))
+    return Features.of_polygons(
+        drawn.points,
+        drawn.ring_offsets,
+        drawn.polygon_offsets,
+        drawn.feature_offsets,
+        columns={name: values[order][drawn.regions] for name, values in columns.items()},
+        units={"area": reference.units.area},
+        crs=tin.crs,
+        elevation_unit=tin.elevation_unit,
+        name="catchments",
+        notes=[*reference.notes, *notes, BOUNDARY_NOTE, *drawn.notes],
+    )
+
+
+def flow_accumulation(tin: TIN, *, min_area: float = 0.0) -> Features:
+    """Measure the area that drains through each channel of a surface.
+
+    Parameters
+    ----------
+    tin : TIN
+    min_area : float, optional
+        Leave out channels through which less drains, in the square of CRS units.
+
+    Returns
+    -------
+    Features
+        A line for each edge along which water runs, from its upper end, the largest first, with the
+        columns ``start`` and ``end`` (vertices), ``area`` that drains through the edge at its lower
+        end, and ``start_area`` and ``end_area``, those that drain through both vertices.
+
+    Raises
+    ------
+    CrsError
+        If coordinates are degrees.
+    OptionError
+        If the least area is no number from 0 on.
+    PointsError
+        If fall lines cross too many triangles.
+
+    Notes
+    -----
+    Areas are those in the plane, of the strips of :func:`catchments` that come to an edge, and of
+    all water that comes to its upper end and leaves it along the edge. Water that leaves a vertex
+    down a triangle runs there on no edge, and no line shows it.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> low, high = [[0, 0, 1], [4, 0, 0]], [[0, 2, 3], [4, 2, 2], [0, -2, 3], [4, -2, 2]]
+    >>> found = ts.flow_accumulation(ts.triangulate([*low, *high]))
+    >>> found.columns["area"].tolist()
+    [15.0]
+    """
+    if not is_finite_number(min_area) or min_area < 0:
+        raise OptionError("min_area", min_area, allowed="a number from 0 on")
+    reference = find_reference(tin, "Flow accumulation")
+    network = build_network(tin)
+    total = accumulate(network)
+    nodes = np.flatnonzero(network.uppers != NOWHERE)
+    start, end = network.uppers[nodes], network.nexts[nodes] - network.first_vertex
+    pairs, row = np.unique(np.column_stack([start, end]), axis=0, return_inverse=True)
+    areas = np.bincount(row.ravel(), total[nodes], minlength=len(pairs))
+    chosen = np.flatnonzero((areas > 0.0) & (areas >= min_area))
+    chosen = chosen[np.lexsort((chosen, -areas[chosen]))]
+    start, end = pairs[chosen].T
+    columns = {
+        "start": start,
+        "end": end,
+        "area": areas[chosen],
+        "start_area": total[network.first_vertex + start],
+        "end_area": total[network.first_vertex + end],
+    }
+    names = ("area", "start_area", "end_area")
+    return Features.of_lines(
+        tin.points[pairs[chosen]].reshape(-1, 3),
+        2 * np.arange(len(chosen) + 1),
+        columns=columns,
+        units=dict.fromkeys(names, reference.units.area),
+        crs=tin.crs,
+        elevation_unit=tin.elevation_unit,
+        name="flow accumulation",
+        notes=[*reference.notes, BOUNDARY_NOTE],
+    )
+
+
+def _label(
+    network: Network, numbers: NDArray[np.int64]
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return the number of each strip's end, and of level triangles; ``NOWHERE`` for none."""
+    falls = network.walker.falls
+    labels = numbers[find_ends(network.nexts)[: network.first_vertex]]
+    level = np.full(len(falls.triangles), NOWHERE)
+    flat = np.flatnonzero(falls.is_level)
+    level[flat] = numbers[network.first_end + network.grounds[falls.triangles[flat, 0]]]
+    return labels, level
+
+
+def _measure(
+    network: Network, labels: NDArray[np.int64], level: NDArray[np.int64], count: int
+) -> NDArray[np.float64]:
+    strips = network.strips
+    areas = np.zeros(count)
+    within = labels != NOWHERE
+    sizes = strips.parts * network.areas[strips.triangles]
+    np.add.at(areas, labels[within], sizes[within])
+    flat = level != NOWHERE
+    np.add.at(areas, level[flat], network.areas[flat])
+    return areas
+
+
+def _describe_pits(tin: TIN, network: Network, nodes: NDArray[np.int64]) -> dict[str, Any]:
+    """Name what water ends in: a pit if nothing descends from the level ground there."""
+    z, count = tin.points[:, 2], len(tin.points)
+    leaves = network.walker.is_boundary.copy()
+    for near, far in (tin.edges.T, tin.edges.T[::-1]):
+        leaves[near[z[far] < z[near]]] = True
+    drains = np.zeros(count, np.bool_)
+    drains[network.grounds[leaves]] = True
+    vertices = nodes - network.first_end
+    outside = vertices == count
+    vertices[outside] = 0
+    pit = ~outside & ~drains[vertices]
+    hierarchy = build_hierarchy(tin)
+    vertices[pit] = hierarchy.pits[hierarchy.basins[vertices[pit]]]
+    vertices[outside] = NOWHERE
+    ends = np.where(outside, "boundary", np.where(pit, "pit", "flat")).astype(object)
+    return {"pit": vertices, "end": ends}
+
+
+def _place_outlets(
+    tin: TIN, network: Network, outlets: Any
+) -> tuple[NDArray[np.int64], tuple[str, ...]]:
+    """Return the nodes of the vertices that drops come to, which fall at outlets."""
+    xy, notes = as_places(tin, outlets, "the outlets")
+    drops = place_drops(tin, network.walker, xy)
+    runs = np.flatnonzero(
+        (drops.vertices == NOWHERE) & (drops.targets == NOWHERE) & (drops.ends == MOVING)
+    )
+    if len(runs):
+        drops.put(runs, settle(network.walker, drops.choose(runs))[0])
+    vertices = np.where(drops.vertices != NOWHERE, drops.vertices, drops.targets)
+    lost = np.flatnonzero(vertices == NOWHERE)
+    if len(lost):
+        raise PointsError(
+            f"Water from outlet {lost[0]} (from 0 on) comes to no vertex of the surface: "
+            "it ends on level ground, or leaves across the boundary.",
+            rows=lost[:5],
+        )
+    order = np.argsort(vertices, kind="stable")
+    same = np.flatnonzero(np.diff(vertices[order]) == 0)
+    if len(same):
+        one, other = order[same[0]], order[same[0] + 1]
+        raise PointsError(
+            f"Outlets {one} and {other} (from 0 on) come to the same vertex: leave one of them out."
+        )
+    moved = int((tin.points[vertices, :2] != xy).any(axis=1).sum())
+    if moved:
+        notes += (f"Outlets moved down to the first vertex their water comes to: {moved:,}.",)
+    return network.first_vertex + vertices, notes

@@ -1,0 +1,122 @@
+"""Pasted surfaces: the patch within its boundary, the base elsewhere, lines of both."""
+
+import numpy as np
+import pytest
+
+import tinsmith as ts
+
+UTM = np.array([500_000.0, 4_000_000.0])
+
+
+def heights(xy):
+    return 100 + 5 * np.sin(xy[:, 0] / 25) + 4 * np.cos(xy[:, 1] / 30)
+
+
+def make_base(n=800, seed=0, **options):
+    xy = np.random.default_rng(seed).random((n, 2)) * 200
+    xy = np.vstack([xy, [[0, 0], [200, 0], [200, 200], [0, 200]]])
+    return ts.triangulate(np.column_stack([xy + UTM, heights(xy)]), **options)
+
+
+def make_star(seed, z):
+    rng = np.random.default_rng(seed)
+    angles = np.linspace(0, 2 * np.pi, 31)[:-1]
+    ring = (
+        rng.uniform(20, 60, 30)[:, None] * np.column_stack([np.cos(angles), np.sin(angles)]) + 100
+    )
+    xy = np.vstack([ring, rng.random((30, 2)) * 20 + 90])
+    return ts.triangulate(np.column_stack([xy + UTM, z(xy, rng)]), boundary=[ring + UTM])
+
+
+def places(seed=9, n=20_000):
+    return np.random.default_rng(seed).random((n, 2)) * 196 + 2 + UTM
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_patch_is_inside_and_the_base_beyond_the_triangles_at_the_seam(seed):
+    base = make_base(seed=seed)
+    patch = make_star(seed, lambda xy, rng: 100 + 3 * rng.random(len(xy)))
+    pasted = ts.paste(base, patch)
+    assert ts.check(pasted).ok
+    xy = places(seed)
+    new, inner, old = (tin.interpolate(xy) for tin in (pasted, patch, base))
+    inside = np.isfinite(inner)
+    assert np.abs(new - inner)[inside].max() < 1e-8
+    joined = np.isin(base.locate(xy), touched(base, patch))
+    assert np.abs(new - old)[~inside & ~joined].max() < 1e-8
+    assert pasted.area == pytest.approx(base.area)
+    assert "differ from those of the base by up to" in pasted.report.notes[-1]
+
+
+def touched(base, patch):
+    """Triangles of the base that the patch cuts: by many places on its boundary, and inside."""
+    shapely = pytest.importorskip("shapely")
+    area = shapely.union_all(shapely.polygons(patch.points[patch.triangles, :2]))
+    triangles = shapely.polygons(base.points[base.triangles, :2])
+    return np.flatnonzero(shapely.intersects(triangles, area))
+
+
+def test_a_patch_that_meets_the_base_changes_nothing_beyond_it():
+    base = make_base()
+    patch = make_star(5, lambda xy, _: base.interpolate(xy + UTM))
+    ring = patch.points[patch.boundary[0]]
+    draped = ts.triangulate(base.points, boundary=[ring[:, :2]])
+    pasted = ts.paste(base, draped)
+    xy = places()
+    inner = draped.interpolate(xy)
+    expected = np.where(np.isnan(inner), base.interpolate(xy), inner)
+    assert np.abs(pasted.interpolate(xy) - expected).max() < 1e-8
+    assert not any("seam" in note for note in pasted.report.notes)
+
+
+def test_base_lines_are_clipped_and_lines_of_the_patch_stay():
+    line = ts.Breakline(
+        np.column_stack([np.add(UTM, [[10, 100], [100, 101], [190, 100]]), [90, 91, 92]]),
+        name="kerb",
+    )
+    base = make_base(breaklines=[line])
+    ring = np.array([[80.0, 80, 95], [120, 80, 95], [120, 120, 95], [80, 120, 95]])
+    ring[:, :2] += UTM
+    wall = ts.Breakline(ring[[0, 2]] + [[5, 5, 0], [-5, -5, 0]], name="wall")
+    pasted = ts.paste(base, ts.triangulate(ring, breaklines=[wall]))
+    lengths = dict.fromkeys(pasted.lines.names, 0.0)
+    for chain, name in zip(pasted.lines.chains(), pasted.lines.names, strict=True):
+        lengths[name] += np.hypot(*np.diff(pasted.points[chain, :2], axis=0).T).sum()
+    assert lengths["kerb"] == pytest.approx(140 * np.hypot(1, 1 / 90))
+    assert lengths["wall"] == pytest.approx(30 * np.sqrt(2))
+    assert lengths["seam"] == pytest.approx(160)
+
+
+def test_the_base_stays_in_holes_of_the_patch_and_its_own_holes_stay():
+    hole = np.array([[20, 20], [40, 20], [40, 40], [20, 40]]) + UTM
+    base = make_base(holes=[hole])
+    ring = np.array([[80.0, 80], [140, 80], [140, 140], [80, 140]])
+    inner = ring[::-1] * 0.5 + 55
+    xy = np.vstack([ring, inner])
+    patch = ts.triangulate(np.column_stack([xy + UTM, np.full(8, 90.0)]), holes=[inner + UTM])
+    pasted = ts.paste(base, patch)
+    assert ts.check(pasted).ok
+    assert pasted.area == pytest.approx(base.area)
+    assert np.isnan(pasted.interpolate(np.add(UTM, [[30, 30]]))).all()
+    at = np.add(UTM, [[110, 110], [85, 110]])
+    old = base.interpolate(at[:1])[0]
+    assert pasted.interpolate(at) == pytest.approx([old, 90.0], abs=1e-6)
+
+
+def test_elevations_are_converted_to_the_unit_of_the_base():
+    base = make_base(crs="EPSG:32616", z_unit="m")
+    ring = np.column_stack([np.array([[80, 80], [120, 80], [100, 120]]) + UTM, [300.0, 300, 300]])
+    pasted = ts.paste(base, ts.triangulate(ring, crs="EPSG:32616", z_unit="ft"))
+    assert pasted.interpolate(np.add(UTM, [[100, 100]])) == pytest.approx([91.44])
+    assert any("converted" in note for note in pasted.report.notes)
+
+
+def test_refusals():
+    base = make_base()
+    beyond = ts.triangulate(np.add([*UTM, 5], [[190, 190, 0], [250, 190, 0], [190, 195, 0]]))
+    with pytest.raises(ts.PointsError, match="beyond the base, at"):
+        ts.paste(base, beyond)
+    with pytest.raises(ts.CrsError):
+        ts.paste(base.replace(crs=ts.CRS("EPSG:32616")), beyond)
+    with pytest.raises(ts.PointsError, match="Invalid TIN"):
+        ts.paste(base, "patch")
