@@ -79,6 +79,7 @@ def read(
     crs: CrsLike | None = None,
     z_unit: UnitLike | None = None,
     remote: bool = False,
+    progress: Callable[[float], None] | None = None,
     **options: Any,
 ) -> Any: ...
 
@@ -91,6 +92,7 @@ def read(
     crs: CrsLike | None = None,
     z_unit: UnitLike | None = None,
     remote: bool = False,
+    progress: Callable[[float], None] | None = None,
     **options: Any,
 ) -> Survey: ...
 
