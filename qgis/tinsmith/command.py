@@ -120,19 +120,24 @@ def _read_setting() -> str:
     return str(ProcessingConfig.getSetting(SETTING) or "").strip()
 
 
+def ask_program(*words: str, patience: float) -> subprocess.CompletedProcess[str]:
+    """Run a program that answers within some seconds, without a window, and return its answer."""
+    return subprocess.run(
+        words,
+        capture_output=True,
+        text=True,
+        timeout=patience,
+        check=False,
+        env=make_environment(),
+        stdin=subprocess.DEVNULL,
+        **list_process_options(),
+    )
+
+
 @cache
 def _ask_version(path: str, changed: float) -> str:  # noqa: ARG001 - a changed file is asked anew
     try:
-        done = subprocess.run(
-            [path, "--version"],
-            capture_output=True,
-            text=True,
-            timeout=_PATIENCE,
-            check=False,
-            env=make_environment(),
-            stdin=subprocess.DEVNULL,
-            **list_process_options(),
-        )
+        done = ask_program(path, "--version", patience=_PATIENCE)
     except (OSError, subprocess.TimeoutExpired) as error:
         raise QgsProcessingException(f"The command '{path}' does not run: {error}.") from error
     words = done.stdout.split()

@@ -12,10 +12,9 @@ from typing import Any
 from qgis.core import QgsProcessingException
 
 from .command import (
-    list_process_options,
+    ask_program,
     locate_environments,
     locate_script,
-    make_environment,
 )
 from .process import Failed, Speaker, run_program
 
@@ -62,16 +61,7 @@ def _ask_version(python: str) -> tuple[int, ...]:
     """Return the version of an interpreter; nothing if it does not run."""
     code = "import sys; print(*sys.version_info[:2])"
     try:
-        done = subprocess.run(
-            [python, "-c", code],
-            capture_output=True,
-            text=True,
-            timeout=_PATIENCE,
-            check=False,
-            env=make_environment(),
-            stdin=subprocess.DEVNULL,
-            **list_process_options(),
-        )
+        done = ask_program(python, "-c", code, patience=_PATIENCE)
         return tuple(map(int, done.stdout.split())) if done.returncode == 0 else ()
     except (OSError, subprocess.TimeoutExpired, ValueError):
         return ()
