@@ -35,6 +35,7 @@ __all__ = [
     "edges",
     "edges_at",
     "ends",
+    "find_boundary_vertices",
     "find_offsets",
     "find_owners",
     "find_triangles",
@@ -77,6 +78,15 @@ def edges_at(triangles: NDArray[np.int32], is_chosen: NDArray[np.bool_]) -> NDAr
     return np.stack(
         [triangles[triangle, (corner + 1) % 3], triangles[triangle, (corner + 2) % 3]], axis=1
     )
+
+
+def find_boundary_vertices(
+    triangles: NDArray[np.int32], neighbors: NDArray[np.int32], count: int
+) -> NDArray[np.bool_]:
+    """Tell which of so many vertices lie on the boundary of the surface, or of a hole in it."""
+    is_boundary = np.zeros(count, np.bool_)
+    is_boundary[edges_at(triangles, neighbors == NO_NEIGHBOR)] = True
+    return is_boundary
 
 
 def edge_keys(pairs: NDArray[Any], n_vertices: int) -> NDArray[np.int64]:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from ...tin.triangulation import Triangulation
     from .reference import Reference
 
-__all__ = ["classify", "find_zones", "join_segments", "trace_zero_line"]
+__all__ = ["classify", "find_zones", "join_segments", "number_zones", "trace_zero_line"]
 
 NAMES = {-1: "cut", 0: "unchanged", 1: "fill"}
 
@@ -86,11 +86,18 @@ def _follow(a: int, b: int, following: dict[int, int], inside: set[int]) -> list
     return chain
 
 
+def number_zones(
+    mesh: Triangulation, classes: NDArray[np.int8]
+) -> tuple[NDArray[np.bool_], NDArray[np.int32]]:
+    """Return which edges end a connected part of one class, and the part of each triangle."""
+    barrier = (mesh.neighbors < 0) | (classes[mesh.neighbors] != classes[:, None])
+    return barrier, number_parts(mesh.neighbors, barrier)
+
+
 def find_zones(mesh: Triangulation, reference: Reference) -> Features:
     """Return the connected parts that are cut, filled or unchanged as polygons."""
     classes = classify(mesh)
-    barrier = (mesh.neighbors < 0) | (classes[mesh.neighbors] != classes[:, None])
-    part = number_parts(mesh.neighbors, barrier)
+    barrier, part = number_zones(mesh, classes)
     count = int(part.max()) + 1
     rings, ring_offsets, polygon_offsets = _close_rings(mesh, barrier, part, count)
     sums = _kernel.sum_heights(

@@ -9,7 +9,7 @@ import numpy as np
 from ..._sentences import counted
 from ...tin.validation.options import require_tin
 from ..georeference import describe_unknown, find_plane_units
-from ..relief.dissolving import dissolve
+from ..relief.dissolving import dissolve, make_polygons
 from ..results import Features
 from ..slope import measure_plane_areas
 from .regions import KINDS, find_regions
@@ -73,14 +73,11 @@ def flats(tin: TIN) -> Features:
         "triangles": np.bincount(numbers, minlength=regions.size),
         "area": area,
     }
-    return Features.of_polygons(
-        tin.points[found.vertices, :2],
-        found.ring_offsets,
-        found.polygon_offsets,
-        found.feature_offsets,
+    return make_polygons(
+        tin,
+        found,
         columns=columns,
         units={"elevation": tin.elevation_unit, "area": find_plane_units(tin.crs).area},
-        crs=None if tin.crs is None else tin.crs.horizontal,
         name="flats",
         notes=describe_unknown(tin.crs, tin.elevation_unit),
     )

@@ -9,8 +9,7 @@ import numpy as np
 from ...errors import PointsError
 from ...tin import TIN, topology
 from ..earthwork import difference
-from ..earthwork.meshes import number_parts
-from ..earthwork.zones import classify, join_segments
+from ..earthwork.zones import classify, join_segments, number_zones
 from .distances import measure_distances
 from .pasting import find_area
 from .seams import measure_tolerance
@@ -125,8 +124,7 @@ def _find_made(found: TIN, pad: Any, sign: float, tolerance: float) -> NDArray[n
     """Tell which triangles of a difference are cut (or filled) and hang together with the pad."""
     mesh = found.triangulation
     classes = classify(mesh)
-    barrier = (mesh.neighbors < 0) | (classes[mesh.neighbors] != classes[:, None])
-    part = number_parts(mesh.neighbors, barrier)
+    _, part = number_zones(mesh, classes)
     triangle, corner = np.nonzero((mesh.neighbors < 0) & (classes == sign)[:, None])
     start, end = topology.ends(mesh.triangles, triangle, corner)
     middles = (mesh.points[start, :2] + mesh.points[end, :2]) / 2

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...tin.topology import NO_NEIGHBOR
+from ...tin.topology import NO_NEIGHBOR, find_boundary_vertices
 from .falls import FINEST, measure_fall, round_share
-from .vertices import NOWHERE, find_boundary_vertices, find_exits
+from .vertices import NOWHERE, find_exits
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

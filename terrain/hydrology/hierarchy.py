@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from .vertices import NOWHERE, find_boundary_vertices
+from ...tin.topology import find_boundary_vertices
+from .vertices import NOWHERE
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

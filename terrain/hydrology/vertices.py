@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...tin.topology import NO_NEIGHBOR, edges_at, find_triangles, gather
+from ...tin.topology import NO_NEIGHBOR, find_triangles, gather
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from .falls import Falls
 
-__all__ = ["NOWHERE", "Exits", "find_boundary_vertices", "find_exits"]
+__all__ = ["NOWHERE", "Exits", "find_exits"]
 
 NOWHERE = -1
 _CLOSE = 1e-9
@@ -52,15 +52,6 @@ class _Candidates(NamedTuple):
     vertices: NDArray[np.int64]
     triangles: NDArray[np.int64]
     slopes: NDArray[np.float64]
-
-
-def find_boundary_vertices(
-    triangles: NDArray[np.int32], neighbors: NDArray[np.int32], count: int
-) -> NDArray[np.bool_]:
-    """Tell which of so many vertices lie on the boundary of the surface, or of a hole in it."""
-    is_boundary = np.zeros(count, np.bool_)
-    is_boundary[edges_at(triangles, neighbors == NO_NEIGHBOR)] = True
-    return is_boundary
 
 
 def find_exits(falls: Falls, vertices: NDArray[np.int64], is_boundary: NDArray[np.bool_]) -> Exits:

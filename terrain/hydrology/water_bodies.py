@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...errors import OptionError
-from ...tin.topology import NO_NEIGHBOR, gather, sort_half_edges
+from ...tin.topology import NO_NEIGHBOR, find_boundary_vertices, gather, sort_half_edges
 from ...tin.validation.options import as_flag, is_finite_number
 from ..earthwork.reference import find_reference
 from ..relief.dissolving import number_components
 from ..results import Features
 from .hierarchy import build_hierarchy
-from .vertices import NOWHERE, find_boundary_vertices
+from .vertices import NOWHERE
 from .water import Waters, cut_below, gather_polygons, measure_waters
 
 if TYPE_CHECKING:

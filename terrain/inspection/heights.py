@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ...errors import LinesError, PointsError
-from ...tin.topology import find_owners
+from ...tin.topology import find_boundary_vertices, find_owners
 from .. import _kernel
 from .residuals import Residuals, fit_plane
 from .scales import find_rounding, measure_scales
@@ -267,10 +267,7 @@ def _rank(values: NDArray[np.float64]) -> NDArray[np.int64]:
 def _find_care(known: Residuals, vertices: NDArray[np.int32]) -> NDArray[np.int32]:
     """Return those of some vertices that are on lines or on the boundary."""
     surface = known.surface
-    on_boundary = np.zeros(len(known.xyz), np.bool_)
-    triangle, corner = np.nonzero(surface.neighbors < 0)
-    for k in (1, 2):
-        on_boundary[surface.triangles[triangle, (corner + k) % 3]] = True
+    on_boundary = find_boundary_vertices(surface.triangles, surface.neighbors, len(known.xyz))
     return vertices[known.on_line[vertices] | on_boundary[vertices]]
 
 

@@ -13,7 +13,7 @@ from ..georeference import describe_unknown, find_plane_units
 from ..results import Features
 from ..slope import aspect, measure_plane_areas, slope
 from .colors import compass_colors, ramp_colors
-from .dissolving import dissolve
+from .dissolving import dissolve, make_polygons
 from .statistics import SYMBOLS
 
 if TYPE_CHECKING:
@@ -184,14 +184,11 @@ def _as_features(
         "color": np.array(legend.colors, object)[found.classes],
     }
     unit = symbol or "ratio"
-    return Features.of_polygons(
-        tin.points[found.vertices, :2],
-        found.ring_offsets,
-        found.polygon_offsets,
-        found.feature_offsets,
+    return make_polygons(
+        tin,
+        found,
         columns=columns,
         units={"lower": unit, "upper": unit, "area": find_plane_units(tin.crs).area, "share": "%"},
-        crs=None if tin.crs is None else tin.crs.horizontal,
         name=name,
         notes=describe_unknown(tin.crs, tin.elevation_unit),
     )

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
 from ...tin.topology import NO_NEIGHBOR, boundary_walks, gather
+from ..results import Features
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
     from numpy.typing import NDArray
 
+    from ...tin import TIN
+    from ..results.columns import Units
 
-__all__ = ["Dissolved", "Mesh", "dissolve", "join_components", "number_components"]
+__all__ = ["Dissolved", "Mesh", "dissolve", "join_components", "make_polygons", "number_components"]
 
 
 class Mesh(Protocol):
@@ -84,6 +89,29 @@ def dissolve(tin: Mesh, classes: NDArray[np.int64]) -> Dissolved:
     parts = number_components(neighbors)
     rings = _trace_rings(tin.triangles, neighbors, parts, classes)
     return _as_levels(rings, _sort_exteriors_first(rings, classes, tin.points), classes)
+
+
+def make_polygons(
+    tin: TIN,
+    found: Dissolved,
+    *,
+    columns: Mapping[str, Any],
+    units: Units,
+    name: str,
+    notes: Sequence[str],
+) -> Features:
+    """Return the polygons of classes as features, in the plane of the CRS of their TIN."""
+    return Features.of_polygons(
+        tin.points[found.vertices, :2],
+        found.ring_offsets,
+        found.polygon_offsets,
+        found.feature_offsets,
+        columns=columns,
+        units=units,
+        crs=None if tin.crs is None else tin.crs.horizontal,
+        name=name,
+        notes=notes,
+    )
 
 
 class _Rings(NamedTuple):

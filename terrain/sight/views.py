@@ -12,7 +12,7 @@ from ...tin.validation.options import is_finite_number
 from ..earthwork.reference import find_reference
 from ..georeference import find_plane_units
 from ..hydrology.paths import as_places
-from ..relief.dissolving import dissolve
+from ..relief.dissolving import dissolve, make_polygons
 from ..results import Features
 from ..slope import measure_plane_areas
 from .lines import as_height, raise_places
@@ -217,14 +217,11 @@ def _as_features(
         "share": 100.0 * measured / measured.sum(),
         "color": np.array(_COLORS, object)[found.classes],
     }
-    return Features.of_polygons(
-        tin.points[found.vertices, :2],
-        found.ring_offsets,
-        found.polygon_offsets,
-        found.feature_offsets,
+    return make_polygons(
+        tin,
+        found,
         columns=columns,
         units={"area": find_plane_units(tin.crs).area, "share": "%"},
-        crs=None if tin.crs is None else tin.crs.horizontal,
         name="viewshed",
         notes=[*reference.notes, *notes],
     )
