@@ -86,7 +86,8 @@ class Seam:
         outside = shapely.difference(shapely.linestrings(ends[:, :, :2]), self._area)
         found = []
         for left, own, stays in zip(outside, ends, is_kept.tolist(), strict=True):
-            parts = [shapely.get_coordinates(part)[[0, -1]] for part in shapely.get_parts(left)]
+            there = [part for part in shapely.get_parts(left) if not part.is_empty]
+            parts = [shapely.get_coordinates(part)[[0, -1]] for part in there]
             fixed = own[stays]
             off = [part for part in parts if self._is_off(part)]
             ways = [np.array([self._place(xy, fixed) for xy in part]) for part in off]

@@ -120,3 +120,21 @@ def test_refusals():
         ts.paste(base.replace(crs=ts.CRS("EPSG:32616")), beyond)
     with pytest.raises(ts.PointsError, match="Invalid TIN"):
         ts.paste(base, "patch")
+
+
+@pytest.mark.parametrize(
+    ("first", "last"), [((3, 3), (6, 6)), ((0, 0), (4, 4)), ((0, 0), (10, 10))]
+)
+def test_a_patch_on_the_vertices_of_the_base_takes_their_place(first, last):
+    """Its boundary runs along edges of the base, or along the boundary of that."""
+    rows = [[x, y, 1.0] for x in range(11) for y in range(11)]
+    base = ts.triangulate(rows)
+    inner = [
+        [x, y, 5.0] for x in range(first[0], last[0] + 1) for y in range(first[1], last[1] + 1)
+    ]
+    pasted = ts.paste(base, ts.triangulate(inner))
+    assert ts.check(pasted).ok
+    assert pasted.area == base.area
+    raised = {tuple(row[:2]) for row in inner}
+    for x, y, z in pasted.points.tolist():
+        assert z == (5.0 if (x, y) in raised else 1.0)

@@ -1,0 +1,101 @@
+"""Pasted and graded surfaces: sound, the patch within its boundary, slopes by their closed form."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import shapely
+
+import tinsmith as ts
+
+from .campaign import Campaign, Case
+
+_STEPS = 4
+"""Of coordinates by which a steep triangle at the seam is moved."""
+
+_FACETS = 2e-4
+"""Share of a rise by which a facet of a cone lies beside it."""
+
+
+def generate(rng: np.random.Generator) -> Case:
+    """A ground, and a patch within it: on its very vertices in a lattice, or anywhere."""
+    origin = [500_000.0, 4_000_000.0] if rng.random() < 0.5 else [0.0, 0.0]
+    if rng.random() < 0.6:
+        size = int(rng.integers(4, 9))
+        first = rng.integers(0, size - 2, 2)
+        last = np.minimum(first + rng.integers(1, 3, 2), size - 1)
+        base = _lattice((0, 0), (size - 1, size - 1))
+        patch = _lattice(first, last)
+    else:
+        corners = [[0, 0], [10, 0], [10, 10], [0, 10]]
+        base = np.concatenate([rng.uniform(0, 10, (40, 2)), corners])
+        patch = rng.uniform(0, 4, (9, 2)) + rng.uniform(0.2, 5.5, 2)
+    return {
+        "base": np.column_stack([base + origin, rng.uniform(0, 1, len(base))]).tolist(),
+        "patch": np.column_stack([patch + origin, rng.uniform(3, 5, len(patch))]).tolist(),
+        "weights": rng.dirichlet([1, 1, 1], 8).tolist(),
+        "level": float(rng.uniform(-0.4, 1.4)),
+        "cut": float(rng.choice([0.5, 1, 2])),
+        "fill": float(rng.choice([0.5, 1, 2])),
+        "places": rng.uniform(0, 1, (40, 2)).tolist(),
+    }
+
+
+def _lattice(first: Any, last: Any) -> Any:
+    axes = [np.arange(a, b + 1.0) for a, b in zip(first, last, strict=True)]
+    return np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, 2)
+
+
+def examine(case: Case) -> str:
+    """Paste the patch, and grade its convex hull."""
+    try:
+        base, patch = ts.triangulate(case["base"]), ts.triangulate(case["patch"])
+    except ts.TinsmithError:
+        return "refused: TIN"
+    pasted = ts.paste(base, patch)
+    _require_sound(base, pasted)
+    weights = np.array(case["weights"])
+    weights /= weights.sum(axis=1, keepdims=True)
+    corners = patch.points[patch.triangles]
+    inner = np.einsum("wk,tkd->twd", weights, corners)
+    error = np.abs(
+        pasted.interpolate(inner.reshape(-1, 3)[:, :2]).reshape(inner.shape[:2]) - inner[..., 2]
+    )
+    assert not np.isnan(error).any(), "a gap within the seam"
+    step = np.spacing(np.abs(base.points[:, :2]).max())  # of a place at which the seam is cut
+    allowed = 1e-6 + _STEPS * step * ts.slope(patch, unit="ratio")
+    assert (error <= allowed[:, None]).all(), "within the seam another surface than the patch"
+    return "pasted" if _grade(case, base, patch) is None else "pasted and graded"
+
+
+def _grade(case: Case, base: Any, patch: Any) -> Any:
+    """Grade the hull of the patch's points, and compare with the slopes by distance."""
+    pad = shapely.convex_hull(shapely.multipoints(patch.points[:, :2]))
+    ring = shapely.get_coordinates(pad)[:-1]
+    try:
+        graded = ts.grade(base, ring, case["level"], cut_slope=case["cut"], fill_slope=case["fill"])
+    except ts.PointsError:
+        return None  # the ground ends before the slopes do
+    _require_sound(base, graded)
+    bounds = base.bounds
+    xy = np.array(case["places"]) * (bounds.width, bounds.height) + (bounds.xmin, bounds.ymin)
+    ground = base.interpolate(xy)
+    away = shapely.distance(shapely.points(xy), pad)
+    rise, drop = away / case["cut"], away / case["fill"]
+    wanted = np.clip(ground, case["level"] - drop, case["level"] + rise)
+    found = graded.interpolate(xy)
+    slack = 1e-6 + _FACETS * np.maximum(rise, drop)
+    is_slope, is_ground = np.abs(found - wanted) <= slack, np.abs(found - ground) <= 1e-6
+    assert (is_slope | is_ground | np.isnan(ground)).all(), "neither the slope nor the ground"
+    assert is_slope[away == 0.0].all(), "the pad is not level"
+    return graded
+
+
+def _require_sound(base: Any, made: Any) -> None:
+    found = ts.check(made)
+    assert found.ok, [one.sentence for one in found.problems]
+    assert abs(made.area - base.area) <= 1e-9 * base.area, "another area than the base"
+
+
+CAMPAIGNS = (Campaign("grading", "pasted surfaces, and pads with slopes", generate, examine),)
