@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ...tin.topology import NO_NEIGHBOR
+from ...tin.topology import NO_NEIGHBOR, edges_at
 from ..relief.dissolving import number_components
 
 if TYPE_CHECKING:
@@ -117,7 +117,30 @@ def find_regions(tin: TIN) -> Regions:
     flat = np.flatnonzero(region_of >= 0)
     first[region_of[flat][::-1]] = flat[::-1]
     elevations = tin.points[tin.triangles[first, 0], 2] if count else np.empty(0)
+    is_cap = np.isin(kinds, CAPS)
+    rises[is_cap] = _limit_rises(rises[is_cap], elevations[is_cap], _find_levels(tin))
     return Regions(region_of, count, kinds, elevations, rises, slopes, border)
+
+
+def _find_levels(tin: TIN) -> NDArray[np.float64]:
+    """Return the elevations of contours: of constrained edges that are level."""
+    z = tin.points[edges_at(tin.triangles, tin.constrained), 2]
+    return np.unique(z[z[:, 0] == z[:, 1], 0])
+
+
+def _limit_rises(
+    rises: NDArray[np.float64], elevations: NDArray[np.float64], levels: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Limit the rises of caps to the next level, where there is none to the distance of the last.
+
+    The ground outside a cap may lead across several levels at once, where contours are missing.
+    """
+    bounded = np.concatenate([[-np.inf], levels, [np.inf]])
+    above = bounded[np.searchsorted(bounded, elevations, side="right")] - elevations
+    below = elevations - bounded[np.searchsorted(bounded, elevations, side="left") - 1]
+    ahead, behind = np.where(rises > 0.0, [above, below], [below, above])
+    gaps = np.where(np.isfinite(ahead), ahead, behind)
+    return np.sign(rises) * np.minimum(np.abs(rises), gaps)
 
 
 def _find_flat(tin: TIN) -> NDArray[np.bool_]:

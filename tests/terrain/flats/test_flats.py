@@ -6,6 +6,7 @@ import shapely
 from contourpy import contour_generator
 
 import tinsmith as ts
+from tinsmith.terrain.flats.regions import KINDS, find_regions
 
 SIDE = 60.0
 
@@ -182,3 +183,20 @@ def test_the_order_of_lines_changes_nothing():
 def test_what_is_no_tin_is_refused(function):
     with pytest.raises(ts.PointsError, match="Invalid TIN"):
         function([[0, 0, 1]])
+
+
+def test_a_cap_rises_to_the_next_level_although_the_contour_around_it_is_missing():
+    """Of two hills one lacks the contour below its highest: the other one tells the interval."""
+    angles = np.linspace(0, 2 * np.pi, 25)
+    circle = np.column_stack([np.cos(angles), np.sin(angles)])
+    circle[-1] = circle[0]
+    lines = [
+        np.column_stack([circle * (45 - level) + (east, 0), np.full(25, level)])
+        for east in (0, 100)
+        for level in (10.0, 20.0, 30.0)
+        if (east, level) != (100, 20.0)
+    ]
+    found = find_regions(build(lines))
+    is_peak = found.kinds == KINDS.index("peak")
+    assert is_peak.sum() == 2
+    assert (found.rises[is_peak] == 10.0).all()
