@@ -131,15 +131,15 @@ def _find_levels(tin: TIN) -> NDArray[np.float64]:
 def _limit_rises(
     rises: NDArray[np.float64], elevations: NDArray[np.float64], levels: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Limit the rises of caps to the next level, where there is none to the distance of the last.
+    """Limit the rises of caps to the next level, where there is none to the least distance of two.
 
     The ground outside a cap may lead across several levels at once, where contours are missing.
     """
     bounded = np.concatenate([[-np.inf], levels, [np.inf]])
     above = bounded[np.searchsorted(bounded, elevations, side="right")] - elevations
     below = elevations - bounded[np.searchsorted(bounded, elevations, side="left") - 1]
-    ahead, behind = np.where(rises > 0.0, [above, below], [below, above])
-    gaps = np.where(np.isfinite(ahead), ahead, behind)
+    ahead = np.where(rises > 0.0, above, below)
+    gaps = np.where(np.isfinite(ahead), ahead, np.diff(levels).min(initial=np.inf))
     return np.sign(rises) * np.minimum(np.abs(rises), gaps)
 
 

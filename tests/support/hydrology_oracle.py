@@ -86,10 +86,14 @@ def require_descent(tin: Any, line: np.ndarray, slack: float) -> None:
         step = end[:2] - start[:2]
         middle = (start[:2] + end[:2]) / 2
         triangle = int(tin.locate([middle])[0])
-        candidates = [triangle, *tin.neighbors[triangle].tolist()]
-        assert any(
-            fits(tin.points[tin.triangles[t]], step, slack) for t in candidates if t >= 0
-        ) or lies_on_edge(tin, triangle, start, end, slack), f"{start} to {end}: not steepest"
+        if triangle < 0:  # a hair outside: it must run along the boundary
+            rim = np.flatnonzero((tin.neighbors < 0).any(axis=1)).tolist()
+            is_sound = any(lies_on_edge(tin, t, start, end, slack) for t in rim)
+        else:
+            near = [t for t in (triangle, *tin.neighbors[triangle].tolist()) if t >= 0]
+            is_sound = any(fits(tin.points[tin.triangles[t]], step, slack) for t in near)
+            is_sound = is_sound or lies_on_edge(tin, triangle, start, end, slack)
+        assert is_sound, f"{start} to {end}: not steepest"
 
 
 def fits(corners: np.ndarray, step: np.ndarray, slack: float) -> bool:
