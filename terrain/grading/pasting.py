@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...errors import PointsError
-from ...tin import Breakline, triangulate
+from ...tin import Breakline, Survey, triangulate
+from ...tin.building.attributes import join_columns
 from ...tin.constraints.clipping import in_rings
 from ...tin.topology import edge_keys
 from ...tin.validation.options import require_tin
@@ -65,7 +66,8 @@ def paste(base: TIN, patch: TIN) -> TIN:
     Along the seam elevations are those of the patch, to which the triangles of the base that are
     cut by it are joined. So the surface is that of the base but in these triangles, and there as
     well if the patch meets the base. Edges that they are cut at are soft breaklines named "joint".
-    Attributes of points are not kept.
+    Vertices keep their attributes; those made along the seam have none, nor have those of the patch
+    in columns of the base alone, and the other way round.
 
     Examples
     --------
@@ -96,7 +98,10 @@ def join_surfaces(base: TIN, patch: TIN, agreed: Agreement, name: str = "seam") 
     lines += [Breakline(ring, name=name, priority=_PRIORITY) for ring in seam.rings]
     lines += seam.list_lines()
     made = triangulate(
-        np.concatenate([ground[cut.is_kept], insert]),
+        Survey(
+            points=np.concatenate([ground[cut.is_kept], insert]),
+            attributes=_join_attributes(base, patch, cut.is_kept),
+        ),
         breaklines=lines,
         duplicates="last",
         crs=agreed.crs,
@@ -106,6 +111,12 @@ def join_surfaces(base: TIN, patch: TIN, agreed: Agreement, name: str = "seam") 
     gap = _describe_gap(base, agreed, np.concatenate(seam.rings))
     notes = (*made.report.notes, *agreed.notes, *gap)
     return made.replace(report=replace(made.report, notes=notes))
+
+
+def _join_attributes(base: TIN, patch: TIN, is_kept: NDArray[np.bool_]) -> dict[str, NDArray[Any]]:
+    """Return the columns of the vertices of the base that stay, and behind them of the patch."""
+    kept = {name: column[is_kept] for name, column in base.attributes.items()}
+    return join_columns([kept, patch.attributes], [int(is_kept.sum()), len(patch.points)])
 
 
 def _list_rings(base: TIN, points: NDArray[np.float64]) -> dict[str, Any]:
