@@ -26,7 +26,7 @@ def run_pytest(folder: Path, *options: str, **environment: str):
         cwd=folder,
         capture_output=True,
         text=True,
-        timeout=200,
+        timeout=600,
         check=False,
     )
 

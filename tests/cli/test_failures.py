@@ -66,7 +66,7 @@ def program(*arguments, **options):
         capture_output=True,
         text=True,
         check=False,
-        timeout=60,
+        timeout=600,
         **options,
     )
 
@@ -346,7 +346,7 @@ def shell(command):
     """Run a command line of the shell, in which `tinsmith` is this program."""
     script = f'tinsmith() {{ "{sys.executable}" -m tinsmith "$@"; }}\n{command}'
     return subprocess.run(
-        ["bash", "-c", script], capture_output=True, text=True, check=False, timeout=60
+        ["bash", "-c", script], capture_output=True, text=True, check=False, timeout=600
     )
 
 
@@ -512,7 +512,7 @@ def test_a_signal_while_writing_leaves_nothing(folder, number):
     while len(names()) < 2 and run.poll() is None and time.monotonic() < deadline:
         time.sleep(0.01)
     run.send_signal(number)
-    stdout, stderr = run.communicate(timeout=30)
+    stdout, stderr = run.communicate(timeout=600)
     assert (run.returncode, stdout) == (128 + number, "")
     assert stderr == "Interrupted; nothing was written.\n"
     assert names() == ["in.csv"]
@@ -540,7 +540,7 @@ except (Terminated, KeyboardInterrupt) as error:
     print(getattr(error, "number", int(signal.SIGINT)))
 """
     run = subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, timeout=30, check=False
+        [sys.executable, "-c", program], capture_output=True, text=True, timeout=600, check=False
     )
     assert (run.stdout, run.stderr, run.returncode) == (f"{int(number)}\n", "", 0)
 
@@ -557,7 +557,7 @@ with raise_for_signals():
     Finalized()
 """
     run = subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, timeout=30, check=False
+        [sys.executable, "-c", program], capture_output=True, text=True, timeout=600, check=False
     )
     assert "Exception ignored in" in run.stderr
     assert "ValueError: told" in run.stderr

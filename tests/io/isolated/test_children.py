@@ -287,7 +287,7 @@ fork.kill()
 @on_linux
 def test_a_fork_begins_clean_and_its_end_is_told():
     done = subprocess.run(
-        [sys.executable, "-c", FORKS], capture_output=True, text=True, check=False, timeout=60
+        [sys.executable, "-c", FORKS], capture_output=True, text=True, check=False, timeout=600
     )
     assert (done.returncode, done.stderr) == (0, "")
     told, ends, late, last = done.stdout.splitlines()

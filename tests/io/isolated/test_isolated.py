@@ -138,7 +138,7 @@ def test_a_forked_process_has_children_of_its_own():
     answers = context.Queue()
     other = context.Process(target=_ask_after_fork, args=(ours, answers))
     other.start()
-    assert answers.get(timeout=60) == (True, {"k": 7})
+    assert answers.get(timeout=600) == (True, {"k": 7})
     other.join()
     assert run("process").value[0] == ours
 
@@ -242,7 +242,7 @@ def forking_program(tmp_path, code, before=""):
         [sys.executable, "-c", FORKING.format(code=code, before=before),
          str(Path(__file__).parents[2]),
          str(tmp_path / "kept")],
-        capture_output=True, text=True, check=False, timeout=60,
+        capture_output=True, text=True, check=False, timeout=600,
     )  # fmt: skip
     assert done.stderr == ""
     assert (tmp_path / "kept").read_text() == "once"
