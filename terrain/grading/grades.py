@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 
 __all__ = ["grade"]
 
+_SHARE = 1e-6
+"""Of the area of pad and slopes: less of it may lie beyond the ground by rounding."""
+
 
 def grade(
     tin: TIN,
@@ -53,7 +56,8 @@ def grade(
     -------
     TIN
         Pad, slopes, and the ground beyond. Breaklines are named "pad edge", "daylight" and
-        "slope", where slopes break. Volumes are those of ``ts.volume(tin, graded)``.
+        "slope", where slopes break. Volumes are those of ``ts.volume(tin, graded)``. Vertices of
+        the ground keep their attributes, new ones have none.
 
     Raises
     ------
@@ -97,6 +101,7 @@ def grade(
         if reach > 0
     ]
     patch = build_patch(tin, polygon, level, slopes)
+    _require_within(tin, patch)
     agreed = Agreement(tin.crs, tin.elevation_unit, (1.0, 1.0), reference.notes)
     return join_surfaces(tin, patch, agreed, "daylight")
 
@@ -137,6 +142,15 @@ def _find_level(ring: NDArray[np.float64]) -> float:
             "elevation", None, f"a number: the pad's ring is not level ({low:g} to {high:g})"
         )
     return low
+
+
+def _require_within(tin: TIN, patch: TIN) -> None:
+    import shapely
+
+    beyond = shapely.difference(find_area(patch), find_area(tin))
+    if beyond.area > _SHARE * patch.area:
+        place = shapely.point_on_surface(beyond)
+        raise PointsError(f"A slope reaches beyond the ground, at {place.x:.10g} {place.y:.10g}.")
 
 
 def _require_on_ground(tin: TIN, pad: Any) -> None:
