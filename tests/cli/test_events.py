@@ -56,7 +56,18 @@ PAD = (
     '"features":[{"type":"Feature","properties":{},"geometry":{"type":"Polygon",'
     '"coordinates":[[[4,4],[8,4],[8,8],[4,8],[4,4]]]}}]}'
 )
-GRADE = "--pad pad.geojson --elevation 8 --cut-slope 2 --fill-slope 2 -o out.ply".split()
+GRADE = [
+    "--pad",
+    "pad.geojson",
+    "--elevation",
+    "8",
+    "--cut-slope",
+    "2",
+    "--fill-slope",
+    "2",
+    "-o",
+    "out.ply",
+]
 
 # Commands of long steps: the step, and its arguments behind a file of points.
 LONG = {
