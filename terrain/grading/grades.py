@@ -63,7 +63,8 @@ def grade(
     -------
     TIN
         Pad, slopes, and the ground beyond. Breaklines are named "pad edge", "daylight" and
-        "slope", where slopes break. Volumes are those of ``ts.volume(tin, graded)``.
+        "slope", where slopes break. Volumes are those of ``ts.volume(tin, graded)``. Vertices of
+        the ground keep their attributes, new ones have none.
 
     Raises
     ------

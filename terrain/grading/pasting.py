@@ -10,7 +10,8 @@ import numpy as np
 
 from ..._progress import Progress
 from ...errors import PointsError
-from ...tin import Breakline, triangulate
+from ...tin import Breakline, Survey, triangulate
+from ...tin.building.attributes import join_columns
 from ...tin.constraints.clipping import in_rings
 from ...tin.topology import edge_keys
 from ...tin.validation.options import require_tin
@@ -70,7 +71,8 @@ def paste(base: TIN, patch: TIN, *, progress: Callable[[float], None] | None = N
     Along the seam elevations are those of the patch, to which the triangles of the base that are
     cut by it are joined. So the surface is that of the base but in these triangles, and there as
     well if the patch meets the base. Edges that they are cut at are soft breaklines named "joint".
-    Attributes of points are not kept.
+    Vertices keep their attributes; those made along the seam have none, nor have those of the patch
+    in columns of the base alone, and the other way round.
 
     Examples
     --------
@@ -110,7 +112,10 @@ def join_surfaces(
     lines += seam.list_lines()
     done(0.7)
     made = triangulate(
-        np.concatenate([ground[cut.is_kept], insert]),
+        Survey(
+            points=np.concatenate([ground[cut.is_kept], insert]),
+            attributes=_join_attributes(base, patch, cut.is_kept),
+        ),
         breaklines=lines,
         duplicates="last",
         crs=agreed.crs,
@@ -121,6 +126,12 @@ def join_surfaces(
     gap = _describe_gap(base, agreed, np.concatenate(seam.rings))
     notes = (*made.report.notes, *agreed.notes, *gap)
     return made.replace(report=replace(made.report, notes=notes))
+
+
+def _join_attributes(base: TIN, patch: TIN, is_kept: NDArray[np.bool_]) -> dict[str, NDArray[Any]]:
+    """Return the columns of the vertices of the base that stay, and behind them of the patch."""
+    kept = {name: column[is_kept] for name, column in base.attributes.items()}
+    return join_columns([kept, patch.attributes], [int(is_kept.sum()), len(patch.points)])
 
 
 def _list_rings(base: TIN, points: NDArray[np.float64]) -> dict[str, Any]:

@@ -43,24 +43,20 @@ def write(
 ) -> None:
     """Write a TIN as CityJSON 2.0.
 
+    Parameters and errors are those of every writer, see :class:`.Format`; and:
+
     Parameters
     ----------
-    surface : TIN
-    path : Path
     precision : float, optional
         Step of the coordinates, a power of ten such as 0.001, in the units of each axis; default
         the coarsest that holds every digit.
-    progress : callable, optional
-        Called with the fraction done.
 
     Raises
     ------
-    FormatError
-        If ``surface`` is no TIN.
     OptionError
         If ``precision`` is no power of ten from 1e-15 to 1.
     WriteError
-        If the file cannot be written, or triangles lose their area at this precision.
+        Also if triangles lose their area at this precision.
 
     Warns
     -----

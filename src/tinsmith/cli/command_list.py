@@ -15,6 +15,7 @@ SECTIONS = {
         "refine": "Make a finite element mesh of a TIN.",
         "simplify": "Leave out points that a TIN within a tolerance can do without.",
         "grade": "Grade a pad into a TIN, with side slopes to where they meet it.",
+        "paste": "Put one TIN in the place of a part of another.",
         "ground": "Tell the ground from buildings, plants and noise.",
         "edit": "Change a TIN by a script of edits.",
         "convert": "Write points or a TIN in another format.",

@@ -138,3 +138,34 @@ def test_a_patch_on_the_vertices_of_the_base_takes_their_place(first, last):
     raised = {tuple(row[:2]) for row in inner}
     for x, y, z in pasted.points.tolist():
         assert z == (5.0 if (x, y) in raised else 1.0)
+
+
+def find_attributes(tin, name):
+    """Return the values of a column by place."""
+    return dict(zip(map(tuple, tin.points[:, :2].tolist()), tin.attributes[name], strict=True))
+
+
+def test_vertices_keep_their_attributes_and_new_ones_have_none():
+    rng = np.random.default_rng(4)
+    base = make_base().points
+    inner = np.column_stack([rng.random((30, 2)) * 40 + 80 + UTM, np.full(30, 90.0)])
+    codes = np.array([f"P{k}" for k in range(len(inner))])
+    columns = {"number": np.arange(len(base)), "flag": base[:, 2] > 99}
+    surveys = [
+        ts.Survey(points=base, attributes=columns),
+        ts.Survey(points=inner, attributes={"number": 5000 + np.arange(30), "code": codes}),
+    ]
+    given = [ts.triangulate(survey) for survey in surveys]
+    pasted = ts.paste(*given)
+    wanted = [find_attributes(tin, "number") for tin in given]
+    made = 0
+    for place, number in find_attributes(pasted, "number").items():
+        own = wanted[1].get(place, wanted[0].get(place))
+        assert number == own or (own is None and np.isnan(number))
+        made += own is None
+    assert made > 0
+    assert set(wanted[1]) <= set(find_attributes(pasted, "number"))
+    of_patch, of_base = find_attributes(pasted, "code"), find_attributes(pasted, "flag")
+    assert {code for code in of_patch.values() if code} == set(codes)
+    assert all(of_patch[place] == codes[k] for k, place in enumerate(wanted[1]))
+    assert all((of_base[place] is None) == (place not in wanted[0]) for place in of_base)
