@@ -4,6 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from support.product_arrays import list_arrays
 
 import tinsmith as ts
 from tinsmith._progress import Progress
@@ -75,23 +76,6 @@ CALLS = {
 def cut_middle(points):
     """Return the TIN of the points in the middle, raised."""
     return ts.triangulate(points[np.abs(points[:, :2] - 500).max(axis=1) < 200] + [0, 0, 2])
-
-
-def list_arrays(made):
-    """Return all arrays of a result."""
-    if isinstance(made, ts.TIN):
-        return [made.points, made.triangles, made.neighbors, made.vertex_of]
-    if isinstance(made, ts.Survey):
-        return [made.points, *made.attributes.values()]
-    if isinstance(made, ts.Difference):
-        return [*list_arrays(made.tin), np.array([made.cut, made.fill])]
-    if isinstance(made, ts.GroundPoints):
-        return [made.classification, made.heights]
-    if isinstance(made, ts.Raster):
-        return [band[:, :] for band in made.bands.values()]
-    if isinstance(made, ts.Features):
-        return [made.coordinates, *made.columns.values()]
-    return [made[name] for name in made.columns]
 
 
 def assert_same(one, other):

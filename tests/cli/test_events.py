@@ -56,25 +56,14 @@ PAD = (
     '"features":[{"type":"Feature","properties":{},"geometry":{"type":"Polygon",'
     '"coordinates":[[[4,4],[8,4],[8,8],[4,8],[4,4]]]}}]}'
 )
-GRADE = [
-    "--pad",
-    "pad.geojson",
-    "--elevation",
-    "8",
-    "--cut-slope",
-    "2",
-    "--fill-slope",
-    "2",
-    "-o",
-    "out.ply",
-]
+SLOPES = ["--cut-slope", "2", "--fill-slope", "2"]
 
 # Commands of long steps: the step, and its arguments behind a file of points.
 LONG = {
     "refine": ("Refining", ["--max-area", "2", "-o", "out.ply"]),
     "ground": ("Finding the ground", ["-o", "out.csv"]),
     "inspect": ("Checking points", []),
-    "grade": ("Grading", GRADE),
+    "grade": ("Grading", ["--pad", "pad.geojson", "--elevation", "8", *SLOPES, "-o", "out.ply"]),
     "contours": ("Tracing contours", ["--interval", "1", "-o", "out.geojson", "--projected"]),
     "volume": ("Measuring", ["--base", "8"]),
 }
