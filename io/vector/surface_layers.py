@@ -98,8 +98,8 @@ def write_geojson_sequence(
     """Write a kind of parts of a surface, or features, as lines of GeoJSON, each a feature.
 
     The CRS must be known: coordinates are WGS 84 longitude and latitude, elevations metres, as
-    those of a GeoJSON file. Parameters are those of :func:`write_flatgeobuf`; ``progress`` is called
-    with the fraction done.
+    those of a GeoJSON file. Parameters are those of :func:`write_flatgeobuf`; ``progress`` is
+    called with the fraction done.
     """
     from .geojson.features import write_feature_lines
 
