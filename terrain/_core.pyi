@@ -183,4 +183,5 @@ def densify(
     sine: float,
     distance: float,
     full_edge: float,
+    progress: Callable[[float], None] | None = None,
 ) -> tuple[Doubles, Doubles]: ...

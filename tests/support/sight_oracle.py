@@ -51,6 +51,8 @@ def require_parts_as_lines(tin: Any, eye: Any, places: np.ndarray, heights: Any)
     assert np.isclose(seen.columns["area"].sum(), tin.area)
     assert np.isclose(shapely.area(shapes).sum(), tin.area)
     places = places[(tin.locate(places) >= 0) & (places != eye).any(axis=1)]
+    if len(places) == 0:
+        return 0
     lines = ts.line_of_sight(tin, eye, places, **how).columns
     inside = np.stack([shapely.contains_xy(shape, places) for shape in shapes])
     borders = np.stack(
