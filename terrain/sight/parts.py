@@ -19,6 +19,8 @@ __all__ = ["DividedMesh", "divide"]
 
 _SEEN, _DIVIDED = 1, 2
 """What the kernel says of a triangle."""
+_THINNEST = 1e-10
+"""Area of a triangle, by the square of its longest side, below which its parts are rounding."""
 
 
 class DividedMesh(NamedTuple):
@@ -64,7 +66,8 @@ def divide(tin: TIN, view: View) -> DividedMesh:
     )
     points, numbers = _number_corners(tin, corners)
     given = owners.astype(np.int64), is_seen.astype(np.bool_), np.diff(offsets)
-    cells = _drop_points(_Cells(*given, numbers, lines))
+    cells, parts = _join_thin(tin, _Cells(*given, numbers, lines), parts)
+    cells = _drop_points(cells)
     cells, is_cut = _add_whole_triangles(tin, cells, parts)
     cells = _complete_sides(cells, points)
     kept = np.flatnonzero(~is_cut)
@@ -96,13 +99,30 @@ def _number_corners(
     return points, numbers[len(tin.points) :]
 
 
+def _join_thin(
+    tin: TIN, cells: _Cells, parts: NDArray[np.uint8]
+) -> tuple[_Cells, NDArray[np.uint8]]:
+    """Leave triangles whole that are thinner than coordinates can tell: seen if a part is."""
+    a, b, c = (tin.points[tin.triangles[:, k], :2] for k in range(3))
+    squares = [((q - p) ** 2).sum(axis=1) for p, q in ((a, b), (b, c), (c, a))]
+    is_thin = (tin.triangle_areas <= _THINNEST * np.max(squares, axis=0)) & (parts == _DIVIDED)
+    joined = parts.copy()
+    joined[is_thin] = 0
+    joined[cells.owners[is_thin[cells.owners] & cells.is_seen]] = _SEEN
+    return _choose(cells, np.repeat(~is_thin[cells.owners], cells.counts)), joined
+
+
 def _drop_points(cells: _Cells) -> _Cells:
     """Leave out sides without a length, and cells without an area."""
+    return _choose(cells, cells.corners != cells.corners[_find_next(cells.counts)])
+
+
+def _choose(cells: _Cells, keep: NDArray[np.bool_]) -> _Cells:
+    """Return cells with some corners alone, those that have three of them at least."""
     cell = np.repeat(np.arange(len(cells.counts)), cells.counts)
-    keep = cells.corners != cells.corners[_find_next(cells.counts)]
     counts = np.bincount(cell[keep], minlength=len(cells.counts))
     whole = counts > 2
-    keep &= whole[cell]
+    keep = keep & whole[cell]
     return _Cells(
         cells.owners[whole],
         cells.is_seen[whole],
