@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...crs import FOOT, Unit
-from ...errors import CrsError, OptionError
+from ...errors import CrsError, OptionError, ReadError
 from ...terrain.nodata import describe_suspects, find_suspect_elevations
+from .cells import split_line
+from .columns import COORDINATES, find_columns_by_header, find_unit_word, list_names
 from .content import are_plausible_elevations, is_too_steep, measure_relief_and_extent
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -21,6 +23,7 @@ if TYPE_CHECKING:
     from ...crs import CRS
     from ...terrain.area_of_use import AreaOfUse
     from .columns import Columns
+    from .lines import TextLines
     from .table import Fault
 
 __all__ = [
@@ -28,11 +31,14 @@ __all__ = [
     "describe_left_out",
     "find_odd_elevations",
     "find_repeated_numbers",
+    "find_unit_words",
     "require_in_area",
+    "require_one_header",
     "require_unit_of_crs",
 ]
 
 _SHOWN = 5
+_SHOWN_NAME = 40
 _SOME = 4_096
 _FEW_POINTS = 3
 _SAME_UNIT = 1e-3
@@ -89,6 +95,43 @@ def require_in_area(
         f"{_count(len(outside), len(points))} outside the area of use of {area.label} "
         f"({_name_lines(rows[outside])}){exchanged}."
     ]
+
+
+def require_one_header(
+    faults: Sequence[Fault], lines: TextLines, delimiter: str, columns: Columns, path: Path
+) -> None:
+    """Refuse a header among the bad rows that names the coordinates otherwise than they are taken.
+
+    Raises
+    ------
+    ReadError
+    """
+    for fault in faults:
+        cells = split_line(lines.decode_line(fault.line), delimiter)
+        found = find_columns_by_header(cells, strict=False)
+        if found is not None and found.coordinates != columns.coordinates:
+            taken = list_names([columns.label(columns.roles[role]) for role in COORDINATES])
+            raise ReadError(
+                f"'{path}', line {fault.line + 1}: a header ({list_names(cells)}) names other "
+                f"columns than easting, northing and elevation are taken from ({taken}): say with "
+                "the option columns what they are, or read the parts of the file by themselves.",
+                path=path,
+                lines=[fault.line + 1],
+            )
+
+
+def find_unit_words(attributes: Mapping[str, NDArray[Any]]) -> list[str]:
+    """Say which texts begin with one and the same unit of length in every row."""
+    notes = []
+    for name, values in attributes.items():
+        words = {str(one).split(maxsplit=1)[0] for one in values.tolist() if str(one).strip()}
+        word = words.pop() if values.dtype == object and len(words) == 1 else ""
+        if find_unit_word(f"({word})") is not None:
+            notes.append(
+                f"'{name[:_SHOWN_NAME]}' begins with '{word}' in every row: if this is the unit of "
+                "the elevations, the option z_unit says so."
+            )
+    return notes
 
 
 def _count(number: int, total: int = 0) -> str:

@@ -25,7 +25,9 @@ from .findings import (
     describe_left_out,
     find_odd_elevations,
     find_repeated_numbers,
+    find_unit_words,
     require_in_area,
+    require_one_header,
     require_unit_of_crs,
 )
 from .layout import find_layout
@@ -149,6 +151,7 @@ def read(
     table = read_table(cells, layout, meaning, lines)
     table, told_cut = leave_out_cut_row(table, lines, layout, meaning, path, skip_bad=skip_bad)
     _require_few_faults(table.faults, lines, layout, path, skip_bad=skip_bad)
+    require_one_header(table.faults, lines, layout.delimiter, meaning, path)
     told = _account_for_rows(table, left_out, path)
     notes = [
         *layout.notes,
@@ -237,7 +240,7 @@ def _account_for_rows(table: Table, nodata: NDArray[np.float64], path: Path) -> 
     if (is_flat | is_nodata).all():
         raise ReadError(f"'{path}': of {counted(len(z), 'row')}, none has an elevation.", path=path)
     lines: dict[str, tuple[int, ...]] = {}
-    notes: list[str] = []
+    notes = find_unit_words(table.attributes)
     if table.n_grouped:
         notes.append(f"Thousands separators were taken out of {table.n_grouped:,} coordinates.")
     if table.faults:

@@ -63,7 +63,7 @@ def is_small(text):
     st.booleans(),
 )
 def test_tables_are_those_of_pandas(rows, is_quoted):
-    written = [tuple(f'"{one}"' for one in row) if is_quoted else row for row in rows]
+    written = [tuple(f'"{one.strip()}"' for one in row) if is_quoted else row for row in rows]
     frame = pd.read_csv(
         io.StringIO("\n".join(",".join(row) for row in written)), header=None, names=[0, 1],
         dtype={1: object}, skipinitialspace=True, skip_blank_lines=False, keep_default_na=False,
