@@ -25,7 +25,10 @@ from .findings import (
     describe_left_out,
     find_odd_elevations,
     find_repeated_numbers,
+    find_rounded_coordinates,
+    find_summary_rows,
     find_unit_words,
+    find_units_above,
     require_in_area,
     require_one_header,
     require_unit_of_crs,
@@ -160,8 +163,9 @@ def read(
         *told_cut,
         *told.notes,
         *require_in_area(told.points, told.rows, meaning, area, path),
-        *find_odd_elevations(told.points),
-        *find_repeated_numbers(told.attributes.get("number"), told.rows),
+        *find_rounded_coordinates(lines, told.rows, layout.delimiter, meaning),
+        *_find_odd(told),
+        *find_units_above(lines, int(layout.rows[0])),
     ]
     unit = settle_unit(Unit.of(z_unit), _find_header_unit(layout), path)
     placed = place(told.points, source=source, target=target, path=path, unit=unit)
@@ -175,6 +179,15 @@ def read(
         skipped_lines=told.lines,
         notes=[*notes, *placed.notes],
     )
+
+
+def _find_odd(told: _Accounted) -> list[str]:
+    numbers, names = (told.attributes.get(role) for role in ("number", "description"))
+    return [
+        *find_odd_elevations(told.points),
+        *find_repeated_numbers(numbers, told.rows),
+        *find_summary_rows(told.points, told.rows, (numbers, names)),
+    ]
 
 
 def _find_header_unit(layout: Layout) -> Unit | None:

@@ -1296,5 +1296,53 @@ def test_another_header_below_is_no_bad_row(survey):
     text = "P,N,E,Z\n" + "".join(rows) + "{}\n" + "".join(rows)
     again = survey(text.format("P,N,E,Z"), skip_bad=True)
     assert len(again) == 16
-    with pytest.raises(ReadError, match=r"line 10: a header \(P, E, N, Z\) names other columns"):
+    with pytest.raises(
+        ReadError, match=r"line 10: a header \(P, E, N, Z\) names other columns or units"
+    ):
         survey(text.format("P,E,N,Z"), skip_bad=True)
+
+
+def test_another_unit_below_is_no_bad_row(survey):
+    rows = [f"{i},{10 + i}.5,{20 + i}.5,{5 + i / 10}\n" for i in range(1, 9)]
+    with pytest.raises(ReadError, match="names other columns or units"):
+        survey("P,N,E,Z\n" + "".join(rows) + "P,N,E,Z (ft)\n" + "".join(rows), skip_bad=True)
+
+
+@pytest.mark.parametrize("northing", ["4.02E+06", "4e+06", "4.02424e+06"])
+def test_coordinates_that_a_spreadsheet_rounded_are_told(survey, northing):
+    rows = [
+        "1,4024240.1,752700.2,322.5",
+        f"2,{northing},752701.2,322.6",
+        "3,4024244.1,752704.2,3.229E2",
+    ]
+    found = survey("P,N,E,Z\n" + "\n".join(rows) + "\n", crs="EPSG:32616")
+    assert found.notes == [
+        f"1 coordinate has an exponent and no digits below the tens (line 3: '{northing}'): check "
+        "that no spreadsheet has rounded them."
+    ]
+    exact = survey("P,N,E,Z\n" + "\n".join(rows).replace(northing, "4.0242401E+06") + "\n")
+    assert exact.notes == []
+
+
+NUMBERED = [(f"{i}", f"{10 + i}.5", f"{20 + i * i}.25", f"{5 + i / 10}") for i in range(1, 6)]
+WITH_HEADER = "P,N,E,Z\n" + "".join(",".join(row) + "\n" for row in NUMBERED)
+
+
+def test_statistics_below_the_points_are_told(survey):
+    found = survey(WITH_HEADER + "Min,11.5,21.25,5.1\nMean:,13.5,31.25,5.3\n")
+    assert found.notes == [
+        "2 rows are read as points and may be statistics of the others ('Min', 'Mean:', lines 7, "
+        "8)."
+    ]
+    total = ",".join(f"{sum(float(row[k]) for row in NUMBERED):.6f}" for k in (1, 2, 3))
+    found = survey(WITH_HEADER + f",{total}\n")
+    assert found.notes == ["The last row (line 7) is the sum of all others, and read as a point."]
+
+
+@pytest.mark.parametrize("line", ["Units;US Survey Feet", "# units: ft", "Unit = m"])
+def test_a_unit_above_the_table_is_told(survey, line):
+    found = survey(f"{line}\n{WITH_HEADER}")
+    assert found.elevation_unit is None
+    (note,) = found.notes
+    assert note.startswith(f"Line 1 ('{line}') tells a unit")
+    assert survey(f"United we stand\nUnits: many\n{WITH_HEADER}").notes == []
