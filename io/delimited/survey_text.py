@@ -163,9 +163,7 @@ def read(
         *told_cut,
         *told.notes,
         *require_in_area(told.points, told.rows, meaning, area, path),
-        *find_rounded_coordinates(lines, told.rows, layout.delimiter, meaning),
-        *_find_odd(told),
-        *find_units_above(lines, int(layout.rows[0])),
+        *_find_odd(told, lines, layout, meaning),
     ]
     unit = settle_unit(Unit.of(z_unit), _find_header_unit(layout), path)
     placed = place(told.points, source=source, target=target, path=path, unit=unit)
@@ -181,12 +179,14 @@ def read(
     )
 
 
-def _find_odd(told: _Accounted) -> list[str]:
+def _find_odd(told: _Accounted, lines: TextLines, layout: Layout, columns: Columns) -> list[str]:
     numbers, names = (told.attributes.get(role) for role in ("number", "description"))
     return [
         *find_odd_elevations(told.points),
         *find_repeated_numbers(numbers, told.rows),
+        *find_rounded_coordinates(lines, told.rows, layout.delimiter, columns),
         *find_summary_rows(told.points, told.rows, (numbers, names)),
+        *find_units_above(lines, int(layout.rows[0])),
     ]
 
 
