@@ -4,18 +4,19 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..tin.meshing.simplification import Goal, simplify_tin
+from ...tin.meshing.simplification import Goal, simplify_tin
+from ..results import Raster
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ..tin import TIN
+    from ...tin import TIN
 
 __all__ = ["simplify"]
 
 
 def simplify(
-    surface: TIN,
+    surface: TIN | Raster,
     *,
     tolerance: float | None = None,
     points: int | None = None,
@@ -90,4 +91,8 @@ def simplify(
     >>> ts.simplify(tin, points=60)
     <TIN: 60 vertices, ...>
     """
+    if isinstance(surface, Raster):
+        from .rasters import simplify_raster
+
+        return simplify_raster(surface, Goal.of(tolerance, points), keep, threads)
     return simplify_tin(surface, Goal.of(tolerance, points), keep, threads)
