@@ -47,7 +47,8 @@ def simplify(
         Further vertices of ``surface`` that stay; of a raster cells, row by row from the
         north-west.
     threads : int, optional
-        For blocks of a raster, and for triangulating what is left. The result is the same for any number.
+        For blocks of a raster, and for triangulating what is left. The result is the same for any
+        number.
 
     Returns
     -------

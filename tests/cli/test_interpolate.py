@@ -52,7 +52,7 @@ def test_method_extrapolation_name_and_json(tmp_path, surface):
     )
     assert out.exit_code == 0, out.output
     facts = json.loads(out.stdout)
-    assert (facts["places"], facts["outside"], facts["method"]) == (3, 0, "natural")
+    assert (facts["points"], facts["outside"], facts["method"]) == (3, 0, "natural")
     rows = json.loads((tmp_path / "out.json").read_text())["rows"]
     wanted = ts.read(surface).interpolate(
         [[50.5, 40], [60, 70], [-5, 0]], "natural", extrapolate="nearest"
@@ -67,7 +67,7 @@ def test_places_in_degrees_need_their_crs(tmp_path):
     assert out.exit_code == 1
     assert "longitudes and latitudes by their header" in out.stderr
     assert not (tmp_path / "o.csv").exists()
-    out = run(*files, "--places-crs", "EPSG:4326", "--extrapolate", "nearest")
+    out = run(*files, "--at-crs", "EPSG:4326", "--extrapolate", "nearest")
     assert out.exit_code == 0, out.output
     assert "transformed from EPSG:4326" in out.stderr
 
@@ -75,8 +75,8 @@ def test_places_in_degrees_need_their_crs(tmp_path):
 def test_columns_and_delimiter_by_name(tmp_path, surface):
     table = places(tmp_path, "a|b,c\n50|40\n")
     out = run(
-        *("interpolate", surface, "--at", table, "--places-delimiter", "|"),
-        *("--places-columns", "a", "b,c", "-o", tmp_path / "o.csv", "-q"),
+        *("interpolate", surface, "--at", table, "--at-delimiter", "|"),
+        *("--at-columns", "a", "b,c", "-o", tmp_path / "o.csv", "-q"),
     )
     assert out.exit_code == 0, out.output
     assert (tmp_path / "o.csv").read_text().startswith('a,"b,c",elevation')

@@ -12,19 +12,12 @@ from tinsmith.terrain.simplification.rasters import simplify_raster
 from tinsmith.tin.meshing.simplification import Goal
 
 from .campaign import Campaign, Case
-from .coordinates import points
-from .refine import line, ring
+from .linework import list_lines, surface, triangulate
 
 
 def generate(rng: np.random.Generator) -> Case:
     """A TIN with lines, a boundary or holes, and a tolerance or a number of points."""
-    kind = None if rng.random() < 0.6 else str(rng.choice(["nearly_collinear", "neighbours"]))
-    case: Case = {"points": points(rng, int(rng.integers(3, 40)), kind)}
-    xy = np.array(case["points"])[:, :2]
-    if rng.random() < 0.4:
-        case["breaklines"] = [line(rng, xy) for _ in range(int(rng.integers(1, 3)))]
-    if rng.random() < 0.3:
-        case[str(rng.choice(["boundary", "holes"]))] = [ring(rng, xy)]
+    case = surface(rng, most=39)
     heights = np.array(case["points"])[:, 2]
     case["tolerance"] = float(rng.choice([0, 0.01, 0.1, 0.5, 2])) * float(np.ptp(heights))
     case["share"] = float(rng.random())
@@ -34,13 +27,9 @@ def generate(rng: np.random.Generator) -> Case:
 
 def examine(case: Case) -> str:
     """Simplify both ways, and in another order of the points."""
-    lines = {name: case[name] for name in ("breaklines", "boundary", "holes") if name in case}
-    try:
-        tin = ts.triangulate(case["points"], **lines)
-    except ts.TinsmithError:
-        return "refused: TIN"
-    if not ts.check(tin).ok:
-        return "not ours: unsound before"
+    tin = triangulate(case)
+    if isinstance(tin, str):
+        return tin
     try:
         simple = ts.simplify(tin, tolerance=case["tolerance"])
     except ts.PointsError:
@@ -54,7 +43,7 @@ def examine(case: Case) -> str:
         counted = ts.simplify(tin, points=number)
         require_sound(tin, counted)
         assert len(counted.points) == number, "another number of points"
-    if not lines:
+    if not list_lines(case):
         require_same_in_any_order(case, simple)
     return "simplified"
 
