@@ -23,6 +23,8 @@ __all__ = [
     "looks_like_table",
     "parse_decimal_mark",
     "parse_delimiter",
+    "require_no_blank_groups",
+    "require_no_delimiter",
     "require_one_kind_of_comma",
     "split_header",
 ]
@@ -31,6 +33,7 @@ _TOP_LINES = 100
 _DELIMITERS = ("\t", ";", "|", ",", BLANKS)
 _VISIBLE = (",", ";", "|")
 _COMMA_WITH_OTHER = re.compile(r"[ \t]+,[ \t]*|,[ \t]+|,[ \t]*[|;]|[|;][ \t]*,")
+_WIDE_BLANK = re.compile(r"[ \t]{2,}|\t")
 _SPOKEN = {
     "comma": ",",
     "semicolon": ";",
@@ -93,14 +96,14 @@ def _count_numbers(cells: Sequence[str], delimiter: str) -> int:
     marks = "." if delimiter == "," else ".,"
     return sum(
         bool(cell)
-        and not _clings(cell)
+        and not _is_beside_delimiter(cell)
         and not (delimiter == "," and " " in cell)  # what groups 4 024 240 is no comma
         and any(is_number_like(cell, mark) for mark in marks)
         for cell in cells
     )
 
 
-def _clings(cell: str) -> bool:
+def _is_beside_delimiter(cell: str) -> bool:
     """Whether a cell begins or ends with what must be a delimiter: blanks stand beside it."""
     return cell.startswith(_VISIBLE) or cell.endswith(_VISIBLE)
 
@@ -148,7 +151,8 @@ def _is_headed_by_blanks(sample: Sequence[str]) -> bool:
     count = len(rows[top]) - is_described
     bodies = [row[:count] for row in rows[top + 1 :] if is_described or len(row) == count]
     if len(bodies) < len(rows) - top - 1 or any(
-        len(body) != count or not all(is_number(cell, ",") for cell in body if _clings(cell))
+        len(body) != count
+        or not all(is_number(cell, ",") for cell in body if _is_beside_delimiter(cell))
         for body in bodies
     ):
         return False
@@ -162,6 +166,21 @@ def _is_headed_by_blanks(sample: Sequence[str]) -> bool:
 
 def _is_header(row: Sequence[str]) -> bool:
     return find_columns_by_header(row, strict=False) is not None
+
+
+def require_no_delimiter(mark: str, delimiter: str, cells: Sequence[Sequence[str]]) -> None:
+    """Raise if the decimal mark that the caller names is the delimiter, and stands in no cell.
+
+    Raises
+    ------
+    ReadError
+        If so: 525,20,1072,77 may be two numbers or four, and quotes would have told.
+    """
+    if mark == delimiter and not any(mark in cell for row in cells for cell in row):
+        raise ReadError(
+            f"its columns are separated by '{delimiter}', and no cell holds one, though the option "
+            "decimal names it: write the table with another delimiter, or quote its numbers."
+        )
 
 
 def require_one_kind_of_comma(sample: Sequence[str]) -> None:
@@ -184,6 +203,40 @@ def require_one_kind_of_comma(sample: Sequence[str]) -> None:
         )
 
 
+def require_no_blank_groups(sample: Sequence[str], n_told: int) -> None:
+    """Raise if blanks separate columns, and single ones among wider ones may group digits.
+
+    Parameters
+    ----------
+    sample : sequence of str
+        Lines of the file.
+    n_told : int
+        Columns that the caller names: as many as there are between blanks of any width leave
+        nothing open.
+
+    Raises
+    ------
+    ReadError
+        If every row is like "525.7  1 049.882  5.9", which may be three columns or four.
+    """
+    rows = [row for row in sample if _count_numbers(split_line(row, BLANKS), BLANKS) >= 2]
+    grouped = [
+        next((cell for cell in _WIDE_BLANK.split(row.strip()) if _is_grouped_by_blanks(cell)), None)
+        for row in rows
+    ]
+    is_told = any(len(split_line(row, BLANKS)) <= n_told for row in rows)
+    if rows and all(grouped) and not is_told:
+        raise ReadError(
+            f"its blanks may separate columns or thousands ('{grouped[0]}', beside wider blanks): "
+            "write the table with another delimiter, or say with the option columns what all of "
+            "them are."
+        )
+
+
+def _is_grouped_by_blanks(cell: str) -> bool:
+    return " " in cell and (is_grouped(cell, ".") or is_grouped(cell, ","))
+
+
 def _is_grouped_by_commas(cell: str) -> bool:
     return "," in cell and is_grouped(cell, ".")
 
@@ -200,7 +253,7 @@ def _score_delimiter(sample: Sequence[str], delimiter: str) -> tuple[int, float,
     )
     if numbers < 2 or max(map(len, rows)) < 3:
         return 0, 0.0, 0
-    even = [row for row in rows if delimiter != BLANKS or not any(map(_clings, row))]
+    even = [row for row in rows if delimiter != BLANKS or not any(map(_is_beside_delimiter, row))]
     count, times = Counter(map(len, even)).most_common(1)[0] if even else (0, 0)
     return min(numbers, 3), times / len(rows), count
 
@@ -246,7 +299,7 @@ def find_decimal_mark(rows: Iterable[Sequence[str]], delimiter: str) -> DecimalM
         return DecimalMark(".")
     if not commas:
         return None
-    if delimiter == ";" and not any(map(_clings, numbers)):
+    if delimiter == ";" and not any(map(_is_beside_delimiter, numbers)):
         return DecimalMark(
             ",",
             "The commas in its numbers are taken as decimal marks, as is usual between semicolons "
