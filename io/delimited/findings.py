@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._sentences import counted
 from ...crs import FOOT, Unit
 from ...errors import CrsError, OptionError
 from ...terrain.nodata import describe_suspects, find_suspect_elevations
@@ -92,7 +93,7 @@ def require_in_area(
 
 
 def _count(number: int, total: int = 0) -> str:
-    of_all = f" of {total:,} points" if total else ""
+    of_all = f" of {counted(total, 'point')}" if total else ""
     return f"{number:,}{of_all} {'lies' if number == 1 else 'lie'}"
 
 

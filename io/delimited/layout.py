@@ -481,7 +481,8 @@ def _fit_header(
     if wishes.columns is not None and not isinstance(wishes.columns, Mapping):
         return []
     raise ReadError(
-        f"the header names {len(header)} columns ({list_names(header)}), but rows have {count}: "
+        f"the header names {counted(len(header), 'column')} ({list_names(header)}), but rows have "
+        f"{count}: "
         "say with the option columns what they are, and check delimiter and decimal mark."
     )
 

@@ -470,6 +470,18 @@ def test_format_that_cannot_be_written_is_refused_by_name(folder):
 
 
 @pytest.mark.parametrize(
+    ("name", "fault"), [("out.foo", "has the unknown suffix '.foo'"), ("out", "has no suffix")]
+)
+def test_an_output_of_no_known_suffix_is_wrong_usage(folder, name, fault):
+    Path("in.csv").write_text(SQUARE)
+    result = CliRunner().invoke(main, ["build", "in.csv", "-o", name])
+    assert result.exit_code == 2
+    assert f"Error: '{name}' {fault}: .csv, " in result.stderr
+    assert result.stderr.endswith("; --output-format names one whatever the suffix.\n")
+    assert not Path(name).exists()
+
+
+@pytest.mark.parametrize(
     "arguments",
     [
         [],
