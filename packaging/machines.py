@@ -61,7 +61,7 @@ class Machine:
         place = self.root / target.lstrip("/")
         place.parent.mkdir(parents=True, exist_ok=True)
         if source.is_dir():
-            shutil.copytree(source, place, dirs_exist_ok=True)
+            shutil.copytree(source, place, symlinks=True, dirs_exist_ok=True)
         else:
             shutil.copy(source, place)
 

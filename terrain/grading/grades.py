@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._progress import Progress
 from ...crs import scale_elevations
 from ...errors import LinesError, OptionError, PointsError
 from ...tin.constraints.polygons import gather_rings_of_regions
@@ -17,11 +18,18 @@ from .pasting import find_area, join_surfaces
 from .slopes import find_slope
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import ArrayLike, NDArray
 
     from ...tin import TIN
 
 __all__ = ["grade"]
+
+_SHARE = 1e-6
+"""Of the area of pad and slopes: less of it may lie beyond the ground by rounding."""
+_SLOPE = 0.2
+"""Of the work as it is told, following the one slope or the other."""
 
 
 def grade(
@@ -31,6 +39,7 @@ def grade(
     *,
     cut_slope: float,
     fill_slope: float,
+    progress: Callable[[float], None] | None = None,
 ) -> TIN:
     """Grade a level pad into the ground, with side slopes to where they meet it.
 
@@ -48,12 +57,16 @@ def grade(
         Of the pad, in the unit of the ground's; default that of the ring, which must be level.
     cut_slope, fill_slope : float
         Horizontal over vertical: 2 is 2:1, two along for one up or down.
+    progress : callable, optional
+        Called with the fraction done, ascending to 1.0, as slopes are followed and pasted into the
+        ground. What it raises ends the call.
 
     Returns
     -------
     TIN
         Pad, slopes, and the ground beyond. Breaklines are named "pad edge", "daylight" and
-        "slope", where slopes break. Volumes are those of ``ts.volume(tin, graded)``.
+        "slope", where slopes break. Volumes are those of ``ts.volume(tin, graded)``. Vertices of
+        the ground keep their attributes, new ones have none.
 
     Raises
     ------
@@ -82,6 +95,7 @@ def grade(
     >>> graded.interpolate([[30, 30], [30, 37], [30, 45]]).round(9)
     array([3., 4., 5.])
     """
+    done = Progress(progress)
     reference = find_reference(tin, "Slopes")
     up = scale_elevations(reference.crs, reference.elevation_unit)
     cut = 1.0 / (_require_ratio("cut_slope", cut_slope) * up)
@@ -91,14 +105,18 @@ def grade(
     local = tin.replace(crs=None, elevation_unit=None)
     used = tin.points[tin.triangles, 2]
     farthest = {cut: (used.max() - level) / cut, fill: (used.min() - level) / fill}
-    slopes = [
-        find_slope(local, polygon, level, rate, float(reach))
-        for rate, reach in farthest.items()
-        if reach > 0
-    ]
+    slopes = []
+    for number, (rate, reach) in enumerate(farthest.items(), 1):
+        if reach > 0:
+            slopes.append(find_slope(local, polygon, level, rate, float(reach)))
+        done(number * _SLOPE)
     patch = build_patch(tin, polygon, level, slopes)
+    _require_within(tin, patch)
+    done(0.5)
     agreed = Agreement(tin.crs, tin.elevation_unit, (1.0, 1.0), reference.notes)
-    return join_surfaces(tin, patch, agreed, "daylight")
+    graded = join_surfaces(tin, patch, agreed, "daylight", progress=done.stage(0.5, 1.0))
+    done.end()
+    return graded
 
 
 # ---------------------------------------------------------------- what is given
@@ -137,6 +155,15 @@ def _find_level(ring: NDArray[np.float64]) -> float:
             "elevation", None, f"a number: the pad's ring is not level ({low:g} to {high:g})"
         )
     return low
+
+
+def _require_within(tin: TIN, patch: TIN) -> None:
+    import shapely
+
+    beyond = shapely.difference(find_area(patch), find_area(tin))
+    if beyond.area > _SHARE * patch.area:
+        place = shapely.point_on_surface(beyond)
+        raise PointsError(f"A slope reaches beyond the ground, at {place.x:.10g} {place.y:.10g}.")
 
 
 def _require_on_ground(tin: TIN, pad: Any) -> None:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._progress import Progress
 from ...tin import Breakline
 from ...tin.topology import edge_keys
 
@@ -14,12 +15,15 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from ..._progress import Tell
     from ...tin import TIN
 
 __all__ = ["Seam", "find_sides", "measure_tolerance"]
 
 _ROUNDINGS = 64.0
 """Of the largest coordinate: places so near to each other are one."""
+_BATCH = 256
+"""Segments that are cut between two words of how far it is."""
 
 
 def measure_tolerance(*points: NDArray[np.float64]) -> float:
@@ -43,6 +47,12 @@ class Seam:
     points : (n, 3) float64 array
         Its vertices, in the unit of the other surface.
     tolerance : float
+
+    Attributes
+    ----------
+    rings : list of (k, 3) float64 array
+    rounding : float
+        Area that the roundings of the boundary can take away or add.
     """
 
     def __init__(self, patch: TIN, points: NDArray[np.float64], tolerance: float) -> None:
@@ -57,6 +67,7 @@ class Seam:
         closed = [shapely.linearrings(ring[:, :2]) for ring in self.rings]
         self._area = shapely.build_area(shapely.geometrycollections(closed))
         shapely.prepare(self._area)
+        self.rounding = tolerance * float(self._area.length)
         self._cuts: dict[int, list[tuple[float, NDArray[np.float64]]]] = {}
 
     def find_near(self, xy: NDArray[np.float64]) -> NDArray[np.int64]:
@@ -78,12 +89,13 @@ class Seam:
         return np.unique(near[self._tree.query(segments, predicate="intersects")[0]])
 
     def cut(
-        self, ends: NDArray[np.float64], is_kept: NDArray[np.bool_]
+        self, ends: NDArray[np.float64], is_kept: NDArray[np.bool_], progress: Tell | None = None
     ) -> list[list[NDArray[np.float64]]]:
         """Return the parts of segments, (k, 2, 3), outside; their new ends are on the seam."""
         import shapely
 
         outside = shapely.difference(shapely.linestrings(ends[:, :, :2]), self._area)
+        done = Progress(progress)
         found = []
         for left, own, stays in zip(outside, ends, is_kept.tolist(), strict=True):
             there = [part for part in shapely.get_parts(left) if not part.is_empty]
@@ -92,6 +104,8 @@ class Seam:
             off = [part for part in parts if self._is_off(part)]
             ways = [np.array([self._place(xy, fixed) for xy in part]) for part in off]
             found.append([way for way in ways if (way[0, :2] != way[1, :2]).any()])
+            if len(found) % _BATCH == 0:
+                done(len(found) / len(ends))
         return found
 
     def _is_off(self, part: NDArray[np.float64]) -> bool:

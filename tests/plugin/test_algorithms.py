@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import shutil
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -268,7 +269,7 @@ def check_rasters(told, tin, folder):
 
 
 def make_program(path, text):
-    path.write_text(f"#!/usr/bin/env python3\n{text}")
+    path.write_text(f"#!{sys.executable}\n{text}")
     path.chmod(0o755)
     return str(path)
 
@@ -284,6 +285,19 @@ print('{"event": "warning", "text": "about to hang"}', file=sys.stderr, flush=Tr
 print("no event", file=sys.stderr, flush=True)
 time.sleep(300)
 """
+
+WAITING = """
+import pathlib, sys, time
+
+def wait(*_):
+    print('{"event": "warning", "text": "about to replace"}', file=sys.stderr, flush=True)
+    time.sleep(300)
+
+pathlib.Path.replace = wait
+from tinsmith.cli import main
+main()
+"""
+"""The command itself, which waits where it would put its file in the place of the old one."""
 
 
 @pytest.mark.slow
@@ -373,9 +387,11 @@ def test_cancelling_ends_the_command_and_leaves_nothing(tmp_path, survey):
     folder.mkdir()
     (folder / "old.ply").write_bytes(b"old")
     stubborn = make_program(tmp_path / "stubborn", STUBBORN)
+    waiting = make_program(tmp_path / "waiting", WAITING)
+    at_replacing = {"command": waiting, "cancel_at": "about to replace"}
     jobs = {
-        "new": job("build", DEM="dem", OUTPUT=folder / "new.ply") | {"cancel_at": "Reading"},
-        "old": job("build", DEM="dem", OUTPUT=folder / "old.ply") | {"cancel_at": "Writing"},
+        "new": job("build", DEM="dem", OUTPUT=folder / "new.ply") | at_replacing,
+        "old": job("build", DEM="dem", OUTPUT=folder / "old.ply") | at_replacing,
         "stubborn": job("check", INPUT="ground")
         | {"command": stubborn, "cancel_at": "about to hang", "grace": 0.3},
     }

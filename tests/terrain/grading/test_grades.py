@@ -101,6 +101,20 @@ def test_the_ring_gives_the_elevation_and_feet_count():
     assert graded.interpolate([[35.3, 30]]) == pytest.approx([3 + 0.15 / 0.3048])
 
 
+def test_vertices_of_the_ground_keep_their_attributes():
+    points = make_hills(0).points
+    ground = ts.triangulate(ts.Survey(points=points, attributes={"number": np.arange(len(points))}))
+    pad = np.add(UTM, PADS[0])
+    graded = ts.grade(ground, pad, 100.0, cut_slope=2, fill_slope=1.5)
+    kept = np.isfinite(graded.attributes["number"])
+    rows = graded.attributes["number"][kept].astype(int)
+    np.testing.assert_array_equal(graded.points[kept], points[rows])
+    inside = shapely.contains(shapely.Polygon(pad), shapely.points(points[:, :2]))
+    assert not inside[rows].any()
+    same = np.abs(graded.interpolate(points[:, :2]) - points[:, 2]) == 0
+    assert set(rows) == set(np.flatnonzero(same & ~inside))
+
+
 def test_level_ground_at_the_level_of_the_pad_is_left():
     ground = ts.triangulate(FLAT)
     graded = ts.grade(ground, SQUARE, 5.0, cut_slope=2, fill_slope=3)
