@@ -2,7 +2,7 @@
 
     python packaging/try_wheel.py dist trixie
 
-pip of that machine chooses the wheel that fits its Python and brings the libraries as wheels; a user
+pip of that machine chooses the wheel that fits its Python, and brings libraries as wheels; a user
 without rights runs the jobs of try_jobs.py. Root, debootstrap and a network are needed.
 """
 
