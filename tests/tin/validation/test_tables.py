@@ -68,7 +68,7 @@ def test_masks_in_structured_arrays_and_lists_of_rows():
 @pytest.mark.parametrize(
     ("act", "error", "sentence"),
     [
-        (lambda tin: ts.Breakline(masked()), ts.LinesError, "1 masked vertices"),
+        (lambda tin: ts.Breakline(masked()), ts.LinesError, "1 masked vertex"),
         (lambda tin: ts.Water(masked()[:, :2], 1.0), None, ""),
         (lambda tin: ts.Water(masked(column=0)[:, :2], 1.0), ts.LinesError, "masked"),
         (lambda tin: tin.insert(masked()), ts.PointsError, "1 of 5 points is masked"),
