@@ -25,9 +25,11 @@ __all__ = [
     "fit_quadratics",
     "leave_one_out",
     "list_neighbors",
+    "measure_cells",
     "measure_neighbors",
     "overlay",
     "shade_planes",
+    "simplify_cells",
     "smooth_contours",
     "stage_sums",
     "sum_areas",
@@ -51,6 +53,8 @@ leave_one_out = _core.leave_one_out
 list_neighbors = _core.list_neighbors
 measure_neighbors = _core.measure_neighbors
 densify = _core.densify
+simplify_cells = _core.simplify_cells
+measure_cells = _core.measure_cells
 find_seen_parts = _core.find_seen_parts
 find_seen_vertices = _core.find_seen_vertices
 
