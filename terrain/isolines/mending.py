@@ -41,12 +41,19 @@ class PolygonParts(NamedTuple):
     band: NDArray[np.int32]
 
 
-def mend_polygons(parts: PolygonParts) -> tuple[PolygonParts, tuple[str, ...]]:
-    """Make polygons valid that meet themselves, and say so."""
+def mend_polygons(
+    parts: PolygonParts, *, together: bool = False
+) -> tuple[PolygonParts, tuple[str, ...]]:
+    """Make polygons valid that meet themselves, or with ``together`` others of theirs; say so."""
     shapely = _optional.load("shapely")
     offsets = parts.ring_offsets, parts.polygon_offsets
     shapes = shapely.from_ragged_array(shapely.GeometryType.POLYGON, parts.points, offsets)
     is_bad = ~shapely.is_valid(shapes)
+    if together:
+        _, owner = np.unique(parts.band, return_inverse=True)
+        order = np.argsort(owner, kind="stable")
+        wholes = shapely.multipolygons(shapes[order], indices=owner[order])
+        is_bad |= ~shapely.is_valid(wholes)[owner]
     if not is_bad.any():
         return parts, ()
     bands = np.unique(parts.band[is_bad])
