@@ -89,6 +89,9 @@ def turn(polygon: Any) -> Any:
 def as_parts(shapes: NDArray[np.object_], band: NDArray[np.int32]) -> PolygonParts:
     """Return polygons of shapely as the kernel returns its own."""
     shapely = _optional.load("shapely")
+    if len(shapes) == 0:  # nothing is left of what is thinner than rounding
+        none = np.zeros(1, np.int64)
+        return PolygonParts(np.zeros((0, 2)), none, none, band)
     _, points, (rings, polygons) = shapely.to_ragged_array(shapes)
     return PolygonParts(
         np.ascontiguousarray(points[:, :2]),
