@@ -95,7 +95,8 @@ def find_corners(
     """Return which corner of each chosen triangle a vertex of it is."""
     found = triangles.take(chosen, axis=0, mode="wrap")
     is_one, is_two = found[:, 1] == vertices, found[:, 2] == vertices
-    return is_one + 2 * is_two.astype(np.int64)
+    corners: NDArray[np.int64] = is_one + 2 * is_two.astype(np.int64)
+    return corners
 
 
 def round_share(share: Any) -> Any:

@@ -335,7 +335,8 @@ def _run_over(
     while True:
         skipped = further[further]
         if np.array_equal(skipped, further):
-            return further[nexts[ponds]]
+            into: NDArray[np.int64] = further[nexts[ponds]]
+            return into
         further = skipped
 
 
