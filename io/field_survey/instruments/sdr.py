@@ -20,6 +20,7 @@ from ....crs import METRE
 from ....errors import ReadError
 from ...delimited.cells import is_number
 from ...delimited.lines import read_lines
+from .record_lines import find_head, read_records
 from .records import Book, require_refraction
 from .reduction import Shot, Station, reduce_shot, to_radians
 
@@ -86,15 +87,8 @@ def read(
     """
     coefficient = require_refraction(refraction)
     lines = read_lines(path, encoding=encoding)
-    reader = _Reader(lines, path, coefficient)
-    for number in range(len(lines)):
-        line = lines.decode_line(number)
-        if number == len(lines) - 1 and not lines.is_whole and reader.may_be_cut(line):
-            reader.book.leave_out("records without an end that may be cut", number + 1)
-        else:
-            reader.read_record(line, number + 1)
-    reader.finish()
-    return reader.book.make_survey(crs=crs, z_unit=z_unit, source_crs=source_crs)
+    book = read_records(lines, _Reader(lines, path, coefficient))
+    return book.make_survey(crs=crs, z_unit=z_unit, source_crs=source_crs)
 
 
 class _Reader:
@@ -122,7 +116,7 @@ class _Reader:
         }
 
     def _read_header(self, lines: TextLines, path: Path) -> tuple[_Columns, bool, str]:
-        head = next((lines.decode_line(i) for i in range(len(lines)) if not lines.is_blank[i]), "")
+        head = find_head(lines)
         version = head[4:20].strip().upper()
         columns = next((one for name, one in _VERSIONS.items() if version.startswith(name)), None)
         if not head.startswith("00") or columns is None:
@@ -162,25 +156,27 @@ class _Reader:
         self.is_from_horizon = line[50:51] == "2"
 
     def _read_target_height(self, line: str, number: int) -> None:
-        self.target_height = self._number(line[4:20].strip(), number)
+        self.target_height = self._parse_number(line[4:20].strip(), number)
 
     def _read_scale(self, line: str, number: int) -> None:
-        self.scale = self._number(line[4:20].strip(), number)
+        self.scale = self._parse_number(line[4:20].strip(), number)
 
     def _read_station(self, line: str, number: int) -> None:
         name, *cells, _ = self.columns.split(line, *_FIELDS["02"])
-        x, y, z, height = (self._number(cell, number) for cell in cells)
+        x, y, z, height = (self._parse_number(cell, number) for cell in cells)
         self.stations[name] = (x, y, z, height) if self.is_east_first else (y, x, z, height)
         self.orientations.pop(name, None)
 
     def _read_back_bearing(self, line: str, number: int) -> None:
         name, _, *cells, _ = self.columns.split(line, *_FIELDS["07"])
-        azimuth, circle = (to_radians(self._number(cell, number), self.angle) for cell in cells)
+        azimuth, circle = (
+            to_radians(self._parse_number(cell, number), self.angle) for cell in cells
+        )
         self.orientations[name] = azimuth - circle
 
     def _read_coordinates(self, line: str, number: int) -> None:
         name, *cells, code = self.columns.split(line, *_FIELDS["08"])
-        x, y, z = (self._number(cell, number) for cell in cells)
+        x, y, z = (self._parse_number(cell, number) for cell in cells)
         xyz = (x, y, z) if self.is_east_first else (y, x, z)
         self._known.add(name)
         self.book.add(name, xyz, code, number, "coordinates")
@@ -191,7 +187,7 @@ class _Reader:
         if kind not in ("F1", "F2"):
             self._waiting.append((number, name, code, None, Shot(*(math.nan,) * 4)))
             return
-        distance, vertical, circle = (self._number(cell, number) for cell in cells)
+        distance, vertical, circle = (self._parse_number(cell, number) for cell in cells)
         shot = Shot(
             to_radians(circle, self.angle),
             self._find_zenith(to_radians(vertical, self.angle)),
@@ -228,7 +224,7 @@ class _Reader:
                 f"The scale {self.scale:g} of the file is not 1: no shot was reduced."
             )
 
-    def _number(self, cell: str, line: int) -> float:
+    def _parse_number(self, cell: str, line: int) -> float:
         """Return the number of a field, NaN if it is empty."""
         if not cell:
             return math.nan
