@@ -18,7 +18,7 @@ __all__ = ["Segments", "Splitting", "drop_repeats", "interpolate_linearly", "is_
 
 MOST_ROUNDS = 1000  # cascades of roundings end after a few
 
-_FREE_ROUNDS = 24
+_FREE_ROUNDS = 12
 """Rounds after which lines that cross near an end of one of them meet at that end."""
 _NEAR = 4.0
 """How near that is: spacings of the largest coordinate, along x and along y."""

@@ -40,13 +40,16 @@ _SHOWN = 12
 @number_option("--radius", "LENGTH", "Of the viewshed; any distance if absent.")
 @click.option("--curvature", is_flag=True, help="Mind that the earth is a sphere.")
 @number_option("--sight-refraction", "COEFFICIENT", "With --curvature; 0.13 if absent.")
+@click.option(
+    "--whole-triangles", is_flag=True, help="Judge triangles by their corners: do not divide them."
+)
 @surface_options()
 def sight(file: Path, eye: tuple[float, float], request: Request, **asked: Any) -> None:
     """Find what is seen from a place on the TIN in FILE, or on that of the points in it.
 
-    Without --to the viewshed: triangles whose corners are all seen, some of them, or none. Vector
-    files get the features, tables (.csv, .json) their columns. Ground that only touches a line of
-    sight does not block it.
+    Without --to the viewshed: what is visible and what is hidden, as polygons that divide
+    triangles. Vector files get the features, tables (.csv, .json) their columns. Ground that only
+    touches a line of sight does not block it.
 
     \b
     Example:
@@ -59,6 +62,8 @@ def sight(file: Path, eye: tuple[float, float], request: Request, **asked: Any) 
 
     if asked["targets"] and asked["radius"] is not None:
         raise click.UsageError("--radius is for a viewshed, without --to.")
+    if asked["targets"] and asked["whole_triangles"]:
+        raise click.UsageError("--whole-triangles is for a viewshed, without --to.")
     coefficient = asked["sight_refraction"]
     if coefficient is not None and not asked["curvature"]:
         raise click.UsageError("--sight-refraction is for --curvature.")
@@ -66,13 +71,14 @@ def sight(file: Path, eye: tuple[float, float], request: Request, **asked: Any) 
         raise click.UsageError("--sight-refraction is a coefficient from -1 to 1.")
     planned = request.plan_products(request.list_inputs(file), "Features", "Table")
     tin = request.read_tin(file)
-    targets, radius = asked.pop("targets"), asked.pop("radius")
+    targets = asked.pop("targets")
+    of_viewshed = {name: asked.pop(name) for name in ("radius", "whole_triangles")}
     asked["refraction"] = asked.pop("sight_refraction")
     with request.step("Looking"):
         if targets:
             found = terrain.line_of_sight(tin, list(eye), [list(one) for one in targets], **asked)
         else:
-            found = terrain.viewshed(tin, list(eye), radius=radius, **asked)
+            found = terrain.viewshed(tin, list(eye), **of_viewshed, **asked)
     planned.write("Features", found)
     planned.write("Table", tabulate_columns(found))
     request.finish(planned, _summarise(tin, found), lambda: describe_features(file, found))
