@@ -13,10 +13,22 @@ from .datasets.points import DATASETS
 from .measure import Outcome
 from .report.machine import describe
 from .report.page import write_report
-from .sections import answers, edits, kernel, lines, locate, readers, startup, variants, writers
+from .sections import (
+    answers,
+    edits,
+    kernel,
+    lines,
+    locate,
+    products,
+    readers,
+    startup,
+    variants,
+    writers,
+)
 
 SIMPLE = {
-    module.SECTION: module for module in (variants, edits, readers, writers, answers, startup)
+    module.SECTION: module
+    for module in (variants, edits, readers, writers, answers, products, startup)
 }
 SECTIONS = (
     kernel.SECTION,
@@ -27,6 +39,7 @@ SECTIONS = (
     readers.SECTION,
     writers.SECTION,
     answers.SECTION,
+    products.SECTION,
     startup.SECTION,
 )
 RESULTS = Path(__file__).parent / "results"

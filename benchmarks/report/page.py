@@ -13,7 +13,18 @@ from ..measure import OURS, Outcome, Result, is_installed
 from ..peers.answers import AS_MANY, EQUAL
 from ..peers.line_tools import ALL_LINE_TOOLS
 from ..peers.triangulators import CGAL, KERNEL
-from ..sections import answers, edits, kernel, lines, locate, readers, startup, variants, writers
+from ..sections import (
+    answers,
+    edits,
+    kernel,
+    lines,
+    locate,
+    products,
+    readers,
+    startup,
+    variants,
+    writers,
+)
 from .goals import judge_goals
 
 __all__ = ["write_report"]
@@ -383,6 +394,34 @@ def _format_answers_part(results: list[Result], plot: str) -> str:
     return "\n".join([part(results, plot), "### What is compared\n", *compared, ""])
 
 
+PRODUCTS_NOTES = """\
+What is made of a surface, each product alone in a process of its own; its answer is checked.
+Seconds are those by the clock and of the processor; memory is how far that of the process rises
+above what it holds with its input.
+"""
+
+
+def _format_products_part(results: list[Result], plot: str) -> str:
+    del plot
+    head = ["task", "points", "seconds", "of the processor", "memory", "remark"]
+    rows = [
+        [
+            result.task,
+            f"{result.count:,}",
+            _format_seconds(result.seconds),
+            _format_seconds(result.extra["processor_seconds"]),
+            _format_bytes(result.extra["peak_bytes"]),
+            result.note,
+        ]
+        for result in results
+    ]
+    return "\n".join(["## Products of a surface\n", PRODUCTS_NOTES, _format_table(head, rows)])
+
+
+def _format_bytes(count: int | None) -> str:
+    return "" if count is None else f"{count / 1e6:,.0f} MB"
+
+
 def _format_item(text: str) -> str:
     """Return an item of a list, in lines as long as those of the page."""
     return textwrap.fill(text, 100, initial_indent="- ", subsequent_indent="  ")
@@ -417,6 +456,7 @@ SECTIONS: dict[str, Callable[[list[Result], str], str]] = {
         "Writers", "triangles", "From the TIN to the file; every file is read back and compared.\n"
     ),
     answers.SECTION: _format_answers_part,
+    products.SECTION: _format_products_part,
     startup.SECTION: _make_part_formatter(
         "Starting up",
         "points",

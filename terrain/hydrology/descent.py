@@ -275,7 +275,7 @@ class Walker:
         moved = make_drops(len(edges))
         start, end = falls.ends(triangles, edges)
         other, its_edge = falls.cross(triangles, edges)
-        beyond = falls.sign_beyond(triangles, edges)
+        beyond = np.where(other == NO_NEIGHBOR, np.int8(0), falls.signs[other, its_edge])
         z = falls.points[:, 2]
         lower = self._choose_end(start, end)
         enters = (beyond < 0) & (shares > 0.0) & (shares < 1.0)

@@ -98,6 +98,10 @@ def _place_cuts(network: Network, rows: NDArray[np.int64], labels: NDArray[np.in
     share = np.append(shares, at_side)
     nodes = np.where(share <= _NEAR, start, np.where(share >= 1.0 - _NEAR, end, -1))
     nodes[len(rows) :][is_apex] = falls.triangles[triangles, base][is_apex]
+    # A cut from a corner along an edge of it is none: both ends are the corner.
+    corner = np.roll(nodes, len(rows))
+    at_corner = (nodes < 0) & ((corner == start) | (corner == end))
+    nodes[at_corner] = corner[at_corner]
     share = np.where(start < end, share, 1.0 - share)
     low, high = np.minimum(start, end), np.maximum(start, end)
     free = np.flatnonzero(nodes < 0)

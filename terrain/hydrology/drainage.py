@@ -204,8 +204,9 @@ def flow_accumulation(
     total = accumulate(network)
     nodes = np.flatnonzero(network.uppers != NOWHERE)
     start, end = network.uppers[nodes], network.nexts[nodes] - network.first_vertex
-    pairs, row = np.unique(np.column_stack([start, end]), axis=0, return_inverse=True)
-    areas = np.bincount(row.ravel(), total[nodes], minlength=len(pairs))
+    keys, row = np.unique(start * len(tin.points) + end, return_inverse=True)
+    pairs = np.column_stack(np.divmod(keys, len(tin.points)))
+    areas = np.bincount(row, total[nodes], minlength=len(pairs))
     chosen = np.flatnonzero((areas > 0.0) & (areas >= min_area))
     chosen = chosen[np.lexsort((chosen, -areas[chosen]))]
     start, end = pairs[chosen].T

@@ -16,12 +16,13 @@ if TYPE_CHECKING:
 
     from ...tin import TIN
 
-__all__ = ["FINEST", "Falls", "find_falls", "measure_fall", "round_share"]
+__all__ = ["FINEST", "Falls", "find_corners", "find_falls", "measure_fall", "round_share"]
 
 FINEST = 2.0**-53
 """Shares of an edge are multiples of this, so that they are exact from either end."""
 
 
+_AFTER, _BEFORE = np.array([1, 2, 0]), np.array([2, 0, 1])
 _POOR = 1e-10
 """Relative error beyond which a value is computed anew in fractions."""
 
@@ -62,17 +63,17 @@ class Falls(NamedTuple):
 
     def ends(self, triangle: Any, edge: Any) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """Return start and end vertex of edges."""
+        corners, first = self.triangles.reshape(-1), 3 * np.asarray(triangle, np.int64)
         return (
-            self.triangles[triangle, (edge + 1) % 3].astype(np.int64),
-            self.triangles[triangle, (edge + 2) % 3].astype(np.int64),
+            corners.take(first + _AFTER.take(edge), mode="wrap").astype(np.int64),
+            corners.take(first + _BEFORE.take(edge), mode="wrap").astype(np.int64),
         )
 
     def cross(self, triangle: Any, edge: Any) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """Return the triangle across each edge, and which of its edges it is; -1 outside."""
         _, end = self.ends(triangle, edge)
         other = self.neighbors[triangle, edge].astype(np.int64)
-        corner = np.argmax(self.triangles[other] == end[:, None], axis=1)
-        return other, (corner + 2) % 3
+        return other, _BEFORE.take(find_corners(self.triangles, other, end))
 
     def sign_beyond(self, triangle: Any, edge: Any) -> NDArray[np.int8]:
         """Return the sign of the other triangle at each edge; 0 outside."""
@@ -86,6 +87,16 @@ class Falls(NamedTuple):
             found = np.clip(part / self.values[triangle, edge], 0.0, 1.0)
         shares: NDArray[np.float64] = round_share(found)
         return shares
+
+
+def find_corners(
+    triangles: NDArray[np.int32], chosen: NDArray[np.int64], vertices: NDArray[np.int64]
+) -> NDArray[np.int64]:
+    """Return which corner of each chosen triangle a vertex of it is."""
+    found = triangles.take(chosen, axis=0, mode="wrap")
+    is_one, is_two = found[:, 1] == vertices, found[:, 2] == vertices
+    corners: NDArray[np.int64] = is_one + 2 * is_two.astype(np.int64)
+    return corners
 
 
 def round_share(share: Any) -> Any:

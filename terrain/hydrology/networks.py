@@ -182,10 +182,12 @@ def accumulate(found: Network) -> NDArray[np.float64]:
     moving = np.flatnonzero(found.nexts != np.arange(len(found.nexts)))
     waits = np.bincount(found.nexts[moving], minlength=len(total))
     ready = moving[waits[moving] == 0]
+    latest = np.empty(len(total), np.int64)
     while len(ready):
         below = found.nexts[ready]
         np.add.at(total, below, total[ready])
         np.subtract.at(waits, below, 1)
-        below = np.unique(below)
-        ready = below[(waits[below] == 0) & (found.nexts[below] != below)]
+        below = below[(waits[below] == 0) & (found.nexts[below] != below)]
+        latest[below] = np.arange(len(below))
+        ready = below[latest[below] == np.arange(len(below))]  # each once
     return total

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ...errors import PointsError
-from ...tin.topology import NO_NEIGHBOR
+from ...tin.topology import NO_NEIGHBOR, find_offsets
 from .descent import MOVING, Drops, make_drops
 
 if TYPE_CHECKING:
@@ -151,17 +151,21 @@ def _part(
     falls: Falls, bases: Bases, triangles: NDArray[np.int64], shares: NDArray[np.float64]
 ) -> Strips:
     """Return the strips between cuts, from the start of each base to its end."""
-    sloping = np.flatnonzero(~falls.is_level)
     inside = _is_inside(shares)
-    triangles = np.concatenate([sloping, sloping, triangles[inside]])
-    shares = np.concatenate([np.zeros(len(sloping)), np.ones(len(sloping)), shares[inside]])
+    triangles, shares = triangles[inside], shares[inside]
     order = np.lexsort((shares, triangles))
     triangles, shares = triangles[order], shares[order]
     same = (np.diff(triangles) == 0) & (np.diff(shares) <= SAME)
     kept = np.append(True, ~same)[: len(order)]
     triangles, shares = triangles[kept], shares[kept]
-    first = np.flatnonzero(triangles[:-1] == triangles[1:])
-    owners, starts, ends = triangles[first], shares[first], shares[first + 1]
+    sloping = np.flatnonzero(~falls.is_level)
+    counts = np.bincount(triangles, minlength=len(bases.edges))[sloping] + 1
+    offsets = find_offsets(counts)
+    owners, starts, ends = np.repeat(sloping, counts), np.zeros(offsets[-1]), np.ones(offsets[-1])
+    is_first = np.zeros(len(owners), np.bool_)
+    is_first[offsets[:-1]] = True
+    starts[~is_first] = shares
+    ends[np.flatnonzero(~is_first) - 1] = shares
     splits = bases.splits[owners]
     parts = _measure_parts(ends, splits) - _measure_parts(starts, splits)
     return Strips(owners, starts, ends, parts)
@@ -189,18 +193,22 @@ def enter_strips(bases: Bases, strips: Strips, drops: Drops) -> NDArray[np.int64
     triangles, shares = drops.triangles, drops.shares.copy()
     sides = np.flatnonzero(drops.edges != bases.edges[triangles])
     _, shares[sides] = follow(bases, triangles[sides], drops.edges[sides], shares[sides])
-    count = len(strips.triangles)
-    order = np.lexsort(
-        (
-            np.append(np.zeros(count), np.ones(len(shares))),
-            np.append(strips.starts, shares),
-            np.append(strips.triangles, triangles),
-        )
-    )
-    latest = np.maximum.accumulate(np.where(order < count, order, -1))
-    asked = order >= count
-    found = np.empty(len(shares), np.int64)
-    found[order[asked] - count] = latest[asked]
+    return _find_strips(bases, strips, triangles, shares)
+
+
+def _find_strips(
+    bases: Bases, strips: Strips, triangles: NDArray[np.int64], shares: NDArray[np.float64]
+) -> NDArray[np.int64]:
+    """Return the last strip of each triangle that begins at a share or before: by bisection."""
+    offsets = find_offsets(np.bincount(strips.triangles, minlength=len(bases.edges)))
+    found, beyond = offsets[triangles], offsets[triangles + 1]
+    rows = np.flatnonzero(beyond - found > 1)
+    while len(rows):
+        middle = (found[rows] + beyond[rows]) // 2
+        begins = strips.starts[middle] <= shares[rows]
+        found[rows[begins]] = middle[begins]
+        beyond[rows[~begins]] = middle[~begins]
+        rows = rows[beyond[rows] - found[rows] > 1]
     return found
 
 

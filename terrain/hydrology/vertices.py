@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ...tin.topology import NO_NEIGHBOR, find_triangles, gather
+from .falls import find_corners
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -99,46 +100,54 @@ def find_exits(
 
 
 def _list_candidates(falls: Falls, vertices: NDArray[np.int64]) -> _Candidates:
+    """List the edge on one side of each triangle, at the boundary that on the other side, and it.
+
+    In this order, so that those of each vertex are together.
+    """
     slots, owners = gather(falls.half_edges.offsets, vertices)
     triangles = falls.half_edges.triangles[slots].astype(np.int64)
-    corners = np.argmax(falls.triangles[triangles] == vertices[owners][:, None], axis=1)
-    groups = []
-    for turn in (1, 2):
-        ends = falls.triangles[triangles, (corners + turn) % 3].astype(np.int64)
-        groups.append(_measure_edges(falls, vertices, owners, ends))
+    start, z = vertices[owners], falls.points[:, 2]
+    corners = find_corners(falls.triangles, triangles, start)
+    one, other = falls.ends(triangles, corners)
+    is_rim = falls.neighbors[triangles, (corners + 1) % 3] == NO_NEIGHBOR
     signs = [falls.signs[triangles, (corners + turn) % 3] for turn in range(3)]
-    inside = (signs[0] > 0) & (signs[1] < 0) & (signs[2] < 0)
-    groups.append(_measure_triangles(falls, owners[inside], triangles[inside]))
-    merged = _Candidates._make(np.concatenate(arrays) for arrays in zip(*groups, strict=True))
-    order = np.argsort(merged.owners, kind="stable")
-    return _Candidates._make(array[order] for array in merged)
+    is_down = np.empty((len(slots), 3), np.bool_)
+    is_down[:, 0] = z[one] < z[start]
+    is_down[:, 1] = is_rim & (z[other] < z[start])
+    is_down[:, 2] = (signs[0] > 0) & (signs[1] < 0) & (signs[2] < 0)
+    slot, kind = np.divmod(np.flatnonzero(is_down), 3)
+    ends = np.where(kind == 0, one[slot], other[slot])
+    found = _Candidates(
+        owners[slot],
+        np.where(kind == 2, NOWHERE, ends),
+        np.where(kind == 2, triangles[slot], NOWHERE),
+        np.empty(len(slot)),
+    )
+    edges, inside = kind != 2, np.flatnonzero(kind == 2)
+    found.slopes[edges] = _measure_edges(falls, start[slot[edges]], ends[edges])
+    found.slopes[inside] = _measure_triangles(falls, found.triangles[inside])
+    return found
 
 
 def _measure_edges(
-    falls: Falls,
-    vertices: NDArray[np.int64],
-    owners: NDArray[np.int64],
-    ends: NDArray[np.int64],
-) -> _Candidates:
-    z = falls.points[:, 2]
-    down = z[ends] < z[vertices[owners]]
-    owners, ends = owners[down], ends[down]
-    step = falls.points[ends] - falls.points[vertices[owners]]
+    falls: Falls, starts: NDArray[np.int64], ends: NDArray[np.int64]
+) -> NDArray[np.float64]:
+    step = falls.points[ends] - falls.points[starts]
     slopes = -step[:, 2] / np.hypot(step[:, 0], step[:, 1])
     # Of a fall that underflows there is still a descent.
-    return _Candidates(owners, ends, np.full(len(ends), NOWHERE), np.maximum(slopes, 5e-324))
+    found: NDArray[np.float64] = np.maximum(slopes, 5e-324)
+    return found
 
 
-def _measure_triangles(
-    falls: Falls, owners: NDArray[np.int64], triangles: NDArray[np.int64]
-) -> _Candidates:
+def _measure_triangles(falls: Falls, triangles: NDArray[np.int64]) -> NDArray[np.float64]:
     a, b, c = (falls.points[falls.triangles[triangles, k]] for k in range(3))
     (east, north, area), poor = _cross(b - a, c - a)
     slopes = np.hypot(east, north) / area
     for row in np.flatnonzero(poor).tolist():
         x, y, whole = _cross_exactly(falls, int(triangles[row]))
         slopes[row] = math.hypot(float(x / whole), float(y / whole))
-    return _Candidates(owners, np.full(len(owners), NOWHERE), triangles, slopes)
+    found: NDArray[np.float64] = slopes
+    return found
 
 
 def _cross(u: NDArray[np.float64], v: NDArray[np.float64]) -> tuple[Any, NDArray[np.bool_]]:

@@ -169,7 +169,8 @@ def gather_polygons(patches: Patches) -> Polygons:
             found.ring_offsets,
             found.polygon_offsets,
             np.repeat(found.classes, counts).astype(np.int32),
-        )
+        ),
+        together=True,
     )
     regions, first = np.unique(parts.band, return_index=True)
     return Polygons(

@@ -15,7 +15,6 @@ from ..results import Features
 from .descent import MOVING, Walker, make_drops
 from .falls import find_falls
 from .filling import fill
-from .strips import settle
 from .vertices import NOWHERE
 from .water import Waters, cut_below, gather_polygons, measure_waters
 
@@ -327,23 +326,33 @@ def _run_over(
     tin: TIN, filling: Filling, ponds: NDArray[np.int64], is_listed: NDArray[np.bool_]
 ) -> NDArray[np.int64]:
     """Return the next listed depression that water of full ones comes to, ``NOWHERE`` for none."""
-    walker = Walker(find_falls(tin), filling)
-    spills = filling.hierarchy.spill_vertices
-    into, vertices = np.full(len(ponds), NOWHERE), spills[ponds]
-    rows = np.arange(len(ponds))
+    roots = np.unique(filling.ponds)
+    roots = roots[roots != NOWHERE]
+    nexts = np.full(len(is_listed), NOWHERE)  # the last one is for NOWHERE
+    nexts[roots] = _find_next_ponds(Walker(find_falls(tin), filling), roots)
+    further = np.where(is_listed, np.arange(len(nexts)), nexts)  # skips those that are not listed
+    further[-1] = -1
+    while True:
+        skipped = further[further]
+        if np.array_equal(skipped, further):
+            into: NDArray[np.int64] = further[nexts[ponds]]
+            return into
+        further = skipped
+
+
+def _find_next_ponds(walker: Walker, ponds: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Follow drops from where ponds spill to the next pond, ``NOWHERE`` if they leave first."""
+    filling: Any = walker.filling
+    found, rows = np.full(len(ponds), NOWHERE), np.arange(len(ponds))
+    drops = make_drops(len(ponds))
+    drops.vertices[:] = filling.hierarchy.spill_vertices[ponds]
     while len(rows):
-        unique, row = np.unique(vertices, return_inverse=True)
-        drops = make_drops(len(unique))
-        drops.vertices[:] = unique
-        drops, _ = settle(walker, drops)
-        comes = np.where(drops.vertices == NOWHERE, drops.targets, drops.vertices)
-        pond = np.where(drops.ends == MOVING, filling.ponds[comes], NOWHERE)
-        arrives = (pond != NOWHERE) & is_listed[pond]
-        into[rows[arrives[row]]] = pond[row][arrives[row]]
-        comes = np.where(pond == NOWHERE, comes, spills[pond])
-        on = ((drops.ends == MOVING) & ~arrives)[row]
-        rows, vertices = rows[on], comes[row][on]
-    return into
+        drops = walker.step(drops)
+        at_vertex = drops.vertices != NOWHERE
+        found[rows[at_vertex]] = filling.ponds[drops.vertices[at_vertex]]
+        on = np.flatnonzero((drops.ends == MOVING) & (found[rows] == NOWHERE))
+        rows, drops = rows[on], drops.choose(on)
+    return found
 
 
 def _draw_waters(

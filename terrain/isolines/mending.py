@@ -41,12 +41,19 @@ class PolygonParts(NamedTuple):
     band: NDArray[np.int32]
 
 
-def mend_polygons(parts: PolygonParts) -> tuple[PolygonParts, tuple[str, ...]]:
-    """Make polygons valid that meet themselves, and say so."""
+def mend_polygons(
+    parts: PolygonParts, *, together: bool = False
+) -> tuple[PolygonParts, tuple[str, ...]]:
+    """Make polygons valid that meet themselves, or with ``together`` others of theirs; say so."""
     shapely = _optional.load("shapely")
     offsets = parts.ring_offsets, parts.polygon_offsets
     shapes = shapely.from_ragged_array(shapely.GeometryType.POLYGON, parts.points, offsets)
     is_bad = ~shapely.is_valid(shapes)
+    if together:
+        _, owner = np.unique(parts.band, return_inverse=True)
+        order = np.argsort(owner, kind="stable")
+        wholes = shapely.multipolygons(shapes[order], indices=owner[order])
+        is_bad |= ~shapely.is_valid(wholes)[owner]
     if not is_bad.any():
         return parts, ()
     bands = np.unique(parts.band[is_bad])
@@ -82,6 +89,9 @@ def turn(polygon: Any) -> Any:
 def as_parts(shapes: NDArray[np.object_], band: NDArray[np.int32]) -> PolygonParts:
     """Return polygons of shapely as the kernel returns its own."""
     shapely = _optional.load("shapely")
+    if len(shapes) == 0:  # nothing is left of what is thinner than rounding
+        none = np.zeros(1, np.int64)
+        return PolygonParts(np.zeros((0, 2)), none, none, band)
     _, points, (rings, polygons) = shapely.to_ragged_array(shapes)
     return PolygonParts(
         np.ascontiguousarray(points[:, :2]),

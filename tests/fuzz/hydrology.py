@@ -25,28 +25,49 @@ from .campaign import Campaign, Case
 
 
 def generate(rng: np.random.Generator) -> Case:
-    """A grid with many flats, or scattered points, perhaps far away and trimmed."""
-    count = int(rng.integers(4, 80))
-    if rng.random() < 0.5:
-        side = int(rng.integers(2, 9))
-        x, y = (axis.ravel() for axis in np.meshgrid(np.arange(side), np.arange(side)))
-        points = np.column_stack([x, y, rng.integers(0, int(rng.integers(1, 6)), len(x))])
-    else:
-        xy = rng.uniform(0, 60, (count, 2)).round(int(rng.choice([0, 1, 9])))
-        points = np.column_stack([xy, rng.uniform(0, 9, count).round(int(rng.choice([0, 9])))])
-    origin = [0.0, 0.0, 0.0] if rng.random() < 0.7 else [752_000.0, 4_024_000.0, 300.0]
+    """A grid with many flats, or scattered points; perhaps far away, trimmed, with a hole."""
+    points = make_grid(rng) if rng.random() < 0.6 else make_scattered(rng)
+    size = float(points[:, :2].max())
+    hole = rng.uniform(0.2, 0.5, 2) * size
+    origin = [0.0, 0.0, 0.0] if rng.random() < 0.6 else [752_000.1, 4_024_000.7, 300.3]
     return {
         "points": (points + origin).tolist(),
         "max_edge": [None, 1.5, 20.0][int(rng.integers(3))],
+        "trim": ["perimeter", "everywhere"][int(rng.integers(2))],
+        "hole": None if rng.random() < 0.7 else [*(hole + origin[:2]), 0.3 * size],
         "starts": rng.random((10, 2)).tolist(),
         "level": float(rng.uniform(0, 6) + origin[2]),
     }
 
 
+def make_grid(rng: np.random.Generator) -> np.ndarray:
+    """Few elevations: ties, level ponds that touch, islands and ridges of one level."""
+    side, spacing = int(rng.integers(2, 9)), float(rng.choice([1.0, 0.1, 3.7]))
+    x, y = (axis.ravel() * spacing for axis in np.meshgrid(np.arange(side), np.arange(side)))
+    z = rng.integers(0, int(rng.integers(1, 6)), len(x)) * float(rng.choice([1.0, 0.1, 1e-9]))
+    if rng.random() < 0.3:  # the same on both sides
+        z = np.minimum(z.reshape(side, side), z.reshape(side, side)[::-1]).ravel()
+    if rng.random() < 0.3:  # a bowl with terraces
+        z = np.round(np.hypot(x - x.mean(), y - y.mean()) / spacing) + np.minimum(z, 1.0)
+    return np.column_stack([x, y, z])
+
+
+def make_scattered(rng: np.random.Generator) -> np.ndarray:
+    count = int(rng.integers(4, 80))
+    xy = rng.uniform(0, 60, (count, 2)).round(int(rng.choice([0, 1, 9])))
+    return np.column_stack([xy, rng.uniform(0, 9, count).round(int(rng.choice([0, 1, 9])))])
+
+
 def examine(case: Case) -> str:
     """Ask for everything, and hold it against the oracles."""
     try:
-        tin = ts.triangulate(case["points"], max_edge=case["max_edge"], crs="EPSG:32616")
+        tin = ts.triangulate(
+            case["points"],
+            max_edge=case["max_edge"],
+            trim=case["trim"],
+            holes=make_hole(case["hole"]),
+            crs="EPSG:32616",
+        )
     except ts.TinsmithError:
         return "refused: points"
     require_paths(tin, case["starts"])
@@ -56,6 +77,14 @@ def examine(case: Case) -> str:
     require_accumulation(tin)
     require_full(tin, np.array(case["starts"]))
     return "flow"
+
+
+def make_hole(hole: list[float] | None) -> list[list[list[float]]]:
+    """Return a square, of a corner and a width."""
+    if hole is None:
+        return []
+    x, y, width = hole
+    return [[[x, y], [x + width, y], [x + width, y + width], [x, y + width]]]
 
 
 def choose_starts(tin: Any, shares: Any) -> np.ndarray:
@@ -80,6 +109,8 @@ def require_depressions(tin: Any) -> None:
     outer = found.columns["parent"] == -1
     used = np.unique(tin.triangles)
     under = used[filled[used] > tin.points[used, 2]]
+    if any("made valid" in note for note in found.notes):  # of less than rounding nothing is left
+        under = under[filled[under] > tin.points[under, 2] + 1e-9]
     for vertex in under:
         inside = shapely.intersects_xy(shapes[outer], *tin.points[vertex, :2])
         assert filled[vertex] in levels[outer][inside], f"vertex {vertex}: not under water"

@@ -260,7 +260,7 @@ def require_joined(tin: Any, rows: list[dict[str, Any]], lines: list[Any], slack
 def _require_dry(known: _Known, row: dict[str, Any], line: np.ndarray, places: list[Any]) -> None:
     require_descent(known.tin, line, known.slack)
     assert line[0, 2] > line[-1, 2], "no descent"
-    wet = [v for v in places if v in known.pond]
+    wet = [v for v in places[:-1] if v in known.pond]  # a shore may round to a vertex below it
     assert not wet, f"{wet}: under water"
 
 
@@ -268,8 +268,10 @@ def _require_level(known: _Known, row: dict[str, Any], line: np.ndarray, places:
     assert row["pit"] == -1
     assert (line[:, 2] == line[0, 2]).all()
     assert all(v is not None and v not in known.pond for v in places[1:])
-    counts = [known.steps[v] for v in places if v is not None]
+    counts = [known.steps[v] for v in places[1:]]
     assert (np.diff(counts) == -1).all(), f"{places}: not the shortest"
+    first = 0 if places[0] is None else known.steps[places[0]]  # or a place that rounds to it
+    assert first == 0 or first >= counts[0], f"{places}: not the shortest"
 
 
 def _require_pond(known: _Known, row: dict[str, Any], line: np.ndarray, places: list[Any]) -> None:
@@ -306,4 +308,17 @@ def require_full_catchments(tin: Any, shares: np.ndarray) -> None:
         if len(inside) == 0 or shapes[inside[0]].boundary.distance(place) < 1e-6 * size:
             continue
         vertex, other = found.columns["vertex"][inside[0]], vertices.get(tuple(end[:2]), -1)
+        if vertex == -1 and other >= 0 and falls_along_edge(tin, other):
+            continue  # the place on the edge of the boundary is rounded to its end
         assert vertex == other, f"{xy[start]}: leaves at {other}, not {vertex}"
+
+
+def falls_along_edge(tin: Any, vertex: int) -> bool:
+    """Whether a triangle at a vertex falls nearly along an edge of it."""
+    for corners in tin.triangles[(tin.triangles == vertex).any(axis=1)]:
+        east, north = map(float, find_gradient(tin.points[corners]))
+        sides = np.roll(tin.points[corners, :2], -1, axis=0) - tin.points[corners, :2]
+        across = sides @ np.array([-north, east]) / np.hypot(*sides.T)
+        if (np.abs(across) < 1e-3 * np.hypot(east, north)).any():
+            return True
+    return False

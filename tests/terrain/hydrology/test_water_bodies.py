@@ -147,6 +147,26 @@ def test_feet_and_metres_are_minded():
     assert (found.units["volume"], found.units["depth"].symbol) == ("m³", "ft")
 
 
+def test_water_thinner_than_rounding_has_no_polygon_and_that_is_told():
+    corner, width = [752_015.5416232125, 4_024_021.3012590385], 17.939999999999998
+    x, y = corner
+    hole = [[x, y], [x + width, y], [x + width, y + width], [x, y + width]]
+    points = [
+        [752_033.6, 4_024_048.3, 306.3],
+        [752_026.8, 4_024_014.8, 302.3],
+        [752_014.0, 4_024_051.8, 305.3],
+        [752_004.2, 4_024_002.5, 301.3],
+        [752_059.9, 4_024_015.0, 308.3],
+        [752_023.4, 4_024_043.4, 300.3],
+        [752_039.4, 4_024_026.3, 300.3],
+    ]
+    tin = ts.triangulate(points, max_edge=20.0, trim="everywhere", holes=[hole])
+    found = ts.depressions(tin)
+    depths = ts.pits(tin).columns["depth"]
+    assert (depths < 1e-9).all()
+    assert len(found) == len(depths) or any("made valid" in note for note in found.notes)
+
+
 @pytest.mark.parametrize("level", [float("nan"), float("inf"), "high", None, True])
 def test_a_level_that_is_none_is_refused(level):
     with pytest.raises(ts.OptionError, match="level"):

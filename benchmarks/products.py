@@ -1,0 +1,226 @@
+"""Products of a surface, each in a process of its own: ``python -m benchmarks.products NAME N``.
+
+A line of JSON tells the seconds by the clock and of the processor, how far the memory rose above
+what the process held with its input, and how much was found. An AssertionError says that the answer
+is wrong.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import time
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+import tinsmith as ts
+
+from .ground import make_terrain, measure_errors
+
+__all__ = ["PRODUCTS"]
+
+DROPS = 1000
+NOISE = 0.03
+INTERVAL = 5.0
+WARM_UP_POINTS = 200
+
+
+class Product(NamedTuple):
+    """A function of a surface, and what must hold of its answer.
+
+    Attributes
+    ----------
+    prepare : callable
+        From the number of points to the input.
+    run : callable
+        From the input to the answer.
+    check : callable
+        Of input and answer; returns how much was found.
+    """
+
+    prepare: Callable[[int], Any]
+    run: Callable[[Any], Any]
+    check: Callable[[Any, Any], str]
+
+
+def make_hills(count: int) -> ts.TIN:
+    """Return hills of random points, one to the square metre, with noise."""
+    rng = np.random.default_rng(1)
+    x, y = rng.uniform(0, np.sqrt(count), (2, count))
+    z = 300 + 20 * np.sin(x / 110) * np.cos(y / 140) + 0.05 * x + rng.normal(0, NOISE, count)
+    return ts.triangulate(np.column_stack([x, y, z]))
+
+
+def make_rings(count: int) -> ts.TIN:
+    """Return contours of many cones, with their lines; on top of each it is flat."""
+    hills, rings = max(1, count // 1000), 10
+    angle = np.linspace(0, 2 * np.pi, 100, endpoint=False)
+    circle = np.column_stack([np.cos(angle), np.sin(angle)])
+    side = int(np.ceil(np.sqrt(hills)))
+    lines = []
+    for hill in range(hills):
+        center = np.array([hill % side, hill // side]) * 2.5 * rings
+        for ring in range(1, rings + 1):
+            height = np.full((len(angle), 1), INTERVAL * (rings - ring))
+            line = np.hstack([center + ring * circle, height])
+            lines.append(ts.Breakline(np.vstack([line, line[:1]])))
+    return ts.triangulate(np.zeros((0, 3)), breaklines=lines)
+
+
+def make_pair(count: int) -> tuple[ts.TIN, ts.TIN]:
+    """Return hills, and a surface for their middle that has a quarter as many points."""
+    base = make_hills(count)
+    rng = np.random.default_rng(2)
+    half = np.sqrt(count) / 4
+    xy = np.array([base.bounds.center]) + rng.uniform(-half, half, (count // 4, 2))
+    return base, ts.triangulate(np.column_stack([xy, base.interpolate(xy) + 1.0]))
+
+
+def grade_pad(tin: ts.TIN) -> ts.TIN:
+    """Grade a pad in the middle, an eighth as wide as the surface."""
+    half = tin.bounds.width / 16
+    corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * half
+    return ts.grade(tin, np.array(tin.bounds.center) + corners, 305.0, cut_slope=1, fill_slope=0.5)
+
+
+def follow_drops(tin: ts.TIN, *, is_filled: bool) -> ts.Features:
+    """Let drops fall everywhere."""
+    x, y = np.random.default_rng(3).uniform(0.05, 0.95, (2, DROPS)) * tin.bounds.width
+    low = np.array([tin.bounds.xmin, tin.bounds.ymin])
+    places = low + np.column_stack([x, y])
+    return ts.flow_path(tin, places, fill_depressions=is_filled)
+
+
+# --------------------------------------------------------------------- what must hold
+
+
+def _require_tiles(tin: ts.TIN, found: ts.Features) -> str:
+    area = found.columns["area"].sum()
+    assert abs(area - tin.area) <= 1e-9 * tin.area, f"catchments of {area}, surface of {tin.area}"
+    return f"{len(found):,} catchments"
+
+
+def _require_some(given: Any, found: Any) -> str:
+    del given
+    assert len(found) > 0
+    return f"{len(found):,} rows"
+
+
+def _require_few(tin: ts.TIN, found: Any) -> str:
+    assert len(found) <= len(tin.points) // 10_000  # there is none but the noise
+    return f"{len(found):,} named"
+
+
+def _require_ends(tin: ts.TIN, found: ts.Features) -> str:
+    del tin
+    assert len(np.unique(found.columns["start"])) == DROPS
+    assert (found.columns["drop"] >= 0).all()
+    return f"{len(found.coordinates):,} places"
+
+
+def _require_ground(given: Any, found: Any) -> str:
+    errors = measure_errors(found.is_ground, given[1])
+    assert errors.total < 5, errors
+    return f"{errors.total:.2f} % wrong"
+
+
+def _require_pad(tin: ts.TIN, found: ts.TIN) -> str:
+    assert abs(found.interpolate([tin.bounds.center])[0] - 305.0) < 1e-9
+    return f"{len(found.points):,} vertices"
+
+
+def _require_patch(given: tuple[ts.TIN, ts.TIN], found: ts.TIN) -> str:
+    patch = given[1]
+    center = [patch.bounds.center]
+    assert abs(found.interpolate(center)[0] - patch.interpolate(center)[0]) < 1e-9
+    return f"{len(found.points):,} vertices"
+
+
+def _require_near(tin: ts.TIN, found: ts.TIN) -> str:
+    off = np.abs(found.interpolate(tin.points[:, :2]) - tin.points[:, 2]).max()
+    assert off <= 0.5 * (1 + 1e-9), f"{off} off"
+    return f"{len(found.points):,} vertices"
+
+
+def _require_mended(tin: ts.TIN, found: ts.TIN) -> str:
+    assert len(ts.flats(found)) < len(ts.flats(tin))
+    return f"{len(found.points) - len(tin.points):,} points added"
+
+
+PRODUCTS: dict[str, Product] = {
+    "pits": Product(make_hills, ts.pits, _require_some),
+    "depressions": Product(make_hills, ts.depressions, _require_some),
+    "ponds": Product(make_hills, partial(ts.ponds, level=300.0), _require_some),
+    "ridges and valleys": Product(make_hills, ts.ridges_and_valleys, _require_some),
+    f"flow paths, {DROPS:,}": Product(
+        make_hills, partial(follow_drops, is_filled=False), _require_ends
+    ),
+    f"flow paths, {DROPS:,}, filled": Product(
+        make_hills, partial(follow_drops, is_filled=True), _require_ends
+    ),
+    "flow accumulation": Product(make_hills, ts.flow_accumulation, _require_some),
+    "flow accumulation, filled": Product(
+        make_hills, partial(ts.flow_accumulation, fill_depressions=True), _require_some
+    ),
+    "catchments": Product(make_hills, ts.catchments, _require_tiles),
+    "catchments, filled": Product(
+        make_hills, partial(ts.catchments, fill_depressions=True), _require_tiles
+    ),
+    "blunders": Product(make_hills, ts.blunders, _require_few),
+    "ground": Product(make_terrain, lambda given: ts.ground(given[0]), _require_ground),
+    "flats": Product(make_rings, ts.flats, _require_some),
+    "flats mended": Product(make_rings, ts.mend_flats, _require_mended),
+    "grade": Product(make_hills, grade_pad, _require_pad),
+    "paste": Product(make_pair, lambda given: ts.paste(*given), _require_patch),
+    "simplify": Product(make_hills, partial(ts.simplify, tolerance=0.5, threads=1), _require_near),
+}
+"""By name; hills have a point a square metre."""
+
+
+def measure(name: str, count: int) -> dict[str, Any]:
+    """Run a product once, on ``count`` points."""
+    product = PRODUCTS[name]
+    small = product.prepare(max(WARM_UP_POINTS, 1000))
+    product.run(small)  # libraries are loaded
+    given = product.prepare(count)
+    before = _forget_peak()
+    begin, ticks = time.perf_counter(), time.process_time()
+    found = product.run(given)
+    figures: dict[str, Any] = {
+        "seconds": time.perf_counter() - begin,
+        "processor_seconds": time.process_time() - ticks,
+    }
+    if before is not None:
+        figures["peak_bytes"] = _read_status("VmHWM") - before
+    return {**figures, "found": product.check(given, found)}
+
+
+def _forget_peak() -> int | None:
+    """Forget the peak of memory so far; return the memory now, None where that is not told."""
+    try:
+        Path("/proc/self/clear_refs").write_text("5", encoding="ascii")
+    except OSError:
+        return None
+    return _read_status("VmRSS")
+
+
+def _read_status(name: str) -> int:
+    lines = Path("/proc/self/status").read_text(encoding="ascii").splitlines()
+    return next(int(line.split()[1]) * 1024 for line in lines if line.startswith(name))
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Measure what the command line asks for."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.products", description=__doc__)
+    parser.add_argument("name", choices=PRODUCTS)
+    parser.add_argument("points", type=int, metavar="N")
+    given = parser.parse_args(arguments)
+    print(json.dumps(measure(given.name, given.points)))
+
+
+if __name__ == "__main__":
+    main()
