@@ -280,7 +280,7 @@ def style_ridges(layer: Any) -> None:
 def style_catchments(layer: Any) -> None:
     """Fill each catchment with a hue of its own."""
     symbol = QgsFillSymbol.createSimple({"outline_color": "#4a4a4a", "outline_width": "0.3"})
-    hue = f"color_hsva(($id * {_GOLDEN_ANGLE}) % 360, 35, 90, 60)"
+    hue = f"color_hsva(($id * {_GOLDEN_ANGLE}) % 360, 45, 90, 150)"
     _set_by_expression(symbol, QgsSymbolLayer.PropertyFillColor, hue)
     layer.setRenderer(QgsSingleSymbolRenderer(symbol))
 
